@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+
+namespace quadcore {
+
+/// Open-loop commands: rows of time [s] and n rotor speeds [rad/s], held until the next row.
+class Commands {
+ public:
+  using Table = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  /// \param table  (rows, 1 + n), time in the first column, strictly increasing.
+  /// Throws InputError on a wrong width, disorder, or a number that is not finite.
+  Commands(Table table, std::size_t width);
+
+  /// The row for the step that starts at `time`: the last with time <= t + 1e-9, or null before the
+  /// first. The n speeds.
+  const double* at(double time);
+
+ private:
+  Table table_;
+  Eigen::Index next_ = 0;  ///< first row that is not yet due at the last asked time
+};
+
+}  // namespace quadcore

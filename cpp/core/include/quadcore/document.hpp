@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace quadcore {
+
+/// An XML text and where its lines came from. A document that was expanded (by xacro) carries for
+/// each of its lines the file and line it stems from; otherwise the text is the file itself.
+struct Document {
+  std::string name;
+  std::string text;
+  std::vector<std::pair<std::string, int>> lines = {};
+
+  /// "FILE:LINE" of a line of the text, counted from 1.
+  std::string at(int line) const;
+  /// Reads a file; throws InputError if it cannot be read.
+  static Document read(const std::string& path);
+};
+
+}  // namespace quadcore

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "quadcore/kinematics.hpp"
+#include "quadcore/loads.hpp"
+#include "quadcore/model.hpp"
+#include "quadcore/state.hpp"
+#include "quadcore/world.hpp"
+
+namespace quadcore {
+
+/// The force laws of all plugins: a pure function of the kinematics that an engine may evaluate as
+/// often as its integrator needs.
+class ForceField {
+ public:
+  virtual ~ForceField() = default;
+  /// Adds to `loads`, which the caller has cleared.
+  virtual void evaluate(const Kinematics& kinematics, Loads& loads) const = 0;
+};
+
+/// Moves a vehicle. Gravity, joint damping and inertial effects are the engine's; everything else
+/// comes from the force field.
+class Engine {
+ public:
+  virtual ~Engine() = default;
+
+  /// The model as this engine flies it (gazebo11 rounds its numbers).
+  virtual const Model& model() const = 0;
+  /// Advances by dt [s]. Allocates nothing.
+  virtual void step(double dt, const ForceField& forces) = 0;
+  /// The motion now.
+  virtual const Kinematics& kinematics() const = 0;
+  /// The state now; `state.time` is left alone.
+  virtual void get_state(VehicleState& state) const = 0;
+  /// Moves the vehicle to a state; `state.time` is ignored.
+  virtual void set_state(const VehicleState& state) = 0;
+
+  /// Everything that the next steps depend on, bit for bit.
+  virtual std::vector<double> save() const = 0;
+  virtual void restore(const std::vector<double>& saved) = 0;
+};
+
+struct EngineInfo {
+  std::string name;
+  std::string summary;
+};
+
+/// The engines there are, the default first.
+std::vector<EngineInfo> engines();
+
+/// Throws InputError on an unknown name or a model or world that the engine cannot represent.
+std::unique_ptr<Engine> make_engine(const std::string& name, const Model& model,
+                                    const World& world);
+
+}  // namespace quadcore

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "quadcore/kinematics.hpp"
+#include "quadcore/spatial.hpp"
+
+namespace quadcore {
+
+/// Force [N] and torque [N m], both in the frame's axes.
+struct Wrench {
+  Vector3d force_F = Vector3d::Zero();
+  Vector3d torque_F = Vector3d::Zero();
+};
+
+/// Collects what the force laws exert on the vehicle at one instant. All vectors are in the frame's
+/// axes F. `term` is the index of the plugin's wrench term that the load belongs to (see
+/// PluginDescriptor::wrenches); it matters only while a log records the terms one by one.
+class Loads {
+ public:
+  explicit Loads(std::size_t rotor_count)
+      : rotor_forces_F_(rotor_count), joint_torques_(rotor_count) {}
+
+  /// A force on the frame at the point Q, p_FQ_F from the frame's origin.
+  void add_frame_force(std::size_t term, const Vector3d& f_F, const Vector3d& p_FQ_F) {
+    frame_.force_F += f_F;
+    frame_.torque_F += p_FQ_F.cross(f_F);
+    if (terms_) record(term, f_F, p_FQ_F);
+  }
+  /// A torque on the frame.
+  void add_frame_torque(std::size_t term, const Vector3d& tau_F) {
+    frame_.torque_F += tau_F;
+    if (terms_) terms_[term].torque_F += tau_F;
+  }
+  /// A force on rotor i at its centre of mass.
+  void add_rotor_force(std::size_t term, std::size_t i, const Vector3d& f_F) {
+    rotor_forces_F_[i] += f_F;
+    if (terms_) record(term, f_F, kinematics_->rotors[i].p_FRcm_F);
+  }
+  /// A torque of joint i on its rotor about the joint axis; its reaction acts on the parent.
+  void add_joint_torque(std::size_t i, double torque) { joint_torques_[i] += torque; }
+
+  /// Total on the frame; the torque is about the frame's origin.
+  const Wrench& frame() const { return frame_; }
+  const Vector3d& rotor_force_F(std::size_t i) const { return rotor_forces_F_[i]; }
+  double joint_torque(std::size_t i) const { return joint_torques_[i]; }
+
+  void clear();
+  /// While set, each load is also added to terms[term], about the vehicle's centre of mass.
+  void record_terms(Wrench* terms, const Kinematics* kinematics) {
+    terms_ = terms;
+    kinematics_ = kinematics;
+  }
+  /// The terms of the plugin that is evaluated next; null while nothing is recorded.
+  Wrench* terms() const { return terms_; }
+
+ private:
+  void record(std::size_t term, const Vector3d& f_F, const Vector3d& p_FQ_F);
+
+  Wrench frame_;
+  std::vector<Vector3d> rotor_forces_F_;
+  std::vector<double> joint_torques_;
+  Wrench* terms_ = nullptr;
+  const Kinematics* kinematics_ = nullptr;
+};
+
+}  // namespace quadcore

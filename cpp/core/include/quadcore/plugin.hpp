@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "quadcore/kinematics.hpp"
+#include "quadcore/loads.hpp"
+#include "quadcore/model.hpp"
+#include "quadcore/tags.hpp"
+#include "quadcore/topics.hpp"
+
+namespace quadcore {
+
+/// Changes whenever a plugin built before must be rebuilt.
+constexpr int plugin_abi = 1;
+
+/// A plugin's state: plain numbers that belong to the simulation, so that snapshot, restore and
+/// reset are exact. All zero at the start.
+using PluginState = Eigen::Ref<VectorXd>;
+using ConstPluginState = Eigen::Ref<const VectorXd>;
+
+/// What a plugin sees at a sampling instant.
+struct Sample {
+  double time;                   ///< s
+  double dt;                     ///< length of the step [s]
+  const Kinematics& kinematics;  ///< motion at `time`
+  Topics& topics;
+};
+
+/// A loaded plugin. It is immutable once created: whatever changes during a flight lives in the
+/// PluginState that each hook is handed. Hooks may throw FlightError to end the flight.
+class Plugin {
+ public:
+  virtual ~Plugin() = default;
+
+  /// Numbers of state this plugin needs.
+  virtual std::size_t state_size() const { return 0; }
+  /// Once per step, at its start: commands, sampled control laws.
+  virtual void update(const Sample&, PluginState) const {}
+  /// Once at time 0 and at the end of each step: sensors.
+  virtual void sense(const Sample&, PluginState) const {}
+  /// The force law: a pure function, evaluated as often as the engine's integrator needs.
+  virtual void forces(const Kinematics&, ConstPluginState, Loads&) const {}
+};
+
+/// What a plugin is made from.
+struct PluginSetup {
+  const std::string& name;  ///< name attribute of the plugin tag
+  const Parameters& parameters;
+  const Model& model;
+  Topics& topics;            ///< declare topics here
+  std::uint64_t seed;        ///< the simulation's
+  std::vector<std::string>& warnings;
+};
+
+/// What a module says of itself.
+struct PluginDescriptor {
+  std::string summary;                ///< one line
+  std::vector<TagSpec> tags;          ///< every parameter
+  std::vector<std::string> wrenches;  ///< names of the wrench terms that forces() reports
+  std::unique_ptr<Plugin> (*create)(const PluginSetup&);
+};
+
+}  // namespace quadcore
+
+/// Makes a shared library a quadcore plugin. `describe` is a function that returns its
+/// PluginDescriptor. Use once per library, outside any namespace.
+#define QUADCORE_REGISTER_PLUGIN(describe)                                           \
+  extern "C" {                                                                       \
+  __attribute__((visibility("default"))) extern const int quadcore_plugin_abi;       \
+  const int quadcore_plugin_abi = quadcore::plugin_abi;                              \
+  __attribute__((visibility("default"))) const quadcore::PluginDescriptor*           \
+  quadcore_plugin_descriptor() {                                                     \
+    static const quadcore::PluginDescriptor descriptor = describe();                 \
+    return &descriptor;                                                              \
+  }                                                                                  \
+  }

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+/// \file
+/// Reproducible noise: the same on every machine and standard library, with a state that is a plain
+/// count and so lives in a plugin's state.
+
+namespace quadcore {
+
+/// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): draw number `count` of the stream `seed`.
+inline std::uint64_t random_bits(std::uint64_t seed, std::uint64_t count) {
+  std::uint64_t z = seed + (count + 1) * 0x9E3779B97F4A7C15ULL;
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
+  return z ^ (z >> 31);
+}
+
+/// Standard normal number by Box and Muller; advances `count` (a whole number) by two.
+inline double random_normal(std::uint64_t seed, double& count) {
+  const auto n = static_cast<std::uint64_t>(count);
+  count += 2;
+  const double scale = 1.0 / 9007199254740992.0;  // 2^-53
+  const double u = (static_cast<double>(random_bits(seed, n) >> 11) + 0.5) * scale;
+  const double v = (static_cast<double>(random_bits(seed, n + 1) >> 11) + 0.5) * scale;
+  return std::sqrt(-2 * std::log(u)) * std::cos(6.283185307179586 * v);
+}
+
+/// A stream of its own for each name under one seed (FNV-1a).
+inline std::uint64_t stream_seed(std::uint64_t seed, const std::string& name) {
+  std::uint64_t hash = 0xCBF29CE484222325ULL;
+  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3ULL;
+  return random_bits(seed, 0) ^ hash;
+}
+
+}  // namespace quadcore

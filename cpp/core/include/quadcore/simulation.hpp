@@ -1,0 +1,120 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "quadcore/commands.hpp"
+#include "quadcore/engine.hpp"
+#include "quadcore/model.hpp"
+#include "quadcore/plugin.hpp"
+#include "quadcore/plugin_library.hpp"
+#include "quadcore/state.hpp"
+#include "quadcore/world.hpp"
+
+namespace quadcore {
+
+/// A plugin tag of the model, loaded.
+struct LoadedPlugin {
+  std::string name;
+  std::string filename;
+  std::string path;
+  const PluginDescriptor* descriptor;
+  Parameters parameters;
+  std::unique_ptr<const Plugin> plugin;
+  Eigen::Index state_begin = 0;
+  Eigen::Index state_size = 0;
+  std::size_t term_begin = 0;  ///< first of its wrench terms among all
+};
+
+/// Everything that the future of a simulation depends on.
+struct Snapshot {
+  double start_time = 0;
+  std::int64_t steps = 0;
+  std::vector<double> engine;
+  VectorXd plugin_state;
+  Topics topics;
+  std::string failure;
+};
+
+struct SimulationOptions {
+  std::string engine = "gazebo11";
+  double dt = 0;  ///< s; 0 = the world's max_step_size
+  std::uint64_t seed = 0;
+  /// "PLUGIN.TAG" -> value, wins over the URDF.
+  std::map<std::string, std::string> parameters = {};
+  Pose spawn = {};
+};
+
+/// One vehicle in one world: plugins and an engine, stepped from outside.
+class Simulation : private ForceField {
+ public:
+  Simulation(Model model, const World& world, const SimulationOptions& options);
+
+  /// Publishes rotor speeds [rad/s], signed, on topic `vel_cmd`.
+  /// Throws InputError, nothing changed, on a wrong count or a number that is not finite.
+  void command(const double* speeds, std::size_t count);
+  /// Advances by n steps. Throws FlightError if the flight fails; then only restore, reset and
+  /// set_state make the simulation usable again.
+  void step(std::int64_t n = 1);
+  /// Numbers that a command carries. Throws InputError if no plugin listens.
+  std::size_t command_width() const;
+
+  double time() const { return start_time_ + static_cast<double>(steps_) * dt_; }
+  double dt() const { return dt_; }
+  const std::string& engine_name() const { return engine_name_; }
+  const Model& model() const { return engine_->model(); }
+  const VehicleState& state() const { return state_; }
+  const Topics& topics() const { return topics_; }
+  const std::vector<LoadedPlugin>& plugins() const { return plugins_; }
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+  /// Throws InputError on a state that is not finite or whose sizes differ.
+  void set_state(const VehicleState& state);
+  Snapshot snapshot() const;
+  void restore(const Snapshot& snapshot);
+  /// Back to the moment of construction, bit for bit.
+  void reset() { restore(initial_); }
+
+  /// Names of all wrench terms, in the order of wrenches().
+  const std::vector<std::string>& wrench_terms() const { return wrench_terms_; }
+  /// What each term exerts in the present state, in the frame's axes about the vehicle's centre of
+  /// mass.
+  const std::vector<Wrench>& wrenches();
+
+ private:
+  void evaluate(const Kinematics& kinematics, Loads& loads) const override;
+  void load_plugins(const Model& model, const SimulationOptions& options);
+  void check_flight() const;
+  PluginState state_of(const LoadedPlugin& p) {
+    return plugin_state_.segment(p.state_begin, p.state_size);
+  }
+  void update();
+  void sense();
+  /// Records why the flight ended and throws FlightError.
+  [[noreturn]] void fail(const std::string& what);
+
+  std::string engine_name_;
+  double dt_;
+  std::vector<std::string> warnings_;
+  Topics topics_;
+  std::vector<LoadedPlugin> plugins_;
+  std::vector<std::string> wrench_terms_;
+  std::unique_ptr<Engine> engine_;
+  int command_topic_ = -1;
+
+  double start_time_ = 0;
+  std::int64_t steps_ = 0;
+  VectorXd plugin_state_;
+  VehicleState state_;
+  std::string failure_;  ///< why the flight ended; "" while it goes on
+  mutable const LoadedPlugin* active_ = nullptr;  ///< whose hook is running, to blame it
+  Snapshot initial_;
+
+  Loads wrench_loads_;
+  std::vector<Wrench> wrenches_;
+};
+
+}  // namespace quadcore

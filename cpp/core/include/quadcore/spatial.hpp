@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+/// \file
+/// Frames and monogram notation (after Drake's), used for every vector in quadcore:
+///   W    world, z up, inertial
+///   F    the frame link of the vehicle, at its origin
+///   R    a rotor's link, at its origin, spinning with it
+///   Bcm  centre of mass of body B; Ccm that of the whole vehicle
+///   p_WF     position of F's origin from W's, expressed in W (the first letter names the axes
+///            unless a suffix does)
+///   v_WF_F   velocity of F's origin relative to W, expressed in F's axes
+///   w_WF_F   angular velocity of F relative to W, expressed in F's axes
+///   R_WF     rotation that takes components in F to components in W
+///   f_F      force expressed in F's axes [N];  tau_F  torque expressed in F's axes [N m]
+
+namespace quadcore {
+
+using Eigen::Matrix3d;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+/// Rotation by fixed-axis roll, pitch, yaw [rad]: Rz(yaw) Ry(pitch) Rx(roll), thesis eq. (2.8) as
+/// corrected, the convention of URDF and SDF.
+Quaterniond quaternion_from_rpy(const Vector3d& rpy);
+
+/// Inverse of quaternion_from_rpy; pitch in [-pi/2, pi/2].
+Vector3d rpy_from_quaternion(const Quaterniond& q);
+
+/// A pose as URDF writes it: translation [m] and fixed-axis roll, pitch, yaw [rad].
+struct Pose {
+  Vector3d xyz = Vector3d::Zero();
+  Vector3d rpy = Vector3d::Zero();
+
+  Quaterniond rotation() const { return quaternion_from_rpy(rpy); }
+  /// Composition X_AC = X_AB * X_BC.
+  Pose operator*(const Pose& other) const;
+};
+
+/// Cross-product matrix: skew(a) b = a x b.
+inline Matrix3d skew(const Vector3d& a) {
+  Matrix3d m;
+  m << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
+  return m;
+}
+
+}  // namespace quadcore

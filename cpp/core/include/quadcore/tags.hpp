@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "quadcore/model.hpp"
+
+namespace quadcore {
+
+enum class TagKind {
+  number,  ///< a finite number within [min, max]
+  flag,    ///< true | false
+  choice,  ///< one of `choices`
+  link,    ///< the name of a link of the model; empty = the root
+  joints,  ///< names of continuous joints, separated by blanks; empty = all, in file order
+};
+
+/// One parameter of a plugin. Parsing, errors, `quadcore info` and the docs all come from here.
+struct TagSpec {
+  std::string name;
+  TagKind kind = TagKind::number;
+  std::string unit;      ///< "" = none
+  std::string fallback;  ///< the default; meaningless when required
+  bool required = false;
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool exclusive_min = false;        ///< min itself is out of range
+  std::vector<std::string> choices;  ///< of a choice
+  std::string meaning;               ///< one line
+  std::string equation;              ///< equation of the thesis or paper, "" = none
+  std::string alias;                 ///< another accepted name, "" = none
+  bool shared = false;    ///< must have the same value in every plugin of the model that has it
+  std::string absent;     ///< of an optional number without default: what its absence means ("off")
+
+  /// The range as a person reads it: ">= 0", "true | false", ...
+  std::string range() const;
+
+  /// \name Builders, so that a table reads like one
+  /// @{
+  static TagSpec number(std::string name, std::string unit, std::string fallback,
+                        std::string meaning);
+  static TagSpec flag(std::string name, std::string fallback, std::string meaning);
+  static TagSpec choice(std::string name, std::vector<std::string> choices, std::string meaning);
+  static TagSpec link(std::string name, std::string meaning);
+  static TagSpec joints(std::string name, std::string meaning);
+  TagSpec must() const;                          ///< required
+  TagSpec at_least(double value) const;          ///< min
+  TagSpec above(double value) const;             ///< exclusive min
+  TagSpec at_most(double value) const;           ///< max
+  TagSpec from(std::string equation) const;      ///< equation
+  TagSpec also_called(std::string alias) const;  ///< alias
+  TagSpec agreed() const;                        ///< shared
+  TagSpec or_absent(std::string meaning) const;  ///< no default: absent means this
+  /// @}
+};
+
+/// A tag with its effective value.
+struct Parameter {
+  TagSpec spec;
+  std::string text;    ///< as written, or the default; empty = absent
+  std::string origin;  ///< "FILE:LINE", "set" or "default"
+  double number = 0;
+  std::vector<std::size_t> joints;
+};
+
+/// The effective parameters of one plugin, checked against its table.
+class Parameters {
+ public:
+  /// \param overrides  tag name -> text, given outside the URDF (--set); they win.
+  /// Throws InputError with FILE:LINE, plugin and tag.
+  Parameters(const std::vector<TagSpec>& table, const PluginElement& element, const Model& model,
+             const std::map<std::string, std::string>& overrides);
+
+  double number(const std::string& tag) const { return at(tag).number; }
+  bool has(const std::string& tag) const { return !at(tag).text.empty(); }
+  bool flag(const std::string& tag) const { return at(tag).text == "true"; }
+  const std::string& choice(const std::string& tag) const { return at(tag).text; }
+  const std::vector<std::size_t>& joints(const std::string& tag) const { return at(tag).joints; }
+  const std::vector<Parameter>& all() const { return parameters_; }
+
+ private:
+  const Parameter& at(const std::string& tag) const;
+  std::vector<Parameter> parameters_;
+};
+
+}  // namespace quadcore

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "quadcore/spatial.hpp"
+
+/// \file
+/// Reading numbers and names strictly, whatever the locale.
+
+namespace quadcore {
+
+/// A finite number and nothing else; blanks around it are allowed.
+std::optional<double> parse_number(const std::string& text);
+/// Exactly three finite numbers, separated by blanks.
+std::optional<Vector3d> parse_vector(const std::string& text);
+std::string trimmed(const std::string& text);
+std::vector<std::string> split(const std::string& text);
+
+/// " (did you mean 'x'?)" for the candidate nearest to `name`, or "" if none is near.
+std::string did_you_mean(const std::string& name, const std::vector<std::string>& candidates);
+/// "a, b, c"
+std::string joined(const std::vector<std::string>& names);
+
+}  // namespace quadcore

@@ -1,0 +1,52 @@
+#include "quadcore/model.hpp"
+
+#include <Eigen/Eigenvalues>
+
+namespace quadcore {
+
+Matrix3d Inertial::inertia_in_link_axes() const {
+  if (pose.rpy.isZero(0)) return inertia;
+  const Matrix3d R = pose.rotation().toRotationMatrix();
+  return R * inertia * R.transpose();
+}
+
+Vector3d Inertial::principal_moments() const {
+  return Eigen::SelfAdjointEigenSolver<Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+std::vector<std::string> Model::joint_names() const {
+  std::vector<std::string> names;
+  for (const Joint& joint : joints) names.push_back(joint.name);
+  return names;
+}
+
+std::vector<Eigen::Isometry3d> link_poses(const Model& model) {
+  std::vector<Eigen::Isometry3d> poses(model.links.size(), Eigen::Isometry3d::Identity());
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    const Joint& joint = model.joints[i];
+    poses[i + 1] = poses[joint.parent] * Eigen::Translation3d(joint.pose.xyz) *
+                   joint.pose.rotation();
+  }
+  return poses;
+}
+
+MassProperties mass_properties(const Model& model) {
+  const std::vector<Eigen::Isometry3d> poses = link_poses(model);
+  MassProperties total;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Inertial& inertial = model.links[i].inertial;
+    total.mass += inertial.mass;
+    total.p_FCcm += inertial.mass * (poses[i] * inertial.pose.xyz);
+  }
+  total.p_FCcm /= total.mass;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Inertial& inertial = model.links[i].inertial;
+    const Matrix3d R = poses[i].linear();
+    const Matrix3d S = skew(poses[i] * inertial.pose.xyz - total.p_FCcm);
+    total.inertia_Ccm_F +=
+        R * inertial.inertia_in_link_axes() * R.transpose() - inertial.mass * S * S;
+  }
+  return total;
+}
+
+}  // namespace quadcore

@@ -1,0 +1,85 @@
+#include "quadcore/plugin_library.hpp"
+
+#include <dlfcn.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <mutex>
+#include <sstream>
+
+#include "quadcore/error.hpp"
+#include "quadcore/text.hpp"
+
+namespace quadcore {
+namespace {
+
+std::mutex added_mutex;
+std::vector<std::string> added_folders;
+
+std::string own_folder() {
+  Dl_info info;
+  if (!dladdr(reinterpret_cast<const void*>(&own_folder), &info)) return ".";
+  return std::filesystem::canonical(info.dli_fname).parent_path().string();
+}
+
+}  // namespace
+
+void load_plugin_path(const std::string& folder) {
+  if (!std::filesystem::is_directory(folder)) {
+    throw InputError(folder + ": is not a folder; give one that holds plugin libraries");
+  }
+  const std::lock_guard<std::mutex> lock(added_mutex);
+  added_folders.insert(added_folders.begin(), std::filesystem::canonical(folder).string());
+}
+
+std::vector<std::string> plugin_folders() {
+  std::vector<std::string> folders;
+  {
+    const std::lock_guard<std::mutex> lock(added_mutex);
+    folders = added_folders;
+  }
+  if (const char* path = std::getenv("QUADCORE_PLUGIN_PATH")) {
+    std::istringstream stream(path);
+    for (std::string folder; std::getline(stream, folder, ':');) {
+      if (!folder.empty()) folders.push_back(folder);
+    }
+  }
+  folders.push_back(own_folder());
+  return folders;
+}
+
+PluginLibrary open_plugin(const PluginElement& element) {
+  const std::string who =
+      element.where + ": plugin '" + element.name + "': " + element.filename + " ";
+  if (element.filename.find('/') != std::string::npos) {
+    throw InputError(who +
+                     "is a path; write the file name alone and add its folder to "
+                     "QUADCORE_PLUGIN_PATH");
+  }
+  const std::vector<std::string> folders = plugin_folders();
+  for (const std::string& folder : folders) {
+    const std::string path = (std::filesystem::path(folder) / element.filename).string();
+    if (!std::filesystem::exists(path)) continue;
+    void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!handle) {
+      throw InputError(who + "cannot be loaded: " + dlerror() + "; rebuild it");
+    }
+    const auto* abi = static_cast<const int*>(dlsym(handle, "quadcore_plugin_abi"));
+    const auto describe = reinterpret_cast<const PluginDescriptor* (*)()>(
+        dlsym(handle, "quadcore_plugin_descriptor"));
+    if (!abi || !describe) {
+      throw InputError(who + "in " + folder +
+                       " is not a quadcore plugin; it must use QUADCORE_REGISTER_PLUGIN");
+    }
+    if (*abi != plugin_abi) {
+      throw InputError(who + "in " + folder + " was built for plugin interface " +
+                       std::to_string(*abi) + ", this is " + std::to_string(plugin_abi) +
+                       "; rebuild it against the installed quadcore");
+    }
+    return {path, describe()};
+  }
+  throw InputError(who + "was not found in " + joined(folders) +
+                   "; correct the filename or add its folder to QUADCORE_PLUGIN_PATH");
+}
+
+}  // namespace quadcore

@@ -1,0 +1,283 @@
+#include "quadcore/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "quadcore/error.hpp"
+#include "quadcore/text.hpp"
+
+namespace quadcore {
+namespace {
+
+constexpr const char* command_topic_name = "vel_cmd";
+/// Beyond these no flight is meant; the numbers only say "diverged" before they overflow.
+constexpr double max_speed = 1e6;       // m/s
+constexpr double max_rate = 1e6;        // rad/s
+constexpr double max_distance = 1e9;    // m
+
+/// "PLUGIN.TAG" -> value becomes PLUGIN -> (TAG -> value); unknown plugins are refused.
+std::map<std::string, std::map<std::string, std::string>> by_plugin(
+    const std::map<std::string, std::string>& parameters, const Model& model) {
+  std::vector<std::string> names;
+  for (const PluginElement& element : model.plugins) names.push_back(element.name);
+  std::map<std::string, std::map<std::string, std::string>> result;
+  for (const auto& [key, value] : parameters) {
+    const auto dot = key.rfind('.');
+    if (dot == std::string::npos || dot == 0 || dot + 1 == key.size()) {
+      throw InputError("set " + key + ": is not PLUGIN.TAG; write, for example, " +
+                       (names.empty() ? "plugin" : names.front()) + ".sim_slow");
+    }
+    const std::string plugin = key.substr(0, dot);
+    if (std::find(names.begin(), names.end(), plugin) == names.end()) {
+      throw InputError("set " + key + ": the model has no plugin '" + plugin + "'" +
+                       did_you_mean(plugin, names) + "; it has " + joined(names));
+    }
+    result[plugin][key.substr(dot + 1)] = value;
+  }
+  return result;
+}
+
+/// A shared tag must mean the same in every plugin that has it.
+void check_shared_tags(const std::vector<LoadedPlugin>& plugins) {
+  std::map<std::string, std::pair<const LoadedPlugin*, const Parameter*>> first;
+  for (const LoadedPlugin& plugin : plugins) {
+    for (const Parameter& parameter : plugin.parameters.all()) {
+      if (!parameter.spec.shared) continue;
+      const auto [known, added] =
+          first.emplace(parameter.spec.name, std::pair{&plugin, &parameter});
+      const Parameter& other = *known->second.second;
+      if (added || other.number == parameter.number) continue;
+      const auto describe = [](const LoadedPlugin& p, const Parameter& value) {
+        return value.text + " in '" + p.name + "' (" + value.origin + ")";
+      };
+      const Parameter& blamed = parameter.origin == "default" ? other : parameter;
+      throw InputError((blamed.origin == "set" ? "set <" + blamed.spec.name + ">" : blamed.origin) +
+                       ": <" + parameter.spec.name + "> is " +
+                       describe(*known->second.first, other) + " but " +
+                       describe(plugin, parameter) + "; give both the same value");
+    }
+  }
+}
+
+}  // namespace
+
+Simulation::Simulation(Model model, const World& world, const SimulationOptions& options)
+    : engine_name_(options.engine),
+      dt_(options.dt == 0 ? world.max_step_size : options.dt),
+      warnings_(model.warnings),
+      wrench_loads_(model.joints.size()) {
+  if (!(dt_ > 0 && std::isfinite(dt_))) {
+    throw InputError("dt is " + std::to_string(dt_) + "; write a step in s, > 0");
+  }
+  if (!options.spawn.xyz.allFinite() || !options.spawn.rpy.allFinite()) {
+    throw InputError("spawn holds a number that is not finite; write x,y,z[,roll,pitch,yaw]");
+  }
+  load_plugins(model, options);
+  check_shared_tags(plugins_);
+  engine_ = make_engine(options.engine, model, world);
+  command_topic_ = topics_.find(command_topic_name);
+
+  const auto n = static_cast<Eigen::Index>(model.joints.size());
+  state_.rotor_velocity = VectorXd::Zero(n);
+  state_.rotor_angle = VectorXd::Zero(n);
+  VehicleState start = state_;
+  start.position = options.spawn.xyz;
+  start.orientation = options.spawn.rotation();
+  set_state(start);
+  sense();
+  initial_ = snapshot();
+}
+
+void Simulation::load_plugins(const Model& model, const SimulationOptions& options) {
+  const auto overrides = by_plugin(options.parameters, model);
+  Eigen::Index state_size = 0;
+  for (const PluginElement& element : model.plugins) {
+    const PluginLibrary library = open_plugin(element);
+    const auto given = overrides.find(element.name);
+    LoadedPlugin loaded{element.name,
+                        element.filename,
+                        library.path,
+                        library.descriptor,
+                        Parameters(library.descriptor->tags, element, model,
+                                   given == overrides.end() ? std::map<std::string, std::string>{}
+                                                            : given->second),
+                        nullptr};
+    const std::string who = element.where + ": plugin '" + element.name + "'";
+    for (const std::string& term : library.descriptor->wrenches) {
+      if (std::find(wrench_terms_.begin(), wrench_terms_.end(), term) != wrench_terms_.end()) {
+        throw InputError(who + " reports the wrench '" + term +
+                         "', which another plugin reports already; load only one of them");
+      }
+    }
+    try {
+      std::vector<std::string> warnings;
+      loaded.plugin = library.descriptor->create(
+          {element.name, loaded.parameters, model, topics_, options.seed, warnings});
+      for (const std::string& warning : warnings) warnings_.push_back(who + ": " + warning);
+    } catch (const std::exception& error) {
+      throw InputError(who + " (" + library.path + "): " + error.what());
+    }
+    loaded.state_begin = state_size;
+    loaded.state_size = static_cast<Eigen::Index>(loaded.plugin->state_size());
+    state_size += loaded.state_size;
+    loaded.term_begin = wrench_terms_.size();
+    wrench_terms_.insert(wrench_terms_.end(), library.descriptor->wrenches.begin(),
+                         library.descriptor->wrenches.end());
+    plugins_.push_back(std::move(loaded));
+  }
+  plugin_state_ = VectorXd::Zero(state_size);
+  wrenches_.resize(wrench_terms_.size());
+}
+
+std::size_t Simulation::command_width() const {
+  if (command_topic_ < 0) {
+    throw InputError("no plugin of model '" + model().name +
+                     "' listens to commands; add libmotorpid_plugin.so");
+  }
+  return topics_[static_cast<std::size_t>(command_topic_)].values.size();
+}
+
+void Simulation::command(const double* speeds, std::size_t count) {
+  const std::size_t width = command_width();
+  if (count != width) {
+    throw InputError("command holds " + std::to_string(count) + " rotor speeds; give " +
+                     std::to_string(width));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!std::isfinite(speeds[i])) {
+      throw InputError("command for rotor " + std::to_string(i + 1) +
+                       " is not a finite number; give rad/s");
+    }
+  }
+  const auto topic = static_cast<std::size_t>(command_topic_);
+  std::copy(speeds, speeds + count, topics_.values(topic).begin());
+  topics_.publish(topic, time());
+}
+
+void Simulation::evaluate(const Kinematics& kinematics, Loads& loads) const {
+  Wrench* const terms = loads.terms();
+  for (const LoadedPlugin& p : plugins_) {
+    if (terms) loads.record_terms(terms + p.term_begin, &kinematics);
+    active_ = &p;
+    p.plugin->forces(kinematics, plugin_state_.segment(p.state_begin, p.state_size), loads);
+  }
+  active_ = nullptr;
+  if (terms) loads.record_terms(terms, &kinematics);
+}
+
+const std::vector<Wrench>& Simulation::wrenches() {
+  std::fill(wrenches_.begin(), wrenches_.end(), Wrench{});
+  wrench_loads_.clear();
+  wrench_loads_.record_terms(wrenches_.data(), &engine_->kinematics());
+  evaluate(engine_->kinematics(), wrench_loads_);
+  return wrenches_;
+}
+
+void Simulation::sense() {
+  const Sample sample{time(), dt_, engine_->kinematics(), topics_};
+  for (const LoadedPlugin& p : plugins_) {
+    active_ = &p;
+    p.plugin->sense(sample, state_of(p));
+  }
+  active_ = nullptr;
+}
+
+void Simulation::update() {
+  const Sample sample{time(), dt_, engine_->kinematics(), topics_};
+  for (const LoadedPlugin& p : plugins_) {
+    active_ = &p;
+    p.plugin->update(sample, state_of(p));
+  }
+  active_ = nullptr;
+}
+
+void Simulation::step(std::int64_t n) {
+  if (n < 0) throw InputError("step count is " + std::to_string(n) + "; give one >= 0");
+  if (!failure_.empty()) {
+    throw FlightError(time(), failure_ + "; reset, restore or set a state to go on");
+  }
+  try {
+    for (; n > 0; --n) {
+      update();
+      engine_->step(dt_, *this);
+      ++steps_;
+      engine_->get_state(state_);
+      state_.time = time();
+      check_flight();
+      sense();
+    }
+  } catch (const std::exception& error) {
+    fail(error.what());
+  } catch (...) {
+    fail("threw something that is no std::exception");
+  }
+}
+
+void Simulation::fail(const std::string& what) {
+  failure_ = "the flight failed at t = " + std::to_string(time()) + " s: ";
+  if (active_) failure_ += "plugin '" + active_->name + "' (" + active_->path + "): ";
+  failure_ += what;
+  active_ = nullptr;
+  throw FlightError(time(), failure_);
+}
+
+void Simulation::check_flight() const {
+  // Comparisons are written so that NaN fails them.
+  const VehicleState& s = state_;
+  const bool sane = s.position.squaredNorm() < max_distance * max_distance &&
+                    s.orientation.squaredNorm() < 2 &&
+                    s.linear_velocity.squaredNorm() < max_speed * max_speed &&
+                    s.angular_velocity.squaredNorm() < max_rate * max_rate &&
+                    s.rotor_velocity.squaredNorm() < max_rate * max_rate;
+  if (sane) return;
+  const bool finite = s.position.allFinite() && s.orientation.coeffs().allFinite() &&
+                      s.linear_velocity.allFinite() && s.angular_velocity.allFinite() &&
+                      s.rotor_velocity.allFinite();
+  throw FlightError(s.time, finite ? "the motion diverged; try a smaller step or weaker commands"
+                                   : "the state is no longer finite; try a smaller step or weaker "
+                                     "commands");
+}
+
+void Simulation::set_state(const VehicleState& state) {
+  const auto n = state_.rotor_velocity.size();
+  if (state.rotor_velocity.size() != n || state.rotor_angle.size() != n) {
+    throw InputError("state: this vehicle has " + std::to_string(n) +
+                     " rotors; give as many velocities and angles");
+  }
+  if (!std::isfinite(state.time) || !state.position.allFinite() ||
+      !state.orientation.coeffs().allFinite() || !state.linear_velocity.allFinite() ||
+      !state.angular_velocity.allFinite() || !state.rotor_velocity.allFinite() ||
+      !state.rotor_angle.allFinite()) {
+    throw InputError("state: a value is not a finite number");
+  }
+  if (!(state.orientation.norm() > 1e-6)) {
+    throw InputError("state: the orientation is no quaternion; give a unit (x, y, z, w)");
+  }
+  engine_->set_state(state);
+  start_time_ = state.time;
+  steps_ = 0;
+  failure_.clear();
+  engine_->get_state(state_);
+  state_.time = time();
+}
+
+Snapshot Simulation::snapshot() const {
+  return {start_time_, steps_, engine_->save(), plugin_state_, topics_, failure_};
+}
+
+void Simulation::restore(const Snapshot& snapshot) {
+  if (snapshot.plugin_state.size() != plugin_state_.size() ||
+      snapshot.topics.size() != topics_.size()) {
+    throw InputError("snapshot: was taken from another model; restore one of this simulation");
+  }
+  engine_->restore(snapshot.engine);
+  start_time_ = snapshot.start_time;
+  steps_ = snapshot.steps;
+  plugin_state_ = snapshot.plugin_state;
+  topics_ = snapshot.topics;
+  failure_ = snapshot.failure;
+  engine_->get_state(state_);
+  state_.time = time();
+}
+
+}  // namespace quadcore

@@ -1,0 +1,31 @@
+#include "quadcore/spatial.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace quadcore {
+
+Quaterniond quaternion_from_rpy(const Vector3d& rpy) {
+  const double cr = std::cos(rpy.x() / 2), sr = std::sin(rpy.x() / 2);
+  const double cp = std::cos(rpy.y() / 2), sp = std::sin(rpy.y() / 2);
+  const double cy = std::cos(rpy.z() / 2), sy = std::sin(rpy.z() / 2);
+  return Quaterniond(cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy,
+                     cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy)
+      .normalized();
+}
+
+Vector3d rpy_from_quaternion(const Quaterniond& q) {
+  const Matrix3d R = q.toRotationMatrix();
+  const double sin_pitch = std::clamp(-R(2, 0), -1.0, 1.0);
+  const double pitch = std::asin(sin_pitch);
+  // At +-90 degrees roll and yaw turn about the same axis: all of it is given to yaw.
+  if (std::abs(sin_pitch) > 1 - 1e-12) return {0, pitch, std::atan2(-R(0, 1), R(1, 1))};
+  return {std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))};
+}
+
+Pose Pose::operator*(const Pose& other) const {
+  const Quaterniond q = rotation();
+  return {xyz + q * other.xyz, rpy_from_quaternion(q * other.rotation())};
+}
+
+}  // namespace quadcore

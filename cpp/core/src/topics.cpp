@@ -1,0 +1,29 @@
+#include "quadcore/topics.hpp"
+
+#include "quadcore/error.hpp"
+
+namespace quadcore {
+
+std::size_t Topics::declare(const std::string& name, const std::vector<std::string>& fields) {
+  const int known = find(name);
+  if (known < 0) {
+    topics_.push_back({name, fields, std::vector<double>(fields.size(), 0.0)});
+    return topics_.size() - 1;
+  }
+  const auto index = static_cast<std::size_t>(known);
+  if (topics_[index].fields.size() != fields.size()) {
+    throw InputError("topic '" + name + "' has " + std::to_string(topics_[index].fields.size()) +
+                     " fields in one plugin and " + std::to_string(fields.size()) +
+                     " in another; make them agree");
+  }
+  return index;
+}
+
+int Topics::find(const std::string& name) const {
+  for (std::size_t i = 0; i < topics_.size(); ++i) {
+    if (topics_[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+}  // namespace quadcore

@@ -1,0 +1,201 @@
+#include "urdf_tree.hpp"
+
+#include <cmath>
+
+#include "quadcore/error.hpp"
+#include "quadcore/text.hpp"
+#include "xml.hpp"
+
+namespace quadcore {
+namespace {
+
+using Element = Xml::Element;
+
+Pose read_origin(const Xml& xml, const Element& parent) {
+  const Element* origin = xml.child(parent, "origin");
+  if (!origin) return {};
+  return {xml.vector(*origin, "xyz", Vector3d::Zero()),
+          xml.vector(*origin, "rpy", Vector3d::Zero())};
+}
+
+Inertial read_inertial(const Xml& xml, const Element& element, const std::string& link) {
+  xml.children(element, {"origin", "mass", "inertia"});
+  Inertial inertial;
+  inertial.pose = read_origin(xml, element);
+  const Element& mass = xml.required_child(element, "mass");
+  inertial.mass = xml.number(mass, "value");
+  if (inertial.mass < 0) {
+    xml.fail(mass, "link '" + link + "' has the mass " + mass.Attribute("value") +
+                       "; write a mass in kg, > 0");
+  }
+  const Element& inertia = xml.required_child(element, "inertia");
+  const auto moment = [&](const char* name) { return xml.number(inertia, name); };
+  const double xx = moment("ixx"), yy = moment("iyy"), zz = moment("izz");
+  const double xy = moment("ixy"), xz = moment("ixz"), yz = moment("iyz");
+  inertial.inertia << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+
+  // Principal moments of a rigid body are not negative and obey the triangle inequality; thin discs
+  // sit exactly on equality, hence the tolerance.
+  const Vector3d principal = inertial.principal_moments();
+  const double tolerance = 1e-6 * principal.cwiseAbs().maxCoeff();
+  if (principal.minCoeff() < -tolerance) {
+    xml.fail(inertia, "link '" + link +
+                          "' has a negative principal moment of inertia; write a positive "
+                          "semi-definite inertia in kg m^2");
+  }
+  if (principal[0] + principal[1] < principal[2] - tolerance) {
+    xml.fail(inertia,
+             "link '" + link +
+                 "' has an inertia no rigid body can have: the largest principal moment exceeds the "
+                 "sum of the other two; correct ixx, iyy, izz");
+  }
+  return inertial;
+}
+
+Collision read_collision(const Xml& xml, const Element& element) {
+  xml.children(element, {"origin", "geometry", "verbose"});
+  const Element& geometry = xml.required_child(element, "geometry");
+  const auto shapes = xml.children(geometry, {"box", "cylinder", "sphere", "mesh"});
+  if (shapes.size() != 1) xml.fail(geometry, "<geometry> takes exactly one shape");
+  const Element& shape = *shapes.front();
+  Collision collision{ShapeKind::mesh, Vector3d::Zero(), read_origin(xml, element),
+                      xml.where(shape)};
+  const std::string kind = shape.Name();
+  if (kind == "mesh") return collision;
+  if (kind == "box") {
+    xml.attribute(shape, "size");
+    collision.kind = ShapeKind::box;
+    collision.size = xml.vector(shape, "size", Vector3d::Zero());
+  } else if (kind == "cylinder") {
+    collision.kind = ShapeKind::cylinder;
+    collision.size = {xml.number(shape, "radius"), xml.number(shape, "length"), 1};
+  } else {
+    collision.kind = ShapeKind::sphere;
+    collision.size = {xml.number(shape, "radius"), 1, 1};
+  }
+  if (collision.size.minCoeff() <= 0) {
+    xml.fail(shape, "<" + kind + "> has a size that is not positive; write lengths in m, > 0");
+  }
+  return collision;
+}
+
+UrdfLink read_link(const Xml& xml, const Element& element) {
+  UrdfLink link;
+  link.name = xml.attribute(element, "name");
+  link.where = xml.where(element);
+  for (const Element* child :
+       xml.children(element, {"inertial", "visual", "collision"}, {"visual", "collision"})) {
+    const std::string kind = child->Name();
+    if (kind == "inertial") link.inertial = read_inertial(xml, *child, link.name);
+    if (kind == "collision") link.collisions.push_back(read_collision(xml, *child));
+  }
+  return link;
+}
+
+UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::string>& warnings) {
+  UrdfJoint joint;
+  joint.name = xml.attribute(element, "name");
+  joint.where = xml.where(element);
+  const std::string type = xml.attribute(element, "type");
+  if (type != "fixed" && type != "continuous") {
+    xml.fail(element, "joint '" + joint.name + "' is of type '" + type +
+                          "', which the engines do not model; write continuous or fixed");
+  }
+  joint.fixed = type == "fixed";
+  // A mimic, a safety controller or a calibration would change the motion; none is modelled.
+  xml.children(element, {"origin", "parent", "child", "axis", "dynamics", "limit"});
+  joint.parent = xml.attribute(xml.required_child(element, "parent"), "link");
+  joint.child = xml.attribute(xml.required_child(element, "child"), "link");
+  joint.pose = read_origin(xml, element);
+  if (joint.fixed) return joint;
+
+  if (const Element* axis = xml.child(element, "axis")) {
+    joint.axis = xml.vector(*axis, "xyz", Vector3d::UnitX());
+    if (!(joint.axis.norm() > 1e-9)) {
+      xml.fail(*axis, "joint '" + joint.name + "' has no axis; write a direction such as 0 0 1");
+    }
+  }
+  if (const Element* dynamics = xml.child(element, "dynamics")) {
+    joint.damping = xml.number(*dynamics, "damping", 0);
+    if (joint.damping < 0) {
+      xml.fail(*dynamics,
+               "joint '" + joint.name + "' has a negative damping; write N m s/rad, >= 0");
+    }
+    if (xml.number(*dynamics, "friction", 0) != 0) {
+      xml.fail(*dynamics, "joint '" + joint.name +
+                              "' has friction, which the engines do not model; write friction=\"0\"");
+    }
+  }
+  if (const Element* limit = xml.child(element, "limit")) {
+    for (const char* bound : {"lower", "upper"}) {
+      if (xml.number(*limit, bound, 0) != 0) {
+        xml.fail(*limit, "joint '" + joint.name + "' has a limit " + bound +
+                             ", which the engines do not model; remove it");
+      }
+    }
+    warnings.push_back(xml.where(*limit) + ": joint '" + joint.name +
+                       "': effort and velocity limits of a continuous joint have no effect, as in "
+                       "Gazebo");
+  }
+  return joint;
+}
+
+PluginElement read_plugin(const Xml& xml, const Element& element) {
+  PluginElement plugin{xml.attribute(element, "name"), xml.attribute(element, "filename"), {},
+                       xml.where(element)};
+  for (const auto* node = element.FirstChild(); node; node = node->NextSibling()) {
+    if (node->ToText()) {
+      xml.fail(element, "stray text '" + trimmed(node->Value()) + "' in <plugin name=\"" +
+                            plugin.name + "\">; write <tag>value</tag>");
+    }
+    if (const Element* tag = node->ToElement()) {
+      plugin.tags.push_back({tag->Name(), xml.text(*tag), xml.where(*tag)});
+    }
+  }
+  return plugin;
+}
+
+void read_gazebo(const Xml& xml, const Element& element, UrdfTree& tree) {
+  if (element.Attribute("reference")) {
+    // Only what is seen but not felt; anything else Gazebo would feel.
+    xml.children(element, {"material", "visual"});
+    return;
+  }
+  for (const Element* child : xml.children(element, {"plugin"}, {"plugin"})) {
+    tree.plugins.push_back(read_plugin(xml, *child));
+    for (std::size_t i = 0; i + 1 < tree.plugins.size(); ++i) {
+      if (tree.plugins[i].name == tree.plugins.back().name) {
+        xml.fail(*child, "a second plugin named '" + tree.plugins.back().name + "' (first at " +
+                             tree.plugins[i].where + "); give it another name");
+      }
+    }
+  }
+}
+
+}  // namespace
+
+UrdfTree read_urdf_tree(const Document& document) {
+  const Xml xml(document, "robot");
+  UrdfTree tree;
+  tree.name = xml.attribute(xml.root(), "name");
+  tree.where = xml.where(xml.root());
+  const std::set<std::string> elements = {"link",     "joint",        "gazebo",
+                                          "material", "transmission", "plugin"};
+  for (const Element* element : xml.children(xml.root(), elements, elements)) {
+    const std::string kind = element->Name();
+    if (kind == "plugin") {
+      xml.fail(*element, "<plugin> stands outside <gazebo>; wrap it in <gazebo>...</gazebo>");
+    } else if (kind == "link") {
+      tree.links.push_back(read_link(xml, *element));
+    } else if (kind == "joint") {
+      tree.joints.push_back(read_joint(xml, *element, tree.warnings));
+    } else if (kind == "gazebo") {
+      read_gazebo(xml, *element, tree);
+    } else if (kind == "transmission") {
+      tree.warnings.push_back(xml.where(*element) + ": <transmission> has no effect");
+    }
+  }
+  return tree;
+}
+
+}  // namespace quadcore

@@ -1,0 +1,162 @@
+#include "quadcore/world.hpp"
+
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include "quadcore/error.hpp"
+#include "quadcore/text.hpp"
+#include "xml.hpp"
+
+namespace quadcore {
+namespace {
+
+using Element = Xml::Element;
+using Handler = std::function<void(const Element&)>;
+/// What to do with each child element; one that is not listed is refused by name.
+using Handlers = std::map<std::string, Handler>;
+
+/// Reads the elements that a world may hold into a World.
+class WorldReader {
+ public:
+  explicit WorldReader(const Document& document) : xml_(document, "sdf") {}
+
+  World read() {
+    const Element& world = xml_.required_child(xml_.root(), "world");
+    read_children(xml_.root(), {{"world", [](const Element&) {}}});
+    const Handler physics = [this](const Element& e) { read_physics(e); };
+    read_children(world,
+                  {{"gravity", [this](const Element& e) { world_.gravity_W = xml_.vector_in_text(e); }},
+                   {"physics", physics},
+                   {"physics:ode", physics},
+                   {"wind", [this](const Element& e) { read_wind(e); }},
+                   {"include", [this](const Element& e) { read_include(e); }},
+                   {"model", [this](const Element& e) { read_model(e); }}},
+                  {"include", "model"});
+    return world_;
+  }
+
+ private:
+  void read_children(const Element& element, const Handlers& handlers,
+                     const std::set<std::string>& repeatable = {}) {
+    std::set<std::string> names;
+    for (const auto& entry : handlers) names.insert(entry.first);
+    for (const Element* child : xml_.children(element, names, repeatable)) {
+      handlers.at(child->Name())(*child);
+    }
+  }
+
+  /// A number in [min, max] (max included); `open` excludes min.
+  Handler number(double& target, double min, bool open = false, double max = INFINITY) {
+    return [this, &target, min, open, max](const Element& e) {
+      target = xml_.number_in_text(e);
+      if (target < min || (open && target == min) || target > max) {
+        xml_.fail(e, "<" + std::string(e.Name()) + "> is out of range; write a number " +
+                         (open ? "> " : ">= ") + std::to_string(min));
+      }
+    };
+  }
+
+  Handlers physics_handlers() {
+    return {{"max_step_size", number(world_.max_step_size, 0, true)},
+            {"real_time_update_rate", number(world_.real_time_update_rate, 0)},
+            {"updateRate", number(world_.real_time_update_rate, 0)},
+            {"real_time_factor", number(world_.real_time_factor, 0, true)},
+            {"gravity", [this](const Element& e) { world_.gravity_W = xml_.vector_in_text(e); }},
+            {"ode", [this](const Element& e) { read_ode(e); }}};
+  }
+
+  void read_physics(const Element& physics) {
+    const char* type = physics.Attribute("type");
+    if (type && std::string(type) != "ode") {
+      xml_.fail(physics, "physics type '" + std::string(type) + "' is not supported; write ode");
+    }
+    read_children(physics, physics_handlers());
+  }
+
+  void read_ode(const Element& ode) {
+    read_children(ode, {{"solver", [this](const Element& e) { read_solver(e); }},
+                        {"constraints", [this](const Element& e) {
+                           read_children(e, {{"erp", number(world_.erp, 0, false, 1)},
+                                             {"cfm", number(world_.cfm, 0)}});
+                         }}});
+  }
+
+  void read_solver(const Element& solver) {
+    const auto type = [this](const Element& e) {
+      world_.solver_type = xml_.text(e);
+      if (world_.solver_type != "quick" && world_.solver_type != "world") {
+        xml_.fail(e, "<type> is '" + world_.solver_type + "'; write quick or world");
+      }
+    };
+    const auto iterations = [this](const Element& e) {
+      const double value = xml_.number_in_text(e);
+      if (!(value >= 1 && value <= 1e6) || value != std::floor(value)) {
+        xml_.fail(e, "<iters> must be a whole number from 1 to 1000000");
+      }
+      world_.solver_iterations = static_cast<int>(value);
+    };
+    read_children(solver, {{"type", type},
+                           {"iters", iterations},
+                           {"sor", number(world_.solver_sor, 0, true, 2)}});
+  }
+
+  void read_wind(const Element& wind) {
+    read_children(wind, {{"linear_velocity",
+                          [this](const Element& e) { world_.wind_W = xml_.vector_in_text(e); }}});
+  }
+
+  void read_include(const Element& include) {
+    read_children(include, {{"uri", [this](const Element& e) {
+                               const std::string uri = xml_.text(e);
+                               if (uri == "model://ground_plane") return set_ground_plane(e);
+                               if (uri == "model://sun") return;  // there is no light here
+                               xml_.fail(e, "'" + uri +
+                                                "' is not supported; a world may include "
+                                                "model://ground_plane and model://sun");
+                             }}});
+  }
+
+  /// A model in line may only be a ground plane: static, a plane through the origin, normal up.
+  void read_model(const Element& model) {
+    const Handler seen_only = [](const Element&) {};
+    const Handler plane = [this](const Element& e) {
+      read_children(e, {{"normal",
+                         [this](const Element& n) {
+                           if (!xml_.vector_in_text(n).isApprox(Vector3d::UnitZ())) {
+                             xml_.fail(n, "only a level plane is supported; write 0 0 1");
+                           }
+                         }},
+                        {"size", [](const Element&) {}}});
+      set_ground_plane(e);
+    };
+    const Handler collision = [this, plane](const Element& e) {
+      read_children(e, {{"geometry", [this, plane](const Element& g) {
+                           read_children(g, {{"plane", plane}});
+                         }}});
+    };
+    read_children(model, {{"static", [this](const Element& e) {
+                             if (xml_.text(e) != "true" && xml_.text(e) != "1") {
+                               xml_.fail(e, "only a static model is supported; write true");
+                             }
+                           }},
+                          {"link", [this, collision, seen_only](const Element& e) {
+                             read_children(e, {{"collision", collision}, {"visual", seen_only}},
+                                           {"visual"});
+                           }}});
+  }
+
+  void set_ground_plane(const Element& element) {
+    world_.ground_plane = true;
+    world_.ground_plane_where = xml_.where(element);
+  }
+
+  Xml xml_;
+  World world_;
+};
+
+}  // namespace
+
+World read_world(const Document& document) { return WorldReader(document).read(); }
+
+}  // namespace quadcore

@@ -1,0 +1,127 @@
+#include "xml.hpp"
+
+#include "quadcore/error.hpp"
+#include "quadcore/text.hpp"
+
+namespace quadcore {
+
+Xml::Xml(const Document& document, const std::string& root_name) : document_(document) {
+  if (trimmed(document.text).empty()) {
+    throw InputError(document.at(1) + ": is empty; write a <" + root_name + "> element");
+  }
+  if (xml_.Parse(document.text.data(), document.text.size()) != tinyxml2::XML_SUCCESS) {
+    std::string what = xml_.ErrorStr();
+    const auto line = what.find("Error=");
+    if (line != std::string::npos) what = what.substr(line);
+    for (char& c : what) c = c == '\n' ? ' ' : c;
+    const int number = xml_.ErrorLineNum() > 0 ? xml_.ErrorLineNum() : 1;
+    throw InputError(document.at(number) + ": malformed XML (" + what + "); mend it there");
+  }
+  for (const auto* node = xml_.FirstChild(); node; node = node->NextSibling()) {
+    if (node->ToUnknown()) {
+      throw InputError(document.at(node->GetLineNum()) +
+                       ": <!DOCTYPE> and entities are not accepted; remove them");
+    }
+  }
+  if (!xml_.RootElement() || root_name != xml_.RootElement()->Name()) {
+    const auto* root = xml_.RootElement();
+    throw InputError(document.at(root ? root->GetLineNum() : 1) + ": expected <" + root_name +
+                     "> as the outermost element" +
+                     (root ? ", not <" + std::string(root->Name()) + ">" : ""));
+  }
+}
+
+void Xml::fail(const Element& element, const std::string& what) const {
+  throw InputError(where(element) + ": " + what);
+}
+
+std::vector<const Xml::Element*> Xml::children(const Element& element,
+                                               const std::set<std::string>& allowed,
+                                               const std::set<std::string>& repeatable) const {
+  std::vector<const Element*> found;
+  std::set<std::string> seen;
+  for (const auto* node = element.FirstChild(); node; node = node->NextSibling()) {
+    if (node->ToText()) {
+      throw InputError(document_.at(node->GetLineNum()) + ": stray text '" +
+                       trimmed(node->Value()) + "' in <" + element.Name() + ">; remove it");
+    }
+    const Element* child = node->ToElement();
+    if (!child) continue;
+    const std::string name = child->Name();
+    if (!allowed.count(name)) {
+      const std::vector<std::string> names(allowed.begin(), allowed.end());
+      fail(*child, "<" + name + "> in <" + element.Name() + "> is not supported" +
+                       did_you_mean(name, names) + "; <" + element.Name() + "> takes " +
+                       joined(names));
+    }
+    if (!seen.insert(name).second && !repeatable.count(name)) {
+      fail(*child, "a second <" + name + "> in <" + element.Name() + ">; keep one of them");
+    }
+    found.push_back(child);
+  }
+  return found;
+}
+
+const Xml::Element& Xml::required_child(const Element& element, const char* name) const {
+  const Element* found = element.FirstChildElement(name);
+  if (!found) {
+    fail(element, "<" + std::string(element.Name()) + "> needs a <" + name + ">; add one");
+  }
+  return *found;
+}
+
+std::string Xml::attribute(const Element& element, const char* name) const {
+  const char* value = element.Attribute(name);
+  const std::string text = value ? trimmed(value) : "";
+  if (text.empty()) {
+    fail(element, "<" + std::string(element.Name()) + "> needs the attribute " + name + "=\"...\"");
+  }
+  return text;
+}
+
+double Xml::number(const Element& element, const char* name) const {
+  return as_number(element, std::string(name) + " of <" + element.Name() + ">",
+                   attribute(element, name));
+}
+
+double Xml::number(const Element& element, const char* name, double fallback) const {
+  return element.Attribute(name) ? number(element, name) : fallback;
+}
+
+Vector3d Xml::vector(const Element& element, const char* name, const Vector3d& fallback) const {
+  if (!element.Attribute(name)) return fallback;
+  return as_vector(element, std::string(name) + " of <" + element.Name() + ">",
+                   attribute(element, name));
+}
+
+std::string Xml::text(const Element& element) const {
+  if (const Element* inner = element.FirstChildElement()) {
+    fail(*inner, "<" + std::string(inner->Name()) + "> inside <" + element.Name() +
+                     ">, which takes plain text");
+  }
+  return element.GetText() ? trimmed(element.GetText()) : "";
+}
+
+double Xml::number_in_text(const Element& element) const {
+  return as_number(element, "<" + std::string(element.Name()) + ">", text(element));
+}
+
+Vector3d Xml::vector_in_text(const Element& element) const {
+  return as_vector(element, "<" + std::string(element.Name()) + ">", text(element));
+}
+
+double Xml::as_number(const Element& element, const std::string& what,
+                      const std::string& text) const {
+  const auto value = parse_number(text);
+  if (!value) fail(element, what + " is '" + text + "'; write one finite number");
+  return *value;
+}
+
+Vector3d Xml::as_vector(const Element& element, const std::string& what,
+                        const std::string& text) const {
+  const auto value = parse_vector(text);
+  if (!value) fail(element, what + " is '" + text + "'; write three finite numbers");
+  return *value;
+}
+
+}  // namespace quadcore

@@ -1,0 +1,243 @@
+#include "ode_engine.hpp"
+
+#include <algorithm>
+#include <mutex>
+
+#include "ode_math.hpp"
+#include "quadcore/error.hpp"
+#include "sdf_rounding.hpp"
+
+namespace quadcore {
+
+const OdeRecipe gazebo11_recipe{true, &add_gyroscopic_per_body};
+const OdeRecipe ode_recipe{false, &add_gyroscopic_from_carrier};
+
+namespace {
+
+/// Enough QuickStep sweeps for its answer to be the direct solver's, which is five times faster and
+/// then takes its place; a world that asks for fewer is given what it asks for.
+constexpr int converged_iterations = 50;
+constexpr double default_sor = 1.3;
+
+/// Position 3, quaternion 4, rotation 12, linear velocity 3, angular velocity 3.
+constexpr std::size_t saved_per_body = 25;
+
+void start_ode() {
+  static std::once_flag once;
+  std::call_once(once, [] { dInitODE2(0); });
+  thread_local const int allocated = dAllocateODEDataForThread(dAllocateMaskAll);
+  if (!allocated) throw Error("ODE could not be initialised in this thread");
+}
+
+/// ODE renormalises a quaternion that is set through its interface, which changes its last digits.
+/// Restoring bit for bit therefore writes to the body's own arrays, which these getters return.
+double* writable(const dReal* internal) { return const_cast<double*>(internal); }
+
+}  // namespace
+
+OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& recipe)
+    : model_(recipe.round_like_sdf ? rounded_like_sdf(model) : model),
+      recipe_(recipe),
+      kinematics_(model.joints.size()),
+      loads_(model.joints.size()) {
+  if (world.ground_plane) {
+    throw InputError(world.ground_plane_where +
+                     ": the ODE engines do not collide with a ground plane yet; fly in empty.world");
+  }
+  start_ode();
+  world_.reset(dWorldCreate());
+  dWorldSetGravity(world_.get(), world.gravity_W.x(), world.gravity_W.y(), world.gravity_W.z());
+  dWorldSetERP(world_.get(), world.erp);
+  dWorldSetCFM(world_.get(), world.cfm);
+  dWorldSetQuickStepNumIterations(world_.get(), world.solver_iterations);
+  dWorldSetQuickStepW(world_.get(), world.solver_sor);
+  quick_step_ = world.solver_type == "quick" && (world.solver_iterations < converged_iterations ||
+                                                 world.solver_sor != default_sor);
+  create_bodies();
+  create_hinges();
+  mass_ = mass_properties(model_).mass;
+  wind_W_ = world.wind_W;
+  read_kinematics();
+}
+
+void OdeEngine::create_bodies() {
+  const std::vector<Eigen::Isometry3d> poses = link_poses(model_);
+  for (std::size_t i = 0; i < model_.links.size(); ++i) {
+    const Inertial& inertial = model_.links[i].inertial;
+    const Matrix3d I = inertial.inertia_in_link_axes();
+    dMass mass;
+    dMassSetParameters(&mass, inertial.mass, 0, 0, 0, I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2),
+                       I(1, 2));
+    const dBodyID body = dBodyCreate(world_.get());
+    dBodySetMass(body, &mass);
+    dBodySetGyroscopicMode(body, 0);
+    bodies_.push_back(body);
+    gyroscopic_bodies_.push_back(i == 0 ? GyroscopicBody{body, 0, Vector3d::Zero(), I}
+                                        : GyroscopicBody{body, model_.joints[i - 1].parent,
+                                                         model_.joints[i - 1].axis, I});
+    place(i, poses[i], Vector3d::Zero(), Vector3d::Zero());
+  }
+}
+
+void OdeEngine::create_hinges() {
+  const std::vector<Eigen::Isometry3d> poses = link_poses(model_);
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    const Joint& joint = model_.joints[i];
+    const Eigen::Isometry3d& pose = poses[i + 1];
+    const Vector3d anchor = pose.translation();
+    const Vector3d axis = pose.linear() * joint.axis;
+    const dJointID hinge = dJointCreateHinge(world_.get(), nullptr);
+    dJointAttach(hinge, bodies_[i + 1], bodies_[joint.parent]);
+    dJointSetHingeAnchor(hinge, anchor.x(), anchor.y(), anchor.z());
+    dJointSetHingeAxis(hinge, axis.x(), axis.y(), axis.z());
+    hinges_.push_back(hinge);
+  }
+}
+
+void OdeEngine::place(std::size_t link, const Eigen::Isometry3d& X_WL, const Vector3d& v_WL_W,
+                      const Vector3d& w_WL_W) {
+  const Vector3d p_LLcm_W = X_WL.linear() * model_.links[link].inertial.pose.xyz;
+  const Vector3d p = X_WL.translation() + p_LLcm_W;
+  const Vector3d v = v_WL_W + w_WL_W.cross(p_LLcm_W);
+  const Quaterniond q(X_WL.linear());
+  const dQuaternion ode_q = {q.w(), q.x(), q.y(), q.z()};
+  const dBodyID body = bodies_[link];
+  dBodySetPosition(body, p.x(), p.y(), p.z());
+  dBodySetQuaternion(body, ode_q);
+  dBodySetLinearVel(body, v.x(), v.y(), v.z());
+  dBodySetAngularVel(body, w_WL_W.x(), w_WL_W.y(), w_WL_W.z());
+}
+
+void OdeEngine::step(double dt, const ForceField& forces) {
+  loads_.clear();
+  forces.evaluate(kinematics_, loads_);
+  apply_loads();
+  recipe_.add_gyroscopic(gyroscopic_bodies_);
+  if (quick_step_) {
+    dRandSetSeed(0);  // QuickStep shuffles its rows by a generator that the whole process shares
+    dWorldQuickStep(world_.get(), dt);
+  } else {
+    dWorldStep(world_.get(), dt);
+  }
+  read_kinematics();
+}
+
+void OdeEngine::apply_loads() {
+  const Matrix3d& R_WF = kinematics_.R_WF;
+  const Wrench& frame = loads_.frame();
+  const Vector3d f_W = R_WF * frame.force_F;
+  const Vector3d tau_Fcm_W =
+      R_WF * (frame.torque_F - model_.links[0].inertial.pose.xyz.cross(frame.force_F));
+  dBodyAddForce(bodies_[0], f_W.x(), f_W.y(), f_W.z());
+  dBodyAddTorque(bodies_[0], tau_Fcm_W.x(), tau_Fcm_W.y(), tau_Fcm_W.z());
+  for (std::size_t i = 0; i < hinges_.size(); ++i) {
+    const Vector3d f_R_W = R_WF * loads_.rotor_force_F(i);
+    dBodyAddForce(bodies_[i + 1], f_R_W.x(), f_R_W.y(), f_R_W.z());
+    const double damping = -model_.joints[i].damping * kinematics_.rotors[i].rate;
+    dJointAddHingeTorque(hinges_[i], damping);
+    dJointAddHingeTorque(hinges_[i], loads_.joint_torque(i));
+  }
+}
+
+void OdeEngine::read_kinematics() {
+  Kinematics& k = kinematics_;
+  const Vector3d& p_FFcm_F = model_.links[0].inertial.pose.xyz;
+  k.R_WF = rotation(dBodyGetRotation(bodies_[0]));
+  const Matrix3d R_FW = k.R_WF.transpose();
+  k.w_WF_F = R_FW * vec(dBodyGetAngularVel(bodies_[0]));
+  const Vector3d v_WFcm_F = R_FW * vec(dBodyGetLinearVel(bodies_[0]));
+  k.v_WF_F = v_WFcm_F - k.w_WF_F.cross(p_FFcm_F);
+  k.p_WF = vec(dBodyGetPosition(bodies_[0])) - k.R_WF * p_FFcm_F;
+  k.v_WA_F = R_FW * wind_W_;
+  k.p_FCcm_F = model_.links[0].inertial.mass * p_FFcm_F;
+  k.v_WCcm_F = model_.links[0].inertial.mass * v_WFcm_F;
+  for (std::size_t i = 0; i < hinges_.size(); ++i) {
+    RotorKinematics& rotor = k.rotors[i];
+    const dBodyID body = bodies_[i + 1];
+    const Inertial& inertial = model_.links[i + 1].inertial;
+    const Matrix3d R_FR = R_FW * rotation(dBodyGetRotation(body));
+    const Vector3d w_WR_F = R_FW * vec(dBodyGetAngularVel(body));
+    k.set_R_FR(i, R_FR);
+    rotor.axis_F = R_FR * model_.joints[i].axis;
+    rotor.p_FRcm_F = R_FW * (vec(dBodyGetPosition(body)) - k.p_WF);
+    rotor.v_WRcm_F = R_FW * vec(dBodyGetLinearVel(body));
+    rotor.v_WR_F = rotor.v_WRcm_F - w_WR_F.cross(R_FR * inertial.pose.xyz);
+    rotor.angle = dJointGetHingeAngle(hinges_[i]);
+    rotor.rate = dJointGetHingeAngleRate(hinges_[i]);
+    k.p_FCcm_F += inertial.mass * rotor.p_FRcm_F;
+    k.v_WCcm_F += inertial.mass * rotor.v_WRcm_F;
+  }
+  k.p_FCcm_F /= mass_;
+  k.v_WCcm_F /= mass_;
+}
+
+void OdeEngine::get_state(VehicleState& state) const {
+  const dReal* q = dBodyGetQuaternion(bodies_[0]);
+  state.position = kinematics_.p_WF;
+  state.orientation = Quaterniond(q[0], q[1], q[2], q[3]);
+  state.linear_velocity = kinematics_.R_WF * kinematics_.v_WF_F;
+  state.angular_velocity = kinematics_.w_WF_F;
+  for (std::size_t i = 0; i < hinges_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    state.rotor_velocity[row] = kinematics_.rotors[i].rate;
+    state.rotor_angle[row] = kinematics_.rotors[i].angle;
+  }
+}
+
+void OdeEngine::set_state(const VehicleState& state) {
+  std::vector<Eigen::Isometry3d> X_WL(model_.links.size());
+  std::vector<Vector3d> v_W(model_.links.size()), w_W(model_.links.size());
+  const Quaterniond q = state.orientation.normalized();
+  X_WL[0] = Eigen::Translation3d(state.position) * q;
+  v_W[0] = state.linear_velocity;
+  w_W[0] = q * state.angular_velocity;
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    const Joint& joint = model_.joints[i];
+    const auto row = static_cast<Eigen::Index>(i);
+    const std::size_t parent = joint.parent, child = i + 1;
+    X_WL[child] = X_WL[parent] * Eigen::Translation3d(joint.pose.xyz) * joint.pose.rotation() *
+                  Eigen::AngleAxisd(state.rotor_angle[row], joint.axis);
+    const Vector3d arm_W = X_WL[child].translation() - X_WL[parent].translation();
+    v_W[child] = v_W[parent] + w_W[parent].cross(arm_W);
+    w_W[child] = w_W[parent] + X_WL[child].linear() * joint.axis * state.rotor_velocity[row];
+  }
+  for (std::size_t i = 0; i < bodies_.size(); ++i) place(i, X_WL[i], v_W[i], w_W[i]);
+  read_kinematics();
+}
+
+std::vector<double> OdeEngine::save() const {
+  std::vector<double> saved;
+  saved.reserve(bodies_.size() * saved_per_body);
+  const auto put = [&saved](const dReal* from, int count) {
+    saved.insert(saved.end(), from, from + count);
+  };
+  for (const dBodyID body : bodies_) {
+    put(dBodyGetPosition(body), 3);
+    put(dBodyGetQuaternion(body), 4);
+    put(dBodyGetRotation(body), 12);
+    put(dBodyGetLinearVel(body), 3);
+    put(dBodyGetAngularVel(body), 3);
+  }
+  return saved;
+}
+
+void OdeEngine::restore(const std::vector<double>& saved) {
+  if (saved.size() != bodies_.size() * saved_per_body) {
+    throw InputError("snapshot: was taken from another model or engine; restore one of its own");
+  }
+  const double* from = saved.data();
+  const auto take = [&from](const dReal* to, int count) {
+    std::copy(from, from + count, writable(to));
+    from += count;
+  };
+  for (const dBodyID body : bodies_) {
+    take(dBodyGetPosition(body), 3);
+    take(dBodyGetQuaternion(body), 4);
+    take(dBodyGetRotation(body), 12);
+    take(dBodyGetLinearVel(body), 3);
+    take(dBodyGetAngularVel(body), 3);
+  }
+  read_kinematics();
+}
+
+}  // namespace quadcore

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <ode/ode.h>
+
+#include <memory>
+#include <vector>
+
+#include "gyroscopic.hpp"
+#include "quadcore/engine.hpp"
+
+namespace quadcore {
+
+/// How an ODE world is set up.
+struct OdeRecipe {
+  bool round_like_sdf;  ///< fly the numbers that Gazebo's URDF -> SDF conversion leaves
+  void (*add_gyroscopic)(const std::vector<GyroscopicBody>&);
+};
+
+/// Gazebo 11 to the last digit, faults included.
+extern const OdeRecipe gazebo11_recipe;
+/// The same world without Gazebo's faults.
+extern const OdeRecipe ode_recipe;
+
+/// Rigid bodies on hinges in upstream ODE: bodies sit at their centres of mass along their link's
+/// axes, hinges are attached as (child, parent).
+class OdeEngine final : public Engine {
+ public:
+  OdeEngine(const Model& model, const World& world, const OdeRecipe& recipe);
+
+  const Model& model() const override { return model_; }
+  void step(double dt, const ForceField& forces) override;
+  const Kinematics& kinematics() const override { return kinematics_; }
+  void get_state(VehicleState& state) const override;
+  void set_state(const VehicleState& state) override;
+  std::vector<double> save() const override;
+  void restore(const std::vector<double>& saved) override;
+
+ private:
+  struct DestroyWorld {
+    void operator()(dxWorld* world) const { dWorldDestroy(world); }
+  };
+
+  void create_bodies();
+  void create_hinges();
+  void place(std::size_t link, const Eigen::Isometry3d& X_WL, const Vector3d& v_WL_W,
+             const Vector3d& w_WL_W);
+  void apply_loads();
+  void read_kinematics();
+
+  Model model_;
+  OdeRecipe recipe_;
+  std::unique_ptr<dxWorld, DestroyWorld> world_;
+  bool quick_step_;
+  std::vector<dBodyID> bodies_;
+  std::vector<dJointID> hinges_;
+  std::vector<GyroscopicBody> gyroscopic_bodies_;
+  double mass_ = 0;
+  Vector3d wind_W_;
+  Kinematics kinematics_;
+  Loads loads_;
+};
+
+}  // namespace quadcore

@@ -1,0 +1,153 @@
+#include <cmath>
+#include <string>
+
+#include "drag.hpp"
+#include "flapping.hpp"
+#include "quadcore/error.hpp"
+#include "quadcore/plugin.hpp"
+#include "thrust.hpp"
+
+namespace quadcore::aerodynamic {
+namespace {
+
+/// Wrench terms, in the order the descriptor names them.
+enum Term { kThrust, kReaction, kInduced, kTranslational, kProfile, kParasitic, kFlapping };
+
+struct Config {
+  double k, b, reaction_sign, sim_slow;
+  double induced, translational, profile, parasitic;
+  Flapping flapping;
+  bool flaps;     ///< any flapping coefficient is set
+  bool appendix;  ///< dragModel
+  std::vector<std::size_t> rotors;
+
+  explicit Config(const Parameters& p)
+      : k(p.number("rotorThrustCoeff")),
+        b(p.number("rotorTorqueCoeff")),
+        reaction_sign(p.choice("reactionTorque") == "thesis" ? 1 : -1),
+        sim_slow(p.number("sim_slow")),
+        induced(p.number("inducedDragCoeff")),
+        translational(p.number("translationalDragCoeff")),
+        profile(p.number("profileDragCoeff")),
+        parasitic(p.number("parasiticDragCoeff")),
+        flapping{p.number("flappingA1c"), p.number("flappingA1s"), p.number("flappingB1"),
+                 p.number("flappingB2"), p.number("rotorRadius")},
+        flaps(flapping.A1c != 0 || flapping.A1s != 0 || flapping.B1 != 0 || flapping.B2 != 0),
+        appendix(p.choice("dragModel") == "appendix"),
+        rotors(p.joints("rotorJoints")) {}
+};
+
+class AerodynamicPlugin final : public Plugin {
+ public:
+  explicit AerodynamicPlugin(const PluginSetup& setup)
+      : config_(setup.parameters), joint_names_(setup.model.joint_names()) {}
+
+  /// The thesis' plugin falls silent for a rotor that turns more than half a turn per step; here
+  /// such a speed ends the flight.
+  void update(const Sample& sample, PluginState) const override {
+    for (const std::size_t i : config_.rotors) {
+      if (std::abs(sample.kinematics.rotors[i].rate) * sample.dt > M_PI) {
+        throw FlightError(sample.time, "rotor '" + joint_names_[i] +
+                                           "' turns more than half a turn per step; take a smaller "
+                                           "step or a slower command");
+      }
+    }
+  }
+
+  void forces(const Kinematics& kinematics, ConstPluginState, Loads& loads) const override {
+    const Config& c = config_;
+    for (const std::size_t i : c.rotors) {
+      const RotorDisc disc = c.appendix ? disc_of_appendix(kinematics, i) : disc_of(kinematics, i);
+      loads.add_rotor_force(kThrust, i, thrust(disc, c.k));
+      // A.5 turns the frame about its own z, whatever way the rotor points.
+      const Vector3d reaction_axis_F = c.appendix ? Vector3d::UnitZ().eval() : disc.axis_F;
+      loads.add_frame_torque(kReaction, reaction(disc, c.b, c.reaction_sign) * reaction_axis_F);
+      loads.add_rotor_force(kInduced, i, rotor_drag(disc, c.induced));
+      loads.add_rotor_force(kTranslational, i, rotor_drag(disc, c.translational));
+      loads.add_rotor_force(kProfile, i, rotor_drag(disc, c.profile));
+      if (c.appendix && c.parasitic != 0) {
+        const Vector3d v_WF_W = kinematics.R_WF * kinematics.v_WF_F;
+        loads.add_rotor_force(
+            kParasitic, i, parasitic_drag_of_appendix(v_WF_W, kinematics.R_FR(i), c.parasitic));
+      }
+      if (c.flaps) {
+        loads.add_rotor_force(kFlapping, i,
+                              flapping(disc, kinematics.w_WF_F, c.k, c.flapping));
+      }
+    }
+    if (!c.appendix && c.parasitic != 0) {
+      const Vector3d v_ACcm_F = kinematics.v_WCcm_F - kinematics.v_WA_F;
+      loads.add_frame_force(kParasitic, parasitic_drag(v_ACcm_F, c.parasitic), kinematics.p_FCcm_F);
+    }
+  }
+
+ private:
+  /// Chapter 2: the disc stands across the joint's axis and meets the moving air.
+  RotorDisc disc_of(const Kinematics& kinematics, std::size_t i) const {
+    const RotorKinematics& rotor = kinematics.rotors[i];
+    return {rotor.axis_F, rotor.v_WRcm_F - kinematics.v_WA_F, rotor.rate * config_.sim_slow};
+  }
+
+  /// Appendix A.5: the disc stands across the propeller link's z and the air is still everywhere.
+  RotorDisc disc_of_appendix(const Kinematics& kinematics, std::size_t i) const {
+    const RotorKinematics& rotor = kinematics.rotors[i];
+    return {kinematics.R_FR(i).col(2), rotor.v_WR_F, rotor.rate * config_.sim_slow};
+  }
+
+  Config config_;
+  std::vector<std::string> joint_names_;
+};
+
+PluginDescriptor describe() {
+  using T = TagSpec;
+  const std::string no_effect = "the thesis' tag, without effect there and here";
+  return {
+      "thrust, reaction torque and drag of the rotors (thesis eqs. 2.10-2.32, appendix A.5)",
+      {
+          T::number("rotorThrustCoeff", "N s^2/rad^2", "", "thrust of a rotor per squared speed, k")
+              .must().at_least(0).from("(2.10)"),
+          T::number("rotorTorqueCoeff", "N m s^2/rad^2", "",
+                    "reaction torque of a rotor per squared speed, b")
+              .must().at_least(0).from("(2.11)"),
+          T::number("sim_slow", "", "1",
+                    "rotors turn this much slower in the engine than the forces assume")
+              .above(0).from("chapter 4").agreed(),
+          T::choice("dragModel", {"appendix", "chapter2"},
+                    "forces as the thesis' plugin computes them, or as its chapter 2 says")
+              .from("A.5, (2.28)-(2.31)"),
+          T::number("inducedDragCoeff", "N s/m", "0", "induced drag of a rotor, K_I")
+              .at_least(0).from("(2.28)"),
+          T::number("translationalDragCoeff", "N s/m", "0", "translational drag of a rotor, K_T1")
+              .at_least(0).from("(2.29)"),
+          T::number("profileDragCoeff", "N s/m", "0", "profile drag of a rotor, K_P")
+              .at_least(0).from("(2.30)"),
+          T::number("parasiticDragCoeff", "N s^2/m^2", "0", "parasitic drag of the airframe, K_par")
+              .at_least(0).from("(2.31)"),
+          T::number("flappingA1c", "rad", "0", "blade flapping, longitudinal; positive opposes motion")
+              .from("(2.26)"),
+          T::number("flappingA1s", "rad", "0", "blade flapping, lateral").from("(2.26)"),
+          T::number("flappingB1", "s/rad", "0", "blade flapping with the frame's rates, cross term")
+              .from("(2.27)"),
+          T::number("flappingB2", "s/rad", "0", "blade flapping with the frame's rates, direct term")
+              .from("(2.27)"),
+          T::number("rotorRadius", "m", "0.075", "radius of a rotor, for flapping")
+              .above(0).from("(2.26)"),
+          T::choice("reactionTorque", {"thesis", "opposing"},
+                    "sign of the reaction torque: with the rotor's spin as in the thesis, or against")
+              .from("(2.11), (2.13)"),
+          T::link("frameLink", "link that takes reaction torque and parasitic drag"),
+          T::joints("rotorJoints", "the rotors"),
+          T::number("updateRate", "1/s", "", no_effect).at_least(0).or_absent("no effect"),
+          T::flag("publishTf", "false", no_effect),
+      },
+      {"thrust", "reaction", "induced", "translational", "profile", "parasitic", "flapping"},
+      [](const PluginSetup& setup) -> std::unique_ptr<Plugin> {
+        return std::make_unique<AerodynamicPlugin>(setup);
+      },
+  };
+}
+
+}  // namespace
+}  // namespace quadcore::aerodynamic
+
+QUADCORE_REGISTER_PLUGIN(quadcore::aerodynamic::describe)

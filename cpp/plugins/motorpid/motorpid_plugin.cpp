@@ -1,0 +1,123 @@
+#include <algorithm>
+#include <cmath>
+
+#include "quadcore/error.hpp"
+#include "quadcore/plugin.hpp"
+
+namespace quadcore::motorpid {
+namespace {
+
+struct Config {
+  double kp, ki, kd, i_max, i_min, sim_slow;
+  double max_velocity;     ///< rad/s; infinite if there is none
+  double command_timeout;  ///< s; infinite if there is none
+  std::vector<std::size_t> rotors;
+
+  explicit Config(const Parameters& p)
+      : kp(p.number("kp")),
+        ki(p.number("ki")),
+        kd(p.number("kd")),
+        i_max(p.number("iMax")),
+        i_min(p.number("iMin")),
+        sim_slow(p.number("sim_slow")),
+        max_velocity(p.has("maxVelocity") ? p.number("maxVelocity") : INFINITY),
+        command_timeout(p.has("commandTimeout") ? p.number("commandTimeout") : INFINITY),
+        rotors(p.joints("rotorJoints")) {}
+};
+
+/// What a rotor's controller remembers.
+enum Memory { kActive, kTarget, kErrorSum, kLastError, kSampledTorque, kMemorySize };
+
+/// Joint-velocity PID as Gazebo's JointController runs it for the thesis' appendix A.4, in slowed
+/// units: e = W - W_target, torque = -kp e - I - kd (e - e_previous)/dt with I = ki sum(e dt) clamped
+/// to [iMin, iMax]. The proportional law is continuous, part of the force law; integral and
+/// derivative are sampled once per step. Until the first command the motors are free.
+class MotorPidPlugin final : public Plugin {
+ public:
+  explicit MotorPidPlugin(const PluginSetup& setup) : config_(setup.parameters) {
+    if (config_.i_min > config_.i_max) throw InputError("<iMin> exceeds <iMax>; swap them");
+    if (config_.ki != 0 && config_.i_min == 0 && config_.i_max == 0) {
+      setup.warnings.push_back(
+          "<ki> has no effect while <iMax> and <iMin> are 0, as in the thesis; set them to the "
+          "largest and smallest integral torque in N m");
+    }
+    std::vector<std::string> fields;
+    for (std::size_t j = 0; j < config_.rotors.size(); ++j) {
+      fields.push_back("w" + std::to_string(j + 1));
+    }
+    topic_ = setup.topics.declare("vel_cmd", fields);
+  }
+
+  std::size_t state_size() const override { return config_.rotors.size() * kMemorySize; }
+
+  void update(const Sample& sample, PluginState state) const override {
+    const Topic& command = sample.topics[topic_];
+    if (command.count == 0) return;
+    const bool stale = sample.time - command.stamp > config_.command_timeout;
+    for (std::size_t j = 0; j < config_.rotors.size(); ++j) {
+      auto memory = state.segment<kMemorySize>(static_cast<Eigen::Index>(j * kMemorySize));
+      const double wanted = stale ? 0 : command.values[j];
+      memory[kActive] = 1;
+      memory[kTarget] =
+          std::clamp(wanted, -config_.max_velocity, config_.max_velocity) / config_.sim_slow;
+      const double error = sample.kinematics.rotors[config_.rotors[j]].rate - memory[kTarget];
+
+      memory[kErrorSum] += sample.dt * error;
+      double integral = config_.ki * memory[kErrorSum];
+      if (integral > config_.i_max || integral < config_.i_min) {
+        integral = std::clamp(integral, config_.i_min, config_.i_max);
+        memory[kErrorSum] = integral / config_.ki;
+      }
+      const double derivative = config_.kd * (error - memory[kLastError]) / sample.dt;
+      memory[kLastError] = error;
+      memory[kSampledTorque] = -integral - derivative;
+    }
+  }
+
+  void forces(const Kinematics& kinematics, ConstPluginState state, Loads& loads) const override {
+    for (std::size_t j = 0; j < config_.rotors.size(); ++j) {
+      const double* memory = state.data() + j * kMemorySize;
+      if (memory[kActive] == 0) continue;
+      const std::size_t i = config_.rotors[j];
+      const double error = kinematics.rotors[i].rate - memory[kTarget];
+      loads.add_joint_torque(i, -config_.kp * error + memory[kSampledTorque]);
+    }
+  }
+
+ private:
+  Config config_;
+  std::size_t topic_;
+};
+
+PluginDescriptor describe() {
+  using T = TagSpec;
+  return {
+      "speed control of the rotors: a PID on each joint's velocity (thesis appendix A.4)",
+      {
+          T::number("kp", "N m s/rad", "", "proportional gain on the slowed joint velocity")
+              .must().at_least(0).from("A.4"),
+          T::number("ki", "N m/rad", "0", "integral gain; needs iMax, iMin").at_least(0).from("A.4"),
+          T::number("kd", "N m s^2/rad", "0", "derivative gain, sampled once per step")
+              .at_least(0).from("A.4"),
+          T::number("iMax", "N m", "0", "largest integral torque").at_least(0),
+          T::number("iMin", "N m", "0", "smallest integral torque").at_most(0),
+          T::number("sim_slow", "", "1", "commands are divided by this").above(0).from("chapter 4")
+              .agreed(),
+          T::number("maxVelocity", "rad/s", "",
+                    "fastest rotor speed the motor follows; faster commands saturate")
+              .above(0).or_absent("none"),
+          T::number("commandTimeout", "s", "", "a command older than this counts as 0")
+              .above(0).or_absent("off"),
+          T::joints("rotorJoints", "the rotors, in the order of the command's numbers"),
+      },
+      {},
+      [](const PluginSetup& setup) -> std::unique_ptr<Plugin> {
+        return std::make_unique<MotorPidPlugin>(setup);
+      },
+  };
+}
+
+}  // namespace
+}  // namespace quadcore::motorpid
+
+QUADCORE_REGISTER_PLUGIN(quadcore::motorpid::describe)

@@ -1,0 +1,119 @@
+"""What a flight leaves behind."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Mapping, Union
+
+import numpy as np
+
+from ._core import InputError
+from .files import atomic_write, check_writable
+
+PathLike = Union[str, "os.PathLike[str]"]
+
+_STATE = "t,x,y,z,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz".split(",")
+
+
+class Log:
+    """States of a flight, one row per logged step, and the wrenches that act from each on.
+
+    Parameters
+    ----------
+    table : ndarray, shape (rows, 14 + n)
+        Columns as `columns` names them.
+    wrenches : mapping of str to ndarray, shape (rows, 6)
+        Force (N), then torque (N m), frame axes, about the vehicle's centre of mass.
+    title : str
+        What flew, for the plots.
+    """
+
+    def __init__(
+        self, table: np.ndarray, wrenches: Mapping[str, np.ndarray], title: str = ""
+    ) -> None:
+        self.table = table
+        self.wrenches = dict(wrenches)
+        self.title = title
+
+    def __len__(self) -> int:
+        return len(self.table)
+
+    @property
+    def columns(self) -> list[str]:
+        """Names of the table's columns, as they head the CSV file."""
+        return _STATE + [f"j{i}" for i in range(1, 1 + self.table.shape[1] - len(_STATE))]
+
+    @property
+    def time(self) -> np.ndarray:
+        """Time since the start, s; shape (rows,)."""
+        return self.table[:, 0]
+
+    @property
+    def position(self) -> np.ndarray:
+        """Origin of the frame link in the world, m; shape (rows, 3)."""
+        return self.table[:, 1:4]
+
+    @property
+    def orientation(self) -> np.ndarray:
+        """Orientation of the frame link in the world, unit quaternion x, y, z, w; (rows, 4)."""
+        return self.table[:, 4:8]
+
+    @property
+    def linear_velocity(self) -> np.ndarray:
+        """Velocity of the frame link's origin, world axes, m/s; shape (rows, 3)."""
+        return self.table[:, 8:11]
+
+    @property
+    def angular_velocity(self) -> np.ndarray:
+        """Angular velocity of the frame link, body axes, rad/s; shape (rows, 3)."""
+        return self.table[:, 11:14]
+
+    @property
+    def rotor_velocity(self) -> np.ndarray:
+        """Velocity of the rotor joints, rad/s; shape (rows, n)."""
+        return self.table[:, 14:]
+
+    def to_csv(self, path: PathLike) -> None:
+        """Write `table` as text with 17 significant digits, so that reading restores every bit."""
+        with atomic_write(Path(path)) as stream:
+            header = ",".join(self.columns)
+            np.savetxt(stream, self.table, "%.17g", ",", header=header, comments="")
+
+    def to_mat(self, path: PathLike) -> None:
+        """Write a MATLAB file: each column as a vector, each wrench as ``wrench_NAME`` (rows, 6)."""
+        import scipy.io
+
+        variables = {name: self.table[:, i] for i, name in enumerate(self.columns)}
+        variables.update((f"wrench_{name}", value) for name, value in self.wrenches.items())
+        with atomic_write(Path(path)) as stream:
+            scipy.io.savemat(stream, variables, oned_as="column")
+
+    def to_file(self, path: PathLike) -> None:
+        """Write a ``.csv`` or ``.mat`` file, as its name says.
+
+        Raises
+        ------
+        InputError
+            Another suffix, or a file that cannot be written; nothing is left behind then.
+        """
+        {".csv": self.to_csv, ".mat": self.to_mat}[_suffix(Path(path))](path)
+
+    def plot(self, directory: PathLike) -> list[Path]:
+        """Draw the flight into PNG files in `directory` (made if missing); returns their paths."""
+        from .plots import draw  # matplotlib is slow to import
+
+        return draw(self, Path(directory))
+
+
+def check_log_path(path: PathLike) -> None:
+    """Raise `InputError` now if `Log.to_file` could not write `path` later."""
+    _suffix(Path(path))
+    check_writable(Path(path))
+
+
+def _suffix(path: Path) -> str:
+    suffix = path.suffix.lower()
+    if suffix not in (".csv", ".mat"):
+        raise InputError(f"{path}: logs are written to .csv and .mat files")
+    return suffix

@@ -1,0 +1,168 @@
+"""Pictures of a flight."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Callable, Sequence
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d import Axes3D  # noqa: F401  (matplotlib < 3.2 needs it for "3d")
+
+from ._core import InputError
+from .files import atomic_write
+from .rotation import roll_pitch_yaw
+
+if TYPE_CHECKING:
+    from .log import Log
+
+# Okabe and Ito's palette, told apart by colour-blind readers too; x, y, z keep theirs throughout.
+_XYZ = ("#d55e00", "#009e73", "#0072b2")
+_ROTORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#999999")
+
+
+def draw(log: Log, directory: Path) -> list[Path]:
+    """Draw every picture of `log` into `directory`, which is made if missing.
+
+    Returns
+    -------
+    list of Path
+        The PNG files written.
+
+    Raises
+    ------
+    InputError
+        The folder or a file cannot be written.
+    """
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{directory}: cannot be made: {error.strerror}") from error
+    pictures: dict[str, Callable[[Log], Figure]] = {
+        "position": _position,
+        "attitude": _attitude,
+        "rates": _rates,
+        "rotors": _rotors,
+        "wrenches": _wrenches,
+        "path": _path,
+    }
+    written = []
+    for name, picture in pictures.items():
+        figure = picture(log)
+        FigureCanvasAgg(figure)
+        file = directory / f"{name}.png"
+        with atomic_write(file) as stream:
+            # A fixed text in place of matplotlib's version: the same flight gives the same bytes.
+            figure.savefig(stream, format="png", metadata={"Software": "quadcore"})
+        written.append(file)
+    return written
+
+
+def _position(log: Log) -> Figure:
+    figure, panels = _panels(log, "Position of the frame", 3)
+    _curves(panels[:, 0], log.time, log.position, ("x (m)", "y (m)", "z (m)"))
+    return figure
+
+
+def _attitude(log: Log) -> Figure:
+    figure, panels = _panels(log, "Attitude of the frame", 3)
+    angles = np.degrees(np.unwrap(roll_pitch_yaw(log.orientation), axis=0))
+    _curves(panels[:, 0], log.time, angles, ("roll (deg)", "pitch (deg)", "yaw (deg)"))
+    return figure
+
+
+def _rates(log: Log) -> Figure:
+    figure, panels = _panels(log, "Linear (world) and angular (body) velocity of the frame", 3, 2)
+    linear = [f"$v_{axis}$ (m/s)" for axis in "xyz"]
+    angular = [rf"$\omega_{axis}$ (rad/s)" for axis in "xyz"]
+    _curves(panels[:, 0], log.time, log.linear_velocity, linear)
+    _curves(panels[:, 1], log.time, log.angular_velocity, angular)
+    return figure
+
+
+def _rotors(log: Log) -> Figure:
+    figure, (whole, close) = _panels(log, "Velocity of the rotor joints", 2, height=2.2)
+    for i, velocity in enumerate(log.rotor_velocity.T):
+        style = {"color": _ROTORS[i % len(_ROTORS)], "label": f"rotor {i + 1}", "linewidth": 1.2}
+        whole[0].plot(log.time, velocity, **style)
+        close[0].plot(log.time, np.abs(velocity), **style)
+    whole[0].set_ylabel("signed (rad/s)")
+    whole[0].legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    # Around hover the differences that steer are a hundredth of the speed: show them large.
+    speeds = np.abs(log.rotor_velocity)
+    low, high = np.percentile(speeds, 5), speeds.max()
+    margin = 0.05 * (high - low) or 1.0
+    close[0].set_ylim(low - margin, high + margin)
+    close[0].set_ylabel("magnitude (rad/s),\nabove the lowest 5 %")
+    return figure
+
+
+def _wrenches(log: Log) -> Figure:
+    acting = {name: wrench for name, wrench in log.wrenches.items() if np.any(wrench)}
+    figure, panels = _panels(
+        log, "Wrenches about the centre of mass, frame axes", max(1, len(acting)), 2
+    )
+    panels[0, 0].set_title("force (N)", loc="left", fontsize="medium")
+    panels[0, 1].set_title("torque (N m)", loc="left", fontsize="medium")
+    for row, (name, wrench) in zip(panels, acting.items()):
+        row[0].set_ylabel(name)
+        for axes, part in ((row[0], wrench[:, :3]), (row[1], wrench[:, 3:])):
+            for values, colour, axis in zip(part.T, _XYZ, "xyz"):
+                axes.plot(log.time, values, color=colour, linewidth=1.2, label=axis)
+            if not np.any(part):
+                axes.set_ylim(-1, 1)
+                axes.set_yticks([0])
+    handles, labels = panels[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="upper right", ncol=3, frameon=False)
+    return figure
+
+
+def _path(log: Log) -> Figure:
+    figure = _figure(log, "Path of the frame", 6, 6)
+    axes = figure.add_axes([0.0, 0.02, 0.94, 0.94], projection="3d")
+    # The same scale along all three axes, with room for flights that hardly move.
+    low, high = log.position.min(axis=0), log.position.max(axis=0)
+    reach = max((high - low).max() / 2, 0.1)
+    corner = (low + high) / 2 - reach
+    for name, start in zip("xyz", corner):
+        getattr(axes, f"set_{name}lim")(start, start + 2 * reach)
+        getattr(axes, f"set_{name}label")(f"{name} (m)")
+    x, y, z = log.position.T
+    axes.plot(x, y, np.full_like(z, corner[2]), color="0.7", linewidth=1, label="seen from above")
+    axes.plot(x, y, z, color=_XYZ[2], label="path")
+    axes.plot(x[:1], y[:1], z[:1], "o", color="black", markersize=5, label="start")
+    axes.plot(x[-1:], y[-1:], z[-1:], "s", color="black", markersize=5, label="end")
+    axes.legend(loc="upper right", frameon=False)
+    return figure
+
+
+def _panels(
+    log: Log, what: str, rows: int, columns: int = 1, height: float = 1.6
+) -> tuple[Figure, Any]:
+    figure = _figure(log, what, 8 if columns > 1 else 7, 0.7 + height * rows)
+    figure.set_constrained_layout(True)
+    panels = figure.subplots(rows, columns, sharex=True, squeeze=False)
+    for axes in panels.flat:
+        axes.grid(color="0.9", linewidth=0.6)
+        axes.set_axisbelow(True)
+        axes.margins(x=0.01)
+        axes.spines["top"].set_visible(False)
+        axes.spines["right"].set_visible(False)
+    for axes in panels[-1]:
+        axes.set_xlabel("time (s)")
+    figure.align_ylabels(panels)
+    return figure, panels
+
+
+def _figure(log: Log, what: str, width: float, height: float) -> Figure:
+    figure = Figure(figsize=(width, height), dpi=150)
+    title = f"{what}: {log.title}" if log.title else what
+    figure.suptitle(title, x=0.02, horizontalalignment="left", fontsize="medium")
+    return figure
+
+
+def _curves(panels: Any, time: np.ndarray, values: np.ndarray, labels: Sequence[str]) -> None:
+    for axes, curve, colour, label in zip(panels, values.T, _XYZ, labels):
+        axes.plot(time, curve, color=colour, linewidth=1.2)
+        axes.set_ylabel(label)

@@ -1,0 +1,25 @@
+"""Angles of an orientation."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def roll_pitch_yaw(orientation: np.ndarray) -> np.ndarray:
+    """Roll phi, pitch theta and yaw psi, with R = Rz(psi) Ry(theta) Rx(phi).
+
+    Parameters
+    ----------
+    orientation : ndarray, shape (..., 4)
+        Unit quaternions x, y, z, w of the frame in the world.
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        rad; roll and yaw in [-pi, pi], pitch in [-pi/2, pi/2].
+    """
+    x, y, z, w = np.moveaxis(np.asarray(orientation, dtype=float), -1, 0)
+    roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
+    pitch = np.arcsin(np.clip(2 * (w * y - z * x), -1, 1))
+    yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+    return np.stack([roll, pitch, yaw], axis=-1)

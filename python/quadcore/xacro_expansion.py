@@ -1,0 +1,148 @@
+"""Expansion of xacro files in which every line of the result knows where it comes from.
+
+xacro itself forgets lines. Its parser is replaced for the time of one expansion by one whose
+elements remember them, which serves the result and the error messages alike.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import difflib
+import io
+import os
+import threading
+import traceback
+from pathlib import Path
+from typing import Any, Dict, Iterator, Mapping
+
+import rospkg
+import xacro
+
+from . import resources, xml_source
+from ._core import InputError, QuadcoreError
+from .files import read_text
+
+_LOCK = threading.Lock()  # xacro keeps its stacks in globals
+
+
+def expand(path: str, arguments: Mapping[str, str]) -> list[tuple[str, xml_source.Origin]]:
+    """Expand a xacro file.
+
+    Parameters
+    ----------
+    path
+        The file.
+    arguments
+        Values of ``<xacro:arg>``, by name.
+
+    Returns
+    -------
+    list of (str, Origin)
+        Lines of the expanded document and where each comes from.
+
+    Raises
+    ------
+    InputError
+        Whatever is wrong in the file or one it includes, or an argument it does not know.
+    """
+    table = _Arguments(arguments)
+    with _LOCK, _replaced_hooks(table), _silence():
+        try:
+            document = xacro.process_file(path, mappings=table)
+        except QuadcoreError:
+            raise
+        except Exception as error:  # xacro has no common base class for what it raises
+            raise InputError(f"{_place(error) or path}: {_reason(error)}") from error
+    for name in arguments:
+        if name not in table.asked:
+            raise InputError(f"{path}: there is no xacro argument {_named(name, table.asked)}")
+    return xml_source.write(document)
+
+
+class _Arguments(Dict[str, str]):
+    """xacro's argument table; remembers the names that were asked for."""
+
+    def __init__(self, given: Mapping[str, str]) -> None:
+        super().__init__(given)
+        self.asked: set[str] = set()
+
+    def __contains__(self, name: object) -> bool:
+        self.asked.add(str(name))
+        return super().__contains__(name)
+
+    def __getitem__(self, name: str) -> str:
+        self.asked.add(name)
+        return super().__getitem__(name)
+
+
+@contextlib.contextmanager
+def _replaced_hooks(arguments: _Arguments) -> Iterator[None]:
+    old_parse, old_extension = xacro.parse, xacro.eval_extension
+
+    def parse(source: Any, filename: str | None = None) -> Any:
+        if filename is None or not Path(filename).is_file():
+            return old_parse(source, filename)  # it raises what <xacro:include optional=""> expects
+        return xml_source.parse(filename, read_text(Path(filename)))
+
+    def eval_extension(text: str) -> str:
+        command, *words = text[len("$(") : -len(")")].split() or [""]
+        if command == "find" and len(words) == 1:
+            return _package_folder(words[0])
+        if command == "arg" and len(words) == 1 and words[0] not in arguments:
+            raise xacro.XacroException(
+                f"undefined xacro argument '{words[0]}'; declare it: "
+                f'<xacro:arg name="{words[0]}" default="..."/>'
+            )
+        return old_extension(text)
+
+    xacro.parse, xacro.eval_extension = parse, eval_extension
+    try:
+        yield
+    finally:
+        xacro.parse, xacro.eval_extension = old_parse, old_extension
+
+
+@contextlib.contextmanager
+def _silence() -> Iterator[None]:
+    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+        yield
+
+
+def _package_folder(name: str) -> str:
+    if name == "quadcore":  # installed by pip, it is in no ROS workspace
+        return str(resources.root())
+    try:
+        return rospkg.RosPack().get_path(name)
+    except rospkg.ResourceNotFound:
+        raise xacro.XacroException(
+            f"package '{name}' not found; add the folder that holds it to ROS_PACKAGE_PATH"
+        ) from None
+
+
+def _place(error: BaseException) -> xml_source.Origin | None:
+    """Origin of the element at work when `error` was raised, from the innermost frame with one."""
+    frames = [frame for frame, _ in traceback.walk_tb(error.__traceback__)]
+    for frame in reversed(frames):
+        for name in ("node", "elt", "tag"):  # what xacro calls it
+            found = xml_source.origin(frame.f_locals.get(name))
+            if found is not None:
+                return found
+    return None
+
+
+def _reason(error: BaseException) -> str:
+    cause = error
+    while isinstance(getattr(cause, "exc", None), Exception):
+        cause = cause.exc  # type: ignore[attr-defined]
+    if isinstance(cause, OSError) and cause.filename is not None:
+        return f"{os.path.normpath(cause.filename)}: cannot be read: {cause.strerror}"
+    if isinstance(cause, RecursionError):
+        return "a macro or an include contains itself without end"
+    text = str(cause if "<class" in str(error) else error)
+    hint = "; define it with <xacro:property>" if isinstance(cause, NameError) else ""
+    return (" ".join(text.split()) or type(error).__name__) + hint
+
+
+def _named(name: str, known: set[str]) -> str:
+    nearest = difflib.get_close_matches(name, known, n=1, cutoff=0.0)
+    return f"'{name}'; the nearest is '{nearest[0]}'" if nearest else f"'{name}', nor any other"

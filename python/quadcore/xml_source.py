@@ -1,0 +1,129 @@
+"""XML elements that know the file and line they were written on, through cloning and moving."""
+
+from __future__ import annotations
+
+from typing import Any, Iterator, NamedTuple, Optional
+from xml.dom import expatbuilder, minidom
+from xml.parsers import expat
+from xml.sax.saxutils import escape, quoteattr
+
+from ._core import InputError
+
+_KEY = "quadcore.origin"
+
+
+class Origin(NamedTuple):
+    """Place of an element in the text it was read from."""
+
+    file: str
+    line: int
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}"
+
+
+def check(file: str, text: str) -> None:
+    """Raise `InputError` unless `text` is well-formed XML without a DOCTYPE.
+
+    A DOCTYPE can define entities, and these can expand without bound or name other files.
+    Namespace prefixes need no declaration: world files use some without.
+    """
+    parser = expat.ParserCreate()
+
+    def refuse(*_: object) -> None:
+        raise InputError(
+            f"{Origin(file, parser.CurrentLineNumber)}: DOCTYPE and entity declarations "
+            "are not read; remove them and write the values out"
+        )
+
+    parser.StartDoctypeDeclHandler = refuse
+    try:
+        parser.Parse(text, True)
+    except expat.ExpatError as error:
+        raise _malformed(file, error) from error
+
+
+def parse(file: str, text: str) -> minidom.Document:
+    """Document of `text` whose elements know their `origin`.
+
+    Raises
+    ------
+    InputError
+        Malformed XML, an undeclared namespace prefix, or a DOCTYPE.
+    """
+    check(file, text)
+    try:
+        return _Builder(file).parseString(text)
+    except expat.ExpatError as error:
+        raise _malformed(file, error) from error
+
+
+def origin(node: Any) -> Optional[Origin]:
+    """Where a node, or the nearest element around it that was read from a file, stands."""
+    while isinstance(node, minidom.Node):
+        found = node.getUserData(_KEY)
+        if found is not None:
+            return found
+        node = node.parentNode
+    return None
+
+
+def write(document: minidom.Document) -> list[tuple[str, Origin]]:
+    """Lines of `document`, at most one start tag on each, with the place each line comes from.
+
+    Comments and the white space around texts are left out.
+    """
+    root = document.documentElement
+    assert root is not None
+    return list(_lines(root))
+
+
+class _Inherit:
+    """Lets a clone stand where its original stands."""
+
+    @staticmethod
+    def handle(operation: int, key: str, data: Any, source: Any, clone: Any) -> None:
+        if clone is not None:
+            clone.setUserData(key, data, _Inherit)
+
+
+class _Builder(expatbuilder.ExpatBuilderNS):
+    def __init__(self, file: str) -> None:
+        super().__init__()
+        self._file = file
+
+    def start_element_handler(self, name: str, attributes: Any) -> None:
+        super().start_element_handler(name, attributes)
+        place = Origin(self._file, self.getParser().CurrentLineNumber)
+        self.curNode.setUserData(_KEY, place, _Inherit)
+
+
+def _lines(element: minidom.Element) -> Iterator[tuple[str, Origin]]:
+    place = origin(element)
+    assert place is not None
+    tag = element.tagName
+    head = "<" + tag + "".join(f" {k}={quoteattr(v)}" for k, v in element.attributes.items())
+    content = [
+        node
+        for node in element.childNodes
+        if isinstance(node, minidom.Element)
+        or (isinstance(node, minidom.Text) and node.data.strip())
+    ]
+    if not any(isinstance(node, minidom.Element) for node in content):
+        text = escape("".join(node.data for node in content).strip())
+        whole = f"{head}>{text}</{tag}>" if text else f"{head}/>"
+        yield from ((line, place) for line in whole.split("\n"))
+        return
+    yield head + ">", place
+    for node in content:
+        if isinstance(node, minidom.Element):
+            yield from _lines(node)
+        else:
+            yield from ((line, place) for line in escape(node.data.strip()).split("\n"))
+    yield f"</{tag}>", place
+
+
+def _malformed(file: str, error: expat.ExpatError) -> InputError:
+    what = expat.ErrorString(error.code)
+    hint = ' (declare it: xmlns:xacro="http://www.ros.org/wiki/xacro")' if "prefix" in what else ""
+    return InputError(f"{Origin(file, error.lineno)}: malformed XML: {what}{hint}")
