@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Mapping, Optional
+from typing import Mapping
 
 from . import resources, xml_source
 from ._core import Document, InputError
@@ -42,7 +42,7 @@ def load_description(model: str, xacro_args: Mapping[str, str]) -> Document:
     )
 
 
-def load_world(world: Optional[str]) -> Document:
+def load_world(world: str | None) -> Document:
     """Read a world: a path, the name of a shipped one (``"empty"``), or None for ``"empty"``.
 
     Raises

@@ -84,17 +84,19 @@ def _rates(log: Log) -> Figure:
 def _rotors(log: Log) -> Figure:
     figure, (whole, close) = _panels(log, "Velocity of the rotor joints", 2, height=2.2)
     for i, velocity in enumerate(log.rotor_velocity.T):
-        style = {"color": _ROTORS[i % len(_ROTORS)], "label": f"rotor {i + 1}", "linewidth": 1.2}
+        style = {"color": _ROTORS[i % len(_ROTORS)], "label": f"{i + 1}" if i else "rotor 1"}
         whole[0].plot(log.time, velocity, **style)
         close[0].plot(log.time, np.abs(velocity), **style)
     whole[0].set_ylabel("signed (rad/s)")
-    whole[0].legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    close[0].set_ylabel("magnitude (rad/s)")
+    close[0].set_title("without the lowest 5 %", loc="left", fontsize="medium")
     # Around hover the differences that steer are a hundredth of the speed: show them large.
     speeds = np.abs(log.rotor_velocity)
-    low, high = np.percentile(speeds, 5), speeds.max()
-    margin = 0.05 * (high - low) or 1.0
-    close[0].set_ylim(low - margin, high + margin)
-    close[0].set_ylabel("magnitude (rad/s),\nabove the lowest 5 %")
+    if speeds.size:
+        low, high = np.percentile(speeds, 5), speeds.max()
+        margin = 0.05 * (high - low) or 1.0
+        close[0].set_ylim(low - margin, high + margin)
+    _legend(figure, whole[0])
     return figure
 
 
@@ -109,12 +111,11 @@ def _wrenches(log: Log) -> Figure:
         row[0].set_ylabel(name)
         for axes, part in ((row[0], wrench[:, :3]), (row[1], wrench[:, 3:])):
             for values, colour, axis in zip(part.T, _XYZ, "xyz"):
-                axes.plot(log.time, values, color=colour, linewidth=1.2, label=axis)
+                axes.plot(log.time, values, color=colour, label=axis)
             if not np.any(part):
                 axes.set_ylim(-1, 1)
                 axes.set_yticks([0])
-    handles, labels = panels[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="upper right", ncol=3, frameon=False)
+    _legend(figure, panels[0, 0])
     return figure
 
 
@@ -140,9 +141,19 @@ def _path(log: Log) -> Figure:
 def _panels(
     log: Log, what: str, rows: int, columns: int = 1, height: float = 1.6
 ) -> tuple[Figure, Any]:
-    figure = _figure(log, what, 8 if columns > 1 else 7, 0.7 + height * rows)
-    figure.set_constrained_layout(True)
-    panels = figure.subplots(rows, columns, sharex=True, squeeze=False)
+    width, above, below = (8.0 if columns > 1 else 7.0), 0.5, 0.5  # inch
+    total = above + height * rows + below
+    figure = _figure(log, what, width, total)
+    # Fixed margins: matplotlib's automatic layouts differ from version to version.
+    margins = {
+        "left": 0.85 / width,
+        "right": 1 - 0.1 / width,
+        "top": 1 - above / total,
+        "bottom": below / total,
+        "wspace": 0.27,
+        "hspace": 0.18,
+    }
+    panels = figure.subplots(rows, columns, sharex=True, squeeze=False, gridspec_kw=margins)
     for axes in panels.flat:
         axes.grid(color="0.9", linewidth=0.6)
         axes.set_axisbelow(True)
@@ -158,11 +169,26 @@ def _panels(
 def _figure(log: Log, what: str, width: float, height: float) -> Figure:
     figure = Figure(figsize=(width, height), dpi=150)
     title = f"{what}: {log.title}" if log.title else what
-    figure.suptitle(title, x=0.02, horizontalalignment="left", fontsize="medium")
+    figure.suptitle(
+        title, x=0.1 / width, y=1 - 0.1 / height, ha="left", va="top", fontsize="medium"
+    )
     return figure
+
+
+def _legend(figure: Figure, axes: Any) -> None:
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(
+        handles,
+        labels,
+        loc="upper right",
+        ncol=max(1, len(labels)),
+        frameon=False,
+        handlelength=1.0,
+        columnspacing=1.0,
+    )
 
 
 def _curves(panels: Any, time: np.ndarray, values: np.ndarray, labels: Sequence[str]) -> None:
     for axes, curve, colour, label in zip(panels, values.T, _XYZ, labels):
-        axes.plot(time, curve, color=colour, linewidth=1.2)
+        axes.plot(time, curve, color=colour)
         axes.set_ylabel(label)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Iterator, NamedTuple, Optional
+from typing import Any, Iterator, NamedTuple
 from xml.dom import expatbuilder, minidom
 from xml.parsers import expat
 from xml.sax.saxutils import escape, quoteattr
@@ -58,7 +58,7 @@ def parse(file: str, text: str) -> minidom.Document:
         raise _malformed(file, error) from error
 
 
-def origin(node: Any) -> Optional[Origin]:
+def origin(node: Any) -> Origin | None:
     """Where a node, or the nearest element around it that was read from a file, stands."""
     while isinstance(node, minidom.Node):
         found = node.getUserData(_KEY)

@@ -63,7 +63,7 @@ void check_shared_tags(const std::vector<LoadedPlugin>& plugins) {
 
 Simulation::Simulation(Model model, const World& world, const SimulationOptions& options)
     : engine_name_(options.engine),
-      dt_(options.dt == 0 ? world.max_step_size : options.dt),
+      dt_(options.dt.value_or(world.max_step_size)),
       warnings_(model.warnings),
       wrench_loads_(model.joints.size()) {
   if (!(dt_ > 0 && std::isfinite(dt_))) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,7 +42,7 @@ struct Snapshot {
 
 struct SimulationOptions {
   std::string engine = "gazebo11";
-  double dt = 0;  ///< s; 0 = the world's max_step_size
+  std::optional<double> dt = {};  ///< s; the world's max_step_size if absent
   std::uint64_t seed = 0;
   /// "PLUGIN.TAG" -> value, wins over the URDF.
   std::map<std::string, std::string> parameters = {};

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace quadcore::bindings {
+
+namespace py = pybind11;
+
+void bind_errors(py::module_& m);
+void bind_model(py::module_& m);
+void bind_simulation(py::module_& m);
+
+}  // namespace quadcore::bindings

@@ -1,0 +1,49 @@
+#include <exception>
+
+#include "bindings.hpp"
+#include "quadcore/error.hpp"
+
+namespace quadcore::bindings {
+namespace {
+
+// Python's types live as long as the interpreter; these references are never given back.
+PyObject* error_type;
+PyObject* input_error_type;
+PyObject* flight_error_type;
+
+PyObject* new_type(py::module_& m, const char* name, PyObject* base, const char* doc) {
+  const std::string full_name = std::string("quadcore.") + name;
+  PyObject* type = PyErr_NewExceptionWithDoc(full_name.c_str(), doc, base, nullptr);
+  if (!type) throw py::error_already_set();
+  m.attr(name) = py::handle(type);
+  return type;
+}
+
+void translate(std::exception_ptr thrown) {
+  try {
+    if (thrown) std::rethrow_exception(thrown);
+  } catch (const FlightError& error) {
+    py::object instance = py::reinterpret_borrow<py::object>(flight_error_type)(error.what());
+    instance.attr("time") = error.time();
+    PyErr_SetObject(flight_error_type, instance.ptr());
+  } catch (const InputError& error) {
+    PyErr_SetString(input_error_type, error.what());
+  } catch (const Error& error) {
+    PyErr_SetString(error_type, error.what());
+  }
+}
+
+}  // namespace
+
+void bind_errors(py::module_& m) {
+  error_type = new_type(m, "QuadcoreError", PyExc_RuntimeError,
+                        "Base of every error that quadcore raises; str() is one line that carries "
+                        "FILE:LINE where input is at fault.");
+  input_error_type = new_type(m, "InputError", error_type,
+                              "The input is at fault; the refused call changed nothing.");
+  flight_error_type = new_type(m, "FlightError", error_type,
+                               "The flight itself failed. Attribute `time` (s) says when.");
+  py::register_exception_translator(&translate);
+}
+
+}  // namespace quadcore::bindings

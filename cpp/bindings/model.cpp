@@ -1,0 +1,61 @@
+#include "quadcore/model.hpp"
+
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include "bindings.hpp"
+#include "quadcore/document.hpp"
+#include "quadcore/world.hpp"
+
+namespace quadcore::bindings {
+
+void bind_model(py::module_& m) {
+  py::class_<Document>(m, "Document", "An XML text and where its lines came from.")
+      .def(py::init([](std::string name, std::string text,
+                       std::vector<std::pair<std::string, int>> lines) {
+             return Document{std::move(name), std::move(text), std::move(lines)};
+           }),
+           py::arg("name"), py::arg("text"),
+           py::arg("lines") = std::vector<std::pair<std::string, int>>{})
+      .def_readonly("name", &Document::name)
+      .def_readonly("text", &Document::text)
+      .def_readonly("lines", &Document::lines);
+
+  py::class_<Link>(m, "Link", "A moving body: a link and every link fixed to it.")
+      .def_readonly("name", &Link::name)
+      .def_readonly("where", &Link::where)
+      .def_property_readonly("mass", [](const Link& link) { return link.inertial.mass; })
+      .def_property_readonly("center_of_mass",
+                             [](const Link& link) -> Vector3d { return link.inertial.pose.xyz; })
+      .def_property_readonly("inertia",
+                             [](const Link& link) { return link.inertial.inertia_in_link_axes(); });
+
+  py::class_<Joint>(m, "Joint", "A continuous joint.")
+      .def_readonly("name", &Joint::name)
+      .def_readonly("where", &Joint::where)
+      .def_readonly("damping", &Joint::damping)
+      .def_property_readonly("axis", [](const Joint& joint) -> Vector3d { return joint.axis; })
+      .def_property_readonly("xyz", [](const Joint& joint) -> Vector3d { return joint.pose.xyz; })
+      .def_property_readonly("rpy", [](const Joint& joint) -> Vector3d { return joint.pose.rpy; });
+
+  py::class_<Model>(m, "Model", "A vehicle: bodies, joints, plugins.")
+      .def_readonly("name", &Model::name)
+      .def_readonly("links", &Model::links)
+      .def_readonly("joints", &Model::joints)
+      .def_readonly("warnings", &Model::warnings);
+
+  py::class_<World>(m, "World", "What a world file sets.")
+      .def_property_readonly("gravity", [](const World& w) -> Vector3d { return w.gravity_W; })
+      .def_property_readonly("wind", [](const World& w) -> Vector3d { return w.wind_W; })
+      .def_readonly("max_step_size", &World::max_step_size)
+      .def_readonly("real_time_factor", &World::real_time_factor)
+      .def_readonly("real_time_update_rate", &World::real_time_update_rate)
+      .def_readonly("ground_plane", &World::ground_plane);
+
+  m.def("read_model", &read_model, py::arg("document"),
+        "Reads a URDF as Gazebo does: fixed links are lumped. Raises InputError with FILE:LINE.");
+  m.def("read_world", &read_world, py::arg("document"),
+        "Reads a world file. Raises InputError with FILE:LINE.");
+}
+
+}  // namespace quadcore::bindings

@@ -1,0 +1,51 @@
+#include "quadcore/flight.hpp"
+
+#include "quadcore/error.hpp"
+
+namespace quadcore {
+
+std::vector<std::string> log_columns(std::size_t rotor_count) {
+  std::vector<std::string> columns = {"t",  "x",  "y",  "z",  "qx", "qy", "qz",
+                                      "qw", "vx", "vy", "vz", "wx", "wy", "wz"};
+  for (std::size_t i = 0; i < rotor_count; ++i) columns.push_back("j" + std::to_string(i + 1));
+  return columns;
+}
+
+Flight::Flight(Simulation& simulation, std::optional<Commands> commands, std::int64_t log_every)
+    : simulation_(simulation), commands_(std::move(commands)), log_every_(log_every) {
+  if (log_every < 1) {
+    throw InputError("log_every is " + std::to_string(log_every) + "; give a whole number >= 1");
+  }
+  log();
+}
+
+void Flight::advance(std::int64_t n) {
+  for (; n > 0; --n) {
+    if (commands_) {
+      const double* speeds = commands_->at(simulation_.time());
+      if (speeds) simulation_.command(speeds, simulation_.command_width());
+    }
+    simulation_.step();
+    if (++steps_ % log_every_ == 0) log();
+  }
+}
+
+void Flight::log() {
+  const auto append = [](std::vector<double>& to, const auto& vector) {
+    to.insert(to.end(), vector.data(), vector.data() + vector.size());
+  };
+  const VehicleState& state = simulation_.state();
+  table_.push_back(state.time);
+  append(table_, state.position);
+  append(table_, state.orientation.coeffs());
+  append(table_, state.linear_velocity);
+  append(table_, state.angular_velocity);
+  append(table_, state.rotor_velocity);
+  for (const Wrench& wrench : simulation_.wrenches()) {
+    append(wrenches_, wrench.force_F);
+    append(wrenches_, wrench.torque_F);
+  }
+  ++rows_;
+}
+
+}  // namespace quadcore

@@ -1,0 +1,41 @@
+"""quadcore: how well does a controller fly?
+
+A quadrotor from a URDF, on the engine of the published Gazebo 11 model to the last digit or without
+its faults, driven from Python.
+
+>>> import quadcore as qc
+>>> sim = qc.Simulation("quadrotor", parameters={"drone_plugin.sim_slow": 1,
+...                                              "motorpid_plugin.sim_slow": 1})
+>>> sim.command([480, -480, 480, -480])
+>>> sim.step(1000)
+"""
+
+from ._core import (
+    FlightError,
+    InputError,
+    QuadcoreError,
+    Snapshot,
+    engines,
+    load_plugin_path,
+    plugin_folders,
+)
+from .log import Log
+from .resources import cmake_prefix
+from .simulation import Simulation
+from .state import State
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "FlightError",
+    "InputError",
+    "Log",
+    "QuadcoreError",
+    "Simulation",
+    "Snapshot",
+    "State",
+    "cmake_prefix",
+    "engines",
+    "load_plugin_path",
+    "plugin_folders",
+]

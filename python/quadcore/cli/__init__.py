@@ -1,0 +1,63 @@
+"""The command ``quadcore``."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import signal
+import sys
+from typing import NoReturn, Sequence
+
+from .._core import FlightError, InputError, QuadcoreError
+from . import info, run
+
+
+class _Parser(argparse.ArgumentParser):
+    """Reports a wrong option like any other wrong input."""
+
+    def error(self, message: str) -> NoReturn:
+        raise InputError(f"{message}; see {self.prog} --help")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit status.
+
+    Parameters
+    ----------
+    argv
+        Arguments after the command's name; by default those of the process.
+
+    Returns
+    -------
+    int
+        0 done; 2 bad input and 3 a flight that failed, each with one line ``error: ...`` on
+        standard error; 130 interrupted, the log so far being kept.
+    """
+    # A shell starts background jobs with SIGINT ignored, and Python keeps it so.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        arguments = _parser().parse_args(argv)
+        arguments.action(arguments)
+        sys.stdout.flush()
+    except QuadcoreError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 3 if isinstance(error, FlightError) else 2
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        return 130
+    except BrokenPipeError:
+        # The reader, such as `head`, has seen enough; the flush at exit must not fail again.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog="quadcore",
+        description="A multirotor from its URDF, in flight.",
+        allow_abbrev=False,
+    )
+    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+    for command in (info, run):
+        command.register(commands)
+    return parser

@@ -1,0 +1,96 @@
+"""``quadcore info``: what a model is made of."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from typing import Any
+
+from rich.table import Table
+
+from ..simulation import Simulation
+from . import options, terminal
+
+
+def register(commands: Any) -> None:
+    """Add the command to the command line."""
+    parser = options.subparser(
+        commands, "info", "Show a model's links, rotors, plugins and every parameter.", info
+    )
+    options.add_model(parser)
+
+
+def info(arguments: argparse.Namespace) -> None:
+    """Print the model as it would fly."""
+    simulation = Simulation(**options.model_arguments(arguments))
+    terminal.warn(simulation)
+    console = terminal.console()
+    console.print(f"model {simulation.model.name}\n")
+    for table in (_links(simulation), _body(simulation), _rotors(simulation)):
+        console.print(table, "")
+    for plugin in simulation.plugins:
+        console.print(f"plugin {plugin.name}: {plugin.summary}")
+        console.print(f"  {plugin.filename}, loaded from {plugin.path}")
+        console.print(_parameters(plugin), "")
+
+
+def _links(simulation: Simulation) -> Table:
+    table = _table("link", "mass (kg)")
+    for link in simulation.model.links:
+        table.add_row(link.name, f"{link.mass:.9g}")
+    return table
+
+
+def _body(simulation: Simulation) -> Table:
+    table = _table("whole vehicle", "")
+    table.add_row("mass (kg)", f"{simulation.mass:.9g}")
+    table.add_row("centre of mass (m, frame axes)", _numbers(simulation.center_of_mass))
+    for i, row in enumerate(simulation.inertia):
+        name = "inertia about it (kg m^2)" if i == 0 else ""
+        table.add_row(name, _numbers(row))
+    return table
+
+
+def _rotors(simulation: Simulation) -> Table:
+    table = _table("rotor", "parent", "child", "position (m)", "axis")
+    joints = {joint.name: joint for joint in simulation.model.joints}
+    for name in simulation.rotor_names:
+        joint = joints[name]
+        table.add_row(
+            name, joint.parent, joint.child, _numbers(joint.position), _numbers(joint.axis)
+        )
+    return table
+
+
+def _parameters(plugin: Any) -> Table:
+    table = _table("parameter", "value", "unit", "default", "range", "from", "meaning", "equation")
+    for parameter in plugin.parameters:
+        table.add_row(
+            f"{plugin.name}.{parameter.name}",
+            parameter.value,
+            parameter.unit,
+            "required" if parameter.default is None else parameter.default,
+            parameter.range,
+            _origin(parameter.origin),
+            parameter.meaning,
+            parameter.equation,
+        )
+    return table
+
+
+def _origin(origin: str) -> str:
+    if origin == "set":
+        return "--set"
+    shorter = os.path.relpath(origin)
+    return shorter if len(shorter) < len(origin) else origin
+
+
+def _numbers(values: Any) -> str:
+    return " ".join(f"{value:.9g}" for value in values)
+
+
+def _table(*columns: str) -> Table:
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for column in columns:
+        table.add_column(column, overflow="fold")
+    return table

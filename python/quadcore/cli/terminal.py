@@ -1,0 +1,69 @@
+"""What the commands print, and how they take Ctrl-C."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import time
+from contextlib import contextmanager
+from typing import Callable, Iterator
+
+from rich.console import Console
+from rich.progress import Progress
+
+from ..simulation import Simulation
+
+_LONG = 1.0  # s; a run that is over sooner needs no progress bar
+
+
+def console() -> Console:
+    """Standard output as it is: no markup, and no line broken unless a terminal needs it."""
+    width = None if sys.stdout.isatty() else 10_000
+    return Console(width=width, markup=False, emoji=False, highlight=False)
+
+
+def warn(simulation: Simulation) -> None:
+    """Print the warnings of a simulation and its model on standard error."""
+    for warning in dict.fromkeys([*simulation.model.warnings, *simulation.warnings]):
+        print(f"warning: {warning}", file=sys.stderr)
+
+
+@contextmanager
+def progress(quiet: bool) -> Iterator[Callable[[int, int], None] | None]:
+    """Callback that shows the progress of a long run on a terminal; None where none is wanted."""
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    started = time.monotonic()
+    with_bar = Progress(console=Console(stderr=True), transient=True)
+    task = with_bar.add_task("flying")
+
+    def report(done: int, total: int) -> None:
+        if time.monotonic() - started > _LONG:
+            with_bar.start()
+        with_bar.update(task, completed=done, total=total)
+
+    try:
+        yield report
+    finally:
+        with_bar.stop()
+
+
+@contextmanager
+def interrupt_held() -> Iterator[None]:
+    """Let Ctrl-C wait until the block has ended; a second one does not wait."""
+    held = False
+
+    def hold(*_: object) -> None:
+        nonlocal held
+        if held:
+            raise KeyboardInterrupt
+        held = True
+
+    previous = signal.signal(signal.SIGINT, hold)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, previous)
+    if held:
+        raise KeyboardInterrupt

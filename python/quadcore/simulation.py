@@ -1,0 +1,158 @@
+"""The simulation as Python drives it."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Callable, Mapping, Optional, Sequence, Union
+
+import numpy as np
+
+from . import _core
+from .commands import as_commands
+from .description import load_description, load_world
+from .log import Log
+from .state import LiveState
+
+Number = Union[float, str]
+Value = Union[float, str, bool, Sequence[str]]
+
+# A piece of a run between two looks at progress and Ctrl-C: a few hundredths of a second.
+_STEPS_PER_PIECE = 5000
+
+
+class Simulation(_core.Simulation):
+    """One vehicle in one world, stepped from outside.
+
+    Parameters
+    ----------
+    model : str or path
+        URDF or xacro file, or the name of a shipped model ("quadrotor").
+    engine : str
+        "gazebo11" (the default: the model as published) or "ode"; see `quadcore.engines()`.
+    world : str or path, optional
+        World file or the name of a shipped one; None is empty.world.
+    dt : float, optional
+        Step in s; None takes the world's max_step_size.
+    seed : int
+        Of all noise. The same seed gives the same bytes.
+    parameters : mapping of str to number, str or bool, optional
+        "PLUGIN.TAG" -> value; wins over the URDF.
+    xacro_args : mapping of str to value, optional
+        Arguments of a xacro model.
+    spawn : sequence of 3 or 6 numbers
+        x, y, z (m) and roll, pitch, yaw (rad) of the frame link in the world.
+
+    Raises
+    ------
+    InputError
+        The model, world or an argument is at fault; the message carries FILE:LINE.
+    """
+
+    def __init__(
+        self,
+        model: Union[str, Path] = "quadrotor",
+        engine: str = "gazebo11",
+        world: Union[str, Path, None] = None,
+        dt: Optional[float] = None,
+        seed: int = 0,
+        parameters: Optional[Mapping[str, Value]] = None,
+        xacro_args: Optional[Mapping[str, object]] = None,
+        spawn: Sequence[Number] = (0, 0, 10),
+    ) -> None:
+        arguments = {name: str(value) for name, value in (xacro_args or {}).items()}
+        super().__init__(
+            model=_core.read_model(load_description(str(model), arguments)),
+            world=_core.read_world(load_world(None if world is None else str(world))),
+            engine=engine,
+            dt=dt,
+            seed=_whole(seed),
+            parameters={key: _text(value) for key, value in (parameters or {}).items()},
+            spawn=_pose(spawn),
+        )
+        self._live = LiveState(self)
+
+    @property
+    def state(self) -> LiveState:
+        """The state now, as live read-only views; `state.copy()` is free."""
+        return self._live
+
+    def run(
+        self,
+        duration: float,
+        commands: Union[np.ndarray, str, Path, None] = None,
+        log_every: int = 1,
+        progress: Optional[Callable[[int, int], None]] = None,
+    ) -> Log:
+        """Fly for a while and log it.
+
+        Parameters
+        ----------
+        duration : float
+            s; the last step is the last that ends within it.
+        commands : ndarray (rows, 1 + n), or path of a .csv or .mat file, optional
+            Open loop: columns t, w1..wn, signed rad/s; each row holds until the next. None keeps
+            the present command.
+        log_every : int
+            Steps between logged rows.
+        progress : callable, optional
+            Called as progress(steps_done, steps_total) every few hundredths of a second.
+
+        Returns
+        -------
+        Log
+            Begins with the present state.
+
+        Raises
+        ------
+        InputError
+            An argument is at fault; nothing was flown.
+        FlightError
+            The flight failed. Its attribute `log` is the log so far, as it is of the
+            KeyboardInterrupt that ends a run.
+        """
+        if not (isinstance(duration, (int, float)) and math.isfinite(duration) and duration >= 0):
+            raise _core.InputError(f"duration is {duration!r}; give seconds, >= 0")
+        total = int(math.floor(duration / self.dt + 1e-6))
+        table = None if commands is None else as_commands(commands, self.command_width)
+        flight = _core.Flight(self, table, log_every)
+        done = 0
+        try:
+            while done < total:
+                piece = min(_STEPS_PER_PIECE, total - done)
+                flight.advance(piece)
+                done += piece
+                if progress is not None:
+                    progress(done, total)
+        except (_core.QuadcoreError, KeyboardInterrupt) as error:
+            error.log = self._log(flight)  # type: ignore[union-attr]
+            raise
+        return self._log(flight)
+
+    def _log(self, flight: _core.Flight) -> Log:
+        wrenches = flight.wrenches
+        return Log(flight.table, {term: wrenches[:, i] for i, term in enumerate(self.wrench_terms)})
+
+
+def _whole(seed: object) -> int:
+    if not isinstance(seed, (int, np.integer)) or not 0 <= seed < 2**64:
+        raise _core.InputError(f"seed is {seed!r}; give a whole number from 0 to 2^64 - 1")
+    return int(seed)
+
+
+def _text(value: Value) -> str:
+    if isinstance(value, (bool, np.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, (list, tuple)):
+        return " ".join(value)
+    return str(value)
+
+
+def _pose(spawn: Sequence[Number]) -> Sequence[float]:
+    try:
+        pose = [float(value) for value in spawn]
+    except (TypeError, ValueError):
+        pose = []
+    if len(pose) not in (3, 6):
+        raise _core.InputError(f"spawn is {spawn!r}; give x, y, z[, roll, pitch, yaw] in m and rad")
+    return pose + [0.0] * (6 - len(pose))
