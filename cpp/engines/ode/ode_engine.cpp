@@ -1,8 +1,8 @@
 #include "ode_engine.hpp"
 
-#include <algorithm>
 #include <mutex>
 
+#include "body_state.hpp"
 #include "ode_math.hpp"
 #include "quadcore/error.hpp"
 #include "sdf_rounding.hpp"
@@ -19,9 +19,6 @@ namespace {
 constexpr int converged_iterations = 50;
 constexpr double default_sor = 1.3;
 
-/// Position 3, quaternion 4, rotation 12, linear velocity 3, angular velocity 3.
-constexpr std::size_t saved_per_body = 25;
-
 void start_ode() {
   static std::once_flag once;
   std::call_once(once, [] { dInitODE2(0); });
@@ -29,21 +26,14 @@ void start_ode() {
   if (!allocated) throw Error("ODE could not be initialised in this thread");
 }
 
-/// ODE renormalises a quaternion that is set through its interface, which changes its last digits.
-/// Restoring bit for bit therefore writes to the body's own arrays, which these getters return.
-double* writable(const dReal* internal) { return const_cast<double*>(internal); }
-
 }  // namespace
 
 OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& recipe)
     : model_(recipe.round_like_sdf ? rounded_like_sdf(model) : model),
       recipe_(recipe),
+      split_step_(model.links.size()),
       kinematics_(model.joints.size()),
       loads_(model.joints.size()) {
-  if (world.ground_plane) {
-    throw InputError(world.ground_plane_where +
-                     ": the ODE engines do not collide with a ground plane yet; fly in empty.world");
-  }
   start_ode();
   world_.reset(dWorldCreate());
   dWorldSetGravity(world_.get(), world.gravity_W.x(), world.gravity_W.y(), world.gravity_W.z());
@@ -51,10 +41,12 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
   dWorldSetCFM(world_.get(), world.cfm);
   dWorldSetQuickStepNumIterations(world_.get(), world.solver_iterations);
   dWorldSetQuickStepW(world_.get(), world.solver_sor);
+  dWorldSetContactSurfaceLayer(world_.get(), 0);
   quick_step_ = world.solver_type == "quick" && (world.solver_iterations < converged_iterations ||
                                                  world.solver_sor != default_sor);
   create_bodies();
   create_hinges();
+  if (world.ground_plane) ground_ = std::make_unique<GroundContact>(model_, bodies_);
   mass_ = mass_properties(model_).mass;
   wind_W_ = world.wind_W;
   read_kinematics();
@@ -109,13 +101,15 @@ void OdeEngine::place(std::size_t link, const Eigen::Isometry3d& X_WL, const Vec
 }
 
 void OdeEngine::step(double dt, const ForceField& forces) {
+  start_ode();
   loads_.clear();
   forces.evaluate(kinematics_, loads_);
   apply_loads();
   recipe_.add_gyroscopic(gyroscopic_bodies_);
-  if (quick_step_) {
-    dRandSetSeed(0);  // QuickStep shuffles its rows by a generator that the whole process shares
-    dWorldQuickStep(world_.get(), dt);
+  if (ground_ && ground_->collide(world_.get(), dt) > 0) {
+    split_step_.step(world_.get(), bodies_, dt);
+  } else if (quick_step_) {
+    seeded_quick_step(world_.get(), dt);
   } else {
     dWorldStep(world_.get(), dt);
   }
@@ -206,36 +200,25 @@ void OdeEngine::set_state(const VehicleState& state) {
 }
 
 std::vector<double> OdeEngine::save() const {
-  std::vector<double> saved;
-  saved.reserve(bodies_.size() * saved_per_body);
-  const auto put = [&saved](const dReal* from, int count) {
-    saved.insert(saved.end(), from, from + count);
-  };
+  std::vector<double> saved(bodies_.size() * (pose_size + velocity_size));
+  double* to = saved.data();
   for (const dBodyID body : bodies_) {
-    put(dBodyGetPosition(body), 3);
-    put(dBodyGetQuaternion(body), 4);
-    put(dBodyGetRotation(body), 12);
-    put(dBodyGetLinearVel(body), 3);
-    put(dBodyGetAngularVel(body), 3);
+    save_pose(body, to);
+    save_velocity(body, to + pose_size);
+    to += pose_size + velocity_size;
   }
   return saved;
 }
 
 void OdeEngine::restore(const std::vector<double>& saved) {
-  if (saved.size() != bodies_.size() * saved_per_body) {
+  if (saved.size() != bodies_.size() * (pose_size + velocity_size)) {
     throw InputError("snapshot: was taken from another model or engine; restore one of its own");
   }
   const double* from = saved.data();
-  const auto take = [&from](const dReal* to, int count) {
-    std::copy(from, from + count, writable(to));
-    from += count;
-  };
   for (const dBodyID body : bodies_) {
-    take(dBodyGetPosition(body), 3);
-    take(dBodyGetQuaternion(body), 4);
-    take(dBodyGetRotation(body), 12);
-    take(dBodyGetLinearVel(body), 3);
-    take(dBodyGetAngularVel(body), 3);
+    restore_pose(body, from);
+    restore_velocity(body, from + pose_size);
+    from += pose_size + velocity_size;
   }
   read_kinematics();
 }

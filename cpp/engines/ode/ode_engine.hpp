@@ -5,8 +5,10 @@
 #include <memory>
 #include <vector>
 
+#include "ground_contact.hpp"
 #include "gyroscopic.hpp"
 #include "quadcore/engine.hpp"
+#include "quick_step.hpp"
 
 namespace quadcore {
 
@@ -45,6 +47,7 @@ class OdeEngine final : public Engine {
   void place(std::size_t link, const Eigen::Isometry3d& X_WL, const Vector3d& v_WL_W,
              const Vector3d& w_WL_W);
   void apply_loads();
+  void solve(double dt);
   void read_kinematics();
 
   Model model_;
@@ -52,6 +55,8 @@ class OdeEngine final : public Engine {
   std::unique_ptr<dxWorld, DestroyWorld> world_;
   bool quick_step_;
   std::vector<dBodyID> bodies_;
+  std::unique_ptr<GroundContact> ground_;  ///< null in a world without ground
+  SplitStep split_step_;
   std::vector<dJointID> hinges_;
   std::vector<GyroscopicBody> gyroscopic_bodies_;
   double mass_ = 0;

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <ode/ode.h>
+
+namespace quadcore {
+
+/// Numbers of a body's pose in ODE: position 3, quaternion 4, rotation matrix 3 x 4.
+constexpr int pose_size = 19;
+/// Numbers of its velocity: linear 3, angular 3.
+constexpr int velocity_size = 6;
+
+/// \name Copies of a body's state, bit for bit
+/// ODE renormalises a quaternion that is set through its interface, which changes its last digits;
+/// restoring therefore writes to the body's own arrays.
+/// @{
+void save_pose(dBodyID body, double* to);
+void restore_pose(dBodyID body, const double* from);
+void save_velocity(dBodyID body, double* to);
+void restore_velocity(dBodyID body, const double* from);
+/// @}
+
+}  // namespace quadcore
