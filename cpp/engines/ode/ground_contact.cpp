@@ -13,17 +13,6 @@ constexpr double stiffness = 5e11;  // N/m
 constexpr double damping = 2;       // N s/m
 constexpr double friction = 1;
 
-dSurfaceParameters surface(double dt) {
-  dSurfaceParameters s{};
-  s.mode = dContactBounce | dContactMu2 | dContactSoftERP | dContactSoftCFM | dContactApprox1 |
-           dContactSlip1 | dContactSlip2;
-  s.mu = friction;
-  s.mu2 = friction;
-  s.soft_erp = dt * stiffness / (dt * stiffness + damping);
-  s.soft_cfm = 1 / (dt * stiffness + damping);
-  return s;
-}
-
 dGeomID create_shape(const Collision& collision) {
   const Vector3d& size = collision.size;
   switch (collision.kind) {
@@ -44,11 +33,11 @@ dGeomID create_shape(const Collision& collision) {
 }  // namespace
 
 GroundContact::GroundContact(const Model& model, const std::vector<dBodyID>& bodies)
-    : plane_(dCreatePlane(nullptr, 0, 0, 1, 0)), contacts_(dJointGroupCreate(0)) {
+    : plane_(dCreatePlane(nullptr, 0, 0, 1, 0)) {
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     for (const Collision& collision : model.links[i].collisions) {
-      shapes_.emplace_back(create_shape(collision));
-      const dGeomID geom = shapes_.back().get();
+      const dGeomID geom = create_shape(collision);
+      shapes_.push_back({Geom(geom), i});
       const Vector3d p_cm = collision.pose.xyz - model.links[i].inertial.pose.xyz;
       const Quaterniond q = collision.pose.rotation();
       const dQuaternion ode_q = {q.w(), q.x(), q.y(), q.z()};
@@ -57,25 +46,25 @@ GroundContact::GroundContact(const Model& model, const std::vector<dBodyID>& bod
       dGeomSetOffsetQuaternion(geom, ode_q);
     }
   }
+  contacts_.reserve(shapes_.size() * max_contacts_per_pair);
 }
 
-int GroundContact::collide(dWorldID world, double dt) {
-  dJointGroupEmpty(contacts_.get());
-  int count = 0;
+const std::vector<Contact>& GroundContact::find() {
+  contacts_.clear();
   dContactGeom touching[max_contacts_per_pair];
-  for (const Geom& shape : shapes_) {
-    const int found = dCollide(shape.get(), plane_.get(), max_contacts_per_pair, touching,
+  for (const Shape& shape : shapes_) {
+    const int found = dCollide(shape.geom.get(), plane_.get(), max_contacts_per_pair, touching,
                                sizeof(dContactGeom));
     for (int i = 0; i < found; ++i) {
-      dContact contact{};
-      contact.surface = surface(dt);
-      contact.geom = touching[i];
-      const dJointID joint = dJointCreateContact(world, contacts_.get(), &contact);
-      dJointAttach(joint, dGeomGetBody(shape.get()), nullptr);
+      contacts_.push_back(
+          {shape.body, vec(touching[i].pos), vec(touching[i].normal), touching[i].depth});
     }
-    count += found;
   }
-  return count;
+  return contacts_;
+}
+
+Surface GroundContact::surface(double dt) {
+  return {dt * stiffness / (dt * stiffness + damping), 1 / (dt * stiffness + damping), friction};
 }
 
 }  // namespace quadcore

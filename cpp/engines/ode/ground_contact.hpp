@@ -5,35 +5,38 @@
 #include <memory>
 #include <vector>
 
+#include "constraint_rows.hpp"
 #include "quadcore/model.hpp"
 
 namespace quadcore {
 
-/// Contacts of a vehicle's collision shapes with the ground plane z = 0, with the surface that
-/// Gazebo 11 gives a model on its ground plane. Links of one model do not collide with each other.
+/// Finds where a vehicle's collision shapes touch the ground plane z = 0. Links of one model do not
+/// collide with each other.
 class GroundContact {
  public:
   /// \param bodies  one per link of the model, each at its link's centre of mass.
   /// Throws InputError on a shape that cannot collide (a mesh).
   GroundContact(const Model& model, const std::vector<dBodyID>& bodies);
 
-  /// Replaces the contact joints of the last step by those of the present poses.
-  /// \param dt  the step they are for [s]; softness depends on it
-  /// \return how many there are
-  int collide(dWorldID world, double dt);
+  /// The contacts of the present poses, at most ten for each shape.
+  const std::vector<Contact>& find();
+
+  /// What Gazebo 11 makes of a model on its ground plane, for steps of dt.
+  static Surface surface(double dt);
 
  private:
   struct DestroyGeom {
     void operator()(dxGeom* geom) const { dGeomDestroy(geom); }
   };
-  struct DestroyGroup {
-    void operator()(dxJointGroup* group) const { dJointGroupDestroy(group); }
-  };
   using Geom = std::unique_ptr<dxGeom, DestroyGeom>;
+  struct Shape {
+    Geom geom;
+    std::size_t body;
+  };
 
   Geom plane_;
-  std::vector<Geom> shapes_;
-  std::unique_ptr<dxJointGroup, DestroyGroup> contacts_;
+  std::vector<Shape> shapes_;
+  std::vector<Contact> contacts_;
 };
 
 }  // namespace quadcore

@@ -1,5 +1,6 @@
 #include "ode_engine.hpp"
 
+#include <algorithm>
 #include <mutex>
 
 #include "body_state.hpp"
@@ -14,8 +15,8 @@ const OdeRecipe ode_recipe{false, &add_gyroscopic_from_carrier};
 
 namespace {
 
-/// Enough QuickStep sweeps for its answer to be the direct solver's, which is five times faster and
-/// then takes its place; a world that asks for fewer is given what it asks for.
+/// Enough sweeps of the quick solver for its answer to be the direct solver's, which is five times
+/// faster and then takes its place; a world that asks for fewer is given what it asks for.
 constexpr int converged_iterations = 50;
 constexpr double default_sor = 1.3;
 
@@ -31,7 +32,6 @@ void start_ode() {
 OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& recipe)
     : model_(recipe.round_like_sdf ? rounded_like_sdf(model) : model),
       recipe_(recipe),
-      split_step_(model.links.size()),
       kinematics_(model.joints.size()),
       loads_(model.joints.size()) {
   start_ode();
@@ -39,14 +39,20 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
   dWorldSetGravity(world_.get(), world.gravity_W.x(), world.gravity_W.y(), world.gravity_W.z());
   dWorldSetERP(world_.get(), world.erp);
   dWorldSetCFM(world_.get(), world.cfm);
-  dWorldSetQuickStepNumIterations(world_.get(), world.solver_iterations);
-  dWorldSetQuickStepW(world_.get(), world.solver_sor);
-  dWorldSetContactSurfaceLayer(world_.get(), 0);
-  quick_step_ = world.solver_type == "quick" && (world.solver_iterations < converged_iterations ||
-                                                 world.solver_sor != default_sor);
+  iterate_ = world.solver_type == "quick" && (world.solver_iterations < converged_iterations ||
+                                              world.solver_sor != default_sor);
   create_bodies();
-  create_hinges();
-  if (world.ground_plane) ground_ = std::make_unique<GroundContact>(model_, bodies_);
+  gazebo_step_ = std::make_unique<GazeboStep>(
+      bodies_, create_hinges(),
+      GazeboStep::Options{world.solver_iterations, world.solver_sor, world.erp, world.cfm,
+                          world.gravity_W});
+  if (world.ground_plane) {
+    ground_ = std::make_unique<GroundContact>(model_, bodies_);
+    feedback_.resize(hinges_.size());
+    for (std::size_t i = 0; i < hinges_.size(); ++i) {
+      dJointSetFeedback(hinges_[i], &feedback_[i]);
+    }
+  }
   mass_ = mass_properties(model_).mass;
   wind_W_ = world.wind_W;
   read_kinematics();
@@ -71,7 +77,8 @@ void OdeEngine::create_bodies() {
   }
 }
 
-void OdeEngine::create_hinges() {
+std::vector<Hinge> OdeEngine::create_hinges() {
+  std::vector<Hinge> rows;
   const std::vector<Eigen::Isometry3d> poses = link_poses(model_);
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     const Joint& joint = model_.joints[i];
@@ -83,7 +90,12 @@ void OdeEngine::create_hinges() {
     dJointSetHingeAnchor(hinge, anchor.x(), anchor.y(), anchor.z());
     dJointSetHingeAxis(hinge, axis.x(), axis.y(), axis.z());
     hinges_.push_back(hinge);
+    const Vector3d& c_C = model_.links[i + 1].inertial.pose.xyz;
+    const Vector3d& c_P = model_.links[joint.parent].inertial.pose.xyz;
+    rows.push_back({i + 1, joint.parent, -c_C, joint.pose.xyz - c_P, joint.axis,
+                    joint.pose.rotation() * joint.axis});
   }
+  return rows;
 }
 
 void OdeEngine::place(std::size_t link, const Eigen::Isometry3d& X_WL, const Vector3d& v_WL_W,
@@ -106,14 +118,30 @@ void OdeEngine::step(double dt, const ForceField& forces) {
   forces.evaluate(kinematics_, loads_);
   apply_loads();
   recipe_.add_gyroscopic(gyroscopic_bodies_);
-  if (ground_ && ground_->collide(world_.get(), dt) > 0) {
-    split_step_.step(world_.get(), bodies_, dt);
-  } else if (quick_step_) {
-    seeded_quick_step(world_.get(), dt);
+  static const std::vector<Contact> none;
+  const std::vector<Contact>& contacts = ground_ ? ground_->find() : none;
+  if (iterate_ || !contacts.empty()) {
+    gazebo_step_->step(contacts, GroundContact::surface(dt), dt);
   } else {
     dWorldStep(world_.get(), dt);
+    if (ground_) remember_hinge_forces();
   }
   read_kinematics();
+}
+
+/// A step with contacts starts from the hinge forces of the step before, which the direct solver
+/// reports through the joints' feedback.
+void OdeEngine::remember_hinge_forces() {
+  for (std::size_t i = 0; i < hinges_.size(); ++i) {
+    const Matrix3d R_WC = rotation(dBodyGetRotation(bodies_[i + 1]));
+    const Vector3d f_W = vec(feedback_[i].f1);
+    const Vector3d anchor_W = R_WC * -model_.links[i + 1].inertial.pose.xyz;
+    const Vector3d tau_W = vec(feedback_[i].t1) - anchor_W.cross(f_W);
+    const auto across_W = plane_space(R_WC * model_.joints[i].axis);
+    const GazeboStep::Multipliers multipliers = {f_W.x(), f_W.y(), f_W.z(),
+                                                 tau_W.dot(across_W[0]), tau_W.dot(across_W[1])};
+    gazebo_step_->warm_start[i] = {multipliers, multipliers};
+  }
 }
 
 void OdeEngine::apply_loads() {
@@ -196,22 +224,32 @@ void OdeEngine::set_state(const VehicleState& state) {
     w_W[child] = w_W[parent] + X_WL[child].linear() * joint.axis * state.rotor_velocity[row];
   }
   for (std::size_t i = 0; i < bodies_.size(); ++i) place(i, X_WL[i], v_W[i], w_W[i]);
+  std::fill(gazebo_step_->warm_start.begin(), gazebo_step_->warm_start.end(),
+            GazeboStep::WarmStart{});
   read_kinematics();
 }
 
+std::size_t OdeEngine::saved_size() const {
+  return bodies_.size() * (pose_size + velocity_size) + hinges_.size() * 2 * rows_per_hinge;
+}
+
 std::vector<double> OdeEngine::save() const {
-  std::vector<double> saved(bodies_.size() * (pose_size + velocity_size));
+  std::vector<double> saved(saved_size());
   double* to = saved.data();
   for (const dBodyID body : bodies_) {
     save_pose(body, to);
     save_velocity(body, to + pose_size);
     to += pose_size + velocity_size;
   }
+  for (const GazeboStep::WarmStart& start : gazebo_step_->warm_start) {
+    to = std::copy(start.pose.begin(), start.pose.end(), to);
+    to = std::copy(start.velocity.begin(), start.velocity.end(), to);
+  }
   return saved;
 }
 
 void OdeEngine::restore(const std::vector<double>& saved) {
-  if (saved.size() != bodies_.size() * (pose_size + velocity_size)) {
+  if (saved.size() != saved_size()) {
     throw InputError("snapshot: was taken from another model or engine; restore one of its own");
   }
   const double* from = saved.data();
@@ -219,6 +257,11 @@ void OdeEngine::restore(const std::vector<double>& saved) {
     restore_pose(body, from);
     restore_velocity(body, from + pose_size);
     from += pose_size + velocity_size;
+  }
+  for (GazeboStep::WarmStart& start : gazebo_step_->warm_start) {
+    std::copy_n(from, rows_per_hinge, start.pose.begin());
+    std::copy_n(from + rows_per_hinge, rows_per_hinge, start.velocity.begin());
+    from += 2 * rows_per_hinge;
   }
   read_kinematics();
 }

@@ -5,10 +5,10 @@
 #include <memory>
 #include <vector>
 
+#include "gazebo_step.hpp"
 #include "ground_contact.hpp"
 #include "gyroscopic.hpp"
 #include "quadcore/engine.hpp"
-#include "quick_step.hpp"
 
 namespace quadcore {
 
@@ -43,21 +43,23 @@ class OdeEngine final : public Engine {
   };
 
   void create_bodies();
-  void create_hinges();
+  std::vector<Hinge> create_hinges();
   void place(std::size_t link, const Eigen::Isometry3d& X_WL, const Vector3d& v_WL_W,
              const Vector3d& w_WL_W);
   void apply_loads();
-  void solve(double dt);
+  void remember_hinge_forces();
+  std::size_t saved_size() const;
   void read_kinematics();
 
   Model model_;
   OdeRecipe recipe_;
   std::unique_ptr<dxWorld, DestroyWorld> world_;
-  bool quick_step_;
+  bool iterate_;  ///< every step by sweeps, because the world asks for few of them
   std::vector<dBodyID> bodies_;
   std::unique_ptr<GroundContact> ground_;  ///< null in a world without ground
-  SplitStep split_step_;
+  std::unique_ptr<GazeboStep> gazebo_step_;
   std::vector<dJointID> hinges_;
+  std::vector<dJointFeedback> feedback_;  ///< one per hinge in a world with ground
   std::vector<GyroscopicBody> gyroscopic_bodies_;
   double mass_ = 0;
   Vector3d wind_W_;

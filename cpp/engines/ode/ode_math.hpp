@@ -2,6 +2,8 @@
 
 #include <ode/ode.h>
 
+#include <array>
+
 #include "quadcore/spatial.hpp"
 
 /// \file
@@ -14,6 +16,14 @@ inline Eigen::Map<const Vector3d> vec(const dReal* v) { return Eigen::Map<const 
 /// Rotation of a body, R_WB (ODE pads its rows to four).
 inline Matrix3d rotation(const dReal* R) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>, 0, Eigen::OuterStride<4>>(R);
+}
+
+/// Two unit vectors across a unit vector, as ODE chooses them.
+inline std::array<Vector3d, 2> plane_space(const Vector3d& n) {
+  const dVector3 ode_n = {n.x(), n.y(), n.z()};
+  dVector3 p, q;
+  dPlaneSpace(ode_n, p, q);
+  return {vec(p), vec(q)};
 }
 
 }  // namespace quadcore

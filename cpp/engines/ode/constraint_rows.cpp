@@ -1,0 +1,119 @@
+#include "constraint_rows.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "ode_math.hpp"
+
+namespace quadcore {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Gazebo's max_vel of a contact [m/s].
+constexpr double max_contact_correction = 0.01;
+
+}  // namespace
+
+ConstraintRows::ConstraintRows(const std::vector<dBodyID>& bodies, std::vector<Hinge> hinges,
+                               double erp, double cfm)
+    : bodies_(bodies), hinges_(std::move(hinges)), erp_(erp), cfm_(cfm) {
+  stack_.reserve(bodies_.size());
+}
+
+const std::vector<ConstraintRow>& ConstraintRows::build(const std::vector<Contact>& contacts,
+                                                        const Surface& surface, double dt) {
+  rows_.clear();
+  body_tagged_.assign(bodies_.size(), 0);
+  hinge_tagged_.assign(hinges_.size(), 0);
+  for (std::size_t newest = bodies_.size(); newest-- > 0;) {
+    if (body_tagged_[newest]) continue;
+    body_tagged_[newest] = 1;
+    stack_.push_back(newest);
+    while (!stack_.empty()) {
+      const std::size_t body = stack_.back();
+      stack_.pop_back();
+      visit(body, contacts, surface, dt);
+    }
+  }
+  return rows_;
+}
+
+void ConstraintRows::visit(std::size_t body, const std::vector<Contact>& contacts,
+                           const Surface& surface, double dt) {
+  for (auto contact = contacts.rbegin(); contact != contacts.rend(); ++contact) {
+    if (contact->body == body) add_contact(*contact, surface, dt);
+  }
+  for (std::size_t h = hinges_.size(); h-- > 0;) {
+    const Hinge& hinge = hinges_[h];
+    if (hinge_tagged_[h] || (hinge.child != body && hinge.parent != body)) continue;
+    hinge_tagged_[h] = 1;
+    add_hinge(h, dt);
+    const std::size_t other = hinge.child == body ? hinge.parent : hinge.child;
+    if (body_tagged_[other]) continue;
+    body_tagged_[other] = 1;
+    stack_.push_back(other);
+  }
+}
+
+void ConstraintRows::add_hinge(std::size_t index, double dt) {
+  const Hinge& hinge = hinges_[index];
+  const dBodyID child = bodies_[hinge.child], parent = bodies_[hinge.parent];
+  const Matrix3d R_WC = rotation(dBodyGetRotation(child));
+  const Matrix3d R_WP = rotation(dBodyGetRotation(parent));
+  const double rate = erp_ / dt;
+  ConstraintRow row;
+  row.body[0] = static_cast<int>(hinge.child);
+  row.body[1] = static_cast<int>(hinge.parent);
+  row.max_correction = infinity;
+  row.cfm = cfm_ / dt;
+  row.low = -infinity;
+  row.high = infinity;
+  row.hinge = static_cast<int>(index);
+
+  // The anchors coincide.
+  const Vector3d a_C_W = R_WC * hinge.anchor_C, a_P_W = R_WP * hinge.anchor_P;
+  const Vector3d gap_W =
+      a_P_W + vec(dBodyGetPosition(parent)) - a_C_W - vec(dBodyGetPosition(child));
+  for (int j = 0; j < 3; ++j) {
+    const Vector3d along_W = Vector3d::Unit(j);
+    row.J[0] << along_W, a_C_W.cross(along_W);
+    row.J[1] << -along_W, -a_P_W.cross(along_W);
+    row.correction = rate * gap_W[j];
+    row.hinge_row = j;
+    rows_.push_back(row);
+  }
+  // The axes are parallel.
+  const Vector3d axis_W = R_WC * hinge.axis_C;
+  const Vector3d tilt_W = axis_W.cross(R_WP * hinge.axis_P);
+  for (const Vector3d& across_W : plane_space(axis_W)) {
+    row.J[0] << Vector3d::Zero(), across_W;
+    row.J[1] = -row.J[0];
+    row.correction = rate * tilt_W.dot(across_W);
+    ++row.hinge_row;
+    rows_.push_back(row);
+  }
+}
+
+void ConstraintRows::add_contact(const Contact& contact, const Surface& surface, double dt) {
+  const Vector3d arm_W = contact.position_W - vec(dBodyGetPosition(bodies_[contact.body]));
+  ConstraintRow row;
+  row.body[0] = static_cast<int>(contact.body);
+  row.J[0] << contact.normal_W, arm_W.cross(contact.normal_W);
+  row.correction = surface.erp / dt * contact.depth;
+  row.max_correction = max_contact_correction;
+  row.cfm = surface.cfm / dt;
+  row.high = infinity;
+  const int normal = static_cast<int>(rows_.size());
+  rows_.push_back(row);
+
+  row.correction = 0;
+  row.cfm = 0;
+  row.friction = surface.friction;
+  row.normal = normal;
+  for (const Vector3d& along_W : plane_space(contact.normal_W)) {
+    row.J[0] << along_W, arm_W.cross(along_W);
+    rows_.push_back(row);
+  }
+}
+
+}  // namespace quadcore

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <ode/ode.h>
+
+#include <vector>
+
+#include "quadcore/spatial.hpp"
+
+namespace quadcore {
+
+/// A hinge between two bodies; vectors in the axes of the body they belong to.
+struct Hinge {
+  std::size_t child, parent;    ///< indices of the bodies
+  Vector3d anchor_C, anchor_P;  ///< from each body's centre of mass [m]
+  Vector3d axis_C, axis_P;      ///< unit
+};
+
+/// A point where a body touches the ground.
+struct Contact {
+  std::size_t body;
+  Vector3d position_W;  ///< m
+  Vector3d normal_W;    ///< unit, out of the ground
+  double depth;         ///< of the penetration [m]
+};
+
+/// How hard and rough a contact is, in ODE's terms.
+struct Surface {
+  double erp, cfm, friction;
+};
+
+/// One row J v = correction of the constraints between up to two bodies, in ODE's terms.
+struct ConstraintRow {
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+  int body[2] = {-1, -1};  ///< the second is -1 for the ground
+  Vector6 J[2] = {Vector6::Zero(), Vector6::Zero()};  ///< linear, angular part for each body
+  double correction = 0;      ///< velocity that removes the position error
+  double max_correction = 0;  ///< cap of the correction where velocities are solved for
+  double cfm = 0;
+  double low = 0, high = 0;   ///< bounds of the multiplier
+  double friction = 0;        ///< of a friction row: bound per multiplier of its normal
+  int normal = -1;            ///< of a friction row: the row of its normal
+  int hinge = -1;             ///< of a hinge row: its hinge
+  int hinge_row = 0;          ///< of a hinge row: which of the five
+};
+
+/// Rows of a hinge.
+constexpr int rows_per_hinge = 5;
+
+/// Writes the rows of hinges and contacts in the order in which Gazebo 11's ODE does: it walks an
+/// island from its newest body and a body's joints from the newest, contacts before hinges.
+class ConstraintRows {
+ public:
+  ConstraintRows(const std::vector<dBodyID>& bodies, std::vector<Hinge> hinges, double erp,
+                 double cfm);
+
+  const std::vector<ConstraintRow>& build(const std::vector<Contact>& contacts,
+                                          const Surface& surface, double dt);
+  const std::vector<Hinge>& hinges() const { return hinges_; }
+
+ private:
+  void visit(std::size_t body, const std::vector<Contact>& contacts, const Surface& surface,
+             double dt);
+  void add_hinge(std::size_t index, double dt);
+  void add_contact(const Contact& contact, const Surface& surface, double dt);
+
+  const std::vector<dBodyID>& bodies_;
+  std::vector<Hinge> hinges_;
+  double erp_, cfm_;
+  std::vector<ConstraintRow> rows_;
+  std::vector<char> body_tagged_, hinge_tagged_;
+  std::vector<std::size_t> stack_;
+};
+
+}  // namespace quadcore

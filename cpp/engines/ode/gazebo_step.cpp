@@ -1,0 +1,158 @@
+#include "gazebo_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ode_math.hpp"
+
+namespace quadcore {
+namespace {
+
+// Measured in Gazebo 11.1.
+constexpr double warm_start_factor = 0.5;
+constexpr double friction_relaxation = 0.25;  ///< of a friction row, on top of the world's
+constexpr int friction_sweeps = 10;           ///< over the friction rows alone, at the end
+constexpr double contact_smoothing = 0.01;    ///< of contact multipliers, where velocities are solved
+
+}  // namespace
+
+GazeboStep::GazeboStep(const std::vector<dBodyID>& bodies, std::vector<Hinge> hinges,
+                       const Options& options)
+    : warm_start(hinges.size()),
+      ode_bodies_(bodies),
+      constraints_(bodies, std::move(hinges), options.erp, options.cfm),
+      options_(options),
+      bodies_(bodies.size()) {}
+
+void GazeboStep::step(const std::vector<Contact>& contacts, const Surface& surface, double dt) {
+  read_bodies();
+  rows_ = &constraints_.build(contacts, surface, dt);
+  order_rows();
+  prepare_rows();
+  solve(&WarmStart::pose, false, 0, dt);
+  for (Body& b : bodies_) b.moving = b.velocity + dt * (b.free_acceleration + b.constraint);
+  solve(&WarmStart::velocity, true, contact_smoothing, dt);
+  for (Body& b : bodies_) b.velocity += dt * (b.free_acceleration + b.constraint);
+  move(dt);
+}
+
+void GazeboStep::read_bodies() {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const dBodyID ode = ode_bodies_[i];
+    Body& body = bodies_[i];
+    dMass mass;
+    dBodyGetMass(ode, &mass);
+    const Matrix3d R_WB = rotation(dBodyGetRotation(ode));
+    body.inverse_mass = 1 / mass.mass;
+    body.inverse_inertia_W = R_WB * rotation(mass.I).inverse() * R_WB.transpose();
+    body.velocity << vec(dBodyGetLinearVel(ode)), vec(dBodyGetAngularVel(ode));
+    body.free_acceleration << body.inverse_mass * vec(dBodyGetForce(ode)) + options_.gravity_W,
+        body.inverse_inertia_W * vec(dBodyGetTorque(ode));
+  }
+}
+
+/// Hinges in row order, normals in reverse, friction in row order.
+void GazeboStep::order_rows() {
+  const auto& rows = *rows_;
+  order_.clear();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].hinge >= 0) order_.push_back(i);
+  }
+  for (std::size_t i = rows.size(); i-- > 0;) {
+    if (rows[i].hinge < 0 && rows[i].normal < 0) order_.push_back(i);
+  }
+  friction_begin_ = order_.size();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].normal >= 0) order_.push_back(i);
+  }
+}
+
+void GazeboStep::prepare_rows() {
+  sweeps_.resize(rows_->size());
+  for (std::size_t i = 0; i < rows_->size(); ++i) {
+    const ConstraintRow& row = (*rows_)[i];
+    Sweep& sweep = sweeps_[i];
+    double diagonal = row.cfm;
+    for (int side = 0; side < 2 && row.body[side] >= 0; ++side) {
+      const Body& body = bodies_[static_cast<std::size_t>(row.body[side])];
+      sweep.inverse_mass_J[side] << body.inverse_mass * row.J[side].head<3>(),
+          body.inverse_inertia_W * row.J[side].tail<3>();
+      diagonal += row.J[side].dot(sweep.inverse_mass_J[side]);
+    }
+    sweep.relaxation =
+        options_.sor * (row.normal >= 0 ? friction_relaxation : 1.0) / diagonal;
+  }
+}
+
+void GazeboStep::solve(Multipliers WarmStart::*start, bool cap, double smoothing, double dt) {
+  const auto& rows = *rows_;
+  const auto remembered = [&](const ConstraintRow& row) -> double& {
+    return (warm_start[static_cast<std::size_t>(row.hinge)].*
+            start)[static_cast<std::size_t>(row.hinge_row)];
+  };
+  for (Body& body : bodies_) body.constraint.setZero();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const ConstraintRow& row = rows[i];
+    Sweep& sweep = sweeps_[i];
+    sweep.multiplier = row.hinge < 0 ? 0 : warm_start_factor * remembered(row);
+    sweep.wanted = (cap ? std::min(row.correction, row.max_correction) : row.correction) / dt;
+    for (int side = 0; side < 2 && row.body[side] >= 0; ++side) {
+      Body& body = bodies_[static_cast<std::size_t>(row.body[side])];
+      sweep.wanted -= row.J[side].dot(body.velocity / dt + body.free_acceleration);
+      body.constraint += sweep.multiplier * sweep.inverse_mass_J[side];
+    }
+  }
+  for (int n = 0; n < options_.iterations; ++n) {
+    for (const std::size_t row : order_) relax(row, smoothing);
+  }
+  for (int n = 0; n < friction_sweeps; ++n) {
+    for (std::size_t k = friction_begin_; k < order_.size(); ++k) relax(order_[k], smoothing);
+  }
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].hinge >= 0) remembered(rows[i]) = sweeps_[i].multiplier;
+  }
+}
+
+void GazeboStep::relax(std::size_t index, double smoothing) {
+  const ConstraintRow& row = (*rows_)[index];
+  Sweep& sweep = sweeps_[index];
+  double residual = sweep.wanted - row.cfm * sweep.multiplier;
+  for (int side = 0; side < 2 && row.body[side] >= 0; ++side) {
+    residual -= row.J[side].dot(bodies_[static_cast<std::size_t>(row.body[side])].constraint);
+  }
+  double low = row.low, high = row.high;
+  if (row.normal >= 0) {
+    high = row.friction * std::abs(sweeps_[static_cast<std::size_t>(row.normal)].multiplier);
+    low = -high;
+  }
+  const double old = sweep.multiplier;
+  const double next = std::clamp(old + sweep.relaxation * residual, low, high);
+  for (int side = 0; side < 2 && row.body[side] >= 0; ++side) {
+    bodies_[static_cast<std::size_t>(row.body[side])].constraint +=
+        (next - old) * sweep.inverse_mass_J[side];
+  }
+  // Gazebo smooths contact multipliers after it has applied them.
+  sweep.multiplier = row.hinge < 0 ? (1 - smoothing) * next + smoothing * old : next;
+}
+
+void GazeboStep::move(double dt) {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const dBodyID ode = ode_bodies_[i];
+    const Vector6& v = bodies_[i].velocity;
+    const Vector3d p_W = vec(dBodyGetPosition(ode)) + dt * bodies_[i].moving.head<3>();
+    // ODE's rotation step: q + dt/2 w q, normalised as it is set.
+    const Vector3d half_turn = dt / 2 * bodies_[i].moving.tail<3>();
+    const dReal* old = dBodyGetQuaternion(ode);
+    const Quaterniond q(old[0], old[1], old[2], old[3]);
+    const Quaterniond dq = Quaterniond(0, half_turn.x(), half_turn.y(), half_turn.z()) * q;
+    const dQuaternion next = {q.w() + dq.w(), q.x() + dq.x(), q.y() + dq.y(), q.z() + dq.z()};
+    dBodySetPosition(ode, p_W.x(), p_W.y(), p_W.z());
+    dBodySetQuaternion(ode, next);
+    dBodySetLinearVel(ode, v[0], v[1], v[2]);
+    dBodySetAngularVel(ode, v[3], v[4], v[5]);
+    dBodySetForce(ode, 0, 0, 0);
+    dBodySetTorque(ode, 0, 0, 0);
+  }
+}
+
+}  // namespace quadcore
