@@ -1,3 +1,4 @@
+#include "eigen/eigen_engine.hpp"
 #include "ode/ode_engine.hpp"
 #include "quadcore/engine.hpp"
 #include "quadcore/error.hpp"
@@ -20,6 +21,10 @@ const std::vector<EngineEntry>& table() {
       {{"ode", "the same ODE world with the right gyroscopic torque and the URDF's own numbers"},
        [](const Model& model, const World& world) -> std::unique_ptr<Engine> {
          return std::make_unique<OdeEngine>(model, world, ode_recipe);
+       }},
+      {{"eigen", "exact reduced coordinates, fourth order: the accurate and the fast one, no contact"},
+       [](const Model& model, const World& world) -> std::unique_ptr<Engine> {
+         return std::make_unique<EigenEngine>(model, world);
        }},
   };
   return entries;

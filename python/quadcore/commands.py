@@ -15,7 +15,7 @@ CommandsLike = Union[str, "os.PathLike[str]", np.ndarray]
 
 
 def as_commands(commands: CommandsLike, rotor_count: int) -> np.ndarray:
-    """Checked table of commands, from such a table or from a file.
+    """Check a table of commands, or read it from a file.
 
     Parameters
     ----------

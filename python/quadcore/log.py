@@ -13,7 +13,7 @@ from .files import atomic_write, check_writable
 
 PathLike = Union[str, "os.PathLike[str]"]
 
-_STATE = "t,x,y,z,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz".split(",")
+_STATE = ["t", "x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz"]
 
 
 class Log:
@@ -81,7 +81,7 @@ class Log:
             np.savetxt(stream, self.table, "%.17g", ",", header=header, comments="")
 
     def to_mat(self, path: PathLike) -> None:
-        """Write a MATLAB file: each column as a vector, each wrench as ``wrench_NAME`` (rows, 6)."""
+        """Write a MATLAB file of each column as a vector and each wrench as ``wrench_NAME``."""
         import scipy.io
 
         variables = {name: self.table[:, i] for i, name in enumerate(self.columns)}

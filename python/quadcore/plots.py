@@ -121,7 +121,7 @@ def _wrenches(log: Log) -> Figure:
 
 def _path(log: Log) -> Figure:
     figure = _figure(log, "Path of the frame", 6, 6)
-    axes = figure.add_axes([0.0, 0.02, 0.94, 0.94], projection="3d")
+    axes = figure.add_axes((0.0, 0.02, 0.94, 0.94), projection="3d")
     # The same scale along all three axes, with room for flights that hardly move.
     low, high = log.position.min(axis=0), log.position.max(axis=0)
     reach = max((high - low).max() / 2, 0.1)

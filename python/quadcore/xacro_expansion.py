@@ -93,7 +93,7 @@ def _replaced_hooks(arguments: _Arguments) -> Iterator[None]:
                 f"undefined xacro argument '{words[0]}'; declare it: "
                 f'<xacro:arg name="{words[0]}" default="..."/>'
             )
-        return old_extension(text)
+        return str(old_extension(text))
 
     xacro.parse, xacro.eval_extension = parse, eval_extension
     try:
@@ -112,7 +112,7 @@ def _package_folder(name: str) -> str:
     if name == "quadcore":  # installed by pip, it is in no ROS workspace
         return str(resources.root())
     try:
-        return rospkg.RosPack().get_path(name)
+        return str(rospkg.RosPack().get_path(name))
     except rospkg.ResourceNotFound:
         raise xacro.XacroException(
             f"package '{name}' not found; add the folder that holds it to ROS_PACKAGE_PATH"

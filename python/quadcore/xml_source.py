@@ -61,7 +61,7 @@ def parse(file: str, text: str) -> minidom.Document:
 def origin(node: Any) -> Origin | None:
     """Where a node, or the nearest element around it that was read from a file, stands."""
     while isinstance(node, minidom.Node):
-        found = node.getUserData(_KEY)
+        found: Origin | None = node.getUserData(_KEY)
         if found is not None:
             return found
         node = node.parentNode
@@ -71,7 +71,8 @@ def origin(node: Any) -> Origin | None:
 def write(document: minidom.Document) -> list[tuple[str, Origin]]:
     """Lines of `document`, at most one start tag on each, with the place each line comes from.
 
-    Comments and the white space around texts are left out.
+    Comments and the white space around texts are left out. Text between elements, which neither a
+    URDF nor a world has, comes before them.
     """
     root = document.documentElement
     assert root is not None
@@ -103,23 +104,16 @@ def _lines(element: minidom.Element) -> Iterator[tuple[str, Origin]]:
     assert place is not None
     tag = element.tagName
     head = "<" + tag + "".join(f" {k}={quoteattr(v)}" for k, v in element.attributes.items())
-    content = [
-        node
-        for node in element.childNodes
-        if isinstance(node, minidom.Element)
-        or (isinstance(node, minidom.Text) and node.data.strip())
-    ]
-    if not any(isinstance(node, minidom.Element) for node in content):
-        text = escape("".join(node.data for node in content).strip())
+    texts = [node.data for node in element.childNodes if isinstance(node, minidom.Text)]
+    text = escape("".join(texts).strip())
+    children = [node for node in element.childNodes if isinstance(node, minidom.Element)]
+    if not children:
         whole = f"{head}>{text}</{tag}>" if text else f"{head}/>"
         yield from ((line, place) for line in whole.split("\n"))
         return
-    yield head + ">", place
-    for node in content:
-        if isinstance(node, minidom.Element):
-            yield from _lines(node)
-        else:
-            yield from ((line, place) for line in escape(node.data.strip()).split("\n"))
+    yield from ((line, place) for line in f"{head}>{text}".split("\n"))
+    for child in children:
+        yield from _lines(child)
     yield f"</{tag}>", place
 
 

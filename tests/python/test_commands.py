@@ -8,6 +8,7 @@ import scipy.io
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
+
 from quadcore import InputError
 from quadcore.commands import as_commands, read_commands
 

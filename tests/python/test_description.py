@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+
 import quadcore as qc
-from quadcore import resources
+from quadcore import _core, resources
 from quadcore.description import load_description, load_world
 from quadcore.xacro_expansion import expand
 
@@ -71,12 +72,17 @@ def test_every_element_knows_its_file_and_line_through_macros_includes_and_block
     }
 
 
-def test_an_error_of_the_model_names_the_line_of_the_xacro(robot):
-    file = robot(
-        "<!-- a", "comment -->", '<link name="a"/>', "<gazebo>", "<nonsense/>", "</gazebo>"
+def test_an_error_of_the_model_names_the_line_of_the_xacro(write):
+    file = write(
+        "robot.xacro",
+        f'<robot name="a" {XMLNS}>',
+        "<!-- xacro drops",
+        "comments -->",
+        '<link name="b"><mass value="${1 + 1}"/></link>',
+        "</robot>",
     )
-    with pytest.raises(qc.QuadcoreError, match=r"^robot\.xacro:\d+: "):
-        qc.read_model(load_description(file, {}))
+    with pytest.raises(qc.InputError, match=r"^robot\.xacro:4: "):
+        _core.read_model(load_description(file, {}))
 
 
 def test_text_survives_expansion_with_its_special_characters(robot):
@@ -193,7 +199,7 @@ def test_a_missing_model_names_the_shipped_ones(tmp_path, monkeypatch):
 
 
 def test_the_shipped_model_and_worlds_load_by_name():
-    assert qc.read_model(load_description("quadrotor", {})).name == "quadrotor"
+    assert _core.read_model(load_description("quadrotor", {})).name == "quadrotor"
     for name in (None, "empty", "empty.world", "default"):
         assert "<world" in load_world(name).text
 

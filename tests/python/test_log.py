@@ -8,6 +8,7 @@ import scipy.io
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
+
 from quadcore import InputError, Log
 from quadcore.log import check_log_path
 from quadcore.rotation import roll_pitch_yaw

@@ -157,6 +157,9 @@ void interpret(Parameter& parameter, const std::string& where, const std::string
       return;
     }
     case TagKind::joints:
+      if (parameter.text.empty()) {
+        fail(where, plugin, quoted + "names no joint; name at least one or leave the tag out");
+      }
       for (const std::string& name : split(parameter.text)) {
         const std::vector<std::string> names = model.joint_names();
         const auto found = std::find(names.begin(), names.end(), name);

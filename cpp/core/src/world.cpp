@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <sstream>
 
 #include "quadcore/error.hpp"
 #include "quadcore/text.hpp"
@@ -24,7 +25,12 @@ class WorldReader {
   World read() {
     const Element& world = xml_.required_child(xml_.root(), "world");
     read_children(xml_.root(), {{"world", [](const Element&) {}}});
-    const Handler physics = [this](const Element& e) { read_physics(e); };
+    refuse_both(xml_.child(world, "physics"), xml_.child(world, "physics:ode"));
+    const Handler physics = [this, &world](const Element& e) {
+      refuse_both(xml_.child(world, "gravity"), xml_.child(e, "gravity"));
+      refuse_both(xml_.child(e, "real_time_update_rate"), xml_.child(e, "updateRate"));
+      read_physics(e);
+    };
     read_children(world,
                   {{"gravity", [this](const Element& e) { world_.gravity_W = xml_.vector_in_text(e); }},
                    {"physics", physics},
@@ -51,8 +57,11 @@ class WorldReader {
     return [this, &target, min, open, max](const Element& e) {
       target = xml_.number_in_text(e);
       if (target < min || (open && target == min) || target > max) {
+        std::ostringstream range;
+        range << (open ? "> " : ">= ") << min;
+        if (std::isfinite(max)) range << ", <= " << max;
         xml_.fail(e, "<" + std::string(e.Name()) + "> is out of range; write a number " +
-                         (open ? "> " : ">= ") + std::to_string(min));
+                         range.str());
       }
     };
   }
@@ -64,6 +73,13 @@ class WorldReader {
             {"real_time_factor", number(world_.real_time_factor, 0, true)},
             {"gravity", [this](const Element& e) { world_.gravity_W = xml_.vector_in_text(e); }},
             {"ode", [this](const Element& e) { read_ode(e); }}};
+  }
+
+  /// Of two places for one value, giving both would leave open which counts.
+  void refuse_both(const Element* first, const Element* second) {
+    if (!first || !second) return;
+    xml_.fail(*second, "<" + std::string(second->Name()) + "> beside <" + first->Name() + "> (" +
+                           xml_.where(*first) + "); keep one of them");
   }
 
   void read_physics(const Element& physics) {
@@ -104,6 +120,7 @@ class WorldReader {
   void read_wind(const Element& wind) {
     read_children(wind, {{"linear_velocity",
                           [this](const Element& e) { world_.wind_W = xml_.vector_in_text(e); }}});
+    xml_.required_child(wind, "linear_velocity");
   }
 
   void read_include(const Element& include) {
@@ -115,6 +132,7 @@ class WorldReader {
                                                 "' is not supported; a world may include "
                                                 "model://ground_plane and model://sun");
                              }}});
+    xml_.required_child(include, "uri");
   }
 
   /// A model in line may only be a ground plane: static, a plane through the origin, normal up.
@@ -133,7 +151,9 @@ class WorldReader {
     const Handler collision = [this, plane](const Element& e) {
       read_children(e, {{"geometry", [this, plane](const Element& g) {
                            read_children(g, {{"plane", plane}});
+                           xml_.required_child(g, "plane");
                          }}});
+      xml_.required_child(e, "geometry");
     };
     read_children(model, {{"static", [this](const Element& e) {
                              if (xml_.text(e) != "true" && xml_.text(e) != "1") {
@@ -143,7 +163,10 @@ class WorldReader {
                           {"link", [this, collision, seen_only](const Element& e) {
                              read_children(e, {{"collision", collision}, {"visual", seen_only}},
                                            {"visual"});
+                             xml_.required_child(e, "collision");
                            }}});
+    xml_.required_child(model, "static");
+    xml_.required_child(model, "link");
   }
 
   void set_ground_plane(const Element& element) {

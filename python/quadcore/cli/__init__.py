@@ -42,6 +42,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     except QuadcoreError as error:
         print(f"error: {error}", file=sys.stderr)
         return 3 if isinstance(error, FlightError) else 2
+    except MemoryError:
+        print("error: no memory left for the log; shorten it by --log-every", file=sys.stderr)
+        return 2
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return 130

@@ -8,6 +8,7 @@ from typing import Any
 
 from rich.table import Table
 
+from .. import resources
 from ..simulation import Simulation
 from . import options, terminal
 
@@ -31,7 +32,9 @@ def info(arguments: argparse.Namespace) -> None:
     for plugin in simulation.plugins:
         console.print(f"plugin {plugin.name}: {plugin.summary}")
         console.print(f"  {plugin.filename}, loaded from {plugin.path}")
-        console.print(_parameters(plugin), "")
+        # Lines that are searched stand alone; on a terminal the heading is in sight.
+        prefix = "" if console.is_terminal else f"{plugin.name}."
+        console.print(_parameters(plugin, prefix), "")
 
 
 def _links(simulation: Simulation) -> Table:
@@ -52,21 +55,17 @@ def _body(simulation: Simulation) -> Table:
 
 
 def _rotors(simulation: Simulation) -> Table:
-    table = _table("rotor", "parent", "child", "position (m)", "axis")
-    joints = {joint.name: joint for joint in simulation.model.joints}
-    for name in simulation.rotor_names:
-        joint = joints[name]
-        table.add_row(
-            name, joint.parent, joint.child, _numbers(joint.position), _numbers(joint.axis)
-        )
+    table = _table("rotor", "position in its parent link (m)", "axis")
+    for joint in simulation.model.joints:
+        table.add_row(joint.name, _numbers(joint.xyz), _numbers(joint.axis))
     return table
 
 
-def _parameters(plugin: Any) -> Table:
+def _parameters(plugin: Any, prefix: str) -> Table:
     table = _table("parameter", "value", "unit", "default", "range", "from", "meaning", "equation")
     for parameter in plugin.parameters:
         table.add_row(
-            f"{plugin.name}.{parameter.name}",
+            prefix + parameter.name,
             parameter.value,
             parameter.unit,
             "required" if parameter.default is None else parameter.default,
@@ -81,16 +80,16 @@ def _parameters(plugin: Any) -> Table:
 def _origin(origin: str) -> str:
     if origin == "set":
         return "--set"
-    shorter = os.path.relpath(origin)
-    return shorter if len(shorter) < len(origin) else origin
+    shipped = f"{resources.root()}{os.sep}"
+    return origin[len(shipped) :] if origin.startswith(shipped) else origin
 
 
 def _numbers(values: Any) -> str:
-    return " ".join(f"{value:.9g}" for value in values)
+    return " ".join(f"{value + 0.0:.9g}" for value in values)  # -0 is 0
 
 
 def _table(*columns: str) -> Table:
     table = Table(box=None, pad_edge=False, header_style="bold")
-    for column in columns:
-        table.add_column(column, overflow="fold")
+    for i, column in enumerate(columns):
+        table.add_column(column, no_wrap=i == 0, overflow="fold")
     return table

@@ -12,9 +12,9 @@ import numpy as np
 from rich.table import Table
 
 from .._core import FlightError, InputError
-from ..commands import read_commands
 from ..log import Log, check_log_path
 from ..rotation import roll_pitch_yaw
+from ..simulation import Simulation
 from . import options, terminal
 
 
@@ -37,15 +37,12 @@ def run(arguments: argparse.Namespace) -> None:
     """Fly, write what was asked for, and print a summary."""
     simulation = options.simulation(arguments)
     terminal.warn(simulation)
-    commands = None
-    if arguments.commands is not None:
-        commands = read_commands(arguments.commands, simulation.rotor_count)
     files = _log_files(arguments)
     started = time.perf_counter()
     try:
         with terminal.progress(arguments.quiet) as progress:
             log = simulation.run(
-                arguments.duration, commands, log_every=arguments.log_every, progress=progress
+                arguments.duration, arguments.commands, arguments.log_every, progress
             )
     except (FlightError, KeyboardInterrupt) as stop:
         partial = getattr(stop, "log", None)
@@ -59,12 +56,11 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.out is not None and not arguments.no_plots:
         files += log.plot(arguments.out)
     if not arguments.quiet:
-        steps = round(simulation.time / simulation.dt)
-        terminal.console().print(_summary(log, steps, elapsed, files))
+        terminal.console().print(_summary(simulation, log, elapsed, files))
 
 
 def _log_files(arguments: argparse.Namespace) -> list[Path]:
-    """Logs to write, each tried now: after the flight would be too late."""
+    """Name the logs to write and try each now: after the flight would be too late."""
     files = []
     if arguments.out is not None:
         try:
@@ -85,13 +81,14 @@ def _write(log: Log, files: list[Path]) -> None:
             log.to_file(file)
 
 
-def _summary(log: Log, steps: int, elapsed: float, files: list[Path]) -> Table:
-    table = Table(box=None, show_header=False)
+def _summary(simulation: Simulation, log: Log, elapsed: float, files: list[Path]) -> Table:
+    table = Table(box=None, show_header=False, pad_edge=False)
+    steps = round(simulation.time / simulation.dt)
     attitude = np.degrees(roll_pitch_yaw(log.orientation[-1]))
     fastest = np.abs(log.rotor_velocity).max(initial=0.0)
     rows = [
-        ("flown", log.title),
-        ("duration", f"{log.time[-1]:.9g} s"),
+        ("flown", f"{simulation.model.name}, {simulation.engine}"),
+        ("duration", f"{simulation.time:.9g} s"),
         ("steps", f"{steps}, {steps / elapsed:,.0f} per s"),
         ("final position", "{:.6f}, {:.6f}, {:.6f} m".format(*log.position[-1])),
         ("final roll, pitch, yaw", "{:.4f}, {:.4f}, {:.4f} deg".format(*attitude)),

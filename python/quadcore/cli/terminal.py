@@ -17,7 +17,7 @@ _LONG = 1.0  # s; a run that is over sooner needs no progress bar
 
 
 def console() -> Console:
-    """Standard output as it is: no markup, and no line broken unless a terminal needs it."""
+    """Make a console without markup that breaks no line unless a terminal needs it."""
     width = None if sys.stdout.isatty() else 10_000
     return Console(width=width, markup=False, emoji=False, highlight=False)
 
@@ -30,7 +30,7 @@ def warn(simulation: Simulation) -> None:
 
 @contextmanager
 def progress(quiet: bool) -> Iterator[Callable[[int, int], None] | None]:
-    """Callback that shows the progress of a long run on a terminal; None where none is wanted."""
+    """Give a callback that shows the progress of a long run, or None away from a terminal."""
     if quiet or not sys.stderr.isatty():
         yield None
         return

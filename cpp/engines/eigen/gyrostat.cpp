@@ -1,0 +1,61 @@
+#include "gyrostat.hpp"
+
+#include "quadcore/error.hpp"
+
+namespace quadcore {
+namespace {
+
+constexpr double position_tolerance = 1e-9;  // m
+constexpr double inertia_tolerance = 1e-6;   // relative
+
+[[noreturn]] void refuse(const Joint& joint, const std::string& why) {
+  throw InputError(joint.where + ": joint '" + joint.name + "': " + why +
+                   ", which the engine eigen cannot represent; use the engine ode");
+}
+
+void check(const Model& model, std::size_t i) {
+  const Joint& joint = model.joints[i];
+  const Link& link = model.links[i + 1];
+  if (joint.parent != 0) {
+    refuse(joint, "hangs on the moving link '" + model.links[joint.parent].name + "'");
+  }
+  if (joint.axis.cross(link.inertial.pose.xyz).norm() > position_tolerance) {
+    refuse(joint, "the centre of mass of '" + link.name + "' lies off the axis");
+  }
+  const Matrix3d I = link.inertial.inertia_in_link_axes();
+  const double axial = joint.axis.dot(I * joint.axis);
+  const double transverse = (I.trace() - axial) / 2;
+  const Matrix3d symmetric = transverse * Matrix3d::Identity() +
+                             (axial - transverse) * joint.axis * joint.axis.transpose();
+  if ((I - symmetric).norm() > inertia_tolerance * I.norm()) {
+    refuse(joint, "the inertia of '" + link.name + "' is not symmetric about the axis");
+  }
+}
+
+}  // namespace
+
+Gyrostat::Gyrostat(const Model& model) {
+  const MassProperties total = mass_properties(model);
+  mass = total.mass;
+  p_FCcm_F = total.p_FCcm;
+  I_Ccm_F = total.inertia_Ccm_F;
+  Matrix3d reduced = I_Ccm_F;
+  const std::vector<Eigen::Isometry3d> poses = link_poses(model);
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    check(model, i);
+    const Joint& joint = model.joints[i];
+    const Inertial& inertial = model.links[i + 1].inertial;
+    Rotor rotor;
+    rotor.R_FR = poses[i + 1].linear();
+    rotor.axis_F = rotor.R_FR * joint.axis;
+    rotor.p_FR_F = poses[i + 1].translation();
+    rotor.p_FRcm_F = poses[i + 1] * inertial.pose.xyz;
+    rotor.moment = joint.axis.dot(inertial.inertia_in_link_axes() * joint.axis);
+    rotor.damping = joint.damping;
+    reduced -= rotor.moment * rotor.axis_F * rotor.axis_F.transpose();
+    rotors.push_back(rotor);
+  }
+  inverse_reduced_I_F = reduced.inverse();
+}
+
+}  // namespace quadcore

@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+"""Thin recordings of Gazebo 11 to what the tests need: ``scripts/thin_recordings.py SOURCE``.
+
+SOURCE holds flights ``S*.csv.gz`` of the shipped quadrotor with their ``commands_S*.csv``, and a
+folder ``cases/NAME`` for each flight of another model or world: ``model.urdf``, ``case.world``,
+``commands.csv``, ``params.txt``, ``record.csv.gz`` and Gazebo's conversion ``model.sdf``. All of it
+goes to ``tests/data/gazebo11``, laid out alike, the recordings with a few of their rows, each as it
+was recorded. Running it again writes the same bytes.
+"""
+
+from __future__ import annotations
+
+import gzip
+import shutil
+import sys
+from pathlib import Path
+
+TARGET = Path(__file__).resolve().parents[1] / "tests" / "data" / "gazebo11"
+
+STRIDE = 25  # of the recorded rows
+FIRST = range(1, 5)  # rows kept besides: the first steps show what every later one builds upon
+
+# Where a contact makes or breaks, s; every row that near is kept.
+EVENTS = {
+    "C1_drop": (0.135,),
+    "C2_takeoff_land": (0.135, 2.204, 5.021, 6.674),
+}
+NEAR = 0.0101
+
+
+def thin(source: Path, target: Path, events: tuple[float, ...] = ()) -> None:
+    """Copy a recording, with some of its rows."""
+    with gzip.open(source, "rt") as stream:
+        header, *rows = stream.read().splitlines()
+    kept = [header]
+    for i, row in enumerate(rows):
+        time = float(row.split(",", 1)[0])
+        event = any(abs(time - at) < NEAR for at in events)
+        if i % STRIDE == 0 or i in FIRST or i == len(rows) - 1 or event:
+            kept.append(row)
+    # Without name and time in its header, the file depends on nothing but the rows.
+    with target.open("wb") as raw, gzip.GzipFile("", "wb", 9, raw, mtime=0) as stream:
+        stream.write("".join(row + "\n" for row in kept).encode())
+
+
+def main() -> None:
+    """Thin every recording below SOURCE."""
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    source = Path(sys.argv[1])
+    for path in sorted(source.rglob("*")):
+        target = TARGET / path.relative_to(source)
+        if path.is_dir():
+            continue
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if path.name.endswith(".csv.gz"):
+            thin(path, target, EVENTS.get(path.parent.name, ()))
+        else:
+            shutil.copyfile(path, target)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,18 @@
+"""What the tests share."""
+
+from __future__ import annotations
+
+import pytest
+
+pytest.register_assert_rewrite("faults")
+
+
+@pytest.fixture
+def toy(tmp_path, monkeypatch):
+    """Folder, made the working directory, that holds a good toy.urdf and a good toy.world."""
+    import faults
+
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "toy.urdf").write_text(faults.MODEL)
+    (tmp_path / "toy.world").write_text(faults.WORLD)
+    return tmp_path
