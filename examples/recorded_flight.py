@@ -24,7 +24,13 @@ def main(out: Path) -> None:
     """Fly, print the table, write logs and plots."""
     recording = np.loadtxt(RECORDING, delimiter=",", skiprows=1)
     table = Table(title="10 s of commands_S5, the thesis' quadrotor, sim_slow 1")
-    for heading in ("engine", "from Gazebo 11: largest (m)", "at 10 s (m)", "steps/s", "x real time"):
+    for heading in (
+        "engine",
+        "from Gazebo 11: largest (m)",
+        "at 10 s (m)",
+        "steps/s",
+        "x real time",
+    ):
         table.add_column(heading, justify="right", no_wrap=True)
     written = []
     for engine, _ in qc.engines():

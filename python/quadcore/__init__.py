@@ -1,4 +1,4 @@
-"""quadcore: how well does a controller fly?
+"""Find out how well a controller flies.
 
 A quadrotor from a URDF, on the engine of the published Gazebo 11 model to the last digit or without
 its faults, driven from Python.

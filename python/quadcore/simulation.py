@@ -29,7 +29,8 @@ class Simulation(_core.Simulation):
     model : str or path
         URDF or xacro file, or the name of a shipped model ("quadrotor").
     engine : str
-        "gazebo11" (the default: the model as published) or "ode"; see `quadcore.engines()`.
+        "gazebo11" (the default: the model as published), "ode" or "eigen"; `quadcore.engines()`
+        says what each is.
     world : str or path, optional
         World file or the name of a shipped one; None is empty.world.
     dt : float, optional
@@ -113,7 +114,7 @@ class Simulation(_core.Simulation):
         """
         if not (isinstance(duration, (int, float)) and math.isfinite(duration) and duration >= 0):
             raise _core.InputError(f"duration is {duration!r}; give seconds, >= 0")
-        total = int(math.floor(duration / self.dt + 1e-6))
+        total = math.floor(duration / self.dt + 1e-6)
         table = None if commands is None else as_commands(commands, self.command_width)
         flight = _core.Flight(self, table, log_every)
         done = 0
@@ -124,7 +125,7 @@ class Simulation(_core.Simulation):
                 done += piece
                 if progress is not None:
                     progress(done, total)
-        except (_core.QuadcoreError, KeyboardInterrupt) as error:
+        except (_core.QuadcoreError, KeyboardInterrupt, MemoryError) as error:
             error.log = self._log(flight)  # type: ignore[union-attr]
             raise
         return self._log(flight)

@@ -51,7 +51,7 @@ class State:
     rotor_angle: np.ndarray
 
     def copy(self) -> State:
-        """A free copy of this state."""
+        """Make a free copy of this state."""
         other = State()
         other.time = self.time
         for name in _VECTORS:
