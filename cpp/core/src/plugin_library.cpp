@@ -59,7 +59,8 @@ PluginLibrary open_plugin(const PluginElement& element) {
   const std::vector<std::string> folders = plugin_folders();
   for (const std::string& folder : folders) {
     const std::string path = (std::filesystem::path(folder) / element.filename).string();
-    if (!std::filesystem::exists(path)) continue;
+    std::error_code unreachable;
+    if (!std::filesystem::exists(path, unreachable)) continue;
     void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!handle) {
       throw InputError(who + "cannot be loaded: " + dlerror() + "; rebuild it");
@@ -76,7 +77,11 @@ PluginLibrary open_plugin(const PluginElement& element) {
                        std::to_string(*abi) + ", this is " + std::to_string(plugin_abi) +
                        "; rebuild it against the installed quadcore");
     }
-    return {path, describe()};
+    try {
+      return {path, describe()};
+    } catch (...) {
+      throw InputError(who + "in " + folder + " cannot describe itself: " + what_was_thrown());
+    }
   }
   throw InputError(who + "was not found in " + joined(folders) +
                    "; correct the filename or add its folder to QUADCORE_PLUGIN_PATH");

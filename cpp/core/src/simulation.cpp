@@ -84,7 +84,11 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
   start.position = options.spawn.xyz;
   start.orientation = options.spawn.rotation();
   set_state(start);
-  sense();
+  try {
+    sense();
+  } catch (...) {
+    fail(what_was_thrown());
+  }
   initial_ = snapshot();
 }
 
@@ -109,16 +113,17 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
                          "', which another plugin reports already; load only one of them");
       }
     }
+    loaded.state_begin = state_size;
     try {
       std::vector<std::string> warnings;
       loaded.plugin = library.descriptor->create(
           {element.name, loaded.parameters, model, topics_, options.seed, warnings});
+      if (!loaded.plugin) throw Error("its create() returned no plugin");
+      loaded.state_size = static_cast<Eigen::Index>(loaded.plugin->state_size());
       for (const std::string& warning : warnings) warnings_.push_back(who + ": " + warning);
-    } catch (const std::exception& error) {
-      throw InputError(who + " (" + library.path + "): " + error.what());
+    } catch (...) {
+      throw InputError(who + " (" + library.path + "): " + what_was_thrown());
     }
-    loaded.state_begin = state_size;
-    loaded.state_size = static_cast<Eigen::Index>(loaded.plugin->state_size());
     state_size += loaded.state_size;
     loaded.term_begin = wrench_terms_.size();
     wrench_terms_.insert(wrench_terms_.end(), library.descriptor->wrenches.begin(),
@@ -159,7 +164,7 @@ void Simulation::evaluate(const Kinematics& kinematics, Loads& loads) const {
   for (const LoadedPlugin& p : plugins_) {
     if (terms) loads.record_terms(terms + p.term_begin, &kinematics);
     active_ = &p;
-    p.plugin->forces(kinematics, plugin_state_.segment(p.state_begin, p.state_size), loads);
+    p.plugin->forces(kinematics, {plugin_state_.data() + p.state_begin, p.state_size}, loads);
   }
   active_ = nullptr;
   if (terms) loads.record_terms(terms, &kinematics);
@@ -169,7 +174,11 @@ const std::vector<Wrench>& Simulation::wrenches() {
   std::fill(wrenches_.begin(), wrenches_.end(), Wrench{});
   wrench_loads_.clear();
   wrench_loads_.record_terms(wrenches_.data(), &engine_->kinematics());
-  evaluate(engine_->kinematics(), wrench_loads_);
+  try {
+    evaluate(engine_->kinematics(), wrench_loads_);
+  } catch (...) {
+    fail(what_was_thrown());
+  }
   return wrenches_;
 }
 
@@ -206,10 +215,8 @@ void Simulation::step(std::int64_t n) {
       check_flight();
       sense();
     }
-  } catch (const std::exception& error) {
-    fail(error.what());
   } catch (...) {
-    fail("threw something that is no std::exception");
+    fail(what_was_thrown());
   }
 }
 

@@ -43,7 +43,27 @@ std::vector<std::string> split(const std::string& text) {
   return words;
 }
 
+std::size_t character_size(const std::string& text, std::size_t at) {
+  const auto byte = [&](std::size_t i) -> unsigned {
+    return at + i < text.size() ? static_cast<unsigned char>(text[at + i]) : 0;
+  };
+  const unsigned first = byte(0);
+  if (first < 0x80) return 1;
+  // By the first byte (Unicode 15, table 3-7): how many follow, and the range of the second.
+  const std::size_t size = first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
+  const unsigned low = first == 0xE0 ? 0xA0 : first == 0xF0 ? 0x90 : 0x80;
+  const unsigned high = first == 0xED ? 0x9F : first == 0xF4 ? 0x8F : 0xBF;
+  if (size == 0 || byte(1) < low || byte(1) > high) return 0;
+  for (std::size_t i = 2; i < size; ++i) {
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+  }
+  return size;
+}
+
 namespace {
+
+/// Longer names are no misspellings, and comparing two costs the product of their lengths.
+constexpr std::size_t longest_misspelling = 64;
 
 /// Levenshtein distance, case ignored.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
@@ -66,9 +86,11 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& candidates) {
+  if (name.size() > longest_misspelling) return "";
   const std::string* nearest = nullptr;
   std::size_t least = name.size() / 2 + 2;
   for (const std::string& candidate : candidates) {
+    if (candidate.size() > longest_misspelling) continue;
     const std::size_t distance = edit_distance(name, candidate);
     if (distance < least) {
       least = distance;

@@ -14,6 +14,7 @@ EigenEngine::EigenEngine(const Model& model, const World& world)
       rotor_count_(static_cast<Eigen::Index>(model.joints.size())),
       gravity_W_(world.gravity_W),
       wind_W_(world.wind_W),
+      windy_(!world.wind_W.isZero(0)),
       ground_(world.ground_plane),
       state_(VectorXd::Zero(kJoints + 2 * rotor_count_)),
       stage_(state_),
@@ -34,15 +35,12 @@ EigenEngine::EigenEngine(const Model& model, const World& world)
 
 void EigenEngine::step(double dt, const ForceField& forces) {
   // Classical Runge-Kutta; kinematics_ shows state_ at the start, as the last step left it.
-  differentiate(state_, forces, rate_);
-  sum_ = state_ + dt / 6 * rate_;
-  for (const auto& [reach, weight] : {std::pair{dt / 2, dt / 3}, {dt / 2, dt / 3}, {dt, dt / 6}}) {
-    stage_ = state_ + reach * rate_;
-    look(stage_);
-    differentiate(stage_, forces, rate_);
-    sum_ += weight * rate_;
-  }
-  state_ = sum_;
+  differentiate(state_, forces);
+  sum_ = rate_;
+  stage(dt / 2, 2, forces);
+  stage(dt / 2, 2, forces);
+  stage(dt, 1, forces);
+  for (Eigen::Index i = 0; i < state_.size(); ++i) state_[i] += dt / 6 * sum_[i];
   state_.segment<4>(kOrientation).normalize();
   for (Eigen::Index i = joint_angles(); i < state_.size(); ++i) {
     if (std::abs(state_[i]) > M_PI) state_[i] = std::remainder(state_[i], 2 * M_PI);
@@ -51,60 +49,79 @@ void EigenEngine::step(double dt, const ForceField& forces) {
   if (ground_) refuse_ground();
 }
 
+void EigenEngine::stage(double reach, double weight, const ForceField& forces) {
+  for (Eigen::Index i = 0; i < state_.size(); ++i) stage_[i] = state_[i] + reach * rate_[i];
+  look(stage_);
+  differentiate(stage_, forces);
+  for (Eigen::Index i = 0; i < state_.size(); ++i) sum_[i] += weight * rate_[i];
+}
+
 void EigenEngine::look(const VectorXd& state) {
   Kinematics& k = kinematics_;
-  // Between the stages the quaternion is off unit length by the order of the method.
-  const Quaterniond q(state.segment<4>(kOrientation).normalized());
-  k.R_WF = q.toRotationMatrix();
-  k.w_WF_F = state.segment<3>(kRate);
-  k.v_WCcm_F = k.R_WF.transpose() * state.segment<3>(kVelocity);
-  k.v_WF_F = k.v_WCcm_F - k.w_WF_F.cross(body_.p_FCcm_F);
-  k.p_WF = state.segment<3>(kPosition) - k.R_WF * body_.p_FCcm_F;
-  k.v_WA_F = k.R_WF.transpose() * wind_W_;
-  for (std::size_t i = 0; i < body_.rotors.size(); ++i) {
-    RotorKinematics& rotor = k.rotors[i];
-    const auto row = static_cast<Eigen::Index>(i);
-    rotor.v_WR_F = k.v_WF_F + k.w_WF_F.cross(body_.rotors[i].p_FR_F);
-    rotor.v_WRcm_F = k.v_WF_F + k.w_WF_F.cross(body_.rotors[i].p_FRcm_F);
-    rotor.rate = state[joint_rates() + row];
-    rotor.angle = state[joint_angles() + row];
+  // Between the stages the quaternion is off unit length, by less than the method's own error.
+  k.q_WF.coeffs() = state.segment<4>(kOrientation);
+  const Matrix3d R_WF = k.q_WF.toRotationMatrix();
+  const Vector3d w_WF_F = state.segment<3>(kRate);
+  const Vector3d v_WCcm_F = R_WF.transpose() * state.segment<3>(kVelocity);
+  const Vector3d v_WF_F = v_WCcm_F - w_WF_F.cross(body_.p_FCcm_F);
+  k.R_WF = R_WF;
+  k.w_WF_F = w_WF_F;
+  k.v_WCcm_F = v_WCcm_F;
+  k.v_WF_F = v_WF_F;
+  k.p_WF = state.segment<3>(kPosition) - R_WF * body_.p_FCcm_F;
+  if (windy_) k.v_WA_F = R_WF.transpose() * wind_W_;
+  const double* rates = state.data() + joint_rates();
+  const double* angles = state.data() + joint_angles();
+  RotorKinematics* motion = k.rotors.data();
+  for (const Gyrostat::Rotor& rotor : body_.rotors) {
+    const Vector3d v_WRcm_F = v_WF_F + w_WF_F.cross(rotor.p_FRcm_F);
+    motion->v_WRcm_F = v_WRcm_F;
+    motion->v_WR_F = rotor.centered ? v_WRcm_F : v_WF_F + w_WF_F.cross(rotor.p_FR_F);
+    motion->rate = *rates++;
+    motion->angle = *angles++;
+    ++motion;
   }
   k.forget_R_FR();
 }
 
-void EigenEngine::differentiate(const VectorXd& state, const ForceField& forces, VectorXd& rate) {
+void EigenEngine::differentiate(const VectorXd& state, const ForceField& forces) {
   const Kinematics& k = kinematics_;
   loads_.clear();
   forces.evaluate(k, loads_);
 
+  const Vector3d w = k.w_WF_F;
   Vector3d f_F = loads_.frame().force_F;
   Vector3d tau_F = loads_.frame().torque_F;  // about F's origin
-  Vector3d h_F = body_.I_Ccm_F * k.w_WF_F;   // angular momentum about C
-  for (std::size_t i = 0; i < body_.rotors.size(); ++i) {
-    const Gyrostat::Rotor& rotor = body_.rotors[i];
-    const Vector3d& f_R_F = loads_.rotor_force_F(i);
-    const double joint_torque = loads_.joint_torque(i) - rotor.damping * k.rotors[i].rate;
+  Vector3d h_F = body_.I_Ccm_F * w;          // angular momentum about C
+  double* joint_rate = rate_.data() + joint_rates();
+  double* joint_angle = rate_.data() + joint_angles();
+  std::size_t i = 0;
+  for (const Gyrostat::Rotor& rotor : body_.rotors) {
+    const Vector3d f_R_F = loads_.rotor_force_F(i);
+    const double rate = k.rotors[i].rate;
+    const double joint_torque = loads_.joint_torque(i) - rotor.damping * rate;
     f_F += f_R_F;
     tau_F += rotor.p_FRcm_F.cross(f_R_F) - joint_torque * rotor.axis_F;
-    h_F += rotor.moment * k.rotors[i].rate * rotor.axis_F;
+    h_F += rate * rotor.moment_axis_F;
+    joint_rate[i] = joint_torque * rotor.inverse_moment;
+    joint_angle[i] = rate;
+    ++i;
   }
-  tau_F -= body_.p_FCcm_F.cross(f_F);  // now about C
-  const Vector3d acceleration_F = body_.inverse_reduced_I_F * (tau_F - k.w_WF_F.cross(h_F));
+  tau_F -= body_.p_FCcm_F.cross(f_F) + w.cross(h_F);  // now about C
+  const Vector3d angular_F = body_.inverse_reduced_I_F * tau_F;
+  const Vector3d linear_W = k.R_WF * f_F * body_.inverse_mass + gravity_W_;
+  for (const Gyrostat::Rotor& rotor : body_.rotors) *joint_rate++ -= rotor.axis_F.dot(angular_F);
 
-  const auto q = state.segment<4>(kOrientation);
-  const Vector3d& w = k.w_WF_F;
-  rate.segment<3>(kPosition) = state.segment<3>(kVelocity);
-  rate.segment<4>(kOrientation) << 0.5 * (q[3] * w + q.head<3>().cross(w)),
-      -0.5 * q.head<3>().dot(w);
-  rate.segment<3>(kVelocity) = k.R_WF * f_F / body_.mass + gravity_W_;
-  rate.segment<3>(kRate) = acceleration_F;
-  for (std::size_t i = 0; i < body_.rotors.size(); ++i) {
-    const Gyrostat::Rotor& rotor = body_.rotors[i];
-    const auto row = static_cast<Eigen::Index>(i);
-    const double joint_torque = loads_.joint_torque(i) - rotor.damping * k.rotors[i].rate;
-    rate[joint_rates() + row] = joint_torque / rotor.moment - rotor.axis_F.dot(acceleration_F);
-    rate[joint_angles() + row] = k.rotors[i].rate;
-  }
+  const double* v = state.data() + kVelocity;
+  const double* q = state.data() + kOrientation;
+  double* rate = rate_.data();
+  std::copy_n(v, 3, rate + kPosition);
+  rate[kOrientation + 0] = 0.5 * (q[3] * w.x() + q[1] * w.z() - q[2] * w.y());
+  rate[kOrientation + 1] = 0.5 * (q[3] * w.y() + q[2] * w.x() - q[0] * w.z());
+  rate[kOrientation + 2] = 0.5 * (q[3] * w.z() + q[0] * w.y() - q[1] * w.x());
+  rate[kOrientation + 3] = -0.5 * (q[0] * w.x() + q[1] * w.y() + q[2] * w.z());
+  std::copy_n(linear_W.data(), 3, rate + kVelocity);
+  std::copy_n(angular_F.data(), 3, rate + kRate);
 }
 
 void EigenEngine::refuse_ground() const {
@@ -115,7 +132,7 @@ void EigenEngine::refuse_ground() const {
 
 void EigenEngine::get_state(VehicleState& state) const {
   state.position = kinematics_.p_WF;
-  state.orientation.coeffs() = state_.segment<4>(kOrientation);
+  state.orientation = kinematics_.q_WF;
   state.linear_velocity = kinematics_.R_WF * kinematics_.v_WF_F;
   state.angular_velocity = kinematics_.w_WF_F;
   state.rotor_velocity = state_.segment(joint_rates(), rotor_count_);

@@ -31,15 +31,17 @@ class EigenEngine final : public Engine {
   Eigen::Index joint_angles() const { return kJoints + rotor_count_; }
   /// Fills kinematics_ from a state.
   void look(const VectorXd& state);
-  /// The rate of the state that kinematics_ shows.
-  void differentiate(const VectorXd& state, const ForceField& forces, VectorXd& rate);
+  /// Puts the rate of the state, which kinematics_ shows, into rate_.
+  void differentiate(const VectorXd& state, const ForceField& forces);
+  /// One more stage of Runge-Kutta: the rate at state_ + reach rate_, which adds to sum_.
+  void stage(double reach, double weight, const ForceField& forces);
   void refuse_ground() const;
 
   Model model_;
   Gyrostat body_;
   Eigen::Index rotor_count_;
   Vector3d gravity_W_, wind_W_;
-  bool ground_;
+  bool windy_, ground_;
   VectorXd state_, stage_, rate_, sum_;
   Kinematics kinematics_;
   Loads loads_;

@@ -36,7 +36,7 @@ void check(const Model& model, std::size_t i) {
 
 Gyrostat::Gyrostat(const Model& model) {
   const MassProperties total = mass_properties(model);
-  mass = total.mass;
+  inverse_mass = 1 / total.mass;
   p_FCcm_F = total.p_FCcm;
   I_Ccm_F = total.inertia_Ccm_F;
   Matrix3d reduced = I_Ccm_F;
@@ -51,8 +51,11 @@ Gyrostat::Gyrostat(const Model& model) {
     rotor.p_FR_F = poses[i + 1].translation();
     rotor.p_FRcm_F = poses[i + 1] * inertial.pose.xyz;
     rotor.moment = joint.axis.dot(inertial.inertia_in_link_axes() * joint.axis);
+    rotor.moment_axis_F = rotor.moment * rotor.axis_F;
+    rotor.inverse_moment = 1 / rotor.moment;
+    rotor.centered = inertial.pose.xyz.isZero(0);
     rotor.damping = joint.damping;
-    reduced -= rotor.moment * rotor.axis_F * rotor.axis_F.transpose();
+    reduced -= rotor.moment_axis_F * rotor.axis_F.transpose();
     rotors.push_back(rotor);
   }
   inverse_reduced_I_F = reduced.inverse();

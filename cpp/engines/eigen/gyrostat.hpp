@@ -23,11 +23,14 @@ struct Gyrostat {
     Vector3d p_FR_F;      ///< origin of the rotor's link [m]
     Vector3d p_FRcm_F;    ///< its centre of mass [m]
     Matrix3d R_FR;        ///< orientation of its link at angle zero
+    bool centered;        ///< origin and centre of mass coincide
     double moment;        ///< J_i [kg m^2]
+    double inverse_moment;
+    Vector3d moment_axis_F;  ///< J_i a_i
     double damping;       ///< N m s/rad
   };
 
-  double mass;
+  double inverse_mass;           ///< 1/kg
   Vector3d p_FCcm_F;             ///< m
   Matrix3d I_Ccm_F;              ///< whole vehicle [kg m^2]
   Matrix3d inverse_reduced_I_F;  ///< of I_C - sum J_i a_i a_i^T

@@ -32,4 +32,9 @@ void restore_velocity(dBodyID body, const double* from) {
   dBodySetAngularVel(body, from[3], from[4], from[5]);
 }
 
+void forget_forces(dBodyID body) {
+  dBodySetForce(body, 0, 0, 0);
+  dBodySetTorque(body, 0, 0, 0);
+}
+
 }  // namespace quadcore

@@ -19,4 +19,7 @@ void save_velocity(dBodyID body, double* to);
 void restore_velocity(dBodyID body, const double* from);
 /// @}
 
+/// Drops the forces and torques added since the last step, as a step does; one that failed did not.
+void forget_forces(dBodyID body);
+
 }  // namespace quadcore

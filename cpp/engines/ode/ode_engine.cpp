@@ -1,10 +1,10 @@
 #include "ode_engine.hpp"
 
 #include <algorithm>
-#include <mutex>
 
 #include "body_state.hpp"
 #include "ode_math.hpp"
+#include "ode_process.hpp"
 #include "quadcore/error.hpp"
 #include "sdf_rounding.hpp"
 
@@ -20,13 +20,6 @@ namespace {
 constexpr int converged_iterations = 50;
 constexpr double default_sor = 1.3;
 
-void start_ode() {
-  static std::once_flag once;
-  std::call_once(once, [] { dInitODE2(0); });
-  thread_local const int allocated = dAllocateODEDataForThread(dAllocateMaskAll);
-  if (!allocated) throw Error("ODE could not be initialised in this thread");
-}
-
 }  // namespace
 
 OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& recipe)
@@ -36,6 +29,9 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
       loads_(model.joints.size()) {
   start_ode();
   world_.reset(dWorldCreate());
+  threading_.reset(dThreadingAllocateSelfThreadedImplementation());
+  dWorldSetStepThreadingImplementation(
+      world_.get(), dThreadingImplementationGetFunctions(threading_.get()), threading_.get());
   dWorldSetGravity(world_.get(), world.gravity_W.x(), world.gravity_W.y(), world.gravity_W.z());
   dWorldSetERP(world_.get(), world.erp);
   dWorldSetCFM(world_.get(), world.cfm);
@@ -106,6 +102,7 @@ void OdeEngine::place(std::size_t link, const Eigen::Isometry3d& X_WL, const Vec
   const Quaterniond q(X_WL.linear());
   const dQuaternion ode_q = {q.w(), q.x(), q.y(), q.z()};
   const dBodyID body = bodies_[link];
+  forget_forces(body);
   dBodySetPosition(body, p.x(), p.y(), p.z());
   dBodySetQuaternion(body, ode_q);
   dBodySetLinearVel(body, v.x(), v.y(), v.z());
@@ -164,6 +161,8 @@ void OdeEngine::apply_loads() {
 void OdeEngine::read_kinematics() {
   Kinematics& k = kinematics_;
   const Vector3d& p_FFcm_F = model_.links[0].inertial.pose.xyz;
+  const dReal* q = dBodyGetQuaternion(bodies_[0]);
+  k.q_WF = Quaterniond(q[0], q[1], q[2], q[3]);
   k.R_WF = rotation(dBodyGetRotation(bodies_[0]));
   const Matrix3d R_FW = k.R_WF.transpose();
   k.w_WF_F = R_FW * vec(dBodyGetAngularVel(bodies_[0]));
@@ -194,9 +193,8 @@ void OdeEngine::read_kinematics() {
 }
 
 void OdeEngine::get_state(VehicleState& state) const {
-  const dReal* q = dBodyGetQuaternion(bodies_[0]);
   state.position = kinematics_.p_WF;
-  state.orientation = Quaterniond(q[0], q[1], q[2], q[3]);
+  state.orientation = kinematics_.q_WF;
   state.linear_velocity = kinematics_.R_WF * kinematics_.v_WF_F;
   state.angular_velocity = kinematics_.w_WF_F;
   for (std::size_t i = 0; i < hinges_.size(); ++i) {
@@ -254,6 +252,7 @@ void OdeEngine::restore(const std::vector<double>& saved) {
   }
   const double* from = saved.data();
   for (const dBodyID body : bodies_) {
+    forget_forces(body);
     restore_pose(body, from);
     restore_velocity(body, from + pose_size);
     from += pose_size + velocity_size;

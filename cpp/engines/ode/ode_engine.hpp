@@ -38,6 +38,9 @@ class OdeEngine final : public Engine {
   void restore(const std::vector<double>& saved) override;
 
  private:
+  struct FreeThreading {
+    void operator()(dxThreadingImplementation* own) const { dThreadingFreeImplementation(own); }
+  };
   struct DestroyWorld {
     void operator()(dxWorld* world) const { dWorldDestroy(world); }
   };
@@ -53,6 +56,8 @@ class OdeEngine final : public Engine {
 
   Model model_;
   OdeRecipe recipe_;
+  /// The world's own: ODE's default job list is shared by all worlds, without a lock.
+  std::unique_ptr<dxThreadingImplementation, FreeThreading> threading_;
   std::unique_ptr<dxWorld, DestroyWorld> world_;
   bool iterate_;  ///< every step by sweeps, because the world asks for few of them
   std::vector<dBodyID> bodies_;

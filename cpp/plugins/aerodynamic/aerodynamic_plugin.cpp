@@ -16,6 +16,7 @@ enum Term { kThrust, kReaction, kInduced, kTranslational, kProfile, kParasitic, 
 struct Config {
   double k, b, reaction_sign, sim_slow;
   double induced, translational, profile, parasitic;
+  double linear_drag;  ///< sum of the three that are linear in the in-plane velocity
   Flapping flapping;
   bool flaps;     ///< any flapping coefficient is set
   bool appendix;  ///< dragModel
@@ -30,6 +31,7 @@ struct Config {
         translational(p.number("translationalDragCoeff")),
         profile(p.number("profileDragCoeff")),
         parasitic(p.number("parasiticDragCoeff")),
+        linear_drag(induced + translational + profile),
         flapping{p.number("flappingA1c"), p.number("flappingA1s"), p.number("flappingB1"),
                  p.number("flappingB2"), p.number("rotorRadius")},
         flaps(flapping.A1c != 0 || flapping.A1s != 0 || flapping.B1 != 0 || flapping.B2 != 0),
@@ -56,25 +58,33 @@ class AerodynamicPlugin final : public Plugin {
 
   void forces(const Kinematics& kinematics, ConstPluginState, Loads& loads) const override {
     const Config& c = config_;
+    Vector3d reaction_F = Vector3d::Zero();
     for (const std::size_t i : c.rotors) {
       const RotorDisc disc = c.appendix ? disc_of_appendix(kinematics, i) : disc_of(kinematics, i);
-      loads.add_rotor_force(kThrust, i, thrust(disc, c.k));
-      // A.5 turns the frame about its own z, whatever way the rotor points.
-      const Vector3d reaction_axis_F = c.appendix ? Vector3d::UnitZ().eval() : disc.axis_F;
-      loads.add_frame_torque(kReaction, reaction(disc, c.b, c.reaction_sign) * reaction_axis_F);
-      loads.add_rotor_force(kInduced, i, rotor_drag(disc, c.induced));
-      loads.add_rotor_force(kTranslational, i, rotor_drag(disc, c.translational));
-      loads.add_rotor_force(kProfile, i, rotor_drag(disc, c.profile));
+      const double torque = reaction(disc, c.b, c.reaction_sign);
+      if (c.appendix) {
+        reaction_F.z() += torque;  // A.5 turns the frame about its own z, however the rotor stands
+      } else {
+        reaction_F += torque * disc.axis_F;
+      }
+      if (loads.terms()) {
+        loads.add_rotor_force(kThrust, i, thrust(disc, c.k));
+        loads.add_rotor_force(kInduced, i, rotor_drag(disc, c.induced));
+        loads.add_rotor_force(kTranslational, i, rotor_drag(disc, c.translational));
+        loads.add_rotor_force(kProfile, i, rotor_drag(disc, c.profile));
+      } else {  // only a log tells them apart
+        loads.add_rotor_force(kThrust, i, thrust(disc, c.k) + rotor_drag(disc, c.linear_drag));
+      }
       if (c.appendix && c.parasitic != 0) {
         const Vector3d v_WF_W = kinematics.R_WF * kinematics.v_WF_F;
         loads.add_rotor_force(
             kParasitic, i, parasitic_drag_of_appendix(v_WF_W, kinematics.R_FR(i), c.parasitic));
       }
       if (c.flaps) {
-        loads.add_rotor_force(kFlapping, i,
-                              flapping(disc, kinematics.w_WF_F, c.k, c.flapping));
+        loads.add_rotor_force(kFlapping, i, flapping(disc, kinematics.w_WF_F, c.k, c.flapping));
       }
     }
+    loads.add_frame_torque(kReaction, reaction_F);
     if (!c.appendix && c.parasitic != 0) {
       const Vector3d v_ACcm_F = kinematics.v_WCcm_F - kinematics.v_WA_F;
       loads.add_frame_force(kParasitic, parasitic_drag(v_ACcm_F, c.parasitic), kinematics.p_FCcm_F);
@@ -85,13 +95,13 @@ class AerodynamicPlugin final : public Plugin {
   /// Chapter 2: the disc stands across the joint's axis and meets the moving air.
   RotorDisc disc_of(const Kinematics& kinematics, std::size_t i) const {
     const RotorKinematics& rotor = kinematics.rotors[i];
-    return {rotor.axis_F, rotor.v_WRcm_F - kinematics.v_WA_F, rotor.rate * config_.sim_slow};
+    return {rotor.axis_F, rotor.rate * config_.sim_slow, rotor.v_WRcm_F - kinematics.v_WA_F};
   }
 
   /// Appendix A.5: the disc stands across the propeller link's z and the air is still everywhere.
   RotorDisc disc_of_appendix(const Kinematics& kinematics, std::size_t i) const {
     const RotorKinematics& rotor = kinematics.rotors[i];
-    return {kinematics.R_FR(i).col(2), rotor.v_WR_F, rotor.rate * config_.sim_slow};
+    return {kinematics.R_FR(i).col(2), rotor.rate * config_.sim_slow, rotor.v_WR_F};
   }
 
   Config config_;

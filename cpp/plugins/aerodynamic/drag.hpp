@@ -10,7 +10,7 @@ namespace quadcore::aerodynamic {
 /// \param coefficient  K_I, K_T1 or K_P [N s/m]
 /// \return             force on the rotor in F [N]
 inline Vector3d rotor_drag(const RotorDisc& disc, double coefficient) {
-  return -coefficient * disc.in_plane(disc.v_F);
+  return -coefficient * disc.V_F;
 }
 
 /// Parasitic drag of the airframe, thesis eq. (2.31): -K |V| V at the vehicle's centre of mass, V

@@ -26,9 +26,8 @@ struct Flapping {
 inline Vector3d flapping(const RotorDisc& disc, const Vector3d& w_WF_F, double k,
                          const Flapping& c) {
   const double s = disc.speed < 0 ? -1 : 1;
-  const Vector3d V_F = disc.in_plane(disc.v_F);
   const Vector3d nu_F = disc.in_plane(w_WF_F);
-  const Vector3d A_V = (-c.A1c * V_F - s * c.A1s * disc.axis_F.cross(V_F)) / c.radius;
+  const Vector3d A_V = (-c.A1c * disc.V_F - s * c.A1s * disc.axis_F.cross(disc.V_F)) / c.radius;
   const Vector3d B_nu = -s * c.B2 * nu_F - c.B1 * disc.axis_F.cross(nu_F);
   return k * std::abs(disc.speed) * (A_V + B_nu);
 }

@@ -54,7 +54,7 @@ class OdometryPlugin final : public Plugin {
     };
     const Kinematics& k = sample.kinematics;
     const Vector3d p_WF = noisy(k.p_WF, config_.position_noise);
-    Quaterniond q_WF(k.R_WF);
+    Quaterniond q_WF = k.q_WF;
     if (config_.orientation_noise != 0) {
       const Vector3d turn = config_.orientation_noise * normal_vector(state[kDraws]);
       const double angle = turn.norm();

@@ -5,10 +5,11 @@
 
 namespace quadcore {
 
-/// Base of every error that quadcore raises. The message is one line, ready to be shown.
+/// Base of every error that quadcore raises. The message is one line of UTF-8, ready to be shown:
+/// control characters are replaced, whatever input it quotes, and the middle of a long one is cut.
 class Error : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit Error(const std::string& what);
 };
 
 /// The input is at fault: a file, a tag, an argument. Nothing was changed by the refused call.
@@ -27,5 +28,9 @@ class FlightError : public Error {
  private:
   double time_;
 };
+
+/// What the exception that is being handled says; for use in a catch block, where others' code may
+/// have thrown anything.
+std::string what_was_thrown();
 
 }  // namespace quadcore

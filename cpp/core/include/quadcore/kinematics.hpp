@@ -22,7 +22,8 @@ struct RotorKinematics {
 class Kinematics {
  public:
   Vector3d p_WF = Vector3d::Zero();       ///< position of the frame's origin [m]
-  Matrix3d R_WF = Matrix3d::Identity();   ///< orientation of the frame
+  Quaterniond q_WF = Quaterniond::Identity();  ///< orientation of the frame, unit
+  Matrix3d R_WF = Matrix3d::Identity();   ///< the same as a matrix
   Vector3d v_WF_F = Vector3d::Zero();     ///< velocity of the frame's origin [m/s]
   Vector3d w_WF_F = Vector3d::Zero();     ///< angular velocity of the frame [rad/s]
   Vector3d p_FCcm_F = Vector3d::Zero();   ///< centre of mass of the vehicle [m]

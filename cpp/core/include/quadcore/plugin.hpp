@@ -18,8 +18,8 @@ constexpr int plugin_abi = 1;
 
 /// A plugin's state: plain numbers that belong to the simulation, so that snapshot, restore and
 /// reset are exact. All zero at the start.
-using PluginState = Eigen::Ref<VectorXd>;
-using ConstPluginState = Eigen::Ref<const VectorXd>;
+using PluginState = Eigen::Map<VectorXd>;
+using ConstPluginState = Eigen::Map<const VectorXd>;
 
 /// What a plugin sees at a sampling instant.
 struct Sample {

@@ -90,7 +90,7 @@ class Simulation : private ForceField {
   void load_plugins(const Model& model, const SimulationOptions& options);
   void check_flight() const;
   PluginState state_of(const LoadedPlugin& p) {
-    return plugin_state_.segment(p.state_begin, p.state_size);
+    return {plugin_state_.data() + p.state_begin, p.state_size};
   }
   void update();
   void sense();

@@ -18,6 +18,9 @@ std::optional<Vector3d> parse_vector(const std::string& text);
 std::string trimmed(const std::string& text);
 std::vector<std::string> split(const std::string& text);
 
+/// Bytes of the well-formed UTF-8 character that begins at `at`, or 0 if none does.
+std::size_t character_size(const std::string& text, std::size_t at);
+
 /// " (did you mean 'x'?)" for the candidate nearest to `name`, or "" if none is near.
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& candidates);
 /// "a, b, c"

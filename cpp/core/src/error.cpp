@@ -1,0 +1,62 @@
+#include "quadcore/error.hpp"
+
+#include "quadcore/text.hpp"
+
+namespace quadcore {
+namespace {
+
+constexpr std::size_t longest = 1000;
+constexpr std::size_t head = 700;
+constexpr std::size_t tail = 250;
+
+bool starts_character(char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }
+
+/// C0, delete, C1: at best ugly in a terminal.
+bool is_control(const std::string& text, std::size_t at) {
+  const auto first = static_cast<unsigned char>(text[at]);
+  const bool c1 = first == 0xC2 && static_cast<unsigned char>(text[at + 1]) < 0xA0;
+  return first < 0x20 || first == 0x7F || c1;
+}
+
+/// A message that quotes what was wrong with a huge document would be huge itself.
+std::string shortened(const std::string& text) {
+  if (text.size() <= longest) return text;
+  std::size_t end = head, begin = text.size() - tail;
+  while (!starts_character(text[end])) --end;
+  while (!starts_character(text[begin])) ++begin;
+  return text.substr(0, end) + " ... " + text.substr(begin);
+}
+
+/// Well-formed characters that stay in their line; '?' stands for the others, a blank for ends of
+/// lines.
+std::string one_line(const std::string& text) {
+  std::string line;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t size = character_size(text, at);
+    if (text[at] == '\n' || text[at] == '\t' || text[at] == '\r') {
+      line += ' ';
+    } else if (size == 0 || is_control(text, at)) {
+      line += '?';
+    } else {
+      line.append(text, at, size);
+    }
+    at += size ? size : 1;
+  }
+  return shortened(line);
+}
+
+}  // namespace
+
+Error::Error(const std::string& what) : std::runtime_error(one_line(what)) {}
+
+std::string what_was_thrown() {
+  try {
+    throw;
+  } catch (const std::exception& error) {
+    return error.what();
+  } catch (...) {
+    return "threw something that is no std::exception";
+  }
+}
+
+}  // namespace quadcore
