@@ -268,8 +268,12 @@ void bind_simulation(py::module_& m) {
       });
 
   m.def("log_columns", &log_columns, py::arg("rotor_count"));
-  m.def("load_plugin_path", &load_plugin_path, py::arg("folder"),
-        "Adds a folder to search for plugin libraries, before all others.");
+  m.def("load_plugin_path",
+        [](const py::object& folder) {
+          const py::object path = py::module_::import("os").attr("fspath")(folder);
+          load_plugin_path(py::cast<std::string>(path));
+        },
+        py::arg("folder"), "Adds a folder to search for plugin libraries, before all others.");
   m.def("plugin_folders", &plugin_folders, "The folders searched for plugins, in order.");
   m.def("engines", [] {
     std::vector<std::pair<std::string, std::string>> list;

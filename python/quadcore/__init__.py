@@ -19,6 +19,7 @@ from ._core import (
     load_plugin_path,
     plugin_folders,
 )
+from .comparison import Comparison, compare
 from .log import Log
 from .resources import cmake_prefix
 from .simulation import Simulation
@@ -27,6 +28,7 @@ from .state import State
 __version__ = "0.1.0"
 
 __all__ = [
+    "Comparison",
     "FlightError",
     "InputError",
     "Log",
@@ -35,6 +37,7 @@ __all__ = [
     "Snapshot",
     "State",
     "cmake_prefix",
+    "compare",
     "engines",
     "load_plugin_path",
     "plugin_folders",

@@ -52,6 +52,20 @@ def atomic_write(path: Path) -> Iterator[IO[bytes]]:
             part.unlink()
 
 
+def make_folder(path: Path) -> None:
+    """Make a folder, and those above it, unless it is there.
+
+    Raises
+    ------
+    InputError
+        It cannot be made.
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be made: {error.strerror}") from error
+
+
 def check_writable(path: Path) -> None:
     """Raise `InputError` now if `path` could not be written later; an older file is not touched."""
     if path.is_dir():

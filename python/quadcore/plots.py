@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Sequence
 
@@ -10,16 +11,15 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D  # noqa: F401  (matplotlib < 3.2 needs it for "3d")
 
-from ._core import InputError
-from .files import atomic_write
+from .files import atomic_write, make_folder
 from .rotation import roll_pitch_yaw
 
 if TYPE_CHECKING:
     from .log import Log
 
-# Okabe and Ito's palette, told apart by colour-blind readers too; x, y, z keep theirs throughout.
+# Okabe and Ito's, told apart by colour-blind readers too; x, y, z keep theirs throughout.
 _XYZ = ("#d55e00", "#009e73", "#0072b2")
-_ROTORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#999999")
+PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#999999")
 
 
 def draw(log: Log, directory: Path) -> list[Path]:
@@ -35,10 +35,7 @@ def draw(log: Log, directory: Path) -> list[Path]:
     InputError
         The folder or a file cannot be written.
     """
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{directory}: cannot be made: {error.strerror}") from error
+    make_folder(directory)
     pictures: dict[str, Callable[[Log], Figure]] = {
         "position": _position,
         "attitude": _attitude,
@@ -49,42 +46,49 @@ def draw(log: Log, directory: Path) -> list[Path]:
     }
     written = []
     for name, picture in pictures.items():
-        figure = picture(log)
-        FigureCanvasAgg(figure)
         file = directory / f"{name}.png"
         with atomic_write(file) as stream:
-            # A fixed text in place of matplotlib's version: the same flight gives the same bytes.
-            figure.savefig(stream, format="png", metadata={"Software": "quadcore"})
+            stream.write(png(picture(log)))
         written.append(file)
     return written
 
 
+def png(figure: Figure) -> bytes:
+    """Picture of a figure; the same flight gives the same bytes."""
+    FigureCanvasAgg(figure)
+    stream = io.BytesIO()
+    # A fixed text in place of matplotlib's version.
+    figure.savefig(stream, format="png", metadata={"Software": "quadcore"})
+    return stream.getvalue()
+
+
 def _position(log: Log) -> Figure:
-    figure, panels = _panels(log, "Position of the frame", 3)
-    _curves(panels[:, 0], log.time, log.position, ("x (m)", "y (m)", "z (m)"))
+    figure, grid = panels(_title(log, "Position of the frame"), 3)
+    _curves(grid[:, 0], log.time, log.position, ("x (m)", "y (m)", "z (m)"))
     return figure
 
 
 def _attitude(log: Log) -> Figure:
-    figure, panels = _panels(log, "Attitude of the frame", 3)
+    figure, grid = panels(_title(log, "Attitude of the frame"), 3)
     angles = np.degrees(np.unwrap(roll_pitch_yaw(log.orientation), axis=0))
-    _curves(panels[:, 0], log.time, angles, ("roll (deg)", "pitch (deg)", "yaw (deg)"))
+    _curves(grid[:, 0], log.time, angles, ("roll (deg)", "pitch (deg)", "yaw (deg)"))
     return figure
 
 
 def _rates(log: Log) -> Figure:
-    figure, panels = _panels(log, "Linear (world) and angular (body) velocity of the frame", 3, 2)
+    title = _title(log, "Linear (world) and angular (body) velocity of the frame")
+    figure, grid = panels(title, 3, 2)
     linear = [f"$v_{axis}$ (m/s)" for axis in "xyz"]
     angular = [rf"$\omega_{axis}$ (rad/s)" for axis in "xyz"]
-    _curves(panels[:, 0], log.time, log.linear_velocity, linear)
-    _curves(panels[:, 1], log.time, log.angular_velocity, angular)
+    _curves(grid[:, 0], log.time, log.linear_velocity, linear)
+    _curves(grid[:, 1], log.time, log.angular_velocity, angular)
     return figure
 
 
 def _rotors(log: Log) -> Figure:
-    figure, (whole, close) = _panels(log, "Velocity of the rotor joints", 2, height=2.2)
+    figure, (whole, close) = panels(_title(log, "Velocity of the rotor joints"), 2, height=2.2)
     for i, velocity in enumerate(log.rotor_velocity.T):
-        style = {"color": _ROTORS[i % len(_ROTORS)], "label": f"{i + 1}" if i else "rotor 1"}
+        style = {"color": PALETTE[i % len(PALETTE)], "label": f"{i + 1}" if i else "rotor 1"}
         whole[0].plot(log.time, velocity, **style)
         close[0].plot(log.time, np.abs(velocity), **style)
     whole[0].set_ylabel("signed (rad/s)")
@@ -102,12 +106,11 @@ def _rotors(log: Log) -> Figure:
 
 def _wrenches(log: Log) -> Figure:
     acting = {name: wrench for name, wrench in log.wrenches.items() if np.any(wrench)}
-    figure, panels = _panels(
-        log, "Wrenches about the centre of mass, frame axes", max(1, len(acting)), 2
-    )
-    panels[0, 0].set_title("force (N)", loc="left", fontsize="medium")
-    panels[0, 1].set_title("torque (N m)", loc="left", fontsize="medium")
-    for row, (name, wrench) in zip(panels, acting.items()):
+    title = _title(log, "Wrenches about the centre of mass, frame axes")
+    figure, grid = panels(title, max(1, len(acting)), 2)
+    grid[0, 0].set_title("force (N)", loc="left", fontsize="medium")
+    grid[0, 1].set_title("torque (N m)", loc="left", fontsize="medium")
+    for row, (name, wrench) in zip(grid, acting.items()):
         row[0].set_ylabel(name)
         for axes, part in ((row[0], wrench[:, :3]), (row[1], wrench[:, 3:])):
             for values, colour, axis in zip(part.T, _XYZ, "xyz"):
@@ -115,12 +118,12 @@ def _wrenches(log: Log) -> Figure:
             if not np.any(part):
                 axes.set_ylim(-1, 1)
                 axes.set_yticks([0])
-    _legend(figure, panels[0, 0])
+    _legend(figure, grid[0, 0])
     return figure
 
 
 def _path(log: Log) -> Figure:
-    figure = _figure(log, "Path of the frame", 6, 6)
+    figure = titled(_title(log, "Path of the frame"), 6, 6)
     axes = figure.add_axes((0.0, 0.02, 0.94, 0.94), projection="3d")
     # The same scale along all three axes, with room for flights that hardly move.
     low, high = log.position.min(axis=0), log.position.max(axis=0)
@@ -138,12 +141,13 @@ def _path(log: Log) -> Figure:
     return figure
 
 
-def _panels(
-    log: Log, what: str, rows: int, columns: int = 1, height: float = 1.6
+def panels(
+    title: str, rows: int, columns: int = 1, height: float = 1.6, above: float = 0.5
 ) -> tuple[Figure, Any]:
-    width, above, below = (8.0 if columns > 1 else 7.0), 0.5, 0.5  # inch
+    """Make a figure of panels over time, `height` inches each, with room for title and legend."""
+    width, below = (8.0 if columns > 1 else 7.0), 0.5  # inch
     total = above + height * rows + below
-    figure = _figure(log, what, width, total)
+    figure = titled(title, width, total)
     # Fixed margins: matplotlib's automatic layouts differ from version to version.
     margins = {
         "left": 0.85 / width,
@@ -153,22 +157,31 @@ def _panels(
         "wspace": 0.27,
         "hspace": 0.18,
     }
-    panels = figure.subplots(rows, columns, sharex=True, squeeze=False, gridspec_kw=margins)
-    for axes in panels.flat:
-        axes.grid(color="0.9", linewidth=0.6)
-        axes.set_axisbelow(True)
-        axes.margins(x=0.01)
-        axes.spines["top"].set_visible(False)
-        axes.spines["right"].set_visible(False)
-    for axes in panels[-1]:
+    grid = figure.subplots(rows, columns, sharex=True, squeeze=False, gridspec_kw=margins)
+    for axes in grid.flat:
+        dress(axes)
+    for axes in grid[-1]:
         axes.set_xlabel("time (s)")
-    figure.align_ylabels(panels)
-    return figure, panels
+    figure.align_ylabels(grid)
+    return figure, grid
 
 
-def _figure(log: Log, what: str, width: float, height: float) -> Figure:
-    figure = Figure(figsize=(width, height), dpi=150)
-    title = f"{what}: {log.title}" if log.title else what
+def dress(axes: Any) -> None:
+    """Give a panel the style of all."""
+    axes.grid(color="0.9", linewidth=0.6)
+    axes.set_axisbelow(True)
+    axes.margins(x=0.01)
+    axes.spines["top"].set_visible(False)
+    axes.spines["right"].set_visible(False)
+
+
+def _title(log: Log, what: str) -> str:
+    return f"{what}: {log.title}" if log.title else what
+
+
+def titled(title: str, width: float, height: float, dpi: int = 150) -> Figure:
+    """Make an empty figure, its size in inches."""
+    figure = Figure(figsize=(width, height), dpi=dpi)
     figure.suptitle(
         title, x=0.1 / width, y=1 - 0.1 / height, ha="left", va="top", fontsize="medium"
     )

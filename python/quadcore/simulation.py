@@ -26,13 +26,13 @@ class Simulation(_core.Simulation):
 
     Parameters
     ----------
-    model : str or path
-        URDF or xacro file, or the name of a shipped model ("quadrotor").
+    model : str, path or Model
+        URDF or xacro file, the name of a shipped model ("quadrotor"), or a model already read.
     engine : str
         "gazebo11" (the default: the model as published), "ode" or "eigen"; `quadcore.engines()`
         says what each is.
-    world : str or path, optional
-        World file or the name of a shipped one; None is empty.world.
+    world : str, path or World, optional
+        World file, the name of a shipped one, or a world already read; None is empty.world.
     dt : float, optional
         Step in s; None takes the world's max_step_size.
     seed : int
@@ -52,23 +52,30 @@ class Simulation(_core.Simulation):
 
     def __init__(
         self,
-        model: Union[str, Path] = "quadrotor",
+        model: Union[str, Path, _core.Model] = "quadrotor",
         engine: str = "gazebo11",
-        world: Union[str, Path, None] = None,
+        world: Union[str, Path, _core.World, None] = None,
         dt: Optional[float] = None,
         seed: int = 0,
         parameters: Optional[Mapping[str, Value]] = None,
         xacro_args: Optional[Mapping[str, object]] = None,
         spawn: Sequence[Number] = (0, 0, 10),
     ) -> None:
-        arguments = {name: str(value) for name, value in (xacro_args or {}).items()}
+        if not isinstance(model, _core.Model):
+            arguments = {name: str(value) for name, value in (xacro_args or {}).items()}
+            model = _core.read_model(load_description(str(model), arguments))
+        elif xacro_args:
+            raise _core.InputError("xacro_args: the model is read already; give them to its reader")
+        if not isinstance(world, _core.World):
+            world = _core.read_world(load_world(None if world is None else str(world)))
+        self.world = world
         super().__init__(
-            model=_core.read_model(load_description(str(model), arguments)),
-            world=_core.read_world(load_world(None if world is None else str(world))),
+            model=model,
+            world=self.world,
             engine=engine,
             dt=dt,
             seed=_whole(seed),
-            parameters={key: _text(value) for key, value in (parameters or {}).items()},
+            parameters={key: text_of(value) for key, value in (parameters or {}).items()},
             spawn=_pose(spawn),
         )
         self._live = LiveState(self)
@@ -141,7 +148,8 @@ def _whole(seed: object) -> int:
     return int(seed)
 
 
-def _text(value: Value) -> str:
+def text_of(value: Union[Value, Path]) -> str:
+    """Write a parameter's value as a URDF would."""
     if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
     if isinstance(value, (list, tuple)):

@@ -90,5 +90,8 @@ class LiveState:
         """Simulation time, s."""
         return float(self._clock[0])
 
-    copy = State.copy
+    def copy(self) -> State:
+        """Make a free copy of this state."""
+        return State.copy(self)  # type: ignore[arg-type]
+
     __repr__ = State.__repr__

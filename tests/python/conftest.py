@@ -16,3 +16,11 @@ def toy(tmp_path, monkeypatch):
     (tmp_path / "toy.urdf").write_text(faults.MODEL)
     (tmp_path / "toy.world").write_text(faults.WORLD)
     return tmp_path
+
+
+@pytest.fixture
+def hangar(tmp_path):
+    """Maker of simulations of small vehicles; see vehicles.Hangar."""
+    from vehicles import Hangar
+
+    return Hangar(tmp_path)

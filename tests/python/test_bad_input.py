@@ -225,7 +225,7 @@ def state_of(simulation, **changed):
         (lambda s: s.set_state(state_of(s, orientation=[0, 0, 0, 0])), "is no quaternion"),
         (lambda s: s.set_state(state_of(s, rotor_velocity=[1, 2])), "this vehicle has 1 rotors"),
         (lambda s: s.set_state(state_of(s, time=math.inf)), "not a finite number"),
-        (lambda s: s.restore(qc.Simulation("quadrotor").snapshot()), "from another model"),
+        (lambda s: s.restore(qc.Simulation("quadrotor").snapshot()), "was taken from another"),
         (lambda s: s.topic("odometry"), "topic 'odometry' is not declared by any plugin"),
     ],
 )

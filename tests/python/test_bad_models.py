@@ -190,7 +190,6 @@ def test_a_joint_that_the_engines_do_not_model(broken):
     assert_refused("toy.urdf", broken)
 
 
-@pytest.mark.xfail(strict=True, reason="attributes that nobody reads are not refused yet")
 @pytest.mark.parametrize(
     "broken",
     [

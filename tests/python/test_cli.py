@@ -131,7 +131,7 @@ def test_the_same_seed_gives_the_same_bytes():
         ("run quadrotor --commands w.csv", "w.csv:3: w2 is nan"),
         ("run quadrotor --log nope/log.csv", "there is no folder nope"),
         ("run quadrotor --log log.txt", "log.txt: logs are written to .csv and .mat"),
-        ("run quadrotor --out w.csv", "--out w.csv: File exists"),
+        ("run quadrotor --out w.csv", "w.csv: cannot be made: File exists"),
     ],
 )
 def test_bad_input_is_one_line_and_status_2(capsys, arguments, reason):

@@ -1,95 +1,12 @@
-"""A simulation repeats itself to the last bit and does what its calls say."""
+"""State, time, commands and failure of a simulation are what its calls say."""
 
 from __future__ import annotations
 
-import gc
-import io
-import multiprocessing
-import threading
-import weakref
-
 import numpy as np
 import pytest
+from flights import BUSY, ENGINES, HOVER, MANOEUVRE, bits, hold_height, quadrotor
 
 import quadcore as qc
-
-ENGINES = [name for name, _ in qc.engines()]
-HOVER = np.array([471, -471, 471, -471])
-
-# Everything that a simulation has to remember is at work: integral and derivative, noise, a timeout.
-BUSY = {
-    "motorpid_plugin.ki": 2e-4,
-    "motorpid_plugin.kd": 1e-8,
-    "motorpid_plugin.iMax": 2e-3,
-    "motorpid_plugin.iMin": -2e-3,
-    "motorpid_plugin.commandTimeout": 0.3,
-    "odometry.rate": 400,
-    "odometry.positionNoise": 0.1,
-    "odometry.orientationNoise": 0.02,
-    "odometry.linearVelocityNoise": 0.3,
-    "odometry.angularVelocityNoise": 0.4,
-}
-MANOEUVRE = np.array([[0.0, 0, 0, 0, 0], [0.02, 480, -475, 485, -470], [0.4, 470, -480, 470, -480]])
-
-
-def quadrotor(engine="gazebo11", **options):
-    return qc.Simulation("quadrotor", engine=engine, **options)
-
-
-def hold_height(simulation, steps):
-    """Fly by the noisy odometry; returns every bit of state and message on the way."""
-    trace = []
-    for _ in range(steps):
-        message = simulation.topic("odom")
-        simulation.command(HOVER * (1 + 0.05 * (10 - message["z"]) - 0.02 * message["vz"]))
-        simulation.step()
-        state = simulation.state.copy()
-        trace += [getattr(state, name) for name in state.__slots__] + list(message.values())
-    return b"".join(np.asarray(value, dtype=float).tobytes() for value in trace)
-
-
-def csv(log, folder):
-    log.to_csv(folder / "log.csv")
-    return (folder / "log.csv").read_bytes()
-
-
-@pytest.mark.parametrize("engine", ENGINES)
-def test_the_same_seed_gives_the_same_bytes_and_another_seed_others(engine):
-    def flight(seed):
-        return hold_height(quadrotor(engine, seed=seed, parameters=BUSY), 300)
-
-    assert flight(7) == flight(7)
-    assert flight(7) != flight(8)
-
-
-def test_two_runs_write_the_same_log(tmp_path):
-    first, second = (quadrotor(parameters=BUSY).run(1, MANOEUVRE) for _ in range(2))
-    assert csv(first, tmp_path) == csv(second, tmp_path)
-
-
-@pytest.mark.parametrize("engine", ENGINES)
-def test_a_restored_snapshot_flies_the_same_bytes(engine):
-    simulation = quadrotor(engine, parameters=BUSY, spawn=(1, 2, 10, 0.3, -0.2, 1))
-    hold_height(simulation, 333)
-    snapshot = simulation.snapshot()
-    flown = hold_height(simulation, 1000)
-    simulation.restore(snapshot)
-    assert hold_height(simulation, 1000) == flown
-    other = quadrotor(engine, parameters=BUSY)
-    other.restore(snapshot)
-    assert hold_height(other, 1000) == flown
-
-
-@pytest.mark.parametrize("engine", ENGINES)
-def test_a_reset_simulation_is_a_new_one(engine):
-    simulation = quadrotor(engine, parameters=BUSY)
-    flown = hold_height(simulation, 200)
-    simulation.reset()
-    assert simulation.time == 0
-    assert simulation.topic("vel_cmd")["count"] == 0
-    assert simulation.topic("odom")["count"] == 1
-    assert hold_height(simulation, 200) == flown
-    assert hold_height(quadrotor(engine, parameters=BUSY), 200) == flown
 
 
 def test_a_hover_holds_height_by_its_odometry():
@@ -118,16 +35,15 @@ def test_a_state_that_is_set_is_the_state(engine):
     assert simulation.time == 3.501
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_a_state_that_is_put_back_flies_on_alike(engine):
+@pytest.mark.parametrize(("engine", "apart"), [("gazebo11", 1e-4), ("ode", 1e-4), ("eigen", 1e-12)])
+def test_a_state_that_is_put_back_flies_on_alike(engine, apart):
     simulation = quadrotor(engine)
     simulation.run(0.5, MANOEUVRE)
     state = simulation.state.copy()
     flown = simulation.run(0.5).table
     simulation.set_state(state)
-    again = simulation.run(0.5).table
-    # Not the last bits: the engine's bodies are placed anew.
-    assert np.allclose(again[:, :14], flown[:, :14], rtol=0, atol=1e-10)
+    # ODE's bodies are put back onto their hinges, from which they had drifted a little.
+    assert np.allclose(simulation.run(0.5).table, flown, rtol=0, atol=apart)
 
 
 def test_live_views_follow_the_flight_and_cannot_be_written():
@@ -156,99 +72,12 @@ def test_live_views_outlive_the_simulation():
     assert np.array_equal(position, expected)
 
 
-def test_a_simulation_dies_with_its_last_reference():
-    gc.disable()
-    try:
-        simulation = quadrotor()
-        simulation.run(0.01)
-        gone = weakref.ref(simulation)
-        del simulation
-        assert gone() is None
-    finally:
-        gc.enable()
-
-
-def resident_bytes():
-    with open("/proc/self/statm") as file:
-        return int(file.read().split()[1]) * 4096
-
-
-def test_a_thousand_simulations_leave_no_memory_behind(toy):
-    def fly(count):
-        for _ in range(count):
-            qc.Simulation("toy.urdf").run(0.001)
-
-    fly(100)
-    before = resident_bytes()
-    fly(1000)
-    # One kilobyte per simulation would be found.
-    assert resident_bytes() - before < 1e6
-
-
 def test_no_step_changes_nothing():
     simulation = quadrotor(parameters=BUSY)
     hold_height(simulation, 50)
-    odometry = simulation.topic("odom")
-    before = repr(simulation.state)
+    before = bits(simulation)
     simulation.step(0)
-    assert repr(simulation.state) == before
-    assert simulation.topic("odom") == odometry
-
-
-def test_many_steps_are_as_many_single_steps():
-    at_once, one_by_one = quadrotor(parameters=BUSY), quadrotor(parameters=BUSY)
-    for simulation in (at_once, one_by_one):
-        simulation.command(HOVER)
-    at_once.step(500)
-    for _ in range(500):
-        one_by_one.step()
-    assert repr(at_once.state) == repr(one_by_one.state)
-    assert at_once.topic("odom") == one_by_one.topic("odom")
-
-
-@pytest.mark.parametrize("engine", ENGINES)
-def test_two_threads_fly_the_bytes_that_each_flies_alone(engine):
-    tables = {}
-
-    def fly(seed):
-        simulation = quadrotor(engine, seed=seed, spawn=(0, 0, 10, 0.1 * seed, 0, 0))
-        tables[seed] = simulation.run(5, MANOEUVRE, log_every=10).table
-
-    threads = [threading.Thread(target=fly, args=(seed,)) for seed in (1, 2)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    together = dict(tables)
-    for seed in (1, 2):
-        fly(seed)
-        assert np.array_equal(tables[seed], together[seed])
-
-
-def fly_in_a_worker(engine):
-    return quadrotor(engine, parameters=BUSY).run(1, MANOEUVRE).table
-
-
-@pytest.mark.parametrize("engine", ENGINES)
-def test_forked_workers_fly_the_same_bytes(engine):
-    here = fly_in_a_worker(engine)
-    with multiprocessing.get_context("fork").Pool(2) as pool:
-        for there in pool.map(fly_in_a_worker, [engine, engine]):
-            assert np.array_equal(there, here)
-
-
-def test_one_simulation_refuses_a_second_thread_at_once():
-    simulation = quadrotor()
-    worker = threading.Thread(target=simulation.step, args=(200000,))
-    worker.start()
-    while simulation.time == 0:
-        pass
-    for call in (simulation.step, simulation.snapshot, lambda: simulation.command(HOVER)):
-        with pytest.raises(qc.QuadcoreError, match="used by another thread; give each its own"):
-            call()
-    worker.join()
-    simulation.step()
-    assert simulation.time == 200.001
+    assert bits(simulation) == before
 
 
 def test_time_counts_whole_steps():
@@ -264,7 +93,7 @@ def test_a_log_begins_at_once_and_has_a_row_every_so_many_steps(log_every, rows)
     simulation = quadrotor()
     simulation.step(3)
     log = simulation.run(0.1, MANOEUVRE, log_every=log_every)
-    assert simulation.time == 0.103
+    assert simulation.time == 103 * 0.001
     assert np.array_equal(log.time, (3 + log_every * np.arange(rows)) * 0.001)
     again = quadrotor()
     again.step(3)
@@ -293,8 +122,8 @@ def test_a_command_holds_from_the_first_step_that_begins_at_its_time():
 
 def test_motors_are_free_until_the_first_command():
     log = quadrotor().run(0.02, [[0.010, 100, 100, 100, 100]])
-    assert not log.rotor_velocity[:11].any()
-    assert log.rotor_velocity[11:].all()
+    assert np.abs(log.rotor_velocity[:11]).max() < 1e-20
+    assert log.rotor_velocity[11:].min() > 0.1
 
 
 def test_a_run_without_commands_keeps_the_present_one():
@@ -321,7 +150,7 @@ def test_a_command_that_is_too_old_counts_as_zero():
     stopped.step(51)  # the command is 50 ms old, but no older, when step 51 starts
     stopped.command([0, 0, 0, 0])
     stopped.step(149)
-    assert repr(silent.state) == repr(stopped.state)
+    assert bits(silent) == bits(stopped)
 
 
 def test_a_command_saturates_at_the_fastest_speed():
@@ -331,7 +160,7 @@ def test_a_command_saturates_at_the_fastest_speed():
     free.command([450, -450, 450, -300])
     for simulation in (limited, free):
         simulation.step(100)
-    assert repr(limited.state) == repr(free.state)
+    assert bits(limited) == bits(free)
 
 
 def test_rotor_joints_are_commanded_in_the_order_of_the_tag():
@@ -342,7 +171,7 @@ def test_rotor_joints_are_commanded_in_the_order_of_the_tag():
     for simulation in (turned, plain):
         simulation.step(10)
     assert turned.rotor_names == ["rotor1", "rotor2", "rotor3", "rotor4"]
-    assert repr(turned.state) == repr(plain.state)
+    assert bits(turned) == bits(plain)
 
 
 def test_some_of_the_rotors_may_be_driven():
@@ -355,7 +184,7 @@ def test_some_of_the_rotors_may_be_driven():
 @pytest.mark.parametrize("slow", [1, 8.0, "18"])
 def test_parameters_and_xacro_arguments_mean_the_same(slow):
     names = ("drone_plugin.sim_slow", "motorpid_plugin.sim_slow")
-    by_tag = quadrotor(parameters={name: slow for name in names})
+    by_tag = quadrotor(parameters=dict.fromkeys(names, slow))
     by_argument = quadrotor(xacro_args={"sim_slow": slow})
     tables = [simulation.run(0.1, MANOEUVRE).table for simulation in (by_tag, by_argument)]
     assert np.array_equal(*tables)
@@ -401,22 +230,3 @@ def test_a_motion_that_diverges_ends_the_flight(engine, toy):
     with pytest.raises(qc.FlightError, match="the motion diverged") as failed:
         simulation.step(1000)
     assert failed.value.time == pytest.approx(0.01)  # 1e6 m/s
-
-
-def odometry_samples(simulation, steps):
-    messages, truth = [], []
-    for _ in range(steps):
-        simulation.step()
-        messages.append(list(simulation.topic("odom").values())[2:])
-        state = simulation.state
-        truth.append(
-            np.concatenate(
-                [
-                    state.position,
-                    state.orientation,
-                    state.linear_velocity,
-                    state.angular_velocity,
-                ]
-            )
-        )
-    return np.array(messages), np.array(truth)

@@ -84,11 +84,6 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
   start.position = options.spawn.xyz;
   start.orientation = options.spawn.rotation();
   set_state(start);
-  try {
-    sense();
-  } catch (...) {
-    fail(what_was_thrown());
-  }
   initial_ = snapshot();
 }
 
@@ -182,8 +177,8 @@ const std::vector<Wrench>& Simulation::wrenches() {
   return wrenches_;
 }
 
-void Simulation::sense() {
-  const Sample sample{time(), dt_, engine_->kinematics(), topics_};
+void Simulation::sense(bool jumped) {
+  const Sample sample{time(), dt_, engine_->kinematics(), topics_, jumped};
   for (const LoadedPlugin& p : plugins_) {
     active_ = &p;
     p.plugin->sense(sample, state_of(p));
@@ -213,7 +208,7 @@ void Simulation::step(std::int64_t n) {
       engine_->get_state(state_);
       state_.time = time();
       check_flight();
-      sense();
+      sense(false);
     }
   } catch (...) {
     fail(what_was_thrown());
@@ -266,16 +261,24 @@ void Simulation::set_state(const VehicleState& state) {
   failure_.clear();
   engine_->get_state(state_);
   state_.time = time();
+  try {
+    sense(true);
+  } catch (...) {
+    fail(what_was_thrown());
+  }
 }
 
 Snapshot Simulation::snapshot() const {
-  return {start_time_, steps_, engine_->save(), plugin_state_, topics_, failure_};
+  return {engine_name_, dt_,           start_time_, steps_,
+          engine_->save(), plugin_state_, topics_,     failure_};
 }
 
 void Simulation::restore(const Snapshot& snapshot) {
-  if (snapshot.plugin_state.size() != plugin_state_.size() ||
+  if (snapshot.engine_name != engine_name_ || snapshot.dt != dt_ ||
+      snapshot.plugin_state.size() != plugin_state_.size() ||
       snapshot.topics.size() != topics_.size()) {
-    throw InputError("snapshot: was taken from another model; restore one of this simulation");
+    throw InputError(
+        "snapshot: was taken from another engine, step or model; restore one of this simulation");
   }
   engine_->restore(snapshot.engine);
   start_time_ = snapshot.start_time;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
 #include "quadcore/error.hpp"
@@ -101,6 +102,7 @@ std::string TagSpec::range() const {
       break;
   }
   std::ostringstream text;
+  text << std::setprecision(16);
   if (std::isfinite(min)) text << (exclusive_min ? "> " : ">= ") << min;
   if (std::isfinite(max)) text << (std::isfinite(min) ? ", " : "") << "<= " << max;
   return text.str().empty() ? "any finite number" : text.str();
@@ -196,6 +198,7 @@ Parameters::Parameters(const std::vector<TagSpec>& table, const PluginElement& e
   std::vector<std::string> names;
   for (const TagSpec& spec : table) {
     names.push_back(spec.name);
+    if (!spec.alias.empty()) names.push_back(spec.alias);
     parameters_.push_back({spec, "", "", 0, {}});
   }
   const auto find = [&](const std::string& tag, const std::string& where) -> Parameter& {

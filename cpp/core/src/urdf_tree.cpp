@@ -14,6 +14,7 @@ using Element = Xml::Element;
 Pose read_origin(const Xml& xml, const Element& parent) {
   const Element* origin = xml.child(parent, "origin");
   if (!origin) return {};
+  xml.only_attributes(*origin, {"xyz", "rpy"});
   return {xml.vector(*origin, "xyz", Vector3d::Zero()),
           xml.vector(*origin, "rpy", Vector3d::Zero())};
 }
@@ -23,12 +24,14 @@ Inertial read_inertial(const Xml& xml, const Element& element, const std::string
   Inertial inertial;
   inertial.pose = read_origin(xml, element);
   const Element& mass = xml.required_child(element, "mass");
+  xml.only_attributes(mass, {"value"});
   inertial.mass = xml.number(mass, "value");
   if (inertial.mass < 0) {
     xml.fail(mass, "link '" + link + "' has the mass " + mass.Attribute("value") +
                        "; write a mass in kg, > 0");
   }
   const Element& inertia = xml.required_child(element, "inertia");
+  xml.only_attributes(inertia, {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"});
   const auto moment = [&](const char* name) { return xml.number(inertia, name); };
   const double xx = moment("ixx"), yy = moment("iyy"), zz = moment("izz");
   const double xy = moment("ixy"), xz = moment("ixz"), yz = moment("iyz");
@@ -62,6 +65,9 @@ Collision read_collision(const Xml& xml, const Element& element) {
                       xml.where(shape)};
   const std::string kind = shape.Name();
   if (kind == "mesh") return collision;
+  xml.only_attributes(shape, kind == "box"        ? std::set<std::string>{"size"}
+                             : kind == "cylinder" ? std::set<std::string>{"radius", "length"}
+                                                  : std::set<std::string>{"radius"});
   if (kind == "box") {
     xml.attribute(shape, "size");
     collision.kind = ShapeKind::box;
@@ -81,6 +87,7 @@ Collision read_collision(const Xml& xml, const Element& element) {
 
 UrdfLink read_link(const Xml& xml, const Element& element) {
   UrdfLink link;
+  xml.only_attributes(element, {"name"});
   link.name = xml.attribute(element, "name");
   link.where = xml.where(element);
   for (const Element* child :
@@ -94,6 +101,7 @@ UrdfLink read_link(const Xml& xml, const Element& element) {
 
 UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::string>& warnings) {
   UrdfJoint joint;
+  xml.only_attributes(element, {"name", "type"});
   joint.name = xml.attribute(element, "name");
   joint.where = xml.where(element);
   const std::string type = xml.attribute(element, "type");
@@ -104,18 +112,25 @@ UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::st
   joint.fixed = type == "fixed";
   // A mimic, a safety controller or a calibration would change the motion; none is modelled.
   xml.children(element, {"origin", "parent", "child", "axis", "dynamics", "limit"});
-  joint.parent = xml.attribute(xml.required_child(element, "parent"), "link");
-  joint.child = xml.attribute(xml.required_child(element, "child"), "link");
+  const auto linked = [&](const char* role) {
+    const Element& end = xml.required_child(element, role);
+    xml.only_attributes(end, {"link"});
+    return xml.attribute(end, "link");
+  };
+  joint.parent = linked("parent");
+  joint.child = linked("child");
   joint.pose = read_origin(xml, element);
   if (joint.fixed) return joint;
 
   if (const Element* axis = xml.child(element, "axis")) {
+    xml.only_attributes(*axis, {"xyz"});
     joint.axis = xml.vector(*axis, "xyz", Vector3d::UnitX());
     if (!(joint.axis.norm() > 1e-9)) {
       xml.fail(*axis, "joint '" + joint.name + "' has no axis; write a direction such as 0 0 1");
     }
   }
   if (const Element* dynamics = xml.child(element, "dynamics")) {
+    xml.only_attributes(*dynamics, {"damping", "friction"});
     joint.damping = xml.number(*dynamics, "damping", 0);
     if (joint.damping < 0) {
       xml.fail(*dynamics,
@@ -127,6 +142,7 @@ UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::st
     }
   }
   if (const Element* limit = xml.child(element, "limit")) {
+    xml.only_attributes(*limit, {"effort", "velocity", "lower", "upper"});
     for (const char* bound : {"lower", "upper"}) {
       if (xml.number(*limit, bound, 0) != 0) {
         xml.fail(*limit, "joint '" + joint.name + "' has a limit " + bound +
@@ -141,6 +157,7 @@ UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::st
 }
 
 PluginElement read_plugin(const Xml& xml, const Element& element) {
+  xml.only_attributes(element, {"name", "filename"});
   PluginElement plugin{xml.attribute(element, "name"), xml.attribute(element, "filename"), {},
                        xml.where(element)};
   for (const auto* node = element.FirstChild(); node; node = node->NextSibling()) {

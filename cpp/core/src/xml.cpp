@@ -92,6 +92,17 @@ const Xml::Element& Xml::required_child(const Element& element, const char* name
   return *found;
 }
 
+void Xml::only_attributes(const Element& element, const std::set<std::string>& allowed) const {
+  for (const auto* a = element.FirstAttribute(); a; a = a->Next()) {
+    const std::string name = a->Name();
+    if (allowed.count(name) || name.rfind("xmlns", 0) == 0) continue;
+    const std::vector<std::string> names(allowed.begin(), allowed.end());
+    fail(element, "attribute " + name + " of <" + element.Name() + "> is not supported" +
+                      did_you_mean(name, names) + "; <" + element.Name() + "> takes " +
+                      joined(names));
+  }
+}
+
 std::string Xml::attribute(const Element& element, const char* name) const {
   const char* value = element.Attribute(name);
   const std::string text = value ? trimmed(value) : "";

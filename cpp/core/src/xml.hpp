@@ -32,6 +32,8 @@ class Xml {
   }
   const Element& required_child(const Element& element, const char* name) const;
 
+  /// Refuses an attribute outside `allowed`; namespace declarations are always allowed.
+  void only_attributes(const Element& element, const std::set<std::string>& allowed) const;
   std::string attribute(const Element& element, const char* name) const;
   double number(const Element& element, const char* attribute) const;
   double number(const Element& element, const char* attribute, double fallback) const;

@@ -29,9 +29,7 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
       loads_(model.joints.size()) {
   start_ode();
   world_.reset(dWorldCreate());
-  threading_.reset(dThreadingAllocateSelfThreadedImplementation());
-  dWorldSetStepThreadingImplementation(
-      world_.get(), dThreadingImplementationGetFunctions(threading_.get()), threading_.get());
+  take_threading();
   dWorldSetGravity(world_.get(), world.gravity_W.x(), world.gravity_W.y(), world.gravity_W.z());
   dWorldSetERP(world_.get(), world.erp);
   dWorldSetCFM(world_.get(), world.cfm);
@@ -52,6 +50,12 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
   mass_ = mass_properties(model_).mass;
   wind_W_ = world.wind_W;
   read_kinematics();
+}
+
+void OdeEngine::take_threading() {
+  threading_.reset(dThreadingAllocateSelfThreadedImplementation());
+  dWorldSetStepThreadingImplementation(
+      world_.get(), dThreadingImplementationGetFunctions(threading_.get()), threading_.get());
 }
 
 void OdeEngine::create_bodies() {
@@ -113,6 +117,8 @@ void OdeEngine::step(double dt, const ForceField& forces) {
   start_ode();
   loads_.clear();
   forces.evaluate(kinematics_, loads_);
+  // ODE ends the process for less.
+  if (!loads_.all_finite()) throw Error("a force or torque is not a finite number");
   apply_loads();
   recipe_.add_gyroscopic(gyroscopic_bodies_);
   static const std::vector<Contact> none;
@@ -120,10 +126,26 @@ void OdeEngine::step(double dt, const ForceField& forces) {
   if (iterate_ || !contacts.empty()) {
     gazebo_step_->step(contacts, GroundContact::surface(dt), dt);
   } else {
-    dWorldStep(world_.get(), dt);
+    solve(dt);
     if (ground_) remember_hinge_forces();
   }
   read_kinematics();
+}
+
+/// Where ODE gives up (see start_ode), it leaves the step half done: jobs, memory and forces.
+void OdeEngine::solve(double dt) {
+  try {
+    dWorldStep(world_.get(), dt);
+  } catch (...) {
+    dWorldCleanupWorkingMemory(world_.get());
+    threading_.release();  // ODE does not free a job list that is not empty
+    take_threading();
+    for (const dBodyID body : bodies_) {
+      dBodySetForce(body, 0, 0, 0);
+      dBodySetTorque(body, 0, 0, 0);
+    }
+    throw;
+  }
 }
 
 /// A step with contacts starts from the hinge forces of the step before, which the direct solver

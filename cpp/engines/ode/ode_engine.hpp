@@ -49,6 +49,8 @@ class OdeEngine final : public Engine {
   std::vector<Hinge> create_hinges();
   void place(std::size_t link, const Eigen::Isometry3d& X_WL, const Vector3d& v_WL_W,
              const Vector3d& w_WL_W);
+  void take_threading();
+  void solve(double dt);
   void apply_loads();
   void remember_hinge_forces();
   std::size_t saved_size() const;

@@ -145,7 +145,7 @@ PluginDescriptor describe() {
           T::choice("reactionTorque", {"thesis", "opposing"},
                     "sign of the reaction torque: with the rotor's spin as in the thesis, or against")
               .from("(2.11), (2.13)"),
-          T::link("frameLink", "link that takes reaction torque and parasitic drag"),
+          T::link("frameLink", "link that takes the reaction torque; part of the root body"),
           T::joints("rotorJoints", "the rotors"),
           T::number("updateRate", "1/s", "", no_effect).at_least(0).or_absent("no effect"),
           T::flag("publishTf", "false", no_effect),

@@ -46,7 +46,7 @@ class OdometryPlugin final : public Plugin {
 
   void sense(const Sample& sample, PluginState state) const override {
     const double due = std::floor(sample.time * config_.rate + 1e-6) + 1;
-    if (due == state[kMessages]) return;
+    if (due == state[kMessages] && !sample.jumped) return;
     state[kMessages] = due;
 
     const auto noisy = [&](const Vector3d& v, double deviation) -> Vector3d {

@@ -9,7 +9,7 @@ import sys
 from typing import NoReturn, Sequence
 
 from .._core import FlightError, InputError, QuadcoreError
-from . import info, run
+from . import compare, info, run, validate
 
 
 class _Parser(argparse.ArgumentParser):
@@ -61,6 +61,6 @@ def _parser() -> argparse.ArgumentParser:
         allow_abbrev=False,
     )
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
-    for command in (info, run):
+    for command in (info, run, validate, compare):
         command.register(commands)
     return parser

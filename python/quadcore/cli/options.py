@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 import re
-from typing import Any, Callable
+from typing import Any, Callable, Sequence
 
 from .._core import InputError, engines
 from ..simulation import Simulation
@@ -20,15 +20,18 @@ def subparser(commands: Any, name: str, summary: str, action: Callable[..., None
     return parser
 
 
-def add_model(parser: argparse.ArgumentParser) -> None:
-    """Add MODEL and the options that change it."""
+def add_model(parser: argparse.ArgumentParser, nargs: str | None = None) -> None:
+    """Add MODEL and the options that change it; `nargs` as argparse has it."""
     parser.add_argument(
-        "model", metavar="MODEL", help="URDF or xacro file, or a shipped model: quadrotor"
+        "model",
+        metavar="MODEL",
+        nargs=nargs,
+        help="URDF or xacro file, or a shipped model: quadrotor",
     )
     parser.add_argument(
         "--set",
         metavar="PLUGIN.TAG=VALUE",
-        type=_assignment(r"([^=]+\.[^.=]+)=(.+)", "PLUGIN.TAG=VALUE"),
+        type=assignment(r"([^=]+\.[^.=]+)=(.+)", "PLUGIN.TAG=VALUE"),
         action="append",
         default=[],
         help="give a plugin's tag another value; repeatable",
@@ -36,25 +39,32 @@ def add_model(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--xacro",
         metavar="ARG:=VALUE",
-        type=_assignment(r"([^:=]+):=(.*)", "ARG:=VALUE"),
+        type=assignment(r"([^:=]+):=(.*)", "ARG:=VALUE"),
         action="append",
         default=[],
         help="value of an argument of the xacro file; repeatable",
     )
 
 
-def add_flight(parser: argparse.ArgumentParser) -> None:
-    """Add the options of everything that flies."""
+def add_flight(
+    parser: argparse.ArgumentParser, several_engines: bool = False, log_every: int = 1
+) -> None:
+    """Add the options of everything that flies; some differ between commands."""
     names = [name for name, _ in engines()]
     summaries = "; ".join(f"{name}: {summary}" for name, summary in engines())
-    parser.add_argument("--engine", choices=names, default="gazebo11", help=f"{summaries}")
+    if several_engines:
+        parser.add_argument(
+            "--engine", metavar="LIST", type=several(names), default=names, help=summaries
+        )
+    else:
+        parser.add_argument("--engine", choices=names, default="gazebo11", help=summaries)
     parser.add_argument("--world", metavar="FILE", help="world file or shipped world (empty)")
     parser.add_argument("--dt", metavar="S", type=_positive, help="step in s (the world's)")
     parser.add_argument(
         "--duration", metavar="S", type=_positive, default=10.0, help="time to fly in s (10)"
     )
     parser.add_argument(
-        "--seed", metavar="N", type=_integer(0), default=0, help="seed of all noise (0)"
+        "--seed", metavar="N", type=integer(0), default=0, help="seed of all noise (0)"
     )
     parser.add_argument(
         "--spawn",
@@ -64,33 +74,44 @@ def add_flight(parser: argparse.ArgumentParser) -> None:
         help="start pose of the frame in m and rad (0,0,10)",
     )
     parser.add_argument(
-        "--log-every", metavar="N", type=_integer(1), default=1, help="log each N-th step (1)"
+        "--log-every",
+        metavar="N",
+        type=integer(1),
+        default=log_every,
+        help=f"log each N-th step ({log_every})",
     )
     parser.add_argument("--quiet", action="store_true", help="print warnings and errors only")
+
+
+def add_commands(parser: argparse.ArgumentParser) -> None:
+    """Add the option that names an open-loop flight."""
+    parser.add_argument(
+        "--commands", metavar="FILE", help="rotor speeds to fly, .csv or .mat: t,w1..wn (rad/s)"
+    )
 
 
 def model_arguments(arguments: argparse.Namespace) -> dict[str, Any]:
     """Arguments of `Simulation` that `add_model` asked for."""
     return {
         "model": arguments.model,
-        "parameters": _unique("--set", arguments.set),
-        "xacro_args": _unique("--xacro", arguments.xacro),
+        "parameters": unique("--set", arguments.set),
+        "xacro_args": unique("--xacro", arguments.xacro),
     }
+
+
+def flight_arguments(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Arguments of `Simulation` that `add_flight` asked for."""
+    return {name: getattr(arguments, name) for name in ("engine", "world", "dt", "seed", "spawn")}
 
 
 def simulation(arguments: argparse.Namespace) -> Simulation:
     """Build the simulation that `add_model` and `add_flight` asked for."""
-    return Simulation(
-        **model_arguments(arguments),
-        engine=arguments.engine,
-        world=arguments.world,
-        dt=arguments.dt,
-        seed=arguments.seed,
-        spawn=arguments.spawn,
-    )
+    return Simulation(**model_arguments(arguments), **flight_arguments(arguments))
 
 
-def _assignment(pattern: str, form: str) -> Callable[[str], tuple[str, str]]:
+def assignment(pattern: str, form: str) -> Callable[[str], tuple[str, str]]:
+    """Make the type of an option ``KEY=VALUE``; the two groups of `pattern` are key and value."""
+
     def parse(text: str) -> tuple[str, str]:
         match = re.fullmatch(pattern, text, re.DOTALL)
         if match is None:
@@ -100,13 +121,33 @@ def _assignment(pattern: str, form: str) -> Callable[[str], tuple[str, str]]:
     return parse
 
 
-def _unique(option: str, pairs: list[tuple[str, str]]) -> dict[str, str]:
+def unique(option: str, pairs: list[tuple[str, str]]) -> dict[str, str]:
+    """Make a dictionary of pairs; raise `InputError` if a key comes twice."""
     values: dict[str, str] = {}
     for key, value in pairs:
         if key in values:
             raise InputError(f"{option}: {key} is given twice; keep one")
         values[key] = value
     return values
+
+
+def several(names: Sequence[str]) -> Callable[[str], list[str]]:
+    """Make the type of an option that takes some of these names, with commas between."""
+
+    def parse(text: str) -> list[str]:
+        for name in text.split(","):
+            if name not in names:
+                raise argparse.ArgumentTypeError(
+                    f"'{name}' is none of {', '.join(names)}; write some of them, as A,B"
+                )
+        return list(dict.fromkeys(text.split(",")))
+
+    return parse
+
+
+def positive_numbers(text: str) -> list[float]:
+    """Read numbers with commas between."""
+    return list(dict.fromkeys(_positive(part) for part in text.split(",")))
 
 
 def _positive(text: str) -> float:
@@ -126,7 +167,9 @@ def _finite(text: str) -> float:
     return value
 
 
-def _integer(lowest: int) -> Callable[[str], int]:
+def integer(lowest: int) -> Callable[[str], int]:
+    """Make the type of an option that takes a whole number."""
+
     def parse(text: str) -> int:
         if not re.fullmatch(r"\d{1,18}", text) or int(text) < lowest:
             raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from {lowest} on")

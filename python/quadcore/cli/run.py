@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 from rich.table import Table
 
-from .._core import FlightError, InputError
+from .._core import FlightError
+from ..files import make_folder
 from ..log import Log, check_log_path
 from ..rotation import roll_pitch_yaw
 from ..simulation import Simulation
@@ -23,9 +24,7 @@ def register(commands: Any) -> None:
     parser = options.subparser(commands, "run", "Fly once.", run)
     options.add_model(parser)
     options.add_flight(parser)
-    parser.add_argument(
-        "--commands", metavar="FILE", help="rotor speeds to fly, .csv or .mat: t,w1..wn (rad/s)"
-    )
+    options.add_commands(parser)
     parser.add_argument(
         "--out", metavar="DIR", type=Path, help="write log.csv and plots here; made if missing"
     )
@@ -63,10 +62,7 @@ def _log_files(arguments: argparse.Namespace) -> list[Path]:
     """Name the logs to write and try each now: after the flight would be too late."""
     files = []
     if arguments.out is not None:
-        try:
-            arguments.out.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise InputError(f"--out {arguments.out}: {error.strerror}") from error
+        make_folder(arguments.out)
         files.append(arguments.out / "log.csv")
     if arguments.log is not None:
         files.append(arguments.log)

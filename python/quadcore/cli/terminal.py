@@ -29,14 +29,14 @@ def warn(simulation: Simulation) -> None:
 
 
 @contextmanager
-def progress(quiet: bool) -> Iterator[Callable[[int, int], None] | None]:
+def progress(quiet: bool, what: str = "flying") -> Iterator[Callable[[int, int], None] | None]:
     """Give a callback that shows the progress of a long run, or None away from a terminal."""
     if quiet or not sys.stderr.isatty():
         yield None
         return
     started = time.monotonic()
     with_bar = Progress(console=Console(stderr=True), transient=True)
-    task = with_bar.add_task("flying")
+    task = with_bar.add_task(what)
 
     def report(done: int, total: int) -> None:
         if time.monotonic() - started > _LONG:

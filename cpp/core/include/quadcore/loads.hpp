@@ -20,7 +20,7 @@ struct Wrench {
 class Loads {
  public:
   explicit Loads(std::size_t rotor_count)
-      : rotor_forces_F_(rotor_count), joint_torques_(rotor_count) {}
+      : rotor_forces_F_(rotor_count, Vector3d::Zero()), joint_torques_(rotor_count) {}
 
   /// A force on the frame at the point Q, p_FQ_F from the frame's origin.
   void add_frame_force(std::size_t term, const Vector3d& f_F, const Vector3d& p_FQ_F) {
@@ -47,6 +47,7 @@ class Loads {
   double joint_torque(std::size_t i) const { return joint_torques_[i]; }
 
   void clear();
+  bool all_finite() const;
   /// While set, each load is also added to terms[term], about the vehicle's centre of mass.
   void record_terms(Wrench* terms, const Kinematics* kinematics) {
     terms_ = terms;

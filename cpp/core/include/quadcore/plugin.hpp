@@ -27,6 +27,7 @@ struct Sample {
   double dt;                     ///< length of the step [s]
   const Kinematics& kinematics;  ///< motion at `time`
   Topics& topics;
+  bool jumped = false;  ///< the motion was set, not flown: sensors answer at once, due or not
 };
 
 /// A loaded plugin. It is immutable once created: whatever changes during a flight lives in the
@@ -39,7 +40,7 @@ class Plugin {
   virtual std::size_t state_size() const { return 0; }
   /// Once per step, at its start: commands, sampled control laws.
   virtual void update(const Sample&, PluginState) const {}
-  /// Once at time 0 and at the end of each step: sensors.
+  /// At time 0, after a state was set, and at the end of each step: sensors.
   virtual void sense(const Sample&, PluginState) const {}
   /// The force law: a pure function, evaluated as often as the engine's integrator needs.
   virtual void forces(const Kinematics&, ConstPluginState, Loads&) const {}

@@ -32,6 +32,8 @@ struct LoadedPlugin {
 
 /// Everything that the future of a simulation depends on.
 struct Snapshot {
+  std::string engine_name;
+  double dt = 0;
   double start_time = 0;
   std::int64_t steps = 0;
   std::vector<double> engine;
@@ -93,7 +95,7 @@ class Simulation : private ForceField {
     return {plugin_state_.data() + p.state_begin, p.state_size};
   }
   void update();
-  void sense();
+  void sense(bool jumped);
   /// Records why the flight ended and throws FlightError.
   [[noreturn]] void fail(const std::string& what);
 

@@ -1,0 +1,34 @@
+#include "csv_log.hpp"
+
+#include <cerrno>
+#include <cstring>
+
+#include "quadcore/error.hpp"
+#include "quadcore/flight.hpp"
+
+namespace quadcore::node {
+
+CsvLog::CsvLog(const std::string& path, const Simulation& simulation)
+    : file_(std::fopen(path.c_str(), "w")) {
+  if (!file_) throw InputError(path + ": cannot be written: " + std::strerror(errno));
+  std::string header;
+  for (const std::string& column : log_columns(simulation.model().joints.size())) {
+    header += (header.empty() ? "" : ",") + column;
+  }
+  std::fprintf(file_.get(), "%s\n", header.c_str());
+}
+
+void CsvLog::add(const VehicleState& state) {
+  std::fprintf(file_.get(), "%.17g", state.time);
+  const auto append = [this](const double* values, Eigen::Index count) {
+    for (Eigen::Index i = 0; i < count; ++i) std::fprintf(file_.get(), ",%.17g", values[i]);
+  };
+  append(state.position.data(), 3);
+  append(state.orientation.coeffs().data(), 4);
+  append(state.linear_velocity.data(), 3);
+  append(state.angular_velocity.data(), 3);
+  append(state.rotor_velocity.data(), state.rotor_velocity.size());
+  std::fputc('\n', file_.get());
+}
+
+}  // namespace quadcore::node

@@ -1,0 +1,67 @@
+#include "diagnostics.hpp"
+
+#include <cstdio>
+
+namespace quadcore::node {
+namespace {
+
+/// A second in which less than this part of the wanted factor was reached is worth a warning.
+constexpr double fair_share = 0.95;
+
+std::string to_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f", value);
+  return text;
+}
+
+}  // namespace
+
+Diagnostics::Diagnostics(ros::NodeHandle& nh, const FlightReport& start, double real_time_factor)
+    : wanted_factor_(real_time_factor),
+      publisher_(nh.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 10)),
+      last_(start) {}
+
+void Diagnostics::send(const FlightReport& report, const Refusals& refusals) {
+  const Clock::time_point now = Clock::now();
+  const double elapsed = std::chrono::duration<double>(now - last_time_).count();
+  const double factor = (report.time - last_.time) / elapsed;
+
+  diagnostic_msgs::DiagnosticStatus status;
+  status.name = ros::this_node::getName().substr(1) + ": flight";
+  status.hardware_id = "quadcore";
+  status.level = diagnostic_msgs::DiagnosticStatus::OK;
+  status.message = report.paused ? "paused" : "flying";
+  if (!report.failure.empty()) {
+    status.level = diagnostic_msgs::DiagnosticStatus::ERROR;
+    status.message = report.failure;
+  } else if (!report.paused && !last_.paused && factor < fair_share * wanted_factor_) {
+    status.level = diagnostic_msgs::DiagnosticStatus::WARN;
+    status.message = "behind the real-time factor of " + to_text(wanted_factor_);
+  } else if (refusals.count != refused_before_) {
+    status.level = diagnostic_msgs::DiagnosticStatus::WARN;
+    status.message = "commands rejected: " + refusals.last;
+  }
+  const auto add = [&status](const std::string& key, const std::string& value) {
+    diagnostic_msgs::KeyValue pair;
+    pair.key = key;
+    pair.value = value;
+    status.values.push_back(pair);
+  };
+  add("time (s)", to_text(report.time));
+  add("real-time factor", to_text(factor));
+  add("steps", std::to_string(report.steps));
+  add("overruns", std::to_string(report.overruns));
+  add("commands", std::to_string(report.commands));
+  add("late commands", std::to_string(report.late_commands));
+  add("rejected commands", std::to_string(refusals.count));
+
+  diagnostic_msgs::DiagnosticArray message;
+  message.header.stamp.fromSec(report.time);
+  message.status.push_back(status);
+  publisher_.publish(message);
+  last_ = report;
+  last_time_ = now;
+  refused_before_ = refusals.count;
+}
+
+}  // namespace quadcore::node

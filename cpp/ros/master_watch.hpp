@@ -1,0 +1,37 @@
+#pragma once
+
+#include <ros/ros.h>
+
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace quadcore::node {
+
+/// Looks once a second whether the ROS master still knows this node. One that was restarted does
+/// not, and roscpp leaves it at that; here the topics and services are registered again, so that
+/// whoever starts afterwards finds them. Connections that stand go on without the master.
+class MasterWatch {
+ public:
+  /// \param services  names to register again; topics are known to roscpp
+  explicit MasterWatch(std::vector<std::string> services);
+  ~MasterWatch();
+  MasterWatch(const MasterWatch&) = delete;
+  MasterWatch& operator=(const MasterWatch&) = delete;
+
+ private:
+  void watch();
+  void look();
+  void register_again() const;
+
+  std::vector<std::string> services_;
+  bool gone_ = false;
+  std::mutex mutex_;
+  std::condition_variable ending_changed_;
+  bool ending_ = false;
+  std::thread thread_;
+};
+
+}  // namespace quadcore::node

@@ -1,0 +1,146 @@
+#include <ros/ros.h>
+#include <std_msgs/Float64MultiArray.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "broadcast.hpp"
+#include "csv_log.hpp"
+#include "diagnostics.hpp"
+#include "end_signal.hpp"
+#include "flight_thread.hpp"
+#include "master_watch.hpp"
+#include "quadcore/error.hpp"
+#include "services.hpp"
+#include "settings.hpp"
+
+namespace quadcore::node {
+namespace {
+
+/// Takes commands from a topic, on the callback thread.
+class CommandSubscriber {
+ public:
+  CommandSubscriber(ros::NodeHandle& nh, const std::string& topic, FlightThread& flight)
+      : flight_(flight) {
+    // Queue and type are those of the original; no delay, lest a command waits for the next one.
+    subscriber_ = nh.subscribe(topic, 1000, &CommandSubscriber::take, this,
+                               ros::TransportHints().tcpNoDelay());
+  }
+  Refusals refusals() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return refusals_;
+  }
+
+ private:
+  void take(const std_msgs::Float64MultiArray& message) {
+    try {
+      flight_.command(message.data);
+    } catch (const InputError& error) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (refusals_.last != error.what()) {
+        ROS_WARN("%s: %s", subscriber_.getTopic().c_str(), error.what());
+      }
+      ++refusals_.count;
+      refusals_.last = error.what();
+    }
+  }
+
+  FlightThread& flight_;
+  ros::Subscriber subscriber_;
+  mutable std::mutex mutex_;
+  Refusals refusals_;
+};
+
+/// Sends, and logs if asked to.
+class Listener final : public FlightListener {
+ public:
+  Listener(ros::NodeHandle& nh, const Simulation& simulation, const std::string& command_topic,
+           const Settings& settings)
+      : broadcast_(nh, simulation, command_topic, settings.flight.lockstep) {
+    if (!settings.log.empty()) log_.emplace(settings.log, simulation);
+  }
+  void observe(const Simulation& simulation, bool jumped) override {
+    if (log_) log_->add(simulation.state());
+    broadcast_.observe(simulation, jumped);
+  }
+  void warn(const std::string& what) override { broadcast_.warn(what); }
+  bool has_commander() const override { return broadcast_.has_commander(); }
+
+ private:
+  Broadcast broadcast_;
+  std::optional<CsvLog> log_;
+};
+
+void print_warnings(const Simulation& simulation) {
+  for (const std::string& warning : simulation.warnings()) ROS_WARN("%s", warning.c_str());
+}
+
+/// Where commands come in: below the model's name, as Gazebo has it.
+std::string command_topic(const ros::NodeHandle& nh, const Settings& settings, const Model& model) {
+  const std::string name = settings.name.empty() ? model.name : settings.name;
+  std::string why;
+  if (!ros::names::validate(name, why)) {
+    throw InputError("model name '" + name + "' cannot name a topic (" + why + "); set ~name");
+  }
+  return nh.resolveName(name + "/vel_cmd");
+}
+
+void run(const EndSignal& end_signal) {
+  ros::NodeHandle nh;
+  const Settings settings = read_settings(nh);
+  if (settings.verbose &&
+      ros::console::set_logger_level(ROSCONSOLE_DEFAULT_NAME, ros::console::levels::Debug)) {
+    ros::console::notifyLoggerLevelsChanged();
+  }
+  const World world = settings.world.empty() ? World{} : read_world(Document::read(settings.world));
+  Simulation simulation(read_model(settings.model), world, settings.simulation);
+  print_warnings(simulation);
+  FlightSettings flight_settings = settings.flight;
+  flight_settings.real_time_factor =
+      settings.real_time_factor.value_or(world.real_time_update_rate * simulation.dt());
+  const std::string topic = command_topic(nh, settings, simulation.model());
+
+  Listener listener(nh, simulation, topic, settings);
+  FlightThread flight(simulation, flight_settings, listener);
+  const CommandSubscriber commands(nh, topic, flight);
+  const Services services(nh, flight);
+  const MasterWatch master_watch(services.names());
+  Diagnostics diagnostics(nh, flight.report(), flight_settings.real_time_factor);
+  ros::AsyncSpinner spinner(1);
+  spinner.start();
+  ROS_INFO("flying %s with engine %s, commands on %s", simulation.model().name.c_str(),
+           simulation.engine_name().c_str(), topic.c_str());
+
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point due = Clock::now() + std::chrono::seconds(1);
+  while (ros::ok() && !end_signal.wait_for(std::chrono::milliseconds(100))) {
+    if (Clock::now() < due) continue;
+    diagnostics.send(flight.report(), commands.refusals());
+    due += std::chrono::seconds(1);
+  }
+  flight.end();
+  spinner.stop();
+  ros::shutdown();
+}
+
+}  // namespace
+}  // namespace quadcore::node
+
+int main(int argc, char** argv) {
+  const quadcore::node::EndSignal end_signal;
+  // The default of rospy and the ros tools; roscpp would abort.
+  setenv("ROS_MASTER_URI", "http://localhost:11311", 0);
+  try {
+    ros::init(argc, argv, "quadcore", ros::init_options::NoSigintHandler);
+    // Without this check a node without a master hangs in its first advertise().
+    if (!ros::master::check()) {
+      throw quadcore::InputError("no ROS master at " + ros::master::getURI() +
+                                 "; start roscore or use roslaunch, or correct ROS_MASTER_URI");
+    }
+    quadcore::node::run(end_signal);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return 2;
+  }
+  return 0;
+}

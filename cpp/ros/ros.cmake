@@ -1,0 +1,94 @@
+# The ROS 1 node, built by catkin's rules. Included by the top-level CMakeLists.txt rather than
+# added as a folder, because catkin takes the folder of the calling list file for the package's.
+
+set(ros_packages
+  diagnostic_msgs geometry_msgs message_generation nav_msgs roscpp rosgraph_msgs sensor_msgs std_msgs
+  std_srvs tf2_ros)
+
+# catkin itself is found last: it changes global settings, and it ends the configuration if the
+# first python3 on PATH is not the one it was made for.
+set(ros_missing "")
+find_path(QUADCORE_CATKIN catkinConfig.cmake PATH_SUFFIXES share/catkin/cmake)
+mark_as_advanced(QUADCORE_CATKIN)
+if(NOT QUADCORE_CATKIN)
+  list(APPEND ros_missing catkin)
+endif()
+foreach(package ${ros_packages})
+  find_package(${package} QUIET NO_MODULE)
+  if(NOT ${package}_FOUND)
+    list(APPEND ros_missing ${package})
+  endif()
+endforeach()
+# Debian packages them apart.
+if(geometry_msgs_FOUND AND NOT EXISTS ${geometry_msgs_DIR}/../msg/Pose.msg)
+  list(APPEND ros_missing "the .msg files of geometry_msgs")
+endif()
+if(NOT PYTHON_EXECUTABLE)
+  foreach(python python3 /usr/bin/python3)
+    execute_process(COMMAND ${python} -c "import catkin_pkg, em, genmsg, sys; print(sys.executable)"
+                    OUTPUT_VARIABLE found OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+    if(found)
+      set(PYTHON_EXECUTABLE ${found} CACHE FILEPATH "The Python that ROS' packages belong to")
+      break()
+    endif()
+  endforeach()
+endif()
+if(NOT PYTHON_EXECUTABLE)
+  list(APPEND ros_missing "a python3 with catkin_pkg, empy and genmsg")
+endif()
+
+if(ros_missing)
+  list(JOIN ros_missing ", " ros_missing)
+  if(QUADCORE_WITH_ROS STREQUAL "ON")
+    message(FATAL_ERROR "quadcore's ROS node: not found: ${ros_missing}; install ROS 1 and source "
+                        "its setup.bash, or configure with -DQUADCORE_WITH_ROS=OFF")
+  endif()
+  message(STATUS "quadcore: without the ROS node (not found: ${ros_missing})")
+  return()
+endif()
+
+if(POLICY CMP0148)
+  cmake_policy(SET CMP0148 OLD)  # catkin asks FindPythonInterp
+endif()
+find_package(catkin REQUIRED COMPONENTS ${ros_packages})
+
+add_service_files(FILES Step.srv SetState.srv)
+# Before genpy leaves an empty one.
+configure_file(cpp/ros/python_package.py
+               ${CATKIN_DEVEL_PREFIX}/${PYTHON_INSTALL_DIR}/quadcore/__init__.py COPYONLY)
+generate_messages(DEPENDENCIES geometry_msgs)
+catkin_package(
+  INCLUDE_DIRS cpp/core/include
+  LIBRARIES quadcore
+  CATKIN_DEPENDS diagnostic_msgs geometry_msgs message_runtime nav_msgs roscpp rosgraph_msgs
+                 sensor_msgs std_msgs std_srvs tf2_ros
+  CFG_EXTRAS ${CMAKE_CURRENT_LIST_DIR}/quadcore-target.cmake)
+export(EXPORT quadcore NAMESPACE quadcore::
+       FILE ${CATKIN_DEVEL_PREFIX}/lib/cmake/quadcore/quadcore.cmake)
+
+# In the devel space as in the install space: the core and its plugins side by side in lib.
+get_property(plugins DIRECTORY cpp/plugins PROPERTY BUILDSYSTEM_TARGETS)
+set_target_properties(quadcore ${plugins} PROPERTIES
+  LIBRARY_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/lib)
+
+function(add_ros_node name)
+  add_executable(${name} ${ARGN})
+  target_include_directories(${name} SYSTEM PRIVATE ${catkin_INCLUDE_DIRS}
+                             ${CATKIN_DEVEL_PREFIX}/include)
+  target_compile_definitions(${name} PRIVATE BOOST_BIND_GLOBAL_PLACEHOLDERS)
+  target_link_libraries(${name} PRIVATE ${catkin_LIBRARIES})
+  add_dependencies(${name} ${catkin_EXPORTED_TARGETS} quadcore_generate_messages_cpp)
+  set_target_properties(${name} PROPERTIES
+    RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/lib/quadcore
+    INSTALL_RPATH $ORIGIN/..)
+  install(TARGETS ${name} RUNTIME DESTINATION lib/quadcore)
+endfunction()
+
+add_ros_node(quadcore_node
+  cpp/ros/broadcast.cpp cpp/ros/csv_log.cpp cpp/ros/diagnostics.cpp cpp/ros/flight_thread.cpp
+  cpp/ros/master_watch.cpp cpp/ros/quadcore_node.cpp cpp/ros/services.cpp cpp/ros/settings.cpp)
+target_link_libraries(quadcore_node PRIVATE quadcore)
+add_ros_node(hover_node cpp/ros/hover_node.cpp)
+
+catkin_install_python(PROGRAMS scripts/ros/expand_model.py scripts/ros/fly_from_python.py
+                      DESTINATION lib/quadcore)

@@ -1,0 +1,96 @@
+#include "services.hpp"
+
+#include <quadcore/SetState.h>
+#include <quadcore/Step.h>
+#include <std_srvs/Empty.h>
+
+#include "quadcore/error.hpp"
+
+namespace quadcore::node {
+namespace {
+
+void reset_simulation(Simulation& simulation) { simulation.reset(); }
+
+/// Everything back to the start but time, which goes on.
+void reset_world(Simulation& simulation) {
+  const double now = simulation.time();
+  simulation.reset();
+  VehicleState start = simulation.state();
+  start.time = now;
+  simulation.set_state(start);
+}
+
+void set_state(const SetState::Request& request, Simulation& simulation) {
+  VehicleState state = simulation.state();
+  const auto& p = request.pose.position;
+  const auto& q = request.pose.orientation;
+  const auto& v = request.twist.linear;
+  const auto& w = request.twist.angular;
+  state.position = {p.x, p.y, p.z};
+  state.orientation = Quaterniond(q.w, q.x, q.y, q.z);
+  state.linear_velocity = {v.x, v.y, v.z};
+  state.angular_velocity = {w.x, w.y, w.z};
+  if (!request.rotor_velocity.empty()) {
+    state.rotor_velocity = Eigen::Map<const VectorXd>(
+        request.rotor_velocity.data(), static_cast<Eigen::Index>(request.rotor_velocity.size()));
+  }
+  simulation.set_state(state);
+}
+
+/// Does what a request asks for; the response says whether it went well.
+template <class Response, class Action>
+void answer(Response& response, const Action& action) {
+  try {
+    action();
+    response.success = true;
+  } catch (const std::exception& error) {
+    response.message = error.what();
+  }
+}
+
+}  // namespace
+
+Services::Services(ros::NodeHandle nh, FlightThread& flight) : spinner_(2, &queue_) {
+  nh.setCallbackQueue(&queue_);
+  using Empty = std_srvs::Empty;
+  // std_srvs/Empty cannot say what went wrong: a call that returns false fails.
+  const auto offer = [&](const std::string& name, const std::function<void()>& action) {
+    servers_.push_back(nh.advertiseService<Empty::Request, Empty::Response>(
+        name, [name, action](Empty::Request&, Empty::Response&) {
+          try {
+            action();
+          } catch (const std::exception& error) {
+            ROS_ERROR("%s: %s", name.c_str(), error.what());
+            return false;
+          }
+          return true;
+        }));
+  };
+  offer("gazebo/pause_physics", [&flight] { flight.set_paused(true); });
+  offer("gazebo/unpause_physics", [&flight] { flight.set_paused(false); });
+  offer("gazebo/reset_simulation", [&flight] { flight.change(reset_simulation); });
+  offer("gazebo/reset_world", [&flight] { flight.change(reset_world); });
+
+  servers_.push_back(nh.advertiseService<Step::Request, Step::Response>(
+      "quadcore/step", [&flight](Step::Request& request, Step::Response& response) {
+        answer(response, [&] { flight.step(request.n); });
+        response.stamp.fromSec(flight.report().time);
+        return true;
+      }));
+  servers_.push_back(nh.advertiseService<SetState::Request, SetState::Response>(
+      "quadcore/set_state", [&flight](SetState::Request& request, SetState::Response& response) {
+        answer(response, [&] {
+          flight.change([&](Simulation& simulation) { set_state(request, simulation); });
+        });
+        return true;
+      }));
+  spinner_.start();
+}
+
+std::vector<std::string> Services::names() const {
+  std::vector<std::string> names;
+  for (const ros::ServiceServer& server : servers_) names.push_back(server.getService());
+  return names;
+}
+
+}  // namespace quadcore::node

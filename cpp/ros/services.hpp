@@ -1,0 +1,28 @@
+#pragma once
+
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+
+#include <string>
+#include <vector>
+
+#include "flight_thread.hpp"
+
+namespace quadcore::node {
+
+/// Gazebo's services to pause and reset, and quadcore's to step and to set the state. They answer
+/// in threads of their own, so that one that takes long holds up neither commands nor the others.
+class Services {
+ public:
+  Services(ros::NodeHandle nh, FlightThread& flight);
+
+  /// Resolved names.
+  std::vector<std::string> names() const;
+
+ private:
+  ros::CallbackQueue queue_;
+  std::vector<ros::ServiceServer> servers_;
+  ros::AsyncSpinner spinner_;
+};
+
+}  // namespace quadcore::node

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <ros/ros.h>
+
+#include <optional>
+#include <string>
+
+#include "flight_thread.hpp"
+#include "quadcore/document.hpp"
+#include "quadcore/simulation.hpp"
+
+namespace quadcore::node {
+
+/// What the node's private parameters say.
+struct Settings {
+  Document model;
+  std::string world;  ///< path; "" = empty.world
+  std::string name;   ///< of the model, for its topic; "" = as the URDF says
+  std::string log;    ///< path of a CSV log; "" = none
+  bool verbose = false;
+  std::optional<double> real_time_factor;  ///< absent = what the world asks for
+  SimulationOptions simulation;
+  FlightSettings flight;
+};
+
+/// Reads the parameters. Throws InputError on an unknown name or a value of the wrong kind.
+/// \param nh  where robot_description is looked for, then upwards; parameters are those of "~".
+Settings read_settings(const ros::NodeHandle& nh);
+
+}  // namespace quadcore::node

@@ -1,0 +1,64 @@
+"""Position, Euler angles and their rates: equations (2.3)-(2.9)."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+
+def rotation(eta: np.ndarray) -> np.ndarray:
+    """R_321 (2.8), body to world: Rz(psi) Ry(theta) Rx(phi).
+
+    Print swaps the axis labels of (2.5) and (2.7) and has c(theta) c(psi) in the entry (2,1).
+    """
+    (sphi, stheta, spsi), (cphi, ctheta, cpsi) = np.sin(eta).tolist(), np.cos(eta).tolist()
+    return np.array(
+        [
+            [ctheta * cpsi, sphi * stheta * cpsi - cphi * spsi, cphi * stheta * cpsi + sphi * spsi],
+            [ctheta * spsi, sphi * stheta * spsi + cphi * cpsi, cphi * stheta * spsi - sphi * cpsi],
+            [-stheta, sphi * ctheta, cphi * ctheta],
+        ]
+    )
+
+
+def euler_rates_to_body(eta: np.ndarray) -> np.ndarray:
+    """W (2.9): nu = [p, q, r] = W(eta) etadot, the angular velocity in body axes."""
+    (sphi, stheta, _), (cphi, ctheta, _) = np.sin(eta).tolist(), np.cos(eta).tolist()
+    return np.array([[1, 0, -stheta], [0, cphi, ctheta * sphi], [0, -sphi, cphi * ctheta]])
+
+
+def gradient_of_W(eta: np.ndarray) -> np.ndarray:
+    """dW/dphi, dW/dtheta and dW/dpsi; shape (3, 3, 3), the first index says which."""
+    (sphi, stheta, _), (cphi, ctheta, _) = np.sin(eta).tolist(), np.cos(eta).tolist()
+    by_phi = [[0, 0, 0], [0, -sphi, ctheta * cphi], [0, -cphi, -sphi * ctheta]]
+    by_theta = [[0, 0, -ctheta], [0, 0, -stheta * sphi], [0, 0, -cphi * stheta]]
+    return np.array([by_phi, by_theta, np.zeros((3, 3))])
+
+
+def skew(a: np.ndarray) -> np.ndarray:
+    """S(a) of (2.22): S(a) b = a x b."""
+    x, y, z = a.tolist()
+    return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+
+
+def generalise(eta: np.ndarray) -> np.ndarray:
+    """T(q), 6 x 6: what a force and a torque in body axes are as generalised forces.
+
+        [f; tau] = T(q) [f_B; tau_B],   T = [[R, 0], [0, W^T]],   [V_B; nu] = T^T qdot
+
+    The thesis uses body torques as generalised torques: (2.19), (2.24), (2.36) and (2.42) have the
+    identity where W^T belongs. Virtual work demands it: tau_B . nu = tau_B . W etadot.
+    """
+    return _generalise(*eta.tolist())
+
+
+@lru_cache(maxsize=1)  # all matrices of one instant share it
+def _generalise(phi: float, theta: float, psi: float) -> np.ndarray:
+    eta = np.array([phi, theta, psi])
+    T = np.zeros((6, 6))
+    T[:3, :3] = rotation(eta)
+    T[3:, 3:] = euler_rates_to_body(eta).T
+    T.flags.writeable = False
+    return T
+

@@ -1,0 +1,134 @@
+"""The matrices of the equation of motion: (2.20)-(2.42), one function each.
+
+All are 6 x 6 (K_zeta 6 x n, g a vector) and act on generalised coordinates: rows and columns
+x, y, z (m, N) and phi, theta, psi (rad, N m). `v` is a `Vehicle`, `q` = [xi, eta], `omega` the
+signed speeds of the rotors in rad/s.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .kinematics import euler_rates_to_body, generalise, gradient_of_W, skew
+from .vehicle import Vehicle
+
+
+def J(v: Vehicle, q: np.ndarray) -> np.ndarray:
+    """W^T I_B W of (2.16), 3 x 3: the inertia that the Euler angles' rates meet, kg m^2."""
+    W = euler_rates_to_body(q[3:])
+    inertia: np.ndarray = W.T @ v.inertia @ W
+    return inertia
+
+
+def gradient_of_J(v: Vehicle, q: np.ndarray) -> np.ndarray:
+    """dJ/dphi, dJ/dtheta and dJ/dpsi; shape (3, 3, 3), the first index says which."""
+    half = euler_rates_to_body(q[3:]).T @ v.inertia @ gradient_of_W(q[3:])
+    gradient: np.ndarray = half + half.transpose(0, 2, 1)
+    return gradient
+
+
+def B(v: Vehicle, q: np.ndarray) -> np.ndarray:
+    """Inertia matrix (2.20)."""
+    inertia = np.zeros((6, 6))
+    inertia[:3, :3] = v.mass * np.eye(3)
+    inertia[3:, 3:] = J(v, q)
+    return inertia
+
+
+def C(v: Vehicle, q: np.ndarray, qdot: np.ndarray) -> np.ndarray:
+    """Centrifugal and Coriolis matrix (2.20), from the Christoffel symbols of J:
+
+        C_ij = 1/2 sum_k (dJ_ij/deta_k + dJ_ik/deta_j - dJ_jk/deta_i) etadot_k
+
+    Jdot - 2 C is skew-symmetric then. That is not so for Jdot - 1/2 d(etadot^T J)/deta of (2.20),
+    nor for the entries printed as (2.21), of which C_21 has the wrong sign on I_x psidot c(theta)
+    and C_32 lacks the factor of phidot s(phi)^2 c(theta).
+    """  # noqa: D400
+    dJ, etadot = gradient_of_J(v, q), qdot[3:]
+    along = np.einsum("kij,k->ij", dJ, etadot)  # Jdot
+    across = np.einsum("jik,k->ij", dJ, etadot)
+    coriolis = np.zeros((6, 6))
+    coriolis[3:, 3:] = 0.5 * (along + across - across.T)
+    return coriolis
+
+
+def g(v: Vehicle) -> np.ndarray:
+    """Gravity (2.20), N; print lacks its sixth entry."""
+    return np.concatenate([-v.mass * v.gravity, np.zeros(3)])
+
+
+def G_a(v: Vehicle, q: np.ndarray, omega: np.ndarray) -> np.ndarray:
+    """Gyroscopic effect (2.22)-(2.24): S(nu) sum I_R omega_i e_3 = nu x h, moved to the left side.
+
+    Skew-symmetric: it does no work. The printed matrix lacks W^T and has its entry -I_rz sum omega
+    in the column of psi where that of theta is meant. A rotor that is slowed has as much less of
+    angular momentum.
+    """
+    T = generalise(q[3:])
+    h = (v.rotor_inertia * omega / v.slow) @ v.axes
+    body = np.zeros((6, 6))
+    body[3:, 3:] = -skew(h)
+    matrix: np.ndarray = T @ body @ T.T
+    return matrix
+
+
+def F_flap(v: Vehicle, q: np.ndarray, omega: np.ndarray) -> np.ndarray:
+    """Blade flapping (2.25)-(2.27) of all rotors.
+
+    D = T/|omega| (A_flap V_p + B_flap nu) with T/|omega| = k |omega|. In print A_1s and B_2 lack
+    the sign s of the rotor's spin, which mirror symmetry demands, and B_flap is not the same in all
+    directions about the axis. With S = S(axis), which turns vectors in the disc by 90 degrees,
+
+        A_flap = -(A_1c 1 + s A_1s S)/r,   B_flap = -(s B_2 1 + B_1 S).
+    """
+    if not v.flaps:
+        return np.zeros((6, 6))
+    s = np.where(omega < 0, -1, 1)[:, None, None]
+    quarter_turns = np.array([skew(axis) for axis in v.axes])
+    A_flap = -(v.A_1c * v.discs + s * v.A_1s * quarter_turns) / v.r
+    B_flap = -(s * v.B_2 * v.discs + v.B_1 * quarter_turns)
+    of_rates = np.broadcast_to(np.eye(6)[3:], (len(omega), 3, 6))
+    force = A_flap @ v.levers.transpose(0, 2, 1) + B_flap @ of_rates
+    wrench = np.einsum("i,iaj,ijb->ab", v.k * np.abs(omega), v.levers, force)
+    T = generalise(q[3:])
+    matrix: np.ndarray = -T @ wrench @ T.T
+    return matrix
+
+
+def F_I(v: Vehicle, q: np.ndarray) -> np.ndarray:
+    """Induced drag (2.28) of all rotors."""
+    return v.K_I * _disc_drag(v, q)
+
+
+def F_T(v: Vehicle, q: np.ndarray) -> np.ndarray:
+    """Drag in translation (2.29) of all rotors; its first branch, as in the thesis."""
+    return v.K_T * _disc_drag(v, q)
+
+
+def F_P(v: Vehicle, q: np.ndarray) -> np.ndarray:
+    """Profile drag (2.30) of all rotors."""
+    return v.K_P * _disc_drag(v, q)
+
+
+def F_par(v: Vehicle, qdot: np.ndarray) -> np.ndarray:
+    """Parasitic drag (2.31) at the centre of mass: |V| is the same in all axes."""
+    return np.diag([v.K_par * float(np.linalg.norm(qdot[:3]))] * 3 + [0.0] * 3)
+
+
+def K_zeta(v: Vehicle, q: np.ndarray, spin: np.ndarray) -> np.ndarray:
+    """K_zeta of (2.40)-(2.42): what each squared speed exerts; `spin` are the signs of the speeds.
+
+    Thrust k (2.10) along the rotor's axis and reaction torque b (2.11) about it. Print has rotor
+    1's reaction with the sign of its spin; `Vehicle.b` says which way it is meant.
+    """
+    wrench = v.k * np.einsum("iaj,ij->ai", v.levers, v.axes)
+    wrench[3:] += v.b * spin * v.axes.T
+    matrix: np.ndarray = generalise(q[3:]) @ wrench
+    return matrix
+
+
+def _disc_drag(v: Vehicle, q: np.ndarray) -> np.ndarray:
+    """Drag of unit coefficient; symmetric, so that it takes power."""
+    T = generalise(q[3:])
+    matrix: np.ndarray = T @ v.disc_drag @ T.T
+    return matrix

@@ -1,0 +1,187 @@
+"""``quadcore compare``: the same flight with several models or parameters."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any
+
+from rich.table import Table
+
+from .._core import FlightError, InputError
+from ..comparison.compare import Comparison, fly
+from ..comparison.grid import parse_axis
+from ..comparison.output import drawn, listed, number_text, summary, thinned, write
+from ..comparison.plan import Plan
+from ..files import make_folder
+from ..log import Log
+from . import options, terminal
+
+_ROWS = 40  # on the terminal
+_FEW = 20  # logs that --out writes unasked
+
+
+def register(commands: Any) -> None:
+    """Add the command to the command line."""
+    parser = options.subparser(
+        commands, "compare", "Fly the same with several models or parameters.", compare
+    )
+    options.add_model(parser, nargs="+")
+    parser.add_argument(
+        "--vary",
+        metavar="PLUGIN.TAG=VALUES",
+        type=options.assignment(r"([^=]+)=(.*)", "PLUGIN.TAG=VALUES"),
+        action="append",
+        default=[],
+        help="a,b,c or FIRST:LAST:COUNT or log:FIRST:LAST:COUNT; PLUGIN.TAG,PLUGIN.TAG=... gives "
+        "several tags the same value; engine=... and world=... too; repeatable: a grid",
+    )
+    options.add_flight(parser)
+    options.add_commands(parser)
+    parser.add_argument(
+        "--jobs", metavar="N", type=options.integer(1), help="processes (one per core)"
+    )
+    parser.add_argument(
+        "--out",
+        metavar="DIR",
+        type=Path,
+        help=f"write report, table, plots and, of up to {_FEW} flights, logs here",
+    )
+    parser.add_argument("--logs", action="store_true", help="every log in --out, however many")
+    parser.add_argument("--no-plots", action="store_true", help="no plots in --out")
+
+
+def compare(arguments: argparse.Namespace) -> None:
+    """Print how the models differ, fly them, and print how the flights differ."""
+    plan = _plan(arguments)
+    for warning in plan.warnings:
+        print(f"warning: {warning}", file=sys.stderr)
+    out = arguments.out
+    if out is not None:
+        make_folder(out)
+    if not arguments.quiet:
+        _show_models(plan)
+    try:
+        with terminal.progress(arguments.quiet) as progress:
+            comparison = fly(plan, _keeper(arguments, plan), arguments.jobs, progress)
+    except KeyboardInterrupt as stop:
+        partial = getattr(stop, "comparison", None)
+        if out is not None and partial is not None:
+            with terminal.interrupt_held():
+                write(partial, plan, _flight(arguments), out, plots=False)
+            print(f"what was flown: {out}", file=sys.stderr)
+        raise
+    files = []
+    if out is not None:
+        files = write(comparison, plan, _flight(arguments), out, not arguments.no_plots)
+    if not arguments.quiet:
+        _show_flights(plan, comparison, files)
+    _report_failures(plan, comparison)
+
+
+def _plan(arguments: argparse.Namespace) -> Plan:
+    axes = [
+        parse_axis(name, text) for name, text in options.unique("--vary", arguments.vary).items()
+    ]
+    if len(arguments.model) == 1 and not axes:
+        raise InputError("one model and nothing varied; name another model, or use --vary")
+    if arguments.logs and arguments.out is None:
+        raise InputError("--logs needs --out")
+    model = options.model_arguments(arguments)
+    return Plan(
+        model.pop("model"),
+        {axis.name: axis.values for axis in axes},
+        arguments.commands,
+        arguments.duration,
+        arguments.log_every,
+        {**model, **options.flight_arguments(arguments)},
+    )
+
+
+def _keeper(arguments: argparse.Namespace, plan: Plan) -> Any:
+    """Make what is done with each log: write it, and keep enough of some to draw."""
+    out = arguments.out
+    if out is None:
+        return None
+    to_draw = set() if arguments.no_plots else set(drawn(plan.count))
+    folder = out / "logs" if arguments.logs or plan.count <= _FEW else None
+    if folder is not None:
+        make_folder(folder)
+    digits = len(str(plan.count))
+
+    def keep(row: int, log: Log) -> Log | None:
+        if folder is not None:
+            log.to_csv(folder / f"{row + 1:0{digits}}.csv")
+        return thinned(log) if row in to_draw else None
+
+    return keep
+
+
+def _flight(arguments: argparse.Namespace) -> dict[str, str]:
+    """Describe what all flights share."""
+    return {
+        "commands": arguments.commands or "none",
+        "duration": f"{arguments.duration:g} s",
+        **{
+            name: str(value) for name, value in options.flight_arguments(arguments).items() if value
+        },
+        **{f"set {key}": value for key, value in arguments.set},
+        **{f"xacro {key}": value for key, value in arguments.xacro},
+    }
+
+
+def _show_models(plan: Plan) -> None:
+    console = terminal.console()
+    for model, found in plan.differences().items():
+        console.print(f"{model} differs from {plan.names[0]} in")
+        table = _table("  what", "from", "to", "at", "and at")
+        for d in found:
+            table.add_row(f"  {d.what}", d.before, d.after, d.before_at or "-", d.after_at or "-")
+        console.print(table if found else "  nothing that flies", "")
+    if plan.axes:
+        table = _table("varied", "values", "as written")
+        for axis in plan.axes:
+            table.add_row(axis.name, listed(axis.values), plan.as_written(axis) or "-")
+        console.print(table, "")
+
+
+def _show_flights(plan: Plan, comparison: Comparison, files: list[Path]) -> None:
+    console = terminal.console()
+    whole = list(comparison.states)[:4]
+    if comparison.reference is not None:
+        console.print(f"differences from no. {comparison.reference + 1}, final / largest")
+    headings = [f"{state} ({comparison.states[state]})" for state in whole]
+    table = _table("no.", "variant", *headings)
+    for number, (row, variant) in enumerate(zip(comparison.table, plan), start=1):
+        if number > _ROWS:
+            table.add_row("...", f"{plan.count - _ROWS} more")
+            break
+        cells = [
+            " / ".join(number_text(row[f"{kind}_{state}"]) for kind in ("final", "largest"))
+            for state in whole
+        ]
+        table.add_row(
+            str(number), plan.label(variant), *([row["failure"]] if row["failure"] else cells)
+        )
+    console.print(table, "", summary(comparison), sep="\n")
+    for file in files:
+        console.print(f"written {file}")
+
+
+def _report_failures(plan: Plan, comparison: Comparison) -> None:
+    failed = [row for row, failure in enumerate(comparison.table["failure"]) if failure]
+    if failed:
+        first = failed[0]
+        label = [plan.label(variant) for variant in plan][first]
+        raise FlightError(
+            f"{len(failed)} of {plan.count} flights failed; the first, no. {first + 1} ({label}): "
+            f"{comparison.table['failure'][first]}"
+        )
+
+
+def _table(*columns: str) -> Table:
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for i, column in enumerate(columns):
+        table.add_column(column, no_wrap=i == 0, overflow="fold")
+    return table

@@ -1,0 +1,222 @@
+"""Flying all variants of a plan and measuring how each differs from the first."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from pathlib import Path
+from typing import (
+    Any,
+    Callable,
+    Dict,
+    Iterator,
+    List,
+    Mapping,
+    NamedTuple,
+    Optional,
+    Sequence,
+    Tuple,
+    Union,
+)
+
+import numpy as np
+
+from .._core import InputError, QuadcoreError
+from ..commands import CommandsLike
+from ..log import Log
+from ..parallel import each
+from .difference import Difference
+from .grid import Values
+from .metrics import metrics, states
+from .plan import Plan, Variant
+
+Progress = Callable[[int, int], None]
+Keep = Callable[[int, Log], Any]
+Outcome = Tuple[np.ndarray, Any]
+
+_LARGEST_LOGS = 2 * 2**30  # bytes
+
+
+class Comparison(NamedTuple):
+    """What became of the flights."""
+
+    table: np.ndarray
+    """Structured, a row per variant: ``model``, each axis (as text), ``failure`` ("" if it flew),
+    and ``final_STATE`` and ``largest_STATE`` for each of `states`, NaN where it did not fly."""
+    logs: List[Any]
+    """`Log` of each variant, None where it did not fly; empty if logs were not asked for."""
+    states: Dict[str, str]
+    """Unit of each state that is compared, by name. ``position``, ``velocity`` and ``rates`` are
+    lengths of difference vectors, ``attitude`` is the angle between both."""
+    reference: Optional[int]
+    """Row that all others are compared with: the first that flew."""
+    differences: Dict[str, List[Difference]]
+    """What each further model's file differs in from the first's."""
+
+
+def compare(
+    models: Union[str, Path, Sequence[Union[str, Path]]],
+    vary: Optional[Mapping[str, Values]] = None,
+    commands: Optional[CommandsLike] = None,
+    duration: float = 10.0,
+    log_every: int = 1,
+    logs: bool = True,
+    processes: Optional[int] = None,
+    progress: Optional[Progress] = None,
+    **options: Any,
+) -> Comparison:
+    """Fly the same flight with several models or parameters, in parallel.
+
+    Parameters
+    ----------
+    models
+        One or several models: files or names of shipped ones.
+    vary
+        Values by ``"PLUGIN.TAG"`` (several, joined by commas, take the same value), ``"engine"`` or
+        ``"world"``. All combinations are flown; the last axis runs fastest.
+    commands, duration, log_every
+        As for `Simulation.run`.
+    logs
+        Whether to keep them.
+    processes
+        How many; None takes one per core.
+    progress
+        Called as progress(flights_done, flights_total).
+    **options
+        As for `Simulation`: engine, world, dt, seed, parameters, xacro_args, spawn.
+
+    Returns
+    -------
+    Comparison
+        The same whatever the number of processes.
+
+    Raises
+    ------
+    InputError
+        Nothing was flown: too many variants, logs that would take more than 2 GiB, an unreadable
+        file, an unknown tag, or models with different numbers of rotors under the same commands. A
+        variant that fails by itself is a row of the table with its reason instead.
+    KeyboardInterrupt
+        With the attribute `comparison`, whose missing rows say so.
+    """
+    names = [models] if isinstance(models, (str, Path)) else list(models)
+    plan = Plan(names, vary or {}, commands, duration, log_every, options)
+    if logs:
+        _check_memory(plan, duration, log_every)
+    return fly(plan, (lambda _, log: log) if logs else None, processes, progress)
+
+
+def fly(
+    plan: Plan,
+    keep: Optional[Keep] = None,
+    processes: Optional[int] = None,
+    progress: Optional[Progress] = None,
+) -> Comparison:
+    """Fly a plan.
+
+    Parameters
+    ----------
+    plan
+        What to fly.
+    keep
+        Called as keep(row, log) in the process that flew; what it returns stands in for the log.
+    processes, progress
+        As for `compare`.
+    """
+    tally = _Tally(plan, keep, progress)
+    flights = enumerate(plan)
+    try:
+        reference = _first_flown(plan, flights, tally)
+        if reference is not None:
+
+            def measured(flight: Tuple[int, Variant]) -> Outcome:
+                row, variant = flight
+                return _measured(row, plan.fly(variant), reference, keep)
+
+            start = tally.done
+            with closing(each(measured, flights, processes)) as outcomes:
+                for index, outcome in outcomes:
+                    tally.note(start + index, outcome)
+    except KeyboardInterrupt as stop:
+        stop.comparison = tally.result()  # type: ignore[attr-defined]
+        raise
+    return tally.result()
+
+
+def _first_flown(
+    plan: Plan, flights: Iterator[Tuple[int, Variant]], tally: _Tally
+) -> Optional[Log]:
+    """Take flights until one succeeds, which all later ones are compared with."""
+    for row, variant in flights:
+        # In a process too: what crashes there does not end the comparison.
+        ((_, log),) = each(plan.fly, [variant], 1)
+        if isinstance(log, Log):
+            tally.reference = row
+            tally.note(row, _measured(row, log, log, tally.keep))
+            return log
+        tally.note(row, log)
+    return None
+
+
+def _measured(row: int, log: Log, reference: Log, keep: Optional[Keep]) -> Outcome:
+    return metrics(reference, log), None if keep is None else keep(row, log)
+
+
+class _Tally:
+    """What is known of the flights so far."""
+
+    def __init__(self, plan: Plan, keep: Optional[Keep], progress: Optional[Progress]) -> None:
+        self.keep = keep
+        self.done = 0
+        self.reference: Optional[int] = None
+        self._plan, self._progress = plan, progress
+        self._states = states(plan.rotor_count)
+        self._metrics = np.full((plan.count, 2, len(self._states)), np.nan)
+        self._failures = ["not flown: interrupted"] * plan.count
+        self._kept: List[Any] = [] if keep is None else [None] * plan.count
+
+    def note(self, row: int, outcome: Union[Outcome, QuadcoreError]) -> None:
+        if isinstance(outcome, QuadcoreError):
+            self._failures[row] = str(outcome)
+        else:
+            self._failures[row] = ""
+            self._metrics[row] = outcome[0]
+            if self._kept:
+                self._kept[row] = outcome[1]
+        self.done += 1
+        if self._progress is not None:
+            self._progress(self.done, self._plan.count)
+
+    def result(self) -> Comparison:
+        plan = self._plan
+        axes = list(zip(*(values for _, values in plan)))
+        columns: Dict[str, Any] = {
+            "model": [plan.names[model] for model, _ in plan],
+            **{axis.name: values for axis, values in zip(plan.axes, axes)},
+            "failure": self._failures,
+        }
+        for i, kind in enumerate(("final", "largest")):
+            for j, state in enumerate(self._states):
+                columns[f"{kind}_{state}"] = self._metrics[:, i, j]
+        return Comparison(
+            _structured(columns), self._kept, self._states, self.reference, plan.differences()
+        )
+
+
+def _structured(columns: Mapping[str, Sequence[Any]]) -> np.ndarray:
+    arrays = {name: np.asarray(values) for name, values in columns.items()}
+    table = np.empty(
+        len(arrays["model"]), dtype=[(name, array.dtype) for name, array in arrays.items()]
+    )
+    for name, array in arrays.items():
+        table[name] = array
+    return table
+
+
+def _check_memory(plan: Plan, duration: float, log_every: int) -> None:
+    """Refuse logs that could not be held: better now than when the machine swaps."""
+    size = plan.count * duration / plan.dt / log_every * (14 + plan.rotor_count) * 8
+    if size > _LARGEST_LOGS:
+        raise InputError(
+            f"the logs of {plan.count} flights take {size / 2**30:.0f} GiB; give logs=False, or a "
+            "larger log_every"
+        )

@@ -1,0 +1,73 @@
+"""How far one flight is from another."""
+
+from __future__ import annotations
+
+from typing import Dict
+
+import numpy as np
+
+from ..log import Log
+from ..rotation import roll_pitch_yaw
+
+# Lengths of the difference vectors, and the angle between the attitudes.
+_WHOLE = {"position": "m", "attitude": "rad", "velocity": "m/s", "rates": "rad/s"}
+_PARTS = {
+    **dict.fromkeys(("x", "y", "z"), "m"),
+    **dict.fromkeys(("roll", "pitch", "yaw"), "rad"),
+    **dict.fromkeys(("vx", "vy", "vz"), "m/s"),
+    **dict.fromkeys(("wx", "wy", "wz"), "rad/s"),
+}
+
+
+def states(rotor_count: int) -> Dict[str, str]:
+    """Names and units of the columns of `differences`."""
+    return {**_WHOLE, **_PARTS, **{f"j{i}": "rad/s" for i in range(1, 1 + rotor_count)}}
+
+
+def differences(reference: Log, log: Log) -> np.ndarray:
+    """Differences of each state from a reference over the time that both cover.
+
+    Where the flights were logged at other times, the reference is interpolated.
+
+    Returns
+    -------
+    ndarray, shape (rows, 16 + n)
+        Columns as `states` names them for the reference's n rotors; angles within [-pi, pi]. A
+        flight with another number of rotors has NaN for them.
+    """
+    log = Log(log.table[log.time <= reference.time[-1] + 1e-9], {})
+    reference = _at(log.time, reference)
+    position = log.position - reference.position
+    angles = roll_pitch_yaw(log.orientation) - roll_pitch_yaw(reference.orientation)
+    angles = np.remainder(angles + np.pi, 2 * np.pi) - np.pi
+    # |q - p| and |q + p| are 2 sin and 2 cos of a quarter of the angle: exact for small angles too,
+    # and blind to the sign of a quaternion.
+    apart = np.linalg.norm(log.orientation - reference.orientation, axis=1)
+    together = np.linalg.norm(log.orientation + reference.orientation, axis=1)
+    attitude = 4 * np.arctan2(np.minimum(apart, together), np.maximum(apart, together))
+    velocity = log.linear_velocity - reference.linear_velocity
+    rates = log.angular_velocity - reference.angular_velocity
+    if log.rotor_velocity.shape == reference.rotor_velocity.shape:
+        rotors = log.rotor_velocity - reference.rotor_velocity
+    else:
+        rotors = np.full_like(reference.rotor_velocity, np.nan)
+    lengths = [np.linalg.norm(vector, axis=1) for vector in (position, velocity, rates)]
+    whole = np.stack([lengths[0], attitude, *lengths[1:]], axis=1)
+    return np.hstack([whole, position, angles, velocity, rates, rotors])
+
+
+def metrics(reference: Log, log: Log) -> np.ndarray:
+    """Find the final and the largest difference of each state; shape (2, 16 + n).
+
+    The final one has its sign; the largest is of magnitudes.
+    """
+    rows = differences(reference, log)
+    return np.stack([rows[-1], np.abs(rows).max(axis=0)])
+
+
+def _at(time: np.ndarray, log: Log) -> Log:
+    if np.array_equal(time, log.time[: len(time)]):
+        return Log(log.table[: len(time)], {})
+    table = np.stack([np.interp(time, log.time, column) for column in log.table.T], axis=1)
+    table[:, 4:8] /= np.linalg.norm(table[:, 4:8], axis=1, keepdims=True)
+    return Log(table, {})

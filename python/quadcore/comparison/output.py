@@ -1,0 +1,166 @@
+"""What a comparison leaves behind: table, pictures, report."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, Optional
+
+import numpy as np
+
+from ..files import atomic_write
+from ..log import Log
+from .compare import Comparison
+from .plan import Plan
+
+_ROWS_OF_PAGE = 200
+_DRAWN = 40  # flights in one picture
+_POINTS = 600  # per flight: finer than a picture shows
+
+
+def drawn(count: int) -> List[int]:
+    """Which of so many flights to draw: all, or evenly many with the first and the last."""
+    return [round(row) for row in np.linspace(0, count - 1, min(count, _DRAWN))]
+
+
+def thinned(log: Log) -> Log:
+    """Rows enough to draw."""
+    picked = np.linspace(0, len(log) - 1, min(len(log), _POINTS)).round().astype(int)
+    return Log(log.table[picked], {})
+
+
+def write(
+    comparison: Comparison, plan: Plan, flight: Mapping[str, str], folder: Path, plots: bool
+) -> List[Path]:
+    """Write ``table.csv``, ``comparison.json``, ``report.html`` and, if asked, pictures.
+
+    Parameters
+    ----------
+    comparison
+        Its `logs` hold, `thinned`, the flights to draw.
+    plan
+        What was flown.
+    flight
+        What all flights share, for the report.
+    folder
+        Where to.
+    plots
+        Whether to draw.
+    """
+    from ..report import write_page  # not every command should pay for jinja2
+
+    images = _images(comparison, plan) if plots else {}
+    files = {f"{name}.png": data for name, data in images.items()}
+    files["table.csv"] = _csv(comparison).encode()
+    files["comparison.json"] = _json(comparison, plan, flight).encode()
+    for name, data in files.items():
+        with atomic_write(folder / name) as stream:
+            stream.write(data)
+    page = folder / "report.html"
+    write_page(page, "compare.html", **_page(comparison, plan, flight, images))
+    return [*(folder / name for name in files), page]
+
+
+def summary(comparison: Comparison) -> str:
+    """How many flew, in one line."""
+    count = len(comparison.table)
+    failed = sum(1 for failure in comparison.table["failure"] if failure)
+    return f"{count} flights: {count - failed} flown, {failed} failed"
+
+
+def _images(comparison: Comparison, plan: Plan) -> Dict[str, bytes]:
+    # matplotlib is slow to import.
+    from ..plots import png
+    from . import pictures
+
+    curves, reference = [], None
+    for row, (log, variant) in enumerate(zip(comparison.logs, plan)):
+        if log is not None:
+            curves.append(pictures.Curve(plan.label(variant), log))
+            reference = log if row == comparison.reference else reference
+    if reference is None:
+        return {}
+    figures = pictures.draw(curves, reference, curves[0].label)
+    return {name: png(figure) for name, figure in figures.items()}
+
+
+def _csv(comparison: Comparison) -> str:
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(["number", *(comparison.table.dtype.names or ())])
+    for number, row in enumerate(comparison.table.tolist(), start=1):
+        writer.writerow([number, *("" if value != value else value for value in row)])
+    return stream.getvalue()
+
+
+def _json(comparison: Comparison, plan: Plan, flight: Mapping[str, str]) -> str:
+    names = comparison.table.dtype.names or ()
+    rows = [
+        {name: None if value != value else value for name, value in zip(names, row)}
+        for row in comparison.table.tolist()
+    ]
+    content = {
+        "flight": dict(flight),
+        "differences": {
+            model: [difference._asdict() for difference in found]
+            for model, found in comparison.differences.items()
+        },
+        "units": comparison.states,
+        "reference": _number(comparison),
+        "rows": [{"number": number, **row} for number, row in enumerate(rows, start=1)],
+    }
+    return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _number(comparison: Comparison) -> Optional[int]:
+    return None if comparison.reference is None else comparison.reference + 1
+
+
+def _page(
+    comparison: Comparison, plan: Plan, flight: Mapping[str, str], images: Mapping[str, bytes]
+) -> Dict[str, Any]:
+    rows = []
+    for number, (row, variant) in enumerate(zip(comparison.table, plan), start=1):
+        if number > _ROWS_OF_PAGE:
+            break
+        cells = {
+            kind: [number_text(row[f"{kind}_{state}"]) for state in comparison.states]
+            for kind in ("final", "largest")
+        }
+        label = plan.label(variant)
+        rows.append({"number": number, "label": label, "failure": row["failure"], **cells})
+    shown = len(drawn(plan.count))
+    return {
+        "title": "Comparison of flights",
+        "summary": summary(comparison),
+        "flight": flight,
+        "differences": comparison.differences,
+        "first": plan.names[0],
+        "axes": [
+            {"name": axis.name, "listed": listed(axis.values), "written": plan.as_written(axis)}
+            for axis in plan.axes
+        ],
+        "pictures": [{"name": name, "data": data} for name, data in images.items()],
+        "thinned": f"{shown} of {plan.count} are drawn." if shown < plan.count else "",
+        "reference": comparison.reference is not None and f"no. {_number(comparison)}",
+        "states": comparison.states,
+        "rows": rows,
+        "more": max(0, plan.count - _ROWS_OF_PAGE),
+    }
+
+
+def number_text(value: float) -> str:
+    """Four digits, for a table that is read."""
+    return "" if math.isnan(value) else f"{value:.4g}"
+
+
+def listed(values: Any) -> str:
+    """Values of an axis, the middle of many left out."""
+    if len(values) <= 12:
+        return ", ".join(values)
+    return ", ".join([*(values[i] for i in range(3)), "...", values[len(values) - 1]]) + (
+        f" ({len(values)})"
+    )

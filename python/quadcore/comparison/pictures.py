@@ -1,0 +1,128 @@
+"""Flights drawn over each other."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, List, NamedTuple, Sequence, Tuple
+
+import numpy as np
+from matplotlib import cm
+from matplotlib.figure import Figure
+
+from ..log import Log
+from ..plots import PALETTE, panels
+from ..rotation import roll_pitch_yaw
+from .metrics import differences
+
+_LABELS = 6
+
+
+class Curve(NamedTuple):
+    """One flight as it is drawn."""
+
+    label: str
+    log: Log
+
+
+def draw(curves: Sequence[Curve], reference: Log, name: str) -> Dict[str, Figure]:
+    """Draw the flights, and how far each is from the reference.
+
+    Parameters
+    ----------
+    curves
+        At least one.
+    reference
+        Thinned as they are.
+    name
+        Of the reference, for the title.
+    """
+    styles = _styles(curves)
+    return {
+        "position": _position(curves, styles),
+        "attitude": _attitude(curves, styles),
+        "rates": _rates(curves, styles),
+        "rotors": _rotors(curves, styles),
+        "differences": _differences(curves, styles, reference, name),
+    }
+
+
+def _styles(curves: Sequence[Curve]) -> List[Dict[str, Any]]:
+    count = len(curves)
+    named = set(np.linspace(0, count - 1, min(count, _LABELS)).round().astype(int))
+    styles = []
+    for i, curve in enumerate(curves):
+        few = count <= len(PALETTE)
+        styles.append(
+            {
+                "color": PALETTE[i] if few else cm.viridis(0.95 * i / (count - 1)),
+                # Earlier ones shine through at the edges of those that cover them.
+                "linewidth": 1.2 + (1.6 * (1 - i / count) if few else 0),
+                "label": curve.label if few or i in named else None,
+            }
+        )
+    return styles
+
+
+def _position(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure:
+    values = [curve.log.position for curve in curves]
+    return _figure("Position", curves, styles, [(values, [f"{a} (m)" for a in "xyz"])])
+
+
+def _attitude(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure:
+    values = [np.degrees(np.unwrap(roll_pitch_yaw(c.log.orientation), axis=0)) for c in curves]
+    labels = [f"{angle} (deg)" for angle in ("roll", "pitch", "yaw")]
+    return _figure("Attitude", curves, styles, [(values, labels)])
+
+
+def _rates(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure:
+    linear = [curve.log.linear_velocity for curve in curves]
+    angular = [curve.log.angular_velocity for curve in curves]
+    sides = [
+        (linear, [f"$v_{axis}$ (m/s)" for axis in "xyz"]),
+        (angular, [rf"$\omega_{axis}$ (rad/s)" for axis in "xyz"]),
+    ]
+    return _figure("Linear (world) and angular (body) velocity", curves, styles, sides)
+
+
+def _rotors(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure:
+    count = max(curve.log.rotor_velocity.shape[1] for curve in curves)
+    values = [np.abs(curve.log.rotor_velocity) for curve in curves]
+    labels = [f"rotor {i} (rad/s)" for i in range(1, 1 + count)]
+    return _figure("Speed of the rotor joints", curves, styles, [(values, labels)])
+
+
+def _differences(
+    curves: Sequence[Curve], styles: Sequence[Dict[str, Any]], reference: Log, name: str
+) -> Figure:
+    scale = np.array([1, 180 / np.pi, 1, 180 / np.pi])
+    values = [differences(reference, curve.log)[:, :4] * scale for curve in curves]
+    labels = ["position (m)", "attitude (deg)", "velocity (m/s)", "rates (deg/s)"]
+    return _figure(f"Distance from {name}", curves, styles, [(values, labels)])
+
+
+def _figure(
+    title: str,
+    curves: Sequence[Curve],
+    styles: Sequence[Dict[str, Any]],
+    sides: Sequence[Tuple[Sequence[np.ndarray], Sequence[str]]],
+) -> Figure:
+    """Make a column of panels for each side: its values by flight, and its columns' labels."""
+    labels = [style["label"] for style in styles if style["label"]]
+    # A sign is a tenth of an inch wide at most; a legend line is as wide as seven.
+    columns = max(1, int((8 if len(sides) > 1 else 7) * 10 / (7 + max(map(len, labels)))))
+    lines = 1 + (len(labels) - 1) // columns
+    figure, grid = panels(title, len(sides[0][1]), len(sides), above=0.45 + 0.22 * lines)
+    for column, (values, labels) in zip(grid.T, sides):
+        for curve, style, table in zip(curves, styles, values):
+            # Differences end where the reference does.
+            for axes, state in zip(column, table.T):
+                axes.plot(curve.log.time[: len(state)], state, **style)
+        for axes, label in zip(column, labels):
+            axes.set_ylabel(label)
+    figure.legend(
+        *grid[0, 0].get_legend_handles_labels(),
+        loc="upper left",
+        bbox_to_anchor=(0, 1 - 0.25 / figure.get_figheight()),
+        ncol=min(columns, len(labels)),
+        frameon=False,
+    )
+    return figure

@@ -1,0 +1,171 @@
+"""The flights of a comparison: everything read and checked before the first takes off."""
+
+from __future__ import annotations
+
+import difflib
+from pathlib import Path
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
+
+from .. import _core
+from .._core import InputError, QuadcoreError, engines
+from ..commands import CommandsLike, as_commands
+from ..description import load_description, load_world
+from ..log import Log
+from ..simulation import Simulation
+from .difference import Difference, differences, facts
+from .grid import Axis, Values, axes_of, check_size, variants
+
+Variant = Tuple[int, Tuple[str, ...]]
+
+
+class Plan:
+    """Variants of one flight.
+
+    Parameters
+    ----------
+    models
+        Files or names of shipped models.
+    vary
+        Values by axis.
+    commands
+        Flown by each.
+    duration, log_every
+        As for `Simulation.run`.
+    options
+        As for `Simulation`.
+
+    Raises
+    ------
+    InputError
+        Too many variants, a model, world or commands file that cannot be read, an unknown tag or
+        engine, or models that cannot share the commands.
+    """
+
+    def __init__(
+        self,
+        models: Sequence[Union[str, Path]],
+        vary: Mapping[str, Values],
+        commands: Optional[CommandsLike],
+        duration: float,
+        log_every: int,
+        options: Mapping[str, Any],
+    ) -> None:
+        self.axes = axes_of(vary)
+        self.count = check_size(len(models), self.axes)
+        self.names = [str(model) for model in models]
+        self._options = dict(options)
+        self._options["parameters"] = dict(options.get("parameters") or {})
+        arguments = self._options.pop("xacro_args", None) or {}
+        arguments = {name: str(value) for name, value in arguments.items()}
+        self._documents = [load_description(name, arguments) for name in self.names]
+        self._models = [_core.read_model(document) for document in self._documents]
+        self._worlds = {name: _core.read_world(load_world(name)) for name in self._values("world")}
+        self._check_engines()
+        built = self._built()
+        self.dt = built[0].dt if built else 1e-3
+        """s, of the first model as it is."""
+        self.warnings = list(
+            dict.fromkeys(w for sim in built for w in [*sim.model.warnings, *sim.warnings])
+        )
+        self._check_tags(built)
+        self.rotor_count = len(self._models[0].joints)
+        if commands is not None:
+            self._check_rotors()
+            width = built[0].command_width if built else self.rotor_count
+            commands = as_commands(commands, width)
+        self._run: Dict[str, Any] = {
+            "duration": duration,
+            "commands": commands,
+            "log_every": log_every,
+        }
+
+    def __iter__(self) -> Iterator[Variant]:
+        return variants(len(self.names), self.axes)
+
+    def fly(self, variant: Variant) -> Log:
+        """Fly a variant; raises what building or flying it raises."""
+        model, values = variant
+        options = {**self._options, "parameters": dict(self._options["parameters"])}
+        for axis, value in zip(self.axes, values):
+            if not axis.tags:
+                options[axis.name] = self._worlds[value] if axis.name == "world" else value
+            options["parameters"].update(dict.fromkeys(axis.tags, value))
+        return Simulation(self._models[model], **options).run(**self._run)
+
+    def label(self, variant: Variant) -> str:
+        """Name of a variant for a person: what sets it apart from the others."""
+        model, values = variant
+        parts = [self.names[model]] if len(self.names) > 1 else []
+        for axis, value in zip(self.axes, values):
+            if len(axis.values) > 1 or not parts:
+                parts.append(f"{axis.name.split(',')[0].split('.')[-1]} {_short(value)}")
+        return ", ".join(parts) or self.names[model]
+
+    def differences(self) -> Dict[str, List[Difference]]:
+        """List what sets each model's file apart from the first's, by name of the model."""
+        first = self._documents[0]
+        return {
+            name: differences(first, document)
+            for name, document in zip(self.names[1:], self._documents[1:])
+        }
+
+    def as_written(self, axis: Axis) -> str:
+        """Tell what the first model's file gives an axis' tags, and where; "" for none."""
+        written = facts(self._documents[0])
+        found = [written[tag] for tag in axis.tags if tag in written]
+        return "; ".join(f"{fact.text} ({fact.at})" for fact in found)
+
+    def _values(self, name: str) -> List[str]:
+        return [value for axis in self.axes if axis.name == name for value in axis.values]
+
+    def _built(self) -> List[Simulation]:
+        """Build the models as they are; one that cannot be is a variant that will fail."""
+        built = []
+        for model in self._models:
+            try:
+                built.append(Simulation(model, **self._options))
+            except QuadcoreError:
+                continue
+        return built
+
+    def _check_engines(self) -> None:
+        known = [name for name, _ in engines()]
+        for name in self._values("engine"):
+            if name not in known:
+                raise InputError(f"vary engine: there is no {_nearest(name, known)}")
+
+    def _check_tags(self, built: Sequence[Simulation]) -> None:
+        for simulation in built:
+            known = ["engine", "world"]
+            for plugin in simulation.plugins:
+                known += [f"{plugin.name}.{tag.name}" for tag in plugin.parameters]
+                known += [f"{plugin.name}.{tag.alias}" for tag in plugin.parameters if tag.alias]
+            for axis in self.axes:
+                for tag in axis.tags:
+                    if tag not in known:
+                        raise InputError(
+                            f"vary {tag}: model {simulation.model.name} has no "
+                            f"{_nearest(tag, known)}"
+                        )
+                    if tag in self._options["parameters"]:
+                        raise InputError(f"vary {tag}: it is set as well; keep one")
+
+    def _check_rotors(self) -> None:
+        for name, model in zip(self.names, self._models):
+            if len(model.joints) != self.rotor_count:
+                raise InputError(
+                    f"{name}: has {len(model.joints)} rotors, {self.names[0]} has "
+                    f"{self.rotor_count}; the same commands cannot fly both"
+                )
+
+
+def _short(value: str) -> str:
+    """Leave out digits that a label has no room for."""
+    try:
+        return f"{float(value):.4g}" if len(value) > 8 else value
+    except ValueError:
+        return value
+
+
+def _nearest(name: str, known: Sequence[str]) -> str:
+    return f"'{name}'; the nearest is '{difflib.get_close_matches(name, known, 1, 0.0)[0]}'"

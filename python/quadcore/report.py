@@ -1,0 +1,48 @@
+"""Reports as one HTML file that needs no other."""
+
+from __future__ import annotations
+
+import base64
+from pathlib import Path
+
+import jinja2
+
+from .files import atomic_write
+
+
+def write_page(path: Path, template: str, **values: object) -> None:
+    """Fill in a template and write the page.
+
+    Parameters
+    ----------
+    path
+        The HTML file.
+    template
+        Name of a file in ``templates/``; it extends ``page.html``. The filter ``picture`` shows
+        bytes of a PNG: ``{{ bytes | picture("what it shows") }}``.
+    values
+        What the template uses; texts are escaped.
+
+    Raises
+    ------
+    InputError
+        The file cannot be written.
+    """
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(str(Path(__file__).parent / "templates")),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["picture"] = _picture
+    page = environment.get_template(template).render(values)
+    with atomic_write(path) as stream:
+        stream.write(page.encode())
+
+
+def _picture(data: bytes, meaning: str) -> str:
+    from markupsafe import Markup
+
+    source = f"data:image/png;base64,{base64.b64encode(data).decode()}"
+    return Markup('<img src="{}" alt="{}">').format(source, meaning)

@@ -1,0 +1,196 @@
+"""One flight of the experiment of the thesis' chapter 6.1, by an engine or by the model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+
+import numpy as np
+
+from .._core import InputError, QuadcoreError
+from ..chapter2 import GYROSTAT, MathematicalModel, Terms, Vehicle
+from ..chapter2.vehicle import AIR, MOTOR, command_order, parameters_of, the_plugin
+from ..commands import CommandsLike, as_commands
+from ..log import Log
+from ..simulation import Simulation, Value
+from ..state import State
+from .ascent import ascent
+from .given_speeds import fly_given_speeds, stiff_gain
+
+# The drags, in the order of chapter 6, by the tags that switch them off.
+DRAGS: Mapping[str, Tuple[str, ...]] = {
+    "profile": ("profileDragCoeff",),
+    "parasitic": ("parasiticDragCoeff",),
+    "translational": ("translationalDragCoeff",),
+    "induced": ("inducedDragCoeff",),
+    "flapping": ("flappingA1c", "flappingA1s", "flappingB1", "flappingB2"),
+}
+
+MODEL = "model"
+# What the model may be asked for besides what chapter 2 says.
+TERMS: Mapping[str, Terms] = {
+    "lagging motors": Terms(),
+    "ideal motors": Terms(motor_lag=False),
+    "spin-up": Terms(spin_up=True),
+    "dragged rotors": Terms(dragged_rotors=True),
+    "both": GYROSTAT,
+}
+
+
+class Case(NamedTuple):
+    """One flight."""
+
+    plant: str
+    """An engine, or MODEL."""
+    sim_slow: float = 1.0
+    drag: str = "all"
+    """Of DRAGS the one that acts, or "all" or "none"."""
+    variant: str = ""
+    """Of an engine "chapter2" (that drag model) or "given speeds" (that, and the rotors' speeds
+    are given instead of driven); of the model a key of TERMS, or none for chapter 2."""
+
+
+class Flight(NamedTuple):
+    """What became of a case."""
+
+    case: Case
+    log: Optional[Log]
+    failure: str
+    """Why there is no log."""
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """What all flights share; made by `Experiment.of`."""
+
+    model: str
+    world: Optional[str]
+    parameters: Dict[str, Value]
+    xacro_args: Dict[str, str]
+    dt: float
+    duration: float
+    spawn: Tuple[float, ...]
+    commands: np.ndarray = field(repr=False)
+    motor_lag: bool
+    log_every: int
+    air: str
+    """Name of the aerodynamic plugin."""
+    motor: str
+
+    @classmethod
+    def of(
+        cls,
+        model: str = "quadrotor",
+        world: Optional[str] = None,
+        parameters: Optional[Mapping[str, Value]] = None,
+        xacro_args: Optional[Mapping[str, str]] = None,
+        dt: Optional[float] = None,
+        duration: float = 10.0,
+        spawn: Sequence[float] = (0.0, 0.0, 10.0),
+        commands: Optional[CommandsLike] = None,
+        motor_lag: bool = True,
+        log_every: int = 10,
+    ) -> Experiment:
+        """Check what is asked for; without commands the flight is `ascent`.
+
+        Raises
+        ------
+        InputError
+            An argument is at fault, or the mathematical model has no equation for the vehicle.
+        """
+        parameters, xacro_args = dict(parameters or {}), dict(xacro_args or {})
+        for key in parameters:
+            if key.endswith(".sim_slow"):
+                raise InputError(f"{key}: every flight has its own; give a list of sim_slow")
+        simulation = Simulation(model, "eigen", world, dt, 0, parameters, xacro_args, spawn)
+        vehicle = Vehicle.of(simulation)
+        rotors = len(vehicle.arms)
+        table = ascent(vehicle) if commands is None else as_commands(commands, rotors)
+        if table[0, 0] > 0:
+            raise InputError(f"commands: the first row is for t = {table[0, 0]:g}; begin at t = 0")
+        air, motor = (the_plugin(simulation, file).name for file in (AIR, MOTOR))
+        return cls(
+            model,
+            world,
+            parameters,
+            xacro_args,
+            simulation.dt,
+            duration,
+            tuple(spawn),
+            at_steps(table, simulation.dt),
+            motor_lag,
+            log_every,
+            air,
+            motor,
+        )
+
+    def simulation(self, case: Case, more: Optional[Mapping[str, Value]] = None) -> Simulation:
+        """Make the vehicle of a case, at rest with the rotors at the speeds of the first command.
+
+        Parameters
+        ----------
+        more
+            PLUGIN.TAG -> value, to change on top.
+        """
+        parameters = dict(self.parameters)
+        for plugin in (self.air, self.motor):
+            parameters[f"{plugin}.sim_slow"] = case.sim_slow
+        for drag, tags in DRAGS.items():
+            if case.drag not in ("all", drag):
+                parameters.update((f"{self.air}.{tag}", 0) for tag in tags)
+        if case.variant in ("chapter2", "given speeds"):
+            parameters[f"{self.air}.dragModel"] = "chapter2"
+        parameters.update(more or {})
+        engine = "eigen" if case.plant == MODEL else case.plant
+        simulation = Simulation(
+            self.model, engine, self.world, self.dt, 0, parameters, self.xacro_args, self.spawn
+        )
+        state = simulation.state.copy()
+        state.rotor_velocity[command_order(simulation)] = self.commands[0, 1:] / case.sim_slow
+        simulation.set_state(state)
+        return simulation
+
+    def fly(self, case: Case) -> Flight:
+        """Fly a case; what ends its flight is told, not raised."""
+        try:
+            return Flight(case, self._fly(case), "")
+        except QuadcoreError as error:
+            return Flight(case, None, str(error))
+
+    def _fly(self, case: Case) -> Log:
+        simulation = self.simulation(case)
+        if case.plant == MODEL:
+            terms = TERMS.get(case.variant, Terms(motor_lag=self.motor_lag))
+            model = MathematicalModel(Vehicle.of(simulation), terms)
+            step = self.log_every * self.dt
+            return model.fly(self.duration, self.commands, _in_order(simulation), step)
+        if case.variant == "given speeds":
+            vehicle = Vehicle.of(simulation)
+            gain = {f"{self.motor}.kp": stiff_gain(vehicle, self.dt)}
+            stiff = self.simulation(case, {**gain, f"{self.motor}.maxVelocity": 1e9})
+            return fly_given_speeds(
+                stiff, vehicle, self.commands, self.duration, self.log_every, self.motor_lag
+            )
+        return simulation.run(self.duration, self.commands, self.log_every)
+
+    def drags(self) -> List[str]:
+        """Cases of drag that differ for this vehicle: none, each that acts alone, all."""
+        values = parameters_of(self.simulation(Case("eigen")), AIR)
+        acting = [d for d, tags in DRAGS.items() if any(float(values[tag]) for tag in tags)]
+        return ["none", *acting, "all"]
+
+
+def at_steps(commands: np.ndarray, dt: float) -> np.ndarray:
+    """Move each row to the step that would be the first to feel it; of several, the last counts."""
+    steps = np.ceil((commands[:, 0] - 1e-9) / dt)
+    steps[steps < 0] = 0
+    last = np.append(np.diff(steps) > 0, True)
+    table: np.ndarray = np.column_stack([steps * dt, commands[:, 1:]])[last]
+    return table
+
+
+def _in_order(simulation: Simulation) -> State:
+    """Present state, rotors in the order of a command."""
+    state = simulation.state.copy()
+    state.rotor_velocity = state.rotor_velocity[command_order(simulation)]
+    return state

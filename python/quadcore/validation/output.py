@@ -1,0 +1,126 @@
+"""A study as tables, figures and one page."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from pathlib import Path
+from typing import Any, Dict, Iterable, List, Mapping, Sequence
+
+import numpy as np
+
+from ..files import atomic_write
+from ..report import write_page
+from .chain import Chain
+from .experiment import Case
+from .states import STATES
+from .study import Row, Study
+
+_SIZES = (*STATES, "distance")
+
+
+def write(study: Study, pictures: Mapping[str, bytes], directory: Path) -> List[Path]:
+    """Write everything into a folder that is there; the same study gives the same bytes.
+
+    Parameters
+    ----------
+    pictures
+        PNG files by name, as `figures.pictures` names them; there may be none.
+
+    Returns
+    -------
+    list of Path
+        The page, tables, pictures.
+
+    Raises
+    ------
+    InputError
+        A file cannot be written.
+    """
+    files = {
+        "commands.csv": _csv(_commands(study)),
+        "errors.csv": _csv(_errors(study.rows)),
+        "chains.csv": _csv(_chains(study.chains)),
+        "validation.json": (json.dumps(as_json(study), indent=1) + "\n").encode(),
+    }
+    files.update((f"{name}.png", data) for name, data in pictures.items())
+    for name, data in files.items():
+        with atomic_write(directory / name) as stream:
+            stream.write(data)
+    page = directory / "validation.html"
+    write_page(
+        page,
+        "validation.html",
+        title=f"{study.experiment.model}: plant against mathematical model",
+        study=study,
+        rows={row.case: row for row in study.rows},
+        Case=Case,
+        pictures=pictures,
+        size=size,
+        degrees=np.degrees,
+    )
+    return [page, *(directory / name for name in files)]
+
+
+def as_json(study: Study) -> Dict[str, Any]:
+    """All numbers of a study as plain lists and dictionaries; angles in rad."""
+    experiment = study.experiment
+    shared = ("model", "world", "parameters", "xacro_args", "dt", "duration", "spawn", "motor_lag")
+    return {
+        "experiment": {name: getattr(experiment, name) for name in shared},
+        "commands": experiment.commands.tolist(),
+        "errors": [_row(row) for row in study.rows],
+        "chains": [
+            {**chain._asdict(), "links": [_link(link) for link in chain.links]}
+            for chain in study.chains
+        ],
+        "left_out": [_row(row) for row in study.left_out],
+        "slowed": [_row(row) for row in study.slowed],
+        "damping": [entry._asdict() for entry in study.damping],
+    }
+
+
+def size(value: float) -> str:
+    """Write a length with three digits, however small."""
+    return f"{value:.3g}" if abs(value) >= 1e-3 or value == 0 else f"{value:.0e}"
+
+
+def _row(row: Row) -> Dict[str, Any]:
+    result = {**row.case._asdict(), "steepest": row.steepest, "failure": row.failure}
+    if row.difference is not None:
+        result.update(row.difference._asdict())
+    return result
+
+
+def _link(link: Any) -> Dict[str, Any]:
+    return {**link._asdict(), "begin": link.begin._asdict(), "end": link.end._asdict()}
+
+
+def _commands(study: Study) -> Iterable[Sequence[Any]]:
+    rows = study.experiment.commands.tolist()
+    return [["t", *(f"w{i}" for i in range(1, len(rows[0])))], *rows]
+
+
+def _errors(rows: Sequence[Row]) -> Iterable[Sequence[Any]]:
+    kinds = [f"{kind}_{name}" for kind in ("max", "rms") for name in _SIZES]
+    yield ["engine", "sim_slow", "drag", "steepest", *kinds, "failure"]
+    for row in rows:
+        sizes: Sequence[Any] = [""] * len(kinds)
+        if row.difference is not None:
+            sizes = [part[name] for part in row.difference for name in _SIZES]
+        yield [*row.case[:3], row.steepest, *sizes, row.failure]
+
+
+def _chains(chains: Sequence[Chain]) -> Iterable[Sequence[Any]]:
+    yield ["drag", "sim_slow", "change", "share", "largest", "rms", "failure"]
+    for chain in chains:
+        for link in chain.links:
+            yield [*chain[:2], link.change, link.share, link.largest, link.rms, ""]
+        yield [*chain[:2], "sum", chain.distance, "", "", chain.failure]
+
+
+def _csv(rows: Iterable[Sequence[Any]]) -> bytes:
+    stream = io.StringIO()
+    csv.writer(stream, lineterminator="\n").writerows(rows)
+    return stream.getvalue().encode()

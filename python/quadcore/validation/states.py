@@ -1,0 +1,47 @@
+"""How far one flight is from another."""
+
+from __future__ import annotations
+
+from typing import Dict, NamedTuple
+
+import numpy as np
+
+from ..chapter2.kinematics import euler_rates_to_body
+from ..log import Log
+from ..rotation import roll_pitch_yaw
+
+# xi, eta and their rates, as chapter 6 plots them: m, rad, m/s, rad/s.
+STATES = ("x", "y", "z", "phi", "theta", "psi", "vx", "vy", "vz", "phidot", "thetadot", "psidot")
+
+
+def states(log: Log) -> np.ndarray:
+    """Position and Euler angles of the frame link, and their rates; (rows, 12) as STATES."""
+    eta = np.unwrap(roll_pitch_yaw(log.orientation), axis=0)
+    W = np.array([euler_rates_to_body(row) for row in eta])
+    etadot = np.linalg.solve(W, log.angular_velocity[..., None])[..., 0]
+    return np.hstack([log.position, eta, log.linear_velocity, etadot])
+
+
+class Difference(NamedTuple):
+    """Sizes of the difference of two flights over their time."""
+
+    largest: Dict[str, float]
+    """By state, and as "distance" that of the positions, m."""
+    rms: Dict[str, float]
+
+
+def compare(log: Log, reference: Log) -> Difference:
+    """Compare two flights that were logged at the same times."""
+    apart = states(log) - states(reference)
+    distance = np.linalg.norm(apart[:, :3], axis=1, keepdims=True)
+    sizes = np.abs(np.hstack([apart, distance]))
+    names = (*STATES, "distance")
+    return Difference(
+        dict(zip(names, sizes.max(axis=0).tolist())),
+        dict(zip(names, np.sqrt((sizes**2).mean(axis=0)).tolist())),
+    )
+
+
+def steepest(log: Log) -> float:
+    """Largest roll or pitch of a flight, rad."""
+    return float(np.abs(states(log)[:, 3:5]).max())

@@ -1,0 +1,118 @@
+"""All flights of the experiment, in parallel, and what they say."""
+
+from __future__ import annotations
+
+from typing import Callable, Dict, List, NamedTuple, Optional, Sequence
+
+from .._core import InputError, QuadcoreError
+from ..parallel import each
+from .chain import ORDER, Chain, forge, stages
+from .damping import Damping, measure
+from .experiment import MODEL, TERMS, Case, Experiment, Flight
+from .states import Difference, compare, steepest
+
+
+class Row(NamedTuple):
+    """One flight against another."""
+
+    case: Case
+    difference: Optional[Difference]
+    steepest: float
+    """Largest roll or pitch, rad."""
+    failure: str
+    """Why there is no difference."""
+
+
+class Study(NamedTuple):
+    """What `conduct` found."""
+
+    experiment: Experiment
+    engines: List[str]
+    sim_slow: List[float]
+    drags: List[str]
+    flights: Dict[Case, Flight]
+    rows: List[Row]
+    """Each engine, sim_slow and drag against the mathematical model."""
+    chains: List[Chain]
+    left_out: List[Row]
+    """The model with terms put back against the model, with the last of the drags."""
+    slowed: List[Row]
+    """The last of the engines against itself at full speed."""
+    damping: List[Damping]
+
+
+def conduct(
+    experiment: Experiment,
+    engines: Sequence[str] = ORDER,
+    sim_slow: Sequence[float] = (1, 8, 18),
+    drags: Optional[Sequence[str]] = None,
+    processes: Optional[int] = None,
+    progress: Optional[Callable[[int, int], None]] = None,
+) -> Study:
+    """Fly every engine at every sim_slow with every drag, and compare with the model.
+
+    Parameters
+    ----------
+    drags
+        None takes all that act on the vehicle, alone and together, and none.
+    processes
+        None takes one per core.
+    progress
+        Called as progress(flights_done, flights_total).
+    """
+    acting = experiment.drags()
+    for drag in drags or ():
+        if drag not in acting:
+            raise InputError(f"drag '{drag}' does not act on this vehicle ({', '.join(acting)})")
+    drags = list(drags or acting)
+    engines = [engine for engine in ORDER if engine in engines]
+    sim_slow = [float(n) for n in sim_slow]
+    asked = [Case(e, n, drag) for e in engines for n in sim_slow for drag in drags]
+    own = "lagging motors" if experiment.motor_lag else "ideal motors"
+    terms = [Case(MODEL, 1.0, drags[-1], name) for name in TERMS if name != own]
+    chains = [stages(drag, n, engines[0]) for drag in drags for n in sim_slow]
+    cases = dict.fromkeys([*terms, *(case for chain in chains for case in chain), *asked])
+    flights = _fly(experiment, list(cases), processes, progress)
+    reference = flights[Case(MODEL, 1.0, drags[-1])]
+    return Study(
+        experiment,
+        engines,
+        sim_slow,
+        drags,
+        flights,
+        [_row(flights[case], flights[Case(MODEL, 1.0, case.drag)]) for case in asked],
+        [forge(drag, n, engines[0], flights) for drag in drags for n in sim_slow],
+        [_row(flights[case], reference) for case in terms],
+        [
+            _row(flights[case], flights[case._replace(sim_slow=1.0)])
+            for case in asked
+            if case.plant == engines[-1] and case.sim_slow != 1
+        ],
+        [measure(experiment, engine, n) for engine in engines for n in sim_slow],
+    )
+
+
+def _fly(
+    experiment: Experiment,
+    cases: List[Case],
+    processes: Optional[int],
+    progress: Optional[Callable[[int, int], None]],
+) -> Dict[Case, Flight]:
+    # The model is slow: it goes first, so that no core waits for it at the end.
+    cases.sort(key=lambda case: case.plant != MODEL)
+    flights: Dict[Case, Flight] = {}
+    for index, flight in each(experiment.fly, cases, processes):
+        case = cases[index]
+        if isinstance(flight, QuadcoreError):  # its process died
+            flight = Flight(case, None, str(flight))
+        flights[case] = flight
+        if progress is not None:
+            progress(len(flights), len(cases))
+    return flights
+
+
+def _row(flight: Flight, reference: Flight) -> Row:
+    if flight.log is None or reference.log is None:
+        failure = flight.failure or f"{reference.case.plant}: {reference.failure}"
+        return Row(flight.case, None, 0.0, failure)
+    return Row(flight.case, compare(flight.log, reference.log), steepest(flight.log), "")

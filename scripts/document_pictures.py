@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+"""Draw the pictures of the README and the docs into docs/images: ``scripts/document`` runs it.
+
+Every flight is flown here; the recordings of real Gazebo 11 lie in tests/data/gazebo11.
+"""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+import quadcore as qc
+
+ROOT = Path(__file__).resolve().parents[1]
+DATA = ROOT / "tests" / "data" / "gazebo11"
+IMAGES = ROOT / "docs" / "images"
+
+# The palette of quadcore.plots.
+COLOURS = {"gazebo11": "#0072b2", "ode": "#e69f00", "eigen": "#d55e00"}
+WIDTHS = {"gazebo11": 1.6, "ode": 3.5, "eigen": 1.6}  # ode and eigen lie upon each other
+RECORDED = {"color": "black", "label": "real Gazebo 11 (recorded)", "linestyle": "none"}
+
+
+def recording(path: Path) -> np.ndarray:
+    """Rows of a recording, columns as in a log."""
+    return np.loadtxt(path, delimiter=",", skiprows=1)
+
+
+def distance(log: qc.Log, rows: np.ndarray) -> np.ndarray:
+    """Distance from the recording at each of its rows (m)."""
+    at = np.searchsorted(log.time, rows[:, 0] - 1e-6)
+    return np.linalg.norm(log.position[at] - rows[:, 1:4], axis=1)
+
+
+def save(figure: Figure, name: str) -> None:
+    """Write docs/images/NAME.png."""
+    FigureCanvasAgg(figure)
+    IMAGES.mkdir(parents=True, exist_ok=True)
+    figure.savefig(IMAGES / f"{name}.png", metadata={"Software": "quadcore"})
+    print(f"docs/images/{name}.png")
+
+
+def draw_flight() -> None:
+    """Draw one open-loop manoeuvre in every engine and as real Gazebo flew it."""
+    rows = recording(DATA / "S5_slow1_all.csv.gz")
+    logs = {
+        engine: qc.Simulation("quadrotor", engine=engine, xacro_args={"sim_slow": 1}).run(
+            10.0, commands=DATA / "commands_S5.csv"
+        )
+        for engine, _ in qc.engines()
+    }
+    figure = Figure(figsize=(10, 4.6), dpi=120)
+
+    path = figure.add_axes((0.0, 0.04, 0.52, 0.96), projection="3d")
+    for engine, log in logs.items():
+        path.plot(*log.position.T, color=COLOURS[engine], linewidth=WIDTHS[engine], label=engine)
+    path.plot(*rows[::2, 1:4].T, marker="o", markersize=4, fillstyle="none", **RECORDED)
+    path.plot(*rows[:1, 1:4].T, "s", color="black", markersize=6, linestyle="none", label="start")
+    low = np.min([log.position.min(axis=0) for log in logs.values()], axis=0)
+    high = np.max([log.position.max(axis=0) for log in logs.values()], axis=0)
+    path.set_box_aspect(high - low, zoom=0.95)
+    for axis, ticks in zip("xyz", ([-5, 0, 5], [0, 4], [5, 10, 15])):
+        getattr(path, f"set_{axis}ticks")(ticks)
+        getattr(path, f"set_{axis}label")(f"{axis} (m)")
+    path.view_init(elev=20, azim=-58)
+    figure.legend(
+        *path.get_legend_handles_labels(), loc="upper left", frameon=False, fontsize="small", ncol=2
+    )
+
+    apart = figure.add_axes((0.63, 0.13, 0.355, 0.76))
+    for engine, log in logs.items():
+        floor = np.maximum(distance(log, rows), 1e-17)
+        apart.semilogy(rows[:, 0], floor, color=COLOURS[engine], linewidth=WIDTHS[engine])
+    for engine, at in (("gazebo11", (6.1, 2e-12)), ("ode", (2.3, 1e-7)), ("eigen", (0.6, 4e-3))):
+        apart.text(*at, engine, color=COLOURS[engine])
+    apart.set_title("distance from real Gazebo 11 (m)", loc="left", fontsize="medium")
+    apart.set_xlabel("time (s)")
+    apart.set_ylim(1e-17, 1e3)
+    apart.set_xlim(0, 10)
+    apart.grid(color="0.9", linewidth=0.6)
+    for side in ("top", "right"):
+        apart.spines[side].set_visible(False)
+    save(figure, "flight")
+
+
+def draw_wrenches() -> None:
+    """Draw the wrenches of the same manoeuvre with the forces of chapter 2, as Log.plot does."""
+    sim = qc.Simulation(
+        "quadrotor",
+        engine="eigen",
+        xacro_args={"sim_slow": 1},
+        parameters={"drone_plugin.dragModel": "chapter2"},
+    )
+    log = sim.run(10.0, commands=DATA / "commands_S5.csv", log_every=10)
+    with tempfile.TemporaryDirectory() as folder:
+        log.plot(folder)
+        shutil.copyfile(Path(folder) / "wrenches.png", IMAGES / "wrenches.png")
+    print("docs/images/wrenches.png")
+
+
+def draw_contact() -> None:
+    """Draw take-off and landing beside the recording."""
+    case = DATA / "cases" / "C2_takeoff_land"
+    rows = recording(case / "record.csv.gz")
+    log = qc.Simulation(case / "model.urdf", world=case / "case.world", spawn=(0, 0, 0.1)).run(
+        10.0, commands=case / "commands.csv"
+    )
+    figure = Figure(figsize=(8, 4.2), dpi=120)
+    height, apart = figure.subplots(
+        2, 1, sharex=True, gridspec_kw={"left": 0.1, "right": 0.98, "top": 0.97, "bottom": 0.11}
+    )
+    height.plot(log.time, log.position[:, 2], color=COLOURS["gazebo11"], label="gazebo11")
+    every = np.searchsorted(rows[:, 0], np.arange(0, 10, 0.2))
+    height.plot(
+        rows[every, 0], rows[every, 3], marker="o", markersize=4, fillstyle="none", **RECORDED
+    )
+    height.set_ylabel("height of the frame (m)")
+    height.legend(frameon=False)
+    floor = np.maximum(distance(log, rows), 1e-18)
+    apart.semilogy(rows[:, 0], floor, ".", markersize=4, color=COLOURS["gazebo11"])
+    apart.set_ylabel("distance from it (m)")
+    apart.set_ylim(1e-18, 1e-12)
+    apart.set_xlabel("time (s)")
+    for axes in (height, apart):
+        axes.grid(color="0.9", linewidth=0.6)
+        axes.margins(x=0.01)
+        for side in ("top", "right"):
+            axes.spines[side].set_visible(False)
+    save(figure, "contact")
+
+
+if __name__ == "__main__":
+    draw_flight()
+    draw_wrenches()
+    draw_contact()

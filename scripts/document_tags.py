@@ -1,0 +1,243 @@
+#!/usr/bin/env python3
+"""Write docs/tags.md from what quadcore itself says of its plugins, worlds and logs.
+
+``scripts/document`` runs it. With --print the page goes to standard output instead.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+from typing import Iterable, Iterator, Sequence
+
+import quadcore as qc
+from quadcore import _core
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGE = ROOT / "docs" / "tags.md"
+
+INTRODUCTION = """\
+<!-- Written by scripts/document from the package's own tables: change those, not this file. -->
+# Tags, worlds, engines, logs
+
+`quadcore info MODEL` prints the tables of a model's own plugins with the values in effect and where
+each was set. The force laws behind the tags, with their signs, frames and points of application,
+are in [physics.md](physics.md). Equation numbers and A.4-A.6 are those of the thesis.
+
+A tag that a plugin does not know, a repeated tag, a missing required tag, a value that is no finite
+number or lies outside its range is an error that names file, line, plugin, tag and the nearest
+known tag. `--set PLUGIN.TAG=VALUE` (Python: `parameters={"PLUGIN.TAG": value}`) overrides the URDF;
+PLUGIN is the `name` attribute of the plugin tag.
+"""
+
+# Every element a world may hold: unit, default, meaning. Which there are, and the range of each, is
+# asked of the reader itself; one that is missing here or there fails the generator.
+WORLD = {
+    "gravity": ("m/s^2", "`0 0 -9.8`", "gravity in world axes"),
+    "wind/linear_velocity": (
+        "m/s",
+        "`0 0 0`",
+        "velocity of the air in world axes; `chapter2` only",
+    ),
+    "include/uri": (
+        "",
+        "",
+        "`model://ground_plane`: solid ground at z = 0; `model://sun`: ignored",
+    ),
+    "model": ("", "", "a ground plane in line: static, one link"),
+    "model/static": ("", "", "must be `true`"),
+    "model/link/collision/geometry/plane/normal": ("", "`0 0 1`", "must be `0 0 1`"),
+    "model/link/collision/geometry/plane/size": ("m", "", "ignored: the ground has no edge"),
+    "model/link/visual": ("", "", "ignored"),
+    "physics": ("", "", "attribute `type`, if given, must be `ode`; also written `physics:ode`"),
+    "physics/gravity": ("m/s^2", "`0 0 -9.8`", "the same as `gravity`; only one of them"),
+    "physics/max_step_size": ("s", "0.001", "the step, unless `--dt` or `dt=` is given"),
+    "physics/real_time_update_rate": (
+        "1/s",
+        "1000",
+        "steps per second of wall clock, 0 = as fast as possible; for nodes that pace",
+    ),
+    "physics/updateRate": ("1/s", "1000", "the thesis' name of `real_time_update_rate`"),
+    "physics/real_time_factor": ("", "1", "wall clock pace; for nodes that pace"),
+    "physics/ode/solver/type": (
+        "",
+        "`quick`",
+        "`quick` or `world`; in flight both give the same answer, see [gazebo.md](gazebo.md)",
+    ),
+    "physics/ode/solver/iters": ("", "50", "sweeps of the quick solver"),
+    "physics/ode/solver/sor": ("", "1.3", "its over-relaxation"),
+    "physics/ode/constraints/erp": ("", "0.2", "part of a hinge's error that a step removes"),
+    "physics/ode/constraints/cfm": ("", "0", "softness of the hinges"),
+}
+
+LOG = {
+    "t": ("s", "time; the row at t is the state after the step that ends at t"),
+    "x y z": ("m", "origin of the frame link, world axes"),
+    "qx qy qz qw": ("", "orientation of the frame link in the world, unit quaternion"),
+    "vx vy vz": ("m/s", "velocity of the frame link's origin, world axes"),
+    "wx wy wz": ("rad/s", "angular velocity of the frame link, its own axes"),
+    "j1 ... jn": ("rad/s", "velocity of each rotor joint as the engine has it, file order"),
+}
+
+TOPICS = {
+    "vel_cmd": "in: rotor speeds, rad/s, signed, before the division by `sim_slow`",
+    "odom": "out: `libodometry_plugin.so`; units as in the log, variances in their squares",
+}
+
+
+def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Lay out a Markdown table."""
+    lines = [heads, ["---"] * len(heads), *rows]
+    return "".join("| " + " | ".join(_cell(cell) for cell in line) + " |\n" for line in lines)
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|")
+
+
+def plugin_sections(simulation: qc.Simulation) -> Iterator[str]:
+    """One section for each plugin of the simulation."""
+    for plugin in simulation.plugins:
+        yield f"\n## {plugin.filename}\n\n{_sentence(plugin.summary)}\n\n"
+        yield table(
+            ("tag", "unit", "default", "range", "meaning", "equation"),
+            (
+                (
+                    f"`{tag.name}`" + (f" (also `{tag.alias}`)" if tag.alias else ""),
+                    tag.unit,
+                    "required" if tag.default is None else tag.default,
+                    tag.range,
+                    tag.meaning,
+                    tag.equation,
+                )
+                for tag in plugin.parameters
+            ),
+        )
+
+
+def _sentence(text: str) -> str:
+    return text[0].upper() + text[1:] + "."
+
+
+def world_section() -> str:
+    """Tabulate the elements that the reader accepts, each with the range that it states."""
+    accepted = set(_accepted("", "world"))
+    described = {f"/{path}" for path in WORLD}
+    # physics:ode is physics under another name; a place without an entry must lead to one.
+    missing = {
+        path
+        for path in accepted
+        if not path.startswith("/physics:ode")
+        and not any(d == path or d.startswith(path + "/") for d in described)
+    }
+    if missing or described - accepted:
+        sys.exit(f"worlds: not described: {missing}; not read: {described - accepted}")
+    rows = (
+        (f"`{path}`", unit, default, _range(path), meaning)
+        for path, (unit, default, meaning) in WORLD.items()
+    )
+    return (
+        "\n## Worlds\n\n"
+        "An SDF file with one `<world>`. Of it these elements are read; any other is an error\n"
+        "that names it. `empty` and `default` are shipped: Gazebo's defaults without and with\n"
+        "ground.\n\n" + table(("element", "unit", "default", "range", "meaning"), rows)
+    )
+
+
+def _accepted(path: str, element: str) -> Iterator[str]:
+    """Every path below `path`, from what the reader says to an element that it does not know."""
+    message = _refusal(path, "<unknown/>")
+    takes = re.search(rf"<{element}> takes (.*)", message)
+    for name in takes.group(1).split(", ") if takes else ():
+        yield f"{path}/{name}"
+        yield from _accepted(f"{path}/{name}", name)
+
+
+def _range(path: str) -> str:
+    found = re.search(r"write a number (.*)|must be a (whole number .*)", _refusal(path, "-1e99"))
+    return (found.group(1) or found.group(2)) if found else ""
+
+
+def _refusal(path: str, content: str) -> str:
+    """Return what the reader says to `content` at `path`."""
+    names = [name for name in path.split("/") if name]
+    opened = "".join(f"<{name}>" for name in names)
+    closed = "".join(f"</{name}>" for name in reversed(names))
+    # The core reads a prefix as part of the name, so that physics:ode needs no namespace.
+    text = f"<sdf><world>{opened}{content}{closed}</world></sdf>"
+    try:
+        _core.read_world(_core.Document("world", text))
+    except qc.InputError as error:
+        return str(error)
+    return ""
+
+
+def engine_section() -> str:
+    """Tabulate the engines, the default first."""
+    rows = ((f"`{name}`", summary) for name, summary in qc.engines())
+    return (
+        "\n## Engines\n\n"
+        "Chosen by `--engine` (Python: `engine=`); the first is the default. How they work:\n"
+        "[physics.md](physics.md#engines).\n\n" + table(("engine", "what it is"), rows)
+    )
+
+
+def log_section(simulation: qc.Simulation) -> str:
+    """Tabulate the columns of a log and the wrench terms."""
+    named = [name for group in LOG for name in group.split()]
+    named = named[: named.index("j1")] + [f"j{i}" for i in range(1, 1 + simulation.rotor_count)]
+    if named != _core.log_columns(simulation.rotor_count):
+        sys.exit(f"log columns: described are {named}")
+    terms = ", ".join(f"`{term}`" for term in simulation.wrench_terms)
+    return (
+        "\n## Logs\n\n"
+        "CSV with 17 significant digits, which restore every bit; `.mat` holds vectors of the\n"
+        "same names.\n\n"
+        + table(("columns", "unit", "meaning"), ((f"`{k}`", *v) for k, v in LOG.items()))
+        + "\nWrenches (`log.wrenches` in Python, `wrench_NAME` in `.mat`): force (N), then torque\n"
+        "(N m) about the vehicle's centre of mass, frame axes, as they act from the logged state\n"
+        f"on. Those of the shipped plugins:\n{terms}.\n"
+    )
+
+
+def topic_section(simulation: qc.Simulation) -> str:
+    """Tabulate the topics inside the core."""
+    rows = []
+    for name, meaning in TOPICS.items():
+        fields = [field for field in simulation.topic(name) if field not in ("stamp", "count")]
+        rows.append((f"`{name}`", " ".join(f"`{field}`" for field in fields), meaning))
+    return (
+        "\n## Topics\n\nMessages between plugins, and between them and Python "
+        "(`sim.topic(name)`) or a ROS node.\n\n" + table(("topic", "fields", "direction"), rows)
+    )
+
+
+def page() -> str:
+    """Write out the whole page."""
+    simulation = qc.Simulation("quadrotor")
+    return "".join(
+        [
+            INTRODUCTION,
+            *plugin_sections(simulation),
+            world_section(),
+            engine_section(),
+            log_section(simulation),
+            topic_section(simulation),
+        ]
+    )
+
+
+def main() -> None:
+    """Write the page."""
+    if sys.argv[1:] == ["--print"]:
+        sys.stdout.write(page())
+    elif sys.argv[1:]:
+        sys.exit(__doc__)
+    else:
+        PAGE.write_text(page(), encoding="utf-8")
+        print(PAGE.relative_to(ROOT))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,62 @@
+#include <doctest/doctest.h>
+
+#include <limits>
+
+#include "quadcore/commands.hpp"
+#include "vehicle.hpp"
+
+using namespace quadcore;
+using namespace quadcore::test;
+
+namespace {
+
+Commands::Table table() {
+  Commands::Table rows(3, 3);
+  rows << 0.0, 1, 2,  //
+      0.1, 3, 4,      //
+      0.2, 5, 6;
+  return rows;
+}
+
+}  // namespace
+
+TEST_CASE("a row holds from its time, less a nanosecond, until the next") {
+  Commands commands(table(), 2);
+  CHECK(commands.at(0)[0] == 1);
+  CHECK(commands.at(0.0999)[1] == 2);
+  CHECK(commands.at(0.1 - 2e-9)[0] == 1);
+  CHECK(commands.at(0.1 - 0.5e-9)[0] == 3);
+  CHECK(commands.at(0.1)[1] == 4);
+  CHECK(commands.at(1e9)[1] == 6);
+}
+
+TEST_CASE("before the first row there is no command") {
+  Commands commands(table(), 2);
+  CHECK(commands.at(-1e-8) == nullptr);
+  CHECK(commands.at(-0.5e-9) != nullptr);
+}
+
+TEST_CASE("any time may be asked for after any other") {
+  Commands commands(table(), 2);
+  CHECK(commands.at(5)[0] == 5);
+  CHECK(commands.at(0.15)[0] == 3);
+  CHECK(commands.at(-1) == nullptr);
+  CHECK(commands.at(0.25)[0] == 5);
+  CHECK(commands.at(0)[0] == 1);
+}
+
+TEST_CASE("tables that are none are refused") {
+  const auto refused = [](const Commands::Table& rows, std::size_t width) {
+    return refusal([&] { Commands(rows, width); });
+  };
+  CHECK(contains(refused(table(), 3), "write rows of time and 3 rotor speeds"));
+  CHECK(contains(refused(Commands::Table(0, 3), 2), "0 rows"));
+  Commands::Table rows = table();
+  rows(1, 0) = 0;
+  CHECK(contains(refused(rows, 2), "row 1 is not later than the row before"));
+  rows(1, 0) = std::numeric_limits<double>::quiet_NaN();
+  CHECK(contains(refused(rows, 2), "not a finite number"));
+  rows = table();
+  rows(2, 2) = std::numeric_limits<double>::infinity();
+  CHECK(contains(refused(rows, 2), "not a finite number"));
+}

@@ -1,0 +1,102 @@
+#include "vehicle.hpp"
+
+using namespace quadcore;
+using namespace quadcore::test;
+
+namespace {
+
+std::string refused(const std::string& text) {
+  return refusal([&] { read_model({"a.urdf", text}); });
+}
+
+}  // namespace
+
+TEST_CASE("a file that cannot be read is named") {
+  CHECK(contains(refusal([] { Document::read("/nowhere/a.urdf"); }),
+                 "/nowhere/a.urdf: cannot be read"));
+}
+
+TEST_CASE("malformed XML is refused with its line") {
+  CHECK(refused("").rfind("a.urdf:1: is empty; write a <robot> element", 0) == 0);
+  CHECK(refused("<robot name='a'>\n<link>\n</robot>").rfind("a.urdf:2: malformed XML", 0) == 0);
+  CHECK(refused("no xml").rfind("a.urdf:1: ", 0) == 0);
+  CHECK(refused("\n<sdf/>") == "a.urdf:2: expected <robot> as the outermost element, not <sdf>");
+}
+
+TEST_CASE("a document type is refused wherever it stands, and no entity is expanded") {
+  CHECK(contains(refused("\n<!DOCTYPE robot>\n<robot name='a'/>"), "a.urdf:2: <!DOCTYPE>"));
+  CHECK(contains(refused("<!DOCTYPE robot [<!ENTITY a 'b'>]><robot name='&a;'/>"), "entities"));
+  CHECK(contains(refused("<!DOCTYPE r SYSTEM 'file:///etc/hostname'><robot/>"), "<!DOCTYPE>"));
+}
+
+TEST_CASE("elements nested without end are refused") {
+  std::string text = "<robot name='a'>";
+  for (int i = 0; i < 100000; ++i) text += "<a>";
+  CHECK(contains(refused(text), "malformed XML"));
+}
+
+TEST_CASE("an expanded document names the lines it stems from") {
+  const Document expanded{"out",
+                          "<robot name='a'>\n<lnk/>\n</robot>",
+                          {{"a.xacro", 3}, {"b.xacro", 70}, {"a.xacro", 9}}};
+  CHECK(expanded.at(2) == "b.xacro:70");
+  CHECK(expanded.at(4) == "out:4");
+  CHECK(refusal([&] { read_model(expanded); }).rfind("b.xacro:70: <lnk>", 0) == 0);
+}
+
+TEST_CASE("a world that says nothing is Gazebo's") {
+  const World world = read_world({"a.world", "<sdf><world/></sdf>"});
+  CHECK(world.gravity_W == Vector3d(0, 0, -9.8));
+  CHECK(world.max_step_size == 0.001);
+  CHECK(world.real_time_update_rate == 1000);
+  CHECK(world.solver_type == "quick");
+  CHECK(world.solver_iterations == 50);
+  CHECK(world.solver_sor == 1.3);
+  CHECK(world.erp == 0.2);
+  CHECK(world.cfm == 0);
+  CHECK(world.wind_W == Vector3d::Zero());
+  CHECK_FALSE(world.ground_plane);
+}
+
+TEST_CASE("a world says what it says, also in the thesis' spelling") {
+  const World world = read_world({"a.world", R"(
+    <sdf><world name="w">
+      <include><uri>model://sun</uri></include>
+      <include><uri>model://ground_plane</uri></include>
+      <physics:ode>
+        <gravity>1 2 3</gravity>
+        <updateRate>250</updateRate>
+        <max_step_size>0.004</max_step_size>
+        <real_time_factor>2</real_time_factor>
+        <ode>
+          <solver><type>world</type><iters>20</iters><sor>1.1</sor></solver>
+          <constraints><erp>0.3</erp><cfm>1e-6</cfm></constraints>
+        </ode>
+      </physics:ode>
+      <wind><linear_velocity>4 5 6</linear_velocity></wind>
+    </world></sdf>)"});
+  CHECK(world.gravity_W == Vector3d(1, 2, 3));
+  CHECK(world.real_time_update_rate == 250);
+  CHECK(world.max_step_size == 0.004);
+  CHECK(world.real_time_factor == 2);
+  CHECK(world.solver_type == "world");
+  CHECK(world.solver_iterations == 20);
+  CHECK(world.solver_sor == 1.1);
+  CHECK(world.erp == 0.3);
+  CHECK(world.cfm == 1e-6);
+  CHECK(world.wind_W == Vector3d(4, 5, 6));
+  CHECK(world.ground_plane);
+  CHECK(world.ground_plane_where == "a.world:4");
+}
+
+TEST_CASE("a plane in line is the ground plane") {
+  const World world = read_world({"a.world", R"(<sdf><world>
+    <model name="ground"><static>1</static><link name="l">
+      <collision name="c"><geometry>
+        <plane><normal>0 0 1</normal><size>100 100</size></plane>
+      </geometry></collision>
+      <visual name="v"><geometry><plane/></geometry></visual>
+    </link></model></world></sdf>)"});
+  CHECK(world.ground_plane);
+  CHECK(world.ground_plane_where == "a.world:4");
+}

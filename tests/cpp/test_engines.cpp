@@ -1,0 +1,177 @@
+#include <cmath>
+
+#include "quadcore/random.hpp"
+#include "vehicle.hpp"
+
+using namespace quadcore;
+using namespace quadcore::test;
+
+namespace {
+
+/// Neither force nor torque.
+class NoForces final : public ForceField {
+ public:
+  void evaluate(const Kinematics&, Loads&) const override {}
+};
+
+Vector3d random_vector(std::uint64_t seed, double& count) {
+  return {random_normal(seed, count), random_normal(seed, count), random_normal(seed, count)};
+}
+
+VehicleState random_state(std::uint64_t seed, Eigen::Index rotors) {
+  double count = 0;
+  VehicleState state;
+  state.position = 10 * random_vector(seed, count);
+  state.orientation.coeffs().head<3>() = random_vector(seed, count);
+  state.orientation.w() = random_normal(seed, count);
+  state.orientation.normalize();
+  state.linear_velocity = 5 * random_vector(seed, count);
+  state.angular_velocity = 2 * random_vector(seed, count);
+  state.rotor_velocity.resize(rotors);
+  state.rotor_angle.resize(rotors);
+  for (Eigen::Index i = 0; i < rotors; ++i) {
+    state.rotor_velocity[i] = 100 * random_normal(seed, count);
+    state.rotor_angle[i] = std::remainder(2 * random_normal(seed, count), 2 * M_PI);
+  }
+  return state;
+}
+
+VehicleState blank(Eigen::Index rotors) {
+  VehicleState state;
+  state.rotor_velocity = state.rotor_angle = VectorXd::Zero(rotors);
+  return state;
+}
+
+World weightless() {
+  World world;
+  world.gravity_W.setZero();
+  return world;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a state that is set comes back, whatever the centre of mass and the tilt of the rotors") {
+  for (const EngineInfo& info : engines()) {
+    CAPTURE(info.name);
+    const auto engine = make_engine(info.name, hexarotor(), World{});
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      const VehicleState wanted = random_state(seed, 6);
+      VehicleState found = blank(6);
+      engine->set_state(wanted);
+      engine->get_state(found);
+      CHECK((found.position - wanted.position).norm() < 1e-13);
+      CHECK(found.orientation.angularDistance(wanted.orientation) < 1e-7);
+      CHECK((found.linear_velocity - wanted.linear_velocity).norm() < 1e-13);
+      CHECK((found.angular_velocity - wanted.angular_velocity).norm() < 1e-13);
+      CHECK((found.rotor_velocity - wanted.rotor_velocity).norm() < 1e-11);
+      CHECK((found.rotor_angle - wanted.rotor_angle).norm() < 1e-11);
+    }
+  }
+}
+
+TEST_CASE("the velocities that a force law sees are the rates of the places it sees") {
+  constexpr double dt = 1e-6;
+  for (const EngineInfo& info : engines()) {
+    CAPTURE(info.name);
+    const auto engine = make_engine(info.name, hexarotor(), weightless());
+    engine->set_state(random_state(5, 6));
+    const Kinematics before = engine->kinematics();
+    engine->step(dt, NoForces());
+    const Kinematics& after = engine->kinematics();
+    const auto rate_F = [&](const Vector3d& p, const Vector3d& q) -> Vector3d {
+      return before.R_WF.transpose() * (q - p) / dt;
+    };
+    const auto place = [](const Kinematics& k, const Vector3d& p_F) -> Vector3d {
+      return k.p_WF + k.R_WF * p_F;
+    };
+    constexpr double tolerance = 1e-3;  // an acceleration of 1000 m/s^2 over the step
+    CHECK((rate_F(before.p_WF, after.p_WF) - before.v_WF_F).norm() < tolerance);
+    CHECK((rate_F(place(before, before.p_FCcm_F), place(after, after.p_FCcm_F)) - before.v_WCcm_F)
+              .norm() < tolerance);
+    const Matrix3d turn = before.R_WF.transpose() * (after.R_WF - before.R_WF) / dt;
+    CHECK((turn - skew(before.w_WF_F)).norm() < tolerance);
+    for (std::size_t i = 0; i < 6; ++i) {
+      const RotorKinematics& a = before.rotors[i];
+      const RotorKinematics& b = after.rotors[i];
+      CHECK((rate_F(place(before, a.p_FRcm_F), place(after, b.p_FRcm_F)) - a.v_WRcm_F).norm() <
+            tolerance);
+      CHECK(std::abs(std::remainder(b.angle - a.angle, 2 * M_PI) / dt - a.rate) < tolerance);
+      // The joint turns the rotor about its axis, seen from the frame.
+      const Matrix3d spin = (after.R_FR(i) - before.R_FR(i)) * before.R_FR(i).transpose() / dt;
+      CHECK((spin - skew(a.rate * a.axis_F)).norm() < 0.1);
+      CHECK(a.axis_F.norm() == doctest::Approx(1));
+    }
+  }
+}
+
+TEST_CASE("all engines show a force law the same motion") {
+  const Model model = hexarotor();
+  const VehicleState state = random_state(3, 6);
+  const auto exact = make_engine("eigen", model, World{});
+  const auto ode = make_engine("ode", model, World{});
+  exact->set_state(state);
+  ode->set_state(state);
+  const Kinematics& a = exact->kinematics();
+  const Kinematics& b = ode->kinematics();
+  CHECK((a.p_FCcm_F - b.p_FCcm_F).norm() < 1e-13);
+  CHECK((a.v_WCcm_F - b.v_WCcm_F).norm() < 1e-12);
+  for (std::size_t i = 0; i < 6; ++i) {
+    CHECK((a.rotors[i].axis_F - b.rotors[i].axis_F).norm() < 1e-13);
+    CHECK((a.rotors[i].p_FRcm_F - b.rotors[i].p_FRcm_F).norm() < 1e-13);
+    CHECK((a.rotors[i].v_WRcm_F - b.rotors[i].v_WRcm_F).norm() < 1e-12);
+    CHECK((a.rotors[i].v_WR_F - b.rotors[i].v_WR_F).norm() < 1e-12);
+    CHECK((a.R_FR(i) - b.R_FR(i)).norm() < 1e-12);
+  }
+}
+
+TEST_CASE("what is saved is restored bit for bit, in another engine of the kind too") {
+  for (const EngineInfo& info : engines()) {
+    CAPTURE(info.name);
+    const auto first = make_engine(info.name, hexarotor(), World{});
+    const auto second = make_engine(info.name, hexarotor(), World{});
+    first->set_state(random_state(8, 6));
+    for (int i = 0; i < 100; ++i) first->step(1e-3, NoForces());
+    second->restore(first->save());
+    CHECK(second->save() == first->save());
+    for (int i = 0; i < 100; ++i) {
+      first->step(1e-3, NoForces());
+      second->step(1e-3, NoForces());
+    }
+    CHECK(second->save() == first->save());
+    CHECK(contains(refusal([&] { first->restore({1, 2, 3}); }), "another model or engine"));
+  }
+}
+
+TEST_CASE("a load counts once in the sum and in its term, about the centre of mass") {
+  Kinematics kinematics(1);
+  kinematics.p_FCcm_F = {0.1, 0.2, 0.3};
+  kinematics.rotors[0].p_FRcm_F = {1.1, 0.2, 0.3};
+  Loads loads(1);
+  Wrench terms[2];
+  loads.record_terms(terms, &kinematics);
+  loads.add_rotor_force(0, 0, {0, 0, 2});
+  loads.add_frame_force(1, {0, 3, 0}, {0.1, 0.2, 1.3});
+  loads.add_frame_torque(1, {0, 0, 5});
+  loads.add_joint_torque(0, 0.25);
+
+  CHECK(terms[0].force_F == Vector3d(0, 0, 2));
+  CHECK((terms[0].torque_F - Vector3d(0, -2, 0)).norm() < 1e-15);
+  CHECK(terms[1].force_F == Vector3d(0, 3, 0));
+  CHECK((terms[1].torque_F - Vector3d(-3, 0, 5)).norm() < 1e-15);
+  CHECK(loads.rotor_force_F(0) == Vector3d(0, 0, 2));
+  CHECK(loads.frame().force_F == Vector3d(0, 3, 0));
+  // About the frame's origin: (0.1, 0.2, 1.3) x (0, 3, 0) and the torque.
+  CHECK((loads.frame().torque_F - Vector3d(-3.9, 0, 5.3)).norm() < 1e-15);
+  CHECK(loads.joint_torque(0) == 0.25);
+  loads.clear();
+  CHECK(loads.frame().force_F.isZero(0));
+  CHECK(loads.rotor_force_F(0).isZero(0));
+  CHECK(loads.joint_torque(0) == 0);
+}
+
+TEST_CASE("an unknown engine is refused with those there are") {
+  const std::string message = refusal([] { make_engine("gazebo", hexarotor(), World{}); });
+  CHECK(contains(message, "did you mean 'gazebo11'?"));
+  for (const EngineInfo& info : engines()) CHECK(contains(message, info.name));
+}

@@ -1,0 +1,49 @@
+"""The flights that several tests make."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import quadcore as qc
+
+ENGINES = [name for name, _ in qc.engines()]
+HOVER = np.array([471, -471, 471, -471])
+MANOEUVRE = np.array([[0.0, 0, 0, 0, 0], [0.02, 480, -475, 485, -470], [0.4, 470, -480, 470, -480]])
+
+# All that a simulation has to remember: integral and derivative, noise, a timeout.
+BUSY = {
+    "motorpid_plugin.ki": 2e-4,
+    "motorpid_plugin.kd": 1e-8,
+    "motorpid_plugin.iMax": 2e-3,
+    "motorpid_plugin.iMin": -2e-3,
+    "motorpid_plugin.commandTimeout": 0.3,
+    "odometry.rate": 400,
+    "odometry.positionNoise": 0.1,
+    "odometry.orientationNoise": 0.02,
+    "odometry.linearVelocityNoise": 0.3,
+    "odometry.angularVelocityNoise": 0.4,
+}
+
+
+def quadrotor(engine="gazebo11", **options):
+    return qc.Simulation("quadrotor", engine=engine, **options)
+
+
+def bits(simulation):
+    """Every bit of state and odometry."""
+    state = simulation.state.copy()
+    numbers = [getattr(state, name) for name in state.__slots__]
+    numbers += simulation.topic("odom").values()
+    return b"".join(np.asarray(number, dtype=float).tobytes() for number in numbers)
+
+
+def hold_height(simulation, steps, height=10):
+    """Fly by the noisy odometry; returns every bit on the way."""
+    trace = []
+    for _ in range(steps):
+        message = simulation.topic("odom")
+        climb = 0.05 * (height - message["z"]) - 0.02 * message["vz"]
+        simulation.command(HOVER * (1 + climb))
+        simulation.step()
+        trace.append(bits(simulation))
+    return b"".join(trace)

@@ -1,0 +1,352 @@
+"""Comparing models and parameters: what is told, what is flown, what is refused."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import faults
+import numpy as np
+import pytest
+
+import quadcore as qc
+from quadcore.cli import main
+from quadcore.comparison import metrics
+from quadcore.comparison.compare import Comparison
+from quadcore.parallel import each
+from quadcore.rotation import roll_pitch_yaw
+
+pytestmark = pytest.mark.usefixtures("toy")
+
+FLIGHT = ["--engine", "eigen", "--duration", "0.1", "--commands", "c.csv"]
+SPIN = {"engine": "eigen", "duration": 0.1, "commands": np.array([[0.0, 400.0]])}
+SLOW = "air.sim_slow,motor.sim_slow"
+
+
+@pytest.fixture(autouse=True)
+def commands(toy):
+    Path("c.csv").write_text("t,w1\n0,400\n0.05,-300\n")
+
+
+def edited(name, old, new):
+    """Write a copy of the toy with one change; returns its name."""
+    assert faults.MODEL.count(old) == 1
+    Path(name).write_text(faults.MODEL.replace(old, new))
+    return name
+
+
+def line_of(name, text):
+    return 1 + Path(name).read_text().split(text)[0].count("\n")
+
+
+def told(capsys, *models):
+    """Differences that the command line tells, cells of each row, and its exit status."""
+    status = main(["compare", *models, *FLIGHT])
+    lines = capsys.readouterr().out.split("\n\n")[0].splitlines()[2:]
+    return status, [[cell.strip() for cell in line.split("  ") if cell.strip()] for line in lines]
+
+
+def rows(name="out/table.csv"):
+    with open(name, newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+# What differs between the models
+
+
+def test_an_edited_tag_is_told_alone_with_both_values_and_lines(capsys):
+    edited("b.urdf", "<kp>5e-4</kp>", "<!-- stiffer,\nby far -->\n<kp>1e-3</kp>")
+    status, found = told(capsys, "toy.urdf", "b.urdf")
+    assert status == 0
+    places = [f"{name}:{line_of(name, '<kp>')}" for name in ("toy.urdf", "b.urdf")]
+    assert found == [["motor.kp", "5e-4", "1e-3", *places]]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "row"),
+    [
+        ('mass value="1"', 'mass value="1.5"', ["link frame/inertial/mass value", "1", "1.5"]),
+        ('izz="0.04"', 'izz="0.039"', ["link frame/inertial/inertia izz", "0.04", "0.039"]),
+        ('xyz="0 0 0.1"', 'xyz="0 0 0.2"', ["joint rotor/origin xyz", "0 0 0.1", "0 0 0.2"]),
+        ('damping="1e-6"', "", ["joint rotor/dynamics damping", "1e-6", "absent"]),
+        ("<sim_slow>10.0</sim_slow>", "<!-- -->", ["motor.sim_slow", "10.0", "absent"]),
+        ("<rate>100</rate>", "<publishTf>1</publishTf>", ["odometry.rate", "100", "absent"]),
+        ('length="0.02"', 'length="0.03"', ["cylinder length", "0.02", "0.03"]),
+    ],
+)
+def test_any_other_change_is_told_as_well(capsys, old, new, row):
+    edited("b.urdf", old, new)
+    _, found = told(capsys, "toy.urdf", "b.urdf")
+    what, before, after, place, _ = found[0]
+    assert what.endswith(row[0])
+    assert [before, after] == row[1:]
+    assert place == f"toy.urdf:{line_of('toy.urdf', old)}"
+
+
+def test_a_removed_plugin_is_one_line(capsys):
+    odometry = faults.MODEL[faults.MODEL.index('    <plugin name="odometry"') :]
+    edited("b.urdf", odometry, "</gazebo></robot>")
+    status, found = told(capsys, "toy.urdf", "b.urdf")
+    assert status == 0
+    assert found[0] == [
+        "plugin odometry",
+        "libodometry_plugin.so",
+        "absent",
+        f"toy.urdf:{line_of('toy.urdf', 'name=' + chr(34) + 'odometry')}",
+        "-",
+    ]
+    assert len(found) == 1
+
+
+def test_lines_of_a_xacro_are_those_of_its_file(capsys):
+    source = (
+        faults.MODEL.replace('<robot name="toy">', '<robot xmlns:xacro="x" name="toy">')
+        .replace('xmlns:xacro="x"', 'xmlns:xacro="http://www.ros.org/wiki/xacro"')
+        .replace('<mass value="1"/>', '<mass value="${1 + 1}"/>')
+    )
+    Path("b.xacro").write_text(source)
+    _, found = told(capsys, "toy.urdf", "b.xacro")
+    place = f"b.xacro:{line_of('b.xacro', '${1 + 1}')}"
+    assert found[0][-1] == place
+    assert len(found) == 1
+
+
+def test_numbers_written_otherwise_and_order_are_no_difference_but_that_of_joints_is():
+    model = str(qc.resources.root() / "urdf" / "quadrotor.urdf.xacro")
+    text = Path(model).read_text()
+    assert "0.000011487" in text
+    Path("same.xacro").write_text(text.replace("0.000011487", "1.1487e-5"))
+    one, two = '<xacro:propeller i="1" material="red"/>', '<xacro:propeller i="2" material="blue"/>'
+    Path("order.xacro").write_text(text.replace(one, "@").replace(two, one).replace("@", two))
+    found = qc.compare(
+        [model, "same.xacro", "order.xacro"], engine="eigen", duration=0.01
+    ).differences
+    assert found["same.xacro"] == []
+    assert [row.what for row in found["order.xacro"]] == ["order of the joints"]
+    assert found["order.xacro"][0].after == "rotor2 rotor1 rotor3 rotor4"
+
+
+# What is flown
+
+
+@pytest.mark.parametrize("engine", [name for name, _ in qc.engines()])
+def test_an_edit_and_vary_and_run_give_the_same_bytes(engine):
+    edited("b.urdf", "<kp>5e-4</kp>", "<kp>0.00123</kp>")
+    flight = ["--engine", engine, *FLIGHT[2:], "--quiet", "--no-plots"]
+    assert main(["compare", "toy.urdf", "b.urdf", *flight, "--out", "e"]) == 0
+    vary = ["--vary", "motor.kp=5e-4,0.00123"]
+    assert main(["compare", "toy.urdf", *vary, *flight, "--out", "v"]) == 0
+    assert main(["run", "b.urdf", *flight, "--out", "r"]) == 0
+    for number in (1, 2):
+        assert (
+            Path(f"e/logs/{number}.csv").read_bytes() == Path(f"v/logs/{number}.csv").read_bytes()
+        )
+    assert Path("v/logs/2.csv").read_bytes() == Path("r/log.csv").read_bytes()
+    assert Path("v/logs/1.csv").read_bytes() != Path("v/logs/2.csv").read_bytes()
+
+
+def test_a_grid_of_tags_engines_and_worlds_in_the_order_given():
+    Path("windless.world").write_text(faults.WORLD.replace("1 0 0", "0 0 0"))
+    vary = {SLOW: [1, 2], "engine": ["ode", "eigen"], "world": ["toy.world", "windless.world"]}
+    result = qc.compare("toy.urdf", vary, duration=0.02, parameters={"air.dragModel": "chapter2"})
+    assert isinstance(result, Comparison)
+    assert list(result.table["failure"]) == [""] * 8
+    assert list(result.table[SLOW]) == ["1"] * 4 + ["2"] * 4
+    assert list(result.table["engine"]) == ["ode", "ode", "eigen", "eigen"] * 2
+    assert list(result.table["world"]) == ["toy.world", "windless.world"] * 4
+    alone = qc.Simulation(
+        "toy.urdf",
+        "eigen",
+        "windless.world",
+        parameters={"air.sim_slow": 2, "motor.sim_slow": 2, "air.dragModel": "chapter2"},
+    )
+    assert np.array_equal(result.logs[7].table, alone.run(0.02).table)
+
+
+def test_ranges():
+    vary = ["--vary", "motor.kp=log:1e-4:1e-2:3", "--vary", "air.rotorTorqueCoeff=0:3e-7:4"]
+    arguments = ["compare", "toy.urdf", *FLIGHT, "--quiet", "--no-plots"]
+    assert main([*arguments, *vary, "--out", "out"]) == 0
+    assert [row["motor.kp"] for row in rows()[::4]] == ["0.0001", "0.001", "0.01"]
+    assert [row["air.rotorTorqueCoeff"] for row in rows()[:4]] == ["0", "1e-07", "2e-07", "3e-07"]
+
+
+def test_the_number_of_processes_changes_no_byte():
+    arguments = ["compare", "toy.urdf", *FLIGHT, "--quiet", "--vary", "motor.kp=1e-4:1e-2:7"]
+    for jobs in "1", "3":
+        assert main([*arguments, "--jobs", jobs, "--out", jobs]) == 0
+    files = sorted(path.relative_to("1") for path in Path("1").rglob("*") if path.is_file())
+    assert len(files) == 15  # 7 logs, 5 pictures, table, numbers, report
+    for file in files:
+        assert (Path("1") / file).read_bytes() == (Path("3") / file).read_bytes(), file
+
+
+def test_metrics_are_those_of_the_logs():
+    result = qc.compare("toy.urdf", {"motor.kp": [1e-4, 2e-4]}, **SPIN)
+    a, b = result.logs
+    row = result.table[1]
+    assert row["final_z"] == b.table[-1, 3] - a.table[-1, 3]
+    apart = np.linalg.norm(b.position - a.position, axis=1)
+    assert row["largest_position"] == pytest.approx(apart.max(), rel=1e-12)
+    yaw = (roll_pitch_yaw(b.orientation) - roll_pitch_yaw(a.orientation))[:, 2]
+    assert row["largest_yaw"] == pytest.approx(np.abs(yaw).max(), rel=1e-9)
+    assert row["largest_attitude"] == pytest.approx(np.abs(yaw).max(), rel=1e-9)
+    assert row["final_j1"] == b.rotor_velocity[-1, 0] - a.rotor_velocity[-1, 0]
+    assert all(result.table[0][f"largest_{state}"] == 0 for state in result.states)
+
+
+def test_flights_logged_at_other_times_are_compared_in_between():
+    coarse, fine = (qc.Simulation("quadrotor", "eigen", dt=dt).run(0.5) for dt in (0.002, 0.0005))
+    assert metrics.differences(coarse, fine)[:, 0].max() < 1e-5  # of a parabola, by chords
+    assert metrics.differences(fine, coarse)[:, 0].max() < 1e-12
+
+
+# What fails
+
+
+def test_a_variant_that_fails_is_a_row_and_the_others_finish(capsys):
+    Path("fast.csv").write_text("t,w1\n0,400\n0.05,9000\n")
+    flight = [*FLIGHT[:-1], "fast.csv", "--out", "out"]
+    vary = ["--vary", "motor.kp=1e-4,-1,0.05", "--vary", f"{SLOW}=1,10"]
+    assert main(["compare", "toy.urdf", *flight, *vary]) == 3
+    out, err = capsys.readouterr()
+    reasons = [row["failure"] for row in rows()]
+    assert [bool(reason) for reason in reasons] == [False, False, True, True, True, False]
+    assert "<kp> '-1' is out of range" in reasons[2]
+    assert "t = " in reasons[4]
+    assert rows()[4]["final_x"] == ""
+    assert "6 flights: 3 flown, 3 failed" in out
+    assert all(reason in out for reason in reasons)
+    assert err.startswith("error: 3 of 6 flights failed; the first, no. 3 (kp -1, sim_slow 1): ")
+    assert sorted(path.name for path in Path("out/logs").iterdir()) == ["1.csv", "2.csv", "6.csv"]
+    content = json.loads(Path("out/comparison.json").read_text())
+    assert content["rows"][2]["failure"] == reasons[2]
+    assert content["rows"][2]["final_x"] is None
+    assert "is out of range" in Path("out/report.html").read_text()
+
+
+def test_the_first_that_flew_is_what_the_others_are_compared_with():
+    result = qc.compare("toy.urdf", {"motor.kp": [-1, 1e-4, 2e-4]}, **SPIN)
+    assert result.reference == 1
+    assert result.logs[0] is None
+    assert result.table["largest_position"][1] == 0
+    assert result.table["largest_yaw"][2] > 0
+    nothing = qc.compare("toy.urdf", {"motor.kp": [-1, -2]}, **SPIN)
+    assert nothing.reference is None
+    assert main(["compare", "toy.urdf", "--vary", "motor.kp=-1", "--out", "out"]) == 3
+
+
+def test_a_process_that_dies_is_a_case_that_failed():
+    def maybe_die(number):
+        if number == 2:
+            os.kill(os.getpid(), signal.SIGKILL)
+        if number == 3:
+            raise qc.QuadcoreError("no")
+        return number * number
+
+    results = dict(each(maybe_die, range(6), 2))
+    assert [results[i] for i in (0, 1, 4, 5)] == [0, 1, 16, 25]
+    assert str(results[2]) == "its process was ended by SIGKILL"
+    assert str(results[3]) == "no"
+    with pytest.raises(RuntimeError, match="ZeroDivisionError"):
+        list(each(lambda number: 1 / number, [1, 0], 2))
+
+
+def test_ctrl_c_ends_it_soon_and_keeps_what_was_flown():
+    command = [sys.executable, "-m", "quadcore", "compare", "toy.urdf", "--out", "out"]
+    command += ["--engine", "eigen", "--duration", "2", "--vary", "motor.kp=1e-4:1e-3:5000"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL) as process:
+        time.sleep(4)
+        process.send_signal(signal.SIGINT)
+        asked = time.monotonic()
+        _, err = process.communicate(timeout=20)
+    assert time.monotonic() - asked < 10
+    assert process.returncode == 130
+    assert b"Traceback" not in err
+    assert rows()[0]["failure"] == ""
+    assert rows()[-1]["failure"] == "not flown: interrupted"
+
+
+# What is refused
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        ("toy.urdf", "nothing varied"),
+        ("toy.urdf nope.urdf", "nope.urdf: no such file"),
+        (
+            "toy.urdf --vary motor.kq=1",
+            "vary motor.kq: model toy has no 'motor.kq'; the nearest is 'motor.kp'",
+        ),
+        ("toy.urdf --vary engin=ode", "the nearest is 'engine'"),
+        (
+            "toy.urdf --vary engine=eigne",
+            "vary engine: there is no 'eigne'; the nearest is 'eigen'",
+        ),
+        ("toy.urdf --vary world=nope", "nope: no such file, and no shipped world"),
+        ("toy.urdf --vary motor.kp=", "motor.kp: holds no values"),
+        ("toy.urdf --vary motor.kp=1:2:0", "the range '1:2:0' is empty"),
+        ("toy.urdf --vary motor.kp=1:x:3", "'1:x:3' is no range"),
+        ("toy.urdf --vary motor.kp=1:2", "'1:2' is no range"),
+        ("toy.urdf --vary motor.kp=log:0:1:3", "is no geometric range"),
+        ("toy.urdf --vary motor.kp=1 --vary motor.kp=2", "motor.kp is given twice"),
+        ("toy.urdf --vary motor.kp=1 --vary motor.kp,motor.ki=2", "motor.kp is varied twice"),
+        ("toy.urdf --vary motor.kp=1 --set motor.kp=2", "motor.kp: it is set as well"),
+        ("toy.urdf --vary motor.kp=0:1:1000000000", "makes 1000000000 flights"),
+        (
+            "toy.urdf --vary motor.kp=0:1:1000 --vary motor.ki=0:1:1000 --vary motor.kd=0:1:1000",
+            "1000 x 1000 x 1000 makes 1000000000 flights; at most 100000",
+        ),
+        ("toy.urdf quadrotor --commands c.csv", "quadrotor: has 4 rotors, toy.urdf has 1"),
+        ("toy.urdf --vary motor.kp=1 --commands nope.csv", "nope.csv: cannot be read"),
+        ("toy.urdf --vary motor.kp=1 --logs", "--logs needs --out"),
+        ("toy.urdf --vary motor.kp=1 --out c.csv", "c.csv: cannot be made"),
+        ("toy.urdf --vary motor.kp=1 --jobs 0", "--jobs: '0' is not a whole number"),
+        ("toy.urdf --vary motor.kp", "is not of the form"),
+    ],
+)
+def test_bad_input_is_one_line_and_nothing_is_flown(capsys, arguments, reason):
+    started = time.monotonic()
+    assert main(["compare", *arguments.split()]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("error: ")
+    assert err.count("\n") == 1
+    assert reason in err
+    assert time.monotonic() - started < 5
+
+
+def test_from_python_too_much_is_refused():
+    with pytest.raises(qc.InputError, match="the logs of 50000 flights take"):
+        qc.compare("toy.urdf", {"motor.kp": np.linspace(1e-4, 1e-3, 50_000)})
+    with pytest.raises(qc.InputError, match="holds no values"):
+        qc.compare("toy.urdf", {"motor.kp": []})
+
+
+# What is written
+
+
+def test_the_page_needs_no_other_file():
+    vary = ["--vary", "motor.kp=1e-4,1e-3"]
+    assert main(["compare", "toy.urdf", *FLIGHT, *vary, "--quiet", "--out", "out"]) == 0
+    page = Path("out/report.html").read_text()
+    assert page.count("data:image/png;base64,") == 5
+    assert 'src="http' not in page
+    assert f"5e-4 (toy.urdf:{line_of('toy.urdf', '<kp>')})" in page
+
+
+def test_more_flights_than_can_be_held_leave_metrics_only():
+    vary = ["--vary", "motor.kp=1e-4:1e-3:60"]
+    arguments = ["compare", "toy.urdf", *FLIGHT, *vary, "--quiet", "--no-plots"]
+    assert main([*arguments, "--out", "out"]) == 0
+    assert len(rows()) == 60
+    assert not Path("out/logs").exists()
+    assert main([*arguments, "--out", "all", "--logs"]) == 0
+    assert len(list(Path("all/logs").iterdir())) == 60

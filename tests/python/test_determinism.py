@@ -1,0 +1,175 @@
+"""A simulation repeats itself to the last bit, and leaves nothing behind."""
+
+from __future__ import annotations
+
+import gc
+import multiprocessing
+import threading
+import weakref
+
+import numpy as np
+import pytest
+from flights import BUSY, ENGINES, HOVER, MANOEUVRE, bits, hold_height, quadrotor
+
+import quadcore as qc
+
+ALOFT = {"spawn": (1, 2, 10, 0.3, -0.2, 1), "parameters": BUSY}
+# It falls, tumbles on the ground and jumps: contacts come and go.
+GROUNDED = {"spawn": (1, 2, 0.2, 0.3, -0.2, 1), "world": "default", "parameters": BUSY}
+
+everywhere = pytest.mark.parametrize(
+    ("engine", "place"),
+    [(engine, ALOFT) for engine in ENGINES]
+    + [(engine, GROUNDED) for engine in ("gazebo11", "ode")],
+    ids=lambda value: value if isinstance(value, str) else value.get("world", "empty"),
+)
+
+
+def fly(simulation, steps):
+    return hold_height(simulation, steps, simulation.state.position[2])
+
+
+def csv(log, folder):
+    log.to_csv(folder / "log.csv")
+    return (folder / "log.csv").read_bytes()
+
+
+def test_the_grounded_flight_touches_the_ground():
+    simulation = quadrotor(**GROUNDED)
+    fly(simulation, 500)
+    assert simulation.state.position[2] < 0.1
+
+
+@everywhere
+def test_the_same_seed_gives_the_same_bytes_and_another_seed_others(engine, place):
+    def flown(seed):
+        return fly(quadrotor(engine, seed=seed, **place), 500)
+
+    assert flown(7) == flown(7)
+    assert flown(7) != flown(8)
+
+
+def test_two_runs_write_the_same_log(tmp_path):
+    first, second = (quadrotor(parameters=BUSY).run(1, MANOEUVRE) for _ in range(2))
+    assert csv(first, tmp_path) == csv(second, tmp_path)
+
+
+@everywhere
+def test_a_restored_snapshot_flies_the_same_bytes(engine, place):
+    simulation = quadrotor(engine, **place)
+    fly(simulation, 333)
+    snapshot = simulation.snapshot()
+    flown = fly(simulation, 1000)
+    simulation.restore(snapshot)
+    assert fly(simulation, 1000) == flown
+    other = quadrotor(engine, **place)
+    fly(other, 10)
+    other.restore(snapshot)
+    assert fly(other, 1000) == flown
+
+
+@everywhere
+def test_a_reset_simulation_is_a_new_one(engine, place):
+    simulation = quadrotor(engine, **place)
+    new = bits(simulation)
+    flown = fly(simulation, 500)
+    simulation.reset()
+    assert simulation.time == 0
+    assert simulation.topic("vel_cmd")["count"] == 0
+    assert bits(simulation) == new
+    assert fly(simulation, 500) == flown
+    assert fly(quadrotor(engine, **place), 500) == flown
+
+
+def test_many_steps_are_as_many_single_steps():
+    at_once, one_by_one = quadrotor(parameters=BUSY), quadrotor(parameters=BUSY)
+    for simulation in (at_once, one_by_one):
+        simulation.command(HOVER)
+    at_once.step(500)
+    for _ in range(500):
+        one_by_one.step()
+    assert bits(at_once) == bits(one_by_one)
+
+
+def table(engine, place, seed=0):
+    return quadrotor(engine, seed=seed, **place).run(2, MANOEUVRE, log_every=10).table
+
+
+@everywhere
+def test_threads_fly_the_bytes_that_each_flies_alone(engine, place):
+    tables = {}
+
+    def work(seed):
+        for _ in range(3):
+            tables[seed] = table(engine, {**place, "spawn": (0, 0, 0.2, 0.1 * seed, 0, 0)}, seed)
+
+    threads = [threading.Thread(target=work, args=(seed,)) for seed in range(3)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    together = dict(tables)
+    for seed in range(3):
+        work(seed)
+        assert np.array_equal(tables[seed], together[seed])
+
+
+@everywhere
+def test_a_simulation_may_move_to_another_thread(engine, place):
+    simulation, moved = quadrotor(engine, **place), quadrotor(engine, **place)
+    fly(simulation, 500)
+    worker = threading.Thread(target=fly, args=(moved, 500))
+    worker.start()
+    worker.join()
+    assert bits(moved) == bits(simulation)
+
+
+@everywhere
+def test_forked_workers_fly_the_same_bytes(engine, place):
+    here = table(engine, place)
+    with multiprocessing.get_context("fork").Pool(2) as pool:
+        for there in pool.starmap(table, [(engine, place)] * 2):
+            assert np.array_equal(there, here)
+
+
+def test_one_simulation_refuses_a_second_thread_at_once():
+    simulation = quadrotor()
+    worker = threading.Thread(target=simulation.step, args=(100000,))
+    worker.start()
+    while simulation.time == 0:
+        pass
+    for call in (simulation.step, simulation.snapshot, lambda: simulation.command(HOVER)):
+        with pytest.raises(qc.QuadcoreError, match="used by another thread; give each its own"):
+            call()
+    worker.join()
+    simulation.step()
+    assert simulation.time == 100.001
+
+
+def test_a_simulation_dies_with_its_last_reference():
+    gc.disable()
+    try:
+        simulation = quadrotor()
+        simulation.run(0.01)
+        gone = weakref.ref(simulation)
+        del simulation
+        assert gone() is None
+    finally:
+        gc.enable()
+
+
+def resident_bytes():
+    with open("/proc/self/statm") as file:
+        return int(file.read().split()[1]) * 4096
+
+
+def test_a_thousand_simulations_leave_no_memory_behind(toy):
+    def come_and_go(count):
+        for _ in range(count):
+            qc.Simulation("toy.urdf").run(0.001)
+
+    come_and_go(100)
+    before = resident_bytes()
+    come_and_go(1000)
+    # One kilobyte per simulation would be found.
+    assert resident_bytes() - before < 1e6

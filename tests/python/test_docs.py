@@ -1,0 +1,147 @@
+"""The README and the docs say what is so.
+
+Further pages than those named here are only held to what is common to all: links, quotations,
+options. An option in a code span of its own is taken for one of quadcore's; those of other programs
+are written with the program's name before them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import quadcore as qc
+from quadcore.cli import _parser
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
+COMMANDS = next(
+    action.choices
+    for action in _parser()._actions
+    if isinstance(action, argparse._SubParsersAction)
+)
+
+
+def name_of(page):
+    return str(page.relative_to(ROOT))
+
+
+def blocks(page, language):
+    """Fenced blocks of a language, in order."""
+    return re.findall(rf"^```{language}\n(.*?)^```$", page.read_text(), re.DOTALL | re.MULTILINE)
+
+
+def prose(page):
+    """The page without its fenced blocks."""
+    return re.sub(r"^```.*?^```$", "", page.read_text(), flags=re.DOTALL | re.MULTILINE)
+
+
+def anchors(page):
+    """Names that a link into the page may point to: headings as GitHub spells them, and ids."""
+    names = set(re.findall(r'<a id="([^"]+)"', page.read_text()))
+    for heading in re.findall(r"^#+ (.*)$", prose(page), re.MULTILINE):
+        words = re.sub(r"[^\w\- ]", "", heading.lower())
+        names.add(words.strip().replace(" ", "-"))
+    return names
+
+
+def options_of(*commands):
+    return {option for command in commands for option in COMMANDS[command]._option_string_actions}
+
+
+every_page = pytest.mark.parametrize("page", PAGES, ids=name_of)
+
+
+@every_page
+def test_every_relative_link_leads_somewhere(page):
+    for target in re.findall(r"\]\(([^)\s]+)\)", prose(page)):
+        if re.match(r"[a-z]+:", target):
+            continue
+        file, _, anchor = target.partition("#")
+        linked = page.parent / file if file else page
+        assert linked.exists(), target
+        assert not anchor or anchor in anchors(linked), target
+
+
+@every_page
+def test_every_quadcore_command_line_is_one(page):
+    lines = "\n".join(blocks(page, "(?:sh|bash|console)")).replace("\\\n", " ").splitlines()
+    spans = re.findall(r"(?<!`)`([^`\n]+)`(?!`)", prose(page))
+    # At the start of a line or behind a prompt or another command, after settings of variables.
+    called = re.compile(
+        r"(?:^|[|;&$])\s*(?:\w+=\S+\s+)*(?:python3? -m |\S*/)?quadcore ([a-z]\w*)([^|;&#]*)"
+    )
+    for line in lines + spans:
+        for command, rest in called.findall(line):
+            assert command in COMMANDS, line
+            assert set(re.findall(r"(?<!\S)--[\w-]+", rest)) <= options_of(command), line
+
+
+@every_page
+def test_every_option_named_alone_exists(page):
+    for span in re.findall(r"(?<!`)`(--[^`\n]+)`(?!`)", prose(page)):
+        assert re.split(r"[ =]", span)[0] in options_of(*COMMANDS), span
+
+
+@every_page
+def test_what_is_quoted_is_so(page):
+    text = page.read_text()
+    quotations = re.findall(
+        r"^<!-- quoted: (\S+) -->\n+```\w*\n(.*?)^```$", text, re.DOTALL | re.MULTILINE
+    )
+    assert len(quotations) == text.count("<!-- quoted:")
+    for path, quoted in quotations:
+        assert quoted in (ROOT / path).read_text(), path
+
+
+def test_the_reference_is_what_the_generator_writes():
+    generated = subprocess.run(
+        [sys.executable, ROOT / "scripts" / "document_tags.py", "--print"],
+        stdout=subprocess.PIPE,
+        check=True,
+    ).stdout
+    assert generated.decode() == (ROOT / "docs" / "tags.md").read_text(encoding="utf-8"), (
+        "docs/tags.md is out of date; run scripts/document"
+    )
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/python.md"])
+def test_the_python_of_a_page_runs_as_it_stands(page, tmp_path):
+    script = "\n".join(blocks(ROOT / page, "python"))
+    ran = subprocess.run(
+        [sys.executable, "-W", "error", "-c", script],
+        cwd=str(tmp_path),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+    )
+    assert ran.returncode == 0, ran.stdout.decode()
+    assert (tmp_path / "flight.csv").exists()
+
+
+def test_the_example_of_the_readme_is_short_and_holds_its_height(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (example,) = blocks(ROOT / "README.md", "python")
+    assert len([line for line in example.splitlines() if line]) <= 11  # ten and the import
+    names = {}
+    exec(example, names)
+    assert names["log"].position[-1] == pytest.approx([0, 0, 12], abs=0.05)
+
+
+@pytest.mark.parametrize("engine", [name for name, _ in qc.engines()])
+def test_the_model_of_the_guide_flies(engine, tmp_path):
+    model, world = blocks(ROOT / "docs" / "models.md", "xml")
+    (tmp_path / "hexarotor.urdf.xacro").write_text(model)
+    (tmp_path / "windy.world").write_text(world)
+    simulation = qc.Simulation(
+        tmp_path / "hexarotor.urdf.xacro", engine=engine, world=tmp_path / "windy.world"
+    )
+    assert simulation.warnings == []
+    simulation.command([510, -510] * 3)
+    simulation.step(2000)
+    assert simulation.state.position[0] > 0.1  # the wind takes it along
+    assert simulation.state.linear_velocity[2] > 0

@@ -1,0 +1,121 @@
+"""Topic odom: the truth of the frame, at its rate, with the noise its tags ask for."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from flights import BUSY, HOVER, quadrotor
+from scipy.spatial.transform import Rotation
+
+POSE = ("x", "y", "z", "qx", "qy", "qz", "qw")
+LINEAR = ("vx", "vy", "vz")
+ANGULAR = ("wx", "wy", "wz")
+NOISE = {"position": 0.1, "orientation": 0.02, "linear_velocity": 0.3, "angular_velocity": 0.4}
+TAGS = {
+    "odometry.positionNoise": 0.1,
+    "odometry.orientationNoise": 0.02,
+    "odometry.linearVelocityNoise": 0.3,
+    "odometry.angularVelocityNoise": 0.4,
+}
+
+
+def tumbling(**parameters):
+    simulation = quadrotor(parameters=parameters, spawn=(1, 2, 3, 0.4, -0.3, 2))
+    simulation.command(HOVER * [1, 1.01, 1.02, 1])
+    return simulation
+
+
+def part(message, names):
+    return np.array([message[name] for name in names])
+
+
+def errors(simulation, steps):
+    """Message minus truth, per quantity; rows of three."""
+    found = {name: [] for name in NOISE}
+    for _ in range(steps):
+        simulation.step()
+        message, state = simulation.topic("odom"), simulation.state
+        pose = part(message, POSE)
+        truth = Rotation.from_quat(state.orientation.copy())
+        found["position"].append(pose[:3] - state.position)
+        found["orientation"].append((truth.inv() * Rotation.from_quat(pose[3:])).as_rotvec())
+        found["linear_velocity"].append(part(message, LINEAR) - state.linear_velocity)
+        found["angular_velocity"].append(part(message, ANGULAR) - state.angular_velocity)
+    return {name: np.array(rows) for name, rows in found.items()}
+
+
+def test_without_noise_a_message_is_the_truth():
+    for rows in errors(tumbling(), 200).values():
+        assert np.abs(rows).max() < 1e-15
+
+
+def test_a_noise_tag_is_the_standard_deviation_of_each_component():
+    simulation = tumbling(**TAGS)
+    steps = 4000
+    found = errors(simulation, steps)
+    for name, deviation in NOISE.items():
+        rows = found[name] / deviation
+        assert simulation.topic("odom")[f"{name}_variance"] == deviation**2
+        # Five standard errors of the mean, the deviation and the correlation.
+        assert np.abs(rows.mean(axis=0)).max() < 5 / np.sqrt(steps)
+        assert np.abs(rows.std(axis=0) - 1).max() < 5 / np.sqrt(2 * steps)
+    every = np.hstack([found[name] for name in NOISE])
+    correlation = np.corrcoef(np.vstack([every[1:].T, every[:-1].T]))
+    assert np.abs(correlation - np.eye(len(correlation))).max() < 5 / np.sqrt(steps)
+
+
+def test_noise_of_one_quantity_leaves_the_others_true():
+    found = errors(tumbling(**{"odometry.linearVelocityNoise": 0.3}), 100)
+    assert found.pop("linear_velocity").std() > 0.1
+    for rows in found.values():
+        assert np.abs(rows).max() < 1e-15
+
+
+def test_a_noisy_orientation_is_a_unit_quaternion():
+    simulation = tumbling(**{"odometry.orientationNoise": 1})
+    for _ in range(100):
+        simulation.step()
+        assert np.linalg.norm(part(simulation.topic("odom"), POSE[3:])) == pytest.approx(1)
+
+
+def test_the_twist_may_be_given_in_body_axes():
+    world, body = tumbling(), tumbling(**{"odometry.twistFrame": "body"})
+    for simulation in (world, body):
+        simulation.step(500)
+    state = world.state.copy()
+    turned = Rotation.from_quat(state.orientation).inv().apply(state.linear_velocity)
+    message = body.topic("odom")
+    assert np.allclose(part(message, LINEAR), turned, rtol=0, atol=1e-14)
+    assert not np.allclose(part(message, LINEAR), part(world.topic("odom"), LINEAR), atol=0.1)
+    assert np.array_equal(part(message, ANGULAR), part(world.topic("odom"), ANGULAR))
+
+
+@pytest.mark.parametrize("tag", ["rate", "updateRate"])
+def test_messages_come_at_their_rate_from_time_zero_on(tag):
+    simulation = quadrotor(parameters={f"odometry.{tag}": 400})
+    stamps = [simulation.topic("odom")["stamp"]]
+    for _ in range(1000):
+        simulation.step()
+        stamps.append(simulation.topic("odom")["stamp"])
+    assert simulation.topic("odom")["count"] == 401
+    due = np.arange(401) / 400
+    # Each at the end of the step in which it is due.
+    assert np.allclose(np.unique(stamps), np.ceil(due * 1000 - 1e-6) / 1000, rtol=0, atol=1e-12)
+
+
+def test_at_most_one_message_comes_per_step():
+    simulation = quadrotor(parameters={"odometry.rate": 5000})
+    simulation.step(10)
+    assert simulation.topic("odom")["count"] == 11
+
+
+def test_its_own_seed_makes_the_noise_independent_of_the_simulations():
+    def flown(seed, **parameters):
+        simulation = quadrotor(seed=seed, parameters={**BUSY, **parameters})
+        simulation.step(100)
+        return simulation.topic("odom")
+
+    own = {"odometry.seed": 5}
+    assert flown(1, **own) == flown(2, **own)
+    assert flown(1) != flown(2)
+    assert flown(5) == flown(1, **own)

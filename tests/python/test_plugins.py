@@ -1,0 +1,188 @@
+"""Plugins by others: built outside the tree against the installed package, good ones and bad ones."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from faults import MODEL, refusal
+from flights import ENGINES
+
+import quadcore as qc
+
+ROOT = Path(__file__).resolve().parents[2]
+SIDE_FORCE = '<plugin name="push" filename="{}"><sideForce>{}</sideForce></plugin>'
+FAULTY = '<plugin name="bad" filename="lib{}_plugin.so"><fault>{}</fault><after>{}</after></plugin>'
+AT = "toy.urdf:29: plugin 'bad'"  # the line after <gazebo>, where with_plugin() puts it
+
+
+def build(source: Path, folder: Path, *options: str) -> Path:
+    """Build a CMake project against the installed package; returns its folder."""
+    prefix = f"-DCMAKE_PREFIX_PATH={qc.cmake_prefix()}"
+    configure = ["cmake", "-S", source, "-B", folder, prefix, *options]
+    for command in (configure, ["cmake", "--build", folder]):
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+    return folder
+
+
+@pytest.fixture(scope="module")
+def side_force(tmp_path_factory):
+    """Folder that holds the example's library."""
+    return build(ROOT / "examples" / "side_force_plugin", tmp_path_factory.mktemp("side_force"))
+
+
+@pytest.fixture(scope="module")
+def faulty(tmp_path_factory):
+    """Folder of bad plugins, compiled for this very processor: their layouts must not depend on it."""
+    return build(
+        ROOT / "tests" / "python" / "plugins",
+        tmp_path_factory.mktemp("faulty"),
+        "-DCMAKE_CXX_FLAGS=-march=native",
+        "-DCMAKE_BUILD_TYPE=Release",
+    )
+
+
+@pytest.fixture
+def bad(toy, faulty, monkeypatch):
+    """A function that returns a simulation with a bad plugin."""
+    monkeypatch.setenv("QUADCORE_PLUGIN_PATH", str(faulty))
+
+    def simulation(fault, after=0.0, variant="faulty", **options):
+        with_plugin(FAULTY.format(variant, fault, after))
+        return qc.Simulation("toy.urdf", **options)
+
+    return simulation
+
+
+def with_plugin(element: str) -> None:
+    Path("toy.urdf").write_text(MODEL.replace("<gazebo>\n", f"<gazebo>\n{element}\n"))
+
+
+def assert_pushed(engine: str, filename: str) -> None:
+    """A vehicle that falls freely moves sideways with force / mass, and the log says why."""
+    with_plugin(SIDE_FORCE.format(filename, 0.5))
+    simulation = qc.Simulation("toy.urdf", engine=engine)
+    log = simulation.run(0.5)
+    velocity = 0.5 / simulation.mass * log.time
+    assert np.allclose(log.linear_velocity[:, 1], velocity, rtol=1e-12, atol=1e-15)
+    assert not log.linear_velocity[:, 0].any()
+    assert np.allclose(log.orientation, [0, 0, 0, 1], rtol=0, atol=1e-12)
+    wrench = log.wrenches["side_force"]
+    assert np.allclose(wrench, [0, 0.5, 0, 0, 0, 0], rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_plugin_from_a_loaded_folder_pushes_the_vehicle(engine, side_force, toy):
+    qc.load_plugin_path(str(side_force))
+    assert_pushed(engine, "libside_force_plugin.so")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_plugin_from_the_environments_folder_pushes_the_vehicle(
+    engine, side_force, toy, monkeypatch
+):
+    # Under a name that no loaded folder has.
+    shutil.copy(side_force / "libside_force_plugin.so", "libpush.so")
+    monkeypatch.setenv("QUADCORE_PLUGIN_PATH", f"/nowhere:{toy}")
+    assert_pushed(engine, "libpush.so")
+
+
+def test_the_tags_of_a_plugin_by_others_are_listed_set_and_checked(side_force, toy, monkeypatch):
+    monkeypatch.setenv("QUADCORE_PLUGIN_PATH", str(side_force))
+    with_plugin(SIDE_FORCE.format("libside_force_plugin.so", 0.5))
+    options = ["--set", "push.sideForce=2"]
+    info = [sys.executable, "-m", "quadcore", "info", "toy.urdf"]
+    listed = subprocess.run(info + options, capture_output=True, text=True, check=True).stdout
+    (row,) = (line for line in listed.splitlines() if "sideForce" in line)
+    assert "2" in row and "N" in row.split()
+    with_plugin(SIDE_FORCE.format("libside_force_plugin.so", "1 kN"))
+    message = refusal(qc.Simulation, "toy.urdf")
+    assert message.startswith("toy.urdf:29: plugin 'push': <sideForce> '1 kN' is not a finite")
+
+
+def test_the_cpp_example_flies_as_its_python_twin(tmp_path):
+    model = ROOT / "tests" / "data" / "gazebo11" / "cases" / "A5_g9.81" / "model.urdf"
+    program = build(ROOT / "examples" / "cpp", tmp_path) / "fly"
+    twin = ROOT / "examples" / "step_from_python.py"
+    flown = [
+        subprocess.run([*command, model], capture_output=True, text=True, check=True).stdout
+        for command in ([program], [sys.executable, twin])
+    ]
+    assert flown[0] == flown[1]
+    assert flown[0].startswith("t = 4.00 s, height 9.9")
+    wrong = subprocess.run([program, twin], capture_output=True, text=True, check=False)
+    assert wrong.returncode == 2
+    assert wrong.stderr.startswith(f"error: {twin}:") and wrong.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("variant", "says"),
+    [
+        ("older", "was built for plugin interface 0, this is 1; rebuild it against the installed"),
+        ("nameless", "cannot describe itself: what am I?"),
+    ],
+)
+def test_a_library_that_does_not_fit_is_refused_by_plugin_and_file(bad, faulty, variant, says):
+    message = refusal(bad, "none", variant=variant)
+    assert message.startswith(f"{AT}: lib{variant}_plugin.so in {faulty} {says}")
+
+
+@pytest.mark.parametrize(
+    ("fault", "says"),
+    [
+        ("create", "out of luck"),
+        ("create_number", "threw something that is no std::exception"),
+        ("null", "its create() returned no plugin"),
+        ("tag", "the plugin's table has no tag 'speed'"),
+    ],
+)
+def test_a_plugin_that_fails_to_be_made_is_named_and_others_fly_on(bad, faulty, fault, says):
+    other = bad("none")
+    other.step(10)
+    assert refusal(bad, fault) == f"{AT} ({faulty}/libfaulty_plugin.so): {says}"
+    again = bad("none")
+    again.step(20)
+    other.step(10)
+    assert repr(other.state) == repr(again.state)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("hook", ["update", "sense", "forces"])
+@pytest.mark.parametrize("thrown", ["", "_number"])
+def test_a_plugin_that_throws_in_flight_is_named_and_the_flight_can_be_taken_up_again(
+    bad, faulty, engine, hook, thrown
+):
+    what = "threw something that is no std::exception" if thrown else "out of luck"
+    named = f"plugin 'bad' ({faulty}/libfaulty_plugin.so): {what}"
+    simulation = bad(hook + thrown, 0.0095, engine=engine)
+    with pytest.raises(qc.FlightError) as failed:
+        simulation.run(1)
+    message = str(failed.value)
+    assert message.startswith("the flight failed at t = 0.0") and message.endswith(named)
+    assert 0.009 <= failed.value.time == simulation.time <= 0.011
+    assert failed.value.log.time[-1] <= failed.value.time
+    with pytest.raises(qc.FlightError, match="reset, restore or set a state to go on"):
+        simulation.step()
+
+    sound = bad("none", engine=engine)
+    sound.step(9)
+    simulation.reset()
+    simulation.step(9)
+    assert repr(simulation.state) == repr(sound.state)
+
+
+@pytest.mark.parametrize("hook", ["sense", "forces"])
+def test_a_plugin_that_throws_before_the_first_step_is_named(bad, faulty, hook):
+    def begin():
+        bad(hook).run(0.001)  # a log begins with the forces at time 0
+
+    with pytest.raises(qc.QuadcoreError) as failed:
+        begin()
+    message = str(failed.value)
+    assert f"plugin 'bad' ({faulty}/libfaulty_plugin.so): out of luck" in message
+    assert "\n" not in message

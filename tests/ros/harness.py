@@ -1,0 +1,177 @@
+"""What the ROS tests share: nodes as processes, and recordings of topics."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import threading
+import time
+import unittest
+from contextlib import contextmanager
+from typing import Callable
+
+import roslib.packages
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray
+from quadcore.srv import Step
+from std_msgs.msg import Float64MultiArray
+from std_srvs.srv import Empty
+
+from quadcore.description import load_description
+
+HOVER = [475.0, -475.0, 475.0, -475.0]  # rad/s, a little more than the weight
+
+
+def description(**tags: str) -> str:
+    """URDF of the shipped quadrotor at sim_slow 1, with other texts in some plugin tags."""
+    text = load_description("quadrotor", {"sim_slow": "1"}).text
+    for tag, value in tags.items():
+        text, count = re.subn(f"<{tag}>[^<]*<", f"<{tag}>{value}<", text)
+        assert count > 0, tag
+    return text
+
+
+def executable(name: str) -> str:
+    """Path of a node of this package."""
+    return roslib.packages.find_node("quadcore", name)[0]
+
+
+class Process:
+    """A node in a process of its own, ended with the block."""
+
+    def __init__(self, name: str, *arguments: str, **environment: str) -> None:
+        self.process = subprocess.Popen(
+            [executable(name), *arguments],
+            env={**os.environ, **environment},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+
+    def __enter__(self) -> Process:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self.process.poll() is None:
+            self.end()
+
+    def end(self, number: int = signal.SIGINT) -> float:
+        """Send a signal and return the time (s) until the process has gone."""
+        start = time.monotonic()
+        self.process.send_signal(number)
+        try:
+            self.process.communicate(timeout=10)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            raise
+        return time.monotonic() - start
+
+    def result(self) -> tuple[int, str]:
+        """Exit status and standard error of a process that ends by itself."""
+        _, error = self.process.communicate(timeout=10)
+        return self.process.returncode, error
+
+
+@contextmanager
+def flight(*arguments: str, urdf: str | None = None, namespace: str = ""):
+    """A quadcore_node that is ready; `arguments` such as "_paused:=true"."""
+    rospy.set_param(f"{namespace}/robot_description", urdf or description())
+    if rospy.has_param(f"{namespace}/quadcore"):
+        rospy.delete_param(f"{namespace}/quadcore")
+    with Process("quadcore_node", f"__ns:={namespace}", "_z:=10", *arguments) as node:
+        rospy.wait_for_service(f"{namespace}/quadcore/set_state", 10)
+        yield node
+
+
+class Recording:
+    """Every message of a topic."""
+
+    def __init__(self, topic: str, message_type: type, act: Callable | None = None) -> None:
+        self.messages: list = []
+        self._act = act
+        self._came = threading.Condition()
+        self._subscriber = rospy.Subscriber(topic, message_type, self._take, tcp_nodelay=True)
+
+    def __enter__(self) -> Recording:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._subscriber.unregister()
+
+    def _take(self, message: object) -> None:
+        if self._act is not None:
+            self._act(message)
+        with self._came:
+            self.messages.append(message)
+            self._came.notify_all()
+
+    def wait(self, until: Callable[[list], bool], seconds: float = 10) -> list:
+        """Messages once `until` holds of them."""
+        with self._came:
+            if not self._came.wait_for(lambda: until(self.messages), seconds):
+                raise AssertionError(f"{self._subscriber.name}: {len(self.messages)} messages")
+            return list(self.messages)
+
+    def wait_for_count(self, count: int) -> list:
+        """Messages once there are `count`."""
+        return self.wait(lambda messages: len(messages) >= count)
+
+    def wait_for_publisher(self) -> Recording:
+        """Return once a publisher is connected."""
+        wait_until(lambda: self._subscriber.get_num_connections() > 0)
+        return self
+
+
+@contextmanager
+def commander(topic: str = "/quadrotor/vel_cmd"):
+    """Give a function that sends commands, once the node listens."""
+    publisher = rospy.Publisher(topic, Float64MultiArray, queue_size=10, tcp_nodelay=True)
+    try:
+        wait_until(lambda: publisher.get_num_connections() > 0)
+        yield lambda speeds: publisher.publish(data=speeds)
+    finally:
+        publisher.unregister()
+
+
+def step(n: int) -> None:
+    """Fly n steps of a paused flight."""
+    response = rospy.ServiceProxy("/quadcore/step", Step)(n)
+    if not response.success:
+        raise AssertionError(response.message)
+
+
+def call(service: str) -> None:
+    """Call a service without arguments."""
+    rospy.ServiceProxy(service, Empty)()
+
+
+def diagnostic(key: str, until: Callable[[float], bool] = lambda _: True) -> float:
+    """Value of a diagnostic, once it is as wanted."""
+
+    def value(messages: list) -> float:
+        pairs = messages[-1].status[0].values if messages else []
+        return next((float(pair.value) for pair in pairs if pair.key == key), float("nan"))
+
+    with Recording("/diagnostics", DiagnosticArray) as recording:
+        known = recording.wait(lambda m: value(m) == value(m) and until(value(m)), 5)
+        return value(known)
+
+
+def wait_until(condition: Callable[[], bool], seconds: float = 10) -> None:
+    """Return once `condition` holds."""
+    limit = time.monotonic() + seconds
+    while not condition():
+        if time.monotonic() > limit:
+            raise AssertionError("waited in vain")
+        time.sleep(0.005)
+
+
+def run(name: str, case: type[unittest.TestCase]) -> None:
+    """Run the tests of a class as a rostest."""
+    # The node under test makes the time; a test follows the clock on the wall.
+    rospy.init_node(name, disable_rostime=True)
+    rostest.rosrun("quadcore", name, case, sys.argv)

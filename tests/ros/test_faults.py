@@ -1,0 +1,209 @@
+#!/usr/bin/env python3
+"""What goes wrong: masters, commands, subscribers, signals, models."""
+
+import contextlib
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import harness
+import numpy as np
+import rospy
+from harness import HOVER, Process, Recording, call, commander, description, diagnostic, flight
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import JointState
+
+NAN, INFINITY = float("nan"), float("inf")
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("localhost", 0))
+        return probe.getsockname()[1]
+
+
+@contextlib.contextmanager
+def master(port):
+    """A ROS master of its own."""
+    command = ["rosmaster", "--core", "-p", str(port)]
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        harness.wait_until(lambda: answers(port))
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+
+
+def answers(port):
+    with socket.socket() as probe:
+        return probe.connect_ex(("localhost", port)) == 0
+
+
+def outcome(*arguments, **environment):
+    """Exit status and standard error of a node that refuses to start."""
+    with Process("quadcore_node", *arguments, **environment) as node:
+        return node.result()
+
+
+class TestFaults(unittest.TestCase):
+    def shell(self, port, *command):
+        """Output of a ROS command under another master."""
+        environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}"}
+        return subprocess.run(
+            command, env=environment, stdout=subprocess.PIPE, timeout=20, text=True, check=True
+        ).stdout
+
+    def height(self, port):
+        """Altitude that a subscriber sees who comes now."""
+        topic = "/odom/pose/pose/position/z"
+        lines = self.shell(port, "rostopic", "echo", "-n1", "-p", topic).splitlines()
+        return float(lines[-1].split(",")[1])
+
+    def test_no_master(self):
+        uri = f"http://localhost:{free_port()}"
+        start = time.monotonic()
+        status, error = outcome(ROS_MASTER_URI=uri)
+        self.assertLess(time.monotonic() - start, 2)
+        self.assertEqual(status, 2)
+        self.assertIn(f"error: no ROS master at {uri}; start roscore", error)
+
+    def test_a_master_that_dies_and_comes_back(self):
+        port = free_port()
+        uri = f"http://localhost:{port}"
+        with tempfile.NamedTemporaryFile("w", suffix=".urdf") as model:
+            model.write(description())
+            model.flush()
+            with contextlib.ExitStack() as stack:
+                with master(port):
+                    start = (f"_model:={model.name}", "_z:=2")
+                    node = Process("quadcore_node", *start, ROS_MASTER_URI=uri)
+                    stack.enter_context(node)
+                    hover = Process("hover_node", "_altitude:=2", ROS_MASTER_URI=uri)
+                    stack.enter_context(hover)
+                    harness.wait_until(lambda: "/odom" in self.shell(port, "rostopic", "list"))
+                time.sleep(1.5)
+                self.assertIsNone(node.process.poll())
+                with master(port):
+                    harness.wait_until(
+                        lambda: "/quadcore/step" in self.shell(port, "rosservice", "list")
+                    )
+                    # Both old connections stand: the vehicle hovers where it was told to.
+                    harness.wait_until(lambda: abs(self.height(port) - 2) < 0.1, 20)
+                    self.shell(port, "rosservice", "call", "/gazebo/pause_physics")
+                    self.assertLess(node.end(), 1)
+
+    def test_wrong_commands_are_refused_and_the_last_good_one_kept(self):
+        wrong = [[400.0] * 3, [], [400.0] * 5, [NAN, 1, 1, 1], [1, 1, 1, -INFINITY]]
+        with flight("_real_time_factor:=0.2"), commander() as send:
+            with Recording("/joint_states", JointState) as joints:
+                send(HOVER)
+                for speeds in wrong:
+                    send(speeds)
+                self.assertEqual(diagnostic("rejected commands", lambda count: count > 0), 5)
+                self.assertEqual(diagnostic("commands"), 1)
+                joints.wait(lambda m: np.allclose(m[-1].velocity, HOVER, rtol=0.01))
+
+    def test_commands_that_stop_time_out(self):
+        urdf = description().replace("<kp>", "<commandTimeout>0.3</commandTimeout><kp>")
+        with flight(urdf=urdf), commander() as send:
+            with Recording("/joint_states", JointState) as joints:
+                send(HOVER)
+                joints.wait(lambda m: m and m[-1].velocity[0] > 400)
+                joints.wait(lambda m: abs(m[-1].velocity[0]) < 10)
+
+    def test_a_subscriber_that_is_stuck_holds_up_nobody(self):
+        with flight("_paused:=true"), Recording("/odom", Odometry) as odometry:
+            odometry.wait_for_publisher()
+            stuck = subprocess.Popen(
+                [sys.executable, "-c", STUCK], stdout=subprocess.PIPE, text=True
+            )
+            try:
+                stuck.stdout.readline()  # it has got a message, so it is connected
+                stuck.send_signal(signal.SIGSTOP)
+                call("/gazebo/unpause_physics")
+                odometry.wait(lambda m: m and m[-1].header.stamp.to_sec() >= 4)
+                factor = diagnostic("real-time factor")
+            finally:
+                stuck.kill()
+                stuck.communicate()
+        self.assertGreater(factor, 0.9)
+        stamps = np.array([m.header.stamp.to_nsec() for m in odometry.messages])
+        self.assertTrue(np.all(np.diff(stamps) == 1000000))
+
+    def test_signals_end_it_within_a_second(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            for arguments in ((), ("_paused:=true",), ("_real_time_factor:=0.0001",)):
+                with flight(*arguments) as node:
+                    self.assertLess(node.end(number), 1)
+                    self.assertEqual(node.process.returncode, 0)
+
+    def test_signals_end_it_even_if_the_master_hangs(self):
+        port = free_port()
+        with master(port) as hanging, tempfile.NamedTemporaryFile("w", suffix=".urdf") as model:
+            model.write(description())
+            model.flush()
+            uri = f"http://localhost:{port}"
+            with Process("quadcore_node", f"_model:={model.name}", ROS_MASTER_URI=uri) as node:
+                harness.wait_until(lambda: "/odom" in self.shell(port, "rostopic", "list"))
+                hanging.send_signal(signal.SIGSTOP)
+                time.sleep(1.5)
+                self.assertLess(node.end(signal.SIGTERM), 1)
+
+    def test_a_bad_model_is_one_line(self):
+        good = description()
+        line = good[: good.index("<kp>")].count("\n") + 1
+        for bad, message in (
+            (good.replace("<kp>", "<kq>").replace("</kp>", "</kq>"), f"robot_description:{line}: "),
+            ("<robot", "robot_description:1: "),
+            ("", "robot_description"),
+        ):
+            rospy.set_param("robot_description", bad)
+            status, error = outcome()
+            self.assertEqual(status, 2)
+            self.assertEqual(len(error.splitlines()), 1, error)
+            self.assertTrue(error.startswith(f"error: {message}"), error)
+        rospy.delete_param("robot_description")
+        status, error = outcome()
+        self.assertEqual(status, 2)
+        self.assertIn("error: robot_description: is not on the parameter server", error)
+
+    def test_bad_parameters(self):
+        rospy.set_param("robot_description", description())
+        for argument, message in (
+            ("_lockstp:=true", "parameter ~lockstp: is not known (did you mean 'lockstep'?)"),
+            ("_paused:=1", "parameter ~paused: give true or false"),
+            ("_z:=high", "parameter ~z: give a number"),
+            ("_real_time_factor:=-2", "parameter ~real_time_factor: give a number >= 0"),
+            ("_engine:=gazebo12", "engine 'gazebo12' is not there (did you mean 'gazebo11'?)"),
+            ("_world:=/none.world", "/none.world: cannot be read"),
+            ("_log:=/none/log.csv", "/none/log.csv: cannot be written"),
+            ("_name:=a-b", "model name 'a-b' cannot name a topic"),
+        ):
+            status, error = outcome(argument)
+            rospy.delete_param("quadcore")
+            self.assertEqual(status, 2)
+            self.assertEqual(len(error.splitlines()), 1, error)
+            self.assertIn(f"error: {message}", error)
+
+
+# A subscriber that says when it is connected.
+STUCK = """
+import rospy
+from nav_msgs.msg import Odometry
+rospy.init_node("stuck", disable_rostime=True)
+subscriber = rospy.Subscriber("/odom", Odometry, lambda message: None)
+while subscriber.get_num_connections() == 0:
+    rospy.sleep(0.01)
+print("connected", flush=True)
+rospy.spin()
+"""
+
+
+if __name__ == "__main__":
+    harness.run("faults", TestFaults)

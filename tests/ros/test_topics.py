@@ -1,0 +1,152 @@
+#!/usr/bin/env python3
+"""Topics of the node: names, types, frames, stamps, covariance, namespaces, clients."""
+
+import unittest
+
+import harness
+import numpy as np
+import rosgraph
+import rospy
+from harness import HOVER, Process, Recording, commander, description, flight
+from nav_msgs.msg import Odometry, Path
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray
+from tf2_msgs.msg import TFMessage
+
+# As the packages of Noetic have them.
+PUBLISHED = {
+    "/odom": ("nav_msgs/Odometry", "cd5e73d190d741a2f92e81eda573aca7"),
+    "/tf": ("tf2_msgs/TFMessage", "94810edda583a504dfda3829e70d7eec"),
+    "/tf_static": ("tf2_msgs/TFMessage", "94810edda583a504dfda3829e70d7eec"),
+    "/clock": ("rosgraph_msgs/Clock", "a9c97c1d230cfc112e270351a944ee47"),
+    "/joint_states": ("sensor_msgs/JointState", "3066dcd76a6cfaef579bd0f34173e9fd"),
+    "/path": ("nav_msgs/Path", "6227e2b7e9cce15051f669a5e197bbf7"),
+    "/diagnostics": ("diagnostic_msgs/DiagnosticArray", "60810da900de1dd6ddd437c3503511da"),
+}
+COMMAND = ("std_msgs/Float64MultiArray", "4b7d974086d4060e7db4613a7e6c3ba4")
+
+
+def stamps(messages):
+    return [message.header.stamp.to_nsec() for message in messages]
+
+
+def diagonal(covariance):
+    return np.diag(np.reshape(covariance, (6, 6)))
+
+
+def published():
+    return dict(rosgraph.Master("/test").getPublishedTopics(""))
+
+
+class TestTopics(unittest.TestCase):
+    def test_names_types_and_md5sums(self):
+        with flight():
+            types = published()
+            for topic, (name, md5sum) in PUBLISHED.items():
+                self.assertEqual(types[topic], name)
+                with Recording(topic, rospy.AnyMsg) as recording:
+                    header = recording.wait_for_count(1)[0]._connection_header
+                self.assertEqual((header["type"], header["md5sum"]), (name, md5sum))
+            # rospy connects only a subscriber of the same type and md5sum.
+            self.assertEqual((Float64MultiArray._type, Float64MultiArray._md5sum), COMMAND)
+            with commander():
+                pass
+
+    def test_stamps_are_those_of_the_clock_and_nothing_is_lost(self):
+        topics = Recording("/odom", Odometry), Recording("/clock", Clock)
+        with flight("_paused:=true"), topics[0] as odometry, topics[1] as clock:
+            odometry.wait_for_publisher()
+            clock.wait_for_publisher()
+            harness.call("/gazebo/unpause_physics")
+            messages = odometry.wait_for_count(500)[:500]
+            ticks = clock.wait_for_count(500)[:500]
+        self.assertEqual(stamps(messages), [i * 1000000 for i in range(1, 501)])
+        self.assertEqual([tick.clock.to_nsec() for tick in ticks], stamps(messages))
+
+    def test_frames(self):
+        with flight(), Recording("/odom", Odometry) as odometry, Recording("/tf", TFMessage) as tf:
+            with Recording("/tf_static", TFMessage) as static:
+                fixed = static.wait_for_count(1)[0].transforms[0]
+            message = odometry.wait_for_count(1)[0]
+            transforms = [m.transforms[0] for m in tf.wait_for_count(300)]
+            poses = {m.header.stamp: m.pose.pose for m in odometry.wait_for_count(300)}
+        self.assertEqual((message.header.frame_id, message.child_frame_id), ("world", "drone"))
+        self.assertEqual((fixed.header.frame_id, fixed.child_frame_id), ("drone", "frame"))
+        compared = 0
+        for transform in transforms:
+            self.assertEqual(transform.header.frame_id, "world")
+            self.assertEqual(transform.child_frame_id, "drone")
+            if transform.header.stamp in poses:
+                pose = poses[transform.header.stamp]
+                self.assertEqual(transform.transform.translation.z, pose.position.z)
+                self.assertEqual(transform.transform.rotation, pose.orientation)
+                compared += 1
+        self.assertGreater(compared, 100)
+
+    def test_covariance_is_that_of_the_noise_and_never_singular(self):
+        noisy = {
+            "positionNoise": "0.1",
+            "orientationNoise": "0.02",
+            "linearVelocityNoise": "0.3",
+            "angularVelocityNoise": "0.4",
+        }
+        for tags, deviations in (({}, [1e-6] * 4), (noisy, [float(x) for x in noisy.values()])):
+            with flight(urdf=description(**tags)), Recording("/odom", Odometry) as odometry:
+                message = odometry.wait_for_count(1)[0]
+            for covariance, pair in (
+                (message.pose.covariance, deviations[:2]),
+                (message.twist.covariance, deviations[2:]),
+            ):
+                expected = np.repeat(np.square(pair), 3)
+                np.testing.assert_allclose(diagonal(covariance), expected, rtol=1e-14)
+                self.assertEqual(np.count_nonzero(covariance), 6)
+
+    def test_tags_of_the_odometry_plugin(self):
+        tags = {"rate": "100", "twistFrame": "body", "publishTf": "false"}
+        start = ("_roll:=1.5707963267948966", "_paused:=true")
+        with flight(*start, urdf=description(**tags)), Recording("/tf", TFMessage) as tf:
+            tf.wait_for_publisher()
+            with Recording("/odom", Odometry) as odometry:
+                odometry.wait_for_publisher()
+                harness.step(100)
+                messages = odometry.wait_for_count(10)
+        self.assertEqual(tf.messages, [])
+        self.assertEqual(stamps(messages), [i * 10000000 for i in range(1, 11)])
+        # It falls along its own -y.
+        falling = messages[-1].twist.twist.linear
+        self.assertAlmostEqual(falling.y, -0.98, delta=0.01)
+        self.assertAlmostEqual(falling.z, 0, delta=1e-3)
+
+    def test_joint_states_and_path(self):
+        topics = Recording("/joint_states", JointState), Recording("/path", Path)
+        with flight("_paused:=true", "_lockstep:=true"), topics[0] as joints, topics[1] as path:
+            joints.wait_for_publisher()
+            path.wait_for_publisher()
+            with commander() as send, Recording("/odom", Odometry, act=lambda _: send(HOVER)):
+                harness.step(1000)
+            states, paths = joints.wait_for_count(50), path.wait_for_count(10)
+        self.assertEqual(states[0].name, ["rotor1", "rotor2", "rotor3", "rotor4"])
+        self.assertEqual(stamps(states)[1] - stamps(states)[0], 20000000)
+        np.testing.assert_allclose(states[-1].velocity, HOVER, rtol=1e-3)
+        self.assertNotEqual(states[-1].position, states[-2].position)
+        self.assertGreaterEqual(len(paths[-1].poses), 10)
+        self.assertEqual(paths[-1].header.frame_id, "world")
+
+    def test_a_namespace_holds_everything(self):
+        with flight("_name:=blue", namespace="/uav1"):
+            with Recording("/uav1/odom", Odometry) as odometry:
+                odometry.wait_for_count(1)
+            with commander("/uav1/blue/vel_cmd"):
+                pass
+            rospy.wait_for_service("/uav1/gazebo/pause_physics", 5)
+
+    def test_a_roscpp_client_flies(self):
+        fast = ("_real_time_factor:=0", "_lockstep:=true")
+        topic = Recording("/odom", Odometry)
+        with flight(*fast), Process("hover_node", "_altitude:=12"), topic as odometry:
+            odometry.wait(lambda m: m and abs(m[-1].pose.pose.position.z - 12) < 0.01, 20)
+
+
+if __name__ == "__main__":
+    harness.run("topics", TestTopics)
