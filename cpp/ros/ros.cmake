@@ -89,6 +89,9 @@ add_ros_node(quadcore_node
   cpp/ros/master_watch.cpp cpp/ros/quadcore_node.cpp cpp/ros/services.cpp cpp/ros/settings.cpp)
 target_link_libraries(quadcore_node PRIVATE quadcore)
 add_ros_node(hover_node cpp/ros/hover_node.cpp)
+if(QUADCORE_BUILD_BENCHMARKS)
+  add_ros_node(ros_probe benchmarks/ros_probe.cpp)
+endif()
 
 catkin_install_python(PROGRAMS scripts/ros/expand_model.py scripts/ros/fly_from_python.py
                       DESTINATION lib/quadcore)

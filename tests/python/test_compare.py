@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -157,7 +158,7 @@ def test_a_grid_of_tags_engines_and_worlds_in_the_order_given():
     result = qc.compare("toy.urdf", vary, duration=0.02, parameters={"air.dragModel": "chapter2"})
     assert isinstance(result, Comparison)
     assert list(result.table["failure"]) == [""] * 8
-    assert list(result.table[SLOW]) == ["1"] * 4 + ["2"] * 4
+    assert list(result.table[SLOW]) == [1] * 4 + [2] * 4
     assert list(result.table["engine"]) == ["ode", "ode", "eigen", "eigen"] * 2
     assert list(result.table["world"]) == ["toy.world", "windless.world"] * 4
     alone = qc.Simulation(
@@ -174,7 +175,7 @@ def test_ranges():
     arguments = ["compare", "toy.urdf", *FLIGHT, "--quiet", "--no-plots"]
     assert main([*arguments, *vary, "--out", "out"]) == 0
     assert [row["motor.kp"] for row in rows()[::4]] == ["0.0001", "0.001", "0.01"]
-    assert [row["air.rotorTorqueCoeff"] for row in rows()[:4]] == ["0", "1e-07", "2e-07", "3e-07"]
+    assert [row["air.rotorTorqueCoeff"] for row in rows()[:4]] == ["0.0", "1e-07", "2e-07", "3e-07"]
 
 
 def test_the_number_of_processes_changes_no_byte():
@@ -340,6 +341,14 @@ def test_the_page_needs_no_other_file():
     assert page.count("data:image/png;base64,") == 5
     assert 'src="http' not in page
     assert f"5e-4 (toy.urdf:{line_of('toy.urdf', '<kp>')})" in page
+
+
+def test_the_python_of_the_page_runs_as_it_stands():
+    page = Path(__file__).resolve().parents[2] / "docs" / "comparing.md"
+    (block,) = re.findall(r"^```python\n(.*?)^```$", page.read_text(), re.DOTALL | re.MULTILINE)
+    names = {}
+    exec(block, names)
+    assert names["result"].reference == 0
 
 
 def test_more_flights_than_can_be_held_leave_metrics_only():

@@ -119,3 +119,14 @@ def test_its_own_seed_makes_the_noise_independent_of_the_simulations():
     assert flown(1, **own) == flown(2, **own)
     assert flown(1) != flown(2)
     assert flown(5) == flown(1, **own)
+
+
+def test_a_state_that_is_set_is_sensed_at_once():
+    simulation = quadrotor(parameters={"odometry.rate": 1})
+    simulation.step(300)
+    state = simulation.state.copy()
+    state.position[:] = 7, 8, 9
+    simulation.set_state(state)
+    message = simulation.topic("odom")
+    assert message["stamp"] == 0.3
+    assert part(message, POSE[:3]).tolist() == [7, 8, 9]

@@ -205,11 +205,10 @@ void Simulation::step(std::int64_t n) {
       update();
       engine_->step(dt_, *this);
       ++steps_;
-      engine_->get_state(state_);
-      state_.time = time();
       check_flight();
       sense(false);
     }
+    show_state();
   } catch (...) {
     fail(what_was_thrown());
   }
@@ -220,24 +219,31 @@ void Simulation::fail(const std::string& what) {
   if (active_) failure_ += "plugin '" + active_->name + "' (" + active_->path + "): ";
   failure_ += what;
   active_ = nullptr;
+  show_state();
   throw FlightError(time(), failure_);
 }
 
+void Simulation::show_state() {
+  engine_->get_state(state_);
+  state_.time = time();
+}
+
 void Simulation::check_flight() const {
+  const Kinematics& k = engine_->kinematics();
+  double rate_sum = 0;
   // Comparisons are written so that NaN fails them.
-  const VehicleState& s = state_;
-  const bool sane = s.position.squaredNorm() < max_distance * max_distance &&
-                    s.orientation.squaredNorm() < 2 &&
-                    s.linear_velocity.squaredNorm() < max_speed * max_speed &&
-                    s.angular_velocity.squaredNorm() < max_rate * max_rate &&
-                    s.rotor_velocity.squaredNorm() < max_rate * max_rate;
+  bool sane = k.p_WF.squaredNorm() < max_distance * max_distance && k.q_WF.squaredNorm() < 2 &&
+              k.v_WF_F.squaredNorm() < max_speed * max_speed &&
+              k.w_WF_F.squaredNorm() < max_rate * max_rate;
+  for (const RotorKinematics& rotor : k.rotors) {
+    sane = sane && std::abs(rotor.rate) < max_rate;
+    rate_sum += rotor.rate;
+  }
   if (sane) return;
-  const bool finite = s.position.allFinite() && s.orientation.coeffs().allFinite() &&
-                      s.linear_velocity.allFinite() && s.angular_velocity.allFinite() &&
-                      s.rotor_velocity.allFinite();
-  throw FlightError(s.time, finite ? "the motion diverged; try a smaller step or weaker commands"
-                                   : "the state is no longer finite; try a smaller step or weaker "
-                                     "commands");
+  const bool finite = k.p_WF.allFinite() && k.q_WF.coeffs().allFinite() && k.v_WF_F.allFinite() &&
+                      k.w_WF_F.allFinite() && std::isfinite(rate_sum);
+  throw Error(std::string(finite ? "the motion diverged" : "the state is no longer finite") +
+              "; try a smaller step or weaker commands");
 }
 
 void Simulation::set_state(const VehicleState& state) {
@@ -259,8 +265,7 @@ void Simulation::set_state(const VehicleState& state) {
   start_time_ = state.time;
   steps_ = 0;
   failure_.clear();
-  engine_->get_state(state_);
-  state_.time = time();
+  show_state();
   try {
     sense(true);
   } catch (...) {
@@ -286,8 +291,7 @@ void Simulation::restore(const Snapshot& snapshot) {
   plugin_state_ = snapshot.plugin_state;
   topics_ = snapshot.topics;
   failure_ = snapshot.failure;
-  engine_->get_state(state_);
-  state_.time = time();
+  show_state();
 }
 
 }  // namespace quadcore

@@ -72,16 +72,15 @@ void EigenEngine::look(const VectorXd& state) {
   if (windy_) k.v_WA_F = R_WF.transpose() * wind_W_;
   const double* rates = state.data() + joint_rates();
   const double* angles = state.data() + joint_angles();
-  RotorKinematics* motion = k.rotors.data();
-  for (const Gyrostat::Rotor& rotor : body_.rotors) {
+  for (std::size_t i = 0; i < body_.rotors.size(); ++i) {
+    const Gyrostat::Rotor& rotor = body_.rotors[i];
+    RotorKinematics& motion = k.rotors[i];
     const Vector3d v_WRcm_F = v_WF_F + w_WF_F.cross(rotor.p_FRcm_F);
-    motion->v_WRcm_F = v_WRcm_F;
-    motion->v_WR_F = rotor.centered ? v_WRcm_F : v_WF_F + w_WF_F.cross(rotor.p_FR_F);
-    motion->rate = *rates++;
-    motion->angle = *angles++;
-    ++motion;
+    motion.v_WRcm_F = v_WRcm_F;
+    motion.v_WR_F = rotor.centered ? v_WRcm_F : v_WF_F + w_WF_F.cross(rotor.p_FR_F);
+    motion.rate = rates[i];
+    k.set_angle(i, angles[i]);
   }
-  k.forget_R_FR();
 }
 
 void EigenEngine::differentiate(const VectorXd& state, const ForceField& forces) {

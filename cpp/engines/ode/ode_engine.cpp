@@ -47,6 +47,9 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
       dJointSetFeedback(hinges_[i], &feedback_[i]);
     }
   }
+  for (std::size_t i = 0; i < hinges_.size(); ++i) {
+    kinematics_.set_R_FR_at_zero(i, model_.joints[i].pose.rotation().toRotationMatrix());
+  }
   mass_ = mass_properties(model_).mass;
   wind_W_ = world.wind_W;
   read_kinematics();
@@ -175,8 +178,7 @@ void OdeEngine::apply_loads() {
     const Vector3d f_R_W = R_WF * loads_.rotor_force_F(i);
     dBodyAddForce(bodies_[i + 1], f_R_W.x(), f_R_W.y(), f_R_W.z());
     const double damping = -model_.joints[i].damping * kinematics_.rotors[i].rate;
-    dJointAddHingeTorque(hinges_[i], damping);
-    dJointAddHingeTorque(hinges_[i], loads_.joint_torque(i));
+    dJointAddHingeTorque(hinges_[i], damping + loads_.joint_torque(i));
   }
 }
 
@@ -196,17 +198,22 @@ void OdeEngine::read_kinematics() {
   k.v_WCcm_F = model_.links[0].inertial.mass * v_WFcm_F;
   for (std::size_t i = 0; i < hinges_.size(); ++i) {
     RotorKinematics& rotor = k.rotors[i];
+    const Joint& joint = model_.joints[i];
     const dBodyID body = bodies_[i + 1];
     const Inertial& inertial = model_.links[i + 1].inertial;
     const Matrix3d R_FR = R_FW * rotation(dBodyGetRotation(body));
     const Vector3d w_WR_F = R_FW * vec(dBodyGetAngularVel(body));
     k.set_R_FR(i, R_FR);
-    rotor.axis_F = R_FR * model_.joints[i].axis;
+    rotor.axis_F = R_FR * joint.axis;
+    rotor.rate = rotor.axis_F.dot(w_WR_F - k.w_WF_F);
+    if (joint.parent != 0) {  // the carrier turns as well
+      const Vector3d w_WP_F = R_FW * vec(dBodyGetAngularVel(bodies_[joint.parent]));
+      rotor.rate = rotor.axis_F.dot(w_WR_F - w_WP_F);
+      k.set_R_FR_at_zero(i, k.R_FR(joint.parent - 1) * joint.pose.rotation().toRotationMatrix());
+    }
     rotor.p_FRcm_F = R_FW * (vec(dBodyGetPosition(body)) - k.p_WF);
     rotor.v_WRcm_F = R_FW * vec(dBodyGetLinearVel(body));
     rotor.v_WR_F = rotor.v_WRcm_F - w_WR_F.cross(R_FR * inertial.pose.xyz);
-    rotor.angle = dJointGetHingeAngle(hinges_[i]);
-    rotor.rate = dJointGetHingeAngleRate(hinges_[i]);
     k.p_FCcm_F += inertial.mass * rotor.p_FRcm_F;
     k.v_WCcm_F += inertial.mass * rotor.v_WRcm_F;
   }
@@ -222,7 +229,7 @@ void OdeEngine::get_state(VehicleState& state) const {
   for (std::size_t i = 0; i < hinges_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     state.rotor_velocity[row] = kinematics_.rotors[i].rate;
-    state.rotor_angle[row] = kinematics_.rotors[i].angle;
+    state.rotor_angle[row] = kinematics_.angle(i);
   }
 }
 

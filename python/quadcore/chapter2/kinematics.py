@@ -61,4 +61,3 @@ def _generalise(phi: float, theta: float, psi: float) -> np.ndarray:
     T[3:, 3:] = euler_rates_to_body(eta).T
     T.flags.writeable = False
     return T
-

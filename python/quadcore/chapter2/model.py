@@ -120,7 +120,7 @@ class MathematicalModel:
         begins = np.concatenate([time[:1], table[1:, 0]])
         ends = np.append(begins[1:], np.inf)
         for begin, end, row in zip(begins, ends, np.clip(table[:, 1:], -v.fastest, v.fastest)):
-            if begin > time[-1]:
+            if begin > time[-1] + 1e-9:
                 break
             if not self.terms.motor_lag:
                 y[12:] = row
@@ -142,6 +142,7 @@ class MathematicalModel:
             method="DOP853",
             rtol=1e-11,
             atol=1e-11,
+            max_step=0.1,  # s; over longer ones the interpolation for the log would be the coarser
             dense_output=True,
             events=_upright,
         )

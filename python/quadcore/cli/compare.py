@@ -124,7 +124,9 @@ def _flight(arguments: argparse.Namespace) -> dict[str, str]:
         "commands": arguments.commands or "none",
         "duration": f"{arguments.duration:g} s",
         **{
-            name: str(value) for name, value in options.flight_arguments(arguments).items() if value
+            name: str(value).strip("()")
+            for name, value in options.flight_arguments(arguments).items()
+            if value not in (None, 0)
         },
         **{f"set {key}": value for key, value in arguments.set},
         **{f"xacro {key}": value for key, value in arguments.xacro},

@@ -40,7 +40,7 @@ class Comparison(NamedTuple):
     """What became of the flights."""
 
     table: np.ndarray
-    """Structured, a row per variant: ``model``, each axis (as text), ``failure`` ("" if it flew),
+    """Structured, a row per variant: ``model``, each axis, ``failure`` ("" if it flew),
     and ``final_STATE`` and ``largest_STATE`` for each of `states`, NaN where it did not fly."""
     logs: List[Any]
     """`Log` of each variant, None where it did not fly; empty if logs were not asked for."""
@@ -191,7 +191,7 @@ class _Tally:
         axes = list(zip(*(values for _, values in plan)))
         columns: Dict[str, Any] = {
             "model": [plan.names[model] for model, _ in plan],
-            **{axis.name: values for axis, values in zip(plan.axes, axes)},
+            **{axis.name: _numbers(values) for axis, values in zip(plan.axes, axes)},
             "failure": self._failures,
         }
         for i, kind in enumerate(("final", "largest")):
@@ -200,6 +200,14 @@ class _Tally:
         return Comparison(
             _structured(columns), self._kept, self._states, self.reference, plan.differences()
         )
+
+
+def _numbers(values: Sequence[str]) -> np.ndarray:
+    """Numbers if all are, else texts."""
+    try:
+        return np.array([float(value) for value in values])
+    except ValueError:
+        return np.array(values)
 
 
 def _structured(columns: Mapping[str, Sequence[Any]]) -> np.ndarray:

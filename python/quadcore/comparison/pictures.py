@@ -106,10 +106,10 @@ def _figure(
     sides: Sequence[Tuple[Sequence[np.ndarray], Sequence[str]]],
 ) -> Figure:
     """Make a column of panels for each side: its values by flight, and its columns' labels."""
-    labels = [style["label"] for style in styles if style["label"]]
+    named = [style["label"] for style in styles if style["label"]]
     # A sign is a tenth of an inch wide at most; a legend line is as wide as seven.
-    columns = max(1, int((8 if len(sides) > 1 else 7) * 10 / (7 + max(map(len, labels)))))
-    lines = 1 + (len(labels) - 1) // columns
+    columns = max(1, int((8 if len(sides) > 1 else 7) * 10 / (7 + max(map(len, named)))))
+    lines = 1 + (len(named) - 1) // columns
     figure, grid = panels(title, len(sides[0][1]), len(sides), above=0.45 + 0.22 * lines)
     for column, (values, labels) in zip(grid.T, sides):
         for curve, style, table in zip(curves, styles, values):
@@ -122,7 +122,7 @@ def _figure(
         *grid[0, 0].get_legend_handles_labels(),
         loc="upper left",
         bbox_to_anchor=(0, 1 - 0.25 / figure.get_figheight()),
-        ncol=min(columns, len(labels)),
+        ncol=min(columns, len(named)),
         frameon=False,
     )
     return figure

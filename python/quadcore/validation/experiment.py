@@ -27,13 +27,14 @@ DRAGS: Mapping[str, Tuple[str, ...]] = {
 }
 
 MODEL = "model"
+LAG, NO_LAG = "motors that lag", "motors without lag"
 # What the model may be asked for besides what chapter 2 says.
 TERMS: Mapping[str, Terms] = {
-    "lagging motors": Terms(),
-    "ideal motors": Terms(motor_lag=False),
-    "spin-up": Terms(spin_up=True),
-    "dragged rotors": Terms(dragged_rotors=True),
-    "both": GYROSTAT,
+    LAG: Terms(),
+    NO_LAG: Terms(motor_lag=False),
+    "the torque of rotors that spin up": Terms(spin_up=True),
+    "rotors that a turning frame leaves behind": Terms(dragged_rotors=True),
+    "both: a gyrostat": GYROSTAT,
 }
 
 

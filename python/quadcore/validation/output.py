@@ -82,8 +82,8 @@ def as_json(study: Study) -> Dict[str, Any]:
 
 
 def size(value: float) -> str:
-    """Write a length with three digits, however small."""
-    return f"{value:.3g}" if abs(value) >= 1e-3 or value == 0 else f"{value:.0e}"
+    """Write a length with three digits, fewer if it is tiny."""
+    return f"{value:#.3g}".rstrip(".") if abs(value) >= 1e-3 or value == 0 else f"{value:.0e}"
 
 
 def _row(row: Row) -> Dict[str, Any]:

@@ -8,7 +8,7 @@ from .._core import InputError, QuadcoreError
 from ..parallel import each
 from .chain import ORDER, Chain, forge, stages
 from .damping import Damping, measure
-from .experiment import MODEL, TERMS, Case, Experiment, Flight
+from .experiment import LAG, MODEL, NO_LAG, TERMS, Case, Experiment, Flight
 from .states import Difference, compare, steepest
 
 
@@ -35,7 +35,7 @@ class Study(NamedTuple):
     """Each engine, sim_slow and drag against the mathematical model."""
     chains: List[Chain]
     left_out: List[Row]
-    """The model with terms put back against the model, with the last of the drags."""
+    """The model with other terms against the model, with the last of the drags."""
     slowed: List[Row]
     """The last of the engines against itself at full speed."""
     damping: List[Damping]
@@ -68,7 +68,7 @@ def conduct(
     engines = [engine for engine in ORDER if engine in engines]
     sim_slow = [float(n) for n in sim_slow]
     asked = [Case(e, n, drag) for e in engines for n in sim_slow for drag in drags]
-    own = "lagging motors" if experiment.motor_lag else "ideal motors"
+    own = LAG if experiment.motor_lag else NO_LAG
     terms = [Case(MODEL, 1.0, drags[-1], name) for name in TERMS if name != own]
     chains = [stages(drag, n, engines[0]) for drag in drags for n in sim_slow]
     cases = dict.fromkeys([*terms, *(case for chain in chains for case in chain), *asked])

@@ -13,7 +13,6 @@ struct RotorKinematics {
   Vector3d p_FRcm_F;   ///< centre of mass from F's origin [m]
   Vector3d v_WR_F;     ///< velocity of the link's origin [m/s]
   Vector3d v_WRcm_F;   ///< velocity of the centre of mass [m/s]
-  double angle = 0;    ///< joint angle in (-pi, pi] [rad]
   double rate = 0;     ///< joint rate [rad/s]
 };
 
@@ -31,27 +30,39 @@ class Kinematics {
   Vector3d v_WA_F = Vector3d::Zero();     ///< velocity of the air (wind) [m/s]
   std::vector<RotorKinematics> rotors;
 
-  explicit Kinematics(std::size_t rotor_count)
-      : rotors(rotor_count), R_FR_(rotor_count), R_FR_at_zero_(rotor_count), known_(rotor_count) {}
+  explicit Kinematics(std::size_t rotor_count) : rotors(rotor_count), turns_(rotor_count) {}
 
-  /// Orientation of rotor i's spinning link in the frame. Few laws need it and it costs a sine and
-  /// a cosine, so engines that do not have it at hand leave it to be computed here when asked for.
+  /// Orientation of rotor i's spinning link in the frame.
   const Matrix3d& R_FR(std::size_t i) const;
+  /// Angle of joint i in (-pi, pi] [rad].
+  double angle(std::size_t i) const;
 
-  /// For engines: orientation of rotor i at joint angle zero, set once.
-  void set_R_FR_at_zero(std::size_t i, const Matrix3d& R) { R_FR_at_zero_[i] = R; }
-  /// For engines that know the orientation: sets it.
+  /// \name For engines
+  /// An engine gives the orientation at angle zero once, then the orientation or the angle as it
+  /// has them. Few laws need either and they cost trigonometry, so the other is derived when asked
+  /// for.
+  /// @{
+  void set_R_FR_at_zero(std::size_t i, const Matrix3d& R) { turns_[i].R_FR_at_zero = R; }
   void set_R_FR(std::size_t i, const Matrix3d& R) {
-    R_FR_[i] = R;
-    known_[i] = true;
+    turns_[i].R_FR = R;
+    turns_[i].knows_R = true;
+    turns_[i].knows_angle = false;
   }
-  /// For engines that do not: marks it to be computed from the angle.
-  void forget_R_FR() { known_.assign(known_.size(), 0); }
+  void set_angle(std::size_t i, double angle) {
+    turns_[i].angle = angle;
+    turns_[i].knows_R = false;
+    turns_[i].knows_angle = true;
+  }
+  /// @}
 
  private:
-  mutable std::vector<Matrix3d> R_FR_;
-  std::vector<Matrix3d> R_FR_at_zero_;
-  mutable std::vector<char> known_;
+  /// How far a rotor has turned about its joint.
+  struct Turn {
+    Matrix3d R_FR_at_zero, R_FR;
+    double angle = 0;
+    bool knows_R = false, knows_angle = true;
+  };
+  mutable std::vector<Turn> turns_;
 };
 
 }  // namespace quadcore

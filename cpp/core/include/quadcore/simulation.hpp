@@ -91,6 +91,7 @@ class Simulation : private ForceField {
   void evaluate(const Kinematics& kinematics, Loads& loads) const override;
   void load_plugins(const Model& model, const SimulationOptions& options);
   void check_flight() const;
+  void show_state();  ///< brings state_ up to date
   PluginState state_of(const LoadedPlugin& p) {
     return {plugin_state_.data() + p.state_begin, p.state_size};
   }

@@ -1,0 +1,127 @@
+// A roscpp subscriber that measures, for ros_latency.py:
+//   ros_probe count SECONDS    messages of odom in that time: count, lost, simulated seconds
+//   ros_probe latency SAMPLES  time from a vel_cmd to the odometry that reflects it (us, one a
+//   line)
+
+#include <nav_msgs/Odometry.h>
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+#include <std_msgs/Float64MultiArray.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <cstdio>
+#include <cstdlib>
+#include <mutex>
+#include <random>
+#include <string>
+#include <thread>
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+class Counter {
+ public:
+  void run(ros::NodeHandle& nh, double seconds) {
+    const ros::Subscriber subscriber =
+        nh.subscribe("odom", 0, &Counter::take, this, ros::TransportHints().tcpNoDelay());
+    while (count_ == 0) ros::spinOnce();
+    count_ = lost_ = 0;
+    const ros::Time begin = last_;
+    const Clock::time_point start = Clock::now();
+    const Clock::time_point end =
+        start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+    while (Clock::now() < end)
+      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.01));
+    const double elapsed = std::chrono::duration<double>(Clock::now() - start).count();
+    std::printf("%ld %ld %.6f %.6f\n", count_, lost_, (last_ - begin).toSec(), elapsed);
+  }
+
+ private:
+  void take(const nav_msgs::Odometry& message) {
+    if (count_ > 0) lost_ += std::lround((message.header.stamp - last_).toSec() * 1000) - 1;
+    last_ = message.header.stamp;
+    ++count_;
+  }
+
+  long count_ = 0;
+  long lost_ = 0;
+  ros::Time last_;
+};
+
+class Latency {
+ public:
+  void run(ros::NodeHandle& nh, int samples) {
+    const ros::Publisher publisher =
+        nh.advertise<std_msgs::Float64MultiArray>("quadrotor/vel_cmd", 1);
+    const ros::Subscriber subscriber =
+        nh.subscribe("odom", 0, &Latency::take, this, ros::TransportHints().tcpNoDelay());
+    ros::AsyncSpinner spinner(1);
+    spinner.start();
+    while (publisher.getNumSubscribers() == 0 || subscriber.getNumPublishers() == 0) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    std::mt19937 generator(1);
+    std::uniform_real_distribution<double> pause(0.03, 0.05);
+    std_msgs::Float64MultiArray command;
+    command.data.assign(4, speed);
+    for (int i = -10; i < samples; ++i) {  // the first ones set the rotors going
+      std::this_thread::sleep_for(std::chrono::duration<double>(pause(generator)));
+      for (double& value : command.data) value = -value;
+      std::unique_lock<std::mutex> lock(mutex_);
+      waiting_ = true;
+      sent_ = Clock::now();
+      publisher.publish(command);
+      if (!seen_.wait_for(lock, std::chrono::seconds(1), [this] { return !waiting_; })) {
+        std::fprintf(stderr, "a command had no effect within a second\n");
+        std::exit(1);
+      }
+      if (i >= 0) std::printf("%.1f\n", latency_);
+    }
+  }
+
+ private:
+  /// All rotors turn the same way, and each command reverses them: the reaction of the motors kicks
+  /// the frame's yaw rate within the very step that takes the command.
+  void take(const nav_msgs::Odometry& message) {
+    const Clock::time_point now = Clock::now();
+    const double rate = message.twist.twist.angular.z;
+    const double gain = rate - last_rate_;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (waiting_ && std::abs(gain - last_gain_) > kick) {
+      latency_ = std::chrono::duration<double, std::micro>(now - sent_).count();
+      waiting_ = false;
+      seen_.notify_one();
+    }
+    last_rate_ = rate;
+    last_gain_ = gain;
+  }
+
+  static constexpr double speed = 300;  // rad/s
+  static constexpr double kick = 0.02;  // rad/s in one step
+
+  std::mutex mutex_;
+  std::condition_variable seen_;
+  bool waiting_ = false;
+  Clock::time_point sent_;
+  double latency_ = 0;
+  double last_rate_ = 0;
+  double last_gain_ = 0;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "probe");
+  if (argc != 3) return 2;
+  ros::NodeHandle nh;
+  if (std::string(argv[1]) == "count") {
+    Counter().run(nh, std::atof(argv[2]));
+  } else {
+    Latency().run(nh, std::atoi(argv[2]));
+  }
+  return 0;
+}

@@ -1,0 +1,33 @@
+#!/usr/bin/env python3
+"""The template for scripts speaks the topics of the node, and hover_node flies it."""
+
+import unittest
+
+import harness
+import rosgraph
+from harness import Recording
+from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Clock
+from test_topics import PUBLISHED
+
+
+class TestFlyFromPython(unittest.TestCase):
+    def test_it_hovers(self):
+        with Recording("/odom", Odometry) as odometry:
+            odometry.wait(lambda m: m and abs(m[-1].pose.pose.position.z - 1) < 0.02, 20)
+            message = odometry.messages[-1]
+        self.assertEqual((message.header.frame_id, message.child_frame_id), ("world", "drone"))
+        self.assertEqual(message.pose.covariance[0], 1e-12)
+
+    def test_topics_and_stamps(self):
+        types = dict(rosgraph.Master("/test").getPublishedTopics(""))
+        for topic in ("/odom", "/tf", "/clock", "/joint_states"):
+            self.assertEqual(types[topic], PUBLISHED[topic][0])
+        with Recording("/clock", Clock) as clock, Recording("/odom", Odometry) as odometry:
+            stamps = [m.header.stamp for m in odometry.wait_for_count(300)]
+            ticks = {m.clock for m in clock.wait_for_count(350)}
+        self.assertLessEqual(set(stamps[100:200]), ticks)
+
+
+if __name__ == "__main__":
+    harness.run("fly_from_python", TestFlyFromPython)
