@@ -4,8 +4,6 @@
 ///
 ///     ode_step quadrotor.urdf [ROUNDS]
 
-#include <time.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -14,6 +12,7 @@
 
 #include "bare_ode.hpp"
 #include "quadcore/simulation.hpp"
+#include "timing.hpp"
 
 namespace {
 
@@ -47,13 +46,6 @@ void fly(quadcore::Simulation& simulation) {
   }
 }
 
-/// This thread's processor time [s]: what other programs take does not count.
-double now() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 template <typename Vehicle>
 double seconds_per_step(Vehicle& vehicle) {
   int steps = 0;
@@ -61,12 +53,6 @@ double seconds_per_step(Vehicle& vehicle) {
   const double start = now();
   fly(vehicle);
   return (now() - start) / steps;
-}
-
-double quantile(std::vector<double> values, double q) {
-  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(q * (values.size() - 1));
-  std::nth_element(values.begin(), nth, values.end());
-  return *nth;
 }
 
 /// Largest difference of any component of the state, in SI units.

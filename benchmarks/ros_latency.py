@@ -68,9 +68,7 @@ def main():
 
         with node(model):
             count, lost, simulated, elapsed = map(float, probe("count", SECONDS).split())
-            print(
-                f"real-time factor 1, {elapsed:.0f} s: {count / elapsed:.1f} odometry messages per s"
-            )
+            print(f"real-time factor 1 for {elapsed:.0f} s: {count / elapsed:.1f} odometry per s")
             print(f"    lost                     {lost:9.0f}   none")
             print(f"    real-time factor         {simulated / elapsed:9.4f}")
             samples = sorted(float(line) for line in probe("latency", SAMPLES).split())

@@ -1,28 +1,13 @@
 # The ROS 1 node, built by catkin's rules. Included by the top-level CMakeLists.txt rather than
 # added as a folder, because catkin takes the folder of the calling list file for the package's.
 
+# What needs others stands after them, for a package that lacks one of its own ends everything.
 set(ros_packages
-  diagnostic_msgs geometry_msgs message_generation nav_msgs roscpp rosgraph_msgs sensor_msgs std_msgs
-  std_srvs tf2_ros)
+  message_generation roscpp std_msgs std_srvs geometry_msgs sensor_msgs nav_msgs rosgraph_msgs
+  diagnostic_msgs tf2_ros)
 
-# catkin itself is found last: it changes global settings, and it ends the configuration if the
-# first python3 on PATH is not the one it was made for.
-set(ros_missing "")
-find_path(QUADCORE_CATKIN catkinConfig.cmake PATH_SUFFIXES share/catkin/cmake)
-mark_as_advanced(QUADCORE_CATKIN)
-if(NOT QUADCORE_CATKIN)
-  list(APPEND ros_missing catkin)
-endif()
-foreach(package ${ros_packages})
-  find_package(${package} QUIET NO_MODULE)
-  if(NOT ${package}_FOUND)
-    list(APPEND ros_missing ${package})
-  endif()
-endforeach()
-# Debian packages them apart.
-if(geometry_msgs_FOUND AND NOT EXISTS ${geometry_msgs_DIR}/../msg/Pose.msg)
-  list(APPEND ros_missing "the .msg files of geometry_msgs")
-endif()
+# The first python3 on PATH may be one that ROS' packages were not made for, and catkin ends the
+# configuration over it even when asked quietly. Some packages load catkin, so this comes first.
 if(NOT PYTHON_EXECUTABLE)
   foreach(python python3 /usr/bin/python3)
     execute_process(COMMAND ${python} -c "import catkin_pkg, em, genmsg, sys; print(sys.executable)"
@@ -33,12 +18,28 @@ if(NOT PYTHON_EXECUTABLE)
     endif()
   endforeach()
 endif()
+if(POLICY CMP0148)
+  cmake_policy(SET CMP0148 OLD)  # catkin asks FindPythonInterp
+endif()
+
+set(ros_missing "")
 if(NOT PYTHON_EXECUTABLE)
-  list(APPEND ros_missing "a python3 with catkin_pkg, empy and genmsg")
+  set(ros_missing "a python3 with catkin_pkg, empy and genmsg")
+endif()
+foreach(package ${ros_packages})
+  if(NOT ros_missing)
+    find_package(${package} QUIET NO_MODULE)
+    if(NOT ${package}_FOUND)
+      set(ros_missing ${package})
+    endif()
+  endif()
+endforeach()
+# Debian packages them apart.
+if(NOT ros_missing AND NOT EXISTS ${geometry_msgs_DIR}/../msg/Pose.msg)
+  set(ros_missing "the .msg files of geometry_msgs")
 endif()
 
 if(ros_missing)
-  list(JOIN ros_missing ", " ros_missing)
   if(QUADCORE_WITH_ROS STREQUAL "ON")
     message(FATAL_ERROR "quadcore's ROS node: not found: ${ros_missing}; install ROS 1 and source "
                         "its setup.bash, or configure with -DQUADCORE_WITH_ROS=OFF")
@@ -47,9 +48,6 @@ if(ros_missing)
   return()
 endif()
 
-if(POLICY CMP0148)
-  cmake_policy(SET CMP0148 OLD)  # catkin asks FindPythonInterp
-endif()
 find_package(catkin REQUIRED COMPONENTS ${ros_packages})
 
 add_service_files(FILES Step.srv SetState.srv)
@@ -95,3 +93,12 @@ endif()
 
 catkin_install_python(PROGRAMS scripts/ros/expand_model.py scripts/ros/fly_from_python.py
                       DESTINATION lib/quadcore)
+
+if(CATKIN_ENABLE_TESTING)
+  find_package(rostest QUIET)
+  if(rostest_FOUND)
+    foreach(test topics services lockstep faults launch fly_from_python)
+      add_rostest(tests/ros/${test}.test)
+    endforeach()
+  endif()
+endif()

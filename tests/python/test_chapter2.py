@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 import pytest
@@ -216,6 +217,18 @@ def quadrotor(engine="eigen", dt=None, drag="all", **tags):
     return start(simulation, rotor_velocity=BALANCED)
 
 
+@lru_cache(maxsize=None)
+def by_engine(drag="all"):
+    return quadrotor(drag=drag).run(10, FLIGHT, 10)
+
+
+@lru_cache(maxsize=None)
+def by_model(terms, drag="all"):
+    simulation = quadrotor(drag=drag)
+    model = MathematicalModel(Vehicle.of(simulation), terms)
+    return model.fly(10, FLIGHT, simulation.state.copy(), 1e-2)
+
+
 def distance(log, model):
     """Largest difference of positions (m) and body rates (rad/s)."""
     apart = np.abs(log.position - model.position).max()
@@ -226,10 +239,7 @@ def distance(log, model):
     "drag", ["none", "induced", "translational", "profile", "parasitic", "flapping", "all"]
 )
 def test_with_nothing_left_out_the_model_flies_as_eigen(drag):
-    simulation = quadrotor(drag=drag)
-    state = simulation.state.copy()
-    log = simulation.run(10, FLIGHT, 10)
-    model = MathematicalModel(Vehicle.of(simulation), GYROSTAT).fly(10, FLIGHT, state, 1e-2)
+    log, model = by_engine(drag), by_model(GYROSTAT, drag)
     assert np.ptp(log.position, axis=0).min() > 0.5
     assert distance(log, model) < 1e-8
     assert np.abs(log.linear_velocity - model.linear_velocity).max() < 1e-8
@@ -267,28 +277,17 @@ LEFT_OUT = {"spin_up": 1e-1, "dragged_rotors": 1e-3}
 
 @pytest.mark.parametrize("term", LEFT_OUT)
 def test_a_term_that_the_thesis_leaves_out_opens_a_gap_that_it_closes(term):
-    simulation = quadrotor()
-    vehicle_, state = Vehicle.of(simulation), simulation.state.copy()
-    log = simulation.run(10, FLIGHT, 10)
-    without = GYROSTAT._replace(**{term: False})
-    assert without != GYROSTAT
-    gaps = [
-        distance(log, MathematicalModel(vehicle_, terms).fly(10, FLIGHT, state, 1e-2))
-        for terms in (without, GYROSTAT)
-    ]
-    assert gaps[0] > LEFT_OUT[term]
-    assert gaps[1] < 1e-8
+    without = by_model(GYROSTAT._replace(**{term: False}))
+    assert np.abs(by_engine().position - without.position).max() > LEFT_OUT[term]
+    assert distance(by_engine(), by_model(GYROSTAT)) < 1e-8
 
 
 @pytest.mark.parametrize("lag", [True, False], ids=["lagging motors", "ideal motors"])
 def test_eigen_with_given_speeds_leaves_out_what_the_thesis_does(lag):
     """The other direction: the engine comes to the model of the thesis as its motors stiffen."""
-    simulation = quadrotor()
-    vehicle_, state = Vehicle.of(simulation), simulation.state.copy()
-    model = MathematicalModel(vehicle_, THESIS if lag else Terms(motor_lag=False))
-    expected = model.fly(10, FLIGHT, state, 1e-2).position
-    assert np.abs(simulation.run(10, FLIGHT, 10).position - expected).max() > 0.1
-    paths = []
+    expected = by_model(THESIS if lag else Terms(motor_lag=False)).position
+    assert np.abs(by_engine().position - expected).max() > 0.1
+    vehicle_, paths = Vehicle.of(quadrotor()), []
     for dt in (1e-3, 5e-4):
         kp = STIFFNESS * vehicle_.rotor_inertia.min() / dt
         stiff = quadrotor(dt=dt, motorpid_plugin__kp=kp)
@@ -302,19 +301,13 @@ def test_eigen_with_given_speeds_leaves_out_what_the_thesis_does(lag):
 
 def test_light_rotors_make_the_spin_up_vanish(hangar):
     """The same by an edit of the model: inertia of the rotors to nothing, their pace kept."""
-
-    def gap(lighter):
-        rotors = [rotor._replace(inertia=np.array(rotor.inertia) * lighter) for rotor in CROSS]
-        air = {**AIR, **DRAG, "dragModel": "chapter2"}
-        urdf = vehicle(rotors, air=air, motor={"kp": MOTOR["kp"] * lighter})
-        simulation = start(hangar(urdf, GRAVITY, engine="eigen"), rotor_velocity=BALANCED)
-        state = simulation.state.copy()
-        log = simulation.run(10, FLIGHT, 10)
-        model = MathematicalModel(Vehicle.of(simulation), Terms(dragged_rotors=True))
-        return distance(log, model.fly(10, FLIGHT, state, 1e-2))
-
-    assert gap(1) > 0.1
-    assert gap(1e-6) < 1e-6
+    rotors = [rotor._replace(inertia=np.array(rotor.inertia) * 1e-6) for rotor in CROSS]
+    air = {**AIR, **DRAG, "dragModel": "chapter2"}
+    urdf = vehicle(rotors, air=air, motor={"kp": MOTOR["kp"] * 1e-6})
+    simulation = start(hangar(urdf, GRAVITY, engine="eigen"), rotor_velocity=BALANCED)
+    model = MathematicalModel(Vehicle.of(simulation), Terms(dragged_rotors=True))
+    expected = model.fly(10, FLIGHT, simulation.state.copy(), 1e-2)
+    assert distance(simulation.run(10, FLIGHT, 10), expected) < 1e-6
 
 
 def test_a_pitch_of_90_degrees_ends_the_flight(thesis):

@@ -177,8 +177,9 @@ def pictures(study: Study) -> Dict[str, Tuple[Callable[..., bytes], Tuple[Any, .
     """Every picture of a study by name, as a function and what to call it with."""
     result: Dict[str, Tuple[Callable[..., bytes], Tuple[Any, ...]]] = {
         "commands": (draw_commands, (study.experiment.commands, study.experiment.duration)),
-        "damping": (draw_damping, (study.damping,)),
     }
+    if study.damping:
+        result["damping"] = draw_damping, (study.damping,)
     for drag in study.drags:
         chains = [chain for chain in study.chains if chain.drag == drag]
         if study.flights[Case(MODEL, 1.0, drag)].log is None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Callable, Dict, List, NamedTuple, Optional, Sequence
+import contextlib
+from typing import Callable, Dict, Iterator, List, NamedTuple, Optional, Sequence
 
 from .._core import InputError, QuadcoreError
 from ..parallel import each
@@ -88,8 +89,18 @@ def conduct(
             for case in asked
             if case.plant == engines[-1] and case.sim_slow != 1
         ],
-        [measure(experiment, engine, n) for engine in engines for n in sim_slow],
+        list(_damping(experiment, engines, sim_slow)),
     )
+
+
+def _damping(
+    experiment: Experiment, engines: Sequence[str], sim_slow: Sequence[float]
+) -> Iterator[Damping]:
+    for engine in engines:
+        for n in sim_slow:
+            # What cannot fly here has a row that says so.
+            with contextlib.suppress(QuadcoreError):
+                yield measure(experiment, engine, n)
 
 
 def _fly(

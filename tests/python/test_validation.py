@@ -1,0 +1,265 @@
+"""``quadcore validate``: flights, chains, tables, page and refusals."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from vehicles import AIR, CROSS, DRAG, MOTOR, vehicle
+
+import quadcore as qc
+from quadcore.chapter2 import Vehicle
+from quadcore.cli import main
+from quadcore.validation import MODEL, Case, Experiment, compare, conduct, states
+from quadcore.validation.ascent import ascent
+from quadcore.validation.experiment import at_steps
+from quadcore.validation.given_speeds import speeds
+
+ENGINES = [name for name, _ in qc.engines()]
+HEXAROTOR = Path(__file__).resolve().parents[1] / "data/gazebo11/cases/B1_hexa_hover/model.urdf"
+FAST = ["--drag", "none", "--sim-slow", "1", "--engine", "eigen", "--duration", "0.5", "--quiet"]
+
+
+@pytest.fixture(scope="module")
+def study():
+    return conduct(Experiment.of(), ENGINES, [1, 8], ["none", "all"])
+
+
+@pytest.fixture(scope="module")
+def distances(study):
+    """Largest distance from the model by engine, sim_slow and drag."""
+    assert not any(row.failure for row in study.rows)
+    return {row.case[:3]: row.difference.largest["distance"] for row in study.rows}
+
+
+def test_every_flight_ascends_and_moves_in_all_axes_without_a_steep_angle(study):
+    for flight in study.flights.values():
+        ranges = np.ptp(states(flight.log)[:, :6], axis=0)
+        assert ranges[:2].min() > 0.2
+        assert flight.log.position[-1, 2] > 20
+        assert ranges[3:].min() > np.radians(2)
+    for row in study.rows:
+        assert row.steepest < np.radians(60)
+
+
+def test_slowing_down_seems_to_cure_gazebo(distances):
+    assert distances["gazebo11", 1, "all"] > 10
+    assert distances["gazebo11", 8, "all"] < distances["gazebo11", 1, "all"] / 10
+    assert distances["gazebo11", 8, "none"] < distances["gazebo11", 1, "none"] / 10
+
+
+def test_engines_without_the_fault_need_no_slowing_down(distances):
+    for engine in ("ode", "eigen"):
+        for drag in ("none", "all"):
+            assert distances[engine, 1, drag] < distances[engine, 8, drag]
+            assert distances[engine, 1, drag] < distances["gazebo11", 1, drag] / 10
+
+
+def test_a_chain_leads_from_the_plant_to_the_model_and_adds_up(study):
+    assert len(study.chains) == 4
+    for chain in study.chains:
+        assert not chain.failure
+        assert chain.links[0].begin == Case("gazebo11", chain.sim_slow, chain.drag)
+        assert chain.links[-1].end == Case(MODEL, 1, chain.drag)
+        for link, after in zip(chain.links, chain.links[1:]):
+            assert link.end == after.begin
+        assert sum(link.share for link in chain.links) == pytest.approx(chain.distance, abs=1e-12)
+        ends = [study.flights[case].log for case in (chain.links[0].begin, chain.links[-1].end)]
+        whole = compare(*ends).largest["distance"]
+        assert chain.distance == pytest.approx(whole, abs=1e-12)
+    assert [len(chain.links) for chain in study.chains] == [5, 6, 5, 6]
+
+
+def test_each_link_changes_one_thing(study):
+    for chain in study.chains:
+        for link in chain.links[:-1]:
+            assert sum(a != b for a, b in zip(link.begin, link.end)) == 1
+
+
+def test_the_links_say_what_is_wrong(study):
+    chain = next(c for c in study.chains if (c.drag, c.sim_slow) == ("all", 1))
+    fault, step, drag, left_out, rest = chain.links
+    assert fault.largest > 10
+    assert 0.01 < step.largest < 1
+    assert 0.1 < drag.largest < 1
+    assert 0.1 < left_out.largest < 1
+    assert rest.largest < 2e-4
+    bare = next(c for c in study.chains if (c.drag, c.sim_slow) == ("none", 1))
+    assert bare.links[2].largest < 1e-10
+
+
+def test_what_is_left_out_is_the_torque_of_rotors_that_spin_up(study):
+    sizes = [row.difference.largest["distance"] for row in study.left_out]
+    no_lag, spin_up, dragged, both = sizes
+    assert no_lag > 0.5
+    assert both == pytest.approx(spin_up, rel=0.05)
+    assert dragged < spin_up / 20
+
+
+def test_only_gazebo_damps_and_as_expected(study):
+    for entry in study.damping:
+        if entry.engine == "gazebo11":
+            assert entry.measured == pytest.approx(entry.expected, rel=0.01)
+        else:
+            assert abs(entry.measured) < 1e-3 * entry.expected
+
+
+def test_the_model_has_no_second_engine_in_it(study):
+    """Its flight is apart from that of the engine whose limit it is."""
+    flights = [study.flights[Case("eigen", 1, "all", "given speeds")], study.flights[Case(MODEL)]]
+    assert 1e-6 < compare(*(flight.log for flight in flights)).largest["distance"] < 2e-4
+
+
+def test_an_ascent_lifts_a_hexarotor_with_odd_rotors():
+    experiment = Experiment.of(str(HEXAROTOR), duration=3)
+    assert experiment.commands.shape[1] == 7
+    assert (np.sign(experiment.commands[:, 1:]) == [1, -1, 1, -1, 1, -1]).all()
+    log = experiment.fly(Case("eigen")).log
+    assert log.position[-1, 2] > 11
+    assert np.abs(states(log)[:, 3:5]).max() < 0.3
+
+
+def test_a_vehicle_that_the_input_cannot_lift_is_refused(hangar):
+    air, motor = {**AIR, **DRAG}, MOTOR
+    one_side = hangar(vehicle(CROSS[:2], air=air, motor=motor), (0, 0, -9.8), engine="eigen")
+    with pytest.raises(qc.InputError, match="cannot lift this vehicle and tilt it"):
+        ascent(Vehicle.of(one_side))
+
+
+def test_a_command_takes_effect_with_the_step_that_feels_it():
+    table = np.array([[-1, 1], [0, 2], [0.0011, 3], [0.002, 4], [0.0021, 5], [0.005, 6]])
+    assert at_steps(table, 1e-3).tolist() == [[0, 2], [0.002, 4], [0.003, 5], [0.005, 6]]
+
+
+def test_given_speeds_are_those_of_motors_on_a_held_frame():
+    simulation = qc.Simulation("quadrotor", engine="eigen", xacro_args={"sim_slow": 1})
+    heavy = Vehicle.of(simulation)
+    table = np.array([[0, 400, -400, 400, -400], [0.1, 500, -450, 500, -450]])
+    times = np.array([0.05, 0.1, 0.15, 1.0])
+    omega = speeds(heavy, table, times, lag=True)
+    rate = 5e-4 / 2.8125e-5
+    assert np.allclose(omega[:2], table[0, 1:])
+    assert omega[2, 0] == pytest.approx(500 - 100 * np.exp(-rate * 0.05), rel=1e-12)
+    assert np.allclose(omega[3], table[1, 1:], atol=1e-4)
+    assert np.array_equal(speeds(heavy, table, times, lag=False)[1], table[1, 1:])
+
+
+@pytest.fixture(scope="module")
+def out(tmp_path_factory):
+    """Folder that the command has written."""
+    folder = tmp_path_factory.mktemp("validate") / "deep" / "out"
+    assert main(["validate", *FAST, "--jobs", "1", "--out", str(folder)]) == 0
+    return folder
+
+
+def test_the_command_writes_tables_figures_and_one_page(out):
+    page = (out / "validation.html").read_text()
+    sources = re.findall(r'(?:src|href)="([^"]{1,40})', page)
+    assert len(sources) == 8 and all(s.startswith("data:image/png;base64,") for s in sources)
+    for kind in ("position", "error", "attitude", "velocity", "rates", "chain"):
+        assert (out / f"{kind}_none.png").read_bytes().startswith(b"\x89PNG")
+
+    (row,) = csv.DictReader((out / "errors.csv").open())
+    assert (row["engine"], row["sim_slow"], row["drag"], row["failure"]) == (
+        "eigen", "1.0", "none", ""
+    )  # fmt: skip
+    (found,) = json.loads((out / "validation.json").read_text())["errors"]
+    for state in ("x", "psi", "vz", "thetadot", "distance"):
+        for kind, name in (("max", "largest"), ("rms", "rms")):
+            assert float(row[f"{kind}_{state}"]) == found[name][state]
+    chain = list(csv.DictReader((out / "chains.csv").open()))
+    total = sum(float(link["share"]) for link in chain[:-1])
+    assert total == pytest.approx(float(chain[-1]["share"]), abs=1e-15)
+
+    again = qc.Simulation("quadrotor", engine="eigen", xacro_args={"sim_slow": 1})
+    assert again.run(0.5, out / "commands.csv").time[-1] == 0.5
+
+
+def test_the_same_command_writes_the_same_bytes_and_prints_what_it_found(out, tmp_path, capsys):
+    assert main(["validate", *FAST[:-1], "--jobs", "3", "--out", str(tmp_path)]) == 0
+    printed = capsys.readouterr()
+    assert re.search(r"eigen +1 +[\d.e-]+\n", printed.out)
+    assert "because of" in printed.out
+    assert f"written {tmp_path / 'validation.html'}" in printed.out
+    assert printed.err == ""
+    names = sorted(path.name for path in out.iterdir())
+    assert len(names) == 13
+    for name in names:
+        assert (out / name).read_bytes() == (tmp_path / name).read_bytes(), name
+
+
+def test_flights_that_fail_are_rows_with_a_reason(tmp_path, capsys):
+    """At steps of 7 ms a rotor turns more than half a turn, unless it is slowed."""
+    arguments = ["--dt", "0.007", "--sim-slow", "1,8", "--drag", "none", "--duration", "0.7"]
+    arguments += ["--engine", "ode,eigen", "--no-plots", "--out", str(tmp_path)]
+    assert main(["validate", *arguments]) == 3
+    printed = capsys.readouterr()
+    assert printed.err.startswith("error: 2 of 4 flights failed; the first (ode, sim_slow 1, ")
+    assert "more than half a turn per step" in printed.err and printed.err.count("\n") == 1
+    assert re.search(r"ode +1 +failed\node +8 +[\d.]+\n", printed.out)
+    rows = list(csv.DictReader((tmp_path / "errors.csv").open()))
+    assert [bool(row["failure"]) for row in rows] == [True, False, True, False]
+    assert "more than half a turn" in (tmp_path / "validation.html").read_text()
+    assert "more than half a turn" in (tmp_path / "chains.csv").read_text()
+
+
+def test_other_commands_motors_and_models_can_be_flown(tmp_path):
+    commands = tmp_path / "hover.csv"
+    commands.write_text("t,w1,w2,w3,w4,w5,w6\n0,530,-530,530,-530,530,-530\n")
+    arguments = [str(HEXAROTOR), "--commands", str(commands), "--motors", "ideal", "--no-plots"]
+    assert main(["validate", *arguments, *FAST, "--out", str(tmp_path)]) == 0
+    found = json.loads((tmp_path / "validation.json").read_text())
+    assert found["commands"] == [[0, 530, -530, 530, -530, 530, -530]]
+    assert found["experiment"]["motor_lag"] is False
+    assert 0 < found["errors"][0]["largest"]["distance"] < 0.1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["--engine", "eigen,bullet"], "'bullet' is none of gazebo11, ode, eigen"),
+        (["--sim-slow", "1,0"], "0 is not greater than 0"),
+        (["--sim-slow", "1,x"], "'x' is not a finite number"),
+        (["--drag", "none,lift"], "drag 'lift' does not act on this vehicle (none, profile, "),
+        (["--set", "drone_plugin.sim_slow=2"], "drone_plugin.sim_slow: every flight has its own"),
+        (["--set", "motorpid_plugin.kd=1e-9"], "the mathematical model has proportional motors"),
+        (["--commands", "late.csv"], "the first row is for t = 1; begin at t = 0"),
+        (["--commands", "none.csv"], "none.csv: cannot be read"),
+        (["--motors", "electric"], "--motors: invalid choice: 'electric'"),
+        (["--out", "late.csv"], "late.csv: cannot be made"),
+        (["nowhere.urdf"], "nowhere.urdf: no such file, and no shipped model of that name"),
+    ],
+)
+def test_bad_input_is_one_line_and_exit_2(arguments, says, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("late.csv").write_text("t,w1,w2,w3,w4\n1,471,-471,471,-471\n")
+    assert main(["validate", *arguments, "--quiet"]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith("error: ") and says in error and error.count("\n") == 1
+
+
+def test_an_interrupt_ends_it_at_once(tmp_path):
+    """Ctrl-C after the first flights: exit 130, no process left, no file."""
+    import signal
+    import subprocess
+    import sys
+    import time
+
+    out = tmp_path / "out"
+    command = [sys.executable, "-m", "quadcore", "validate", "--duration", "300", "--quiet"]
+    process = subprocess.Popen(
+        [*command, "--out", str(out)], stderr=subprocess.PIPE, start_new_session=True
+    )
+    while not out.is_dir():
+        time.sleep(0.05)
+        assert process.poll() is None
+    time.sleep(0.5)
+    process.send_signal(signal.SIGINT)
+    _, error = process.communicate(timeout=20)
+    assert process.returncode == 130
+    assert error == b"interrupted\n"
+    assert list(out.iterdir()) == []
