@@ -76,6 +76,8 @@ void command(Guarded& guarded, const py::object& speeds) {
 
 void step(Guarded& guarded, std::int64_t n) {
   const Lock lock(guarded);
+  // A single step is over sooner than the GIL is handed over and back.
+  if (n == 1) return guarded.simulation.step();
   do {
     {
       const py::gil_scoped_release release;

@@ -91,8 +91,9 @@ if(QUADCORE_BUILD_BENCHMARKS)
   add_ros_node(ros_probe benchmarks/ros_probe.cpp)
 endif()
 
-catkin_install_python(PROGRAMS scripts/ros/expand_model.py scripts/ros/fly_from_python.py
-                      DESTINATION lib/quadcore)
+# Not catkin_install_python: it would fix the interpreter, and these want the one that has quadcore.
+install(PROGRAMS scripts/ros/expand_model.py scripts/ros/fly_from_python.py
+        DESTINATION lib/quadcore)
 
 if(CATKIN_ENABLE_TESTING)
   find_package(rostest QUIET)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from operator import attrgetter
 from pathlib import Path
 from typing import Callable, Mapping, Optional, Sequence, Union
 
@@ -80,10 +81,11 @@ class Simulation(_core.Simulation):
         )
         self._live = LiveState(self)
 
-    @property
-    def state(self) -> LiveState:
-        """The state now, as live read-only views; `state.copy()` is free."""
-        return self._live
+    # attrgetter, not a function: reading the state is part of every step of a Python loop.
+    state: LiveState = property(  # type: ignore[assignment]
+        attrgetter("_live"),
+        doc="The state now, as live read-only views; `state.copy()` is free.",
+    )
 
     def run(
         self,

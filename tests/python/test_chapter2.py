@@ -317,6 +317,9 @@ def test_a_pitch_of_90_degrees_ends_the_flight(thesis):
     with pytest.raises(qc.FlightError, match="the pitch reaches 90 degrees") as ended:
         model.fly(10, [[0, *BALANCED]], simulation.state.copy())
     assert ended.value.time == pytest.approx(np.pi / 2, abs=0.02)
+    lying = start(simulation, orientation=[0, np.sqrt(0.5), 0, np.sqrt(0.5)])
+    with pytest.raises(qc.FlightError, match="the pitch reaches 90 degrees"):
+        model.fly(1, [[0, *BALANCED]], lying.state.copy())
 
 
 def test_terms_of_changing_speeds_need_motors_that_lag(thesis):

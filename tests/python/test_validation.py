@@ -18,9 +18,11 @@ from quadcore.validation import MODEL, Case, Experiment, compare, conduct, state
 from quadcore.validation.ascent import ascent
 from quadcore.validation.experiment import at_steps
 from quadcore.validation.given_speeds import speeds
+from quadcore.validation.output import size
 
 ENGINES = [name for name, _ in qc.engines()]
-HEXAROTOR = Path(__file__).resolve().parents[1] / "data/gazebo11/cases/B1_hexa_hover/model.urdf"
+ROOT = Path(__file__).resolve().parents[2]
+HEXAROTOR = ROOT / "tests/data/gazebo11/cases/B1_hexa_hover/model.urdf"
 FAST = ["--drag", "none", "--sim-slow", "1", "--engine", "eigen", "--duration", "0.5", "--quiet"]
 
 
@@ -157,7 +159,7 @@ def out(tmp_path_factory):
 
 
 def test_the_command_writes_tables_figures_and_one_page(out):
-    page = (out / "validation.html").read_text()
+    page = (out / "report.html").read_text()
     sources = re.findall(r'(?:src|href)="([^"]{1,40})', page)
     assert len(sources) == 8 and all(s.startswith("data:image/png;base64,") for s in sources)
     for kind in ("position", "error", "attitude", "velocity", "rates", "chain"):
@@ -184,7 +186,7 @@ def test_the_same_command_writes_the_same_bytes_and_prints_what_it_found(out, tm
     printed = capsys.readouterr()
     assert re.search(r"eigen +1 +[\d.e-]+\n", printed.out)
     assert "because of" in printed.out
-    assert f"written {tmp_path / 'validation.html'}" in printed.out
+    assert f"written {tmp_path / 'report.html'}" in printed.out
     assert printed.err == ""
     names = sorted(path.name for path in out.iterdir())
     assert len(names) == 13
@@ -200,11 +202,16 @@ def test_flights_that_fail_are_rows_with_a_reason(tmp_path, capsys):
     printed = capsys.readouterr()
     assert printed.err.startswith("error: 2 of 4 flights failed; the first (ode, sim_slow 1, ")
     assert "more than half a turn per step" in printed.err and printed.err.count("\n") == 1
-    assert re.search(r"ode +1 +failed\node +8 +[\d.]+\n", printed.out)
+    assert re.search(r"ode +1 +failed\node +8 +[\d.e-]+\n", printed.out)
     rows = list(csv.DictReader((tmp_path / "errors.csv").open()))
     assert [bool(row["failure"]) for row in rows] == [True, False, True, False]
-    assert "more than half a turn" in (tmp_path / "validation.html").read_text()
+    assert "more than half a turn" in (tmp_path / "report.html").read_text()
     assert "more than half a turn" in (tmp_path / "chains.csv").read_text()
+
+
+def test_warnings_of_the_model_are_passed_on(capsys):
+    assert main(["validate", *FAST, "--set", "motorpid_plugin.ki=1"]) == 0
+    assert capsys.readouterr().err.startswith("warning: ")
 
 
 def test_other_commands_motors_and_models_can_be_flown(tmp_path):
@@ -263,3 +270,13 @@ def test_an_interrupt_ends_it_at_once(tmp_path):
     assert process.returncode == 130
     assert error == b"interrupted\n"
     assert list(out.iterdir()) == []
+
+
+def test_the_docs_say_what_the_command_finds(study):
+    page = (ROOT / "docs" / "validation.md").read_text()
+    table = re.findall(r"^\| (\w+) \| (1|8) \| ([\d.]+) \|.* ([\d.]+) \|$", page, re.MULTILINE)
+    assert len(table) == 6
+    for engine, slow, none, everything in table:
+        for drag, printed in (("none", none), ("all", everything)):
+            row = next(r for r in study.rows if r.case[:3] == (engine, float(slow), drag))
+            assert size(row.difference.largest["distance"]) == printed

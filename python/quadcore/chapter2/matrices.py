@@ -60,9 +60,8 @@ def g(v: Vehicle) -> np.ndarray:
 def G_a(v: Vehicle, q: np.ndarray, omega: np.ndarray) -> np.ndarray:
     """Gyroscopic effect (2.22)-(2.24): S(nu) sum I_R omega_i e_3 = nu x h, moved to the left side.
 
-    Skew-symmetric: it does no work. The printed matrix lacks W^T and has its entry -I_rz sum omega
-    in the column of psi where that of theta is meant. A rotor that is slowed has as much less of
-    angular momentum.
+    Skew-symmetric: it does no work. The printed matrix lacks W^T. A rotor that is slowed has as
+    much less of angular momentum.
     """
     T = generalise(q[3:])
     h = (v.rotor_inertia * omega / v.slow) @ v.axes

@@ -116,6 +116,8 @@ class MathematicalModel:
         table = as_commands(commands, n)
         time = state.time + dt * np.arange(int(duration / dt + 1e-6) + 1)
         y = self._start(state)
+        if _upright(0, y) <= 0:
+            raise _toppled(state.time)
         rows = np.empty((len(time), len(y)))
         begins = np.concatenate([time[:1], table[1:, 0]])
         ends = np.append(begins[1:], np.inf)
@@ -147,10 +149,7 @@ class MathematicalModel:
             events=_upright,
         )
         if solution.status != 0:
-            t = float(solution.t[-1])
-            error = FlightError(f"t = {t:.6g} s: the pitch reaches 90 degrees, where (2.9) ends")
-            error.time = t
-            raise error
+            raise _toppled(float(solution.t[-1]))
         return solution.sol(wanted).T, solution.y[:, -1]
 
     def _derivative(self, y: np.ndarray, command: np.ndarray) -> np.ndarray:
@@ -169,7 +168,7 @@ class MathematicalModel:
         eta = attitude.as_euler("ZYX")[::-1]
         offset = attitude.apply(self.vehicle.center_of_mass)
         sweep = np.cross(attitude.apply(state.angular_velocity), offset)
-        etadot = np.linalg.solve(euler_rates_to_body(eta), state.angular_velocity)
+        etadot, *_ = np.linalg.lstsq(euler_rates_to_body(eta), state.angular_velocity, rcond=None)
         xi, xidot = state.position + offset, state.linear_velocity + sweep
         speeds = state.rotor_velocity * self.vehicle.slow
         return np.concatenate([xi, eta, xidot, etadot, speeds])
@@ -197,3 +196,9 @@ def _upright(_: float, y: np.ndarray) -> float:
 
 
 _upright.terminal = True  # type: ignore[attr-defined]
+
+
+def _toppled(time: float) -> FlightError:
+    error = FlightError(f"t = {time:.6g} s: the pitch reaches 90 degrees, where (2.9) ends")
+    error.time = time
+    return error

@@ -57,7 +57,7 @@ def register(commands: Any) -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Fly everything, print how far it is from the model and why, and write it."""
     # scipy and jinja2 are slow to import.
-    from ..validation import Experiment, conduct
+    from ..validation import Case, Experiment, conduct
     from ..validation.output import write
 
     experiment = Experiment.of(
@@ -70,6 +70,7 @@ def run(arguments: argparse.Namespace) -> None:
         motor_lag=arguments.motors == "lag",
         log_every=arguments.log_every,
     )
+    terminal.warn(experiment.simulation(Case("eigen")))
     if arguments.out is not None:
         make_folder(arguments.out)
     with terminal.progress(arguments.quiet) as progress:

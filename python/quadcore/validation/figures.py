@@ -129,7 +129,7 @@ def draw_chains(chains: Sequence[Chain]) -> bytes:
     values = [max(size, 1e-9) for size in sizes.values()]
     axes.barh(range(len(sizes)), values, 0.6, color=PALETTE[0])
     for row, value in enumerate(values):
-        axes.text(value, row, f" {value:.2g} m", va="center", fontsize="small")
+        axes.text(value, row, f" {value:.3g} m", va="center", fontsize="small")
     axes.set_xscale("log")
     axes.set_xlim(min(values) / 3, max(values) * 8)
     axes.set_yticks(range(len(sizes)))

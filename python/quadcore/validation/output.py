@@ -48,7 +48,7 @@ def write(study: Study, pictures: Mapping[str, bytes], directory: Path) -> List[
     for name, data in files.items():
         with atomic_write(directory / name) as stream:
             stream.write(data)
-    page = directory / "validation.html"
+    page = directory / "report.html"
     write_page(
         page,
         "validation.html",

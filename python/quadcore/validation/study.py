@@ -65,7 +65,7 @@ def conduct(
     for drag in drags or ():
         if drag not in acting:
             raise InputError(f"drag '{drag}' does not act on this vehicle ({', '.join(acting)})")
-    drags = list(drags or acting)
+    drags = list(dict.fromkeys(drags or acting))
     engines = [engine for engine in ORDER if engine in engines]
     sim_slow = [float(n) for n in sim_slow]
     asked = [Case(e, n, drag) for e in engines for n in sim_slow for drag in drags]
