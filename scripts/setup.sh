@@ -2,7 +2,7 @@
 # Afterwards .venv/bin/python has quadcore as it lies in this checkout.
 
 apt_packages="g++ cmake ninja-build pkg-config python3-dev python3-venv
-  libode-dev libeigen3-dev libtinyxml2-dev doctest-dev"
+  libode-dev libeigen3-dev libtinyxml2-dev doctest-dev ${extra_apt_packages:-}"
 python_packages="scikit-build-core>=0.5 pybind11>=2.10 numpy scipy matplotlib rich xacro rospkg
   pyyaml jinja2 pytest hypothesis ruff mypy"
 
@@ -47,7 +47,7 @@ create_venv() {
 
 install_quadcore() {
   local sources
-  sources=$(find CMakeLists.txt pyproject.toml cpp python urdf worlds config \
+  sources=$(find CMakeLists.txt pyproject.toml cpp python urdf worlds \
     -type f -not -name '*.pyc' -print0 | sort -z | xargs -0 sha256sum | sha256sum)
   [ "$(cat .venv/quadcore.sha256 2>/dev/null)" = "$sources" ] && return
   say "building and installing quadcore into .venv"

@@ -76,14 +76,6 @@ void check(Read read, const Document& document, Use use) {
 
 }  // namespace
 
-/// For the leak sanitizer. Where ODE gives up on a step, the exception leaves through its job list,
-/// and what the step held is lost (see OdeEngine::solve).
-extern "C" const char* __lsan_default_suppressions() {
-  return "leak:dxtemplateThreadingImplementation\n"
-         "leak:dThreadingAllocateSelfThreadedImplementation\n"
-         "leak:dxWorldProcessMemArena\n";
-}
-
 void check_hostile_text(const std::string& text) {
   const std::clock_t begin = std::clock();
   const Document document{file, text};

@@ -6,6 +6,7 @@ import gc
 import multiprocessing
 import queue
 import threading
+from pathlib import Path
 from typing import NamedTuple, Optional
 
 import numpy as np
@@ -32,12 +33,13 @@ class Case(NamedTuple):
     iterations: int = 50
     ground: bool = False
 
-    def simulation(self, folder) -> qc.Simulation:
-        world = folder / f"{self.iterations}_{self.ground}.world"
-        text = WORLD.format(ground=GROUND if self.ground else "", iterations=self.iterations)
-        world.write_text(text)
+    def world(self, folder: Path) -> Path:
+        return folder / f"{self.iterations}_{self.ground}.world"
+
+    def simulation(self, folder: Path) -> qc.Simulation:
         # On the ground it falls, tumbles and jumps.
         spawn = (0, 0, 0.2 if self.ground else 10, 0.3, -0.2, 1)
+        world = self.world(folder)
         return quadrotor(self.engine, world=world, spawn=spawn, parameters=BUSY, seed=7)
 
 
@@ -49,7 +51,7 @@ CASES = [
 ]
 
 
-def flown(case: Case, folder, simulation: Optional[qc.Simulation] = None) -> bytes:
+def flown(case: Case, folder: Path, simulation: Optional[qc.Simulation] = None) -> bytes:
     """Every bit of a flight of 0.4 s."""
     simulation = simulation or case.simulation(folder)
     log = simulation.run(0.4, MANOEUVRE)
@@ -59,7 +61,11 @@ def flown(case: Case, folder, simulation: Optional[qc.Simulation] = None) -> byt
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    return tmp_path_factory.mktemp("worlds")
+    folder = tmp_path_factory.mktemp("worlds")
+    for case in CASES:
+        ground = GROUND if case.ground else ""
+        case.world(folder).write_text(WORLD.format(ground=ground, iterations=case.iterations))
+    return folder
 
 
 @pytest.fixture(scope="module")

@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from .._core import FlightError
 from ..commands import as_commands
 from ..log import Log
+from ..rotation import roll_pitch_yaw
 from ..state import State
 from . import matrices
 from .kinematics import euler_rates_to_body, gradient_of_W
@@ -165,7 +166,7 @@ class MathematicalModel:
     def _start(self, state: State) -> np.ndarray:
         """Generalised coordinates of a state of the frame link."""
         attitude = Rotation.from_quat(state.orientation)
-        eta = attitude.as_euler("ZYX")[::-1]
+        eta = roll_pitch_yaw(state.orientation)
         offset = attitude.apply(self.vehicle.center_of_mass)
         sweep = np.cross(attitude.apply(state.angular_velocity), offset)
         etadot, *_ = np.linalg.lstsq(euler_rates_to_body(eta), state.angular_velocity, rcond=None)

@@ -1,0 +1,104 @@
+#!/usr/bin/env bash
+# Builds a catkin workspace in build/catkin and runs every test of tests/ros in its devel space, and
+# the launch files once more from its install space. Where ROS 1 cannot be had it says so in one
+# line and succeeds. Needs .venv, which scripts/test makes.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+say() { echo "quadcore: $*"; }
+skip() { say "ROS tests skipped: $*"; exit 0; }
+
+debian_packages="catkin rosout python3-roslaunch python3-rostest python3-rostopic python3-rosservice
+  python3-rospy python3-diagnostic-msgs python3-geometry-msgs python3-nav-msgs python3-sensor-msgs
+  python3-std-srvs python3-tf2-msgs ros-diagnostic-msgs ros-geometry-msgs ros-nav-msgs
+  ros-rosgraph-msgs ros-sensor-msgs ros-std-msgs ros-std-srvs ros-tf2-msgs ros-message-generation
+  ros-message-runtime libdiagnostic-msgs-dev libgeometry-msgs-dev libnav-msgs-dev libroscpp-dev
+  libros-rosgraph-msgs-dev librostest-dev libsensor-msgs-dev libstd-msgs-dev libstd-srvs-dev
+  libtf2-ros-dev"
+noetic_packages="ros-noetic-ros-base ros-noetic-rostest ros-noetic-tf2-ros ros-noetic-diagnostic-msgs
+  ros-noetic-nav-msgs ros-noetic-sensor-msgs ros-noetic-std-srvs"
+
+as_root() {
+  if [ "$(id -u)" = 0 ]; then env DEBIAN_FRONTEND=noninteractive "$@"
+  else sudo -n env DEBIAN_FRONTEND=noninteractive "$@"; fi
+}
+may_be_root() { [ "$(id -u)" = 0 ] || sudo -n true 2>/dev/null; }
+known() { apt-cache show "$1" >/dev/null 2>&1; }
+
+install_ros() {
+  local packages missing="" package
+  known libroscpp-dev || known ros-noetic-ros-base || ! may_be_root || as_root apt-get -qq update
+  if [ -d /opt/ros/noetic ] || known ros-noetic-ros-base; then packages=$noetic_packages
+  elif known libroscpp-dev; then packages=$debian_packages
+  else skip "apt knows no packages of ROS 1"; fi
+  for package in $packages; do
+    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' ||
+      missing="$missing $package"
+  done
+  [ -z "$missing" ] && return
+  local install="apt-get install -y --no-install-recommends$missing"
+  may_be_root || skip "packages are missing and need root; run: sudo $install"
+  say "installing with apt:$missing"
+  as_root apt-get -qq update
+  as_root $install >/dev/null || skip "apt could not install them"
+}
+
+# A copy, because links back to here would send the ROS tools, which follow them, round in circles.
+copy_sources() {
+  rm -rf $workspace/src/quadcore
+  mkdir -p $workspace/src/quadcore/tests
+  cp -rp CMakeLists.txt package.xml cpp launch srv urdf worlds config scripts \
+    $workspace/src/quadcore
+  cp -rp tests/ros $workspace/src/quadcore/tests
+}
+
+build() {
+  catkin_make -C $workspace -DPYTHON_EXECUTABLE="$PWD/.venv/bin/python" -DQUADCORE_WITH_ROS=ON \
+    -DQUADCORE_WERROR=ON -DCMAKE_POLICY_VERSION_MINIMUM=3.5 install >$workspace/build.log 2>&1 ||
+    { tail -n 40 $workspace/build.log; say "the catkin workspace does not build"; exit 1; }
+  # Found in the install space like the tests of any package that installs its own.
+  cp -rp tests/ros $workspace/install/share/quadcore
+}
+
+# run_in SPACE TEST...: the tests, with the environment of that space.
+run_in() {
+  local space=$1 name log count
+  shift
+  set +u
+  . $workspace/$space/setup.bash
+  set -u
+  # Debian's packages lie where no setup.bash looks.
+  [ -d /opt/ros/noetic ] || export ROS_PACKAGE_PATH="$ROS_PACKAGE_PATH:/usr/share"
+  for name in "$@"; do
+    log=$workspace/$space-$name.log
+    rostest --text "$(rospack find quadcore)"/*ros/$name.test >$log 2>&1 || true
+    count=$(sed -n 's/^ \* TESTS: //p' $log)
+    if grep -q 'RESULT: SUCCESS' $log && [ "$count" -gt 0 ]; then
+      say "  $space $name: $count passed"
+    else
+      cat $log
+      say "  $space $name: FAILED"
+      failed="$failed $space/$name"
+    fi
+  done
+}
+
+workspace=build/catkin
+failed=""
+mkdir -p $workspace
+install_ros
+# The first python3 runs the nodes written in Python: the one that has quadcore and, from the
+# system, rospy.
+export PATH="$PWD/.venv/bin:/usr/bin:$PATH"
+if [ -d /opt/ros/noetic ]; then set +u; . /opt/ros/noetic/setup.bash; set -u; fi
+export ROS_HOME="$PWD/$workspace/ros_home"
+
+say "building a catkin workspace in $workspace"
+trap 'rm -rf $workspace/src/quadcore' EXIT
+copy_sources
+build
+say "running the ROS tests"
+SECONDS=0
+(run_in devel topics services lockstep faults fly_from_python launch; [ -z "$failed" ])
+(run_in install launch; [ -z "$failed" ])
+say "the ROS tests passed in $SECONDS s"
