@@ -57,7 +57,8 @@ build() {
     -DQUADCORE_WERROR=ON -DCMAKE_POLICY_VERSION_MINIMUM=3.5 install >$workspace/build.log 2>&1 ||
     { tail -n 40 $workspace/build.log; say "the catkin workspace does not build"; exit 1; }
   # Found in the install space like the tests of any package that installs its own.
-  cp -rp tests/ros $workspace/install/share/quadcore
+  mkdir -p $workspace/install/share/quadcore/tests
+  cp -rp tests/ros $workspace/install/share/quadcore/tests
 }
 
 # run_in SPACE TEST...: the tests, with the environment of that space.
@@ -71,7 +72,7 @@ run_in() {
   [ -d /opt/ros/noetic ] || export ROS_PACKAGE_PATH="$ROS_PACKAGE_PATH:/usr/share"
   for name in "$@"; do
     log=$workspace/$space-$name.log
-    rostest --text "$(rospack find quadcore)"/*ros/$name.test >$log 2>&1 || true
+    rostest --text "$(rospack find quadcore)/tests/ros/$name.test" >$log 2>&1 || true
     count=$(sed -n 's/^ \* TESTS: //p' $log)
     if grep -q 'RESULT: SUCCESS' $log && [ "$count" -gt 0 ]; then
       say "  $space $name: $count passed"

@@ -1,7 +1,5 @@
 #include "broadcast.hpp"
 
-#include <ros/topic_manager.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -66,9 +64,8 @@ bool ThinnedTopic::due(double time, bool jumped) {
   return publisher.getNumSubscribers() > 0;
 }
 
-Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
-                     const std::string& command_topic, bool keep_last)
-    : command_topic_(command_topic), odometry_topic_(simulation.topics().find("odom")) {
+Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation, bool keep_last)
+    : odometry_topic_(simulation.topics().find("odom")) {
   const ros::SubscriberStatusCallback no_delay = [](const ros::SingleSubscriberPublisher&) {
     send_without_delay();
   };
@@ -80,7 +77,7 @@ Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
   joint_states_.name = model.joint_names();
   path_.header.frame_id = world_frame;
   if (odometry_topic_ < 0) {
-    warn("the model has no libodometry_plugin.so: odom and tf are not sent");
+    ROS_WARN("the model has no libodometry_plugin.so: odom and tf are not sent");
     return;
   }
   odometry_publisher_ = nh.advertise<nav_msgs::Odometry>("odom", 1000, no_delay, {}, {}, keep_last);
@@ -98,7 +95,7 @@ Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
   }
 }
 
-void Broadcast::observe(const Simulation& simulation, bool jumped) {
+void Broadcast::send(const Simulation& simulation, bool jumped) {
   clock_.clock = to_ros(simulation.time());
   clock_publisher_.publish(clock_);
   if (odometry_topic_ >= 0) {
@@ -108,12 +105,6 @@ void Broadcast::observe(const Simulation& simulation, bool jumped) {
   if (jumped) path_.poses.clear();
   if (joint_states_topic_.due(simulation.time(), jumped)) send_joint_states(simulation);
   if (path_topic_.due(simulation.time(), jumped)) send_path(simulation);
-}
-
-void Broadcast::warn(const std::string& what) { ROS_WARN("%s", what.c_str()); }
-
-bool Broadcast::has_commander() const {
-  return ros::TopicManager::instance()->getNumPublishers(command_topic_) > 0;
 }
 
 void Broadcast::send_odometry(const Topic& topic) {

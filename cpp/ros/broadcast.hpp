@@ -8,9 +8,7 @@
 #include <tf2_ros/static_transform_broadcaster.h>
 #include <tf2_ros/transform_broadcaster.h>
 
-#include <string>
-
-#include "flight_thread.hpp"
+#include "quadcore/simulation.hpp"
 
 namespace quadcore::node {
 
@@ -32,24 +30,20 @@ class ThinnedTopic {
 /// Sends what the original package sends: /clock each step, then odom and tf world->drone with each
 /// message of the odometry plugin; besides, joint_states and path for rviz. Stamps are simulation
 /// time, those of odom among the values of /clock.
-class Broadcast final : public FlightListener {
+class Broadcast {
  public:
-  /// \param command_topic  resolved name
-  /// \param keep_last      whether odom is kept for subscribers that come later; in lockstep a
-  ///                       controller must not miss the message that the plant waits on.
-  Broadcast(ros::NodeHandle& nh, const Simulation& simulation, const std::string& command_topic,
-            bool keep_last);
+  /// \param keep_last  whether odom is kept for subscribers that come later; in lockstep a
+  ///                   controller must not miss the message that the plant waits on.
+  Broadcast(ros::NodeHandle& nh, const Simulation& simulation, bool keep_last);
 
-  void observe(const Simulation& simulation, bool jumped) override;
-  void warn(const std::string& what) override;
-  bool has_commander() const override;
+  /// After a step; `jumped`: after the start, a reset or a new state.
+  void send(const Simulation& simulation, bool jumped);
 
  private:
   void send_odometry(const Topic& topic);
   void send_joint_states(const Simulation& simulation);
   void send_path(const Simulation& simulation);
 
-  const std::string command_topic_;
   const int odometry_topic_;
   bool publish_tf_ = false;
   double sent_ = 0;  ///< count of the odometry message that was sent last

@@ -14,6 +14,8 @@ namespace {
 constexpr auto longest_sleep = std::chrono::milliseconds(20);
 /// After this a connection that this side has is one that the other side has, too.
 constexpr auto time_to_connect = std::chrono::milliseconds(100);
+/// No controller takes so long for its first answer: it must have been lost.
+constexpr auto time_to_begin = std::chrono::seconds(10);
 
 double odometry_count(const Simulation& simulation, int topic) {
   return topic < 0 ? 0 : simulation.topics()[static_cast<std::size_t>(topic)].count;
@@ -39,15 +41,15 @@ FlightThread::FlightThread(Simulation& simulation, const FlightSettings& setting
   thread_ = std::thread(&FlightThread::fly, this);
 }
 
-FlightThread::~FlightThread() {
-  end();
-  thread_.join();
-}
+FlightThread::~FlightThread() { end(); }
 
 void FlightThread::end() {
-  const Lock lock(mutex_);
-  ending_ = true;
-  changed_.notify_all();
+  {
+    const Lock lock(mutex_);
+    ending_ = true;
+    changed_.notify_all();
+  }
+  if (thread_.joinable()) thread_.join();
 }
 
 void FlightThread::command(const std::vector<double>& speeds) {
@@ -165,18 +167,18 @@ void FlightThread::observe_jump() {
 void FlightThread::wait_for_first_command(Lock& lock) {
   const auto is_disturbed = [this] { return disturbed(); };
   if (jump_observed_) {
-    const std::chrono::duration<double> timeout(settings_.lockstep_timeout);
-    if (changed_.wait_for(lock, timeout, is_disturbed)) return;
-    listener_.warn("lockstep: no first command yet; the odometry is sent again");
+    if (changed_.wait_for(lock, time_to_begin, is_disturbed)) return;
+    listener_.warn("lockstep: still no first command; the odometry is sent again");
+    lock.unlock();
+    listener_.repeat(simulation_);
+    lock.lock();
   } else if (!listener_.has_commander()) {
     changed_.wait_for(lock, longest_sleep, is_disturbed);
-    return;
-  } else if (changed_.wait_for(lock, time_to_connect, is_disturbed)) {
-    return;
+  } else if (!changed_.wait_for(lock, time_to_connect, is_disturbed)) {
+    lock.unlock();
+    observe_jump();
+    lock.lock();
   }
-  lock.unlock();
-  observe_jump();
-  lock.lock();
 }
 
 void FlightThread::wait_for_command(Lock& lock) {

@@ -28,6 +28,8 @@ class FlightListener {
   virtual ~FlightListener() = default;
   /// The simulation has made a step or, `jumped`, was reset or given a state.
   virtual void observe(const Simulation& simulation, bool jumped) = 0;
+  /// What was observed last is to be sent once more.
+  virtual void repeat(const Simulation& simulation) = 0;
   virtual void warn(const std::string& what) = 0;
   /// Whether anyone is there to send commands.
   virtual bool has_commander() const = 0;
@@ -64,7 +66,8 @@ class FlightThread {
   /// throws.
   void change(const std::function<void(Simulation&)>& change);
   FlightReport report() const;
-  /// Ends the flight; callers that still wait for a step or a change are told so.
+  /// Ends the flight; callers that still wait for a step or a change are told so. To be called by
+  /// the owner alone.
   void end();
 
  private:

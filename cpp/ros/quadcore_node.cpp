@@ -1,4 +1,5 @@
 #include <ros/ros.h>
+#include <ros/topic_manager.h>
 #include <std_msgs/Float64MultiArray.h>
 
 #include <cstdio>
@@ -56,17 +57,23 @@ class Listener final : public FlightListener {
  public:
   Listener(ros::NodeHandle& nh, const Simulation& simulation, const std::string& command_topic,
            const Settings& settings)
-      : broadcast_(nh, simulation, command_topic, settings.flight.lockstep) {
+      : command_topic_(command_topic), broadcast_(nh, simulation, settings.flight.lockstep) {
     if (!settings.log.empty()) log_.emplace(settings.log, simulation);
   }
   void observe(const Simulation& simulation, bool jumped) override {
     if (log_) log_->add(simulation.state());
-    broadcast_.observe(simulation, jumped);
+    broadcast_.send(simulation, jumped);
   }
-  void warn(const std::string& what) override { broadcast_.warn(what); }
-  bool has_commander() const override { return broadcast_.has_commander(); }
+  void repeat(const Simulation& simulation) override { broadcast_.send(simulation, true); }
+  void warn(const std::string& what) override { ROS_WARN("%s", what.c_str()); }
+  bool has_commander() const override {
+    return ros::TopicManager::instance()->getNumPublishers(command_topic_) > 0;
+  }
+  /// Once the flight has ended.
+  void close_log() { log_.reset(); }
 
  private:
+  const std::string command_topic_;
   Broadcast broadcast_;
   std::optional<CsvLog> log_;
 };
@@ -105,11 +112,14 @@ void run(const EndSignal& end_signal) {
   const CommandSubscriber commands(nh, topic, flight);
   const Services services(nh, flight);
   const MasterWatch master_watch(services.names());
-  Diagnostics diagnostics(nh, flight.report(), flight_settings.real_time_factor);
+  // In lockstep it is the controller that sets the pace.
+  Diagnostics diagnostics(nh, flight.report(),
+                          flight_settings.lockstep ? 0 : flight_settings.real_time_factor);
   ros::AsyncSpinner spinner(1);
   spinner.start();
-  ROS_INFO("flying %s with engine %s, commands on %s", simulation.model().name.c_str(),
-           simulation.engine_name().c_str(), topic.c_str());
+  ROS_INFO("flying %s with engine %s, commands on %s%s", simulation.model().name.c_str(),
+           simulation.engine_name().c_str(), topic.c_str(),
+           flight_settings.lockstep ? ", one for each odometry message" : "");
 
   using Clock = std::chrono::steady_clock;
   Clock::time_point due = Clock::now() + std::chrono::seconds(1);
@@ -119,6 +129,7 @@ void run(const EndSignal& end_signal) {
     due += std::chrono::seconds(1);
   }
   flight.end();
+  listener.close_log();  // before anything that may take longer than there is time
   spinner.stop();
   ros::shutdown();
 }

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Dict
 from rich.table import Table
 
 from .._core import FlightError, QuadcoreError
-from ..files import make_folder
+from ..files import check_writable, make_folder
 from ..parallel import each
 from . import options, terminal
 
@@ -73,6 +73,7 @@ def run(arguments: argparse.Namespace) -> None:
     terminal.warn(experiment.simulation(Case("eigen")))
     if arguments.out is not None:
         make_folder(arguments.out)
+        check_writable(arguments.out / "report.html")  # after the flights would be too late
     with terminal.progress(arguments.quiet) as progress:
         study = conduct(
             experiment,

@@ -198,11 +198,11 @@ def _panels(
     # Fixed margins: matplotlib's automatic layouts differ from version to version.
     margins = {
         "left": 0.75 / width,
-        "right": 1 - 0.1 / width,
+        "right": 1 - 0.2 / width,
         "top": 1 - above / height,
         "bottom": below / height,
         "hspace": 0.12,
-        "wspace": 0.08 if sharey == "row" else 0.22,
+        "wspace": 0.08 if sharey == "row" else 0.3,
     }
     shared: Any = {"sharex": True, "sharey": sharey}
     panels = figure.subplots(rows, columns, squeeze=False, gridspec_kw=margins, **shared)
