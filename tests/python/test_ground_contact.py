@@ -1,0 +1,102 @@
+"""Contact with the ground: against recordings of real Gazebo 11, and what must hold by itself."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from test_gazebo_recordings import DATA, FOLDERS, distances, name_of
+
+import quadcore as qc
+
+CASES = [path for folder in FOLDERS for path in sorted(folder.glob("cases/C*"))]
+DROP, TAKE_OFF = DATA / "cases" / "C1_drop", DATA / "cases" / "C2_takeoff_land"
+RESTING_HEIGHT = 0.0125  # half the frame's height
+CLOSE = 0.03  # m: the frame counts as landed below
+
+
+def spawned(case, engine="gazebo11", **options):
+    lines = (case / "params.txt").read_text().splitlines()
+    spawn = next(line.split()[1:] for line in lines if line.startswith("spawn "))
+    return qc.Simulation(
+        case / "model.urdf", engine=engine, world=case / "case.world", spawn=spawn, **options
+    )
+
+
+def flown(case, duration, engine="gazebo11"):
+    return spawned(case, engine).run(duration, commands=case / "commands.csv")
+
+
+def tilt(log):
+    """Angle between the frame's z and the world's, degrees."""
+    return np.degrees(2 * np.arcsin(np.linalg.norm(log.orientation[:, :2], axis=1)))
+
+
+@pytest.mark.parametrize("case", CASES, ids=name_of)
+def test_touching_the_ground_goes_as_recorded(case):
+    apart, angle = distances(spawned(case), case / "commands.csv", case / "record.csv.gz")
+    assert apart < 1e-9
+    assert angle < 1e-7
+
+
+@pytest.mark.parametrize("engine", ["gazebo11", "ode"])
+def test_a_drop_lands_without_a_bounce_and_rests(engine):
+    log = flown(DROP, 2.0, engine)
+    z = log.position[:, 2]
+    touchdown = log.time[np.argmax(z < 0.0125 + 1e-5)]
+    assert touchdown == pytest.approx(0.135, abs=1.1e-3)
+    after = z[log.time > touchdown + 0.002]
+    assert after.max() < RESTING_HEIGHT + 1e-6
+    assert after.min() > RESTING_HEIGHT - 2e-5
+    assert tilt(log)[-1] < 0.005
+
+
+def test_take_off_apex_and_landing_come_when_they_came_in_gazebo():
+    log = flown(TAKE_OFF, 10.0)
+    z, t = log.position[:, 2], log.time
+    rising = np.flatnonzero((z[:-1] < 0.0126) & (z[1:] >= 0.0126) & (t[1:] > 1))[0]
+    assert t[rising + 1] == pytest.approx(2.204, abs=1.1e-3)
+    apex = np.argmax(z)
+    assert t[apex] == pytest.approx(5.021, abs=1e-9)
+    assert z[apex] == pytest.approx(2.5499, abs=1e-4)
+    landed = apex + np.argmax(z[apex:] < CLOSE)
+    assert t[landed] == pytest.approx(6.674, abs=1e-9)
+    assert z[-200:] == pytest.approx(RESTING_HEIGHT, abs=2e-5)
+
+
+@pytest.mark.parametrize("engine", ["gazebo11", "ode"])
+def test_a_tilted_drop_comes_to_rest_and_does_not_slide(engine):
+    sim = qc.Simulation(
+        "quadrotor", engine=engine, world="default", spawn=(0, 0, 0.3, 0.3, -0.2, 1)
+    )
+    sim.step(6000)
+    before = sim.state.copy()
+    sim.step(1000)
+    assert np.linalg.norm(sim.state.position[:2] - before.position[:2]) < 1e-3
+    assert np.linalg.norm(sim.state.linear_velocity) < 0.02
+    lowest = sim.state.position[2] - RESTING_HEIGHT
+    assert -1e-4 < lowest < 0.1
+
+
+@pytest.mark.parametrize("engine", ["gazebo11", "ode"])
+def test_restoring_on_the_ground_repeats_the_bytes(engine):
+    sim = spawned(DROP, engine)
+    sim.step(140)  # just landed: hinge forces are carried over from step to step
+    snapshot = sim.snapshot()
+    first = sim.run(0.5).table
+    sim.restore(snapshot)
+    assert sim.run(0.5).table.tobytes() == first.tobytes()
+
+
+def test_a_mesh_cannot_touch_the_ground_and_is_named(tmp_path):
+    text = (DROP / "model.urdf").read_text()
+    mesh = text.replace(
+        '<cylinder radius="0.1" length="0.025"/></geometry></collision>',
+        '<mesh filename="frame.stl"/></geometry></collision>',
+    )
+    assert mesh != text
+    model = tmp_path / "mesh.urdf"
+    model.write_text(mesh)
+    qc.Simulation(model)
+    for engine, _ in qc.engines():
+        with pytest.raises(qc.InputError, match=r"mesh\.urdf:5: .*box, cylinder or sphere"):
+            qc.Simulation(model, engine=engine, world="default")
