@@ -7,7 +7,6 @@ from typing import Mapping
 
 from . import resources, xml_source
 from ._core import Document, InputError
-from .files import read_text
 
 
 def load_description(model: str, xacro_args: Mapping[str, str]) -> Document:
@@ -68,6 +67,6 @@ def _find(kind: str, name: str, folder: str) -> Path:
 
 
 def _plain(path: Path) -> Document:
-    text = read_text(path)
+    text = xml_source.read(path)
     xml_source.check(str(path), text)
     return Document(str(path), text)

@@ -5,23 +5,33 @@ from __future__ import annotations
 import os
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, Iterator
+from typing import IO, Iterator, Optional
 
 from ._core import InputError
 
 
-def read_text(path: Path) -> str:
+def read_text(path: Path, largest: Optional[int] = None) -> str:
     """Text of a UTF-8 file, without byte-order mark.
+
+    Parameters
+    ----------
+    path
+        The file.
+    largest
+        Bytes that it may have; None sets no limit.
 
     Raises
     ------
     InputError
-        The file is missing, unreadable or no text.
+        The file is missing, unreadable, too large or no text.
     """
     try:
-        data = path.read_bytes()
+        with path.open("rb") as stream:
+            data = stream.read(-1 if largest is None else largest + 1)
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+    if largest is not None and len(data) > largest:
+        raise InputError(f"{path}: is larger than {largest / 1e6:g} MB, the most that is read")
     try:
         if b"\0" in data:
             raise InputError(f"{path}: a binary file where text is expected")

@@ -20,7 +20,8 @@ import xacro
 
 from . import resources, xml_source
 from ._core import InputError, QuadcoreError
-from .files import read_text
+
+_MOST_ELEMENTS = 20000  # a few lines of macros can ask for billions
 
 _LOCK = threading.Lock()  # xacro keeps its stacks in globals
 
@@ -78,11 +79,30 @@ class _Arguments(Dict[str, str]):
 @contextlib.contextmanager
 def _replaced_hooks(arguments: _Arguments) -> Iterator[None]:
     old_parse, old_extension = xacro.parse, xacro.eval_extension
+    old_all, old_text = xacro.eval_all, xacro.eval_text
 
     def parse(source: Any, filename: str | None = None) -> Any:
         if filename is None or not Path(filename).is_file():
             return old_parse(source, filename)  # it raises what <xacro:include optional=""> expects
-        return xml_source.parse(filename, read_text(Path(filename)))
+        return xml_source.parse(filename, xml_source.read(Path(filename)))
+
+    elements = 0
+
+    def eval_all(node: Any, macros: Any, symbols: Any) -> None:
+        nonlocal elements
+        elements += 1
+        if elements > _MOST_ELEMENTS:
+            raise xacro.XacroException(
+                f"expands to more than {_MOST_ELEMENTS} elements, the most that are read"
+            )
+        old_all(node, macros, symbols)
+
+    def eval_text(text: str, symbols: Any) -> Any:
+        result = old_text(text, symbols)
+        if isinstance(result, str) and len(result) > xml_source.LARGEST:
+            most = f"{xml_source.LARGEST / 1e6:g} MB, the most that is read"
+            raise xacro.XacroException(f"expands to a text of more than {most}")
+        return result
 
     def eval_extension(text: str) -> str:
         command, *words = text[len("$(") : -len(")")].split() or [""]
@@ -96,10 +116,12 @@ def _replaced_hooks(arguments: _Arguments) -> Iterator[None]:
         return str(old_extension(text))
 
     xacro.parse, xacro.eval_extension = parse, eval_extension
+    xacro.eval_all, xacro.eval_text = eval_all, eval_text
     try:
         yield
     finally:
         xacro.parse, xacro.eval_extension = old_parse, old_extension
+        xacro.eval_all, xacro.eval_text = old_all, old_text
 
 
 @contextlib.contextmanager

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any, Iterator, NamedTuple
+from pathlib import Path
+from typing import Any, Iterator, NamedTuple, Sized
 from xml.dom import expatbuilder, minidom
 from xml.parsers import expat
 from xml.sax.saxutils import escape, quoteattr
 
 from ._core import InputError
+from .files import read_text
 
 _KEY = "quadcore.origin"
+
+# Far beyond any model or world; the core has the same limits.
+LARGEST = 1_000_000  # bytes
+DEEPEST = 64  # levels
+MOST_ATTRIBUTES = 100  # of one element
 
 
 class Origin(NamedTuple):
@@ -22,21 +29,42 @@ class Origin(NamedTuple):
         return f"{self.file}:{self.line}"
 
 
+def read(path: Path) -> str:
+    """Text of an XML file; raises `InputError` where `read_text` does or the file is too large."""
+    return read_text(path, LARGEST)
+
+
 def check(file: str, text: str) -> None:
-    """Raise `InputError` unless `text` is well-formed XML without a DOCTYPE.
+    """Raise `InputError` unless `text` is well-formed XML without a DOCTYPE, within the limits.
 
     A DOCTYPE can define entities, and these can expand without bound or name other files.
     Namespace prefixes need no declaration: world files use some without.
     """
     parser = expat.ParserCreate()
+    level = 0
 
-    def refuse(*_: object) -> None:
-        raise InputError(
-            f"{Origin(file, parser.CurrentLineNumber)}: DOCTYPE and entity declarations "
-            "are not read; remove them and write the values out"
-        )
+    def refuse(what: str) -> None:
+        raise InputError(f"{Origin(file, parser.CurrentLineNumber)}: {what}")
 
-    parser.StartDoctypeDeclHandler = refuse
+    def doctype(*_: object) -> None:
+        refuse("DOCTYPE and entity declarations are not read; remove them and write the values out")
+
+    def start(_: object, attributes: Sized) -> None:
+        nonlocal level
+        level += 1
+        if len(attributes) > MOST_ATTRIBUTES:
+            refuse(
+                f"an element with more than {MOST_ATTRIBUTES} attributes; no model or world has one"
+            )
+        if level > DEEPEST:
+            refuse(f"elements are nested deeper than {DEEPEST} levels; no model or world is")
+
+    def end(_: object) -> None:
+        nonlocal level
+        level -= 1
+
+    parser.StartDoctypeDeclHandler = doctype
+    parser.StartElementHandler, parser.EndElementHandler = start, end
     try:
         parser.Parse(text, True)
     except expat.ExpatError as error:
@@ -49,7 +77,7 @@ def parse(file: str, text: str) -> minidom.Document:
     Raises
     ------
     InputError
-        Malformed XML, an undeclared namespace prefix, or a DOCTYPE.
+        Malformed XML, an undeclared namespace prefix, a DOCTYPE, or a limit exceeded.
     """
     check(file, text)
     try:

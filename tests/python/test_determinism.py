@@ -6,6 +6,7 @@ import gc
 import multiprocessing
 import threading
 import weakref
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -91,37 +92,30 @@ def test_many_steps_are_as_many_single_steps():
     assert bits(at_once) == bits(one_by_one)
 
 
-def table(engine, place, seed=0):
-    return quadrotor(engine, seed=seed, **place).run(2, MANOEUVRE, log_every=10).table
+def table(engine, place, seed=0, duration=2):
+    return quadrotor(engine, seed=seed, **place).run(duration, MANOEUVRE, log_every=10).table
 
 
 @everywhere
 def test_threads_fly_the_bytes_that_each_flies_alone(engine, place):
-    tables = {}
+    def work(seed):  # long enough for the threads to meet
+        here = {**place, "spawn": (0, 0, 0.2, 0.1 * seed, 0, 0)}
+        return table(engine, here, seed, duration=3 if "world" in place else 30)
 
-    def work(seed):
-        for _ in range(3):
-            tables[seed] = table(engine, {**place, "spawn": (0, 0, 0.2, 0.1 * seed, 0, 0)}, seed)
-
-    threads = [threading.Thread(target=work, args=(seed,)) for seed in range(3)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    together = dict(tables)
-    for seed in range(3):
-        work(seed)
-        assert np.array_equal(tables[seed], together[seed])
+    seeds = [0, 1, 2] * 2
+    with ThreadPoolExecutor(3) as pool:
+        together = list(pool.map(work, seeds))
+    alone = [work(seed) for seed in range(3)]
+    for seed, flown in zip(seeds, together):
+        assert np.array_equal(flown, alone[seed])
 
 
 @everywhere
 def test_a_simulation_may_move_to_another_thread(engine, place):
     simulation, moved = quadrotor(engine, **place), quadrotor(engine, **place)
-    fly(simulation, 500)
-    worker = threading.Thread(target=fly, args=(moved, 500))
-    worker.start()
-    worker.join()
-    assert bits(moved) == bits(simulation)
+    flown = fly(simulation, 500)
+    with ThreadPoolExecutor(1) as pool:
+        assert pool.submit(fly, moved, 500).result() == flown
 
 
 @everywhere

@@ -121,9 +121,26 @@ def test_a_command_holds_from_the_first_step_that_begins_at_its_time():
 
 
 def test_motors_are_free_until_the_first_command():
-    log = quadrotor().run(0.02, [[0.010, 100, 100, 100, 100]])
-    assert np.abs(log.rotor_velocity[:11]).max() < 1e-20
-    assert log.rotor_velocity[11:].min() > 0.1
+    simulation = quadrotor()
+    state = simulation.state.copy()
+    state.rotor_velocity[:] = 47.1, -47.1, 47.1, -47.1
+    simulation.set_state(state)
+    log = simulation.run(0.02, [[0.010, 0, 0, 0, 0]])
+    assert np.allclose(log.rotor_velocity[:11], state.rotor_velocity, rtol=0, atol=1e-6)
+    assert np.abs(log.rotor_velocity[11:]).max() < 46.5
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_rotor_may_turn_half_a_turn_per_step_and_no_more(engine):
+    simulation = quadrotor(engine)
+    state = simulation.state.copy()
+    state.rotor_velocity[2] = 0.9999 * np.pi / simulation.dt
+    simulation.set_state(state)
+    simulation.step()
+    state.rotor_velocity[2] = -1.0001 * np.pi / simulation.dt
+    simulation.set_state(state)
+    with pytest.raises(qc.FlightError, match="rotor 'rotor3' turns more than half a turn per step"):
+        simulation.step()
 
 
 def test_a_run_without_commands_keeps_the_present_one():

@@ -1,7 +1,6 @@
 #include "quadcore/document.hpp"
 
 #include <fstream>
-#include <sstream>
 
 #include "quadcore/error.hpp"
 
@@ -17,11 +16,13 @@ std::string Document::at(int line) const {
 
 Document Document::read(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!(file && text << file.rdbuf())) {
+  std::string text(largest + 1, '\0');
+  if (!file.read(text.data(), static_cast<std::streamsize>(text.size())) && file.gcount() == 0) {
     throw InputError(path + ": cannot be read; give the path of an existing, non-empty file");
   }
-  return {path, text.str()};
+  if (file) throw InputError(path + ": is larger than 1 MB, the most that is read");
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  return {path, text};
 }
 
 }  // namespace quadcore

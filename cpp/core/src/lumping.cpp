@@ -1,5 +1,4 @@
-#include <algorithm>
-#include <functional>
+#include <set>
 
 #include "quadcore/error.hpp"
 #include "quadcore/text.hpp"
@@ -62,17 +61,20 @@ Topology check_topology(const UrdfTree& tree) {
     }
     topology.root = link.name;
   }
-  // Walking up from any link must end at the root.
+  // Walking up from any link must end at the root, or at a link from where it is known to.
+  std::set<std::string> rooted = {topology.root};
   for (const UrdfLink& link : tree.links) {
-    std::string at = link.name;
-    for (std::size_t steps = 0; at != topology.root; ++steps) {
+    std::vector<std::string> path;
+    for (std::string at = link.name; !rooted.count(at);) {
       const UrdfJoint& joint = *topology.joint_above.at(at);
-      if (steps > tree.links.size()) {
+      if (path.size() > tree.links.size()) {
         throw InputError(joint.where + ": joint '" + joint.name +
                          "' closes a loop of links; a model must be a tree");
       }
+      path.push_back(at);
       at = joint.parent;
     }
+    rooted.insert(path.begin(), path.end());
   }
   return topology;
 }
@@ -153,14 +155,17 @@ Model lump(const UrdfTree& tree) {
 
   add_body(link_named(topology.root));
   // Joints in file order, except that a parent is placed before its children.
-  std::vector<const UrdfJoint*> waiting;
-  for (const UrdfJoint& joint : tree.joints) waiting.push_back(&joint);
-  while (!waiting.empty()) {
-    const auto ready = std::find_if(waiting.begin(), waiting.end(), [&](const UrdfJoint* joint) {
-      return carried.count(joint->parent) > 0;
-    });
-    const UrdfJoint& joint = **ready;
-    waiting.erase(ready);
+  std::map<std::string, std::vector<std::size_t>> joints_below;
+  for (std::size_t i = 0; i < tree.joints.size(); ++i) {
+    joints_below[tree.joints[i].parent].push_back(i);
+  }
+  const std::vector<std::size_t>& first = joints_below[topology.root];
+  std::set<std::size_t> ready(first.begin(), first.end());
+  while (!ready.empty()) {
+    const UrdfJoint& joint = tree.joints[*ready.begin()];
+    ready.erase(ready.begin());
+    const std::vector<std::size_t>& next = joints_below[joint.child];
+    ready.insert(next.begin(), next.end());
     const Carried& parent = carried.at(joint.parent);
     const Pose pose = parent.pose * joint.pose;
     if (joint.fixed) {

@@ -2,32 +2,12 @@
 
 #include "quadcore/error.hpp"
 #include "quadcore/text.hpp"
+#include "xml_limits.hpp"
 
 namespace quadcore {
-namespace {
-
-/// XML is text: UTF-8 without control characters other than blanks. The parser would stop at a NUL.
-void check_text(const Document& document) {
-  const std::string& text = document.text;
-  int line = 1;
-  for (std::size_t at = 0; at < text.size();) {
-    const char c = text[at];
-    const std::size_t size = character_size(text, at);
-    if (size == 0) {
-      throw InputError(document.at(line) + ": not UTF-8 text; save the file as UTF-8");
-    }
-    if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t') {
-      throw InputError(document.at(line) + ": holds a control character; remove it");
-    }
-    if (c == '\n') ++line;
-    at += size;
-  }
-}
-
-}  // namespace
 
 Xml::Xml(const Document& document, const std::string& root_name) : document_(document) {
-  check_text(document);
+  check_xml_limits(document);
   if (trimmed(document.text).empty()) {
     throw InputError(document.at(1) + ": is empty; write a <" + root_name + "> element");
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,13 +10,16 @@ namespace quadcore {
 /// An XML text and where its lines came from. A document that was expanded (by xacro) carries for
 /// each of its lines the file and line it stems from; otherwise the text is the file itself.
 struct Document {
+  /// Bytes of the largest text that is read.
+  static constexpr std::size_t largest = 1000000;
+
   std::string name;
   std::string text;
   std::vector<std::pair<std::string, int>> lines = {};
 
   /// "FILE:LINE" of a line of the text, counted from 1.
   std::string at(int line) const;
-  /// Reads a file; throws InputError if it cannot be read.
+  /// Reads a file; throws InputError if it cannot be read or is too large.
   static Document read(const std::string& path);
 };
 
