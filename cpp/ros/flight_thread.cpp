@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "quadcore/error.hpp"
 
@@ -82,7 +83,7 @@ void FlightThread::set_paused(bool paused) {
 void FlightThread::step(std::int64_t n) {
   const Lock one_at_a_time(stepping_);
   Lock lock(mutex_);
-  if (!paused_) throw InputError("the simulation is running; pause it before stepping it");
+  paused_ = true;  // as Gazebo does, rather than refuse
   const std::int64_t goal = report_.steps + n;
   steps_allowed_ = n;
   changed_.notify_all();
@@ -188,9 +189,11 @@ void FlightThread::wait_for_command(Lock& lock) {
   } else if (!changed_.wait_for(lock, timeout, [this] { return disturbed(); })) {
     answered_ = true;
     ++report_.late_commands;
-    listener_.warn("lockstep: no command within " + std::to_string(settings_.lockstep_timeout) +
-                   " s after the odometry of t = " + std::to_string(report_.time) +
-                   " s; the last one is kept");
+    char text[100];
+    std::snprintf(text, sizeof text,
+                  "lockstep: no command within %g s after the odometry of t = %g s",
+                  settings_.lockstep_timeout, report_.time);
+    listener_.warn(std::string(text) + "; the last one is kept");
   }
   // A wait for the controller is not made up for by rushing.
   if (pacer_.due() < Pacer::Clock::now()) pacer_.restart();

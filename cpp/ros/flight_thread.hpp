@@ -59,8 +59,8 @@ class FlightThread {
   /// number that is not finite; the last good command stays.
   void command(const std::vector<double>& speeds);
   void set_paused(bool paused);
-  /// Flies n steps while paused and returns once the last is observed. Throws InputError if not
-  /// paused or stopped short, FlightError if the flight fails.
+  /// Pauses, flies n steps and returns once the last is observed. Throws InputError if stopped
+  /// short, FlightError if the flight fails.
   void step(std::int64_t n);
   /// Runs `change` between two steps and returns once the result is observed. Rethrows what it
   /// throws.

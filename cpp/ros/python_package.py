@@ -20,5 +20,5 @@ else:
         """Say what is missing."""
         raise AttributeError(
             f"quadcore.{name}: the simulation is not installed for {_sys.executable}; "
-            "pip install quadcore, or activate the environment that has it"
+            "pip install this package's folder, or activate the environment that has it"
         )

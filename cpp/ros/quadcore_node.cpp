@@ -78,8 +78,15 @@ class Listener final : public FlightListener {
   std::optional<CsvLog> log_;
 };
 
-void print_warnings(const Simulation& simulation) {
+void describe(const Simulation& simulation) {
   for (const std::string& warning : simulation.warnings()) ROS_WARN("%s", warning.c_str());
+  for (const LoadedPlugin& plugin : simulation.plugins()) {
+    ROS_DEBUG("plugin %s: %s", plugin.name.c_str(), plugin.path.c_str());
+    for (const Parameter& parameter : plugin.parameters.all()) {
+      ROS_DEBUG("    %s = %s %s (%s)", parameter.spec.name.c_str(), parameter.text.c_str(),
+                parameter.spec.unit.c_str(), parameter.origin.c_str());
+    }
+  }
 }
 
 /// Where commands come in: below the model's name, as Gazebo has it.
@@ -101,7 +108,7 @@ void run(const EndSignal& end_signal) {
   }
   const World world = settings.world.empty() ? World{} : read_world(Document::read(settings.world));
   Simulation simulation(read_model(settings.model), world, settings.simulation);
-  print_warnings(simulation);
+  describe(simulation);
   FlightSettings flight_settings = settings.flight;
   flight_settings.real_time_factor =
       settings.real_time_factor.value_or(world.real_time_update_rate * simulation.dt());

@@ -42,7 +42,7 @@ def expand(path, arguments):
     except ImportError:
         sys.exit(
             f"error: {path}: needs xacro to be expanded; install ros-noetic-xacro, "
-            "or where the distribution has none: pip install quadcore"
+            "or where the distribution has none: pip install xacro"
         )
     return xacro.process_file(path, mappings=arguments).toprettyxml(indent="  ")
 

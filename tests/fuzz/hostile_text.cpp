@@ -59,8 +59,8 @@ void fly(const Model& model, const World& world) {
       }
       simulation.reset();
       if (simulation.state().position != start) throw std::logic_error("the reset moved it");
-    } catch (const Error& error) {
-      check_message(error.what(), false);
+    } catch (const InputError& error) {
+      check_message(error.what(), true);
     }
   }
 }

@@ -100,9 +100,9 @@ def table(engine, place, seed=0, duration=2):
 def test_threads_fly_the_bytes_that_each_flies_alone(engine, place):
     def work(seed):  # long enough for the threads to meet
         here = {**place, "spawn": (0, 0, 0.2, 0.1 * seed, 0, 0)}
-        return table(engine, here, seed, duration=3 if "world" in place else 30)
+        return table(engine, here, seed, duration=3 if "world" in place else 12)
 
-    seeds = [0, 1, 2] * 2
+    seeds = [0, 1, 2] * 4
     with ThreadPoolExecutor(3) as pool:
         together = list(pool.map(work, seeds))
     alone = [work(seed) for seed in range(3)]

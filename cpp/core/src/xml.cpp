@@ -1,5 +1,7 @@
 #include "xml.hpp"
 
+#include <cmath>
+
 #include "quadcore/error.hpp"
 #include "quadcore/text.hpp"
 #include "xml_limits.hpp"
@@ -123,10 +125,16 @@ Vector3d Xml::vector_in_text(const Element& element) const {
   return as_vector(element, "<" + std::string(element.Name()) + ">", text(element));
 }
 
+void Xml::check_size(const Element& element, const std::string& what, double value) const {
+  // No length, mass or rate of a vehicle; its products and powers would overflow.
+  if (std::abs(value) > 1e9) fail(element, what + " exceeds 1e9; write it in SI units");
+}
+
 double Xml::as_number(const Element& element, const std::string& what,
                       const std::string& text) const {
   const auto value = parse_number(text);
   if (!value) fail(element, what + " is '" + text + "'; write one finite number");
+  check_size(element, what, *value);
   return *value;
 }
 
@@ -134,6 +142,7 @@ Vector3d Xml::as_vector(const Element& element, const std::string& what,
                         const std::string& text) const {
   const auto value = parse_vector(text);
   if (!value) fail(element, what + " is '" + text + "'; write three finite numbers");
+  check_size(element, what, value->cwiseAbs().maxCoeff());
   return *value;
 }
 

@@ -44,6 +44,7 @@ class Xml {
   Vector3d vector_in_text(const Element& element) const;
 
  private:
+  void check_size(const Element& element, const std::string& what, double value) const;
   double as_number(const Element& element, const std::string& what, const std::string& text) const;
   Vector3d as_vector(const Element& element, const std::string& what,
                      const std::string& text) const;
