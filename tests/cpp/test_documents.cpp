@@ -32,7 +32,7 @@ TEST_CASE("a document type is refused wherever it stands, and no entity is expan
 TEST_CASE("elements nested without end are refused") {
   std::string text = "<robot name='a'>";
   for (int i = 0; i < 100000; ++i) text += "<a>";
-  CHECK(contains(refused(text), "malformed XML"));
+  CHECK(contains(refused(text), "nested"));
 }
 
 TEST_CASE("an expanded document names the lines it stems from") {
