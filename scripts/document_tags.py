@@ -155,7 +155,7 @@ def _accepted(path: str, element: str) -> Iterator[str]:
 
 
 def _range(path: str) -> str:
-    found = re.search(r"write a number (.*)|must be a (whole number .*)", _refusal(path, "-1e99"))
+    found = re.search(r"write a number (.*)|must be a (whole number .*)", _refusal(path, "-1"))
     return (found.group(1) or found.group(2)) if found else ""
 
 
