@@ -1,7 +1,7 @@
 # Sourced by fly and test: installs what is missing and says so. Asks nothing.
 # Afterwards .venv/bin/python has quadcore as it lies in this checkout.
 
-apt_packages="g++ cmake ninja-build pkg-config python3-dev python3-venv
+apt_packages="g++ make cmake ninja-build pkg-config python3-dev python3-venv
   libode-dev libeigen3-dev libtinyxml2-dev doctest-dev ${extra_apt_packages:-}"
 python_packages="scikit-build-core>=0.5 pybind11>=2.10 numpy scipy matplotlib rich xacro rospkg
   pyyaml jinja2 pytest hypothesis ruff mypy"
