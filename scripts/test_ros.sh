@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds a catkin workspace in build/catkin and runs every test of tests/ros in its devel space, and
-# the launch files once more from its install space. Where ROS 1 cannot be had it says so in one
-# line and succeeds. Needs .venv, which scripts/test makes.
+# some once more in its install space. Where ROS 1 cannot be had it says so in one line and succeeds.
+# Needs .venv, which scripts/test makes.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -61,6 +61,14 @@ build() {
   cp -rp tests/ros $workspace/install/share/quadcore/tests
 }
 
+# A plugin by others, which finds quadcore in the space it is built in.
+build_plugin() {
+  local folder=$workspace/$1-plugin
+  { cmake -S examples/side_force_plugin -B $folder && cmake --build $folder; } >$folder.log 2>&1 ||
+    { cat $folder.log; say "the example plugin does not build in the $1 space"; exit 1; }
+  export QUADCORE_PLUGIN_PATH="$PWD/$folder"
+}
+
 # run_in SPACE TEST...: the tests, with the environment of that space.
 run_in() {
   local space=$1 name log count
@@ -68,6 +76,7 @@ run_in() {
   set +u
   . $workspace/$space/setup.bash
   set -u
+  build_plugin $space
   # Debian's packages lie where no setup.bash looks.
   [ -d /opt/ros/noetic ] || export ROS_PACKAGE_PATH="$ROS_PACKAGE_PATH:/usr/share"
   for name in "$@"; do
@@ -100,6 +109,6 @@ copy_sources
 build
 say "running the ROS tests"
 SECONDS=0
-(run_in devel topics services lockstep faults fly_from_python launch; [ -z "$failed" ])
-(run_in install launch; [ -z "$failed" ])
+(run_in devel topics services lockstep faults fly_from_python launch plugin_by_others; [ -z "$failed" ])
+(run_in install launch plugin_by_others; [ -z "$failed" ])
 say "the ROS tests passed in $SECONDS s"
