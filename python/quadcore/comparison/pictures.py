@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Dict, List, NamedTuple, Sequence, Tuple
 
 import numpy as np
-from matplotlib import cm
+from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 
 from ..log import Log
@@ -47,13 +47,16 @@ def draw(curves: Sequence[Curve], reference: Log, name: str) -> Dict[str, Figure
 
 def _styles(curves: Sequence[Curve]) -> List[Dict[str, Any]]:
     count = len(curves)
+    viridis = ScalarMappable(cmap="viridis")
+    viridis.set_clim(0, 1.05 * count)  # without the palest
+    shades = viridis.to_rgba(np.arange(count))
     named = set(np.linspace(0, count - 1, min(count, _LABELS)).round().astype(int))
     styles = []
     for i, curve in enumerate(curves):
         few = count <= len(PALETTE)
         styles.append(
             {
-                "color": PALETTE[i] if few else cm.viridis(0.95 * i / (count - 1)),
+                "color": PALETTE[i] if few else shades[i],
                 # Earlier ones shine through at the edges of those that cover them.
                 "linewidth": 1.2 + (1.6 * (1 - i / count) if few else 0),
                 "label": curve.label if few or i in named else None,
