@@ -81,7 +81,7 @@ run_in() {
   [ -d /opt/ros/noetic ] || export ROS_PACKAGE_PATH="$ROS_PACKAGE_PATH:/usr/share"
   for name in "$@"; do
     log=$workspace/$space-$name.log
-    rostest --text "$(rospack find quadcore)/tests/ros/$name.test" >$log 2>&1 || true
+    rostest --text quadcore "$name.test" >$log 2>&1 || true
     count=$(sed -n 's/^ \* TESTS: //p' $log)
     if grep -q 'RESULT: SUCCESS' $log && [ "$count" -gt 0 ]; then
       say "  $space $name: $count passed"

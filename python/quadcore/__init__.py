@@ -22,7 +22,7 @@ from ._core import (
 from .comparison import Comparison, compare
 from .log import Log
 from .resources import cmake_prefix
-from .simulation import Simulation
+from .simulation import QuadcoreWarning, Simulation
 from .state import State
 
 __version__ = "0.1.0"
@@ -33,6 +33,7 @@ __all__ = [
     "InputError",
     "Log",
     "QuadcoreError",
+    "QuadcoreWarning",
     "Simulation",
     "Snapshot",
     "State",

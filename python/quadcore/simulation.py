@@ -6,6 +6,7 @@ import math
 from operator import attrgetter
 from pathlib import Path
 from typing import Callable, Mapping, Optional, Sequence, Union
+from warnings import warn
 
 import numpy as np
 
@@ -20,6 +21,10 @@ Value = Union[float, str, bool, Sequence[str]]
 
 # A piece of a run between two looks at progress and Ctrl-C: a few hundredths of a second.
 _STEPS_PER_PIECE = 5000
+
+
+class QuadcoreWarning(UserWarning):
+    """What is allowed but was perhaps not meant."""
 
 
 class Simulation(_core.Simulation):
@@ -49,6 +54,11 @@ class Simulation(_core.Simulation):
     ------
     InputError
         The model, world or an argument is at fault; the message carries FILE:LINE.
+
+    Warns
+    -----
+    QuadcoreWarning
+        What is allowed but was perhaps not meant; `model.warnings` and `warnings` keep it.
     """
 
     def __init__(
@@ -80,6 +90,8 @@ class Simulation(_core.Simulation):
             spawn=_pose(spawn),
         )
         self._live = LiveState(self)
+        for warning in dict.fromkeys([*self.model.warnings, *self.warnings]):
+            warn(warning, QuadcoreWarning, stacklevel=2)
 
     # attrgetter, not a function: reading the state is part of every step of a Python loop.
     state: LiveState = property(  # type: ignore[assignment]

@@ -250,9 +250,11 @@ def test_a_model_without_motor_cannot_be_commanded(toy):
 
 
 def test_an_integral_gain_without_limits_is_warned_of():
-    simulation = qc.Simulation("toy.urdf", parameters={"motor.ki": 1})
+    with pytest.warns(qc.QuadcoreWarning) as shown:
+        simulation = qc.Simulation("toy.urdf", parameters={"motor.ki": 1})
     (warning,) = simulation.warnings
     assert warning.startswith("toy.urdf:35: plugin 'motor': <ki> has no effect while <iMax> and")
+    assert [(str(w.message), w.filename) for w in shown] == [(warning, __file__)]
     assert qc.Simulation("toy.urdf", parameters={"motor.ki": 1, "motor.iMax": 1}).warnings == []
 
 
@@ -260,5 +262,6 @@ def test_effort_limits_of_a_joint_are_warned_of(toy):
     text = (toy / "toy.urdf").read_text()
     limit = '<limit effort="1" velocity="1"/>'
     (toy / "toy.urdf").write_text(text.replace('<dynamics damping="1e-6"/>', limit))
-    (warning,) = qc.Simulation("toy.urdf").warnings
+    with pytest.warns(qc.QuadcoreWarning):
+        (warning,) = qc.Simulation("toy.urdf").warnings
     assert warning.startswith("toy.urdf:27: joint 'rotor': effort and velocity limits")

@@ -9,7 +9,7 @@ import sys
 from typing import NoReturn, Sequence
 
 from .._core import FlightError, InputError, QuadcoreError
-from . import compare, info, run, validate
+from . import compare, info, run, terminal, validate
 
 
 class _Parser(argparse.ArgumentParser):
@@ -37,7 +37,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         arguments = _parser().parse_args(argv)
-        arguments.action(arguments)
+        with terminal.warnings_as_lines():
+            arguments.action(arguments)
         sys.stdout.flush()
     except QuadcoreError as error:
         print(f"error: {error}", file=sys.stderr)

@@ -55,8 +55,6 @@ def register(commands: Any) -> None:
 def compare(arguments: argparse.Namespace) -> None:
     """Print how the models differ, fly them, and print how the flights differ."""
     plan = _plan(arguments)
-    for warning in plan.warnings:
-        print(f"warning: {warning}", file=sys.stderr)
     out = arguments.out
     if out is not None:
         make_folder(out)

@@ -24,7 +24,6 @@ def register(commands: Any) -> None:
 def info(arguments: argparse.Namespace) -> None:
     """Print the model as it would fly."""
     simulation = Simulation(**options.model_arguments(arguments))
-    terminal.warn(simulation)
     console = terminal.console()
     console.print(f"model {simulation.model.name}\n")
     for table in (_links(simulation), _body(simulation), _rotors(simulation)):

@@ -35,7 +35,6 @@ def register(commands: Any) -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Fly, write what was asked for, and print a summary."""
     simulation = options.simulation(arguments)
-    terminal.warn(simulation)
     files = _log_files(arguments)
     started = time.perf_counter()
     try:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import signal
 import sys
 import time
+import warnings
 from contextlib import contextmanager
 from typing import Callable, Iterator
 
 from rich.console import Console
 from rich.progress import Progress
 
-from ..simulation import Simulation
+from ..simulation import QuadcoreWarning
 
 _LONG = 1.0  # s; a run that is over sooner needs no progress bar
 
@@ -22,10 +23,20 @@ def console() -> Console:
     return Console(width=width, markup=False, emoji=False, highlight=False)
 
 
-def warn(simulation: Simulation) -> None:
-    """Print the warnings of a simulation and its model on standard error."""
-    for warning in dict.fromkeys([*simulation.model.warnings, *simulation.warnings]):
-        print(f"warning: {warning}", file=sys.stderr)
+@contextmanager
+def warnings_as_lines() -> Iterator[None]:
+    """Print warnings as lines on standard error, each QuadcoreWarning once."""
+
+    def as_line(message: Warning | str, *_: object, **__: object) -> str:
+        return f"warning: {message}\n"
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("once", QuadcoreWarning)
+        usual, warnings.formatwarning = warnings.formatwarning, as_line
+        try:
+            yield
+        finally:
+            warnings.formatwarning = usual
 
 
 @contextmanager

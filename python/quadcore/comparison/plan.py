@@ -64,9 +64,6 @@ class Plan:
         built = self._built()
         self.dt = built[0].dt if built else 1e-3
         """s, of the first model as it is."""
-        self.warnings = list(
-            dict.fromkeys(w for sim in built for w in [*sim.model.warnings, *sim.warnings])
-        )
         self._check_tags(built)
         self.rotor_count = len(self._models[0].joints)
         if commands is not None:
