@@ -22,8 +22,9 @@ from ._core import (
 from .comparison import Comparison, compare
 from .log import Log
 from .resources import cmake_prefix
-from .simulation import QuadcoreWarning, Simulation
+from .simulation import Simulation
 from .state import State
+from .warning import QuadcoreWarning
 
 __version__ = "0.1.0"
 

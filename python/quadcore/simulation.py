@@ -15,16 +15,13 @@ from .commands import as_commands
 from .description import load_description, load_world
 from .log import Log
 from .state import LiveState
+from .warning import QuadcoreWarning
 
 Number = Union[float, str]
 Value = Union[float, str, bool, Sequence[str]]
 
 # A piece of a run between two looks at progress and Ctrl-C: a few hundredths of a second.
 _STEPS_PER_PIECE = 5000
-
-
-class QuadcoreWarning(UserWarning):
-    """What is allowed but was perhaps not meant."""
 
 
 class Simulation(_core.Simulation):

@@ -8,22 +8,29 @@ from __future__ import annotations
 
 import contextlib
 import difflib
-import io
 import os
 import threading
 import traceback
 from pathlib import Path
-from typing import Any, Dict, Iterator, Mapping
+from types import FrameType
+from typing import Any, Dict, Iterable, Iterator, Mapping
+from warnings import warn
 
 import rospkg
 import xacro
 
 from . import resources, xml_source
 from ._core import InputError, QuadcoreError
+from .warning import QuadcoreWarning
 
 _MOST_ELEMENTS = 20000  # a few lines of macros can ask for billions
 
-_LOCK = threading.Lock()  # xacro keeps its stacks in globals
+# xacro keeps its stacks in globals. A process is not forked while another thread expands a file:
+# the child would wait for that thread without end.
+_LOCK = threading.RLock()
+os.register_at_fork(
+    before=_LOCK.acquire, after_in_parent=_LOCK.release, after_in_child=_LOCK.release
+)
 
 
 def expand(path: str, arguments: Mapping[str, str]) -> list[tuple[str, xml_source.Origin]]:
@@ -45,15 +52,22 @@ def expand(path: str, arguments: Mapping[str, str]) -> list[tuple[str, xml_sourc
     ------
     InputError
         Whatever is wrong in the file or one it includes, or an argument it does not know.
+
+    Warns
+    -----
+    QuadcoreWarning
+        What xacro itself warns of.
     """
     table = _Arguments(arguments)
-    with _LOCK, _replaced_hooks(table), _silence():
+    with _LOCK, _replaced_hooks(table):
         try:
             document = xacro.process_file(path, mappings=table)
         except QuadcoreError:
             raise
         except Exception as error:  # xacro has no common base class for what it raises
-            raise InputError(f"{_place(error) or path}: {_reason(error)}") from error
+            frames = [frame for frame, _ in traceback.walk_tb(error.__traceback__)]
+            place = _place(reversed(frames)) or path
+            raise InputError(f"{place}: {_reason(error)}") from error
     for name in arguments:
         if name not in table.asked:
             raise InputError(f"{path}: there is no xacro argument {_named(name, table.asked)}")
@@ -82,8 +96,10 @@ def _replaced_hooks(arguments: _Arguments) -> Iterator[None]:
     old_all, old_text = xacro.eval_all, xacro.eval_text
 
     def parse(source: Any, filename: str | None = None) -> Any:
-        if filename is None or not Path(filename).is_file():
+        if filename is None or not Path(filename).exists():
             return old_parse(source, filename)  # it raises what <xacro:include optional=""> expects
+        if not Path(filename).is_file():  # a pipe could be waited for without end
+            raise xacro.XacroException(f"{filename}: is no regular file; include a xacro file")
         return xml_source.parse(filename, xml_source.read(Path(filename)))
 
     elements = 0
@@ -115,19 +131,24 @@ def _replaced_hooks(arguments: _Arguments) -> Iterator[None]:
             )
         return str(old_extension(text))
 
-    xacro.parse, xacro.eval_extension = parse, eval_extension
-    xacro.eval_all, xacro.eval_text = eval_all, eval_text
+    def warning(message: str) -> None:
+        place = _place(frame for frame, _ in traceback.walk_stack(None))
+        warn(f"{place}: {message}" if place else message, QuadcoreWarning, stacklevel=2)
+
+    new = {
+        "parse": parse,
+        "eval_all": eval_all,
+        "eval_text": eval_text,
+        "eval_extension": eval_extension,
+        "warning": warning,
+        "print_location": lambda *_: None,
+    }
+    old = {name: getattr(xacro, name) for name in new}
+    vars(xacro).update(new)
     try:
         yield
     finally:
-        xacro.parse, xacro.eval_extension = old_parse, old_extension
-        xacro.eval_all, xacro.eval_text = old_all, old_text
-
-
-@contextlib.contextmanager
-def _silence() -> Iterator[None]:
-    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
-        yield
+        vars(xacro).update(old)
 
 
 def _package_folder(name: str) -> str:
@@ -141,10 +162,9 @@ def _package_folder(name: str) -> str:
         ) from None
 
 
-def _place(error: BaseException) -> xml_source.Origin | None:
-    """Origin of the element at work when `error` was raised, from the innermost frame with one."""
-    frames = [frame for frame, _ in traceback.walk_tb(error.__traceback__)]
-    for frame in reversed(frames):
+def _place(frames: Iterable[FrameType]) -> xml_source.Origin | None:
+    """Origin of the element that xacro works at, from the first of `frames` that has one."""
+    for frame in frames:
         for name in ("node", "elt", "tag"):  # what xacro calls it
             found = xml_source.origin(frame.f_locals.get(name))
             if found is not None:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import gc
 import multiprocessing
 import queue
+import sys
 import threading
 from pathlib import Path
 from typing import NamedTuple, Optional
 
 import numpy as np
 import pytest
+import xacro
 from flights import BUSY, ENGINES, MANOEUVRE, quadrotor
 
 import quadcore as qc
@@ -181,3 +183,37 @@ def test_a_simulation_flies_on_alike_on_both_sides_of_a_fork(folder):
         here = flown(case, folder, simulation)
         assert receiver.recv_bytes() == here, case
         child.join()
+
+
+def test_a_fork_beside_a_thread_that_expands_a_xacro_can_expand_one_too():
+    ending = threading.Event()
+
+    def expand():
+        while not ending.is_set():
+            qc.Simulation("quadrotor")
+
+    thread = threading.Thread(target=expand)
+    thread.start()
+    try:
+        for _ in range(20):
+            child = multiprocessing.get_context("fork").Process(target=qc.Simulation)
+            child.start()
+            child.join(10)
+            assert child.exitcode == 0
+    finally:
+        ending.set()
+        thread.join()
+
+
+def test_what_others_print_while_a_xacro_is_expanded_is_not_lost(monkeypatch):
+    out = sys.stdout
+    swapped = []
+    expand = xacro.process_file
+
+    def spied(*arguments, **options):
+        swapped.append(sys.stdout is not out)
+        return expand(*arguments, **options)
+
+    monkeypatch.setattr(xacro, "process_file", spied)
+    qc.Simulation("quadrotor")
+    assert swapped == [False]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -118,11 +119,6 @@ def test_an_optional_include_may_be_missing(robot):
     assert "<a/>" in places(expand(file, {}))
 
 
-def test_expansion_prints_nothing(robot, capfd):
-    expand(robot('<a v="${xacro.warning(1)}"/>', '<xacro:if value="0" odd="1"/>'), {})
-    assert capfd.readouterr() == ("", "")
-
-
 @pytest.mark.parametrize(
     ("line", "reason"),
     [
@@ -207,3 +203,18 @@ def test_the_shipped_model_and_worlds_load_by_name():
 def test_a_world_may_use_namespace_prefixes_without_declaring_them(write):
     file = write("a.world", "<sdf><world><physics:ode/></world></sdf>")
     assert "physics:ode" in load_world(file).text
+
+
+def test_what_xacro_warns_of_is_passed_on_with_its_place_and_not_printed(robot, capfd):
+    file = robot('<link name="a"/>', '<xacro:include filename="nothing_*.xacro"/>')
+    with pytest.warns(qc.QuadcoreWarning) as shown:
+        expand(file, {})
+    (warning,) = shown
+    assert str(warning.message).startswith("robot.xacro:3: ")
+    assert "nothing_*.xacro" in str(warning.message)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_pipe_is_not_included(robot):
+    os.mkfifo("pipe.xacro")
+    assert refusal(robot('<xacro:include filename="pipe.xacro"/>')).startswith("robot.xacro:2: ")

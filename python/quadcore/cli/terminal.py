@@ -7,12 +7,12 @@ import sys
 import time
 import warnings
 from contextlib import contextmanager
-from typing import Callable, Iterator
+from typing import Any, Callable, Iterator
 
 from rich.console import Console
 from rich.progress import Progress
 
-from ..simulation import QuadcoreWarning
+from ..warning import QuadcoreWarning
 
 _LONG = 1.0  # s; a run that is over sooner needs no progress bar
 
@@ -25,18 +25,19 @@ def console() -> Console:
 
 @contextmanager
 def warnings_as_lines() -> Iterator[None]:
-    """Print warnings as lines on standard error, each QuadcoreWarning once."""
+    """Print each QuadcoreWarning once, as a line on standard error."""
+    show_others = warnings.showwarning
 
-    def as_line(message: Warning | str, *_: object, **__: object) -> str:
-        return f"warning: {message}\n"
+    def show(message: Any, category: Any, *where: Any, **to: Any) -> None:
+        if issubclass(category, QuadcoreWarning):
+            print(f"warning: {message}", file=sys.stderr)
+        else:
+            show_others(message, category, *where, **to)
 
     with warnings.catch_warnings():
         warnings.simplefilter("once", QuadcoreWarning)
-        usual, warnings.formatwarning = warnings.formatwarning, as_line
-        try:
-            yield
-        finally:
-            warnings.formatwarning = usual
+        warnings.showwarning = show
+        yield
 
 
 @contextmanager
