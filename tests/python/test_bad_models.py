@@ -196,10 +196,33 @@ def test_a_joint_that_the_engines_do_not_model(broken):
         fault(DAMPING, '<dynamics dampin="1e-6"/>', "dampin", "damping"),
         fault(DAMPING, '<dynamics spring_stiffness="1"/>', "spring_stiffness", "damping"),
         fault(ORIGIN, '<origin xzy="0 0 0.1"/>', "xzy", "xyz"),
+        fault("<inertial>\n      " + MASS, '<inertial mass="1">' + MASS, "mass of <inertial>"),
+        fault("<collision>", '<collision size="1">', "size of <collision>", "takes name"),
+        fault("<geometry>", '<geometry scale="2">', "scale of <geometry>", "remove it"),
+        fault("<gazebo>", '<gazebo refernce="rotor">', "refernce", "did you mean 'reference'?"),
+        fault("<kp>", '<kp unit="N m s">', "unit of <kp>", "remove it"),
+        fault('<robot name="toy">', '<robot name="toy" nmae="x">', "nmae of <robot>", "'name'?"),
     ],
     ids=str,
 )
 def test_an_attribute_that_nobody_reads(broken):
+    assert_refused("toy.urdf", broken)
+
+
+@pytest.mark.parametrize(
+    "broken",
+    [
+        fault(AXIS, "<axis><xyz>0 0 1</xyz></axis>", "<xyz> in <axis>", "remove it"),
+        fault(ORIGIN, "<origin>0 0 0.1</origin>", "stray text '0 0 0.1' in <origin>", "remove it"),
+        fault(DAMPING, "<dynamics><damping>1</damping></dynamics>", "<damping> in <dynamics>"),
+        fault(MASS, '<mass value="0.01">kg</mass>', "stray text 'kg' in <mass>", "remove it"),
+        fault(MASS, '<mass value="1"><value>2</value></mass>', "<value> in <mass>", "remove it"),
+        fault(DAMPING, '<limit effort="nan"/>', "effort of <limit> is 'nan'", "finite number"),
+        fault("<kp>5e-4", "<kp>5e-4<!-- a -->7", "the text of <kp> is in pieces", "comment out"),
+    ],
+    ids=str,
+)
+def test_what_would_be_passed_over(broken):
     assert_refused("toy.urdf", broken)
 
 

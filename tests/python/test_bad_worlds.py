@@ -62,6 +62,20 @@ def test_an_element_that_is_not_honoured(broken):
 @pytest.mark.parametrize(
     "broken",
     [
+        fault(PHYSICS, '<physics typ="ode">', "typ of <physics>", "did you mean 'type'?"),
+        fault("<erp>", '<erp unit="1">', "unit of <erp>", "remove it"),
+        fault("<wind>", '<wind mode="gust">', "mode of <wind>", "remove it"),
+        fault(GRAVITY, "<gravity>0 0<!-- z --> -9.8</gravity>", "<gravity> is in pieces"),
+    ],
+    ids=str,
+)
+def test_what_would_be_passed_over(broken):
+    assert_refused("toy.world", broken)
+
+
+@pytest.mark.parametrize(
+    "broken",
+    [
         fault(GRAVITY, f"{GRAVITY}\n{GRAVITY}<!---->", "second <gravity>", "keep", at="<!---->"),
         fault(RATE, f"{RATE}<updateRate>9</updateRate>", "<updateRate> beside", "keep one"),
         fault(STEP, f"{STEP}<gravity>0 0 0</gravity>", "<gravity> beside", "toy.world:3", "keep"),

@@ -14,24 +14,25 @@ using Element = Xml::Element;
 Pose read_origin(const Xml& xml, const Element& parent) {
   const Element* origin = xml.child(parent, "origin");
   if (!origin) return {};
-  xml.only_attributes(*origin, {"xyz", "rpy"});
+  xml.attributes_alone(*origin, {"xyz", "rpy"});
   return {xml.vector(*origin, "xyz", Vector3d::Zero()),
           xml.vector(*origin, "rpy", Vector3d::Zero())};
 }
 
 Inertial read_inertial(const Xml& xml, const Element& element, const std::string& link) {
+  xml.only_attributes(element, {});
   xml.children(element, {"origin", "mass", "inertia"});
   Inertial inertial;
   inertial.pose = read_origin(xml, element);
   const Element& mass = xml.required_child(element, "mass");
-  xml.only_attributes(mass, {"value"});
+  xml.attributes_alone(mass, {"value"});
   inertial.mass = xml.number(mass, "value");
   if (inertial.mass < 0) {
     xml.fail(mass, "link '" + link + "' has the mass " + mass.Attribute("value") +
                        "; write a mass in kg, > 0");
   }
   const Element& inertia = xml.required_child(element, "inertia");
-  xml.only_attributes(inertia, {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"});
+  xml.attributes_alone(inertia, {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"});
   const auto moment = [&](const char* name) { return xml.number(inertia, name); };
   const double xx = moment("ixx"), yy = moment("iyy"), zz = moment("izz");
   const double xy = moment("ixy"), xz = moment("ixz"), yz = moment("iyz");
@@ -56,18 +57,21 @@ Inertial read_inertial(const Xml& xml, const Element& element, const std::string
 }
 
 Collision read_collision(const Xml& xml, const Element& element) {
+  xml.only_attributes(element, {"name"});
   xml.children(element, {"origin", "geometry", "verbose"});
   const Element& geometry = xml.required_child(element, "geometry");
+  xml.only_attributes(geometry, {});
   const auto shapes = xml.children(geometry, {"box", "cylinder", "sphere", "mesh"});
   if (shapes.size() != 1) xml.fail(geometry, "<geometry> takes exactly one shape");
   const Element& shape = *shapes.front();
   Collision collision{ShapeKind::mesh, Vector3d::Zero(), read_origin(xml, element),
                       xml.where(shape)};
   const std::string kind = shape.Name();
+  xml.attributes_alone(shape, kind == "mesh"       ? std::set<std::string>{"filename", "scale"}
+                              : kind == "box"      ? std::set<std::string>{"size"}
+                              : kind == "cylinder" ? std::set<std::string>{"radius", "length"}
+                                                   : std::set<std::string>{"radius"});
   if (kind == "mesh") return collision;
-  xml.only_attributes(shape, kind == "box"        ? std::set<std::string>{"size"}
-                             : kind == "cylinder" ? std::set<std::string>{"radius", "length"}
-                                                  : std::set<std::string>{"radius"});
   if (kind == "box") {
     xml.attribute(shape, "size");
     collision.kind = ShapeKind::box;
@@ -114,7 +118,7 @@ UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::st
   xml.children(element, {"origin", "parent", "child", "axis", "dynamics", "limit"});
   const auto linked = [&](const char* role) {
     const Element& end = xml.required_child(element, role);
-    xml.only_attributes(end, {"link"});
+    xml.attributes_alone(end, {"link"});
     return xml.attribute(end, "link");
   };
   joint.parent = linked("parent");
@@ -123,14 +127,14 @@ UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::st
   if (joint.fixed) return joint;
 
   if (const Element* axis = xml.child(element, "axis")) {
-    xml.only_attributes(*axis, {"xyz"});
+    xml.attributes_alone(*axis, {"xyz"});
     joint.axis = xml.vector(*axis, "xyz", Vector3d::UnitX());
     if (!(joint.axis.norm() > 1e-9)) {
       xml.fail(*axis, "joint '" + joint.name + "' has no axis; write a direction such as 0 0 1");
     }
   }
   if (const Element* dynamics = xml.child(element, "dynamics")) {
-    xml.only_attributes(*dynamics, {"damping", "friction"});
+    xml.attributes_alone(*dynamics, {"damping", "friction"});
     joint.damping = xml.number(*dynamics, "damping", 0);
     if (joint.damping < 0) {
       xml.fail(*dynamics,
@@ -142,7 +146,10 @@ UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::st
     }
   }
   if (const Element* limit = xml.child(element, "limit")) {
-    xml.only_attributes(*limit, {"effort", "velocity", "lower", "upper"});
+    xml.attributes_alone(*limit, {"effort", "velocity", "lower", "upper"});
+    for (const char* without_effect : {"effort", "velocity"}) {
+      xml.number(*limit, without_effect, 0);
+    }
     for (const char* bound : {"lower", "upper"}) {
       if (xml.number(*limit, bound, 0) != 0) {
         xml.fail(*limit, "joint '" + joint.name + "' has a limit " + bound +
@@ -173,6 +180,7 @@ PluginElement read_plugin(const Xml& xml, const Element& element) {
 }
 
 void read_gazebo(const Xml& xml, const Element& element, UrdfTree& tree) {
+  xml.only_attributes(element, {"reference"});
   if (element.Attribute("reference")) {
     // Only what is seen but not felt; anything else Gazebo would feel.
     xml.children(element, {"material", "visual"});
@@ -194,6 +202,7 @@ void read_gazebo(const Xml& xml, const Element& element, UrdfTree& tree) {
 UrdfTree read_urdf_tree(const Document& document) {
   const Xml xml(document, "robot");
   UrdfTree tree;
+  xml.only_attributes(xml.root(), {"name", "version"});
   tree.name = xml.attribute(xml.root(), "name");
   tree.where = xml.where(xml.root());
   const std::set<std::string> elements = {"link",     "joint",        "gazebo",

@@ -17,6 +17,16 @@ using Handler = std::function<void(const Element&)>;
 /// What to do with each child element; one that is not listed is refused by name.
 using Handlers = std::map<std::string, Handler>;
 
+/// What an element that holds others may have besides them.
+std::set<std::string> attributes_of(const std::string& element) {
+  if (element == "sdf") return {"version"};
+  if (element == "physics" || element == "physics:ode") return {"name", "default", "type"};
+  if (element == "world" || element == "model" || element == "link" || element == "collision") {
+    return {"name"};
+  }
+  return {};
+}
+
 /// Reads the elements that a world may hold into a World.
 class WorldReader {
  public:
@@ -45,6 +55,7 @@ class WorldReader {
  private:
   void read_children(const Element& element, const Handlers& handlers,
                      const std::set<std::string>& repeatable = {}) {
+    xml_.only_attributes(element, attributes_of(element.Name()));
     std::set<std::string> names;
     for (const auto& entry : handlers) names.insert(entry.first);
     for (const Element* child : xml_.children(element, names, repeatable)) {

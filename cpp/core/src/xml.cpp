@@ -7,6 +7,14 @@
 #include "xml_limits.hpp"
 
 namespace quadcore {
+namespace {
+
+std::string takes(const Xml::Element& element, const std::vector<std::string>& names) {
+  return names.empty() ? "; remove it"
+                       : "; <" + std::string(element.Name()) + "> takes " + joined(names);
+}
+
+}  // namespace
 
 Xml::Xml(const Document& document, const std::string& root_name) : document_(document) {
   check_xml_limits(document);
@@ -55,8 +63,7 @@ std::vector<const Xml::Element*> Xml::children(const Element& element,
     if (!allowed.count(name)) {
       const std::vector<std::string> names(allowed.begin(), allowed.end());
       fail(*child, "<" + name + "> in <" + element.Name() + "> is not supported" +
-                       did_you_mean(name, names) + "; <" + element.Name() + "> takes " +
-                       joined(names));
+                       did_you_mean(name, names) + takes(element, names));
     }
     if (!seen.insert(name).second && !repeatable.count(name)) {
       fail(*child, "a second <" + name + "> in <" + element.Name() + ">; keep one of them");
@@ -80,9 +87,13 @@ void Xml::only_attributes(const Element& element, const std::set<std::string>& a
     if (allowed.count(name) || name.rfind("xmlns", 0) == 0) continue;
     const std::vector<std::string> names(allowed.begin(), allowed.end());
     fail(element, "attribute " + name + " of <" + element.Name() + "> is not supported" +
-                      did_you_mean(name, names) + "; <" + element.Name() + "> takes " +
-                      joined(names));
+                      did_you_mean(name, names) + takes(element, names));
   }
+}
+
+void Xml::attributes_alone(const Element& element, const std::set<std::string>& allowed) const {
+  only_attributes(element, allowed);
+  children(element, {});
 }
 
 std::string Xml::attribute(const Element& element, const char* name) const {
@@ -110,11 +121,21 @@ Vector3d Xml::vector(const Element& element, const char* name, const Vector3d& f
 }
 
 std::string Xml::text(const Element& element) const {
-  if (const Element* inner = element.FirstChildElement()) {
-    fail(*inner, "<" + std::string(inner->Name()) + "> inside <" + element.Name() +
-                     ">, which takes plain text");
+  only_attributes(element, {});
+  const tinyxml2::XMLText* text = nullptr;
+  for (const auto* node = element.FirstChild(); node; node = node->NextSibling()) {
+    if (const Element* inner = node->ToElement()) {
+      fail(*inner, "<" + std::string(inner->Name()) + "> inside <" + element.Name() +
+                       ">, which takes plain text");
+    }
+    if (!node->ToText()) continue;
+    if (text) {
+      fail(element, "the text of <" + std::string(element.Name()) +
+                        "> is in pieces; move the comment out of it");
+    }
+    text = node->ToText();
   }
-  return element.GetText() ? trimmed(element.GetText()) : "";
+  return text ? trimmed(text->Value()) : "";
 }
 
 double Xml::number_in_text(const Element& element) const {

@@ -34,11 +34,13 @@ class Xml {
 
   /// Refuses an attribute outside `allowed`; namespace declarations are always allowed.
   void only_attributes(const Element& element, const std::set<std::string>& allowed) const;
+  /// Refuses the same, and anything within the element.
+  void attributes_alone(const Element& element, const std::set<std::string>& allowed) const;
   std::string attribute(const Element& element, const char* name) const;
   double number(const Element& element, const char* attribute) const;
   double number(const Element& element, const char* attribute, double fallback) const;
   Vector3d vector(const Element& element, const char* attribute, const Vector3d& fallback) const;
-  /// The element's text, trimmed.
+  /// The text, trimmed, of an element that may hold nothing else.
   std::string text(const Element& element) const;
   double number_in_text(const Element& element) const;
   Vector3d vector_in_text(const Element& element) const;
