@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from operator import attrgetter
 from pathlib import Path
 from typing import Callable, Mapping, Optional, Sequence, Union
@@ -20,8 +21,7 @@ from .warning import QuadcoreWarning
 Number = Union[float, str]
 Value = Union[float, str, bool, Sequence[str]]
 
-# A piece of a run between two looks at progress and Ctrl-C: a few hundredths of a second.
-_STEPS_PER_PIECE = 5000
+_PIECE = 0.02  # s, at least; what is flown between two looks at progress and Ctrl-C
 
 
 class Simulation(_core.Simulation):
@@ -135,12 +135,15 @@ class Simulation(_core.Simulation):
         total = math.floor(duration / self.dt + 1e-6)
         table = None if commands is None else as_commands(commands, self.command_width)
         flight = _core.Flight(self, table, log_every)
-        done = 0
+        done, steps = 0, 1
         try:
             while done < total:
-                piece = min(_STEPS_PER_PIECE, total - done)
-                flight.advance(piece)
-                done += piece
+                steps = min(steps, total - done)
+                started = time.perf_counter()
+                flight.advance(steps)
+                done += steps
+                if time.perf_counter() - started < _PIECE:
+                    steps *= 2
                 if progress is not None:
                     progress(done, total)
         except (_core.QuadcoreError, KeyboardInterrupt, MemoryError) as error:
