@@ -32,6 +32,10 @@ const std::vector<EngineEntry>& table() {
 
 }  // namespace
 
+void ForceField::refuse(const Kinematics&, Loads&) const {
+  throw Error("a force or torque is not a finite number");
+}
+
 std::vector<EngineInfo> engines() {
   std::vector<EngineInfo> infos;
   for (const EngineEntry& entry : table()) infos.push_back(entry.info);

@@ -149,7 +149,7 @@ TEST_CASE("a load counts once in the sum and in its term, about the centre of ma
   kinematics.rotors[0].p_FRcm_F = {1.1, 0.2, 0.3};
   Loads loads(1);
   Wrench terms[2];
-  loads.record_terms(terms, &kinematics);
+  loads.record_terms(terms, 2, &kinematics);
   loads.add_rotor_force(0, 0, {0, 0, 2});
   loads.add_frame_force(1, {0, 3, 0}, {0.1, 0.2, 1.3});
   loads.add_frame_torque(1, {0, 0, 5});
@@ -164,6 +164,16 @@ TEST_CASE("a load counts once in the sum and in its term, about the centre of ma
   // About the frame's origin: (0.1, 0.2, 1.3) x (0, 3, 0) and the torque.
   CHECK((loads.frame().torque_F - Vector3d(-3.9, 0, 5.3)).norm() < 1e-15);
   CHECK(loads.joint_torque(0) == 0.25);
+
+  const Vector3d one = Vector3d::Ones();
+  CHECK_THROWS_WITH(loads.add_rotor_force(0, 1, one),
+                    "a load on rotor 1, but rotors count from 0 and there are 1");
+  CHECK_THROWS_AS(loads.add_joint_torque(std::size_t(-1), 1), Error);
+  for (const std::size_t term : {std::size_t(2), std::size_t(-1)}) {
+    CHECK_THROWS_AS(loads.add_rotor_force(term, 0, one), Error);
+    CHECK_THROWS_AS(loads.add_frame_force(term, one, one), Error);
+    CHECK_THROWS_AS(loads.add_frame_torque(term, one), Error);
+  }
   loads.clear();
   CHECK(loads.frame().force_F.isZero(0));
   CHECK(loads.rotor_force_F(0).isZero(0));

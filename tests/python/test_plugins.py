@@ -123,6 +123,8 @@ def test_the_cpp_example_flies_as_its_python_twin(tmp_path):
     [
         ("older", "was built for plugin interface 0, this is 1; rebuild it against the installed"),
         ("nameless", "cannot describe itself: what am I?"),
+        ("undescribed", "has no descriptor; give it one and rebuild it"),
+        ("uncreatable", "has no create in its descriptor; give it one and rebuild it"),
     ],
 )
 def test_a_library_that_does_not_fit_is_refused_by_plugin_and_file(bad, faulty, variant, says):
@@ -137,6 +139,7 @@ def test_a_library_that_does_not_fit_is_refused_by_plugin_and_file(bad, faulty, 
         ("create_number", "threw something that is no std::exception"),
         ("null", "its create() returned no plugin"),
         ("tag", "the plugin's table has no tag 'speed'"),
+        ("state", "its state_size() is 1152921504606846976; ask for at most 1000000"),
     ],
 )
 def test_a_plugin_that_fails_to_be_made_is_named_and_others_fly_on(bad, faulty, fault, says):
@@ -172,6 +175,33 @@ def test_a_plugin_that_throws_in_flight_is_named_and_the_flight_can_be_taken_up_
     simulation.reset()
     simulation.step(9)
     assert repr(simulation.state) == repr(sound.state)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize(
+    ("fault", "says"),
+    [
+        ("nan", "a force or torque is not a finite number"),
+        ("infinity", "a force or torque is not a finite number"),
+        ("rotor_force", "a load on rotor 99, but rotors count from 0 and there are 1"),
+        ("rotor_torque", "a load on rotor 99, but rotors count from 0 and there are 1"),
+        ("term_force", "a load for wrench term 5, but terms count from 0 and the descriptor names 1"),
+        ("term_torque", "a load for wrench term 1, but terms count from 0 and the descriptor nam"),
+    ],
+)
+def test_a_plugin_whose_loads_make_no_sense_is_named_and_the_log_stays_whole(
+    bad, faulty, engine, fault, says
+):
+    simulation = bad(fault, 0.0095, engine=engine)
+    simulation.command([300])
+    with pytest.raises(qc.FlightError) as failed:
+        simulation.run(1)
+    assert f" s: plugin 'bad' ({faulty}/libfaulty_plugin.so): {says}" in str(failed.value)
+    log = failed.value.log
+    assert 10 <= len(log) <= 12
+    sound = bad("none", engine=engine)
+    sound.command([300])
+    assert np.array_equal(log.table, sound.run(log.time[-1] + 1e-4).table)
 
 
 @pytest.mark.parametrize("hook", ["sense", "forces"])

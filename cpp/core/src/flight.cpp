@@ -34,6 +34,7 @@ void Flight::log() {
   const auto append = [](std::vector<double>& to, const auto& vector) {
     to.insert(to.end(), vector.data(), vector.data() + vector.size());
   };
+  const std::vector<Wrench>& wrenches = simulation_.wrenches();  // may throw: no half a row then
   const VehicleState& state = simulation_.state();
   table_.push_back(state.time);
   append(table_, state.position);
@@ -41,7 +42,7 @@ void Flight::log() {
   append(table_, state.linear_velocity);
   append(table_, state.angular_velocity);
   append(table_, state.rotor_velocity);
-  for (const Wrench& wrench : simulation_.wrenches()) {
+  for (const Wrench& wrench : wrenches) {
     append(wrenches_, wrench.force_F);
     append(wrenches_, wrench.torque_F);
   }

@@ -1,6 +1,9 @@
 #include "quadcore/loads.hpp"
 
 #include <algorithm>
+#include <string>
+
+#include "quadcore/error.hpp"
 
 namespace quadcore {
 
@@ -18,9 +21,23 @@ bool Loads::all_finite() const {
   return sum.allFinite();
 }
 
+void Loads::refuse_rotor(std::size_t i) const {
+  throw Error("a load on rotor " + std::to_string(i) + ", but rotors count from 0 and there are " +
+              std::to_string(joint_torques_.size()));
+}
+
+Wrench& Loads::recorded(std::size_t term) {
+  if (term >= term_count_) {
+    throw Error("a load for wrench term " + std::to_string(term) +
+                ", but terms count from 0 and the descriptor names " + std::to_string(term_count_));
+  }
+  return terms_[term];
+}
+
 void Loads::record(std::size_t term, const Vector3d& f_F, const Vector3d& p_FQ_F) {
-  terms_[term].force_F += f_F;
-  terms_[term].torque_F += (p_FQ_F - kinematics_->p_FCcm_F).cross(f_F);
+  Wrench& wrench = recorded(term);
+  wrench.force_F += f_F;
+  wrench.torque_F += (p_FQ_F - kinematics_->p_FCcm_F).cross(f_F);
 }
 
 }  // namespace quadcore

@@ -77,11 +77,18 @@ PluginLibrary open_plugin(const PluginElement& element) {
                        std::to_string(*abi) + ", this is " + std::to_string(plugin_abi) +
                        "; rebuild it against the installed quadcore");
     }
+    const PluginDescriptor* descriptor = nullptr;
     try {
-      return {path, describe()};
+      descriptor = describe();
     } catch (...) {
       throw InputError(who + "in " + folder + " cannot describe itself: " + what_was_thrown());
     }
+    if (!descriptor || !descriptor->create) {
+      throw InputError(who + "in " + folder + " has no " +
+                       (descriptor ? "create in its descriptor" : "descriptor") +
+                       "; give it one and rebuild it");
+    }
+    return {path, descriptor};
   }
   throw InputError(who + "was not found in " + joined(folders) +
                    "; correct the filename or add its folder to QUADCORE_PLUGIN_PATH");

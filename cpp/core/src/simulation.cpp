@@ -14,6 +14,17 @@ constexpr const char* command_topic_name = "vel_cmd";
 constexpr double max_speed = 1e6;       // m/s
 constexpr double max_rate = 1e6;        // rad/s
 constexpr double max_distance = 1e9;    // m
+/// Numbers of state that a plugin may ask for.
+constexpr std::size_t max_plugin_state = 1000000;
+constexpr const char* no_longer_finite =
+    "the state is no longer finite; try a smaller step or weaker commands";
+
+bool is_finite(const Kinematics& k) {
+  double rates = 0;
+  for (const RotorKinematics& rotor : k.rotors) rates += rotor.rate;
+  return k.p_WF.allFinite() && k.q_WF.coeffs().allFinite() && k.v_WF_F.allFinite() &&
+         k.w_WF_F.allFinite() && std::isfinite(rates);
+}
 
 /// "PLUGIN.TAG" -> value becomes PLUGIN -> (TAG -> value); unknown plugins are refused.
 std::map<std::string, std::map<std::string, std::string>> by_plugin(
@@ -114,7 +125,12 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
       loaded.plugin = library.descriptor->create(
           {element.name, loaded.parameters, model, topics_, options.seed, warnings});
       if (!loaded.plugin) throw Error("its create() returned no plugin");
-      loaded.state_size = static_cast<Eigen::Index>(loaded.plugin->state_size());
+      const std::size_t numbers = loaded.plugin->state_size();
+      if (numbers > max_plugin_state) {
+        throw Error("its state_size() is " + std::to_string(numbers) + "; ask for at most " +
+                    std::to_string(max_plugin_state));
+      }
+      loaded.state_size = static_cast<Eigen::Index>(numbers);
       for (const std::string& warning : warnings) warnings_.push_back(who + ": " + warning);
     } catch (...) {
       throw InputError(who + " (" + library.path + "): " + what_was_thrown());
@@ -157,18 +173,32 @@ void Simulation::command(const double* speeds, std::size_t count) {
 void Simulation::evaluate(const Kinematics& kinematics, Loads& loads) const {
   Wrench* const terms = loads.terms();
   for (const LoadedPlugin& p : plugins_) {
-    if (terms) loads.record_terms(terms + p.term_begin, &kinematics);
+    if (terms) {
+      loads.record_terms(terms + p.term_begin, p.descriptor->wrenches.size(), &kinematics);
+    }
     active_ = &p;
     p.plugin->forces(kinematics, {plugin_state_.data() + p.state_begin, p.state_size}, loads);
   }
   active_ = nullptr;
-  if (terms) loads.record_terms(terms, &kinematics);
+}
+
+void Simulation::refuse(const Kinematics& kinematics, Loads& loads) const {
+  if (!is_finite(kinematics)) throw Error(no_longer_finite);
+  // Force laws are pure: asked again one by one, the same one spoils the sum.
+  loads.clear();
+  loads.record_terms(nullptr, 0, nullptr);
+  for (const LoadedPlugin& p : plugins_) {
+    active_ = &p;
+    p.plugin->forces(kinematics, {plugin_state_.data() + p.state_begin, p.state_size}, loads);
+    if (!loads.all_finite()) break;
+  }
+  ForceField::refuse(kinematics, loads);
 }
 
 const std::vector<Wrench>& Simulation::wrenches() {
   std::fill(wrenches_.begin(), wrenches_.end(), Wrench{});
   wrench_loads_.clear();
-  wrench_loads_.record_terms(wrenches_.data(), &engine_->kinematics());
+  wrench_loads_.record_terms(wrenches_.data(), wrenches_.size(), &engine_->kinematics());
   try {
     evaluate(engine_->kinematics(), wrench_loads_);
   } catch (...) {
@@ -230,20 +260,14 @@ void Simulation::show_state() {
 
 void Simulation::check_flight() const {
   const Kinematics& k = engine_->kinematics();
-  double rate_sum = 0;
   // Comparisons are written so that NaN fails them.
   bool sane = k.p_WF.squaredNorm() < max_distance * max_distance && k.q_WF.squaredNorm() < 2 &&
               k.v_WF_F.squaredNorm() < max_speed * max_speed &&
               k.w_WF_F.squaredNorm() < max_rate * max_rate;
-  for (const RotorKinematics& rotor : k.rotors) {
-    sane = sane && std::abs(rotor.rate) < max_rate;
-    rate_sum += rotor.rate;
-  }
+  for (const RotorKinematics& rotor : k.rotors) sane = sane && std::abs(rotor.rate) < max_rate;
   if (sane) return;
-  const bool finite = k.p_WF.allFinite() && k.q_WF.coeffs().allFinite() && k.v_WF_F.allFinite() &&
-                      k.w_WF_F.allFinite() && std::isfinite(rate_sum);
-  throw Error(std::string(finite ? "the motion diverged" : "the state is no longer finite") +
-              "; try a smaller step or weaker commands");
+  throw Error(is_finite(k) ? "the motion diverged; try a smaller step or weaker commands"
+                           : no_longer_finite);
 }
 
 void Simulation::set_state(const VehicleState& state) {

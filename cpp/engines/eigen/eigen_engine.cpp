@@ -107,6 +107,8 @@ void EigenEngine::differentiate(const VectorXd& state, const ForceField& forces)
     ++i;
   }
   tau_F -= body_.p_FCcm_F.cross(f_F) + w.cross(h_F);  // now about C
+  // Every load is in the sum tau_F.
+  if (!std::isfinite(tau_F.sum()) && !loads_.all_finite()) forces.refuse(k, loads_);
   const Vector3d angular_F = body_.inverse_reduced_I_F * tau_F;
   const Vector3d linear_W = k.R_WF * f_F * body_.inverse_mass + gravity_W_;
   for (const Gyrostat::Rotor& rotor : body_.rotors) *joint_rate++ -= rotor.axis_F.dot(angular_F);

@@ -120,8 +120,7 @@ void OdeEngine::step(double dt, const ForceField& forces) {
   start_ode();
   loads_.clear();
   forces.evaluate(kinematics_, loads_);
-  // ODE ends the process for less.
-  if (!loads_.all_finite()) throw Error("a force or torque is not a finite number");
+  if (!loads_.all_finite()) forces.refuse(kinematics_, loads_);  // ODE ends the process for less
   apply_loads();
   recipe_.add_gyroscopic(gyroscopic_bodies_);
   static const std::vector<Contact> none;

@@ -1,11 +1,14 @@
+#include <cmath>
 #include <quadcore/plugin.hpp>
 #include <stdexcept>
 
 namespace {
 
 using quadcore::TagSpec;
+using quadcore::Vector3d;
 
-/// Throws where its tag says: an exception, or, where the name ends in "_number", a number.
+/// Throws where its tag says: an exception, or, where the name ends in "_number", a number. Or does
+/// what a plugin must not.
 class FaultyPlugin final : public quadcore::Plugin {
  public:
   explicit FaultyPlugin(const quadcore::PluginSetup& setup)
@@ -14,7 +17,7 @@ class FaultyPlugin final : public quadcore::Plugin {
     if (fault_ == "tag") setup.parameters.number("speed");
   }
 
-  std::size_t state_size() const override { return 1; }
+  std::size_t state_size() const override { return fault_ == "state" ? std::size_t(1) << 60 : 1; }
   void update(const quadcore::Sample& sample, quadcore::PluginState state) const override {
     state[0] = sample.time;
     throw_in("update", sample.time);
@@ -23,8 +26,16 @@ class FaultyPlugin final : public quadcore::Plugin {
     throw_in("sense", sample.time);
   }
   void forces(const quadcore::Kinematics&, quadcore::ConstPluginState state,
-              quadcore::Loads&) const override {
+              quadcore::Loads& loads) const override {
     throw_in("forces", state[0]);
+    const Vector3d push(0, 1e-3, 0);
+    if (state[0] < after_) return;
+    if (fault_ == "nan") loads.add_frame_force(0, NAN * push, push);
+    if (fault_ == "infinity") loads.add_joint_torque(0, INFINITY);
+    if (fault_ == "rotor_force") loads.add_rotor_force(0, 99, push);
+    if (fault_ == "rotor_torque") loads.add_joint_torque(99, 1e-3);
+    if (fault_ == "term_force") loads.add_frame_force(5, push, push);
+    if (fault_ == "term_torque") loads.add_frame_torque(1, push);
   }
 
  private:
@@ -46,27 +57,33 @@ quadcore::PluginDescriptor describe() {
       "throws",
       {TagSpec::choice("fault",
                        {"none", "create", "create_number", "null", "tag", "update", "update_number",
-                        "forces", "forces_number", "sense", "sense_number"},
+                        "forces", "forces_number", "sense", "sense_number", "state", "nan",
+                        "infinity", "rotor_force", "rotor_torque", "term_force", "term_torque"},
                        "where"),
        TagSpec::number("after", "s", "0", "not before this time")},
-      {},
+      {"fault"},
+#ifdef WITHOUT_CREATE
+      nullptr,
+#else
       [](const quadcore::PluginSetup& setup) -> std::unique_ptr<quadcore::Plugin> {
         if (setup.parameters.choice("fault") == "null") return nullptr;
         return std::make_unique<FaultyPlugin>(setup);
       },
+#endif
   };
 }
 
 }  // namespace
 
-#ifdef OLDER_INTERFACE
+#if defined(OLDER_INTERFACE) || defined(WITHOUT_DESCRIPTOR)
 extern "C" {
 extern const int quadcore_plugin_abi;
+#ifdef OLDER_INTERFACE
 const int quadcore_plugin_abi = quadcore::plugin_abi - 1;
-const quadcore::PluginDescriptor* quadcore_plugin_descriptor() {
-  static const quadcore::PluginDescriptor descriptor = describe();
-  return &descriptor;
-}
+#else
+const int quadcore_plugin_abi = quadcore::plugin_abi;
+#endif
+const quadcore::PluginDescriptor* quadcore_plugin_descriptor() { return nullptr; }
 }
 #else
 QUADCORE_REGISTER_PLUGIN(describe)

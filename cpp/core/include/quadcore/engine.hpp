@@ -19,6 +19,8 @@ class ForceField {
   virtual ~ForceField() = default;
   /// Adds to `loads`, which the caller has cleared.
   virtual void evaluate(const Kinematics& kinematics, Loads& loads) const = 0;
+  /// Throws because what evaluate() added to `loads` is not finite.
+  [[noreturn]] virtual void refuse(const Kinematics& kinematics, Loads& loads) const;
 };
 
 /// Moves a vehicle. Gravity, joint damping and inertial effects are the engine's; everything else

@@ -16,7 +16,8 @@ struct Wrench {
 
 /// Collects what the force laws exert on the vehicle at one instant. All vectors are in the frame's
 /// axes F. `term` is the index of the plugin's wrench term that the load belongs to (see
-/// PluginDescriptor::wrenches); it matters only while a log records the terms one by one.
+/// PluginDescriptor::wrenches); it matters only while a log records the terms one by one. An index
+/// of a rotor or a term that is not there is an Error.
 class Loads {
  public:
   explicit Loads(std::size_t rotor_count)
@@ -31,15 +32,19 @@ class Loads {
   /// A torque on the frame.
   void add_frame_torque(std::size_t term, const Vector3d& tau_F) {
     frame_.torque_F += tau_F;
-    if (terms_) terms_[term].torque_F += tau_F;
+    if (terms_) recorded(term).torque_F += tau_F;
   }
   /// A force on rotor i at its centre of mass.
   void add_rotor_force(std::size_t term, std::size_t i, const Vector3d& f_F) {
+    check_rotor(i);
     rotor_forces_F_[i] += f_F;
     if (terms_) record(term, f_F, kinematics_->rotors[i].p_FRcm_F);
   }
   /// A torque of joint i on its rotor about the joint axis; its reaction acts on the parent.
-  void add_joint_torque(std::size_t i, double torque) { joint_torques_[i] += torque; }
+  void add_joint_torque(std::size_t i, double torque) {
+    check_rotor(i);
+    joint_torques_[i] += torque;
+  }
 
   /// Total on the frame; the torque is about the frame's origin.
   const Wrench& frame() const { return frame_; }
@@ -49,20 +54,27 @@ class Loads {
   void clear();
   bool all_finite() const;
   /// While set, each load is also added to terms[term], about the vehicle's centre of mass.
-  void record_terms(Wrench* terms, const Kinematics* kinematics) {
+  void record_terms(Wrench* terms, std::size_t count, const Kinematics* kinematics) {
     terms_ = terms;
+    term_count_ = count;
     kinematics_ = kinematics;
   }
   /// The terms of the plugin that is evaluated next; null while nothing is recorded.
   Wrench* terms() const { return terms_; }
 
  private:
+  void check_rotor(std::size_t i) const {
+    if (i >= joint_torques_.size()) refuse_rotor(i);
+  }
+  [[noreturn]] void refuse_rotor(std::size_t i) const;
+  Wrench& recorded(std::size_t term);
   void record(std::size_t term, const Vector3d& f_F, const Vector3d& p_FQ_F);
 
   Wrench frame_;
   std::vector<Vector3d> rotor_forces_F_;
   std::vector<double> joint_torques_;
   Wrench* terms_ = nullptr;
+  std::size_t term_count_ = 0;
   const Kinematics* kinematics_ = nullptr;
 };
 

@@ -89,6 +89,8 @@ class Simulation : private ForceField {
 
  private:
   void evaluate(const Kinematics& kinematics, Loads& loads) const override;
+  /// Blames the first plugin that makes the sum infinite or NaN.
+  [[noreturn]] void refuse(const Kinematics& kinematics, Loads& loads) const override;
   void load_plugins(const Model& model, const SimulationOptions& options);
   void check_flight() const;
   void show_state();  ///< brings state_ up to date
