@@ -113,12 +113,43 @@ TEST_CASE("rounding keeps six significant digits, and six decimals of a pose fir
   m.links[0].inertial.mass = 1234.5678;
   m.links[0].inertial.pose.xyz = {123.4567891, 1.23456789e-5, -4e-7};
   m.joints[0].damping = 1.23456789e-9;
-  m.joints[0].axis = {0.6, 0, 0.8000000001};
+  m.joints[0].axis_as_written = {1.2, 0, 1.6000000001};
   const Model r = rounded_like_sdf(m);
   CHECK(r.links[0].inertial.mass == 1234.57);
   CHECK(r.links[0].inertial.pose.xyz == Vector3d(123.457, 1.2e-5, 0));
   CHECK(r.joints[0].damping == 1.23457e-9);
-  CHECK(r.joints[0].axis == Vector3d(0.6, 0, 0.8).normalized());
+  CHECK(r.joints[0].axis == Vector3d(1.2, 0, 1.6).normalized());
+}
+
+TEST_CASE("the axis is rounded as it is written and only then made a unit vector") {
+  const auto axis = [](const std::string& engine, const std::string& written) -> Vector3d {
+    std::string turn = joint("turn", "continuous", "frame", "rotor");
+    turn.replace(turn.find("0 0 1"), 5, written);
+    const Model m = model(link("frame", 1, round_body) + link("rotor", 0.1, round_body) + turn);
+    return make_engine(engine, m, World{})->model().joints[0].axis;
+  };
+  const Vector3d exact = Vector3d(0, 0.1, 1).normalized();
+  CHECK(axis("gazebo11", "0 0.1 1") == exact);
+  CHECK(axis("gazebo11", "0 0.10000004 0.99999996") == exact);
+  CHECK(axis("gazebo11", "0 0.0995037 0.995037") == Vector3d(0, 0.099504, 0.995037).normalized());
+  CHECK((axis("gazebo11", "0 0.099504 0.995037") - exact).norm() > 1e-7);
+  CHECK(axis("ode", "0 0.1 1") == exact);
+  CHECK(axis("ode", "0 0.10000004 0.99999996") != exact);
+  const std::string message = refusal([&] { axis("gazebo11", "0 0 4e-7"); });
+  CHECK(message.rfind("test.urdf:4: joint 'turn': rounded to 6 decimals, as Gazebo does,", 0) == 0);
+  CHECK(axis("ode", "0 0 4e-7") == Vector3d::UnitZ());
+}
+
+TEST_CASE("an inertia that Gazebo's rounding spoils is refused by the engine that rounds it") {
+  // Principal moments 1e-10, 0.01, 0.01, turned by 0.6 rad about z.
+  const Model m = model(link("frame", 1.2,
+                             "ixx=\"0.0031882112957345205\" ixy=\"-0.0046601953832341786\" "
+                             "ixz=\"0\" iyy=\"0.006811788804265481\" iyz=\"0\" izz=\"0.01\""));
+  const std::string message = refusal([&] { make_engine("gazebo11", m, World{}); });
+  CHECK(message.rfind("test.urdf:2: link 'frame': rounded to 6 digits, as Gazebo does,", 0) == 0);
+  CHECK(contains(message, "use the engine ode"));
+  make_engine("ode", m, World{});
+  make_engine("eigen", m, World{});
 }
 
 TEST_CASE("a massless link on a fixed joint is carried along") {

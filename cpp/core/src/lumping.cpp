@@ -99,8 +99,7 @@ void check_body(const Link& link, bool has_inertial) {
   if (!(link.inertial.mass > 0)) {
     throw InputError(who + "no mass; write <mass value=\"...\"/> in kg, > 0");
   }
-  const Vector3d principal = link.inertial.principal_moments();
-  if (!(principal[0] > 1e-9 * principal[2])) {
+  if (!link.inertial.is_positive()) {
     throw InputError(who + "a zero or negative moment of inertia; write an inertia in kg m^2, all "
                            "principal moments > 0");
   }
@@ -173,7 +172,7 @@ Model lump(const UrdfTree& tree) {
     } else {
       model.joints.push_back({joint.name, parent.body,
                               joint.parent == model.links[parent.body].name ? joint.pose : pose,
-                              joint.axis.normalized(), joint.damping, joint.where});
+                              joint.axis.normalized(), joint.axis, joint.damping, joint.where});
       add_body(link_named(joint.child));
     }
   }

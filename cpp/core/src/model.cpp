@@ -14,6 +14,11 @@ Vector3d Inertial::principal_moments() const {
   return Eigen::SelfAdjointEigenSolver<Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
+bool Inertial::is_positive() const {
+  const Vector3d principal = principal_moments();
+  return principal[0] > 1e-9 * principal[2];
+}
+
 std::vector<std::string> Model::joint_names() const {
   std::vector<std::string> names;
   for (const Joint& joint : joints) names.push_back(joint.name);

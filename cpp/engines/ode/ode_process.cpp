@@ -20,6 +20,9 @@ void throw_error(int, const char* format, std::va_list values) {
               "); try a smaller step or weaker commands");
 }
 
+/// What ODE notes on standard error before it gives up; the Error says it.
+void say_nothing(int, const char*, std::va_list) {}
+
 }  // namespace
 
 void start_ode() {
@@ -28,6 +31,7 @@ void start_ode() {
     dInitODE2(0);
     dSetErrorHandler(&throw_error);
     dSetDebugHandler(&throw_error);
+    dSetMessageHandler(&say_nothing);
   });
   thread_local const int allocated = dAllocateODEDataForThread(dAllocateMaskAll);
   if (!allocated) throw Error("ODE could not be initialised in this thread");

@@ -5,6 +5,8 @@
 #include <locale>
 #include <sstream>
 
+#include "quadcore/error.hpp"
+
 namespace quadcore {
 namespace {
 
@@ -36,6 +38,12 @@ Model rounded_like_sdf(Model model) {
     link.inertial.mass = scalar(link.inertial.mass);
     link.inertial.pose = pose(link.inertial.pose);
     link.inertial.inertia = link.inertial.inertia.unaryExpr(&scalar);
+    if (!link.inertial.is_positive()) {
+      throw InputError(link.where + ": link '" + link.name +
+                       "': rounded to 6 digits, as Gazebo does, its inertia has a zero or negative "
+                       "principal moment; write one whose principal moments differ less, or use "
+                       "the engine ode");
+    }
     for (Collision& collision : link.collisions) {
       collision.pose = pose(collision.pose);
       collision.size = collision.size.unaryExpr(&scalar);
@@ -43,7 +51,12 @@ Model rounded_like_sdf(Model model) {
   }
   for (Joint& joint : model.joints) {
     joint.pose = pose(joint.pose);
-    joint.axis = components(joint.axis).normalized();
+    joint.axis = components(joint.axis_as_written).normalized();
+    if (joint.axis.isZero(0)) {
+      throw InputError(joint.where + ": joint '" + joint.name +
+                       "': rounded to 6 decimals, as Gazebo does, its axis is zero; write it with "
+                       "length 1");
+    }
     joint.damping = scalar(joint.damping);
   }
   return model;

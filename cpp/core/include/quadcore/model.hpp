@@ -21,6 +21,8 @@ struct Inertial {
   Matrix3d inertia_in_link_axes() const;
   /// Principal moments [kg m^2], ascending.
   Vector3d principal_moments() const;
+  /// Whether a body can turn with this inertia: all principal moments > 0, and not by rounding only.
+  bool is_positive() const;
 };
 
 enum class ShapeKind { box, cylinder, sphere, mesh };
@@ -48,6 +50,7 @@ struct Joint {
   std::size_t parent = 0;               ///< index of the parent link
   Pose pose;                            ///< of the child link in the parent link at angle zero
   Vector3d axis = Vector3d::UnitX();    ///< unit, in the child link's axes
+  Vector3d axis_as_written = axis;      ///< of any length; Gazebo rounds this one
   double damping = 0;                   ///< N m s/rad
   std::string where;
 };
