@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from test_gazebo_recordings import DATA, FOLDERS, distances, name_of
@@ -61,6 +63,34 @@ def test_take_off_apex_and_landing_come_when_they_came_in_gazebo():
     landed = apex + np.argmax(z[apex:] < CLOSE)
     assert t[landed] == pytest.approx(6.674, abs=1e-9)
     assert z[-200:] == pytest.approx(RESTING_HEIGHT, abs=2e-5)
+
+
+@pytest.mark.parametrize("engine", ["gazebo11", "ode"])
+@pytest.mark.parametrize(
+    # Tumbling over the ground multiplies the rounding of the flight before; another order of the
+    # rows would be 1e-9 and 1e-1 apart.
+    ("spawn", "apart"),
+    [((0, 0, 0.1, 0, 0, 0), 1e-13), ((0, 0, 0.3, 0.3, -0.2, 1), 1e-8)],
+)
+def test_the_order_of_links_and_joints_in_the_file_does_not_matter(engine, spawn, apart, tmp_path):
+    text = (DROP / "model.urdf").read_text()
+    rotors = re.findall(r'  <link name="propeller.*?</joint>\n', text, flags=re.DOTALL)
+    order = [2, 0, 3, 1]
+    start = text.index(rotors[0])
+    rest = text[start + len("".join(rotors)) :]
+    model = tmp_path / "permuted.urdf"
+    model.write_text(text[:start] + "".join(rotors[i] for i in order) + rest)
+    speeds = np.array([40, -50, 45, -30])
+
+    def flown_with(path, columns):
+        sim = qc.Simulation(path, engine=engine, world=DROP / "case.world", spawn=spawn)
+        assert sim.rotor_names == [f"rotor{1 + i}" for i in columns]
+        log = sim.run(1.0, commands=[[0, *speeds]])
+        rates = log.rotor_velocity[:, np.argsort(columns)]
+        return np.hstack([log.position, log.orientation, log.linear_velocity, rates])
+
+    permuted, original = flown_with(model, order), flown_with(DROP / "model.urdf", [0, 1, 2, 3])
+    assert np.abs(permuted - original).max() < apart
 
 
 @pytest.mark.parametrize("engine", ["gazebo11", "ode"])

@@ -105,6 +105,26 @@ void check_body(const Link& link, bool has_inertial) {
   }
 }
 
+/// Walks the links as Gazebo does, which keeps the joints below a link sorted by name.
+std::vector<std::size_t> sdf_order(const UrdfTree& tree, const std::string& root,
+                                   const std::map<std::string, std::size_t>& body_of_link) {
+  std::map<std::string, std::map<std::string, const UrdfJoint*>> below;
+  for (const UrdfJoint& joint : tree.joints) below[joint.parent][joint.name] = &joint;
+  std::vector<std::size_t> order = {body_of_link.at(root)};
+  std::vector<const UrdfJoint*> ahead;
+  const auto look_below = [&](const std::string& link) {
+    const auto& joints = below[link];
+    for (auto at = joints.rbegin(); at != joints.rend(); ++at) ahead.push_back(at->second);
+  };
+  for (look_below(root); !ahead.empty();) {
+    const UrdfJoint& joint = *ahead.back();
+    ahead.pop_back();
+    if (!joint.fixed) order.push_back(body_of_link.at(joint.child));
+    look_below(joint.child);
+  }
+  return order;
+}
+
 /// Which body carries each link, and where the link sits in it.
 struct Carried {
   std::size_t body;
@@ -177,6 +197,7 @@ Model lump(const UrdfTree& tree) {
     }
   }
   for (std::size_t i = 0; i < model.links.size(); ++i) check_body(model.links[i], has_inertial[i]);
+  model.sdf_order = sdf_order(tree, topology.root, model.body_of_link);
   return model;
 }
 

@@ -15,8 +15,12 @@ constexpr double max_contact_correction = 0.01;
 }  // namespace
 
 ConstraintRows::ConstraintRows(const std::vector<dBodyID>& bodies, std::vector<Hinge> hinges,
-                               double erp, double cfm)
-    : bodies_(bodies), hinges_(std::move(hinges)), erp_(erp), cfm_(cfm) {
+                               const std::vector<std::size_t>& order, double erp, double cfm)
+    : bodies_(bodies),
+      hinges_(std::move(hinges)),
+      newest_first_(order.rbegin(), order.rend()),
+      erp_(erp),
+      cfm_(cfm) {
   stack_.reserve(bodies_.size());
 }
 
@@ -25,7 +29,7 @@ const std::vector<ConstraintRow>& ConstraintRows::build(const std::vector<Contac
   rows_.clear();
   body_tagged_.assign(bodies_.size(), 0);
   hinge_tagged_.assign(hinges_.size(), 0);
-  for (std::size_t newest = bodies_.size(); newest-- > 0;) {
+  for (const std::size_t newest : newest_first_) {
     if (body_tagged_[newest]) continue;
     body_tagged_[newest] = 1;
     stack_.push_back(newest);
@@ -43,7 +47,9 @@ void ConstraintRows::visit(std::size_t body, const std::vector<Contact>& contact
   for (auto contact = contacts.rbegin(); contact != contacts.rend(); ++contact) {
     if (contact->body == body) add_contact(*contact, surface, dt);
   }
-  for (std::size_t h = hinges_.size(); h-- > 0;) {
+  for (const std::size_t child : newest_first_) {
+    if (child == 0) continue;  // the frame hangs on no hinge
+    const std::size_t h = child - 1;
     const Hinge& hinge = hinges_[h];
     if (hinge_tagged_[h] || (hinge.child != body && hinge.parent != body)) continue;
     hinge_tagged_[h] = 1;

@@ -48,11 +48,13 @@ struct ConstraintRow {
 constexpr int rows_per_hinge = 5;
 
 /// Writes the rows of hinges and contacts in the order in which Gazebo 11's ODE does: it walks an
-/// island from its newest body and a body's joints from the newest, contacts before hinges.
+/// island from its newest body and a body's joints from the newest, contacts before hinges. Bodies and
+/// hinges are as old as their place in Gazebo's SDF says.
 class ConstraintRows {
  public:
-  ConstraintRows(const std::vector<dBodyID>& bodies, std::vector<Hinge> hinges, double erp,
-                 double cfm);
+  /// hinges[i] carries bodies[i + 1]; `order` holds the indices of the bodies, the oldest first.
+  ConstraintRows(const std::vector<dBodyID>& bodies, std::vector<Hinge> hinges,
+                 const std::vector<std::size_t>& order, double erp, double cfm);
 
   const std::vector<ConstraintRow>& build(const std::vector<Contact>& contacts,
                                           const Surface& surface, double dt);
@@ -66,6 +68,7 @@ class ConstraintRows {
 
   const std::vector<dBodyID>& bodies_;
   std::vector<Hinge> hinges_;
+  std::vector<std::size_t> newest_first_;  ///< indices of the bodies
   double erp_, cfm_;
   std::vector<ConstraintRow> rows_;
   std::vector<char> body_tagged_, hinge_tagged_;

@@ -17,10 +17,10 @@ constexpr double contact_smoothing = 0.01;    ///< of contact multipliers, where
 }  // namespace
 
 GazeboStep::GazeboStep(const std::vector<dBodyID>& bodies, std::vector<Hinge> hinges,
-                       const Options& options)
+                       const std::vector<std::size_t>& order, const Options& options)
     : warm_start(hinges.size()),
       ode_bodies_(bodies),
-      constraints_(bodies, std::move(hinges), options.erp, options.cfm),
+      constraints_(bodies, std::move(hinges), order, options.erp, options.cfm),
       options_(options),
       bodies_(bodies.size()) {}
 

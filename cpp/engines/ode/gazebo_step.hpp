@@ -31,7 +31,9 @@ class GazeboStep {
     Multipliers pose{}, velocity{};
   };
 
-  GazeboStep(const std::vector<dBodyID>& bodies, std::vector<Hinge> hinges, const Options& options);
+  /// Bodies, hinges and their order as ConstraintRows takes them.
+  GazeboStep(const std::vector<dBodyID>& bodies, std::vector<Hinge> hinges,
+             const std::vector<std::size_t>& order, const Options& options);
 
   /// Advances the bodies by dt under the forces that have been added to them.
   void step(const std::vector<Contact>& contacts, const Surface& surface, double dt);

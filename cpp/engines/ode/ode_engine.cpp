@@ -37,7 +37,7 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
                                               world.solver_sor != default_sor);
   create_bodies();
   gazebo_step_ = std::make_unique<GazeboStep>(
-      bodies_, create_hinges(),
+      bodies_, create_hinges(), model_.sdf_order,
       GazeboStep::Options{world.solver_iterations, world.solver_sor, world.erp, world.cfm,
                           world.gravity_W});
   if (world.ground_plane) {

@@ -80,6 +80,8 @@ struct Model {
   std::vector<std::string> warnings;
   /// Every link name of the URDF, lumped ones included, and the body that carries it.
   std::map<std::string, std::size_t> body_of_link;
+  /// Indices of the links in the order of Gazebo's SDF: depth first, joints by name.
+  std::vector<std::size_t> sdf_order;
 
   std::vector<std::string> joint_names() const;
 };
