@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 
 #include <atomic>
+#include <chrono>
 
 #include "bindings.hpp"
 #include "quadcore/error.hpp"
@@ -13,8 +14,8 @@
 namespace quadcore::bindings {
 namespace {
 
-/// Signals are looked at this often during a long step().
-constexpr std::int64_t steps_between_signals = 10000;
+/// Signals are looked at about this often during a long step().
+constexpr std::chrono::milliseconds between_signals(20);
 
 /// A simulation that refuses to be used by two Python threads at once: the GIL does not guard it
 /// while it steps.
@@ -75,15 +76,21 @@ void command(Guarded& guarded, const py::object& speeds) {
 }
 
 void step(Guarded& guarded, std::int64_t n) {
+  using Clock = std::chrono::steady_clock;
   const Lock lock(guarded);
   // A single step is over sooner than the GIL is handed over and back.
   if (n == 1) return guarded.simulation.step();
   do {
     {
       const py::gil_scoped_release release;
-      guarded.simulation.step(std::min(n, steps_between_signals));
+      const Clock::time_point begin = Clock::now();
+      std::int64_t piece = 1;  // grows, because a step may take a microsecond or a second
+      do {
+        piece = std::min(n, 2 * piece);
+        guarded.simulation.step(piece);
+        n -= piece;
+      } while (n > 0 && Clock::now() - begin < between_signals);
     }
-    n -= steps_between_signals;
     if (n > 0 && PyErr_CheckSignals() != 0) throw py::error_already_set();
   } while (n > 0);
 }
@@ -258,12 +265,14 @@ void bind_simulation(py::module_& m) {
       .def("advance", &advance, py::arg("n"))
       .def_property_readonly("table",
                              [](const BoundFlight& b) {
+                               const Lock lock(*b.guarded);
                                const py::ssize_t rows = b.flight.rows();
                                const auto& data = b.flight.table();
                                return copied(data,
                                              {rows, static_cast<py::ssize_t>(data.size()) / rows});
                              })
       .def_property_readonly("wrenches", [](const BoundFlight& b) {
+        const Lock lock(*b.guarded);
         const auto& terms = b.guarded->simulation.wrench_terms();
         return copied(b.flight.wrenches(),
                       {b.flight.rows(), static_cast<py::ssize_t>(terms.size()), 6});

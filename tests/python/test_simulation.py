@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import signal
+import threading
+import time
+
 import numpy as np
 import pytest
 from flights import BUSY, ENGINES, HOVER, MANOEUVRE, bits, hold_height, quadrotor
+from vehicles import Rotor, vehicle
 
 import quadcore as qc
+from quadcore import _core
 
 
 def test_a_hover_holds_height_by_its_odometry():
@@ -70,6 +76,14 @@ def test_live_views_outlive_the_simulation():
     del simulation
     quadrotor().step(1000)
     assert np.array_equal(position, expected)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_snapshot_goes_on_in_another_simulation_of_its_kind(engine):
+    simulation, other = quadrotor(engine, parameters=BUSY), quadrotor(engine, parameters=BUSY)
+    hold_height(simulation, 50)
+    other.restore(simulation.snapshot())
+    assert hold_height(other, 50) == hold_height(simulation, 50)
 
 
 def test_no_step_changes_nothing():
@@ -237,6 +251,43 @@ def test_a_failed_flight_keeps_its_log_and_can_be_taken_up_again(engine):
     simulation.command(HOVER)
     simulation.step(100)
     assert simulation.time == pytest.approx(0.1)
+
+
+@pytest.fixture
+def alarm():
+    """A function that makes this process receive an interrupt after some seconds."""
+    before = signal.signal(signal.SIGALRM, signal.default_int_handler)
+    yield lambda seconds: signal.setitimer(signal.ITIMER_REAL, seconds)
+    signal.setitimer(signal.ITIMER_REAL, 0)
+    signal.signal(signal.SIGALRM, before)
+
+
+@pytest.mark.parametrize("rotors", [4, 60])
+@pytest.mark.parametrize("call", ["step", "run"])
+def test_an_interrupt_is_heard_soon_however_slow_a_step(rotors, call, hangar, alarm):
+    simulation = hangar(vehicle([Rotor((0.1 * i, 0, 0)) for i in range(rotors)]))
+    begin = time.monotonic()
+    alarm(0.1)
+    with pytest.raises(KeyboardInterrupt) as interrupted:
+        simulation.step(10**9) if call == "step" else simulation.run(10**6)
+    assert time.monotonic() - begin < 1
+    if call == "run":
+        assert len(interrupted.value.log) > 1
+    simulation.step(1)
+
+
+def test_a_log_cannot_be_read_while_another_thread_writes_it():
+    simulation = quadrotor("eigen")
+    flight = _core.Flight(simulation, None, 1)
+    flying = threading.Thread(target=flight.advance, args=(200000,))
+    flying.start()
+    while simulation.time == 0:
+        pass
+    for name in ("table", "wrenches"):
+        with pytest.raises(qc.InputError, match="is being used by another thread"):
+            getattr(flight, name)
+    flying.join()
+    assert len(flight.table) == len(flight.wrenches) == 200001
 
 
 @pytest.mark.parametrize("engine", ENGINES)
