@@ -176,10 +176,12 @@ def test_parameters_that_are_wrong(parameters, says):
 @pytest.mark.parametrize(
     ("option", "value", "says"),
     [
-        ("dt", 0, "dt is 0.000000; write a step in s, > 0"),
-        ("dt", -0.001, "write a step in s, > 0"),
-        ("dt", math.nan, "dt is nan; write a step in s, > 0"),
-        ("dt", math.inf, "dt is inf; write a step in s, > 0"),
+        ("dt", 0, "dt is 0; write a step in s, from 1e-09 up"),
+        ("dt", -0.001, "dt is -0.001; write a step in s, from 1e-09 up"),
+        ("dt", 5e-324, "dt is 4.94066e-324; write a step in s, from 1e-09 up"),
+        ("dt", 0.99e-9, "dt is 9.9e-10; write a step in s, from 1e-09 up"),
+        ("dt", math.nan, "dt is nan; write a step in s, from 1e-09 up"),
+        ("dt", math.inf, "dt is inf; write a step in s, from 1e-09 up"),
         ("spawn", (0, 0), "spawn is (0, 0); give x, y, z[, roll, pitch, yaw] in m and rad"),
         ("spawn", (0, 0, 0, 0), "give x, y, z[, roll, pitch, yaw] in m and rad"),
         ("spawn", (0, 0, "up"), "give x, y, z[, roll, pitch, yaw] in m and rad"),
@@ -194,6 +196,21 @@ def test_parameters_that_are_wrong(parameters, says):
 )
 def test_arguments_that_are_wrong(option, value, says):
     assert says in refusal(qc.Simulation, "toy.urdf", **{option: value})
+
+
+def test_a_worlds_step_too_short_for_a_flight_to_end(toy):
+    world = (toy / "toy.world").read_text()
+    (toy / "toy.world").write_text(world.replace(">0.001<", ">1e-200<"))
+    message = refusal(qc.Simulation, "toy.urdf", world="toy.world")
+    assert message == "the world's <max_step_size> is 1e-200; write a step in s, from 1e-09 up"
+    assert qc.Simulation("toy.urdf", world="toy.world", dt=1e-9).dt == 1e-9
+
+
+def like_it(path, mass="1", rotor="rotor"):
+    """A snapshot of a vehicle with as many bodies, plugins and topics."""
+    text = Path(path).read_text().replace('mass value="1"', f'mass value="{mass}"')
+    Path("like_it.urdf").write_text(text.replace('name="rotor"', f'name="{rotor}"'))
+    return qc.Simulation("like_it.urdf").snapshot()
 
 
 def state_of(simulation, **changed):
@@ -226,6 +243,8 @@ def state_of(simulation, **changed):
         (lambda s: s.set_state(state_of(s, rotor_velocity=[1, 2])), "this vehicle has 1 rotors"),
         (lambda s: s.set_state(state_of(s, time=math.inf)), "not a finite number"),
         (lambda s: s.restore(qc.Simulation("quadrotor").snapshot()), "was taken from another"),
+        (lambda s: s.restore(like_it("toy.urdf", mass="1.01")), "was taken from another"),
+        (lambda s: s.restore(like_it("toy.urdf", rotor="spinner")), "was taken from another"),
         (lambda s: s.topic("odometry"), "topic 'odometry' is not declared by any plugin"),
     ],
 )

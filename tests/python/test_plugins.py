@@ -185,7 +185,7 @@ def test_a_plugin_that_throws_in_flight_is_named_and_the_flight_can_be_taken_up_
         ("infinity", "a force or torque is not a finite number"),
         ("rotor_force", "a load on rotor 99, but rotors count from 0 and there are 1"),
         ("rotor_torque", "a load on rotor 99, but rotors count from 0 and there are 1"),
-        ("term_force", "a load for wrench term 5, but terms count from 0 and the descriptor names 1"),
+        ("term_force", "a load for wrench term 5, but terms count from 0 and the descriptor names"),
         ("term_torque", "a load for wrench term 1, but terms count from 0 and the descriptor nam"),
     ],
 )

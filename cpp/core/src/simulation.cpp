@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "quadcore/error.hpp"
 #include "quadcore/text.hpp"
@@ -10,6 +11,8 @@ namespace quadcore {
 namespace {
 
 constexpr const char* command_topic_name = "vel_cmd";
+/// Below this no flight would end.
+constexpr double min_dt = 1e-9;         // s
 /// Beyond these no flight is meant; the numbers only say "diverged" before they overflow.
 constexpr double max_speed = 1e6;       // m/s
 constexpr double max_rate = 1e6;        // rad/s
@@ -77,8 +80,11 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
       dt_(options.dt.value_or(world.max_step_size)),
       warnings_(model.warnings),
       wrench_loads_(model.joints.size()) {
-  if (!(dt_ > 0 && std::isfinite(dt_))) {
-    throw InputError("dt is " + std::to_string(dt_) + "; write a step in s, > 0");
+  if (!(dt_ >= min_dt && std::isfinite(dt_))) {
+    std::ostringstream what;
+    what << (options.dt ? "dt" : "the world's <max_step_size>") << " is " << dt_
+         << "; write a step in s, from " << min_dt << " up";
+    throw InputError(what.str());
   }
   if (!options.spawn.xyz.allFinite() || !options.spawn.rpy.allFinite()) {
     throw InputError("spawn holds a number that is not finite; write x,y,z[,roll,pitch,yaw]");
@@ -87,6 +93,7 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
   check_shared_tags(plugins_);
   engine_ = make_engine(options.engine, model, world);
   command_topic_ = topics_.find(command_topic_name);
+  kind_ = describe_kind();
 
   const auto n = static_cast<Eigen::Index>(model.joints.size());
   state_.rotor_velocity = VectorXd::Zero(n);
@@ -297,15 +304,26 @@ void Simulation::set_state(const VehicleState& state) {
   }
 }
 
+/// What a snapshot and the simulation that it is restored to must have in common.
+std::string Simulation::describe_kind() const {
+  std::ostringstream kind;
+  kind.precision(17);
+  kind << engine_name_ << ' ' << dt_ << ' ' << model().name;
+  for (const Link& link : model().links) kind << '|' << link.name << ' ' << link.inertial.mass;
+  for (const Joint& joint : model().joints) kind << '|' << joint.name;
+  for (const LoadedPlugin& p : plugins_) kind << '|' << p.name << ' ' << p.path << ' ' << p.state_size;
+  for (std::size_t i = 0; i < topics_.size(); ++i) {
+    kind << '|' << topics_[i].name << ' ' << joined(topics_[i].fields);
+  }
+  return kind.str();
+}
+
 Snapshot Simulation::snapshot() const {
-  return {engine_name_, dt_,           start_time_, steps_,
-          engine_->save(), plugin_state_, topics_,     failure_};
+  return {kind_, start_time_, steps_, engine_->save(), plugin_state_, topics_, failure_};
 }
 
 void Simulation::restore(const Snapshot& snapshot) {
-  if (snapshot.engine_name != engine_name_ || snapshot.dt != dt_ ||
-      snapshot.plugin_state.size() != plugin_state_.size() ||
-      snapshot.topics.size() != topics_.size()) {
+  if (snapshot.kind != kind_) {
     throw InputError(
         "snapshot: was taken from another engine, step or model; restore one of this simulation");
   }

@@ -32,8 +32,7 @@ struct LoadedPlugin {
 
 /// Everything that the future of a simulation depends on.
 struct Snapshot {
-  std::string engine_name;
-  double dt = 0;
+  std::string kind;  ///< of simulation: engine, step, bodies, plugins, topics
   double start_time = 0;
   std::int64_t steps = 0;
   std::vector<double> engine;
@@ -44,7 +43,7 @@ struct Snapshot {
 
 struct SimulationOptions {
   std::string engine = "gazebo11";
-  std::optional<double> dt = {};  ///< s; the world's max_step_size if absent
+  std::optional<double> dt = {};  ///< s, from 1e-9; the world's max_step_size if absent
   std::uint64_t seed = 0;
   /// "PLUGIN.TAG" -> value, wins over the URDF.
   std::map<std::string, std::string> parameters = {};
@@ -77,6 +76,7 @@ class Simulation : private ForceField {
   /// Throws InputError on a state that is not finite or whose sizes differ.
   void set_state(const VehicleState& state);
   Snapshot snapshot() const;
+  /// Throws InputError if the snapshot's simulation had another engine, step, bodies or plugins.
   void restore(const Snapshot& snapshot);
   /// Back to the moment of construction, bit for bit.
   void reset() { restore(initial_); }
@@ -93,6 +93,7 @@ class Simulation : private ForceField {
   [[noreturn]] void refuse(const Kinematics& kinematics, Loads& loads) const override;
   void load_plugins(const Model& model, const SimulationOptions& options);
   void check_flight() const;
+  std::string describe_kind() const;
   void show_state();  ///< brings state_ up to date
   PluginState state_of(const LoadedPlugin& p) {
     return {plugin_state_.data() + p.state_begin, p.state_size};
@@ -104,6 +105,7 @@ class Simulation : private ForceField {
 
   std::string engine_name_;
   double dt_;
+  std::string kind_;  ///< of its snapshots
   std::vector<std::string> warnings_;
   Topics topics_;
   std::vector<LoadedPlugin> plugins_;
