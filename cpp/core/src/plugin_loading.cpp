@@ -1,0 +1,107 @@
+#include <algorithm>
+
+#include "quadcore/error.hpp"
+#include "quadcore/simulation.hpp"
+#include "quadcore/text.hpp"
+
+namespace quadcore {
+namespace {
+
+/// Numbers of state that a plugin may ask for.
+constexpr std::size_t max_plugin_state = 1000000;
+
+/// "PLUGIN.TAG" -> value becomes PLUGIN -> (TAG -> value); unknown plugins are refused.
+std::map<std::string, std::map<std::string, std::string>> by_plugin(
+    const std::map<std::string, std::string>& parameters, const Model& model) {
+  std::vector<std::string> names;
+  for (const PluginElement& element : model.plugins) names.push_back(element.name);
+  std::map<std::string, std::map<std::string, std::string>> result;
+  for (const auto& [key, value] : parameters) {
+    const auto dot = key.rfind('.');
+    if (dot == std::string::npos || dot == 0 || dot + 1 == key.size()) {
+      throw InputError("set " + key + ": is not PLUGIN.TAG; write, for example, " +
+                       (names.empty() ? "plugin" : names.front()) + ".sim_slow");
+    }
+    const std::string plugin = key.substr(0, dot);
+    if (std::find(names.begin(), names.end(), plugin) == names.end()) {
+      throw InputError("set " + key + ": the model has no plugin '" + plugin + "'" +
+                       did_you_mean(plugin, names) + "; it has " + joined(names));
+    }
+    result[plugin][key.substr(dot + 1)] = value;
+  }
+  return result;
+}
+
+/// A shared tag must mean the same in every plugin that has it.
+void check_shared_tags(const std::vector<LoadedPlugin>& plugins) {
+  std::map<std::string, std::pair<const LoadedPlugin*, const Parameter*>> first;
+  for (const LoadedPlugin& plugin : plugins) {
+    for (const Parameter& parameter : plugin.parameters.all()) {
+      if (!parameter.spec.shared) continue;
+      const auto [known, added] =
+          first.emplace(parameter.spec.name, std::pair{&plugin, &parameter});
+      const Parameter& other = *known->second.second;
+      if (added || other.number == parameter.number) continue;
+      const auto describe = [](const LoadedPlugin& p, const Parameter& value) {
+        return value.text + " in '" + p.name + "' (" + value.origin + ")";
+      };
+      const Parameter& blamed = parameter.origin == "default" ? other : parameter;
+      throw InputError((blamed.origin == "set" ? "set <" + blamed.spec.name + ">" : blamed.origin) +
+                       ": <" + parameter.spec.name + "> is " +
+                       describe(*known->second.first, other) + " but " +
+                       describe(plugin, parameter) + "; give both the same value");
+    }
+  }
+}
+
+}  // namespace
+
+void Simulation::load_plugins(const Model& model, const SimulationOptions& options) {
+  const auto overrides = by_plugin(options.parameters, model);
+  Eigen::Index state_size = 0;
+  for (const PluginElement& element : model.plugins) {
+    const PluginLibrary library = open_plugin(element);
+    const auto given = overrides.find(element.name);
+    LoadedPlugin loaded{element.name,
+                        element.filename,
+                        library.path,
+                        library.descriptor,
+                        Parameters(library.descriptor->tags, element, model,
+                                   given == overrides.end() ? std::map<std::string, std::string>{}
+                                                            : given->second),
+                        nullptr};
+    const std::string who = element.where + ": plugin '" + element.name + "'";
+    for (const std::string& term : library.descriptor->wrenches) {
+      if (std::find(wrench_terms_.begin(), wrench_terms_.end(), term) != wrench_terms_.end()) {
+        throw InputError(who + " reports the wrench '" + term +
+                         "', which another plugin reports already; load only one of them");
+      }
+    }
+    loaded.state_begin = state_size;
+    try {
+      std::vector<std::string> warnings;
+      loaded.plugin = library.descriptor->create(
+          {element.name, loaded.parameters, model, topics_, options.seed, warnings});
+      if (!loaded.plugin) throw Error("its create() returned no plugin");
+      const std::size_t numbers = loaded.plugin->state_size();
+      if (numbers > max_plugin_state) {
+        throw Error("its state_size() is " + std::to_string(numbers) + "; ask for at most " +
+                    std::to_string(max_plugin_state));
+      }
+      loaded.state_size = static_cast<Eigen::Index>(numbers);
+      for (const std::string& warning : warnings) warnings_.push_back(who + ": " + warning);
+    } catch (...) {
+      throw InputError(who + " (" + library.path + "): " + what_was_thrown());
+    }
+    state_size += loaded.state_size;
+    loaded.term_begin = wrench_terms_.size();
+    wrench_terms_.insert(wrench_terms_.end(), library.descriptor->wrenches.begin(),
+                         library.descriptor->wrenches.end());
+    plugins_.push_back(std::move(loaded));
+  }
+  check_shared_tags(plugins_);
+  plugin_state_ = VectorXd::Zero(state_size);
+  wrenches_.resize(wrench_terms_.size());
+}
+
+}  // namespace quadcore
