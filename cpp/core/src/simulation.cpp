@@ -217,7 +217,9 @@ std::string Simulation::describe_kind() const {
   kind << engine_name_ << ' ' << dt_ << ' ' << model().name;
   for (const Link& link : model().links) kind << '|' << link.name << ' ' << link.inertial.mass;
   for (const Joint& joint : model().joints) kind << '|' << joint.name;
-  for (const LoadedPlugin& p : plugins_) kind << '|' << p.name << ' ' << p.path << ' ' << p.state_size;
+  for (const LoadedPlugin& p : plugins_) {
+    kind << '|' << p.name << ' ' << p.path << ' ' << p.state_size;
+  }
   for (std::size_t i = 0; i < topics_.size(); ++i) {
     kind << '|' << topics_[i].name << ' ' << joined(topics_[i].fields);
   }

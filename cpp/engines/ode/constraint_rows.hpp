@@ -48,8 +48,8 @@ struct ConstraintRow {
 constexpr int rows_per_hinge = 5;
 
 /// Writes the rows of hinges and contacts in the order in which Gazebo 11's ODE does: it walks an
-/// island from its newest body and a body's joints from the newest, contacts before hinges. Bodies and
-/// hinges are as old as their place in Gazebo's SDF says.
+/// island from its newest body and a body's joints from the newest, contacts before hinges. Gazebo
+/// makes bodies and hinges in the order of its SDF.
 class ConstraintRows {
  public:
   /// hinges[i] carries bodies[i + 1]; `order` holds the indices of the bodies, the oldest first.

@@ -21,7 +21,7 @@ struct Inertial {
   Matrix3d inertia_in_link_axes() const;
   /// Principal moments [kg m^2], ascending.
   Vector3d principal_moments() const;
-  /// Whether a body can turn with this inertia: all principal moments > 0, and not by rounding only.
+  /// Whether a body can turn with it: all principal moments > 0, and not by rounding only.
   bool is_positive() const;
 };
 
