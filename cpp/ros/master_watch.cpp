@@ -2,11 +2,13 @@
 
 #include <ros/connection_manager.h>
 #include <ros/master.h>
+#include <ros/message_traits.h>
 #include <ros/network.h>
 #include <ros/publication.h>
 #include <ros/this_node.h>
 #include <ros/topic_manager.h>
 #include <ros/xmlrpc_manager.h>
+#include <std_msgs/Float64MultiArray.h>
 
 namespace quadcore::node {
 namespace {
@@ -42,20 +44,25 @@ void announce_publishers(const std::string& topic, const XmlRpcValue& publishers
 
 }  // namespace
 
-MasterWatch::MasterWatch(std::vector<std::string> services) : services_(std::move(services)) {
+MasterWatch::MasterWatch(std::vector<std::string> services)
+    : services_(std::move(services)),
+      service_uri_("rosrpc://" + ros::network::getHost() + ":" +
+                   std::to_string(ros::ConnectionManager::instance()->getTCPPort())) {
   for (const char* own : {"/get_loggers", "/set_logger_level"}) {
     services_.push_back(ros::this_node::getName() + own);
   }
   thread_ = std::thread(&MasterWatch::watch, this);
 }
 
-MasterWatch::~MasterWatch() {
+MasterWatch::~MasterWatch() { end(); }
+
+void MasterWatch::end() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     ending_ = true;
   }
   ending_changed_.notify_all();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 void MasterWatch::watch() {
@@ -74,6 +81,8 @@ void MasterWatch::look() {
     if (!gone_) ROS_WARN("the ROS master is gone; flying on with those who are connected");
     gone_ = true;
   } else if (!call_master("lookupNode", {name, name}, result)) {
+    // `rosnode kill` makes roscpp shut down, and unregister, in a thread of its own.
+    if (ros::isShuttingDown()) return;
     register_again();
     ROS_WARN("there is a new ROS master; registered again");
     gone_ = false;
@@ -98,14 +107,16 @@ void MasterWatch::register_again() const {
   names.clear();
   topics->getSubscribedTopics(names);
   for (const std::string& topic : names) {
-    if (call_master("registerSubscriber", {name, topic, "*", uri}, result)) {
+    // Two at most: that of the commands and, with use_sim_time, the clock, registered above.
+    const std::string type = topics->lookupPublication(topic)
+                                 ? "*"
+                                 : ros::message_traits::datatype<std_msgs::Float64MultiArray>();
+    if (call_master("registerSubscriber", {name, topic, type, uri}, result)) {
       announce_publishers(topic, result);
     }
   }
-  const std::string service_uri = "rosrpc://" + ros::network::getHost() + ":" +
-                                  std::to_string(ros::ConnectionManager::instance()->getTCPPort());
   for (const std::string& service : services_) {
-    call_master("registerService", {name, service, service_uri, uri}, result);
+    call_master("registerService", {name, service, service_uri_, uri}, result);
   }
 }
 

@@ -20,6 +20,9 @@ class MasterWatch {
   ~MasterWatch();
   MasterWatch(const MasterWatch&) = delete;
   MasterWatch& operator=(const MasterWatch&) = delete;
+  /// Looks no more. To be called before ros::shutdown(), after which the master does not know this
+  /// node either.
+  void end();
 
  private:
   void watch();
@@ -27,6 +30,7 @@ class MasterWatch {
   void register_again() const;
 
   std::vector<std::string> services_;
+  const std::string service_uri_;
   bool gone_ = false;
   std::mutex mutex_;
   std::condition_variable ending_changed_;

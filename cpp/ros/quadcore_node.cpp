@@ -118,7 +118,7 @@ void run(const EndSignal& end_signal) {
   FlightThread flight(simulation, flight_settings, listener);
   const CommandSubscriber commands(nh, topic, flight);
   const Services services(nh, flight);
-  const MasterWatch master_watch(services.names());
+  MasterWatch master_watch(services.names());
   // In lockstep it is the controller that sets the pace.
   Diagnostics diagnostics(nh, flight.report(),
                           flight_settings.lockstep ? 0 : flight_settings.real_time_factor);
@@ -138,6 +138,7 @@ void run(const EndSignal& end_signal) {
   flight.end();
   listener.close_log();  // before anything that may take longer than there is time
   spinner.stop();
+  master_watch.end();
   ros::shutdown();
 }
 

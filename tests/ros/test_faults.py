@@ -13,6 +13,7 @@ import unittest
 
 import harness
 import numpy as np
+import rosnode
 import rospy
 from harness import HOVER, Process, Recording, call, commander, description, diagnostic, flight
 from nav_msgs.msg import Odometry
@@ -95,6 +96,8 @@ class TestFaults(unittest.TestCase):
                     harness.wait_until(
                         lambda: "/quadcore/step" in self.shell(port, "rosservice", "list")
                     )
+                    kind = self.shell(port, "rostopic", "type", "/quadrotor/vel_cmd")
+                    self.assertEqual(kind.strip(), "std_msgs/Float64MultiArray")
                     # Both old connections stand: the vehicle hovers where it was told to.
                     self.assertTrue(self.is_at(2, port))
                     self.shell(port, "rosservice", "call", "/gazebo/pause_physics")
@@ -144,6 +147,14 @@ class TestFaults(unittest.TestCase):
                 with flight(*arguments) as node:
                     self.assertLess(node.end(number), 1)
                     self.assertEqual(node.process.returncode, 0)
+
+    def test_rosnode_kill_ends_it_well(self):
+        for _ in range(4):
+            with flight("_paused:=true") as node:
+                rosnode.kill_nodes(["/quadcore"])
+                status, error = node.result()
+            self.assertEqual(status, 0)
+            self.assertNotIn("new ROS master", error)
 
     def test_signals_end_it_even_if_the_master_hangs(self):
         port = free_port()
