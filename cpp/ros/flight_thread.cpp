@@ -65,12 +65,14 @@ void FlightThread::command(const std::vector<double>& speeds) {
   }
   const Lock lock(mutex_);
   ++report_.commands;
-  // In lockstep only the first answer to an odometry message counts: what came after it would act
-  // or not, as chance has it.
-  if (settings_.lockstep && answered_) return;
+  const bool is_answer = answers_.take(speeds);
+  if (settings_.lockstep) {
+    changed_.notify_all();
+    // A second command for one message would act or not, as chance has it.
+    if (!is_answer || !jump_observed_) return;
+  }
   command_ = speeds;
-  commanded_ = command_waits_ = answered_ = true;
-  if (settings_.lockstep) changed_.notify_all();
+  commanded_ = command_waits_ = true;
 }
 
 void FlightThread::set_paused(bool paused) {
@@ -81,25 +83,29 @@ void FlightThread::set_paused(bool paused) {
 }
 
 void FlightThread::step(std::int64_t n) {
-  const Lock one_at_a_time(stepping_);
+  const Lock one_at_a_time(stepping_, std::try_to_lock);
+  if (!one_at_a_time) throw InputError("another step is under way; wait for it or pause");
   Lock lock(mutex_);
   paused_ = true;  // as Gazebo does, rather than refuse
   const std::int64_t goal = report_.steps + n;
-  steps_allowed_ = n;
+  if (failure_.empty()) steps_allowed_ = n;
   changed_.notify_all();
-  changed_.wait(lock, [this] { return steps_allowed_ == 0 || ending_ || !failure_.empty(); });
-  if (report_.steps >= goal) return;
+  changed_.wait(lock, [this] { return steps_allowed_ == 0 || ending_; });
   if (!failure_.empty()) throw FlightError(report_.time, failure_);
+  if (report_.steps >= goal) return;
   throw InputError("stopped with " + std::to_string(goal - report_.steps) + " steps to go");
 }
 
-void FlightThread::change(const std::function<void(Simulation&)>& change) {
-  std::packaged_task<void()> task([this, &change] {
+void FlightThread::change(const std::function<void(Simulation&)>& change) { run(change, false); }
+
+void FlightThread::reset(const std::function<void(Simulation&)>& change) { run(change, true); }
+
+void FlightThread::run(const std::function<void(Simulation&)>& change, bool forget_command) {
+  std::packaged_task<void()> task([this, &change, forget_command] {
     change(simulation_);
     {
       const Lock lock(mutex_);
-      // What was commanded before is no answer to the state that is observed now.
-      commanded_ = command_waits_ = answered_ = false;
+      if (forget_command) command_waits_ = false;
       failure_.clear();
       report_.time = simulation_.time();
     }
@@ -119,6 +125,7 @@ FlightReport FlightThread::report() const {
   const Lock lock(mutex_);
   FlightReport report = report_;
   report.paused = paused_;
+  report.waiting = waits_to_begin();
   report.failure = failure_;
   return report;
 }
@@ -141,7 +148,9 @@ bool FlightThread::wait_until_due() {
     } else if (!may_step()) {
       changed_.wait(lock);
       pacer_.restart();
-    } else if (settings_.lockstep && !answered_) {
+    } else if (settings_.lockstep && !jump_observed_) {
+      wait_for_commander(lock);
+    } else if (settings_.lockstep && answers_.awaited()) {
       wait_for_command(lock);
     } else {
       const auto now = Pacer::Clock::now();
@@ -154,28 +163,40 @@ bool FlightThread::wait_until_due() {
   }
 }
 
+/// Waits for a condition that a notice may bring about. Returns whether it holds. Not
+/// changed_.wait_for alone: before GCC 10 a jump of the wall clock would make a command late.
+template <class Condition>
+bool FlightThread::wait(Lock& lock, std::chrono::duration<double> patience,
+                        const Condition& condition) {
+  const auto start = Pacer::Clock::now();
+  while (!condition()) {
+    const std::chrono::duration<double> left = patience - (Pacer::Clock::now() - start);
+    if (left.count() <= 0) return false;
+    changed_.wait_for(lock, std::min<std::chrono::duration<double>>(left, longest_sleep));
+  }
+  return true;
+}
+
 /// Observes the start or a jump; in lockstep only once someone can answer. A controller that is
 /// still connecting would see the odometry, but its answer would be lost, and both would wait.
 void FlightThread::observe_jump() {
   const bool observe = !settings_.lockstep || listener_.has_commander();
   {
     const Lock lock(mutex_);
+    commanded_ = false;
     jump_observed_ = observe;
+    // What is on its way answers the state before.
+    if (settings_.lockstep) answers_.give_up();
+    if (observe) answers_.message_sent();
   }
   if (observe) listener_.observe(simulation_, true);
 }
 
-void FlightThread::wait_for_first_command(Lock& lock) {
+void FlightThread::wait_for_commander(Lock& lock) {
   const auto is_disturbed = [this] { return disturbed(); };
-  if (jump_observed_) {
-    if (changed_.wait_for(lock, time_to_begin, is_disturbed)) return;
-    listener_.warn("lockstep: still no first command; the odometry is sent again");
-    lock.unlock();
-    listener_.repeat(simulation_);
-    lock.lock();
-  } else if (!listener_.has_commander()) {
-    changed_.wait_for(lock, longest_sleep, is_disturbed);
-  } else if (!changed_.wait_for(lock, time_to_connect, is_disturbed)) {
+  if (!listener_.has_commander()) {
+    wait(lock, longest_sleep, is_disturbed);
+  } else if (!wait(lock, time_to_connect, is_disturbed)) {
     lock.unlock();
     observe_jump();
     lock.lock();
@@ -183,20 +204,38 @@ void FlightThread::wait_for_first_command(Lock& lock) {
 }
 
 void FlightThread::wait_for_command(Lock& lock) {
+  const bool may_begin_late = !commanded_ && !answers_.unsettled();
   const std::chrono::duration<double> timeout(settings_.lockstep_timeout);
-  if (!commanded_) {
-    wait_for_first_command(lock);
-  } else if (!changed_.wait_for(lock, timeout, [this] { return disturbed(); })) {
-    answered_ = true;
-    ++report_.late_commands;
-    char text[100];
-    std::snprintf(text, sizeof text,
-                  "lockstep: no command within %g s after the odometry of t = %g s",
-                  settings_.lockstep_timeout, report_.time);
-    listener_.warn(std::string(text) + "; the last one is kept");
+  const std::int64_t commands = report_.commands;
+  // Each command gives the controller the whole time for the next one.
+  const auto has_news = [&] { return report_.commands != commands || disturbed(); };
+  if (!wait(lock, may_begin_late ? time_to_begin : timeout, has_news)) {
+    if (std::optional<Answers::Command> command = answers_.settle()) {
+      command_ = std::move(*command);
+      commanded_ = command_waits_ = true;
+    } else if (!commanded_) {
+      repeat_message(lock);
+    } else {
+      answers_.give_up();
+      ++report_.late_commands;
+      char text[100];
+      std::snprintf(text, sizeof text,
+                    "lockstep: no command within %g s after the odometry of t = %g s",
+                    settings_.lockstep_timeout, report_.time);
+      listener_.warn(std::string(text) + "; the last one is kept");
+    }
   }
   // A wait for the controller is not made up for by rushing.
   if (pacer_.due() < Pacer::Clock::now()) pacer_.restart();
+}
+
+void FlightThread::repeat_message(Lock& lock) {
+  listener_.warn("lockstep: still no first command; the odometry is sent again");
+  answers_.give_up();
+  answers_.message_sent();
+  lock.unlock();
+  listener_.repeat(simulation_);
+  lock.lock();
 }
 
 void FlightThread::run_changes(Lock& lock) {
@@ -224,21 +263,25 @@ void FlightThread::take_step() {
   } catch (const FlightError& error) {
     failure = error.what();
   }
-  if (odometry_count(simulation_, odometry_topic_) != odometry_before) {
+  if (failure.empty() && odometry_count(simulation_, odometry_topic_) != odometry_before) {
     const Lock lock(mutex_);
-    if (commanded_ && !answered_) ++report_.late_commands;
+    if (commanded_ && answers_.awaited()) ++report_.late_commands;
     // Before the message goes out: its answer may come at once.
-    answered_ = false;
+    answers_.message_sent();
   }
   if (failure.empty()) listener_.observe(simulation_, false);
 
   const Lock lock(mutex_);
   failure_ = failure;
   report_.time = simulation_.time();
-  ++report_.steps;
-  if (steps_allowed_ > 0) --steps_allowed_;
-  if (steps_allowed_ == 0 || !failure_.empty()) changed_.notify_all();
-  if (!failure_.empty()) listener_.warn(failure_ + "; reset or set a state to go on");
+  if (failure_.empty()) {
+    ++report_.steps;
+    if (steps_allowed_ > 0) --steps_allowed_;
+  } else {
+    steps_allowed_ = 0;
+    listener_.warn(failure_ + "; reset or set a state to go on");
+  }
+  if (steps_allowed_ == 0) changed_.notify_all();
 }
 
 }  // namespace quadcore::node

@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "answers.hpp"
 #include "pacer.hpp"
 #include "quadcore/simulation.hpp"
 
@@ -43,7 +44,8 @@ struct FlightReport {
   std::int64_t late_commands = 0;  ///< odometry messages not answered before the next one
   std::int64_t overruns = 0;       ///< steps that began more than one period late
   bool paused = false;
-  std::string failure;  ///< why the flight has ended; "" while it goes on
+  bool waiting = false;  ///< in lockstep, for the first command since the start or the last jump
+  std::string failure;   ///< why the flight has ended; "" while it goes on
 };
 
 /// Flies a simulation in a thread of its own. Every public member may be called from any thread;
@@ -60,11 +62,13 @@ class FlightThread {
   void command(const std::vector<double>& speeds);
   void set_paused(bool paused);
   /// Pauses, flies n steps and returns once the last is observed. Throws InputError if stopped
-  /// short, FlightError if the flight fails.
+  /// short or while another call steps, FlightError if the flight fails.
   void step(std::int64_t n);
   /// Runs `change` between two steps and returns once the result is observed. Rethrows what it
   /// throws.
   void change(const std::function<void(Simulation&)>& change);
+  /// The same; besides, a command that has not been flown yet is forgotten.
+  void reset(const std::function<void(Simulation&)>& change);
   FlightReport report() const;
   /// Ends the flight; callers that still wait for a step or a change are told so. To be called by
   /// the owner alone.
@@ -75,13 +79,18 @@ class FlightThread {
 
   void fly();
   bool wait_until_due();
+  template <class Condition>
+  bool wait(Lock& lock, std::chrono::duration<double> patience, const Condition& condition);
+  void wait_for_commander(Lock& lock);
   void wait_for_command(Lock& lock);
-  void wait_for_first_command(Lock& lock);
+  void repeat_message(Lock& lock);
+  void run(const std::function<void(Simulation&)>& change, bool forget_command);
   void observe_jump();
   void run_changes(Lock& lock);
   void take_step();
   bool may_step() const { return failure_.empty() && (!paused_ || steps_allowed_ > 0); }
-  bool disturbed() const { return answered_ || ending_ || !changes_.empty() || !may_step(); }
+  bool disturbed() const { return ending_ || !changes_.empty() || !may_step(); }
+  bool waits_to_begin() const { return settings_.lockstep && !commanded_ && may_step(); }
 
   Simulation& simulation_;
   const FlightSettings settings_;
@@ -98,7 +107,7 @@ class FlightThread {
   std::vector<double> command_;
   bool commanded_ = false;      ///< a command has come since the start or the last jump
   bool command_waits_ = false;  ///< command_ has not been flown yet
-  bool answered_ = false;       ///< a command has come since the last odometry message
+  Answers answers_;
   bool jump_observed_ = false;  ///< the present start or jump has been observed
   FlightReport report_;
   std::string failure_;

@@ -68,8 +68,8 @@ Services::Services(ros::NodeHandle nh, FlightThread& flight) : spinner_(2, &queu
   };
   offer("gazebo/pause_physics", [&flight] { flight.set_paused(true); });
   offer("gazebo/unpause_physics", [&flight] { flight.set_paused(false); });
-  offer("gazebo/reset_simulation", [&flight] { flight.change(reset_simulation); });
-  offer("gazebo/reset_world", [&flight] { flight.change(reset_world); });
+  offer("gazebo/reset_simulation", [&flight] { flight.reset(reset_simulation); });
+  offer("gazebo/reset_world", [&flight] { flight.reset(reset_world); });
 
   servers_.push_back(nh.advertiseService<Step::Request, Step::Response>(
       "quadcore/step", [&flight](Step::Request& request, Step::Response& response) {

@@ -10,7 +10,7 @@ from pathlib import Path
 import harness
 import numpy as np
 import rospy
-from harness import HOVER, Recording, commander, diagnostic, flight, step
+from harness import HOVER, Recording, call, commander, diagnostic, flight, step
 from nav_msgs.msg import Odometry
 
 import quadcore as qc
@@ -49,14 +49,33 @@ def answer_until(last, send):
     return act
 
 
-def fly(controller, steps, *arguments):
-    """Odometry of a flight of so many steps with a controller."""
+def fly_with(act, steps, *arguments):
+    """Odometry of a flight of so many steps with a controller `act(message, send)`."""
     with flight(*LOCKSTEP, *arguments), commander() as send:
-        answer = lambda message: send(controller(message))  # noqa: E731
+
+        def answer(message):
+            act(message, send)
+
         with Recording("/odom", Odometry, act=answer) as odometry:
             odometry.wait_for_publisher()
             step(steps)
             return odometry.wait_for_count(steps + 1)
+
+
+def fly(controller, steps, *arguments):
+    """The same with a controller that gives a command for a message."""
+    return fly_with(lambda message, send: send(controller(message)), steps, *arguments)
+
+
+def tick(message):
+    """Steps since the start."""
+    return round(message.header.stamp.to_sec() * 1000)
+
+
+def random_commands(steps):
+    """A table of commands, another one for each step."""
+    speeds = HOVER + np.random.default_rng(2).uniform(-20, 20, (steps, 4))
+    return np.column_stack([np.arange(steps) * 0.001, speeds])
 
 
 class TestLockstep(unittest.TestCase):
@@ -80,23 +99,56 @@ class TestLockstep(unittest.TestCase):
         self.assertEqual(fast.read_bytes(), slow.read_bytes())
 
     def test_replayed_commands_give_the_log_of_the_core(self):
-        generator = np.random.default_rng(2)
-        table = np.column_stack(
-            [np.arange(STEPS) * 0.001, HOVER + generator.uniform(-20, 20, (STEPS, 4))]
-        )
+        table = random_commands(STEPS)
         log = self.folder / "ros.csv"
-        odometry = fly(
-            lambda m: table[min(round(m.header.stamp.to_sec() * 1000), STEPS - 1), 1:],
-            STEPS,
-            f"_log:={log}",
-        )
-        simulation = qc.Simulation("quadrotor", xacro_args={"sim_slow": 1})
-        core = simulation.run(STEPS * 0.001, table)
-        np.testing.assert_array_equal([row(m) for m in odometry], core.table[:, 1:14])
+        odometry = fly(lambda m: table[min(tick(m), STEPS - 1), 1:], STEPS, f"_log:={log}")
+        core = self.assert_flown(odometry, table)
         stamps = [m.header.stamp.to_nsec() for m in odometry]
         np.testing.assert_array_equal(stamps, np.rint(core.time * 1e9))
         core.to_csv(self.folder / "core.csv")
         self.assertEqual(log.read_bytes(), (self.folder / "core.csv").read_bytes())
+
+    def assert_flown(self, odometry, table):
+        """Whether the odometry is that of the core with these commands, to the last digit."""
+        simulation = qc.Simulation("quadrotor", xacro_args={"sim_slow": 1})
+        core = simulation.run((len(odometry) - 1) * 0.001, table)
+        np.testing.assert_array_equal([row(m) for m in odometry], core.table[:, 1:14])
+        return core
+
+    def test_after_a_reset_the_answer_on_its_way_is_not_taken_for_that_to_the_start(self):
+        table = random_commands(101)
+        for answers_the_old_message in (True, False):
+            jumps = []
+
+            def act(message, send, jumps=jumps, answers=answers_the_old_message):
+                if tick(message) == 20 and not jumps:
+                    jumps.append(message)
+                    call("/gazebo/reset_simulation")
+                    if not answers:
+                        return
+                send(table[tick(message), 1:])
+
+            with self.subTest(answers_the_old_message=answers_the_old_message):
+                odometry = fly_with(act, 120, "_lockstep_timeout:=0.5")
+                self.assertEqual([tick(m) for m in odometry[20:23]], [20, 0, 1])
+                self.assert_flown(odometry[21:], table[:100])
+
+    def test_after_a_late_answer_the_later_ones_are_in_time(self):
+        table = random_commands(101)
+        flown = table[:100].copy()
+        flown[50, 1:] = flown[49, 1:]
+        for delay in (0.75, None):  # late by half a timeout, or never there
+
+            def act(message, send, delay=delay):
+                if tick(message) == 50:
+                    if delay is None:
+                        return
+                    time.sleep(delay)
+                send(table[tick(message), 1:])
+
+            with self.subTest(delay=delay):
+                odometry = fly_with(act, 100, "_lockstep_timeout:=0.5")
+                self.assert_flown(odometry, flown)
 
     def test_one_command_per_odometry_message_at_its_rate(self):
         urdf = harness.description(rate="100")

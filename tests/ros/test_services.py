@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Pause, step, reset and set_state."""
 
+import threading
 import unittest
 
 import harness
 import numpy as np
 import rospy
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
-from harness import HOVER, Recording, call, commander, flight, step
+from harness import HOVER, Recording, call, commander, diagnostic, flight, step
 from nav_msgs.msg import Odometry
 from quadcore.srv import SetState, Step
 from rosgraph_msgs.msg import Clock
@@ -21,6 +22,10 @@ ROTORS = [400.0, -410.0, 420.0, -430.0]
 
 def set_state(pose=POSE, twist=TWIST, rotors=()):
     return rospy.ServiceProxy("/quadcore/set_state", SetState)(pose, twist, rotors)
+
+
+def reset(*_):
+    call("/gazebo/reset_simulation")
 
 
 def times(messages):
@@ -149,7 +154,51 @@ class TestServices(unittest.TestCase):
             self.assertFalse(response.success)
             self.assertIn("the flight failed at t = ", response.message)
             call("/gazebo/reset_simulation")
+            with Recording("/clock", Clock) as clock:  # what was not flown stays so
+                rospy.sleep(0.2)
+                self.assertEqual(clock.messages, [])
             step(10)
+
+    def test_a_step_that_fails_says_so(self):
+        with flight("_paused:=true"):
+            self.assertTrue(set_state(rotors=[9e5, 9e5, 9e5, 9e5]).success)
+            proxy = rospy.ServiceProxy("/quadcore/step", Step)
+            while True:
+                response = proxy(1)
+                if not response.success:
+                    break
+                self.assertLess(response.stamp.to_sec(), 0.1)
+            self.assertIn("the flight failed at t = ", response.message)
+            again = proxy(1)
+            self.assertEqual((again.success, again.stamp), (False, response.stamp))
+
+    def test_a_second_step_is_refused_and_holds_up_no_service(self):
+        with flight("_paused:=true", "_lockstep:=true"):
+            proxy = rospy.ServiceProxy("/quadcore/step", Step)
+            messages = []
+            calls = [
+                threading.Thread(target=lambda: messages.append(proxy(10).message)) for _ in "ab"
+            ]
+            for each in calls:
+                each.start()  # the first one waits for a command that nobody sends
+            harness.wait_until(lambda: messages)
+            self.assertIn("another step is under way", messages[0])
+            call("/gazebo/pause_physics")
+            for each in calls:
+                each.join(5)
+            self.assertIn("stopped with 10 steps to go", messages[1])
+
+    def test_a_command_that_is_not_flown_yet_outlives_a_set_state_but_no_reset(self):
+        for jump, climbs in ((set_state, True), (reset, False)):
+            topic = Recording("/odom", Odometry)
+            with flight("_paused:=true"), commander() as send, topic as odometry:
+                odometry.wait_for_publisher()
+                send(HOVER)
+                diagnostic("commands", lambda count: count == 1)
+                jump(Pose(Point(0, 0, 20), Quaternion(0, 0, 0, 1)), Twist())
+                step(500)
+                flown = odometry.wait_for_count(501)[-1]
+            self.assertEqual(flown.twist.twist.linear.z > -4, climbs)
 
 
 def vector(v):
