@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <optional>
 #include <set>
 
 #include "quadcore/error.hpp"
@@ -26,10 +27,10 @@ class PrivateParameters {
     if (value.getType() != XmlRpc::XmlRpcValue::TypeBoolean) fail(name, "true or false");
     return static_cast<bool>(value);
   }
-  double number(const std::string& name, double fallback) {
+  std::optional<double> number(const std::string& name) {
     XmlRpc::XmlRpcValue value;
-    double number = fallback;
-    if (!get(name, value)) return fallback;
+    double number = 0;
+    if (!get(name, value)) return std::nullopt;
     if (value.getType() == XmlRpc::XmlRpcValue::TypeInt) {
       number = static_cast<int>(value);
     } else if (value.getType() == XmlRpc::XmlRpcValue::TypeDouble) {
@@ -40,9 +41,13 @@ class PrivateParameters {
     if (!std::isfinite(number)) fail(name, "a finite number");
     return number;
   }
-  double number_at_least(double least, const std::string& name, double fallback) {
-    const double value = number(name, fallback);
-    if (value < least) fail(name, "a number >= " + std::to_string(least));
+  double number(const std::string& name, double fallback) {
+    return number(name).value_or(fallback);
+  }
+  /// \param hint  what else is to be said of the number
+  std::optional<double> no_negative(const std::string& name, const std::string& hint = "") {
+    const std::optional<double> value = number(name);
+    if (value && *value < 0) fail(name, "a number >= 0" + hint);
     return value;
   }
   /// Throws if the server holds a parameter that nobody asked for: a misspelt one.
@@ -56,7 +61,9 @@ class PrivateParameters {
           name.substr(prefix.size(), name.find('/', prefix.size()) - prefix.size());
       if (known_.count(own) > 0) continue;
       throw InputError("parameter ~" + own + ": is not known" +
-                       did_you_mean(own, {known_.begin(), known_.end()}));
+                       did_you_mean(own, {known_.begin(), known_.end()}) +
+                       "; it stays on the parameter server until you run: rosparam delete " +
+                       prefix + own);
     }
   }
 
@@ -92,11 +99,19 @@ Document described_model(const ros::NodeHandle& nh, const std::string& path) {
   return {"robot_description", text};
 }
 
-/// A path, or the name of a world in `folder`.
-std::string world_path(const std::string& world, const std::string& folder) {
-  const std::string shipped = folder + "/" + world + ".world";
+/// A path that, if relative, is meant from `folder`. roslaunch starts nodes in a folder of its own,
+/// and says with `pwd`, which ends the line, where it was started itself.
+std::string path_from(std::string folder, const std::string& path) {
+  while (!folder.empty() && folder.back() == '\n') folder.pop_back();
+  return folder.empty() || path.empty() || path.front() == '/' ? path : folder + "/" + path;
+}
+
+/// The path of a world, or of the one of this name among the shipped ones.
+std::string world_path(const std::string& world, const std::string& shipped_worlds,
+                       const std::string& folder) {
+  const std::string shipped = shipped_worlds + "/" + world + ".world";
   const bool is_name = world.find_first_of("/.") == std::string::npos;
-  return is_name && std::ifstream(shipped) ? shipped : world;
+  return is_name && std::ifstream(shipped) ? shipped : path_from(folder, world);
 }
 
 }  // namespace
@@ -105,31 +120,29 @@ Settings read_settings(const ros::NodeHandle& nh) {
   PrivateParameters p;
   Settings s;
   const std::string model = p.text("model", "");
+  const std::string folder = p.text("folder", "");
   const std::string shipped_worlds = p.text("shipped_worlds", "worlds");
-  s.world = world_path(p.text("world", ""), shipped_worlds);
+  s.world = world_path(p.text("world", ""), shipped_worlds, folder);
   s.name = p.text("name", "");
-  s.log = p.text("log", "");
+  s.log = path_from(folder, p.text("log", ""));
   s.verbose = p.flag("verbose", false);
 
   s.simulation.engine = p.text("engine", s.simulation.engine);
-  const double dt = p.number_at_least(0, "dt", 0);
+  const double dt = p.no_negative("dt", "; 0 is that of the world").value_or(0);
   if (dt > 0) s.simulation.dt = dt;
-  const double seed = p.number_at_least(0, "seed", 0);
-  if (seed != std::floor(seed)) PrivateParameters::fail("seed", "a whole number");
+  constexpr double greatest_seed = 9007199254740992;  // all whole numbers below are doubles
+  const double seed = p.number("seed", 0);
+  if (seed != std::floor(seed) || seed < 0 || seed > greatest_seed) {
+    PrivateParameters::fail("seed", "a whole number from 0 to 9007199254740992");
+  }
   s.simulation.seed = static_cast<std::uint64_t>(seed);
   s.simulation.spawn.xyz = {p.number("x", 0), p.number("y", 0), p.number("z", 0.1)};
   s.simulation.spawn.rpy = {p.number("roll", 0), p.number("pitch", 0), p.number("yaw", 0)};
 
-  constexpr double not_given = -1;
-  const double factor = p.number("real_time_factor", not_given);
-  if (factor >= 0) {
-    s.real_time_factor = factor;
-  } else if (factor != not_given) {
-    PrivateParameters::fail("real_time_factor", "a number >= 0; 0 is as fast as possible");
-  }
+  s.real_time_factor = p.no_negative("real_time_factor", "; 0 is as fast as possible");
   s.flight.paused = p.flag("paused", false);
   s.flight.lockstep = p.flag("lockstep", false);
-  s.flight.lockstep_timeout = p.number_at_least(0, "lockstep_timeout", s.flight.lockstep_timeout);
+  s.flight.lockstep_timeout = p.no_negative("lockstep_timeout").value_or(s.flight.lockstep_timeout);
   p.check_all_known();
   s.model = described_model(nh, model);
   return s;

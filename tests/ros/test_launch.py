@@ -1,9 +1,15 @@
 #!/usr/bin/env python3
 """The launch files, at the root and in a namespace, with another model, world and engine."""
 
+import os
+import signal
+import subprocess
+import tempfile
 import unittest
+from pathlib import Path
 
 import harness
+import roslib.packages
 import rospy
 from harness import Recording
 from nav_msgs.msg import Odometry
@@ -35,6 +41,26 @@ class TestLaunch(unittest.TestCase):
         with Recording("/uav1/joint_states", JointState) as joints:
             self.assertAlmostEqual(joints.wait_for_count(1)[0].velocity[0], 471, delta=1)
         self.assertEqual(rospy.get_param("/uav1/quadcore/engine"), "ode")
+
+    def test_relative_paths_begin_where_roslaunch_was_called(self):
+        worlds = Path(roslib.packages.get_pkg_dir("quadcore")) / "worlds"
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "my.urdf").write_text(harness.description())
+            (Path(folder) / "my.world").write_text((worlds / "empty.world").read_text())
+            paths = ["model:=my.urdf", "world:=my.world", "log:=my.csv"]
+            launch = subprocess.Popen(
+                ["roslaunch", "quadcore", "quadrotor.launch", "gui:=false", *paths],
+                env={**os.environ, "ROS_NAMESPACE": "relative"},
+                cwd=folder,
+                stdout=subprocess.DEVNULL,
+            )
+            try:
+                with Recording("/relative/odom", Odometry) as odometry:
+                    odometry.wait(lambda m: m and m[-1].header.stamp.to_sec() > 0.1)
+            finally:
+                launch.send_signal(signal.SIGINT)
+                launch.wait(20)
+            self.assertGreater(len((Path(folder) / "my.csv").read_text().splitlines()), 100)
 
 
 if __name__ == "__main__":
