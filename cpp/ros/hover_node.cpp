@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
+#include <string>
 
 namespace {
 
 /// Holds the altitude of the shipped quadrotor and keeps it level: the smallest controller that
-/// shows the topics at work. It is no position controller: the vehicle may drift.
+/// shows the topics at work. It is no position controller: the vehicle may drift. Another robot
+/// than the shipped one wants other constants.
 class Hover {
  public:
   explicit Hover(const std::string& model) {
@@ -18,9 +21,16 @@ class Hover {
     subscriber_ =
         nh.subscribe("odom", 1, &Hover::control, this, ros::TransportHints().tcpNoDelay());
     command_.data.resize(4);
+    check_ = nh.createWallTimer(ros::WallDuration(5), &Hover::check, this, true);
   }
 
  private:
+  void check(const ros::WallTimerEvent&) {
+    if (publisher_.getNumSubscribers() > 0) return;
+    ROS_WARN("nobody takes commands on %s; give the robot's name as _model:=NAME",
+             publisher_.getTopic().c_str());
+  }
+
   void control(const nav_msgs::Odometry& odometry) {
     const auto& q = odometry.pose.pose.orientation;
     const auto& rate = odometry.twist.twist.angular;
@@ -51,15 +61,26 @@ class Hover {
   static constexpr double rate_gain = 0.1;                 // N m s
 
   double altitude_ = 1;  // m
+  ros::WallTimer check_;
   ros::Publisher publisher_;
   ros::Subscriber subscriber_;
   std_msgs::Float64MultiArray command_;
 };
 
+/// Name of the robot in robot_description, the shipped one's where there is none.
+std::string robot_name() {
+  std::string where, text;
+  std::smatch match;
+  const ros::NodeHandle nh;
+  if (nh.searchParam("robot_description", where)) nh.getParam(where, text);
+  const std::regex name("<robot\\s[^>]*?\\bname\\s*=\\s*[\"']([^\"']+)");
+  return std::regex_search(text, match, name) ? match[1].str() : "quadrotor";
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "hover");
-  const Hover hover(ros::NodeHandle("~").param<std::string>("model", "quadrotor"));
+  const Hover hover(ros::NodeHandle("~").param("model", robot_name()));
   ros::spin();
 }

@@ -141,10 +141,11 @@ class TestTopics(unittest.TestCase):
                 pass
             rospy.wait_for_service("/uav1/gazebo/pause_physics", 5)
 
-    def test_a_roscpp_client_flies(self):
+    def test_a_roscpp_client_flies_a_robot_of_any_name(self):
         fast = ("_real_time_factor:=0", "_lockstep:=true")
         topic = Recording("/odom", Odometry)
-        with flight(*fast), Process("hover_node", "_altitude:=12"), topic as odometry:
+        mine = description().replace('name="quadrotor"', 'name="mine"', 1)
+        with flight(*fast, urdf=mine), Process("hover_node", "_altitude:=12"), topic as odometry:
             odometry.wait(lambda m: m and abs(m[-1].pose.pose.position.z - 12) < 0.01, 20)
 
 
