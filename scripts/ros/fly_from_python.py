@@ -42,7 +42,7 @@ def covariance(translation, rotation):
 
 def publish(sim):
     """Send what quadcore_node sends after each step."""
-    now = rospy.Time.from_sec(sim.time)
+    now = rospy.Time(nsecs=round(sim.time * 1e9))  # from_sec cuts off instead
     clock.publish(now)
     m = sim.topic("odom")
     message = Odometry(child_frame_id="drone")

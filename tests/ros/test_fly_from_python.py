@@ -27,6 +27,7 @@ class TestFlyFromPython(unittest.TestCase):
             stamps = [m.header.stamp for m in odometry.wait_for_count(300)]
             ticks = {m.clock for m in clock.wait_for_count(350)}
         self.assertLessEqual(set(stamps[100:200]), ticks)
+        self.assertEqual({stamp.to_nsec() % 1000000 for stamp in stamps}, {0})
 
 
 if __name__ == "__main__":
