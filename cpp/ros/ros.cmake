@@ -35,8 +35,11 @@ foreach(package ${ros_packages})
   endif()
 endforeach()
 # Debian packages them apart.
-if(NOT ros_missing AND NOT EXISTS ${geometry_msgs_DIR}/../msg/Pose.msg)
-  set(ros_missing "the .msg files of geometry_msgs")
+if(NOT ros_missing)
+  include(${geometry_msgs_DIR}/geometry_msgs-msg-paths.cmake OPTIONAL)
+  if(NOT EXISTS ${geometry_msgs_MSG_INCLUDE_DIRS}/Pose.msg)
+    set(ros_missing "the .msg files of geometry_msgs")
+  endif()
 endif()
 
 if(ros_missing)
