@@ -9,7 +9,7 @@
 namespace quadcore::node {
 
 CsvLog::CsvLog(const std::string& path, const Simulation& simulation)
-    : file_(std::fopen(path.c_str(), "w")) {
+    : path_(path), file_(std::fopen(path.c_str(), "w")) {
   if (!file_) throw InputError(path + ": cannot be written: " + std::strerror(errno));
   std::string header;
   for (const std::string& column : log_columns(simulation.model().joints.size())) {
@@ -29,6 +29,16 @@ void CsvLog::add(const VehicleState& state) {
   append(state.angular_velocity.data(), 3);
   append(state.rotor_velocity.data(), state.rotor_velocity.size());
   std::fputc('\n', file_.get());
+  check(std::ferror(file_.get()) == 0);
+}
+
+void CsvLog::close() {
+  if (file_) check(std::fclose(file_.release()) == 0);
+}
+
+void CsvLog::check(bool written) {
+  if (written || !error_.empty()) return;
+  error_ = path_ + ": the log is cut short: " + std::strerror(errno);
 }
 
 }  // namespace quadcore::node

@@ -16,8 +16,10 @@ std::string to_text(double value) {
 
 }  // namespace
 
-Diagnostics::Diagnostics(ros::NodeHandle& nh, const FlightReport& start, double real_time_factor)
+Diagnostics::Diagnostics(ros::NodeHandle& nh, const FlightReport& start, double real_time_factor,
+                         const std::string& command_topic)
     : wanted_factor_(real_time_factor),
+      command_topic_(command_topic),
       publisher_(nh.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 10)),
       last_(start) {}
 
@@ -34,6 +36,10 @@ void Diagnostics::send(const FlightReport& report, const Refusals& refusals) {
   if (!report.failure.empty()) {
     status.level = diagnostic_msgs::DiagnosticStatus::ERROR;
     status.message = report.failure;
+  } else if (report.waiting && report.steps == last_.steps) {
+    status.level = diagnostic_msgs::DiagnosticStatus::WARN;
+    status.message = "waiting for a command on " + command_topic_;
+    ROS_WARN_ONCE("lockstep: %s", status.message.c_str());
   } else if (!report.paused && !last_.paused && factor < fair_share * wanted_factor_) {
     status.level = diagnostic_msgs::DiagnosticStatus::WARN;
     status.message = "behind the real-time factor of " + to_text(wanted_factor_);

@@ -54,6 +54,9 @@ void FlightThread::end() {
 }
 
 void FlightThread::command(const std::vector<double>& speeds) {
+  if (command_width_ == 0) {
+    throw InputError("the model takes no commands; add libmotorpid_plugin.so");
+  }
   if (speeds.size() != command_width_) {
     throw InputError("a command of " + std::to_string(speeds.size()) + " numbers; send " +
                      std::to_string(command_width_) + " rotor speeds in rad/s");

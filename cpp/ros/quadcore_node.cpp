@@ -1,9 +1,11 @@
+#include <ros/network.h>
 #include <ros/ros.h>
 #include <ros/topic_manager.h>
 #include <std_msgs/Float64MultiArray.h>
 
 #include <cstdio>
 #include <cstdlib>
+#include <future>
 
 #include "broadcast.hpp"
 #include "csv_log.hpp"
@@ -17,6 +19,8 @@
 
 namespace quadcore::node {
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 /// Takes commands from a topic, on the callback thread.
 class CommandSubscriber {
@@ -38,11 +42,13 @@ class CommandSubscriber {
       flight_.command(message.data);
     } catch (const InputError& error) {
       const std::lock_guard<std::mutex> lock(mutex_);
-      if (refusals_.last != error.what()) {
-        ROS_WARN("%s: %s", subscriber_.getTopic().c_str(), error.what());
-      }
       ++refusals_.count;
       refusals_.last = error.what();
+      // Not ROS_WARN_THROTTLE: it goes by simulation time, which may stand still.
+      if (said_ == error.what() || Clock::now() < quiet_until_) return;
+      ROS_WARN("%s: %s", subscriber_.getTopic().c_str(), error.what());
+      said_ = error.what();
+      quiet_until_ = Clock::now() + std::chrono::seconds(1);
     }
   }
 
@@ -50,6 +56,8 @@ class CommandSubscriber {
   ros::Subscriber subscriber_;
   mutable std::mutex mutex_;
   Refusals refusals_;
+  std::string said_;
+  Clock::time_point quiet_until_{};
 };
 
 /// Sends, and logs if asked to.
@@ -62,6 +70,7 @@ class Listener final : public FlightListener {
   }
   void observe(const Simulation& simulation, bool jumped) override {
     if (log_) log_->add(simulation.state());
+    if (log_ && !log_->error().empty()) ROS_ERROR_ONCE("%s", log_->error().c_str());
     broadcast_.send(simulation, jumped);
   }
   void repeat(const Simulation& simulation) override { broadcast_.send(simulation, true); }
@@ -69,8 +78,12 @@ class Listener final : public FlightListener {
   bool has_commander() const override {
     return ros::TopicManager::instance()->getNumPublishers(command_topic_) > 0;
   }
-  /// Once the flight has ended.
-  void close_log() { log_.reset(); }
+  /// Once the flight has ended. Returns what went wrong with the log; "" = nothing.
+  std::string close_log() {
+    if (!log_) return "";
+    log_->close();
+    return log_->error();
+  }
 
  private:
   const std::string command_topic_;
@@ -99,6 +112,33 @@ std::string command_topic(const ros::NodeHandle& nh, const Settings& settings, c
   return nh.resolveName(name + "/vel_cmd");
 }
 
+/// Throws unless a master answers. Without this check a node without one hangs in its first
+/// advertise().
+void check_master() {
+  // In a thread, because roscpp waits without end for a master that is there but mute.
+  std::packaged_task<bool()> check(ros::master::check);
+  std::future<bool> answer = check.get_future();
+  std::thread(std::move(check)).detach();
+  const bool in_time = answer.wait_for(std::chrono::seconds(5)) == std::future_status::ready;
+  if (in_time && answer.get()) return;
+  throw InputError((in_time ? "no ROS master at " : "no answer within 5 s from a ROS master at ") +
+                   ros::master::getURI() +
+                   "; start roscore or use roslaunch, or correct ROS_MASTER_URI");
+}
+
+/// Where the master is. roscpp would abort over no or a wrong address.
+void check_master_uri() {
+  // The default of rospy and the ros tools.
+  setenv("ROS_MASTER_URI", "http://localhost:11311", 0);
+  const std::string uri = std::getenv("ROS_MASTER_URI");
+  std::string host;
+  std::uint32_t port = 0;
+  if (!ros::network::splitURI(uri, host, port)) {
+    throw InputError("ROS_MASTER_URI: '" + uri +
+                     "' is no address; write http://HOST:PORT, such as http://localhost:11311");
+  }
+}
+
 void run(const EndSignal& end_signal) {
   ros::NodeHandle nh;
   const Settings settings = read_settings(nh);
@@ -121,14 +161,13 @@ void run(const EndSignal& end_signal) {
   MasterWatch master_watch(services.names());
   // In lockstep it is the controller that sets the pace.
   Diagnostics diagnostics(nh, flight.report(),
-                          flight_settings.lockstep ? 0 : flight_settings.real_time_factor);
+                          flight_settings.lockstep ? 0 : flight_settings.real_time_factor, topic);
   ros::AsyncSpinner spinner(1);
   spinner.start();
   ROS_INFO("flying %s with engine %s, commands on %s%s", simulation.model().name.c_str(),
            simulation.engine_name().c_str(), topic.c_str(),
            flight_settings.lockstep ? ", one for each odometry message" : "");
 
-  using Clock = std::chrono::steady_clock;
   Clock::time_point due = Clock::now() + std::chrono::seconds(1);
   while (ros::ok() && !end_signal.wait_for(std::chrono::milliseconds(100))) {
     if (Clock::now() < due) continue;
@@ -136,10 +175,12 @@ void run(const EndSignal& end_signal) {
     due += std::chrono::seconds(1);
   }
   flight.end();
-  listener.close_log();  // before anything that may take longer than there is time
+  // Before anything that may take longer than there is time.
+  const std::string log_error = listener.close_log();
   spinner.stop();
   master_watch.end();
   ros::shutdown();
+  if (!log_error.empty()) throw InputError(log_error);
 }
 
 }  // namespace
@@ -147,19 +188,15 @@ void run(const EndSignal& end_signal) {
 
 int main(int argc, char** argv) {
   const quadcore::node::EndSignal end_signal;
-  // The default of rospy and the ros tools; roscpp would abort.
-  setenv("ROS_MASTER_URI", "http://localhost:11311", 0);
   try {
+    quadcore::node::check_master_uri();
     ros::init(argc, argv, "quadcore", ros::init_options::NoSigintHandler);
-    // Without this check a node without a master hangs in its first advertise().
-    if (!ros::master::check()) {
-      throw quadcore::InputError("no ROS master at " + ros::master::getURI() +
-                                 "; start roscore or use roslaunch, or correct ROS_MASTER_URI");
-    }
+    quadcore::node::check_master();
     quadcore::node::run(end_signal);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "error: %s\n", error.what());
-    return 2;
+    std::fflush(nullptr);
+    std::_Exit(2);  // a master that is mute may still be waited for
   }
   return 0;
 }

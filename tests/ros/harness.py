@@ -64,7 +64,7 @@ class Process:
         start = time.monotonic()
         self.process.send_signal(number)
         try:
-            self.process.communicate(timeout=10)
+            _, self.error = self.process.communicate(timeout=10)
         except subprocess.TimeoutExpired:
             self.process.kill()
             raise

@@ -3,6 +3,7 @@
 
 import contextlib
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -10,11 +11,13 @@ import sys
 import tempfile
 import time
 import unittest
+import xmlrpc.client
 
 import harness
 import numpy as np
-import rosnode
+import rosgraph
 import rospy
+from diagnostic_msgs.msg import DiagnosticArray
 from harness import HOVER, Process, Recording, call, commander, description, diagnostic, flight
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
@@ -76,6 +79,21 @@ class TestFaults(unittest.TestCase):
         self.assertEqual(status, 2)
         self.assertIn(f"error: no ROS master at {uri}; start roscore", error)
 
+    def test_a_mute_or_wrong_master(self):
+        with socket.socket() as mute:
+            mute.bind(("localhost", 0))
+            mute.listen()
+            uri = f"http://localhost:{mute.getsockname()[1]}"
+            for wrong, message in (
+                (uri, f"no answer within 5 s from a ROS master at {uri}; start roscore"),
+                ("nowhere", "ROS_MASTER_URI: 'nowhere' is no address; write http://HOST:PORT"),
+                ("", "ROS_MASTER_URI: '' is no address"),
+            ):
+                status, error = outcome(ROS_MASTER_URI=wrong)
+                self.assertEqual(status, 2)
+                self.assertEqual(len(error.splitlines()), 1, error)
+                self.assertIn(f"error: {message}", error)
+
     def test_a_master_that_dies_and_comes_back(self):
         port = free_port()
         uri = f"http://localhost:{port}"
@@ -114,6 +132,41 @@ class TestFaults(unittest.TestCase):
             self.assertEqual(diagnostic("commands"), 1)
             joints.wait(lambda m: np.allclose(m[-1].velocity, HOVER, rtol=0.01))
 
+    def test_bad_commands_are_reported_once_a_second(self):
+        with flight() as node, commander() as send:
+            for i in range(300):
+                send([1.0] * (i % 3))
+            diagnostic("rejected commands", lambda count: count > 100)
+            node.end()
+        self.assertLess(node.error.count("a command of"), 4)
+
+    def test_a_model_without_motors_takes_no_commands(self):
+        urdf = re.sub(
+            r"<plugin\b[^>]*libmotorpid_plugin.so.*?</plugin>", "", description(), flags=re.DOTALL
+        )
+        with flight(urdf=urdf) as node, commander() as send:
+            send(HOVER)
+            diagnostic("rejected commands", lambda count: count == 1)
+            node.end()
+        self.assertIn("the model takes no commands; add libmotorpid_plugin.so", node.error)
+
+    def test_a_log_that_cannot_be_written_to_the_end(self):
+        with flight("_log:=/dev/full") as node:
+            diagnostic("steps", lambda count: count > 100)
+            node.end()
+        self.assertEqual(node.process.returncode, 2)
+        cut = "/dev/full: the log is cut short: No space left on device"
+        self.assertEqual(node.error.splitlines()[-1], f"error: {cut}")
+        self.assertEqual(node.error.count(cut), 2)  # at once and at the end
+
+    def test_lockstep_without_a_controller_says_what_it_waits_for(self):
+        with flight("_lockstep:=true") as node, Recording("/diagnostics", DiagnosticArray) as says:
+            waits = "waiting for a command on /quadrotor/vel_cmd"
+            says.wait(lambda m: m and m[-1].status[0].message == waits)
+            says.wait_for_count(len(says.messages) + 2)
+            node.end()
+        self.assertEqual(node.error.count(waits), 1)
+
     def test_commands_that_stop_time_out(self):
         urdf = description().replace("<kp>", "<commandTimeout>0.3</commandTimeout><kp>")
         topic = Recording("/joint_states", JointState)
@@ -151,7 +204,8 @@ class TestFaults(unittest.TestCase):
     def test_rosnode_kill_ends_it_well(self):
         for _ in range(4):
             with flight("_paused:=true") as node:
-                rosnode.kill_nodes(["/quadcore"])
+                uri = rosgraph.Master("/test").lookupNode("/quadcore")
+                xmlrpc.client.ServerProxy(uri).shutdown("/test", "as rosnode kill does")
                 status, error = node.result()
             self.assertEqual(status, 0)
             self.assertNotIn("new ROS master", error)
@@ -189,10 +243,16 @@ class TestFaults(unittest.TestCase):
     def test_bad_parameters(self):
         rospy.set_param("robot_description", description())
         for argument, message in (
-            ("_lockstp:=true", "parameter ~lockstp: is not known (did you mean 'lockstep'?)"),
+            (
+                "_lockstp:=true",
+                "parameter ~lockstp: is not known (did you mean 'lockstep'?); it stays on the "
+                "parameter server until you run: rosparam delete /quadcore/lockstp",
+            ),
             ("_paused:=1", "parameter ~paused: give true or false"),
             ("_z:=high", "parameter ~z: give a number"),
-            ("_real_time_factor:=-2", "parameter ~real_time_factor: give a number >= 0"),
+            ("_real_time_factor:=-1", "parameter ~real_time_factor: give a number >= 0"),
+            ("_seed:=1e30", "parameter ~seed: give a whole number from 0 to 9007199254740992"),
+            ("_dt:=-1", "parameter ~dt: give a number >= 0"),
             ("_engine:=gazebo12", "engine 'gazebo12' is not there (did you mean 'gazebo11'?)"),
             ("_world:=/none.world", "/none.world: cannot be read"),
             ("_log:=/none/log.csv", "/none/log.csv: cannot be written"),
