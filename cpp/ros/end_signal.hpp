@@ -2,12 +2,11 @@
 
 #include <pthread.h>
 
+#include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <csignal>
 #include <cstdlib>
 #include <memory>
-#include <mutex>
 #include <thread>
 
 namespace quadcore::node {
@@ -23,32 +22,19 @@ class EndSignal {
     sigaddset(&signals, SIGINT);
     sigaddset(&signals, SIGTERM);
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-    std::thread([signals, state = state_] {
+    std::thread([signals, came = came_] {
       int signal = 0;
       sigwait(&signals, &signal);
-      {
-        const std::lock_guard<std::mutex> lock(state->mutex);
-        state->came = true;
-      }
-      state->changed.notify_all();
+      *came = true;
       std::this_thread::sleep_for(std::chrono::milliseconds(800));
       std::_Exit(0);
     }).detach();
   }
 
-  /// Whether the signal has come, after waiting for it no longer than `patience`.
-  bool wait_for(std::chrono::milliseconds patience) const {
-    std::unique_lock<std::mutex> lock(state_->mutex);
-    return state_->changed.wait_for(lock, patience, [this] { return state_->came; });
-  }
+  bool has_come() const { return *came_; }
 
  private:
-  struct State {
-    std::mutex mutex;
-    std::condition_variable changed;
-    bool came = false;
-  };
-  std::shared_ptr<State> state_ = std::make_shared<State>();
+  std::shared_ptr<std::atomic<bool>> came_ = std::make_shared<std::atomic<bool>>(false);
 };
 
 }  // namespace quadcore::node

@@ -169,7 +169,8 @@ void run(const EndSignal& end_signal) {
            flight_settings.lockstep ? ", one for each odometry message" : "");
 
   Clock::time_point due = Clock::now() + std::chrono::seconds(1);
-  while (ros::ok() && !end_signal.wait_for(std::chrono::milliseconds(100))) {
+  while (ros::ok() && !end_signal.has_come()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
     if (Clock::now() < due) continue;
     diagnostics.send(flight.report(), commands.refusals());
     due += std::chrono::seconds(1);
