@@ -19,6 +19,8 @@ using XmlRpc::XmlRpcValue;
 /// success.
 bool call_master(const std::string& method, const std::vector<std::string>& arguments,
                  XmlRpcValue& result) {
+  // `rosnode kill` makes roscpp shut down, and unregister, in a thread of its own.
+  if (ros::isShuttingDown()) return false;
   XmlRpcValue request, response;
   int i = 0;
   for (const std::string& argument : arguments) request[i++] = argument;
@@ -81,7 +83,6 @@ void MasterWatch::look() {
     if (!gone_) ROS_WARN("the ROS master is gone; flying on with those who are connected");
     gone_ = true;
   } else if (!call_master("lookupNode", {name, name}, result)) {
-    // `rosnode kill` makes roscpp shut down, and unregister, in a thread of its own.
     if (ros::isShuttingDown()) return;
     register_again();
     ROS_WARN("there is a new ROS master; registered again");

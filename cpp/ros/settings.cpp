@@ -100,7 +100,7 @@ Document described_model(const ros::NodeHandle& nh, const std::string& path) {
 }
 
 /// A path that, if relative, is meant from `folder`. roslaunch starts nodes in a folder of its own,
-/// and says with `pwd`, which ends the line, where it was started itself.
+/// and the launch file tells with `pwd`, newline and all, where it was started itself.
 std::string path_from(std::string folder, const std::string& path) {
   while (!folder.empty() && folder.back() == '\n') folder.pop_back();
   return folder.empty() || path.empty() || path.front() == '/' ? path : folder + "/" + path;
