@@ -163,14 +163,10 @@ class TestServices(unittest.TestCase):
         with flight("_paused:=true"):
             self.assertTrue(set_state(rotors=[9e5, 9e5, 9e5, 9e5]).success)
             proxy = rospy.ServiceProxy("/quadcore/step", Step)
-            while True:
+            for _ in range(2):  # the step that fails, and one asked for afterwards
                 response = proxy(1)
-                if not response.success:
-                    break
-                self.assertLess(response.stamp.to_sec(), 0.1)
-            self.assertIn("the flight failed at t = ", response.message)
-            again = proxy(1)
-            self.assertEqual((again.success, again.stamp), (False, response.stamp))
+                self.assertFalse(response.success)
+                self.assertIn("the flight failed at t = ", response.message)
 
     def test_a_second_step_is_refused_and_holds_up_no_service(self):
         with flight("_paused:=true", "_lockstep:=true"):
