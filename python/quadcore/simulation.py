@@ -21,6 +21,7 @@ from .warning import QuadcoreWarning
 Number = Union[float, str]
 Value = Union[float, str, bool, Sequence[str]]
 
+_LONGEST = 1e9  # s
 _PIECE = 0.02  # s, at least; what is flown between two looks at progress and Ctrl-C
 
 
@@ -130,8 +131,10 @@ class Simulation(_core.Simulation):
             The flight failed. Its attribute `log` is the log so far, as it is of the
             KeyboardInterrupt that ends a run.
         """
-        if not (isinstance(duration, (int, float)) and math.isfinite(duration) and duration >= 0):
-            raise _core.InputError(f"duration is {duration!r}; give seconds, >= 0")
+        if not (isinstance(duration, (int, float)) and 0 <= duration <= _LONGEST):
+            raise _core.InputError(
+                f"duration is {duration!r}; give seconds, from 0 to {_LONGEST:g}"
+            )
         total = math.floor(duration / self.dt + 1e-6)
         table = None if commands is None else as_commands(commands, self.command_width)
         flight = _core.Flight(self, table, log_every)

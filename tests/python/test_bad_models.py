@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from faults import assert_refused, fault
+from faults import assert_refused, fault, refusal
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -154,6 +154,13 @@ LOOSE = '<link name="loose"/>'
 )
 def test_links_and_joints_that_make_no_tree(broken):
     assert_refused("toy.urdf", broken)
+
+
+def test_a_root_that_gazebo_would_pin_to_the_world(toy):
+    text = (toy / "toy.urdf").read_text()
+    (toy / "toy.urdf").write_text(text.replace('"frame"', '"world"'))
+    message = refusal(qc.Simulation, "toy.urdf")
+    assert message.startswith("toy.urdf:2: Gazebo pins a root link named 'world'")
 
 
 ORIGIN = '<origin xyz="0 0 0.1"/>'

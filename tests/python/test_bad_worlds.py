@@ -18,8 +18,9 @@ END = "    </physics>"
 @pytest.mark.parametrize(
     "broken",
     [
-        fault(STEP, STEP.replace("0.001", "0"), "<max_step_size>", "write a number > 0"),
-        fault(STEP, STEP.replace("0.001", "-1"), "<max_step_size>", "write a number > 0"),
+        fault(STEP, STEP.replace("0.001", "0"), "<max_step_size>", "write a number >= 1e-09"),
+        fault(STEP, STEP.replace("0.001", "-1"), "<max_step_size>", "write a number >= 1e-09"),
+        fault(STEP, STEP.replace("0.001", "1e-200"), "<max_step_size>", "a number >= 1e-09"),
         fault(STEP, STEP.replace("0.001", "1ms"), "<max_step_size> is '1ms'", "finite number"),
         fault(STEP, STEP.replace("0.001", "nan"), "<max_step_size> is 'nan'", "finite number"),
         fault(RATE, RATE.replace("1000", "-1"), "<real_time_update_rate>", "number >= 0"),

@@ -60,6 +60,10 @@ Topology check_topology(const UrdfTree& tree) {
                        topology.root + "'; connect it with a joint or remove it");
     }
     topology.root = link.name;
+    if (link.name == "world") {
+      throw InputError(link.where + ": Gazebo pins a root link named 'world' to the world, which is "
+                       "not modelled; give it another name");
+    }
   }
   // Walking up from any link must end at the root, or at a link from where it is known to.
   std::set<std::string> rooted = {topology.root};

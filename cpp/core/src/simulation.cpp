@@ -11,8 +11,6 @@ namespace quadcore {
 namespace {
 
 constexpr const char* command_topic_name = "vel_cmd";
-/// Below this no flight would end.
-constexpr double min_dt = 1e-9;         // s
 /// Beyond these no flight is meant; the numbers only say "diverged" before they overflow.
 constexpr double max_speed = 1e6;       // m/s
 constexpr double max_rate = 1e6;        // rad/s
@@ -34,10 +32,9 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
       dt_(options.dt.value_or(world.max_step_size)),
       warnings_(model.warnings),
       wrench_loads_(model.joints.size()) {
-  if (!(dt_ >= min_dt && std::isfinite(dt_))) {
+  if (!(dt_ >= shortest_step && std::isfinite(dt_))) {
     std::ostringstream what;
-    what << (options.dt ? "dt" : "the world's <max_step_size>") << " is " << dt_
-         << "; write a step in s, from " << min_dt << " up";
+    what << "dt is " << dt_ << "; write a step in s, from " << shortest_step << " up";
     throw InputError(what.str());
   }
   if (!options.spawn.xyz.allFinite() || !options.spawn.rpy.allFinite()) {

@@ -78,7 +78,7 @@ class WorldReader {
   }
 
   Handlers physics_handlers() {
-    return {{"max_step_size", number(world_.max_step_size, 0, true)},
+    return {{"max_step_size", number(world_.max_step_size, shortest_step)},
             {"real_time_update_rate", number(world_.real_time_update_rate, 0)},
             {"updateRate", number(world_.real_time_update_rate, 0)},
             {"real_time_factor", number(world_.real_time_factor, 0, true)},

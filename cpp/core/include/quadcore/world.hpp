@@ -7,6 +7,9 @@
 
 namespace quadcore {
 
+/// With steps below this [s] no flight would end.
+constexpr double shortest_step = 1e-9;
+
 /// What a world file sets; the defaults are Gazebo 11's.
 struct World {
   Vector3d gravity_W{0, 0, -9.8};    ///< m/s^2
