@@ -59,7 +59,11 @@ WORLD = {
         "steps per second of wall clock, 0 = as fast as possible; for nodes that pace",
     ),
     "physics/updateRate": ("1/s", "1000", "the thesis' name of `real_time_update_rate`"),
-    "physics/real_time_factor": ("", "1", "wall clock pace; for nodes that pace"),
+    "physics/real_time_factor": (
+        "",
+        "1",
+        "without effect, as in Gazebo; `real_time_update_rate` sets the pace",
+    ),
     "physics/ode/solver/type": (
         "",
         "`quick`",

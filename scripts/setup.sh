@@ -47,7 +47,7 @@ create_venv() {
 
 install_quadcore() {
   local sources
-  sources=$(find CMakeLists.txt pyproject.toml cpp python urdf worlds \
+  sources=$(find CMakeLists.txt pyproject.toml cpp python urdf worlds config launch srv \
     -type f -not -name '*.pyc' -print0 | sort -z | xargs -0 sha256sum | sha256sum)
   [ "$(cat .venv/quadcore.sha256 2>/dev/null)" = "$sources" ] && return
   say "building and installing quadcore into .venv"

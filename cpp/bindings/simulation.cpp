@@ -63,8 +63,10 @@ Numbers numbers(const py::object& object, int dimensions, const char* what) {
   Numbers array = Numbers::ensure(object);
   if (!array) PyErr_Clear();
   if (!array || array.ndim() != dimensions) {
-    throw InputError(std::string(what) + " is not a " + std::to_string(dimensions) +
-                     "-dimensional array of numbers");
+    throw InputError(std::string(what) + " is not " +
+                     (dimensions == 0 ? "a number"
+                                      : "a " + std::to_string(dimensions) +
+                                            "-dimensional array of numbers"));
   }
   return array;
 }
@@ -132,7 +134,7 @@ VehicleState to_state(const py::object& object) {
     return v;
   };
   VehicleState state;
-  state.time = py::cast<double>(object.attr("time"));
+  state.time = *numbers(object.attr("time"), 0, "state.time").data();
   state.position = sized("position", 3);
   state.orientation.coeffs() = sized("orientation", 4);
   state.linear_velocity = sized("linear_velocity", 3);

@@ -108,8 +108,8 @@ def _wrenches(log: Log) -> Figure:
     acting = {name: wrench for name, wrench in log.wrenches.items() if np.any(wrench)}
     title = _title(log, "Wrenches about the centre of mass, frame axes")
     figure, grid = panels(title, max(1, len(acting)), 2)
-    grid[0, 0].set_title("force (N)", loc="left", fontsize="medium")
-    grid[0, 1].set_title("torque (N m)", loc="left", fontsize="medium")
+    grid[0, 0].set_title("force (N)", fontsize="medium")
+    grid[0, 1].set_title("torque (N m)", fontsize="medium")
     for row, (name, wrench) in zip(grid, acting.items()):
         row[0].set_ylabel(name)
         for axes, part in ((row[0], wrench[:, :3]), (row[1], wrench[:, 3:])):

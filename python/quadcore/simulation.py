@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from numbers import Real
 from operator import attrgetter
 from pathlib import Path
 from typing import Callable, Mapping, Optional, Sequence, Union
@@ -131,11 +132,7 @@ class Simulation(_core.Simulation):
             The flight failed. Its attribute `log` is the log so far, as it is of the
             KeyboardInterrupt that ends a run.
         """
-        if not (isinstance(duration, (int, float)) and 0 <= duration <= _LONGEST):
-            raise _core.InputError(
-                f"duration is {duration!r}; give seconds, from 0 to {_LONGEST:g}"
-            )
-        total = math.floor(duration / self.dt + 1e-6)
+        total = steps_within(duration, self.dt)
         table = None if commands is None else as_commands(commands, self.command_width)
         flight = _core.Flight(self, table, log_every)
         done, steps = 0, 1
@@ -157,6 +154,22 @@ class Simulation(_core.Simulation):
     def _log(self, flight: _core.Flight) -> Log:
         wrenches = flight.wrenches
         return Log(flight.table, {term: wrenches[:, i] for i, term in enumerate(self.wrench_terms)})
+
+
+def steps_within(duration: float, dt: float) -> int:
+    """Count the steps that end within a duration; raises `InputError` if it is none."""
+    if not (isinstance(duration, Real) and 0 <= duration <= _LONGEST):
+        raise _core.InputError(f"duration is {duration!r}; give seconds, from 0 to {_LONGEST:g}")
+    return math.floor(duration / dt + 1e-6)
+
+
+def check_logged(duration: float, dt: float, log_every: int) -> None:
+    """Raise `InputError` if a log would hold the start alone: nothing could be told from it."""
+    steps = steps_within(duration, dt)
+    if log_every > steps:
+        raise _core.InputError(
+            f"log_every is {log_every} but the flight has {steps} steps; log more often"
+        )
 
 
 def _whole(seed: object) -> int:

@@ -72,6 +72,7 @@ class LiveState:
 
     __slots__ = ("_clock", *_VECTORS)
 
+    _clock: np.ndarray
     position: np.ndarray
     orientation: np.ndarray
     linear_velocity: np.ndarray
@@ -81,9 +82,14 @@ class LiveState:
 
     def __init__(self, simulation: _core.Simulation) -> None:
         views = simulation._views()
-        self._clock = views["time"]
+        object.__setattr__(self, "_clock", views["time"])
         for name in _VECTORS:
-            setattr(self, name, views[name])
+            object.__setattr__(self, name, views[name])
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(
+            f"state.{name} is read-only; change a state.copy() and give it to set_state()"
+        )
 
     @property
     def time(self) -> float:

@@ -234,6 +234,7 @@ def state_of(simulation, **changed):
         (lambda s: s.set_state(state_of(s, orientation=[0, 0, 0, 0])), "is no quaternion"),
         (lambda s: s.set_state(state_of(s, rotor_velocity=[1, 2])), "this vehicle has 1 rotors"),
         (lambda s: s.set_state(state_of(s, time=math.inf)), "not a finite number"),
+        (lambda s: s.set_state(state_of(s, time="now")), "state.time is not a number"),
         (lambda s: s.restore(qc.Simulation("quadrotor").snapshot()), "was taken from another"),
         (lambda s: s.restore(like_it("toy.urdf", mass="1.01")), "was taken from another"),
         (lambda s: s.restore(like_it("toy.urdf", rotor="spinner")), "was taken from another"),

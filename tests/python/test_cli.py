@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import scipy.io
 
+import quadcore as qc
 from quadcore.cli import main, terminal
 from quadcore.log import Log
 
@@ -68,6 +69,15 @@ def test_run_prints_a_summary_and_writes_nothing_unasked(capsys):
     assert "quadrotor, gazebo11" in out
     assert "9.98" in out  # 5 cm s of free fall from 10 m
     assert written() == []
+
+
+def test_the_summary_tells_the_end_of_the_flight_however_little_is_logged(capsys):
+    assert main([*FALL, "--log-every", "49"]) == 0
+    seldom = capsys.readouterr().out
+    assert main(FALL) == 0
+    always = capsys.readouterr().out
+    final = [line for line in always.splitlines() if line.startswith("final")]
+    assert len(final) == 2 and all(line in seldom.splitlines() for line in final)
 
 
 def test_quiet_prints_nothing(capsys):
@@ -193,6 +203,13 @@ def test_a_second_interrupt_does_not_wait(monkeypatch):
 def test_warnings_go_to_standard_error(capsys):
     assert main([*FALL, "--set", "motorpid_plugin.ki=1"]) == 0
     assert capsys.readouterr().err.startswith("warning: ")
+
+
+def test_the_version_is_that_of_the_package(capsys):
+    with pytest.raises(SystemExit) as left:
+        main(["--version"])
+    assert left.value.code == 0
+    assert capsys.readouterr().out == f"quadcore {qc.__version__}\n"
 
 
 def test_help_and_the_module_work_from_a_shell():

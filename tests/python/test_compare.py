@@ -311,6 +311,7 @@ def test_ctrl_c_ends_it_soon_and_keeps_what_was_flown():
         ("toy.urdf --vary motor.kp=1 --out c.csv", "c.csv: cannot be made"),
         ("toy.urdf --vary motor.kp=1 --jobs 0", "--jobs: '0' is not a whole number"),
         ("toy.urdf --vary motor.kp", "is not of the form"),
+        ("toy.urdf --vary motor.kp=1 --duration 1 --log-every 1001", "the flight has 1000 steps"),
     ],
 )
 def test_bad_input_is_one_line_and_nothing_is_flown(capsys, arguments, reason):
@@ -343,12 +344,15 @@ def test_the_page_needs_no_other_file():
     assert f"5e-4 (toy.urdf:{line_of('toy.urdf', '<kp>')})" in page
 
 
-def test_the_python_of_the_page_runs_as_it_stands():
-    page = Path(__file__).resolve().parents[2] / "docs" / "comparing.md"
+def test_the_python_of_the_page_runs_as_it_stands(monkeypatch):
+    root = Path(__file__).resolve().parents[2]
+    monkeypatch.chdir(root)
+    page = root / "docs" / "comparing.md"
     (block,) = re.findall(r"^```python\n(.*?)^```$", page.read_text(), re.DOTALL | re.MULTILINE)
     names = {}
     exec(block, names)
     assert names["result"].reference == 0
+    assert names["result"].table["largest_position"][1:].all()
 
 
 def test_more_flights_than_can_be_held_leave_metrics_only():

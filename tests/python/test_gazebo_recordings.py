@@ -16,6 +16,9 @@ import pytest
 
 import quadcore as qc
 
+# One recording has an integral gain without limits, on purpose.
+pytestmark = pytest.mark.filterwarnings("ignore::quadcore.QuadcoreWarning")
+
 DATA = Path(__file__).resolve().parents[1] / "data" / "gazebo11"
 FOLDERS = [DATA]
 if "QUADCORE_RECORDINGS" in os.environ:

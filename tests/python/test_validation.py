@@ -236,6 +236,7 @@ def test_other_commands_motors_and_models_can_be_flown(tmp_path):
         (["--set", "motorpid_plugin.kd=1e-9"], "the mathematical model has proportional motors"),
         (["--commands", "late.csv"], "the first row is for t = 1; begin at t = 0"),
         (["--commands", "none.csv"], "none.csv: cannot be read"),
+        (["--duration", "1", "--log-every", "1001"], "the flight has 1000 steps"),
         (["--motors", "electric"], "--motors: invalid choice: 'electric'"),
         (["--out", "late.csv"], "late.csv: cannot be made"),
         (["nowhere.urdf"], "nowhere.urdf: no such file, and no shipped model of that name"),

@@ -8,6 +8,7 @@ import signal
 import sys
 from typing import NoReturn, Sequence
 
+from .. import __version__
 from .._core import FlightError, InputError, QuadcoreError
 from . import compare, info, run, terminal, validate
 
@@ -61,6 +62,7 @@ def _parser() -> argparse.ArgumentParser:
         description="A multirotor from its URDF, in flight.",
         allow_abbrev=False,
     )
+    parser.add_argument("--version", action="version", version=f"quadcore {__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     for command in (info, run, validate, compare):
         command.register(commands)

@@ -106,6 +106,8 @@ def _keeper(arguments: argparse.Namespace, plan: Plan) -> Any:
     folder = out / "logs" if arguments.logs or plan.count <= _FEW else None
     if folder is not None:
         make_folder(folder)
+        for old in folder.glob("[0-9]*.csv"):  # of a comparison before
+            old.unlink()
     digits = len(str(plan.count))
 
     def keep(row: int, log: Log) -> Log | None:

@@ -12,6 +12,8 @@ from .. import resources
 from ..simulation import Simulation
 from . import options, terminal
 
+_WIDE = 120  # columns
+
 
 def register(commands: Any) -> None:
     """Add the command to the command line."""
@@ -33,7 +35,9 @@ def info(arguments: argparse.Namespace) -> None:
         console.print(f"  {plugin.filename}, loaded from {plugin.path}")
         # Lines that are searched stand alone; on a terminal the heading is in sight.
         prefix = "" if console.is_terminal else f"{plugin.name}."
-        console.print(_parameters(plugin, prefix), "")
+        console.print(_parameters(plugin, prefix, console.width >= _WIDE), "")
+    if console.width < _WIDE:
+        console.print("A wider terminal shows range, meaning and equation, too.")
 
 
 def _links(simulation: Simulation) -> Table:
@@ -60,18 +64,17 @@ def _rotors(simulation: Simulation) -> Table:
     return table
 
 
-def _parameters(plugin: Any, prefix: str) -> Table:
-    table = _table("parameter", "value", "unit", "default", "range", "from", "meaning", "equation")
+def _parameters(plugin: Any, prefix: str, wide: bool) -> Table:
+    explained = ("range", "meaning", "equation") if wide else ()
+    table = _table("parameter", "value", "unit", "default", "from", *explained)
     for parameter in plugin.parameters:
         table.add_row(
             prefix + parameter.name,
             parameter.value,
             parameter.unit,
             "required" if parameter.default is None else parameter.default,
-            parameter.range,
             _origin(parameter.origin),
-            parameter.meaning,
-            parameter.equation,
+            *(getattr(parameter, name) for name in explained),
         )
     return table
 

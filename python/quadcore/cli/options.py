@@ -64,7 +64,7 @@ def add_flight(
         "--duration", metavar="S", type=_positive, default=10.0, help="time to fly in s (10)"
     )
     parser.add_argument(
-        "--seed", metavar="N", type=integer(0), default=0, help="seed of all noise (0)"
+        "--seed", metavar="N", type=integer(0, 2**64 - 1), default=0, help="seed of all noise (0)"
     )
     parser.add_argument(
         "--spawn",
@@ -167,12 +167,14 @@ def _finite(text: str) -> float:
     return value
 
 
-def integer(lowest: int) -> Callable[[str], int]:
+def integer(lowest: int, highest: int = 10**18) -> Callable[[str], int]:
     """Make the type of an option that takes a whole number."""
 
     def parse(text: str) -> int:
-        if not re.fullmatch(r"\d{1,18}", text) or int(text) < lowest:
+        if not re.fullmatch(r"\d+", text) or int(text) < lowest:
             raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from {lowest} on")
+        if int(text) > highest:
+            raise argparse.ArgumentTypeError(f"{text} exceeds {highest}")
         return int(text)
 
     return parse

@@ -79,13 +79,13 @@ def _write(log: Log, files: list[Path]) -> None:
 def _summary(simulation: Simulation, log: Log, elapsed: float, files: list[Path]) -> Table:
     table = Table(box=None, show_header=False, pad_edge=False)
     steps = round(simulation.time / simulation.dt)
-    attitude = np.degrees(roll_pitch_yaw(log.orientation[-1]))
+    attitude = np.degrees(roll_pitch_yaw(simulation.state.orientation))
     fastest = np.abs(log.rotor_velocity).max(initial=0.0)
     rows = [
         ("flown", f"{simulation.model.name}, {simulation.engine}"),
         ("duration", f"{simulation.time:.9g} s"),
         ("steps", f"{steps}, {steps / elapsed:,.0f} per s"),
-        ("final position", "{:.6f}, {:.6f}, {:.6f} m".format(*log.position[-1])),
+        ("final position", "{:.6f}, {:.6f}, {:.6f} m".format(*simulation.state.position)),
         ("final roll, pitch, yaw", "{:.4f}, {:.4f}, {:.4f} deg".format(*attitude)),
         ("fastest rotor", f"{fastest:.3f} rad/s"),
     ]

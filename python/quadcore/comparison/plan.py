@@ -11,7 +11,7 @@ from .._core import InputError, QuadcoreError, engines
 from ..commands import CommandsLike, as_commands
 from ..description import load_description, load_world
 from ..log import Log
-from ..simulation import Simulation
+from ..simulation import Simulation, check_logged
 from .difference import Difference, differences, facts
 from .grid import Axis, Values, axes_of, check_size, variants
 
@@ -64,6 +64,7 @@ class Plan:
         built = self._built()
         self.dt = built[0].dt if built else 1e-3
         """s, of the first model as it is."""
+        check_logged(duration, self.dt, log_every)
         self._check_tags(built)
         self.rotor_count = len(self._models[0].joints)
         if commands is not None:

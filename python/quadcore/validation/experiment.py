@@ -12,7 +12,7 @@ from ..chapter2 import GYROSTAT, MathematicalModel, Terms, Vehicle
 from ..chapter2.vehicle import AIR, MOTOR, command_order, parameters_of, the_plugin
 from ..commands import CommandsLike, as_commands
 from ..log import Log
-from ..simulation import Simulation, Value
+from ..simulation import Simulation, Value, check_logged
 from ..state import State
 from .ascent import ascent
 from .given_speeds import fly_given_speeds, stiff_gain
@@ -104,6 +104,7 @@ class Experiment:
             if key.endswith(".sim_slow"):
                 raise InputError(f"{key}: every flight has its own; give a list of sim_slow")
         simulation = Simulation(model, "eigen", world, dt, 0, parameters, xacro_args, spawn)
+        check_logged(duration, simulation.dt, log_every)
         vehicle = Vehicle.of(simulation)
         rotors = len(vehicle.arms)
         table = ascent(vehicle) if commands is None else as_commands(commands, rotors)
