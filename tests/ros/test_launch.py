@@ -9,7 +9,7 @@ import unittest
 from pathlib import Path
 
 import harness
-import roslib.packages
+import rospkg
 import rospy
 from harness import Recording
 from nav_msgs.msg import Odometry
@@ -43,7 +43,7 @@ class TestLaunch(unittest.TestCase):
         self.assertEqual(rospy.get_param("/uav1/quadcore/engine"), "ode")
 
     def test_relative_paths_begin_where_roslaunch_was_called(self):
-        worlds = Path(roslib.packages.get_pkg_dir("quadcore")) / "worlds"
+        worlds = Path(rospkg.RosPack().get_path("quadcore")) / "worlds"
         with tempfile.TemporaryDirectory() as folder:
             (Path(folder) / "my.urdf").write_text(harness.description())
             (Path(folder) / "my.world").write_text((worlds / "empty.world").read_text())
