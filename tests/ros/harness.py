@@ -129,7 +129,7 @@ class Recording:
 @contextmanager
 def commander(topic: str = "/quadrotor/vel_cmd"):
     """Give a function that sends commands, once the node listens."""
-    publisher = rospy.Publisher(topic, Float64MultiArray, queue_size=10, tcp_nodelay=True)
+    publisher = rospy.Publisher(topic, Float64MultiArray, queue_size=1000, tcp_nodelay=True)
     try:
         wait_until(lambda: publisher.get_num_connections() > 0)
         yield lambda speeds: publisher.publish(data=speeds)

@@ -136,9 +136,9 @@ class TestFaults(unittest.TestCase):
         with flight() as node, commander() as send:
             for i in range(300):
                 send([1.0] * (i % 3))
-            diagnostic("rejected commands", lambda count: count > 100)
+            diagnostic("rejected commands", lambda count: count == 300)
             node.end()
-        self.assertLess(node.error.count("a command of"), 4)
+        self.assertLess(node.error.count("a command of"), 20)
 
     def test_a_model_without_motors_takes_no_commands(self):
         urdf = re.sub(
