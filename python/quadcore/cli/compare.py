@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import argparse
 import sys
+from itertools import islice
 from pathlib import Path
 from typing import Any
-
-from rich.table import Table
 
 from .._core import FlightError, InputError
 from ..comparison.compare import Comparison, fly
@@ -39,9 +38,7 @@ def register(commands: Any) -> None:
     )
     options.add_flight(parser)
     options.add_commands(parser)
-    parser.add_argument(
-        "--jobs", metavar="N", type=options.integer(1), help="processes (one per core)"
-    )
+    options.add_jobs(parser)
     parser.add_argument(
         "--out",
         metavar="DIR",
@@ -137,12 +134,12 @@ def _show_models(plan: Plan) -> None:
     console = terminal.console()
     for model, found in plan.differences().items():
         console.print(f"{model} differs from {plan.names[0]} in")
-        table = _table("  what", "from", "to", "at", "and at")
+        table = terminal.table("  what", "from", "to", "at", "and at")
         for d in found:
             table.add_row(f"  {d.what}", d.before, d.after, d.before_at or "-", d.after_at or "-")
         console.print(table if found else "  nothing that flies", "")
     if plan.axes:
-        table = _table("varied", "values", "as written")
+        table = terminal.table("varied", "values", "as written")
         for axis in plan.axes:
             table.add_row(axis.name, listed(axis.values), plan.as_written(axis) or "-")
         console.print(table, "")
@@ -154,7 +151,7 @@ def _show_flights(plan: Plan, comparison: Comparison, files: list[Path]) -> None
     if comparison.reference is not None:
         console.print(f"differences from no. {comparison.reference + 1}, final / largest")
     headings = [f"{state} ({comparison.states[state]})" for state in whole]
-    table = _table("no.", "variant", *headings)
+    table = terminal.table("no.", "variant", *headings)
     for number, (row, variant) in enumerate(zip(comparison.table, plan), start=1):
         if number > _ROWS:
             table.add_row("...", f"{plan.count - _ROWS} more")
@@ -175,15 +172,8 @@ def _report_failures(plan: Plan, comparison: Comparison) -> None:
     failed = [row for row, failure in enumerate(comparison.table["failure"]) if failure]
     if failed:
         first = failed[0]
-        label = [plan.label(variant) for variant in plan][first]
+        label = plan.label(next(islice(plan, first, None)))
         raise FlightError(
             f"{len(failed)} of {plan.count} flights failed; the first, no. {first + 1} ({label}): "
             f"{comparison.table['failure'][first]}"
         )
-
-
-def _table(*columns: str) -> Table:
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    for i, column in enumerate(columns):
-        table.add_column(column, no_wrap=i == 0, overflow="fold")
-    return table

@@ -41,14 +41,14 @@ def info(arguments: argparse.Namespace) -> None:
 
 
 def _links(simulation: Simulation) -> Table:
-    table = _table("link", "mass (kg)")
+    table = terminal.table("link", "mass (kg)")
     for link in simulation.model.links:
         table.add_row(link.name, f"{link.mass:.9g}")
     return table
 
 
 def _body(simulation: Simulation) -> Table:
-    table = _table("whole vehicle", "")
+    table = terminal.table("whole vehicle", "")
     table.add_row("mass (kg)", f"{simulation.mass:.9g}")
     table.add_row("centre of mass (m, frame axes)", _numbers(simulation.center_of_mass))
     for i, row in enumerate(simulation.inertia):
@@ -58,7 +58,7 @@ def _body(simulation: Simulation) -> Table:
 
 
 def _rotors(simulation: Simulation) -> Table:
-    table = _table("rotor", "position in its parent link (m)", "axis")
+    table = terminal.table("rotor", "position in its parent link (m)", "axis")
     for joint in simulation.model.joints:
         table.add_row(joint.name, _numbers(joint.xyz), _numbers(joint.axis))
     return table
@@ -66,7 +66,7 @@ def _rotors(simulation: Simulation) -> Table:
 
 def _parameters(plugin: Any, prefix: str, wide: bool) -> Table:
     explained = ("range", "meaning", "equation") if wide else ()
-    table = _table("parameter", "value", "unit", "default", "from", *explained)
+    table = terminal.table("parameter", "value", "unit", "default", "from", *explained)
     for parameter in plugin.parameters:
         table.add_row(
             prefix + parameter.name,
@@ -88,10 +88,3 @@ def _origin(origin: str) -> str:
 
 def _numbers(values: Any) -> str:
     return " ".join(f"{value + 0.0:.9g}" for value in values)  # -0 is 0
-
-
-def _table(*columns: str) -> Table:
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    for i, column in enumerate(columns):
-        table.add_column(column, no_wrap=i == 0, overflow="fold")
-    return table

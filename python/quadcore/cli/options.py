@@ -90,6 +90,11 @@ def add_commands(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_jobs(parser: argparse.ArgumentParser) -> None:
+    """Add the option that limits the processes."""
+    parser.add_argument("--jobs", metavar="N", type=integer(1), help="processes (one per core)")
+
+
 def model_arguments(arguments: argparse.Namespace) -> dict[str, Any]:
     """Arguments of `Simulation` that `add_model` asked for."""
     return {

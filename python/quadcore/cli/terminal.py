@@ -11,6 +11,7 @@ from typing import Any, Callable, Iterator
 
 from rich.console import Console
 from rich.progress import Progress
+from rich.table import Table
 
 from ..warning import QuadcoreWarning
 
@@ -21,6 +22,19 @@ def console() -> Console:
     """Make a console without markup that breaks no line unless a terminal needs it."""
     width = None if sys.stdout.isatty() else 10_000
     return Console(width=width, markup=False, emoji=False, highlight=False)
+
+
+def table(*columns: str, numbers: bool = False) -> Table:
+    """Make a table whose cells wrap, or one of numbers, which do not; the first column never."""
+    made = Table(box=None, pad_edge=False, header_style="bold")
+    for i, column in enumerate(columns):
+        made.add_column(
+            column,
+            no_wrap=numbers or i == 0,
+            overflow="ellipsis" if numbers else "fold",
+            justify="right" if numbers and i else "left",
+        )
+    return made
 
 
 @contextmanager

@@ -44,9 +44,7 @@ def register(commands: Any) -> None:
         default="lag",
         help="of the mathematical model: those of the engines, or none that lags (lag)",
     )
-    parser.add_argument(
-        "--jobs", metavar="N", type=options.integer(1), help="processes (one per core)"
-    )
+    options.add_jobs(parser)
     parser.add_argument(
         "--out", metavar="DIR", type=Path, help="write page, tables and figures here"
     )
@@ -129,7 +127,7 @@ def _distances(study: Study) -> Table:
     from ..validation import Case
     from ..validation.output import size
 
-    table = _table("engine", "sim_slow", *study.drags)
+    table = terminal.table("engine", "sim_slow", *study.drags, numbers=True)
     rows = {row.case: row.difference for row in study.rows}
     for engine in study.engines:
         for slow in study.sim_slow:
@@ -143,15 +141,8 @@ def _chain(study: Study, chain: Chain) -> Table:
     from ..validation.output import size
 
     start = f"{study.engines[0]}, sim_slow {chain.sim_slow:g}, drag {chain.drag}: because of"
-    table = _table(start, "share (m)", "largest (m)")
+    table = terminal.table(start, "share (m)", "largest (m)", numbers=True)
     for link in chain.links:
         table.add_row(link.change, size(link.share), size(link.largest))
     table.add_row(chain.failure or f"sum, at {chain.time:.2f} s", size(chain.distance), "")
-    return table
-
-
-def _table(*columns: str) -> Table:
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    for i, column in enumerate(columns):
-        table.add_column(column, no_wrap=True, justify="right" if i else "left")
     return table
