@@ -19,7 +19,12 @@ void bind_model(py::module_& m) {
            py::arg("lines") = std::vector<std::pair<std::string, int>>{})
       .def_readonly("name", &Document::name)
       .def_readonly("text", &Document::text)
-      .def_readonly("lines", &Document::lines);
+      .def_readonly("lines", &Document::lines)
+      .def_property_readonly_static("largest", [](const py::object&) { return Document::largest; })
+      .def_property_readonly_static("most_levels",
+                                    [](const py::object&) { return Document::most_levels; })
+      .def_property_readonly_static("most_attributes",
+                                    [](const py::object&) { return Document::most_attributes; });
 
   py::class_<Link>(m, "Link", "A moving body: a link and every link fixed to it.")
       .def_readonly("name", &Link::name)

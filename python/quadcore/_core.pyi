@@ -20,6 +20,9 @@ class FlightError(QuadcoreError):
     time: float
 
 class Document:
+    largest: int
+    most_levels: int
+    most_attributes: int
     name: str
     text: str
     lines: List[Tuple[str, int]]

@@ -8,15 +8,15 @@ from xml.dom import expatbuilder, minidom
 from xml.parsers import expat
 from xml.sax.saxutils import escape, quoteattr
 
-from ._core import InputError
+from ._core import Document, InputError
 from .files import read_text
 
 _KEY = "quadcore.origin"
 
-# Far beyond any model or world; the core has the same limits.
-LARGEST = 1_000_000  # bytes
-DEEPEST = 64  # levels
-MOST_ATTRIBUTES = 100  # of one element
+# The core's limits.
+LARGEST = Document.largest
+DEEPEST = Document.most_levels
+MOST_ATTRIBUTES = Document.most_attributes
 
 
 class Origin(NamedTuple):

@@ -8,9 +8,6 @@
 namespace quadcore {
 namespace {
 
-constexpr int most_levels = 64;
-constexpr int most_attributes = 100;  ///< each is compared with all before it
-
 [[noreturn]] void fail(const Document& document, int line, const std::string& what) {
   throw InputError(document.at(line) + ": " + what);
 }
@@ -72,9 +69,9 @@ class MarkupWalk {
     for (advance(); at_ < text_.size() && text_[at_] != '>'; advance()) {
       const char quote = text_[at_];
       if (quote != '"' && quote != '\'') continue;
-      if (++attributes > most_attributes) {
+      if (++attributes > Document::most_attributes) {
         fail(document_, line_,
-             "an element with more than " + std::to_string(most_attributes) +
+             "an element with more than " + std::to_string(Document::most_attributes) +
                  " attributes; no model or world has one");
       }
       for (advance(); at_ < text_.size() && text_[at_] != quote;) advance();
@@ -83,9 +80,9 @@ class MarkupWalk {
     const bool empty = text_[at_ - 1] == '/';
     if (closes) {
       --level_;
-    } else if (!empty && ++level_ > most_levels) {
+    } else if (!empty && ++level_ > Document::most_levels) {
       fail(document_, line_,
-           "elements are nested deeper than " + std::to_string(most_levels) +
+           "elements are nested deeper than " + std::to_string(Document::most_levels) +
                " levels; no model or world is");
     }
   }

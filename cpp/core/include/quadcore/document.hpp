@@ -10,8 +10,12 @@ namespace quadcore {
 /// An XML text and where its lines came from. A document that was expanded (by xacro) carries for
 /// each of its lines the file and line it stems from; otherwise the text is the file itself.
 struct Document {
-  /// Bytes of the largest text that is read.
-  static constexpr std::size_t largest = 1000000;
+  /// \name Limits, far beyond any model or world
+  /// @{
+  static constexpr std::size_t largest = 1000000;  ///< bytes
+  static constexpr int most_levels = 64;
+  static constexpr int most_attributes = 100;  ///< of one element
+  /// @}
 
   std::string name;
   std::string text;
@@ -19,7 +23,7 @@ struct Document {
 
   /// "FILE:LINE" of a line of the text, counted from 1.
   std::string at(int line) const;
-  /// Reads a file; throws InputError if it cannot be read or is too large.
+  /// Reads a file, of one that is too large the beginning; throws InputError if it cannot be read.
   static Document read(const std::string& path);
 };
 
