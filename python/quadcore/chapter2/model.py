@@ -12,6 +12,7 @@ from .._core import FlightError
 from ..commands import as_commands
 from ..log import Log
 from ..rotation import roll_pitch_yaw
+from ..simulation import steps_within
 from ..state import State
 from . import matrices
 from .kinematics import euler_rates_to_body, gradient_of_W
@@ -115,7 +116,7 @@ class MathematicalModel:
         v = self.vehicle
         n = len(v.arms)
         table = as_commands(commands, n)
-        time = state.time + dt * np.arange(int(duration / dt + 1e-6) + 1)
+        time = state.time + dt * np.arange(steps_within(duration, dt) + 1)
         y = self._start(state)
         if _upright(0, y) <= 0:
             raise _toppled(state.time)

@@ -16,7 +16,7 @@ from .. import _core
 from ..chapter2 import Vehicle
 from ..chapter2.vehicle import command_order
 from ..log import Log
-from ..simulation import Simulation
+from ..simulation import Simulation, steps_within
 
 # The rate of a stiff motor times the step; Runge-Kutta is stable below 2.78.
 STIFFNESS = 2.0
@@ -75,7 +75,7 @@ def fly_given_speeds(
         Engine ``eigen``, at rest, its motors of `stiff_gain`, sim_slow 1.
     """
     dt, order = simulation.dt, command_order(simulation)
-    middles = dt * (np.arange(int(duration / dt + 1e-6)) + 0.5)
+    middles = dt * (np.arange(steps_within(duration, dt)) + 0.5)
     omega = speeds(vehicle, commands, middles, lag)
     # What a stiff motor must be asked for to hold a speed against friction.
     asked = omega * (1 + vehicle.joint_damping / stiff_gain(vehicle, dt))
