@@ -57,7 +57,7 @@ class Simulation(_core.Simulation):
     Warns
     -----
     QuadcoreWarning
-        What is allowed but was perhaps not meant; `model.warnings` and `warnings` keep it.
+        What is allowed but was perhaps not meant; `warnings` keeps it.
     """
 
     def __init__(
@@ -89,7 +89,7 @@ class Simulation(_core.Simulation):
             spawn=_pose(spawn),
         )
         self._live = LiveState(self)
-        for warning in dict.fromkeys([*self.model.warnings, *self.warnings]):
+        for warning in self.warnings:
             warn(warning, QuadcoreWarning, stacklevel=2)
 
     # attrgetter, not a function: reading the state is part of every step of a Python loop.
