@@ -67,19 +67,21 @@ Collision read_collision(const Xml& xml, const Element& element) {
   Collision collision{ShapeKind::mesh, Vector3d::Zero(), read_origin(xml, element),
                       xml.where(shape)};
   const std::string kind = shape.Name();
-  xml.attributes_alone(shape, kind == "mesh"       ? std::set<std::string>{"filename", "scale"}
-                              : kind == "box"      ? std::set<std::string>{"size"}
-                              : kind == "cylinder" ? std::set<std::string>{"radius", "length"}
-                                                   : std::set<std::string>{"radius"});
-  if (kind == "mesh") return collision;
+  if (kind == "mesh") {
+    xml.attributes_alone(shape, {"filename", "scale"});
+    return collision;
+  }
   if (kind == "box") {
+    xml.attributes_alone(shape, {"size"});
     xml.attribute(shape, "size");
     collision.kind = ShapeKind::box;
     collision.size = xml.vector(shape, "size", Vector3d::Zero());
   } else if (kind == "cylinder") {
+    xml.attributes_alone(shape, {"radius", "length"});
     collision.kind = ShapeKind::cylinder;
     collision.size = {xml.number(shape, "radius"), xml.number(shape, "length"), 1};
   } else {
+    xml.attributes_alone(shape, {"radius"});
     collision.kind = ShapeKind::sphere;
     collision.size = {xml.number(shape, "radius"), 1, 1};
   }
