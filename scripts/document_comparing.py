@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 import quadcore as qc
 from quadcore.comparison.metrics import differences
-from quadcore.plots import PALETTE, png
+from quadcore.plots import PALETTE, dress, png
 
 ROOT = Path(__file__).resolve().parents[1]
 COMMANDS = ROOT / "tests" / "data" / "gazebo11" / "commands_S5.csv"
@@ -35,9 +35,7 @@ def panel(axes: Any, title: str, curves: Iterable[Tuple[Any, Any, int, str]]) ->
     axes.set_title(title, loc="left", fontsize="medium")
     axes.set_xlabel("time (s)")
     axes.set_xlim(0, 10)
-    axes.grid(color="0.9", linewidth=0.6)
-    for side in ("top", "right"):
-        axes.spines[side].set_visible(False)
+    dress(axes)
 
 
 def figure() -> Tuple[Figure, Any]:

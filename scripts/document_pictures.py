@@ -11,17 +11,16 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import quadcore as qc
+from quadcore.plots import PALETTE, dress, png
 
 ROOT = Path(__file__).resolve().parents[1]
 DATA = ROOT / "tests" / "data" / "gazebo11"
 IMAGES = ROOT / "docs" / "images"
 
-# The palette of quadcore.plots.
-COLOURS = {"gazebo11": "#0072b2", "ode": "#e69f00", "eigen": "#d55e00"}
+COLOURS = {"gazebo11": PALETTE[0], "ode": PALETTE[4], "eigen": PALETTE[1]}
 WIDTHS = {"gazebo11": 1.6, "ode": 3.5, "eigen": 1.6}  # ode and eigen lie upon each other
 RECORDED = {"color": "black", "label": "real Gazebo 11 (recorded)", "linestyle": "none"}
 
@@ -39,9 +38,7 @@ def distance(log: qc.Log, rows: np.ndarray) -> np.ndarray:
 
 def save(figure: Figure, name: str) -> None:
     """Write docs/images/NAME.png."""
-    FigureCanvasAgg(figure)
-    IMAGES.mkdir(parents=True, exist_ok=True)
-    figure.savefig(IMAGES / f"{name}.png", metadata={"Software": "quadcore"})
+    (IMAGES / f"{name}.png").write_bytes(png(figure))
     print(f"docs/images/{name}.png")
 
 
@@ -82,9 +79,7 @@ def draw_flight() -> None:
     apart.set_xlabel("time (s)")
     apart.set_ylim(1e-17, 1e3)
     apart.set_xlim(0, 10)
-    apart.grid(color="0.9", linewidth=0.6)
-    for side in ("top", "right"):
-        apart.spines[side].set_visible(False)
+    dress(apart)
     save(figure, "flight")
 
 
@@ -127,10 +122,7 @@ def draw_contact() -> None:
     apart.set_ylim(1e-18, 1e-12)
     apart.set_xlabel("time (s)")
     for axes in (height, apart):
-        axes.grid(color="0.9", linewidth=0.6)
-        axes.margins(x=0.01)
-        for side in ("top", "right"):
-            axes.spines[side].set_visible(False)
+        dress(axes)
     save(figure, "contact")
 
 
