@@ -19,15 +19,11 @@ CsvLog::CsvLog(const std::string& path, const Simulation& simulation)
 }
 
 void CsvLog::add(const VehicleState& state) {
-  std::fprintf(file_.get(), "%.17g", state.time);
-  const auto append = [this](const double* values, Eigen::Index count) {
-    for (Eigen::Index i = 0; i < count; ++i) std::fprintf(file_.get(), ",%.17g", values[i]);
-  };
-  append(state.position.data(), 3);
-  append(state.orientation.coeffs().data(), 4);
-  append(state.linear_velocity.data(), 3);
-  append(state.angular_velocity.data(), 3);
-  append(state.rotor_velocity.data(), state.rotor_velocity.size());
+  row_.clear();
+  append_log_row(state, row_);
+  for (std::size_t i = 0; i < row_.size(); ++i) {
+    std::fprintf(file_.get(), i == 0 ? "%.17g" : ",%.17g", row_[i]);
+  }
   std::fputc('\n', file_.get());
   check(std::ferror(file_.get()) == 0);
 }

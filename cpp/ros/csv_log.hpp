@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "quadcore/simulation.hpp"
 
@@ -28,7 +29,7 @@ class CsvLog {
   };
   const std::string path_;
   std::string error_;
-
+  std::vector<double> row_;
   std::unique_ptr<std::FILE, Close> file_;
 };
 

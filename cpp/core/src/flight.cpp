@@ -3,12 +3,29 @@
 #include "quadcore/error.hpp"
 
 namespace quadcore {
+namespace {
+
+template <class Vector>
+void append(std::vector<double>& to, const Vector& vector) {
+  to.insert(to.end(), vector.data(), vector.data() + vector.size());
+}
+
+}  // namespace
 
 std::vector<std::string> log_columns(std::size_t rotor_count) {
   std::vector<std::string> columns = {"t",  "x",  "y",  "z",  "qx", "qy", "qz",
                                       "qw", "vx", "vy", "vz", "wx", "wy", "wz"};
   for (std::size_t i = 0; i < rotor_count; ++i) columns.push_back("j" + std::to_string(i + 1));
   return columns;
+}
+
+void append_log_row(const VehicleState& state, std::vector<double>& table) {
+  table.push_back(state.time);
+  append(table, state.position);
+  append(table, state.orientation.coeffs());
+  append(table, state.linear_velocity);
+  append(table, state.angular_velocity);
+  append(table, state.rotor_velocity);
 }
 
 Flight::Flight(Simulation& simulation, std::optional<Commands> commands, std::int64_t log_every)
@@ -31,17 +48,8 @@ void Flight::advance(std::int64_t n) {
 }
 
 void Flight::log() {
-  const auto append = [](std::vector<double>& to, const auto& vector) {
-    to.insert(to.end(), vector.data(), vector.data() + vector.size());
-  };
   const std::vector<Wrench>& wrenches = simulation_.wrenches();  // may throw: no half a row then
-  const VehicleState& state = simulation_.state();
-  table_.push_back(state.time);
-  append(table_, state.position);
-  append(table_, state.orientation.coeffs());
-  append(table_, state.linear_velocity);
-  append(table_, state.angular_velocity);
-  append(table_, state.rotor_velocity);
+  append_log_row(simulation_.state(), table_);
   for (const Wrench& wrench : wrenches) {
     append(wrenches_, wrench.force_F);
     append(wrenches_, wrench.torque_F);

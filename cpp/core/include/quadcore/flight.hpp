@@ -12,6 +12,8 @@ namespace quadcore {
 
 /// Names of the log columns for n rotors: t, pose, velocities, rotor speeds.
 std::vector<std::string> log_columns(std::size_t rotor_count);
+/// Appends what stands in them.
+void append_log_row(const VehicleState& state, std::vector<double>& table);
 
 /// One logged run of a simulation, advanced piece by piece so that a caller can show progress and
 /// interrupt it without losing what is logged.
