@@ -55,7 +55,8 @@ class Gyrostat {
   }
 
  private:
-  // Position and velocity of the centre of mass in the world, quaternion x y z w, body rates, rotors.
+  // Position and velocity of the centre of mass in the world, quaternion x y z w, body rates,
+  // rotors.
   static constexpr int size = 17;
   static constexpr double dt = 0.001, g = 9.8;
   static constexpr double thrust = 1.1487e-5, torque = 2.69e-7, drag = 0.01 + 0.0025 + 0.005;
@@ -64,10 +65,9 @@ class Gyrostat {
   void rate(const double* s, double* d) const {
     const double *q = s + 3, *v = s + 7, *w = s + 10, *W = s + 13;
     const double x = q[0], y = q[1], z = q[2], u = q[3];
-    const double R[3][3] = {
-        {1 - 2 * (y * y + z * z), 2 * (x * y - u * z), 2 * (x * z + u * y)},
-        {2 * (x * y + u * z), 1 - 2 * (x * x + z * z), 2 * (y * z - u * x)},
-        {2 * (x * z - u * y), 2 * (y * z + u * x), 1 - 2 * (x * x + y * y)}};
+    const double R[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - u * z), 2 * (x * z + u * y)},
+                            {2 * (x * y + u * z), 1 - 2 * (x * x + z * z), 2 * (y * z - u * x)},
+                            {2 * (x * z - u * y), 2 * (y * z + u * x), 1 - 2 * (x * x + y * y)}};
     double V[3], F[3] = {0, 0, 0}, T[3] = {0, 0, 0}, spin = 0, motors = 0;
     for (int j = 0; j < 3; ++j) V[j] = R[0][j] * v[0] + R[1][j] * v[1] + R[2][j] * v[2];
     for (int i = 0; i < 4; ++i) {

@@ -64,9 +64,9 @@ Numbers numbers(const py::object& object, int dimensions, const char* what) {
   if (!array) PyErr_Clear();
   if (!array || array.ndim() != dimensions) {
     throw InputError(std::string(what) + " is not " +
-                     (dimensions == 0 ? "a number"
-                                      : "a " + std::to_string(dimensions) +
-                                            "-dimensional array of numbers"));
+                     (dimensions == 0
+                          ? "a number"
+                          : "a " + std::to_string(dimensions) + "-dimensional array of numbers"));
   }
   return array;
 }
@@ -188,8 +188,7 @@ void bind_plugins(py::module_& m) {
       .def_readonly("name", &LoadedPlugin::name)
       .def_readonly("filename", &LoadedPlugin::filename)
       .def_readonly("path", &LoadedPlugin::path)
-      .def_property_readonly("summary",
-                             [](const LoadedPlugin& p) { return p.descriptor->summary; })
+      .def_property_readonly("summary", [](const LoadedPlugin& p) { return p.descriptor->summary; })
       .def_property_readonly("parameters",
                              [](const LoadedPlugin& p) { return p.parameters.all(); });
 }
@@ -206,27 +205,38 @@ void bind_simulation(py::module_& m) {
            py::arg("seed"), py::arg("parameters"), py::arg("spawn"))
       .def("command", &command, py::arg("speeds"))
       .def("step", &step, py::arg("n") = 1)
-      .def("set_state",
-           [](Guarded& g, const py::object& state) {
+      .def(
+          "set_state",
+          [](Guarded& g, const py::object& state) {
+            const Lock lock(g);
+            g.simulation.set_state(to_state(state));
+          },
+          py::arg("state"))
+      .def("snapshot",
+           [](Guarded& g) {
              const Lock lock(g);
-             g.simulation.set_state(to_state(state));
-           },
-           py::arg("state"))
-      .def("snapshot", [](Guarded& g) { const Lock lock(g); return g.simulation.snapshot(); })
-      .def("restore",
-           [](Guarded& g, const Snapshot& snapshot) {
+             return g.simulation.snapshot();
+           })
+      .def(
+          "restore",
+          [](Guarded& g, const Snapshot& snapshot) {
+            const Lock lock(g);
+            g.simulation.restore(snapshot);
+          },
+          py::arg("snapshot"))
+      .def("reset",
+           [](Guarded& g) {
              const Lock lock(g);
-             g.simulation.restore(snapshot);
-           },
-           py::arg("snapshot"))
-      .def("reset", [](Guarded& g) { const Lock lock(g); g.simulation.reset(); })
+             g.simulation.reset();
+           })
       .def_property_readonly("time", [sim](const Guarded& g) { return sim(g).time(); })
       .def_property_readonly("dt", [sim](const Guarded& g) { return sim(g).dt(); })
       .def_property_readonly("engine", [sim](const Guarded& g) { return sim(g).engine_name(); })
       .def_property_readonly("model", [sim](const Guarded& g) { return sim(g).model(); })
       .def_property_readonly("warnings", [sim](const Guarded& g) { return sim(g).warnings(); })
-      .def_property_readonly("plugins", [](const Guarded& g) { return &g.simulation.plugins(); },
-                             py::return_value_policy::reference_internal)
+      .def_property_readonly(
+          "plugins", [](const Guarded& g) { return &g.simulation.plugins(); },
+          py::return_value_policy::reference_internal)
       .def_property_readonly("rotor_count",
                              [sim](const Guarded& g) { return sim(g).model().joints.size(); })
       .def_property_readonly("rotor_names",
@@ -235,30 +245,30 @@ void bind_simulation(py::module_& m) {
                              [sim](const Guarded& g) { return sim(g).command_width(); })
       .def_property_readonly(
           "mass", [sim](const Guarded& g) { return mass_properties(sim(g).model()).mass; })
-      .def_property_readonly("center_of_mass",
-                             [sim](const Guarded& g) -> Vector3d {
-                               return mass_properties(sim(g).model()).p_FCcm;
-                             })
+      .def_property_readonly(
+          "center_of_mass",
+          [sim](const Guarded& g) -> Vector3d { return mass_properties(sim(g).model()).p_FCcm; })
       .def_property_readonly(
           "inertia",
           [sim](const Guarded& g) { return mass_properties(sim(g).model()).inertia_Ccm_F; })
       .def_property_readonly("wrench_terms",
                              [sim](const Guarded& g) { return sim(g).wrench_terms(); })
-      .def("topic",
-           [sim](const Guarded& g, const std::string& name) {
-             const Topics& topics = sim(g).topics();
-             const int index = topics.find(name);
-             if (index < 0) throw InputError("topic '" + name + "' is not declared by any plugin");
-             const Topic& topic = topics[static_cast<std::size_t>(index)];
-             py::dict message;
-             message["stamp"] = topic.stamp;
-             message["count"] = static_cast<std::int64_t>(topic.count);
-             for (std::size_t i = 0; i < topic.fields.size(); ++i) {
-               message[py::str(topic.fields[i])] = topic.values[i];
-             }
-             return message;
-           },
-           py::arg("name"))
+      .def(
+          "topic",
+          [sim](const Guarded& g, const std::string& name) {
+            const Topics& topics = sim(g).topics();
+            const int index = topics.find(name);
+            if (index < 0) throw InputError("topic '" + name + "' is not declared by any plugin");
+            const Topic& topic = topics[static_cast<std::size_t>(index)];
+            py::dict message;
+            message["stamp"] = topic.stamp;
+            message["count"] = static_cast<std::int64_t>(topic.count);
+            for (std::size_t i = 0; i < topic.fields.size(); ++i) {
+              message[py::str(topic.fields[i])] = topic.values[i];
+            }
+            return message;
+          },
+          py::arg("name"))
       .def("_views", [](const std::shared_ptr<Guarded>& g) { return views(g); });
 
   py::class_<BoundFlight>(m, "Flight", "One logged run, advanced piece by piece.")
@@ -281,12 +291,13 @@ void bind_simulation(py::module_& m) {
       });
 
   m.def("log_columns", &log_columns, py::arg("rotor_count"));
-  m.def("load_plugin_path",
-        [](const py::object& folder) {
-          const py::object path = py::module_::import("os").attr("fspath")(folder);
-          load_plugin_path(py::cast<std::string>(path));
-        },
-        py::arg("folder"), "Adds a folder to search for plugin libraries, before all others.");
+  m.def(
+      "load_plugin_path",
+      [](const py::object& folder) {
+        const py::object path = py::module_::import("os").attr("fspath")(folder);
+        load_plugin_path(py::cast<std::string>(path));
+      },
+      py::arg("folder"), "Adds a folder to search for plugin libraries, before all others.");
   m.def("plugin_folders", &plugin_folders, "The folders searched for plugins, in order.");
   m.def("engines", [] {
     std::vector<std::pair<std::string, std::string>> list;

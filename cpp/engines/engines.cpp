@@ -22,7 +22,8 @@ const std::vector<EngineEntry>& table() {
        [](const Model& model, const World& world) -> std::unique_ptr<Engine> {
          return std::make_unique<OdeEngine>(model, world, ode_recipe);
        }},
-      {{"eigen", "exact reduced coordinates, fourth order: the accurate and the fast one, no contact"},
+      {{"eigen",
+        "exact reduced coordinates, fourth order: the accurate and the fast one, no contact"},
        [](const Model& model, const World& world) -> std::unique_ptr<Engine> {
          return std::make_unique<EigenEngine>(model, world);
        }},

@@ -96,7 +96,8 @@ TEST_CASE("the velocities that a force law sees are the rates of the places it s
       const RotorKinematics& b = after.rotors[i];
       CHECK((rate_F(place(before, a.p_FRcm_F), place(after, b.p_FRcm_F)) - a.v_WRcm_F).norm() <
             tolerance);
-      CHECK(std::abs(std::remainder(after.angle(i) - before.angle(i), 2 * M_PI) / dt - a.rate) < tolerance);
+      CHECK(std::abs(std::remainder(after.angle(i) - before.angle(i), 2 * M_PI) / dt - a.rate) <
+            tolerance);
       // The joint turns the rotor about its axis, seen from the frame.
       const Matrix3d spin = (after.R_FR(i) - before.R_FR(i)) * before.R_FR(i).transpose() / dt;
       CHECK((spin - skew(a.rate * a.axis_F)).norm() < 0.1);

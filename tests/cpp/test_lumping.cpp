@@ -200,11 +200,11 @@ TEST_CASE("Gazebo's order is depth first, joints by name, through links that are
   const auto rotor = [](const std::string& name, const std::string& parent) {
     return link(name, 0.1, round_rotor) + joint("turns_" + name, "continuous", parent, name);
   };
-  const Model m = model(link("frame", 1, round_body) + link("z_arm", 0.1, round_body) +
-                        link("a_arm", 0.1, round_body) + rotor("d", "frame") +
-                        rotor("c", "z_arm") + rotor("b", "a_arm") + rotor("a", "frame") +
-                        rotor("aa", "d") + joint("z", "fixed", "frame", "z_arm") +
-                        joint("b", "fixed", "frame", "a_arm"));
+  const Model m =
+      model(link("frame", 1, round_body) + link("z_arm", 0.1, round_body) +
+            link("a_arm", 0.1, round_body) + rotor("d", "frame") + rotor("c", "z_arm") +
+            rotor("b", "a_arm") + rotor("a", "frame") + rotor("aa", "d") +
+            joint("z", "fixed", "frame", "z_arm") + joint("b", "fixed", "frame", "a_arm"));
   std::vector<std::string> names;
   for (const std::size_t i : m.sdf_order) names.push_back(m.links[i].name);
   CHECK(names == std::vector<std::string>{"frame", "b", "a", "d", "aa", "c"});

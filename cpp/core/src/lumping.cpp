@@ -41,8 +41,8 @@ Topology check_topology(const UrdfTree& tree) {
   for (const UrdfJoint& joint : tree.joints) {
     for (const auto& [role, link] : {std::pair{"parent", joint.parent}, {"child", joint.child}}) {
       if (!topology.links.count(link)) {
-        throw InputError(joint.where + ": joint '" + joint.name + "' has the " + role +
-                         " link '" + link + "', which is not there" + did_you_mean(link, names) +
+        throw InputError(joint.where + ": joint '" + joint.name + "' has the " + role + " link '" +
+                         link + "', which is not there" + did_you_mean(link, names) +
                          "; name a link of the model");
       }
     }
@@ -61,7 +61,8 @@ Topology check_topology(const UrdfTree& tree) {
     }
     topology.root = link.name;
     if (link.name == "world") {
-      throw InputError(link.where + ": Gazebo pins a root link named 'world' to the world, which is "
+      throw InputError(link.where +
+                       ": Gazebo pins a root link named 'world' to the world, which is "
                        "not modelled; give it another name");
     }
   }
@@ -104,8 +105,9 @@ void check_body(const Link& link, bool has_inertial) {
     throw InputError(who + "no mass; write <mass value=\"...\"/> in kg, > 0");
   }
   if (!link.inertial.is_positive()) {
-    throw InputError(who + "a zero or negative moment of inertia; write an inertia in kg m^2, all "
-                           "principal moments > 0");
+    throw InputError(who +
+                     "a zero or negative moment of inertia; write an inertia in kg m^2, all "
+                     "principal moments > 0");
   }
 }
 

@@ -29,8 +29,8 @@ std::vector<Eigen::Isometry3d> link_poses(const Model& model) {
   std::vector<Eigen::Isometry3d> poses(model.links.size(), Eigen::Isometry3d::Identity());
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint& joint = model.joints[i];
-    poses[i + 1] = poses[joint.parent] * Eigen::Translation3d(joint.pose.xyz) *
-                   joint.pose.rotation();
+    poses[i + 1] =
+        poses[joint.parent] * Eigen::Translation3d(joint.pose.xyz) * joint.pose.rotation();
   }
   return poses;
 }

@@ -62,14 +62,14 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
   for (const PluginElement& element : model.plugins) {
     const PluginLibrary library = open_plugin(element);
     const auto given = overrides.find(element.name);
-    LoadedPlugin loaded{element.name,
-                        element.filename,
-                        library.path,
-                        library.descriptor,
-                        Parameters(library.descriptor->tags, element, model,
-                                   given == overrides.end() ? std::map<std::string, std::string>{}
-                                                            : given->second),
-                        nullptr};
+    LoadedPlugin loaded{
+        element.name,
+        element.filename,
+        library.path,
+        library.descriptor,
+        Parameters(library.descriptor->tags, element, model,
+                   given == overrides.end() ? std::map<std::string, std::string>{} : given->second),
+        nullptr};
     const std::string who = element.where + ": plugin '" + element.name + "'";
     for (const std::string& term : library.descriptor->wrenches) {
       if (std::find(wrench_terms_.begin(), wrench_terms_.end(), term) != wrench_terms_.end()) {

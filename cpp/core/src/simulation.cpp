@@ -12,9 +12,9 @@ namespace {
 
 constexpr const char* command_topic_name = "vel_cmd";
 /// Beyond these no flight is meant; the numbers only say "diverged" before they overflow.
-constexpr double max_speed = 1e6;       // m/s
-constexpr double max_rate = 1e6;        // rad/s
-constexpr double max_distance = 1e9;    // m
+constexpr double max_speed = 1e6;     // m/s
+constexpr double max_rate = 1e6;      // rad/s
+constexpr double max_distance = 1e9;  // m
 constexpr const char* no_longer_finite =
     "the state is no longer finite; try a smaller step or weaker commands";
 

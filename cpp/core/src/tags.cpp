@@ -110,7 +110,8 @@ std::string TagSpec::range() const {
 
 namespace {
 
-[[noreturn]] void fail(const std::string& where, const std::string& plugin, const std::string& what) {
+[[noreturn]] void fail(const std::string& where, const std::string& plugin,
+                       const std::string& what) {
   throw InputError(where + ": plugin '" + plugin + "': " + what);
 }
 
@@ -203,7 +204,8 @@ Parameters::Parameters(const std::vector<TagSpec>& table, const PluginElement& e
   }
   const auto find = [&](const std::string& tag, const std::string& where) -> Parameter& {
     for (Parameter& parameter : parameters_) {
-      if (parameter.spec.name == tag || (!parameter.spec.alias.empty() && parameter.spec.alias == tag)) {
+      if (parameter.spec.name == tag ||
+          (!parameter.spec.alias.empty() && parameter.spec.alias == tag)) {
         return parameter;
       }
     }

@@ -50,7 +50,11 @@ std::size_t character_size(const std::string& text, std::size_t at) {
   const unsigned first = byte(0);
   if (first < 0x80) return 1;
   // By the first byte (Unicode 15, table 3-7): how many follow, and the range of the second.
-  const std::size_t size = first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
+  const std::size_t size = first < 0xC2   ? 0
+                           : first < 0xE0 ? 2
+                           : first < 0xF0 ? 3
+                           : first < 0xF5 ? 4
+                                          : 0;
   const unsigned low = first == 0xE0 ? 0xA0 : first == 0xF0 ? 0x90 : 0x80;
   const unsigned high = first == 0xED ? 0x9F : first == 0xF4 ? 0x8F : 0xBF;
   if (size == 0 || byte(1) < low || byte(1) > high) return 0;

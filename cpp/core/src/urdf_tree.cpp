@@ -48,10 +48,11 @@ Inertial read_inertial(const Xml& xml, const Element& element, const std::string
                           "semi-definite inertia in kg m^2");
   }
   if (principal[0] + principal[1] < principal[2] - tolerance) {
-    xml.fail(inertia,
-             "link '" + link +
-                 "' has an inertia no rigid body can have: the largest principal moment exceeds the "
-                 "sum of the other two; correct ixx, iyy, izz");
+    xml.fail(
+        inertia,
+        "link '" + link +
+            "' has an inertia no rigid body can have: the largest principal moment exceeds the "
+            "sum of the other two; correct ixx, iyy, izz");
   }
   return inertial;
 }
@@ -143,8 +144,9 @@ UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::st
                "joint '" + joint.name + "' has a negative damping; write N m s/rad, >= 0");
     }
     if (xml.number(*dynamics, "friction", 0) != 0) {
-      xml.fail(*dynamics, "joint '" + joint.name +
-                              "' has friction, which the engines do not model; write friction=\"0\"");
+      xml.fail(*dynamics,
+               "joint '" + joint.name +
+                   "' has friction, which the engines do not model; write friction=\"0\"");
     }
   }
   if (const Element* limit = xml.child(element, "limit")) {
@@ -167,8 +169,8 @@ UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::st
 
 PluginElement read_plugin(const Xml& xml, const Element& element) {
   xml.only_attributes(element, {"name", "filename"});
-  PluginElement plugin{xml.attribute(element, "name"), xml.attribute(element, "filename"), {},
-                       xml.where(element)};
+  PluginElement plugin{
+      xml.attribute(element, "name"), xml.attribute(element, "filename"), {}, xml.where(element)};
   for (const auto* node = element.FirstChild(); node; node = node->NextSibling()) {
     if (node->ToText()) {
       xml.fail(element, "stray text '" + trimmed(node->Value()) + "' in <plugin name=\"" +

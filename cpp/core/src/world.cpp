@@ -41,14 +41,15 @@ class WorldReader {
       refuse_both(xml_.child(e, "real_time_update_rate"), xml_.child(e, "updateRate"));
       read_physics(e);
     };
-    read_children(world,
-                  {{"gravity", [this](const Element& e) { world_.gravity_W = xml_.vector_in_text(e); }},
-                   {"physics", physics},
-                   {"physics:ode", physics},
-                   {"wind", [this](const Element& e) { read_wind(e); }},
-                   {"include", [this](const Element& e) { read_include(e); }},
-                   {"model", [this](const Element& e) { read_model(e); }}},
-                  {"include", "model"});
+    read_children(
+        world,
+        {{"gravity", [this](const Element& e) { world_.gravity_W = xml_.vector_in_text(e); }},
+         {"physics", physics},
+         {"physics:ode", physics},
+         {"wind", [this](const Element& e) { read_wind(e); }},
+         {"include", [this](const Element& e) { read_include(e); }},
+         {"model", [this](const Element& e) { read_model(e); }}},
+        {"include", "model"});
     return world_;
   }
 
@@ -71,8 +72,8 @@ class WorldReader {
         std::ostringstream range;
         range << (open ? "> " : ">= ") << min;
         if (std::isfinite(max)) range << ", <= " << max;
-        xml_.fail(e, "<" + std::string(e.Name()) + "> is out of range; write a number " +
-                         range.str());
+        xml_.fail(e,
+                  "<" + std::string(e.Name()) + "> is out of range; write a number " + range.str());
       }
     };
   }
@@ -123,9 +124,9 @@ class WorldReader {
       }
       world_.solver_iterations = static_cast<int>(value);
     };
-    read_children(solver, {{"type", type},
-                           {"iters", iterations},
-                           {"sor", number(world_.solver_sor, 0, true, 2)}});
+    read_children(
+        solver,
+        {{"type", type}, {"iters", iterations}, {"sor", number(world_.solver_sor, 0, true, 2)}});
   }
 
   void read_wind(const Element& wind) {
@@ -166,7 +167,8 @@ class WorldReader {
                          }}});
       xml_.required_child(e, "geometry");
     };
-    read_children(model, {{"static", [this](const Element& e) {
+    read_children(model, {{"static",
+                           [this](const Element& e) {
                              if (xml_.text(e) != "true" && xml_.text(e) != "1") {
                                xml_.fail(e, "only a static model is supported; write true");
                              }

@@ -127,8 +127,9 @@ void EigenEngine::differentiate(const VectorXd& state, const ForceField& forces)
 
 void EigenEngine::refuse_ground() const {
   if (lowest_point(model_, kinematics_) > 0) return;
-  throw Error("the vehicle touches the ground, for which the engine eigen has no contact; use the "
-              "engine ode or gazebo11");
+  throw Error(
+      "the vehicle touches the ground, for which the engine eigen has no contact; use the "
+      "engine ode or gazebo11");
 }
 
 void EigenEngine::get_state(VehicleState& state) const {

@@ -7,9 +7,9 @@
 
 namespace quadcore {
 
-/// The exact engine: the vehicle as a gyrostat in reduced coordinates, integrated with the classical
-/// fourth-order Runge-Kutta method; force laws are evaluated at every stage. It has no contact:
-/// touching a ground plane ends the flight.
+/// The exact engine: the vehicle as a gyrostat in reduced coordinates, integrated with the
+/// classical fourth-order Runge-Kutta method; force laws are evaluated at every stage. It has no
+/// contact: touching a ground plane ends the flight.
 class EigenEngine final : public Engine {
  public:
   EigenEngine(const Model& model, const World& world);

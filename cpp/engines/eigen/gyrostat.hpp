@@ -19,15 +19,15 @@ namespace quadcore {
 /// Eliminating dW_i/dt leaves (I_C - sum J_i a_i a_i^T) dw/dt = tau - w x H - sum q_i a_i.
 struct Gyrostat {
   struct Rotor {
-    Vector3d axis_F;      ///< a_i, unit
-    Vector3d p_FR_F;      ///< origin of the rotor's link [m]
-    Vector3d p_FRcm_F;    ///< its centre of mass [m]
-    Matrix3d R_FR;        ///< orientation of its link at angle zero
-    bool centered;        ///< origin and centre of mass coincide
-    double moment;        ///< J_i [kg m^2]
+    Vector3d axis_F;    ///< a_i, unit
+    Vector3d p_FR_F;    ///< origin of the rotor's link [m]
+    Vector3d p_FRcm_F;  ///< its centre of mass [m]
+    Matrix3d R_FR;      ///< orientation of its link at angle zero
+    bool centered;      ///< origin and centre of mass coincide
+    double moment;      ///< J_i [kg m^2]
     double inverse_moment;
     Vector3d moment_axis_F;  ///< J_i a_i
-    double damping;       ///< N m s/rad
+    double damping;          ///< N m s/rad
   };
 
   double inverse_mass;           ///< 1/kg

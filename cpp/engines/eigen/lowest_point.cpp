@@ -34,10 +34,9 @@ double lowest_point(const Model& model, const Kinematics& k) {
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     const Inertial& inertial = model.links[i].inertial;
     const Matrix3d R_WL = i == 0 ? k.R_WF : (k.R_WF * k.R_FR(i - 1)).eval();
-    const Vector3d p_WL = i == 0 ? k.p_WF
-                                 : (k.p_WF + k.R_WF * k.rotors[i - 1].p_FRcm_F -
-                                    R_WL * inertial.pose.xyz)
-                                       .eval();
+    const Vector3d p_WL =
+        i == 0 ? k.p_WF
+               : (k.p_WF + k.R_WF * k.rotors[i - 1].p_FRcm_F - R_WL * inertial.pose.xyz).eval();
     for (const Collision& shape : model.links[i].collisions) {
       const Matrix3d R_WS = R_WL * shape.pose.rotation().toRotationMatrix();
       const double center = p_WL.z() + R_WL.row(2).dot(shape.pose.xyz);

@@ -32,16 +32,16 @@ struct Surface {
 struct ConstraintRow {
   using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-  int body[2] = {-1, -1};  ///< the second is -1 for the ground
+  int body[2] = {-1, -1};                             ///< the second is -1 for the ground
   Vector6 J[2] = {Vector6::Zero(), Vector6::Zero()};  ///< linear, angular part for each body
-  double correction = 0;      ///< velocity that removes the position error
+  double correction = 0;                              ///< velocity that removes the position error
   double max_correction = 0;  ///< cap of the correction where velocities are solved for
   double cfm = 0;
-  double low = 0, high = 0;   ///< bounds of the multiplier
-  double friction = 0;        ///< of a friction row: bound per multiplier of its normal
-  int normal = -1;            ///< of a friction row: the row of its normal
-  int hinge = -1;             ///< of a hinge row: its hinge
-  int hinge_row = 0;          ///< of a hinge row: which of the five
+  double low = 0, high = 0;  ///< bounds of the multiplier
+  double friction = 0;       ///< of a friction row: bound per multiplier of its normal
+  int normal = -1;           ///< of a friction row: the row of its normal
+  int hinge = -1;            ///< of a hinge row: its hinge
+  int hinge_row = 0;         ///< of a hinge row: which of the five
 };
 
 /// Rows of a hinge.

@@ -12,7 +12,7 @@ namespace {
 constexpr double warm_start_factor = 0.5;
 constexpr double friction_relaxation = 0.25;  ///< of a friction row, on top of the world's
 constexpr int friction_sweeps = 10;           ///< over the friction rows alone, at the end
-constexpr double contact_smoothing = 0.01;    ///< of contact multipliers, where velocities are solved
+constexpr double contact_smoothing = 0.01;  ///< of contact multipliers, where velocities are solved
 
 }  // namespace
 
@@ -79,12 +79,11 @@ void GazeboStep::prepare_rows() {
           body.inverse_inertia_W * row.J[side].tail<3>();
       diagonal += row.J[side].dot(sweep.inverse_mass_J[side]);
     }
-    sweep.relaxation =
-        options_.sor * (row.normal >= 0 ? friction_relaxation : 1.0) / diagonal;
+    sweep.relaxation = options_.sor * (row.normal >= 0 ? friction_relaxation : 1.0) / diagonal;
   }
 }
 
-void GazeboStep::solve(Multipliers WarmStart::*start, bool cap, double smoothing, double dt) {
+void GazeboStep::solve(Multipliers WarmStart::* start, bool cap, double smoothing, double dt) {
   const auto& rows = *rows_;
   const auto remembered = [&](const ConstraintRow& row) -> double& {
     return (warm_start[static_cast<std::size_t>(row.hinge)].*

@@ -46,10 +46,10 @@ class GazeboStep {
   struct Body {
     double inverse_mass = 0;
     Matrix3d inverse_inertia_W;
-    Vector6 velocity;            ///< linear, angular
-    Vector6 free_acceleration;   ///< without constraints
-    Vector6 constraint;          ///< acceleration by the constraints, while it is solved for
-    Vector6 moving;              ///< velocity with which the pose moves
+    Vector6 velocity;           ///< linear, angular
+    Vector6 free_acceleration;  ///< without constraints
+    Vector6 constraint;         ///< acceleration by the constraints, while it is solved for
+    Vector6 moving;             ///< velocity with which the pose moves
   };
   /// A row as the sweeps use it.
   struct Sweep {
@@ -62,7 +62,7 @@ class GazeboStep {
   void read_bodies();
   void order_rows();
   void prepare_rows();
-  void solve(Multipliers WarmStart::*start, bool cap, double smoothing, double dt);
+  void solve(Multipliers WarmStart::* start, bool cap, double smoothing, double dt);
   void relax(std::size_t row, double smoothing);
   void move(double dt);
 

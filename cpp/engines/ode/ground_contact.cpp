@@ -7,8 +7,8 @@ namespace quadcore {
 namespace {
 
 constexpr int max_contacts_per_pair = 10;
-// Measured in the running Gazebo 11: a model's kp 1e12 and kd 1 in series and sum with the ground's,
-// its friction 1 (the smaller of a pair), no bounce, no slip.
+// Measured in the running Gazebo 11: a model's kp 1e12 and kd 1 in series and sum with the
+// ground's, its friction 1 (the smaller of a pair), no bounce, no slip.
 constexpr double stiffness = 5e11;  // N/m
 constexpr double damping = 2;       // N s/m
 constexpr double friction = 1;
@@ -25,9 +25,10 @@ dGeomID create_shape(const Collision& collision) {
     case ShapeKind::mesh:
       break;
   }
-  throw InputError(collision.where +
-                   ": a collision mesh cannot touch the ground; write a box, cylinder or sphere, or "
-                   "fly in empty.world");
+  throw InputError(
+      collision.where +
+      ": a collision mesh cannot touch the ground; write a box, cylinder or sphere, or "
+      "fly in empty.world");
 }
 
 }  // namespace

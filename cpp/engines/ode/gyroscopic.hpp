@@ -16,14 +16,14 @@ namespace quadcore {
 /// One body as the gyroscopic laws need it; links[0] is the frame.
 struct GyroscopicBody {
   dBodyID body;
-  std::size_t parent;   ///< index of the parent body; itself for the frame
-  Vector3d axis_B;      ///< joint axis in the body's axes; zero for the frame
-  Matrix3d I_Bcm_B;     ///< inertia about the centre of mass in the body's axes [kg m^2]
+  std::size_t parent;  ///< index of the parent body; itself for the frame
+  Vector3d axis_B;     ///< joint axis in the body's axes; zero for the frame
+  Matrix3d I_Bcm_B;    ///< inertia about the centre of mass in the body's axes [kg m^2]
 };
 
-/// Gazebo 11's: -w x (I w) of each body with its own rate w, explicitly, on that body. On a spinning
-/// propeller whose hinge ties it to the frame this acts as a damper on roll and pitch, at a rate of
-/// about 4 (Izz - Ixx) W^2 dt / (2 Jx) for four propellers: the published model's fault.
+/// Gazebo 11's: -w x (I w) of each body with its own rate w, explicitly, on that body. On a
+/// spinning propeller whose hinge ties it to the frame this acts as a damper on roll and pitch, at
+/// a rate of about 4 (Izz - Ixx) W^2 dt / (2 Jx) for four propellers: the published model's fault.
 void add_gyroscopic_per_body(const std::vector<GyroscopicBody>& bodies);
 
 /// The right one: the gyroscopic torque of a propeller follows from its carrier's rate w_F and the

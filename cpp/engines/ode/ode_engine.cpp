@@ -33,13 +33,13 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
   dWorldSetGravity(world_.get(), world.gravity_W.x(), world.gravity_W.y(), world.gravity_W.z());
   dWorldSetERP(world_.get(), world.erp);
   dWorldSetCFM(world_.get(), world.cfm);
-  iterate_ = world.solver_type == "quick" && (world.solver_iterations < converged_iterations ||
-                                              world.solver_sor != default_sor);
+  iterate_ = world.solver_type == "quick" &&
+             (world.solver_iterations < converged_iterations || world.solver_sor != default_sor);
   create_bodies();
-  gazebo_step_ = std::make_unique<GazeboStep>(
-      bodies_, create_hinges(), model_.sdf_order,
-      GazeboStep::Options{world.solver_iterations, world.solver_sor, world.erp, world.cfm,
-                          world.gravity_W});
+  gazebo_step_ =
+      std::make_unique<GazeboStep>(bodies_, create_hinges(), model_.sdf_order,
+                                   GazeboStep::Options{world.solver_iterations, world.solver_sor,
+                                                       world.erp, world.cfm, world.gravity_W});
   if (world.ground_plane) {
     ground_ = std::make_unique<GroundContact>(model_, bodies_);
     feedback_.resize(hinges_.size());
@@ -73,9 +73,9 @@ void OdeEngine::create_bodies() {
     dBodySetMass(body, &mass);
     dBodySetGyroscopicMode(body, 0);
     bodies_.push_back(body);
-    gyroscopic_bodies_.push_back(i == 0 ? GyroscopicBody{body, 0, Vector3d::Zero(), I}
-                                        : GyroscopicBody{body, model_.joints[i - 1].parent,
-                                                         model_.joints[i - 1].axis, I});
+    gyroscopic_bodies_.push_back(
+        i == 0 ? GyroscopicBody{body, 0, Vector3d::Zero(), I}
+               : GyroscopicBody{body, model_.joints[i - 1].parent, model_.joints[i - 1].axis, I});
     place(i, poses[i], Vector3d::Zero(), Vector3d::Zero());
   }
 }
@@ -159,8 +159,8 @@ void OdeEngine::remember_hinge_forces() {
     const Vector3d anchor_W = R_WC * -model_.links[i + 1].inertial.pose.xyz;
     const Vector3d tau_W = vec(feedback_[i].t1) - anchor_W.cross(f_W);
     const auto across_W = plane_space(R_WC * model_.joints[i].axis);
-    const GazeboStep::Multipliers multipliers = {f_W.x(), f_W.y(), f_W.z(),
-                                                 tau_W.dot(across_W[0]), tau_W.dot(across_W[1])};
+    const GazeboStep::Multipliers multipliers = {f_W.x(), f_W.y(), f_W.z(), tau_W.dot(across_W[0]),
+                                                 tau_W.dot(across_W[1])};
     gazebo_step_->warm_start[i] = {multipliers, multipliers};
   }
 }

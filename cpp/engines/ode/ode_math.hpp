@@ -15,7 +15,8 @@ inline Eigen::Map<const Vector3d> vec(const dReal* v) { return Eigen::Map<const 
 
 /// Rotation of a body, R_WB (ODE pads its rows to four).
 inline Matrix3d rotation(const dReal* R) {
-  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>, 0, Eigen::OuterStride<4>>(R);
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>, 0, Eigen::OuterStride<4>>(
+      R);
 }
 
 /// Two unit vectors across a unit vector, as ODE chooses them.

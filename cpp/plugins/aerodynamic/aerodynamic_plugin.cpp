@@ -77,8 +77,8 @@ class AerodynamicPlugin final : public Plugin {
       }
       if (c.appendix && c.parasitic != 0) {
         const Vector3d v_WF_W = kinematics.R_WF * kinematics.v_WF_F;
-        loads.add_rotor_force(
-            kParasitic, i, parasitic_drag_of_appendix(v_WF_W, kinematics.R_FR(i), c.parasitic));
+        loads.add_rotor_force(kParasitic, i,
+                              parasitic_drag_of_appendix(v_WF_W, kinematics.R_FR(i), c.parasitic));
       }
       if (c.flaps) {
         loads.add_rotor_force(kFlapping, i, flapping(disc, kinematics.w_WF_F, c.k, c.flapping));
@@ -115,35 +115,49 @@ PluginDescriptor describe() {
       "thrust, reaction torque and drag of the rotors (thesis eqs. 2.10-2.32, appendix A.5)",
       {
           T::number("rotorThrustCoeff", "N s^2/rad^2", "", "thrust of a rotor per squared speed, k")
-              .must().at_least(0).from("(2.10)"),
+              .must()
+              .at_least(0)
+              .from("(2.10)"),
           T::number("rotorTorqueCoeff", "N m s^2/rad^2", "",
                     "reaction torque of a rotor per squared speed, b")
-              .must().at_least(0).from("(2.11)"),
+              .must()
+              .at_least(0)
+              .from("(2.11)"),
           T::number("sim_slow", "", "1",
                     "rotors turn this much slower in the engine than the forces assume")
-              .above(0).from("chapter 4").agreed(),
+              .above(0)
+              .from("chapter 4")
+              .agreed(),
           T::choice("dragModel", {"appendix", "chapter2"},
                     "forces as the thesis' plugin computes them, or as its chapter 2 says")
               .from("A.5, (2.28)-(2.31)"),
           T::number("inducedDragCoeff", "N s/m", "0", "induced drag of a rotor, K_I")
-              .at_least(0).from("(2.28)"),
+              .at_least(0)
+              .from("(2.28)"),
           T::number("translationalDragCoeff", "N s/m", "0", "translational drag of a rotor, K_T1")
-              .at_least(0).from("(2.29)"),
+              .at_least(0)
+              .from("(2.29)"),
           T::number("profileDragCoeff", "N s/m", "0", "profile drag of a rotor, K_P")
-              .at_least(0).from("(2.30)"),
+              .at_least(0)
+              .from("(2.30)"),
           T::number("parasiticDragCoeff", "N s^2/m^2", "0", "parasitic drag of the airframe, K_par")
-              .at_least(0).from("(2.31)"),
-          T::number("flappingA1c", "rad", "0", "blade flapping, longitudinal; positive opposes motion")
+              .at_least(0)
+              .from("(2.31)"),
+          T::number("flappingA1c", "rad", "0",
+                    "blade flapping, longitudinal; positive opposes motion")
               .from("(2.26)"),
           T::number("flappingA1s", "rad", "0", "blade flapping, lateral").from("(2.26)"),
           T::number("flappingB1", "s/rad", "0", "blade flapping with the frame's rates, cross term")
               .from("(2.27)"),
-          T::number("flappingB2", "s/rad", "0", "blade flapping with the frame's rates, direct term")
+          T::number("flappingB2", "s/rad", "0",
+                    "blade flapping with the frame's rates, direct term")
               .from("(2.27)"),
           T::number("rotorRadius", "m", "0.075", "radius of a rotor, for flapping")
-              .above(0).from("(2.26)"),
-          T::choice("reactionTorque", {"thesis", "opposing"},
-                    "sign of the reaction torque: with the rotor's spin as in the thesis, or against")
+              .above(0)
+              .from("(2.26)"),
+          T::choice(
+              "reactionTorque", {"thesis", "opposing"},
+              "sign of the reaction torque: with the rotor's spin as in the thesis, or against")
               .from("(2.11), (2.13)"),
           T::link("frameLink", "link that takes the reaction torque; part of the root body"),
           T::joints("rotorJoints", "the rotors"),

@@ -20,8 +20,8 @@ inline Vector3d rotor_drag(const RotorDisc& disc, double coefficient) {
 inline Vector3d parasitic_drag(const Vector3d& v_F, double K) { return -K * v_F.norm() * v_F; }
 
 /// Parasitic drag as the thesis' plugin (appendix A.5) computes it: -K |v_i| v_i of each component
-/// of the frame's WORLD velocity, taken as components in the propeller's own SPINNING axes, once per
-/// propeller, at its centre of mass. Kept because the published results rest on it.
+/// of the frame's WORLD velocity, taken as components in the propeller's own SPINNING axes, once
+/// per propeller, at its centre of mass. Kept because the published results rest on it.
 /// \param v_WF_W  velocity of the frame's origin in W [m/s]
 /// \param R_FR    orientation of the spinning propeller in F
 /// \return        force on the rotor in F [N]

@@ -15,8 +15,8 @@ struct Flapping {
   double radius = 0;  ///< r, rotor radius [m]
 };
 
-/// Blade flapping, thesis eq. (2.25) as corrected: F = T/|w| (A V_p + B nu) at the rotor's centre of
-/// mass, in the body's non-spinning axes, with T/|w| = k |w|, s = sign(w) and
+/// Blade flapping, thesis eq. (2.25) as corrected: F = T/|w| (A V_p + B nu) at the rotor's centre
+/// of mass, in the body's non-spinning axes, with T/|w| = k |w|, s = sign(w) and
 ///   A = 1/r [-A1c  s A1s; -s A1s  -A1c],   B = [-s B2  B1; -B1  -s B2].
 /// Both matrices commute with a turn about the axis a, so that A V = (-A1c V - s A1s a x V)/r and
 /// B nu = -s B2 nu - B1 a x nu for the in-plane V and nu: no axes need to be chosen.

@@ -29,8 +29,8 @@ struct Config {
 enum Memory { kActive, kTarget, kErrorSum, kLastError, kSampledTorque, kMemorySize };
 
 /// Joint-velocity PID as Gazebo's JointController runs it for the thesis' appendix A.4, in slowed
-/// units: e = W - W_target, torque = -kp e - I - kd (e - e_previous)/dt with I = ki sum(e dt) clamped
-/// to [iMin, iMax]. The proportional law is continuous, part of the force law; integral and
+/// units: e = W - W_target, torque = -kp e - I - kd (e - e_previous)/dt with I = ki sum(e dt)
+/// clamped to [iMin, iMax]. The proportional law is continuous, part of the force law; integral and
 /// derivative are sampled once per step. Until the first command the motors are free.
 class MotorPidPlugin final : public Plugin {
  public:
@@ -95,19 +95,28 @@ PluginDescriptor describe() {
       "speed control of the rotors: a PID on each joint's velocity (thesis appendix A.4)",
       {
           T::number("kp", "N m s/rad", "", "proportional gain on the slowed joint velocity")
-              .must().at_least(0).from("A.4"),
-          T::number("ki", "N m/rad", "0", "integral gain; needs iMax, iMin").at_least(0).from("A.4"),
+              .must()
+              .at_least(0)
+              .from("A.4"),
+          T::number("ki", "N m/rad", "0", "integral gain; needs iMax, iMin")
+              .at_least(0)
+              .from("A.4"),
           T::number("kd", "N m s^2/rad", "0", "derivative gain, sampled once per step")
-              .at_least(0).from("A.4"),
+              .at_least(0)
+              .from("A.4"),
           T::number("iMax", "N m", "0", "largest integral torque").at_least(0),
           T::number("iMin", "N m", "0", "smallest integral torque").at_most(0),
-          T::number("sim_slow", "", "1", "commands are divided by this").above(0).from("chapter 4")
+          T::number("sim_slow", "", "1", "commands are divided by this")
+              .above(0)
+              .from("chapter 4")
               .agreed(),
           T::number("maxVelocity", "rad/s", "",
                     "fastest rotor speed the motor follows; faster commands saturate")
-              .above(0).or_absent("none"),
+              .above(0)
+              .or_absent("none"),
           T::number("commandTimeout", "s", "", "a command older than this counts as 0")
-              .above(0).or_absent("off"),
+              .above(0)
+              .or_absent("off"),
           T::joints("rotorJoints", "the rotors, in the order of the command's numbers"),
       },
       {},

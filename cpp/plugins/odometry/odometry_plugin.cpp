@@ -28,7 +28,8 @@ enum Memory { kMessages, kDraws, kMemorySize };
 
 /// Odometry of the frame (thesis appendix A.6): pose in the world, linear velocity in the world (or
 /// in body axes, as nav_msgs/Odometry defines it), angular velocity in body axes, each with white
-/// noise of the given standard deviation. Orientation noise is a small rotation about the body axes.
+/// noise of the given standard deviation. Orientation noise is a small rotation about the body
+/// axes.
 class OdometryPlugin final : public Plugin {
  public:
   explicit OdometryPlugin(const PluginSetup& setup) : config_(setup.parameters) {
@@ -36,10 +37,10 @@ class OdometryPlugin final : public Plugin {
     const double seed = own_seed ? setup.parameters.number("seed") : 0;
     if (seed != std::floor(seed)) throw InputError("<seed> is not a whole number; write one");
     seed_ = stream_seed(own_seed ? static_cast<std::uint64_t>(seed) : setup.seed, setup.name);
-    topic_ = setup.topics.declare(
-        "odom", {"x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz",
-                 "position_variance", "orientation_variance", "linear_velocity_variance",
-                 "angular_velocity_variance"});
+    topic_ =
+        setup.topics.declare("odom", {"x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx",
+                                      "wy", "wz", "position_variance", "orientation_variance",
+                                      "linear_velocity_variance", "angular_velocity_variance"});
   }
 
   std::size_t state_size() const override { return kMemorySize; }
@@ -60,15 +61,26 @@ class OdometryPlugin final : public Plugin {
       const double angle = turn.norm();
       if (angle > 0) q_WF = q_WF * Eigen::AngleAxisd(angle, turn / angle);
     }
-    const Vector3d linear = noisy(config_.twist_in_body ? k.v_WF_F : k.R_WF * k.v_WF_F,
-                                  config_.linear_velocity_noise);
+    const Vector3d linear =
+        noisy(config_.twist_in_body ? k.v_WF_F : k.R_WF * k.v_WF_F, config_.linear_velocity_noise);
     const Vector3d angular = noisy(k.w_WF_F, config_.angular_velocity_noise);
 
     const auto square = [](double x) { return x * x; };
-    const double message[] = {p_WF.x(),    p_WF.y(),    p_WF.z(),    q_WF.x(),   q_WF.y(),
-                              q_WF.z(),    q_WF.w(),    linear.x(),  linear.y(), linear.z(),
-                              angular.x(), angular.y(), angular.z(),
-                              square(config_.position_noise), square(config_.orientation_noise),
+    const double message[] = {p_WF.x(),
+                              p_WF.y(),
+                              p_WF.z(),
+                              q_WF.x(),
+                              q_WF.y(),
+                              q_WF.z(),
+                              q_WF.w(),
+                              linear.x(),
+                              linear.y(),
+                              linear.z(),
+                              angular.x(),
+                              angular.y(),
+                              angular.z(),
+                              square(config_.position_noise),
+                              square(config_.orientation_noise),
                               square(config_.linear_velocity_noise),
                               square(config_.angular_velocity_noise)};
     std::copy(std::begin(message), std::end(message), sample.topics.values(topic_).begin());
@@ -91,13 +103,16 @@ PluginDescriptor describe() {
   using T = TagSpec;
   const auto deviation = [](const char* name, const char* unit, const char* of) {
     return T::number(name, unit, "0", std::string("standard deviation of the noise on ") + of)
-        .at_least(0).from("A.6");
+        .at_least(0)
+        .from("A.6");
   };
   return {
       "pose and velocity of the frame on topic odom, with noise (thesis appendix A.6)",
       {
           T::number("rate", "1/s", "1000", "messages per second; at most one per step")
-              .above(0).also_called("updateRate").from("A.6"),
+              .above(0)
+              .also_called("updateRate")
+              .from("A.6"),
           T::flag("publishTf", "true", "whether a ROS node sends tf world->drone").from("A.6"),
           deviation("positionNoise", "m", "each position component"),
           deviation("orientationNoise", "rad", "the rotation about each body axis"),
@@ -106,8 +121,10 @@ PluginDescriptor describe() {
           T::choice("twistFrame", {"world", "body"},
                     "axes of the linear velocity: world as in the thesis, body as nav_msgs says")
               .from("A.6"),
-          T::number("seed", "", "", "seed of the noise, a whole number").at_least(0)
-              .at_most(9007199254740992.0).or_absent("the simulation's seed"),
+          T::number("seed", "", "", "seed of the noise, a whole number")
+              .at_least(0)
+              .at_most(9007199254740992.0)
+              .or_absent("the simulation's seed"),
       },
       {},
       [](const PluginSetup& setup) -> std::unique_ptr<Plugin> {

@@ -9,25 +9,25 @@ namespace quadcore {
 
 /// Motion of one rotor (the child link of a continuous joint), expressed in the frame's axes.
 struct RotorKinematics {
-  Vector3d axis_F;     ///< joint axis, unit
-  Vector3d p_FRcm_F;   ///< centre of mass from F's origin [m]
-  Vector3d v_WR_F;     ///< velocity of the link's origin [m/s]
-  Vector3d v_WRcm_F;   ///< velocity of the centre of mass [m/s]
-  double rate = 0;     ///< joint rate [rad/s]
+  Vector3d axis_F;    ///< joint axis, unit
+  Vector3d p_FRcm_F;  ///< centre of mass from F's origin [m]
+  Vector3d v_WR_F;    ///< velocity of the link's origin [m/s]
+  Vector3d v_WRcm_F;  ///< velocity of the centre of mass [m/s]
+  double rate = 0;    ///< joint rate [rad/s]
 };
 
 /// Motion of the whole vehicle at one instant: all that a force law may read. Engines own one,
 /// sized once, and refill it for each evaluation.
 class Kinematics {
  public:
-  Vector3d p_WF = Vector3d::Zero();       ///< position of the frame's origin [m]
+  Vector3d p_WF = Vector3d::Zero();            ///< position of the frame's origin [m]
   Quaterniond q_WF = Quaterniond::Identity();  ///< orientation of the frame, unit
-  Matrix3d R_WF = Matrix3d::Identity();   ///< the same as a matrix
-  Vector3d v_WF_F = Vector3d::Zero();     ///< velocity of the frame's origin [m/s]
-  Vector3d w_WF_F = Vector3d::Zero();     ///< angular velocity of the frame [rad/s]
-  Vector3d p_FCcm_F = Vector3d::Zero();   ///< centre of mass of the vehicle [m]
-  Vector3d v_WCcm_F = Vector3d::Zero();   ///< its velocity [m/s]
-  Vector3d v_WA_F = Vector3d::Zero();     ///< velocity of the air (wind) [m/s]
+  Matrix3d R_WF = Matrix3d::Identity();        ///< the same as a matrix
+  Vector3d v_WF_F = Vector3d::Zero();          ///< velocity of the frame's origin [m/s]
+  Vector3d w_WF_F = Vector3d::Zero();          ///< angular velocity of the frame [rad/s]
+  Vector3d p_FCcm_F = Vector3d::Zero();        ///< centre of mass of the vehicle [m]
+  Vector3d v_WCcm_F = Vector3d::Zero();        ///< its velocity [m/s]
+  Vector3d v_WA_F = Vector3d::Zero();          ///< velocity of the air (wind) [m/s]
   std::vector<RotorKinematics> rotors;
 
   explicit Kinematics(std::size_t rotor_count) : rotors(rotor_count), turns_(rotor_count) {}

@@ -47,11 +47,11 @@ struct Link {
 /// A continuous joint. Joint i carries link i + 1; link 0 is the frame, the root of the tree.
 struct Joint {
   std::string name;
-  std::size_t parent = 0;               ///< index of the parent link
-  Pose pose;                            ///< of the child link in the parent link at angle zero
-  Vector3d axis = Vector3d::UnitX();    ///< unit, in the child link's axes
-  Vector3d axis_as_written = axis;      ///< of any length; Gazebo rounds this one
-  double damping = 0;                   ///< N m s/rad
+  std::size_t parent = 0;             ///< index of the parent link
+  Pose pose;                          ///< of the child link in the parent link at angle zero
+  Vector3d axis = Vector3d::UnitX();  ///< unit, in the child link's axes
+  Vector3d axis_as_written = axis;    ///< of any length; Gazebo rounds this one
+  double damping = 0;                 ///< N m s/rad
   std::string where;
 };
 

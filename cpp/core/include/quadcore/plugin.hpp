@@ -51,8 +51,8 @@ struct PluginSetup {
   const std::string& name;  ///< name attribute of the plugin tag
   const Parameters& parameters;
   const Model& model;
-  Topics& topics;            ///< declare topics here
-  std::uint64_t seed;        ///< the simulation's
+  Topics& topics;      ///< declare topics here
+  std::uint64_t seed;  ///< the simulation's
   std::vector<std::string>& warnings;
 };
 
@@ -68,13 +68,13 @@ struct PluginDescriptor {
 
 /// Makes a shared library a quadcore plugin. `describe` is a function that returns its
 /// PluginDescriptor. Use once per library, outside any namespace.
-#define QUADCORE_REGISTER_PLUGIN(describe)                                           \
-  extern "C" {                                                                       \
-  __attribute__((visibility("default"))) extern const int quadcore_plugin_abi;       \
-  const int quadcore_plugin_abi = quadcore::plugin_abi;                              \
-  __attribute__((visibility("default"))) const quadcore::PluginDescriptor*           \
-  quadcore_plugin_descriptor() {                                                     \
-    static const quadcore::PluginDescriptor descriptor = describe();                 \
-    return &descriptor;                                                              \
-  }                                                                                  \
+#define QUADCORE_REGISTER_PLUGIN(describe)                                     \
+  extern "C" {                                                                 \
+  __attribute__((visibility("default"))) extern const int quadcore_plugin_abi; \
+  const int quadcore_plugin_abi = quadcore::plugin_abi;                        \
+  __attribute__((visibility("default"))) const quadcore::PluginDescriptor*     \
+  quadcore_plugin_descriptor() {                                               \
+    static const quadcore::PluginDescriptor descriptor = describe();           \
+    return &descriptor;                                                        \
+  }                                                                            \
   }

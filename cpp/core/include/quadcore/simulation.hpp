@@ -117,7 +117,7 @@ class Simulation : private ForceField {
   std::int64_t steps_ = 0;
   VectorXd plugin_state_;
   VehicleState state_;
-  std::string failure_;  ///< why the flight ended; "" while it goes on
+  std::string failure_;                           ///< why the flight ended; "" while it goes on
   mutable const LoadedPlugin* active_ = nullptr;  ///< whose hook is running, to blame it
   Snapshot initial_;
 

@@ -18,9 +18,10 @@
 
 namespace quadcore {
 
-static_assert(EIGEN_MAX_ALIGN_BYTES == 16 && (EIGEN_MALLOC_ALREADY_ALIGNED || sizeof(void*) < 8),
-              "Eigen would lay out its objects otherwise than quadcore's libraries do: link the CMake "
-              "target quadcore::quadcore, which carries the definitions that make them agree");
+static_assert(
+    EIGEN_MAX_ALIGN_BYTES == 16 && (EIGEN_MALLOC_ALREADY_ALIGNED || sizeof(void*) < 8),
+    "Eigen would lay out its objects otherwise than quadcore's libraries do: link the CMake "
+    "target quadcore::quadcore, which carries the definitions that make them agree");
 
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;

@@ -32,8 +32,8 @@ struct TagSpec {
   std::string meaning;               ///< one line
   std::string equation;              ///< equation of the thesis or paper, "" = none
   std::string alias;                 ///< another accepted name, "" = none
-  bool shared = false;    ///< must have the same value in every plugin of the model that has it
-  std::string absent;     ///< of an optional number without default: what its absence means ("off")
+  bool shared = false;  ///< must have the same value in every plugin of the model that has it
+  std::string absent;   ///< of an optional number without default: what its absence means ("off")
 
   /// The range as a person reads it: ">= 0", "true | false", ...
   std::string range() const;

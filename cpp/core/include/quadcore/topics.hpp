@@ -12,8 +12,8 @@ struct Topic {
   std::string name;
   std::vector<std::string> fields;
   std::vector<double> values;
-  double stamp = 0;       ///< time of the last message [s]
-  double count = 0;       ///< messages so far; 0 = none yet
+  double stamp = 0;  ///< time of the last message [s]
+  double count = 0;  ///< messages so far; 0 = none yet
 };
 
 /// The topics of one simulation.

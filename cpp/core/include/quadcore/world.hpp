@@ -12,8 +12,8 @@ constexpr double shortest_step = 1e-9;
 
 /// What a world file sets; the defaults are Gazebo 11's.
 struct World {
-  Vector3d gravity_W{0, 0, -9.8};    ///< m/s^2
-  double max_step_size = 0.001;      ///< s
+  Vector3d gravity_W{0, 0, -9.8};       ///< m/s^2
+  double max_step_size = 0.001;         ///< s
   double real_time_update_rate = 1000;  ///< 1/s, 0 = as fast as possible; for nodes that pace
   double real_time_factor = 1;          ///< for nodes that pace
   std::string solver_type = "quick";    ///< quick | world
@@ -22,8 +22,8 @@ struct World {
   double erp = 0.2;
   double cfm = 0;
   bool ground_plane = false;
-  std::string ground_plane_where;       ///< FILE:LINE of the ground plane
-  Vector3d wind_W{0, 0, 0};             ///< velocity of the air [m/s]
+  std::string ground_plane_where;  ///< FILE:LINE of the ground plane
+  Vector3d wind_W{0, 0, 0};        ///< velocity of the air [m/s]
 };
 
 /// Reads a world file. Throws InputError with FILE:LINE on every element it does not honour.
