@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "quadcore/elementary.hpp"
+
 namespace quadcore {
 
 Quaterniond quaternion_from_rpy(const Vector3d& rpy) {
-  const double cr = std::cos(rpy.x() / 2), sr = std::sin(rpy.x() / 2);
-  const double cp = std::cos(rpy.y() / 2), sp = std::sin(rpy.y() / 2);
-  const double cy = std::cos(rpy.z() / 2), sy = std::sin(rpy.z() / 2);
+  const auto [sr, cr] = elementary::sincos(rpy.x() / 2);
+  const auto [sp, cp] = elementary::sincos(rpy.y() / 2);
+  const auto [sy, cy] = elementary::sincos(rpy.z() / 2);
   return Quaterniond(cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy,
                      cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy)
       .normalized();
@@ -17,10 +19,15 @@ Quaterniond quaternion_from_rpy(const Vector3d& rpy) {
 Vector3d rpy_from_quaternion(const Quaterniond& q) {
   const Matrix3d R = q.toRotationMatrix();
   const double sin_pitch = std::clamp(-R(2, 0), -1.0, 1.0);
-  const double pitch = std::asin(sin_pitch);
+  const double pitch = elementary::asin(sin_pitch);
   // At +-90 degrees roll and yaw turn about the same axis: all of it is given to yaw.
-  if (std::abs(sin_pitch) > 1 - 1e-12) return {0, pitch, std::atan2(-R(0, 1), R(1, 1))};
-  return {std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))};
+  if (std::abs(sin_pitch) > 1 - 1e-12) return {0, pitch, elementary::atan2(-R(0, 1), R(1, 1))};
+  return {elementary::atan2(R(2, 1), R(2, 2)), pitch, elementary::atan2(R(1, 0), R(0, 0))};
+}
+
+Quaterniond quaternion_about(const Vector3d& axis, double angle) {
+  const auto [s, c] = elementary::sincos(angle / 2);
+  return {c, s * axis.x(), s * axis.y(), s * axis.z()};
 }
 
 Pose Pose::operator*(const Pose& other) const {

@@ -17,7 +17,7 @@ double reach_down(const Collision& shape, const Matrix3d& R_WS) {
       return down.cwiseAbs().dot(shape.size) / 2;
     case ShapeKind::cylinder: {
       const double radius = shape.size.x(), length = shape.size.y();
-      return radius * std::hypot(down.x(), down.y()) + length / 2 * std::abs(down.z());
+      return radius * down.head<2>().norm() + length / 2 * std::abs(down.z());
     }
     case ShapeKind::sphere:
       return shape.size.x();

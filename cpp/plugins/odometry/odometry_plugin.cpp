@@ -59,7 +59,7 @@ class OdometryPlugin final : public Plugin {
     if (config_.orientation_noise != 0) {
       const Vector3d turn = config_.orientation_noise * normal_vector(state[kDraws]);
       const double angle = turn.norm();
-      if (angle > 0) q_WF = q_WF * Eigen::AngleAxisd(angle, turn / angle);
+      if (angle > 0) q_WF = q_WF * quaternion_about(turn / angle, angle);
     }
     const Vector3d linear =
         noisy(config_.twist_in_body ? k.v_WF_F : k.R_WF * k.v_WF_F, config_.linear_velocity_noise);

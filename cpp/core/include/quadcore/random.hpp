@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <string>
 
+#include "quadcore/elementary.hpp"
+
 /// \file
 /// Reproducible noise: the same on every machine and standard library, with a state that is a plain
 /// count and so lives in a plugin's state.
@@ -25,7 +27,7 @@ inline double random_normal(std::uint64_t seed, double& count) {
   const double scale = 1.0 / 9007199254740992.0;  // 2^-53
   const double u = (static_cast<double>(random_bits(seed, n) >> 11) + 0.5) * scale;
   const double v = (static_cast<double>(random_bits(seed, n + 1) >> 11) + 0.5) * scale;
-  return std::sqrt(-2 * std::log(u)) * std::cos(6.283185307179586 * v);
+  return std::sqrt(-2 * elementary::log(u)) * elementary::cos(6.283185307179586 * v);
 }
 
 /// A stream of its own for each name under one seed (FNV-1a).

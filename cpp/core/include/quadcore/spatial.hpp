@@ -35,6 +35,9 @@ Quaterniond quaternion_from_rpy(const Vector3d& rpy);
 /// Inverse of quaternion_from_rpy; pitch in [-pi/2, pi/2].
 Vector3d rpy_from_quaternion(const Quaterniond& q);
 
+/// Rotation by an angle [rad] about a unit axis.
+Quaterniond quaternion_about(const Vector3d& axis, double angle);
+
 /// A pose as URDF writes it: translation [m] and fixed-axis roll, pitch, yaw [rad].
 struct Pose {
   Vector3d xyz = Vector3d::Zero();

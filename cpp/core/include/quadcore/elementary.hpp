@@ -1,0 +1,30 @@
+#pragma once
+
+/// \file
+/// Elementary functions that give the same bytes on every machine. The C library's sin, cos, atan2,
+/// log, exp and the like do not: glibc picks a variant by processor (with fused multiply-adds or
+/// without), and versions of it differ, all in the last digit, which a vehicle that is unstable in
+/// open loop soon makes visible. Whatever feeds a state is computed with these. What IEEE 754
+/// rounds exactly (+ - * / and std::sqrt, std::floor, std::remainder ...) is the same everywhere.
+///
+/// Within 1 unit in the last place of the true value (atan2: 2, asin: 3), for every argument.
+
+namespace quadcore::elementary {
+
+struct SineCosine {
+  double sin, cos;
+};
+
+/// Sine and cosine of an angle [rad] at once; NaN for an angle that is not finite.
+SineCosine sincos(double x);
+inline double sin(double x) { return sincos(x).sin; }
+inline double cos(double x) { return sincos(x).cos; }
+/// Angle of the point (x, y) in [-pi, pi] [rad], zeros and infinities as in the C library.
+double atan2(double y, double x);
+/// In [-pi/2, pi/2] [rad]; NaN outside of [-1, 1].
+double asin(double x);
+/// Natural logarithm; -infinity at 0, NaN below.
+double log(double x);
+double exp(double x);
+
+}  // namespace quadcore::elementary

@@ -1,0 +1,137 @@
+#include "argument_reduction.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+namespace quadcore::elementary {
+namespace {
+
+/// Up to here a whole number of quarter turns has at most 20 bits.
+constexpr double largest_medium = 1e6;
+
+/// pi/2 in pieces of 33 bits, and what each leaves (fdlibm 5.3, e_rem_pio2.c; the method is that of
+/// Cody and Waite).
+Reduced reduced_medium(double x) {
+  constexpr double inverse = 6.36619772367581382433e-01;
+  constexpr double first = 1.57079632673412561417e+00, after_first = 6.07710050650619224932e-11;
+  constexpr double second = 6.07710050630396597660e-11, after_second = 2.02226624879595063154e-21;
+  constexpr double third = 2.02226624871116645580e-21, after_third = 8.47842766036889956997e-32;
+  constexpr double to_whole = 6755399441055744.0;  // 1.5 2^52: adding it rounds to a whole number
+  const double n = (x * inverse + to_whole) - to_whole;
+  double rest = x - n * first;
+  double tail = n * after_first;
+  double y = rest - tail;
+  if (std::abs(y) < 1e-5 * std::abs(x)) {  // digits are lost: take the next piece
+    const double before = rest;
+    rest = before - n * second;
+    tail = n * after_second - ((before - rest) - n * second);
+    y = rest - tail;
+    if (std::abs(y) < 1e-15 * std::abs(x)) {
+      const double before_third = rest;
+      rest = before_third - n * third;
+      tail = n * after_third - ((before_third - rest) - n * third);
+      y = rest - tail;
+    }
+  }
+  return {y, (rest - y) - tail, static_cast<int>(n) & 3};
+}
+
+/// The binary digits of 2/pi, after 64 zeros.
+constexpr std::uint64_t two_over_pi[] = {
+    0,
+    0xA2F9836E4E441529u,
+    0xFC2757D1F534DDC0u,
+    0xDB6295993C439041u,
+    0xFE5163ABDEBBC561u,
+    0xB7246E3A424DD2E0u,
+    0x06492EEA09D1921Cu,
+    0xFE1DEB1CB129A73Eu,
+    0xE88235F52EBB4484u,
+    0xE99C7026B45F7E41u,
+    0x3991D639835339F4u,
+    0x9C845F8BBDF9283Bu,
+    0x1FF897FFDE05980Fu,
+    0xEF2F118B5A0A6D1Fu,
+    0x6D367ECF27CB09B7u,
+    0x4F463F669E5FEA2Du,
+    0x7527BAC7EBE5F17Bu,
+    0x3D0739F78A5292EAu,
+    0x6BFB5FB11F8D5D08u,
+    0x56033046FC7B6BABu,
+    0xF0CFBC209AF4361Du,
+};
+
+__extension__ typedef unsigned __int128 Wide;
+
+/// 64 of those digits, from the one numbered `begin` on.
+std::uint64_t digits(int begin) {
+  const int word = begin / 64, shift = begin % 64;
+  const std::uint64_t high = two_over_pi[word];
+  return shift == 0 ? high : high << shift | two_over_pi[word + 1] >> (64 - shift);
+}
+
+struct Product {
+  double rounded, error;
+};
+
+/// a b without a rounding error (T. J. Dekker, "A floating-point technique for extending the
+/// available precision", Numerische Mathematik 18, 1971).
+Product multiplied(double a, double b) {
+  constexpr double splitter = 134217729;  // 2^27 + 1
+  const double a_high = splitter * a - (splitter * a - a), a_low = a - a_high;
+  const double b_high = splitter * b - (splitter * b - b), b_low = b - b_high;
+  const double p = a * b;
+  return {p, ((a_high * b_high - p) + a_high * b_low + a_low * b_high) + a_low * b_low};
+}
+
+/// The quarter turns of |x|, a whole number times 2^exponent, but for whole turns: the
+/// digits of 2/pi that would only add whole turns are left out (M. H. Payne, R. N. Hanek,
+/// "Radian reduction for trigonometric functions", ACM SIGNUM Newsletter 18, 1983).
+Reduced reduced_large(double x) {
+  std::uint64_t bits;
+  std::memcpy(&bits, &x, sizeof bits);
+  const std::uint64_t whole = (bits & 0xFFFFFFFFFFFFFu) | 0x10000000000000u;
+  const int exponent = static_cast<int>(bits >> 52 & 0x7FF) - 1075;
+  const int begin = exponent + 62;  // >= 0, because x is large
+
+  // The product's 192 digits after those of whole turns; the first two count quarter turns.
+  const Wide low = static_cast<Wide>(whole) * digits(begin + 128);
+  const Wide middle = static_cast<Wide>(whole) * digits(begin + 64) + (low >> 64);
+  const std::uint64_t top = whole * digits(begin) + static_cast<std::uint64_t>(middle >> 64);
+  int quadrant = static_cast<int>(top >> 62);
+
+  // The fraction of a quarter turn, 128 digits of it, to the nearest quarter turn.
+  Wide fraction = static_cast<Wide>(top << 2 | static_cast<std::uint64_t>(middle) >> 62) << 64;
+  fraction |= static_cast<std::uint64_t>(middle) << 2 | static_cast<std::uint64_t>(low) >> 62;
+  const bool negative = fraction >> 127 != 0;
+  if (negative) {
+    fraction = -fraction;
+    ++quadrant;
+  }
+  double unit = 1;
+  for (; fraction >> 127 == 0 && fraction != 0; fraction <<= 1) unit /= 2;
+  // The fraction and pi/2 as sums of two doubles each.
+  constexpr double two_to_53 = 9007199254740992.0;
+  constexpr double half_pi = 1.5707963267948966192e+00, rest_of_half_pi = 6.1232339957367658860e-17;
+  const auto double_of = [](std::uint64_t digits_53) { return static_cast<double>(digits_53); };
+  const double high = double_of(static_cast<std::uint64_t>(fraction >> 75)) / two_to_53 * unit;
+  const double rest = double_of(static_cast<std::uint64_t>(fraction >> 22) & 0x1FFFFFFFFFFFFFu) /
+                      two_to_53 / two_to_53 * unit;
+  const Product product = multiplied(high, half_pi);
+  const double tail = product.error + (high * rest_of_half_pi + rest * half_pi);
+  const double y = product.rounded + tail;
+  const double sign = negative != (x < 0) ? -1 : 1;
+  return {sign * y, sign * ((product.rounded - y) + tail), (x < 0 ? -quadrant : quadrant) & 3};
+}
+
+}  // namespace
+
+Reduced reduced(double x) {
+  if (std::abs(x) <= 0.785398163397448278999) return {x, 0, 0};
+  if (std::abs(x) <= largest_medium) return reduced_medium(x);
+  if (!std::isfinite(x)) return {x - x, 0, 0};
+  return reduced_large(x);
+}
+
+}  // namespace quadcore::elementary
