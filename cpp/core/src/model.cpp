@@ -35,6 +35,13 @@ std::vector<Eigen::Isometry3d> link_poses(const Model& model) {
   return poses;
 }
 
+double moment_about_joint(const Model& model, std::size_t i) {
+  const Vector3d& axis = model.joints[i].axis;
+  const Inertial& inertial = model.links[i + 1].inertial;
+  const double arm_squared = axis.cross(inertial.pose.xyz).squaredNorm();
+  return axis.dot(inertial.inertia_in_link_axes() * axis) + inertial.mass * arm_squared;
+}
+
 MassProperties mass_properties(const Model& model) {
   const std::vector<Eigen::Isometry3d> poses = link_poses(model);
   MassProperties total;

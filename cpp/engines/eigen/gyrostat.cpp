@@ -50,7 +50,7 @@ Gyrostat::Gyrostat(const Model& model) {
     rotor.axis_F = rotor.R_FR * joint.axis;
     rotor.p_FR_F = poses[i + 1].translation();
     rotor.p_FRcm_F = poses[i + 1] * inertial.pose.xyz;
-    rotor.moment = joint.axis.dot(inertial.inertia_in_link_axes() * joint.axis);
+    rotor.moment = moment_about_joint(model, i);
     rotor.moment_axis_F = rotor.moment * rotor.axis_F;
     rotor.inverse_moment = 1 / rotor.moment;
     rotor.centered = inertial.pose.xyz.isZero(0);

@@ -36,6 +36,7 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
   iterate_ = world.solver_type == "quick" &&
              (world.solver_iterations < converged_iterations || world.solver_sor != default_sor);
   create_bodies();
+  gyroscopic_ = std::make_unique<GyroscopicVehicle>(model_, bodies_);
   gazebo_step_ =
       std::make_unique<GazeboStep>(bodies_, create_hinges(), model_.sdf_order,
                                    GazeboStep::Options{world.solver_iterations, world.solver_sor,
@@ -73,9 +74,6 @@ void OdeEngine::create_bodies() {
     dBodySetMass(body, &mass);
     dBodySetGyroscopicMode(body, 0);
     bodies_.push_back(body);
-    gyroscopic_bodies_.push_back(
-        i == 0 ? GyroscopicBody{body, 0, Vector3d::Zero(), I}
-               : GyroscopicBody{body, model_.joints[i - 1].parent, model_.joints[i - 1].axis, I});
     place(i, poses[i], Vector3d::Zero(), Vector3d::Zero());
   }
 }
@@ -122,7 +120,7 @@ void OdeEngine::step(double dt, const ForceField& forces) {
   forces.evaluate(kinematics_, loads_);
   if (!loads_.all_finite()) forces.refuse(kinematics_, loads_);  // ODE ends the process for less
   apply_loads();
-  recipe_.add_gyroscopic(gyroscopic_bodies_);
+  recipe_.add_gyroscopic(*gyroscopic_, dt);
   static const std::vector<Contact> none;
   const std::vector<Contact>& contacts = ground_ ? ground_->find() : none;
   if (iterate_ || !contacts.empty()) {
@@ -244,7 +242,7 @@ void OdeEngine::set_state(const VehicleState& state) {
     const auto row = static_cast<Eigen::Index>(i);
     const std::size_t parent = joint.parent, child = i + 1;
     X_WL[child] = X_WL[parent] * Eigen::Translation3d(joint.pose.xyz) * joint.pose.rotation() *
-                  Eigen::AngleAxisd(state.rotor_angle[row], joint.axis);
+                  quaternion_about(joint.axis, state.rotor_angle[row]);
     const Vector3d arm_W = X_WL[child].translation() - X_WL[parent].translation();
     v_W[child] = v_W[parent] + w_W[parent].cross(arm_W);
     w_W[child] = w_W[parent] + X_WL[child].linear() * joint.axis * state.rotor_velocity[row];

@@ -15,7 +15,7 @@ namespace quadcore {
 /// How an ODE world is set up.
 struct OdeRecipe {
   bool round_like_sdf;  ///< fly the numbers that Gazebo's URDF -> SDF conversion leaves
-  void (*add_gyroscopic)(const std::vector<GyroscopicBody>&);
+  void (*add_gyroscopic)(GyroscopicVehicle&, double dt);
 };
 
 /// Gazebo 11 to the last digit, faults included.
@@ -67,7 +67,7 @@ class OdeEngine final : public Engine {
   std::unique_ptr<GazeboStep> gazebo_step_;
   std::vector<dJointID> hinges_;
   std::vector<dJointFeedback> feedback_;  ///< one per hinge in a world with ground
-  std::vector<GyroscopicBody> gyroscopic_bodies_;
+  std::unique_ptr<GyroscopicVehicle> gyroscopic_;
   double mass_ = 0;
   Vector3d wind_W_;
   Kinematics kinematics_;

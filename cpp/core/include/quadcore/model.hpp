@@ -98,6 +98,9 @@ MassProperties mass_properties(const Model& model);
 /// Poses of every link in the frame link, all joints at angle zero.
 std::vector<Eigen::Isometry3d> link_poses(const Model& model);
 
+/// Moment of inertia of the link that joint i carries about the joint's axis [kg m^2].
+double moment_about_joint(const Model& model, std::size_t i);
+
 /// Reads a URDF as Gazebo does: links on fixed joints are lumped into the body that carries them.
 /// Throws InputError with FILE:LINE on anything that Gazebo or the engines would not honour.
 Model read_model(const Document& document);
