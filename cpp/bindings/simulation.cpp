@@ -42,6 +42,27 @@ class Lock {
   Guarded& guarded_;
 };
 
+/// Raises in Python, as warnings, what a simulation warns of during a call, also where that fails.
+template <class Call>
+void raising_warnings(const Simulation& simulation, const Call& call) {
+  const std::size_t before = simulation.warnings().size();
+  const auto raise = [&] {
+    for (std::size_t i = before; i < simulation.warnings().size(); ++i) {
+      const py::object category = py::module_::import("quadcore").attr("QuadcoreWarning");
+      if (PyErr_WarnEx(category.ptr(), simulation.warnings()[i].c_str(), 1) != 0) {
+        throw py::error_already_set();  // the user has made an error of it
+      }
+    }
+  };
+  try {
+    call();
+  } catch (...) {
+    raise();
+    throw;
+  }
+  if (simulation.warnings().size() > before) raise();
+}
+
 struct BoundFlight {
   std::shared_ptr<Guarded> guarded;
   Flight flight;
@@ -81,9 +102,9 @@ void step(Guarded& guarded, std::int64_t n) {
   using Clock = std::chrono::steady_clock;
   const Lock lock(guarded);
   // A single step is over sooner than the GIL is handed over and back.
-  if (n == 1) return guarded.simulation.step();
+  if (n == 1) return raising_warnings(guarded.simulation, [&] { guarded.simulation.step(); });
   do {
-    {
+    raising_warnings(guarded.simulation, [&] {
       const py::gil_scoped_release release;
       const Clock::time_point begin = Clock::now();
       std::int64_t piece = 1;  // grows, because a step may take a microsecond or a second
@@ -92,7 +113,7 @@ void step(Guarded& guarded, std::int64_t n) {
         guarded.simulation.step(piece);
         n -= piece;
       } while (n > 0 && Clock::now() - begin < between_signals);
-    }
+    });
     if (n > 0 && PyErr_CheckSignals() != 0) throw py::error_already_set();
   } while (n > 0);
 }
@@ -159,8 +180,10 @@ std::unique_ptr<BoundFlight> create_flight(const std::shared_ptr<Guarded>& guard
 
 void advance(BoundFlight& bound, std::int64_t n) {
   const Lock lock(*bound.guarded);
-  const py::gil_scoped_release release;
-  bound.flight.advance(n);
+  raising_warnings(bound.guarded->simulation, [&] {
+    const py::gil_scoped_release release;
+    bound.flight.advance(n);
+  });
 }
 
 py::array_t<double> copied(const std::vector<double>& data, std::vector<py::ssize_t> shape) {
@@ -209,7 +232,8 @@ void bind_simulation(py::module_& m) {
           "set_state",
           [](Guarded& g, const py::object& state) {
             const Lock lock(g);
-            g.simulation.set_state(to_state(state));
+            const VehicleState wanted = to_state(state);
+            raising_warnings(g.simulation, [&] { g.simulation.set_state(wanted); });
           },
           py::arg("state"))
       .def("snapshot",

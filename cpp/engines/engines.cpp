@@ -7,6 +7,12 @@
 namespace quadcore {
 namespace {
 
+/// Of the semi-implicit Euler step: v' = (1 - r dt) v.
+constexpr double decay_limit_of_euler = 2;
+/// Of the classical Runge-Kutta method: 1 - z + z^2/2 - z^3/6 + z^4/24 = 1 at z = r dt (Hairer,
+/// Wanner, "Solving Ordinary Differential Equations II", ch. IV.2).
+constexpr double decay_limit_of_rk4 = 2.785293563405282;
+
 struct EngineEntry {
   EngineInfo info;
   std::unique_ptr<Engine> (*make)(const Model&, const World&);
@@ -14,21 +20,34 @@ struct EngineEntry {
 
 const std::vector<EngineEntry>& table() {
   static const std::vector<EngineEntry> entries = {
-      {{"gazebo11", "ODE set up to do what Gazebo 11 does to the last digit, faults included"},
+      {{"gazebo11", "ODE set up to do what Gazebo 11 does to the last digit, faults included",
+        decay_limit_of_euler},
        [](const Model& model, const World& world) -> std::unique_ptr<Engine> {
          return std::make_unique<OdeEngine>(model, world, gazebo11_recipe);
        }},
-      {{"ode", "the same ODE world with the right gyroscopic torque and the URDF's own numbers"},
+      {{"ode", "the same ODE world with the right gyroscopic torque and the URDF's own numbers",
+        decay_limit_of_euler},
        [](const Model& model, const World& world) -> std::unique_ptr<Engine> {
          return std::make_unique<OdeEngine>(model, world, ode_recipe);
        }},
       {{"eigen",
-        "exact reduced coordinates, fourth order: the accurate and the fast one, no contact"},
+        "exact reduced coordinates, fourth order: the accurate and the fast one, no contact",
+        decay_limit_of_rk4},
        [](const Model& model, const World& world) -> std::unique_ptr<Engine> {
          return std::make_unique<EigenEngine>(model, world);
        }},
   };
   return entries;
+}
+
+const EngineEntry& entry(const std::string& name) {
+  std::vector<std::string> names;
+  for (const EngineEntry& entry : table()) {
+    if (entry.info.name == name) return entry;
+    names.push_back(entry.info.name);
+  }
+  throw InputError("engine '" + name + "' is not there" + did_you_mean(name, names) +
+                   "; choose one of " + joined(names));
 }
 
 }  // namespace
@@ -43,15 +62,11 @@ std::vector<EngineInfo> engines() {
   return infos;
 }
 
+const EngineInfo& engine_info(const std::string& name) { return entry(name).info; }
+
 std::unique_ptr<Engine> make_engine(const std::string& name, const Model& model,
                                     const World& world) {
-  std::vector<std::string> names;
-  for (const EngineEntry& entry : table()) {
-    if (entry.info.name == name) return entry.make(model, world);
-    names.push_back(entry.info.name);
-  }
-  throw InputError("engine '" + name + "' is not there" + did_you_mean(name, names) +
-                   "; choose one of " + joined(names));
+  return entry(name).make(model, world);
 }
 
 }  // namespace quadcore

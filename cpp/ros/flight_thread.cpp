@@ -260,11 +260,15 @@ void FlightThread::take_step() {
     report_.overruns += overrun;
   }
   const double odometry_before = odometry_count(simulation_, odometry_topic_);
+  const std::size_t warnings_before = simulation_.warnings().size();
   std::string failure;
   try {
     simulation_.step();
   } catch (const FlightError& error) {
     failure = error.what();
+  }
+  for (std::size_t i = warnings_before; i < simulation_.warnings().size(); ++i) {
+    listener_.warn(simulation_.warnings()[i]);
   }
   if (failure.empty() && odometry_count(simulation_, odometry_topic_) != odometry_before) {
     const Lock lock(mutex_);

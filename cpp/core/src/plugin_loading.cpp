@@ -58,6 +58,7 @@ void check_shared_tags(const std::vector<LoadedPlugin>& plugins) {
 
 void Simulation::load_plugins(const Model& model, const SimulationOptions& options) {
   const auto overrides = by_plugin(options.parameters, model);
+  const double fastest_decay = engine_info(options.engine).largest_decay_per_step / dt_;
   Eigen::Index state_size = 0;
   for (const PluginElement& element : model.plugins) {
     const PluginLibrary library = open_plugin(element);
@@ -81,7 +82,7 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
     try {
       std::vector<std::string> warnings;
       loaded.plugin = library.descriptor->create(
-          {element.name, loaded.parameters, model, topics_, options.seed, warnings});
+          {element.name, loaded.parameters, model, topics_, options.seed, warnings, fastest_decay});
       if (!loaded.plugin) throw Error("its create() returned no plugin");
       const std::size_t numbers = loaded.plugin->state_size();
       if (numbers > max_plugin_state) {

@@ -15,8 +15,7 @@ constexpr const char* command_topic_name = "vel_cmd";
 constexpr double max_speed = 1e6;     // m/s
 constexpr double max_rate = 1e6;      // rad/s
 constexpr double max_distance = 1e9;  // m
-constexpr const char* no_longer_finite =
-    "the state is no longer finite; try a smaller step or weaker commands";
+constexpr const char* no_longer_finite = "the state is no longer finite";
 
 bool is_finite(const Kinematics& k) {
   double rates = 0;
@@ -42,6 +41,7 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
   }
   load_plugins(model, options);
   engine_ = make_engine(options.engine, model, world);
+  warnings_at_load_ = warnings_.size();
   command_topic_ = topics_.find(command_topic_name);
   kind_ = describe_kind();
 
@@ -93,7 +93,7 @@ void Simulation::evaluate(const Kinematics& kinematics, Loads& loads) const {
 }
 
 void Simulation::refuse(const Kinematics& kinematics, Loads& loads) const {
-  if (!is_finite(kinematics)) throw Error(no_longer_finite);
+  if (!is_finite(kinematics)) throw Error(no_longer_finite + advice());
   // Force laws are pure: asked again one by one, the same one spoils the sum.
   loads.clear();
   loads.record_terms(nullptr, 0, nullptr);
@@ -118,21 +118,31 @@ const std::vector<Wrench>& Simulation::wrenches() {
 }
 
 void Simulation::sense(bool jumped) {
-  const Sample sample{time(), dt_, engine_->kinematics(), topics_, jumped};
+  const Sample sample{time(), dt_, engine_->kinematics(), topics_, said_, jumped};
   for (const LoadedPlugin& p : plugins_) {
     active_ = &p;
     p.plugin->sense(sample, state_of(p));
+    if (!said_.empty()) collect_warnings();
   }
   active_ = nullptr;
 }
 
 void Simulation::update() {
-  const Sample sample{time(), dt_, engine_->kinematics(), topics_};
+  const Sample sample{time(), dt_, engine_->kinematics(), topics_, said_};
   for (const LoadedPlugin& p : plugins_) {
     active_ = &p;
     p.plugin->update(sample, state_of(p));
+    if (!said_.empty()) collect_warnings();
   }
   active_ = nullptr;
+}
+
+void Simulation::collect_warnings() {
+  for (const std::string& what : said_) {
+    warnings_.push_back("t = " + std::to_string(time()) + " s: plugin '" + active_->name +
+                        "': " + what);
+  }
+  said_.clear();
 }
 
 void Simulation::step(std::int64_t n) {
@@ -155,6 +165,7 @@ void Simulation::step(std::int64_t n) {
 }
 
 void Simulation::fail(const std::string& what) {
+  if (!said_.empty()) collect_warnings();
   failure_ = "the flight failed at t = " + std::to_string(time()) + " s: ";
   if (active_) failure_ += "plugin '" + active_->name + "' (" + active_->path + "): ";
   failure_ += what;
@@ -176,8 +187,12 @@ void Simulation::check_flight() const {
               k.w_WF_F.squaredNorm() < max_rate * max_rate;
   for (const RotorKinematics& rotor : k.rotors) sane = sane && std::abs(rotor.rate) < max_rate;
   if (sane) return;
-  throw Error(is_finite(k) ? "the motion diverged; try a smaller step or weaker commands"
-                           : no_longer_finite);
+  throw Error((is_finite(k) ? "the motion diverged" : no_longer_finite) + advice());
+}
+
+std::string Simulation::advice() const {
+  if (warnings_.size() == warnings_at_load_) return "; try a smaller step or weaker commands";
+  return ", as this flight was warned: " + warnings_.back();
 }
 
 void Simulation::set_state(const VehicleState& state) {
@@ -224,7 +239,15 @@ std::string Simulation::describe_kind() const {
 }
 
 Snapshot Simulation::snapshot() const {
-  return {kind_, start_time_, steps_, engine_->save(), plugin_state_, topics_, failure_};
+  const auto of_flight = warnings_.begin() + static_cast<std::ptrdiff_t>(warnings_at_load_);
+  return {kind_,
+          start_time_,
+          steps_,
+          engine_->save(),
+          plugin_state_,
+          topics_,
+          {of_flight, warnings_.end()},
+          failure_};
 }
 
 void Simulation::restore(const Snapshot& snapshot) {
@@ -237,6 +260,8 @@ void Simulation::restore(const Snapshot& snapshot) {
   steps_ = snapshot.steps;
   plugin_state_ = snapshot.plugin_state;
   topics_ = snapshot.topics;
+  warnings_.resize(warnings_at_load_);
+  warnings_.insert(warnings_.end(), snapshot.warnings.begin(), snapshot.warnings.end());
   failure_ = snapshot.failure;
   show_state();
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -39,20 +40,67 @@ struct Config {
         rotors(p.joints("rotorJoints")) {}
 };
 
+/// Drag tags and what the thesis' plugin (A.5) has in their place: compiled in, no tags.
+constexpr std::pair<const char*, const char*> compiled_in_drag[] = {
+    {"inducedDragCoeff", "0.01"},
+    {"translationalDragCoeff", "0.0025"},
+    {"profileDragCoeff", "0.005"},
+    {"parasiticDragCoeff", "0.003"},
+};
+
+/// A model made for the thesis' plugin flies another vehicle without them.
+void warn_without_drag(const PluginSetup& setup) {
+  std::string values;
+  for (const auto& [tag, value] : compiled_in_drag) {
+    if (setup.parameters.is_set(tag)) return;
+    values += (values.empty() ? "<" : ", <") + std::string(tag) + ">" + value;
+  }
+  setup.warnings.push_back(
+      "no drag is set, so that nothing slows the vehicle; the thesis' plugin (A.5) had " + values +
+      " compiled in: write these tags, or one of them with 0 to fly without drag");
+}
+
+/// The laws take the propeller's z for up.
+void warn_of_axes_against_lift(const PluginSetup& setup, const Config& config) {
+  for (const std::size_t i : config.rotors) {
+    const Joint& joint = setup.model.joints[i];
+    if (joint.axis.z() >= 0) continue;
+    setup.warnings.push_back(
+        "joint '" + joint.name + "' (" + joint.where + ") has its axis against the z of link '" +
+        setup.model.links[i + 1].name + "', so that " +
+        (config.appendix ? "its reaction torque takes the wrong sign" : "its thrust points down") +
+        "; write the axis along the lift and give the sense of rotation by the sign of the "
+        "command");
+  }
+}
+
 class AerodynamicPlugin final : public Plugin {
  public:
   explicit AerodynamicPlugin(const PluginSetup& setup)
-      : config_(setup.parameters), joint_names_(setup.model.joint_names()) {}
+      : config_(setup.parameters), joint_names_(setup.model.joint_names()) {
+    warn_without_drag(setup);
+    warn_of_axes_against_lift(setup, config_);
+  }
+
+  std::size_t state_size() const override { return 1; }
 
   /// The thesis' plugin falls silent for a rotor that turns more than half a turn per step; here
   /// such a speed ends the flight.
-  void update(const Sample& sample, PluginState) const override {
+  void update(const Sample& sample, PluginState state) const override {
     for (const std::size_t i : config_.rotors) {
       if (std::abs(sample.kinematics.rotors[i].rate) * sample.dt > M_PI) {
         throw FlightError(sample.time, "rotor '" + joint_names_[i] +
                                            "' turns more than half a turn per step; take a smaller "
                                            "step or a slower command");
       }
+    }
+    double& has_warned = state[0];
+    if (has_warned == 0 && drag_drives(sample.kinematics)) {
+      has_warned = 1;
+      sample.warnings.push_back(
+          "a propeller tilts beyond 90 degrees, where the parasitic drag of <dragModel> appendix "
+          "drives the vehicle with the square of its speed instead of slowing it; set <dragModel> "
+          "to chapter2, or <parasiticDragCoeff> to 0, for such a flight");
     }
   }
 
@@ -102,6 +150,14 @@ class AerodynamicPlugin final : public Plugin {
   RotorDisc disc_of_appendix(const Kinematics& kinematics, std::size_t i) const {
     const RotorKinematics& rotor = kinematics.rotors[i];
     return {kinematics.R_FR(i).col(2), rotor.rate * config_.sim_slow, rotor.v_WR_F};
+  }
+
+  /// Whether the vertical part of parasitic_drag_of_appendix() points along the motion.
+  bool drag_drives(const Kinematics& kinematics) const {
+    if (!config_.appendix || config_.parasitic == 0) return false;
+    return std::any_of(config_.rotors.begin(), config_.rotors.end(), [&](std::size_t i) {
+      return kinematics.R_WF.row(2).dot(kinematics.R_FR(i).col(2)) < 0;
+    });
   }
 
   Config config_;

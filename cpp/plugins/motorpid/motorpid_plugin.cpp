@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
@@ -41,6 +42,7 @@ class MotorPidPlugin final : public Plugin {
           "<ki> has no effect while <iMax> and <iMin> are 0, as in the thesis; set them to the "
           "largest and smallest integral torque in N m");
     }
+    for (const std::size_t i : config_.rotors) warn_if_stiff(setup, i);
     std::vector<std::string> fields;
     for (std::size_t j = 0; j < config_.rotors.size(); ++j) {
       fields.push_back("w" + std::to_string(j + 1));
@@ -85,6 +87,19 @@ class MotorPidPlugin final : public Plugin {
   }
 
  private:
+  void warn_if_stiff(const PluginSetup& setup, std::size_t i) const {
+    const Joint& joint = setup.model.joints[i];
+    const double moment = moment_about_joint(setup.model, i);
+    const double decay = (config_.kp + joint.damping) / moment;
+    if (decay <= setup.fastest_decay) return;
+    std::ostringstream what;
+    what << "<kp> is too stiff for the step: an error of the speed of joint '" << joint.name
+         << "' decays at (kp + damping)/J = " << decay << " 1/s, and beyond " << setup.fastest_decay
+         << " 1/s this engine makes it grow; take <kp> below "
+         << setup.fastest_decay * moment - joint.damping << " N m s/rad, or a smaller step";
+    setup.warnings.push_back(what.str());
+  }
+
   Config config_;
   std::size_t topic_;
 };

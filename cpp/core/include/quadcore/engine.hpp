@@ -48,10 +48,15 @@ class Engine {
 struct EngineInfo {
   std::string name;
   std::string summary;
+  /// A decay at rate r is followed without growing while r dt is below this.
+  double largest_decay_per_step;
 };
 
 /// The engines there are, the default first.
 std::vector<EngineInfo> engines();
+
+/// Throws InputError on an unknown name.
+const EngineInfo& engine_info(const std::string& name);
 
 /// Throws InputError on an unknown name or a model or world that the engine cannot represent.
 std::unique_ptr<Engine> make_engine(const std::string& name, const Model& model,

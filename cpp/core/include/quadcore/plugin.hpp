@@ -14,7 +14,7 @@
 namespace quadcore {
 
 /// Changes whenever a plugin built before must be rebuilt.
-constexpr int plugin_abi = 2;
+constexpr int plugin_abi = 3;
 
 /// A plugin's state: plain numbers that belong to the simulation, so that snapshot, restore and
 /// reset are exact. All zero at the start.
@@ -27,6 +27,7 @@ struct Sample {
   double dt;                     ///< length of the step [s]
   const Kinematics& kinematics;  ///< motion at `time`
   Topics& topics;
+  std::vector<std::string>& warnings;  ///< what the user must know, each once per flight
   bool jumped = false;  ///< the motion was set, not flown: sensors answer at once, due or not
 };
 
@@ -51,9 +52,12 @@ struct PluginSetup {
   const std::string& name;  ///< name attribute of the plugin tag
   const Parameters& parameters;
   const Model& model;
-  Topics& topics;      ///< declare topics here
-  std::uint64_t seed;  ///< the simulation's
-  std::vector<std::string>& warnings;
+  Topics& topics;                      ///< declare topics here
+  std::uint64_t seed;                  ///< the simulation's
+  std::vector<std::string>& warnings;  ///< what is allowed but was perhaps not meant
+  /// Rate at which the engine's step no longer makes an error decay but grow, where the force law
+  /// makes it decay faster than this [1/s].
+  double fastest_decay;
 };
 
 /// What a module says of itself.

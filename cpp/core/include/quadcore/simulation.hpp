@@ -38,6 +38,7 @@ struct Snapshot {
   std::vector<double> engine;
   VectorXd plugin_state;
   Topics topics;
+  std::vector<std::string> warnings;  ///< of the flight
   std::string failure;
 };
 
@@ -71,6 +72,9 @@ class Simulation : private ForceField {
   const VehicleState& state() const { return state_; }
   const Topics& topics() const { return topics_; }
   const std::vector<LoadedPlugin>& plugins() const { return plugins_; }
+  /// What was perhaps not meant: first what the model and its plugins said as they were loaded,
+  /// then, growing as it happens, what plugins said of this flight. The latter are part of a
+  /// snapshot; a reset leaves the former.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
   /// Throws InputError on a state that is not finite or whose sizes differ.
@@ -93,6 +97,8 @@ class Simulation : private ForceField {
   [[noreturn]] void refuse(const Kinematics& kinematics, Loads& loads) const override;
   void load_plugins(const Model& model, const SimulationOptions& options);
   void check_flight() const;
+  /// What to do about a motion that got out of hand, or the warning that told it.
+  std::string advice() const;
   std::string describe_kind() const;
   void show_state();  ///< brings state_ up to date
   PluginState state_of(const LoadedPlugin& p) {
@@ -100,6 +106,8 @@ class Simulation : private ForceField {
   }
   void update();
   void sense(bool jumped);
+  /// Adds to warnings() what the active plugin has said in a hook.
+  void collect_warnings();
   /// Records why the flight ended and throws FlightError.
   [[noreturn]] void fail(const std::string& what);
 
@@ -107,6 +115,8 @@ class Simulation : private ForceField {
   double dt_;
   std::string kind_;  ///< of its snapshots
   std::vector<std::string> warnings_;
+  std::size_t warnings_at_load_ = 0;  ///< the first of warnings_, which are not of a flight
+  std::vector<std::string> said_;     ///< by the plugin whose hook is running
   Topics topics_;
   std::vector<LoadedPlugin> plugins_;
   std::vector<std::string> wrench_terms_;

@@ -76,6 +76,8 @@ class Parameters {
 
   double number(const std::string& tag) const { return at(tag).number; }
   bool has(const std::string& tag) const { return !at(tag).text.empty(); }
+  /// Whether the URDF or an override gives it, rather than its default.
+  bool is_set(const std::string& tag) const { return at(tag).origin != "default"; }
   bool flag(const std::string& tag) const { return at(tag).text == "true"; }
   const std::string& choice(const std::string& tag) const { return at(tag).text; }
   const std::vector<std::size_t>& joints(const std::string& tag) const { return at(tag).joints; }
