@@ -53,7 +53,6 @@ class World:
     gravity: Array
     wind: Array
     max_step_size: float
-    real_time_factor: float
     real_time_update_rate: float
     ground_plane: bool
 
