@@ -4,7 +4,7 @@
 apt_packages="g++ make cmake ninja-build pkg-config python3-dev python3-venv
   libode-dev libeigen3-dev libtinyxml2-dev doctest-dev ${extra_apt_packages:-}"
 python_packages="scikit-build-core>=0.5 pybind11>=2.10 numpy scipy matplotlib rich xacro rospkg
-  pyyaml jinja2 pytest hypothesis ruff mypy"
+  jinja2 pytest hypothesis ruff mypy clang-format==23.1.5"
 
 say() { echo "quadcore: $*"; }
 

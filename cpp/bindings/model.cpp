@@ -53,7 +53,6 @@ void bind_model(py::module_& m) {
       .def_property_readonly("gravity", [](const World& w) -> Vector3d { return w.gravity_W; })
       .def_property_readonly("wind", [](const World& w) -> Vector3d { return w.wind_W; })
       .def_readonly("max_step_size", &World::max_step_size)
-      .def_readonly("real_time_factor", &World::real_time_factor)
       .def_readonly("real_time_update_rate", &World::real_time_update_rate)
       .def_readonly("ground_plane", &World::ground_plane);
 

@@ -10,6 +10,7 @@
 #include "bindings.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/flight.hpp"
+#include "quadcore/plugin_library.hpp"
 
 namespace quadcore::bindings {
 namespace {

@@ -8,12 +8,12 @@ from typing import Mapping, Union
 
 import numpy as np
 
-from ._core import InputError
+from ._core import InputError, log_columns
 from .files import atomic_write, check_writable
 
 PathLike = Union[str, "os.PathLike[str]"]
 
-_STATE = ["t", "x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz"]
+_STATE_SIZE = len(log_columns(0))
 
 
 class Log:
@@ -42,7 +42,7 @@ class Log:
     @property
     def columns(self) -> list[str]:
         """Names of the table's columns, as they head the CSV file."""
-        return _STATE + [f"j{i}" for i in range(1, 1 + self.table.shape[1] - len(_STATE))]
+        return log_columns(self.table.shape[1] - _STATE_SIZE)
 
     @property
     def time(self) -> np.ndarray:
@@ -72,7 +72,7 @@ class Log:
     @property
     def rotor_velocity(self) -> np.ndarray:
         """Velocity of the rotor joints, rad/s; shape (rows, n)."""
-        return self.table[:, 14:]
+        return self.table[:, _STATE_SIZE:]
 
     def to_csv(self, path: PathLike) -> None:
         """Write `table` as text with 17 significant digits, so that reading restores every bit."""

@@ -80,15 +80,20 @@ def test_the_integral_works_up_to_its_limit(hangar, engine, way, limit, speed):
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_saturated_integral_does_not_wind_up(hangar, engine):
+    """It leaves its limit as soon as the error turns, however long it was there."""
+
     def turn_back(after):
         motor = {**MOTOR, "ki": 5e-3, "iMax": 1e-3, "iMin": -1e-3}
         simulation = hangar(vehicle(DAMPED, motor=motor), engine=engine)
         simulation.command(300 * WAYS)
         simulation.run(after)
         simulation.command(-300 * WAYS)
-        return simulation.run(0.2).rotor_velocity
+        return simulation.run(1).rotor_velocity
 
-    assert np.allclose(turn_back(after=3), turn_back(after=6), rtol=0, atol=1e-6)
+    early = turn_back(after=3)
+    assert np.allclose(early, turn_back(after=6), rtol=0, atol=1e-6)
+    at_the_other_limit = -(MOTOR["kp"] * 300 + 1e-3) / 6e-4
+    assert np.allclose(early[-1], at_the_other_limit * WAYS, rtol=0, atol=1e-6)
 
 
 @pytest.mark.parametrize("engine", ODE)

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "quadcore/error.hpp"
+#include "quadcore/plugin_library.hpp"
 #include "quadcore/simulation.hpp"
 #include "quadcore/text.hpp"
 

@@ -65,24 +65,28 @@ class WorldReader {
   }
 
   /// A number in [min, max] (max included); `open` excludes min.
+  double in_range(const Element& e, double min, bool open, double max = INFINITY) {
+    const double value = xml_.number_in_text(e);
+    if (value < min || (open && value == min) || value > max) {
+      std::ostringstream range;
+      range << (open ? "> " : ">= ") << min;
+      if (std::isfinite(max)) range << ", <= " << max;
+      xml_.fail(e,
+                "<" + std::string(e.Name()) + "> is out of range; write a number " + range.str());
+    }
+    return value;
+  }
+
   Handler number(double& target, double min, bool open = false, double max = INFINITY) {
-    return [this, &target, min, open, max](const Element& e) {
-      target = xml_.number_in_text(e);
-      if (target < min || (open && target == min) || target > max) {
-        std::ostringstream range;
-        range << (open ? "> " : ">= ") << min;
-        if (std::isfinite(max)) range << ", <= " << max;
-        xml_.fail(e,
-                  "<" + std::string(e.Name()) + "> is out of range; write a number " + range.str());
-      }
-    };
+    return
+        [this, &target, min, open, max](const Element& e) { target = in_range(e, min, open, max); };
   }
 
   Handlers physics_handlers() {
     return {{"max_step_size", number(world_.max_step_size, shortest_step)},
             {"real_time_update_rate", number(world_.real_time_update_rate, 0)},
             {"updateRate", number(world_.real_time_update_rate, 0)},
-            {"real_time_factor", number(world_.real_time_factor, 0, true)},
+            {"real_time_factor", [this](const Element& e) { in_range(e, 0, true); }},
             {"gravity", [this](const Element& e) { world_.gravity_W = xml_.vector_in_text(e); }},
             {"ode", [this](const Element& e) { read_ode(e); }}};
   }
@@ -138,8 +142,11 @@ class WorldReader {
   void read_include(const Element& include) {
     read_children(include, {{"uri", [this](const Element& e) {
                                const std::string uri = xml_.text(e);
-                               if (uri == "model://ground_plane") return set_ground_plane(e);
                                if (uri == "model://sun") return;  // there is no light here
+                               if (uri == "model://ground_plane") {
+                                 world_.ground_plane = true;
+                                 return;
+                               }
                                xml_.fail(e, "'" + uri +
                                                 "' is not supported; a world may include "
                                                 "model://ground_plane and model://sun");
@@ -158,7 +165,7 @@ class WorldReader {
                            }
                          }},
                         {"size", [](const Element&) {}}});
-      set_ground_plane(e);
+      world_.ground_plane = true;
     };
     const Handler collision = [this, plane](const Element& e) {
       read_children(e, {{"geometry", [this, plane](const Element& g) {
@@ -180,11 +187,6 @@ class WorldReader {
                            }}});
     xml_.required_child(model, "static");
     xml_.required_child(model, "link");
-  }
-
-  void set_ground_plane(const Element& element) {
-    world_.ground_plane = true;
-    world_.ground_plane_where = xml_.where(element);
   }
 
   Xml xml_;

@@ -7,11 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/commands.hpp"
 #include "quadcore/engine.hpp"
 #include "quadcore/model.hpp"
 #include "quadcore/plugin.hpp"
-#include "quadcore/plugin_library.hpp"
 #include "quadcore/state.hpp"
 #include "quadcore/world.hpp"
 

@@ -15,15 +15,13 @@ struct World {
   Vector3d gravity_W{0, 0, -9.8};       ///< m/s^2
   double max_step_size = 0.001;         ///< s
   double real_time_update_rate = 1000;  ///< 1/s, 0 = as fast as possible; for nodes that pace
-  double real_time_factor = 1;          ///< for nodes that pace
   std::string solver_type = "quick";    ///< quick | world
   int solver_iterations = 50;
   double solver_sor = 1.3;
   double erp = 0.2;
   double cfm = 0;
   bool ground_plane = false;
-  std::string ground_plane_where;  ///< FILE:LINE of the ground plane
-  Vector3d wind_W{0, 0, 0};        ///< velocity of the air [m/s]
+  Vector3d wind_W{0, 0, 0};  ///< velocity of the air [m/s]
 };
 
 /// Reads a world file. Throws InputError with FILE:LINE on every element it does not honour.

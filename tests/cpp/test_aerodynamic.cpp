@@ -1,0 +1,145 @@
+#include <cmath>
+
+#include "plugin_bench.hpp"
+
+using namespace quadcore;
+using namespace quadcore::test;
+
+namespace {
+
+constexpr double k = 1.2e-5, b = 3e-7, slow = 2.5;
+constexpr double K_I = 0.011, K_T = 0.0023, K_P = 0.0057, K_par = 0.0031;
+constexpr double A1c = 0.12, A1s = 0.031, B1 = 0.0042, B2 = 0.0027, r = 0.09;
+constexpr std::size_t rotor_count = 5;
+const std::vector<std::size_t> named = {3, 0, 2};  // d a c
+
+const std::string thrust_only = tag("rotorThrustCoeff", "1.2e-5") + tag("rotorTorqueCoeff", "3e-7");
+const std::string everything =
+    thrust_only + tag("sim_slow", "2.5") + tag("inducedDragCoeff", "0.011") +
+    tag("translationalDragCoeff", "0.0023") + tag("profileDragCoeff", "0.0057") +
+    tag("parasiticDragCoeff", "0.0031") + tag("flappingA1c", "0.12") + tag("flappingA1s", "0.031") +
+    tag("flappingB1", "0.0042") + tag("flappingB2", "0.0027") + tag("rotorRadius", "0.09") +
+    tag("rotorJoints", "d a c");
+
+enum Term { thrust, reaction, induced, translational, profile, parasitic, flapping, term_count };
+
+/// What each term exerts, term by term from the thesis' equations, in components.
+struct Expected {
+  Vector3d force_on_rotor[term_count][rotor_count];
+  Vector3d torque_F = Vector3d::Zero();          ///< reaction, on the frame
+  Vector3d force_on_frame_F = Vector3d::Zero();  ///< parasitic, at the vehicle's centre of mass
+
+  Expected(const Kinematics& m, bool appendix, double reaction_sign) {
+    for (auto& forces : force_on_rotor) std::fill(forces, forces + rotor_count, Vector3d::Zero());
+    for (const std::size_t i : named) {
+      const RotorKinematics& rotor = m.rotors[i];
+      const double W = rotor.rate * slow, s = W < 0 ? -1 : 1;
+      const Vector3d a = appendix ? m.R_FR(i) * Vector3d::UnitZ() : rotor.axis_F;
+      const Vector3d v = appendix ? rotor.v_WR_F : Vector3d(rotor.v_WRcm_F - m.v_WA_F);
+      // Axes of the disc.
+      const Vector3d e1 = a.cross(Vector3d(0.3, -0.5, 0.7)).normalized(), e2 = a.cross(e1);
+      const double v1 = v.dot(e1), v2 = v.dot(e2);
+      const double n1 = m.w_WF_F.dot(e1), n2 = m.w_WF_F.dot(e2);
+
+      force_on_rotor[thrust][i] = k * W * W * a;
+      torque_F +=
+          reaction_sign * b * W * std::abs(W) * (appendix ? Vector3d(Vector3d::UnitZ()) : a);
+      force_on_rotor[induced][i] = -K_I * (v1 * e1 + v2 * e2);
+      force_on_rotor[translational][i] = -K_T * (v1 * e1 + v2 * e2);
+      force_on_rotor[profile][i] = -K_P * (v1 * e1 + v2 * e2);
+      force_on_rotor[flapping][i] = k * std::abs(W) *
+                                    (e1 * ((-A1c * v1 + s * A1s * v2) / r - s * B2 * n1 + B1 * n2) +
+                                     e2 * ((-s * A1s * v1 - A1c * v2) / r - B1 * n1 - s * B2 * n2));
+      if (appendix) {
+        const Vector3d w = m.R_WF * m.v_WF_F;
+        const Vector3d in_propeller(w.x() * std::abs(w.x()), w.y() * std::abs(w.y()),
+                                    w.z() * std::abs(w.z()));
+        force_on_rotor[parasitic][i] = m.R_FR(i) * (-K_par * in_propeller);
+      }
+    }
+    if (!appendix) {
+      const Vector3d v = m.v_WCcm_F - m.v_WA_F;
+      force_on_frame_F = -K_par * std::sqrt(v.dot(v)) * v;
+    }
+  }
+};
+
+}  // namespace
+
+TEST_CASE("each force law is the thesis', in whatever motion, with and without a log") {
+  for (const bool appendix : {true, false}) {
+    for (const bool opposing : {true, false}) {
+      CAPTURE(appendix);
+      CAPTURE(opposing);
+      PluginBench bench("aerodynamic",
+                        everything + tag("dragModel", appendix ? "appendix" : "chapter2") +
+                            tag("reactionTorque", opposing ? "opposing" : "thesis"),
+                        rotor_count);
+      for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        const Kinematics motion = any_motion(seed, rotor_count);
+        const Expected expected(motion, appendix, opposing ? -1 : 1);
+
+        Wrench terms[term_count];
+        Loads logged(rotor_count);
+        logged.record_terms(terms, term_count, &motion);
+        bench.loaded.plugin->forces(motion, {nullptr, 0}, logged);
+        for (int term = 0; term < term_count; ++term) {
+          CAPTURE(term);
+          Wrench sum;
+          for (std::size_t i = 0; i < rotor_count; ++i) {
+            const Vector3d& f_F = expected.force_on_rotor[term][i];
+            sum.force_F += f_F;
+            sum.torque_F += (motion.rotors[i].p_FRcm_F - motion.p_FCcm_F).cross(f_F);
+          }
+          if (term == reaction) sum.torque_F += expected.torque_F;
+          if (term == parasitic) sum.force_F += expected.force_on_frame_F;
+          CHECK((terms[term].force_F - sum.force_F).norm() < 1e-12);
+          CHECK((terms[term].torque_F - sum.torque_F).norm() < 1e-12);
+        }
+
+        const Loads unlogged = bench.forces(motion);
+        for (const Loads* loads : {static_cast<const Loads*>(&logged), &unlogged}) {
+          for (std::size_t i = 0; i < rotor_count; ++i) {
+            Vector3d sum = Vector3d::Zero();
+            for (const auto& forces : expected.force_on_rotor) sum += forces[i];
+            CHECK((loads->rotor_force_F(i) - sum).norm() < 1e-12);
+            CHECK(loads->joint_torque(i) == 0);
+          }
+          const Vector3d about_F =
+              expected.torque_F + motion.p_FCcm_F.cross(expected.force_on_frame_F);
+          CHECK((loads->frame().force_F - expected.force_on_frame_F).norm() < 1e-12);
+          CHECK((loads->frame().torque_F - about_F).norm() < 1e-12);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("each flapping coefficient alone flaps") {
+  const Kinematics motion = any_motion(1, 1);
+  for (const char* name : {"flappingA1c", "flappingA1s", "flappingB1", "flappingB2"}) {
+    CAPTURE(name);
+    PluginBench with("aerodynamic", thrust_only + tag(name, "0.01"), 1);
+    PluginBench without("aerodynamic", thrust_only, 1);
+    const Vector3d difference =
+        with.forces(motion).rotor_force_F(0) - without.forces(motion).rotor_force_F(0);
+    CHECK(difference.norm() > 1e-6);
+  }
+}
+
+TEST_CASE("a rotor that turns more than half a turn per step ends the flight, and is named") {
+  PluginBench bench("aerodynamic", everything, rotor_count);
+  constexpr double dt = 0.004;
+  Kinematics motion(rotor_count);
+  for (const double sign : {1.0, -1.0}) {
+    for (std::size_t i = 0; i < rotor_count; ++i) motion.rotors[i].rate = sign * 3.1415 / dt;
+    bench.update(motion, 1.5, dt);
+    motion.rotors[1].rate = sign * 3.1417 / dt;  // not one of its rotors
+    bench.update(motion, 1.5, dt);
+    motion.rotors[2].rate = sign * 3.1417 / dt;
+    CHECK_THROWS_WITH_AS(bench.update(motion, 1.5, dt),
+                         "rotor 'c' turns more than half a turn per step; take a smaller step or a "
+                         "slower command",
+                         FlightError);
+  }
+}

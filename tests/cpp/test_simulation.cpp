@@ -1,0 +1,75 @@
+#include <cmath>
+
+#include "vehicle.hpp"
+
+using namespace quadcore;
+using namespace quadcore::test;
+
+namespace {
+
+/// A hexarotor that nothing pushes, in steps so short that it keeps the motion it is given.
+Simulation still(const std::string& engine, double dt = 1e-9) {
+  Model model = hexarotor();
+  model.plugins.clear();
+  World world;
+  world.gravity_W.setZero();
+  SimulationOptions options;
+  options.engine = engine;
+  options.dt = dt;
+  return Simulation(model, world, options);
+}
+
+}  // namespace
+
+TEST_CASE("a snapshot is restored by a simulation of the same engine and step only") {
+  for (const EngineInfo& info : engines()) {
+    CAPTURE(info.name);
+    Simulation flown = still(info.name, 1e-3);
+    const Snapshot snapshot = flown.snapshot();
+    still(info.name, 1e-3).restore(snapshot);
+    Simulation finer = still(info.name, 5e-4);
+    const std::string message = refusal([&] { finer.restore(snapshot); });
+    CHECK(contains(message, "was taken from another engine, step or model"));
+    for (const EngineInfo& other : engines()) {
+      if (other.name == info.name) continue;
+      Simulation elsewhere = still(other.name, 1e-3);
+      CHECK(refusal([&] { elsewhere.restore(snapshot); }) == message);
+    }
+  }
+}
+
+TEST_CASE("a flight ends where a speed, a rate or a distance is beyond all that is meant") {
+  // Each number of a state, set to `value` in one engine.
+  const auto outcome = [](const std::string& engine, auto member, double value) -> std::string {
+    Simulation flown = still(engine);
+    VehicleState state = flown.state();
+    member(state) = value;
+    flown.set_state(state);
+    try {
+      flown.step();
+    } catch (const FlightError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto check = [&](const std::string& engine, auto member, double bound) {
+    for (const double sign : {1.0, -1.0}) {
+      CHECK(outcome(engine, member, sign * 0.9 * bound) == "");
+      CHECK(contains(outcome(engine, member, sign * 1.1 * bound), "the motion diverged"));
+    }
+  };
+  for (const EngineInfo& info : engines()) {
+    CAPTURE(info.name);
+    for (int i = 0; i < 3; ++i) {
+      check(info.name, [i](VehicleState& s) -> double& { return s.position[i]; }, 1e9);
+      check(info.name, [i](VehicleState& s) -> double& { return s.linear_velocity[i]; }, 1e6);
+    }
+    for (int i = 0; i < 6; ++i) {
+      check(info.name, [i](VehicleState& s) -> double& { return s.rotor_velocity[i]; }, 1e6);
+    }
+  }
+  // Of a body that turns so fast about a skew axis, only the exact engine keeps the rate.
+  for (int i = 0; i < 3; ++i) {
+    check("eigen", [i](VehicleState& s) -> double& { return s.angular_velocity[i]; }, 1e6);
+  }
+}
