@@ -95,6 +95,57 @@ def test_Jdot_minus_2C_is_skew_symmetric(odd):
         assert np.abs(rest + rest.T).max() < 1e-15 * (1 + np.abs(C).max() / 1e-2)
 
 
+def as_printed(inertia, eta, etadot, repaired):
+    """(2.21), for a diagonal inertia; repaired by a sign of C_21 and a term of C_32."""
+    Ix, Iy, Iz = inertia
+    (Sphi, Stheta, _), (Cphi, Ctheta, _) = np.sin(eta), np.cos(eta)
+    phi, theta, psi = etadot
+    sign, term = (1, phi * Sphi**2 * Ctheta) if repaired else (-1, 0)
+    C12 = (Iy - Iz) * (theta * Cphi * Sphi + psi * Sphi**2 * Ctheta)
+    C12 += (Iz - Iy) * psi * Cphi**2 * Ctheta
+    C13 = (Iz - Iy) * psi * Cphi * Sphi * Ctheta**2
+    C23 = (-Ix + Iy * Sphi**2 + Iz * Cphi**2) * psi * Stheta * Ctheta
+    C32 = (Iz - Iy) * (theta * Cphi * Sphi * Stheta + term) + (Iy - Iz) * phi * Cphi**2 * Ctheta
+    C33 = (Iy - Iz) * phi * Cphi * Sphi * Ctheta**2
+    C33 += (Ix - Iy * Sphi**2 - Iz * Cphi**2) * theta * Stheta * Ctheta
+    return np.array(
+        [
+            [0, C12 - Ix * psi * Ctheta, C13],
+            [-C12 + sign * Ix * psi * Ctheta, (Iz - Iy) * phi * Cphi * Sphi, C23],
+            [-C13 - Ix * theta * Ctheta, C32 - C23, C33],
+        ]
+    )
+
+
+def test_the_printed_C_is_a_right_one_but_for_a_sign_and_a_term(odd):
+    """It has other entries than that of the Christoffel symbols, but the same effect."""
+    v = replace(odd, inertia=np.diag([0.007, 0.009, 0.0135]))
+    worst = {True: np.zeros(2), False: np.zeros(2)}
+    for q, qdot, _ in states(1000):
+        eta, etadot = q[3:], qdot[3:]
+        C = matrices.C(v, q, qdot)[3:, 3:]
+        Jdot = np.einsum("kij,k->ij", matrices.gradient_of_J(v, q), etadot)
+        for repaired, errors in worst.items():
+            printed = as_printed(np.diag(v.inertia), eta, etadot, repaired)
+            rest = Jdot - 2 * printed
+            found = np.abs((printed - C) @ etadot).max(), np.abs(rest + rest.T).max()
+            np.maximum(errors, found, out=errors)
+        assert np.abs(as_printed(np.diag(v.inertia), eta, etadot, True) - C).max() > 1e-6
+    assert (worst[True] < 1e-14).all()
+    assert (worst[False] > 0.1).all()
+
+
+def test_the_form_of_2_20_has_the_right_effect_but_is_not_skew_symmetric(odd):
+    for q, qdot, _ in states(100):
+        etadot = qdot[3:]
+        gradient = matrices.gradient_of_J(odd, q)
+        Jdot = np.einsum("kij,k->ij", gradient, etadot)
+        C = Jdot - np.einsum("kij,i->kj", gradient, etadot) / 2
+        assert np.allclose(C @ etadot, matrices.C(odd, q, qdot)[3:, 3:] @ etadot, atol=1e-14)
+        rest = Jdot - 2 * C
+        assert np.abs(rest + rest.T).max() > 1e-5
+
+
 def by_newton_and_euler(v, q, qdot, omega):
     """Accelerations of the centre of mass and of the frame's rate, from forces in body axes."""
     R = rotation(q[3:])

@@ -40,9 +40,10 @@ def C(v: Vehicle, q: np.ndarray, qdot: np.ndarray) -> np.ndarray:
 
         C_ij = 1/2 sum_k (dJ_ij/deta_k + dJ_ik/deta_j - dJ_jk/deta_i) etadot_k
 
-    Jdot - 2 C is skew-symmetric then. That is not so for Jdot - 1/2 d(etadot^T J)/deta of (2.20),
-    nor for the entries printed as (2.21), of which C_21 has the wrong sign on I_x psidot c(theta)
-    and C_32 lacks the factor of phidot s(phi)^2 c(theta).
+    Jdot - 2 C is skew-symmetric then. Jdot - 1/2 d(etadot^T J)/deta of (2.20) has the same effect
+    on etadot, but is not. The entries printed as (2.21) do neither before C_21 has
+    + I_x psidot c(theta) for - and C_32 the factor phidot s(phi)^2 c(theta) that its I_z - I_y
+    lacks; then they do both, with other entries than these.
     """  # noqa: D400
     dJ, etadot = gradient_of_J(v, q), qdot[3:]
     along = np.einsum("kij,k->ij", dJ, etadot)  # Jdot

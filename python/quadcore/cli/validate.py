@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import sys
+from contextlib import closing
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Dict
+from typing import TYPE_CHECKING, Any, Dict, List
 
 from rich.table import Table
 
@@ -14,7 +16,7 @@ from ..parallel import each
 from . import options, terminal
 
 if TYPE_CHECKING:
-    from ..validation import Chain, Study
+    from ..validation import Chain, Experiment, Study
 
 
 def register(commands: Any) -> None:
@@ -29,8 +31,7 @@ def register(commands: Any) -> None:
         "--sim-slow",
         metavar="LIST",
         type=options.positive_numbers,
-        default=[1.0, 8.0, 18.0],
-        help="slow-downs of the rotors (1,8,18)",
+        help="slow-downs of the rotors (those of the thesis: 1,8,10,18)",
     )
     parser.add_argument(
         "--drag",
@@ -55,8 +56,7 @@ def register(commands: Any) -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Fly everything, print how far it is from the model and why, and write it."""
     # scipy and jinja2 are slow to import.
-    from ..validation import Case, Experiment, conduct
-    from ..validation.output import write
+    from ..validation import Case, Experiment
 
     experiment = Experiment.of(
         **options.model_arguments(arguments),
@@ -69,58 +69,110 @@ def run(arguments: argparse.Namespace) -> None:
         log_every=arguments.log_every,
     )
     experiment.simulation(Case("eigen"))  # says at once what is wrong or doubtful
-    if arguments.out is not None:
-        make_folder(arguments.out)
-        check_writable(arguments.out / "report.html")  # after the flights would be too late
-    with terminal.progress(arguments.quiet) as progress:
-        study = conduct(
-            experiment,
-            arguments.engine,
-            arguments.sim_slow,
-            arguments.drag,
-            arguments.jobs,
-            progress,
-        )
-    console = terminal.console()
+    out = arguments.out
+    if out is not None:
+        make_folder(out)
+        check_writable(out / "report.html")  # after the flights would be too late
+    study = _conduct(experiment, arguments)
+    failures = _row_failures(study)
+    if out is not None:
+        page, *tables = _write(study, out)
     if not arguments.quiet:
-        console.print("largest distance from the mathematical model (m)")
-        console.print(_distances(study), "")
-        for chain in study.chains:
-            if chain.drag == study.drags[-1]:
-                console.print(_chain(study, chain), "")
-    if arguments.out is not None:
-        pictures = {} if arguments.no_plots else _draw(study, arguments)
-        page, *others = write(study, pictures, arguments.out)
+        _show(study)
+    if out is not None:
+        drawn = {} if arguments.no_plots else _draw(study, arguments, failures)
         if not arguments.quiet:
-            console.print(f"written {page} and {len(others)} tables and figures beside it")
-    failures = [row for row in study.rows if row.failure]
+            beside = len(tables) + len(drawn)
+            terminal.console().print(f"written {page} and {beside} tables and figures beside it")
     if failures:
-        case = failures[0].case
-        raise FlightError(
-            f"{len(failures)} of {len(study.rows)} flights failed; the first ({case.plant}, "
-            f"sim_slow {case.sim_slow:g}, drag {case.drag}): {failures[0].failure}"
-        )
+        raise FlightError(failures[0])
 
 
-def _draw(study: Study, arguments: argparse.Namespace) -> Dict[str, bytes]:
+def _conduct(experiment: Experiment, arguments: argparse.Namespace) -> Study:
+    """Fly; what was flown before an interrupt is written."""
+    from ..validation import conduct
+
+    try:
+        with terminal.progress(arguments.quiet) as progress:
+            return conduct(
+                experiment,
+                arguments.engine,
+                arguments.sim_slow,
+                arguments.drag,
+                arguments.jobs,
+                progress,
+            )
+    except KeyboardInterrupt as stop:
+        partial = getattr(stop, "study", None)
+        if arguments.out is not None and partial is not None:
+            _write(partial, arguments.out)
+            print(f"what was flown: {arguments.out}", file=sys.stderr)
+        raise
+
+
+def _write(study: Study, out: Path) -> List[Path]:
+    """Write page and tables, before any picture is drawn: flights are not flown twice."""
+    from ..validation.output import write_report, write_tables
+
+    with terminal.interrupt_held():
+        tables = write_tables(study, out)
+        return [write_report(study, {}, out), *tables]
+
+
+def _draw(study: Study, arguments: argparse.Namespace, failures: List[str]) -> Dict[str, bytes]:
+    """Write each picture as soon as it is drawn, and then the page with all of them."""
     from ..validation.figures import pictures
+    from ..validation.output import write_picture, write_report
 
     wanted = pictures(study)
     names = list(wanted)
     drawn: Dict[str, bytes] = {}
+    failed: List[str] = []
 
     def draw(name: str) -> bytes:
         function, what = wanted[name]
         return function(*what)
 
-    with terminal.progress(arguments.quiet, "drawing") as progress:
-        for index, picture in each(draw, names, arguments.jobs):
-            if isinstance(picture, QuadcoreError):
-                raise picture
-            drawn[names[index]] = picture
-            if progress is not None:
-                progress(len(drawn), len(names))
-    return {name: drawn[name] for name in names}
+    try:
+        with terminal.progress(arguments.quiet, "drawing") as progress, closing(
+            each(draw, names, arguments.jobs)
+        ) as outcomes:
+            for done, (index, picture) in enumerate(outcomes, start=1):
+                if isinstance(picture, QuadcoreError):
+                    failed.append(f"{names[index]}: {picture}")
+                else:
+                    write_picture(names[index], picture, arguments.out)
+                    drawn[names[index]] = picture
+                if progress is not None:
+                    progress(done, len(names))
+    finally:
+        in_order = {name: drawn[name] for name in names if name in drawn}
+        with terminal.interrupt_held():
+            write_report(study, in_order, arguments.out)
+    if failed:
+        failures.append(f"{len(failed)} of {len(names)} pictures failed; the first, {failed[0]}")
+    return in_order
+
+
+def _row_failures(study: Study) -> List[str]:
+    """Say how many flights failed, and why the first did, if any did."""
+    failed = [row for row in study.rows if row.failure]
+    if not failed:
+        return []
+    case = failed[0].case
+    return [
+        f"{len(failed)} of {len(study.rows)} flights failed; the first ({case.plant}, "
+        f"sim_slow {case.sim_slow:g}, drag {case.drag}): {failed[0].failure}"
+    ]
+
+
+def _show(study: Study) -> None:
+    console = terminal.console()
+    console.print("largest distance from the mathematical model (m)")
+    console.print(_distances(study), "")
+    for chain in study.chains:
+        if chain.drag == study.drags[-1]:
+            console.print(_chain(study, chain), "")
 
 
 def _distances(study: Study) -> Table:

@@ -35,11 +35,12 @@ def ascent(vehicle: Vehicle) -> np.ndarray:
     Raises
     ------
     InputError
-        A vehicle that such speeds cannot lift.
+        A vehicle that such speeds cannot lift, tilt or turn.
     """
     spin = np.where(np.arange(len(vehicle.arms)) % 2 == 0, 1.0, -1.0)
     # Lift and torques at level attitude per squared speed; sideways forces take care of themselves.
     effect = matrices.K_zeta(vehicle, np.zeros(6), spin)[2:]
+    _check_authority(effect)
     lift = -CLIMB * vehicle.mass * vehicle.gravity[2]
     angles = np.array([TILT, TILT, TURN]) * np.diag(vehicle.inertia)
     bends = {0.0: np.zeros(3)}
@@ -51,9 +52,24 @@ def ascent(vehicle: Vehicle) -> np.ndarray:
     for t, torque in sorted(bends.items(), key=lambda bend: bend[0]):
         wanted = np.array([lift, *torque])
         squares, *_ = np.linalg.lstsq(effect, wanted, rcond=None)
-        if squares.min() < 0 or not np.allclose(effect @ squares, wanted, atol=1e-9 * lift):
+        if squares.min() < 0:
+            about = "xyz"[int(np.abs(torque).argmax())]
+            turning = f"turn it about {about} as fast as the built-in flight does"
             raise InputError(
-                "rotors that spin + - + - cannot lift this vehicle and tilt it; give --commands"
+                "rotors that spin + - + - cannot lift this vehicle and "
+                f"{turning if torque.any() else 'keep it level'}; give --commands"
             )
         rows.append([t, *(spin * np.sqrt(squares))])
     return np.array(rows)
+
+
+def _check_authority(effect: np.ndarray) -> None:
+    """Raise unless the lift and each torque can be had alone; rows of lift and torques."""
+    for row, what in enumerate(("lift", "torque about x", "torque about y", "torque about z")):
+        alone = np.eye(4)[row]
+        squares, *_ = np.linalg.lstsq(effect, alone, rcond=None)
+        if not np.allclose(effect @ squares, alone, atol=1e-6):
+            raise InputError(
+                f"rotors that spin + - + - give this vehicle no {what} without another force or "
+                "torque; the built-in flight lifts, tilts and turns: give --commands"
+            )

@@ -5,33 +5,29 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 from pathlib import Path
 from typing import Any, Dict, Iterable, List, Mapping, Sequence
 
 import numpy as np
 
+from .._core import InputError
 from ..files import atomic_write
 from ..report import write_page
 from .chain import Chain
 from .experiment import Case
 from .states import STATES
 from .study import Row, Study
+from .thesis import KINDS, thesis_figures
 
+PICTURE = re.compile(rf"(commands|damping|(chain|{'|'.join(KINDS)})_[a-z]+)\.png")
 _SIZES = (*STATES, "distance")
 
 
-def write(study: Study, pictures: Mapping[str, bytes], directory: Path) -> List[Path]:
-    """Write everything into a folder that is there; the same study gives the same bytes.
+def write_tables(study: Study, directory: Path) -> List[Path]:
+    """Write all numbers into a folder that is there; the same study gives the same bytes.
 
-    Parameters
-    ----------
-    pictures
-        PNG files by name, as `figures.pictures` names them; there may be none.
-
-    Returns
-    -------
-    list of Path
-        The page, tables, pictures.
+    Pictures of another study that lie there are removed.
 
     Raises
     ------
@@ -44,10 +40,43 @@ def write(study: Study, pictures: Mapping[str, bytes], directory: Path) -> List[
         "chains.csv": _csv(_chains(study.chains)),
         "validation.json": (json.dumps(as_json(study), indent=1) + "\n").encode(),
     }
-    files.update((f"{name}.png", data) for name, data in pictures.items())
+    for old in directory.glob("*.png"):
+        if PICTURE.fullmatch(old.name):
+            try:
+                old.unlink()
+            except OSError as error:
+                raise InputError(f"{old}: cannot be removed: {error.strerror}") from error
     for name, data in files.items():
         with atomic_write(directory / name) as stream:
             stream.write(data)
+    return [directory / name for name in files]
+
+
+def write_picture(name: str, picture: bytes, directory: Path) -> None:
+    """Write one of `figures.pictures`.
+
+    Raises
+    ------
+    InputError
+        It cannot be written.
+    """
+    with atomic_write(directory / f"{name}.png") as stream:
+        stream.write(picture)
+
+
+def write_report(study: Study, pictures: Mapping[str, bytes], directory: Path) -> Path:
+    """Write everything on one page.
+
+    Parameters
+    ----------
+    pictures
+        PNG files by name, as `figures.pictures` names them; there may be none.
+
+    Raises
+    ------
+    InputError
+        It cannot be written.
+    """
     page = directory / "report.html"
     write_page(
         page,
@@ -57,10 +86,12 @@ def write(study: Study, pictures: Mapping[str, bytes], directory: Path) -> List[
         rows={row.case: row for row in study.rows},
         Case=Case,
         pictures=pictures,
+        kinds=KINDS,
+        thesis_figures=thesis_figures,
         size=size,
         degrees=np.degrees,
     )
-    return [page, *(directory / name for name in files)]
+    return page
 
 
 def as_json(study: Study) -> Dict[str, Any]:
@@ -78,12 +109,19 @@ def as_json(study: Study) -> Dict[str, Any]:
         "left_out": [_row(row) for row in study.left_out],
         "slowed": [_row(row) for row in study.slowed],
         "damping": [entry._asdict() for entry in study.damping],
+        "thesis_figures": {
+            f"{kind}_{drag}": thesis_figures(drag, kind, study.sim_slow)
+            for drag in study.drags
+            for kind in KINDS
+        },
     }
 
 
 def size(value: float) -> str:
     """Write a length with three digits, fewer if it is tiny."""
-    return f"{value:#.3g}".rstrip(".") if abs(value) >= 1e-3 or value == 0 else f"{value:.0e}"
+    if value == 0:
+        return "0"
+    return f"{value:#.3g}".rstrip(".") if abs(value) >= 1e-3 else f"{value:.0e}"
 
 
 def _row(row: Row) -> Dict[str, Any]:

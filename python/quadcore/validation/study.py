@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
-from typing import Callable, Dict, Iterator, List, NamedTuple, Optional, Sequence
+from contextlib import closing
+from typing import Callable, Dict, List, NamedTuple, Optional, Sequence
 
 from .._core import InputError, QuadcoreError
 from ..parallel import each
@@ -11,6 +11,7 @@ from .chain import ORDER, Chain, forge, stages
 from .damping import Damping, measure
 from .experiment import LAG, MODEL, NO_LAG, TERMS, Case, Experiment, Flight
 from .states import Difference, compare, steepest
+from .thesis import SIM_SLOW
 
 
 class Row(NamedTuple):
@@ -38,14 +39,14 @@ class Study(NamedTuple):
     left_out: List[Row]
     """The model with other terms against the model, with the last of the drags."""
     slowed: List[Row]
-    """The last of the engines against itself at full speed."""
+    """Engine eigen against itself at full speed."""
     damping: List[Damping]
 
 
 def conduct(
     experiment: Experiment,
     engines: Sequence[str] = ORDER,
-    sim_slow: Sequence[float] = (1, 8, 18),
+    sim_slow: Optional[Sequence[float]] = None,
     drags: Optional[Sequence[str]] = None,
     processes: Optional[int] = None,
     progress: Optional[Callable[[int, int], None]] = None,
@@ -54,12 +55,21 @@ def conduct(
 
     Parameters
     ----------
+    sim_slow
+        None takes `SIM_SLOW`.
     drags
         None takes all that act on the vehicle, alone and together, and none.
     processes
         None takes one per core.
     progress
         Called as progress(flights_done, flights_total).
+
+    Raises
+    ------
+    InputError
+        A drag that does not act on the vehicle.
+    KeyboardInterrupt
+        With the attribute `study`, in which flights that are missing say so.
     """
     acting = experiment.drags()
     for drag in drags or ():
@@ -67,59 +77,59 @@ def conduct(
             raise InputError(f"drag '{drag}' does not act on this vehicle ({', '.join(acting)})")
     drags = list(dict.fromkeys(drags or acting))
     engines = [engine for engine in ORDER if engine in engines]
-    sim_slow = [float(n) for n in sim_slow]
+    sim_slow = list(dict.fromkeys(float(n) for n in sim_slow or SIM_SLOW))
     asked = [Case(e, n, drag) for e in engines for n in sim_slow for drag in drags]
     own = LAG if experiment.motor_lag else NO_LAG
     terms = [Case(MODEL, 1.0, drags[-1], name) for name in TERMS if name != own]
     chains = [stages(drag, n, engines[0]) for drag in drags for n in sim_slow]
-    cases = dict.fromkeys([*terms, *(case for chain in chains for case in chain), *asked])
-    flights = _fly(experiment, list(cases), processes, progress)
-    reference = flights[Case(MODEL, 1.0, drags[-1])]
-    return Study(
-        experiment,
-        engines,
-        sim_slow,
-        drags,
-        flights,
-        [_row(flights[case], flights[Case(MODEL, 1.0, case.drag)]) for case in asked],
-        [forge(drag, n, engines[0], flights) for drag in drags for n in sim_slow],
-        [_row(flights[case], reference) for case in terms],
-        [
-            _row(flights[case], flights[case._replace(sim_slow=1.0)])
-            for case in asked
-            if case.plant == engines[-1] and case.sim_slow != 1
-        ],
-        list(_damping(experiment, engines, sim_slow)),
-    )
+    cases = dict.fromkeys([*(case for chain in chains for case in chain), *asked, *terms])
+    flights = {case: Flight(case, None, "not flown: interrupted") for case in cases}
+    damping: List[Damping] = []
 
+    def study() -> Study:
+        return Study(
+            experiment,
+            engines,
+            sim_slow,
+            drags,
+            flights,
+            [_row(flights[case], flights[Case(MODEL, 1.0, case.drag)]) for case in asked],
+            [forge(drag, n, engines[0], flights) for drag in drags for n in sim_slow],
+            [_row(flights[case], flights[Case(MODEL, 1.0, drags[-1])]) for case in terms],
+            [
+                _row(flights[Case("eigen", n, drag)], flights[Case("eigen", 1.0, drag)])
+                for n in sim_slow
+                for drag in drags
+                if n != 1
+            ],
+            damping,
+        )
 
-def _damping(
-    experiment: Experiment, engines: Sequence[str], sim_slow: Sequence[float]
-) -> Iterator[Damping]:
-    for engine in engines:
-        for n in sim_slow:
-            # What cannot fly here has a row that says so.
-            with contextlib.suppress(QuadcoreError):
-                yield measure(experiment, engine, n)
+    try:
+        _fly(experiment, flights, processes, progress)
+        damping.extend(measure(experiment, engines, n) for n in sim_slow)
+    except KeyboardInterrupt as stop:
+        stop.study = study()  # type: ignore[attr-defined]
+        raise
+    return study()
 
 
 def _fly(
     experiment: Experiment,
-    cases: List[Case],
+    flights: Dict[Case, Flight],
     processes: Optional[int],
     progress: Optional[Callable[[int, int], None]],
-) -> Dict[Case, Flight]:
+) -> None:
     # The model is slow: it goes first, so that no core waits for it at the end.
-    cases.sort(key=lambda case: case.plant != MODEL)
-    flights: Dict[Case, Flight] = {}
-    for index, flight in each(experiment.fly, cases, processes):
-        case = cases[index]
-        if isinstance(flight, QuadcoreError):  # its process died
-            flight = Flight(case, None, str(flight))
-        flights[case] = flight
-        if progress is not None:
-            progress(len(flights), len(cases))
-    return flights
+    cases = sorted(flights, key=lambda case: case.plant != MODEL)
+    with closing(each(experiment.fly, cases, processes)) as outcomes:
+        for done, (index, flight) in enumerate(outcomes, start=1):
+            case = cases[index]
+            if isinstance(flight, QuadcoreError):  # its process died
+                flight = Flight(case, None, str(flight))
+            flights[case] = flight
+            if progress is not None:
+                progress(done, len(cases))
 
 
 def _row(flight: Flight, reference: Flight) -> Row:

@@ -1,0 +1,59 @@
+"""The figures of the thesis' chapter 6.1: which picture shows the same here."""
+
+from __future__ import annotations
+
+from typing import Mapping, NamedTuple, Sequence, Tuple
+
+import numpy as np
+
+# Slow-downs: the text says 1, 8 and 18, the captions of the figures 1, 8 and 10.
+SIM_SLOW = (1.0, 8.0, 10.0, 18.0)
+
+
+class Kind(NamedTuple):
+    """One of the five figures that chapter 6.1 shows for each drag."""
+
+    title: str
+    columns: slice
+    """Of the states."""
+    labels: Tuple[str, str, str]
+    scale: float
+    error: bool
+    least: float
+    """A range of the axis below which there is nothing to be seen but rounding; in its unit."""
+
+
+_ANGLES = (r"$\phi$ (deg)", r"$\theta$ (deg)", r"$\psi$ (deg)")
+_RATES = (r"$\dot\phi$ (deg/s)", r"$\dot\theta$ (deg/s)", r"$\dot\psi$ (deg/s)")
+_SPEEDS = (r"$\dot x$ (m/s)", r"$\dot y$ (m/s)", r"$\dot z$ (m/s)")
+_ERRORS = ("$e_x$ (m)", "$e_y$ (m)", "$e_z$ (m)")
+_DEGREES = float(np.degrees(1))
+
+# In the order of the thesis.
+KINDS: Mapping[str, Kind] = {
+    "position": Kind("Position", slice(0, 3), ("x (m)", "y (m)", "z (m)"), 1, False, 1e-3),
+    "error": Kind("Distance from the model", slice(0, 3), _ERRORS, 1, True, 1e-8),
+    "attitude": Kind("Attitude", slice(3, 6), _ANGLES, _DEGREES, False, 1e-3),
+    "velocity": Kind("Velocity", slice(6, 9), _SPEEDS, 1, False, 1e-3),
+    "rates": Kind("Rates of the attitude", slice(9, 12), _RATES, _DEGREES, False, 1e-3),
+}
+# Five figures for each, from 6.1 on. At which slow-down the drags act alone is not said.
+_ALONE = ("profile", "parasitic", "translational", "induced")
+_TOGETHER = SIM_SLOW[:3]
+
+
+def thesis_figures(drag: str, kind: str, sim_slow: Sequence[float]) -> str:
+    """Numbers of the thesis' figures that show what a picture shows, or nothing.
+
+    >>> thesis_figures("profile", "error", [1])
+    '6.2'
+    >>> thesis_figures("all", "position", [1, 10, 18])
+    '6.21, 6.31'
+    """
+    if drag in _ALONE:
+        sets = [_ALONE.index(drag)]
+    elif drag == "all":
+        sets = [len(_ALONE) + _TOGETHER.index(n) for n in sim_slow if n in _TOGETHER]
+    else:
+        sets = []
+    return ", ".join(f"6.{5 * number + 1 + list(KINDS).index(kind)}" for number in sets)
