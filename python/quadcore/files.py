@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Iterator, Optional
 
+from . import interrupts
 from ._core import InputError
 
 
@@ -58,8 +59,9 @@ def atomic_write(path: Path) -> Iterator[IO[bytes]]:
     except OSError as error:
         raise _unwritable(path, error) from error
     finally:
-        if part.exists():
-            part.unlink()
+        with interrupts.held():
+            if part.exists():
+                part.unlink()
 
 
 def make_folder(path: Path) -> None:
@@ -84,8 +86,9 @@ def check_writable(path: Path) -> None:
         raise InputError(f"{path}: there is no folder {path.parent}; create it first")
     probe = _beside(path)
     try:
-        probe.touch()
-        probe.unlink()
+        with interrupts.held():
+            probe.touch()
+            probe.unlink()
     except OSError as error:
         raise _unwritable(path, error) from error
 

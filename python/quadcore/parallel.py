@@ -2,15 +2,31 @@
 
 from __future__ import annotations
 
+import collections
 import contextlib
+import ctypes
 import itertools
 import multiprocessing
 import os
 import signal
 import traceback
 from multiprocessing.connection import Connection, wait
-from typing import Any, Callable, Dict, Generator, Iterable, List, Optional, Tuple, TypeVar, Union
+from typing import (
+    Any,
+    Callable,
+    Deque,
+    Dict,
+    Generator,
+    Iterable,
+    Iterator,
+    List,
+    Optional,
+    Tuple,
+    TypeVar,
+    Union,
+)
 
+from . import interrupts
 from ._core import QuadcoreError
 
 Case = TypeVar("Case")
@@ -18,6 +34,9 @@ Result = TypeVar("Result")
 
 # Forked, so that the caller's data need not be copied and its script need not be importable.
 _FORK = multiprocessing.get_context("fork")
+
+_PATIENCE = 5.0  # s; how long a process that was asked to end may take
+_PR_SET_PDEATHSIG = 1  # of linux/prctl.h
 
 
 def each(
@@ -28,11 +47,13 @@ def each(
     Parameters
     ----------
     function
-        Runs in forked processes; may be any callable, its result must be picklable.
+        Runs in forked processes; may be any callable, its result must be picklable. An interrupt
+        reaches it as `interrupts.Interrupted`, so that it can leave nothing half done.
     cases
         Taken one by one as processes fall idle, so that they may come from a generator.
     processes
-        How many; None takes one per core that this process may use.
+        How many; None takes one per core that this process may use. Fewer if the system gives no
+        more.
 
     Yields
     ------
@@ -42,59 +63,150 @@ def each(
 
     Raises
     ------
+    KeyboardInterrupt
+        After the results that were there already. No process is left, as none is left when this
+        process dies or the generator is closed.
+    QuadcoreError
+        The system gives not even one process.
     RuntimeError
-        Anything else that `function` raised, with its traceback.
+        Anything else that `function` raised, with its traceback; see `contained`.
     """
-    queue = enumerate(cases)
-    busy: Dict[Connection, Tuple[int, Any]] = {}
+    crew = _Crew(function, cases)
+    done: Deque[Tuple[int, Any]] = collections.deque()
+    try:
+        crew.hire(processes or len(os.sched_getaffinity(0)))
+        while crew.busy:
+            ready = wait(list(crew.busy))
+            with interrupts.held():
+                done.extend(crew.take(connection) for connection in ready)
+            while done:
+                yield done.popleft()
+    except KeyboardInterrupt:
+        yield from done
+        yield from crew.dismiss()
+        raise
+    finally:
+        collections.deque(crew.dismiss(), maxlen=0)
 
-    def give(connection: Connection, process: Any) -> None:
-        for index, case in itertools.islice(queue, 1):
-            busy[connection] = index, process
+
+def contained(function: Callable[[Case], Result]) -> Callable[[Case], Result]:
+    """Make `function` raise QuadcoreError for any fault, so that it is one case's alone."""
+
+    def call(case: Case) -> Result:
+        try:
+            return function(case)
+        except (QuadcoreError, MemoryError):
+            raise
+        except Exception as error:
+            place = traceback.extract_tb(error.__traceback__)[-1]
+            reason = " ".join(f"{type(error).__name__}: {error}".split())
+            raise QuadcoreError(f"{reason} ({place.filename}:{place.lineno})") from error
+
+    return call
+
+
+class _Crew:
+    """Processes that work on cases."""
+
+    def __init__(self, function: Callable[[Any], Any], cases: Iterable[Any]) -> None:
+        self._function = function
+        self._queue = enumerate(cases)
+        self.busy: Dict[Connection, Tuple[int, Any]] = {}
+        """Index of the case and process, by the end of its pipe."""
+
+    def hire(self, processes: int) -> None:
+        """Start so many, or as many as the system gives, each with a case."""
+        for _ in range(processes):
+            with interrupts.held():
+                if not self._replace():
+                    break
+
+    def take(self, connection: Any) -> Tuple[int, Any]:
+        """Take over the result that waits in a pipe, and give the process the next case."""
+        index, process = self.busy.pop(connection)
+        try:
+            result, fault = connection.recv()
+        except (EOFError, OSError):
+            connection.close()
+            process.join()
+            self._replace()
+            return index, QuadcoreError(_death(process.exitcode))
+        if fault is not None:
+            self.busy[connection] = index, process  # to be ended
+            raise RuntimeError(fault)
+        self._give(connection, process)
+        return index, result
+
+    def dismiss(self) -> Iterator[Tuple[int, Any]]:
+        """End all, and yield what some had finished."""
+        for _, process in self.busy.values():
+            process.terminate()
+        while self.busy:
+            connection, (index, process) = self.busy.popitem()
+            with contextlib.suppress(EOFError, OSError):
+                if connection.poll(_PATIENCE):
+                    result, fault = connection.recv()
+                    if fault is None:
+                        yield index, result
+            connection.close()
+            process.join(_PATIENCE)
+            if process.exitcode is None:
+                process.kill()
+                process.join()
+
+    def _replace(self) -> bool:
+        """Start one more process; without success the others go on alone, if there are any."""
+        try:
+            self._give(*_start(self._function, list(self.busy)))
+        except OSError as error:
+            if not self.busy:
+                raise QuadcoreError(f"no process can be started: {error.strerror}") from error
+            return False
+        return True
+
+    def _give(self, connection: Connection, process: Any) -> None:
+        for index, case in itertools.islice(self._queue, 1):
+            self.busy[connection] = index, process
             with contextlib.suppress(BrokenPipeError):  # recv will tell that it died
                 connection.send(case)
             return
         connection.close()  # nothing is left to do: it ends
         process.join()
 
-    try:
-        for _ in range(processes or len(os.sched_getaffinity(0))):
-            give(*_start(function, list(busy)))
-        while busy:
-            for connection in wait(list(busy)):
-                assert isinstance(connection, Connection)
-                index, process = busy.pop(connection)
-                try:
-                    result, fault = connection.recv()
-                except EOFError:
-                    process.join()
-                    result, fault = QuadcoreError(_death(process.exitcode)), None
-                    connection, process = _start(function, list(busy))
-                if fault is not None:
-                    raise RuntimeError(fault)
-                give(connection, process)
-                yield index, result
-    finally:
-        for connection, (_, process) in busy.items():
-            process.terminate()
-            process.join()
-            connection.close()
-
 
 def _start(function: Callable[[Any], Any], others: List[Connection]) -> Tuple[Connection, Any]:
     here, there = _FORK.Pipe()
-    process = _FORK.Process(target=_work, args=(function, there, [here, *others]), daemon=True)
-    process.start()
-    there.close()
+    process = _FORK.Process(
+        target=_work, args=(function, there, [here, *others], os.getpid()), daemon=True
+    )
+    # What comes before the child is ready waits for it, instead of finding the parent's handlers.
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, interrupts.SIGNALS)
+    try:
+        process.start()
+    except OSError:
+        here.close()
+        raise
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        there.close()
     return here, process
 
 
-def _work(function: Callable[[Any], Any], pipe: Connection, inherited: List[Connection]) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent hears Ctrl-C too and ends us
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    for connection in inherited:  # else nobody would see that the parent is gone
-        connection.close()
-    with contextlib.suppress(EOFError, BrokenPipeError):
+def _work(
+    function: Callable[[Any], Any], pipe: Connection, inherited: List[Connection], parent: int
+) -> None:
+    try:
+        _obey(parent)
+        for connection in inherited:  # else nobody would see that the parent is gone
+            connection.close()
+        _serve(function, pipe)
+    except interrupts.Interrupted as stop:  # everything is left as it should be
+        signal.signal(stop.number, signal.SIG_DFL)
+        os.kill(os.getpid(), stop.number)
+
+
+def _serve(function: Callable[[Any], Any], pipe: Connection) -> None:
+    with contextlib.suppress(EOFError, BrokenPipeError, ConnectionResetError):
         while True:
             case = pipe.recv()
             outcome: Tuple[Any, Optional[str]]
@@ -106,10 +218,31 @@ def _work(function: Callable[[Any], Any], pipe: Connection, inherited: List[Conn
                 outcome = QuadcoreError("no memory left"), None
             except Exception:
                 outcome = None, traceback.format_exc()
-            pipe.send(outcome)
+            with interrupts.held():
+                pipe.send(outcome)
+
+
+def _obey(parent: int) -> None:
+    """Leave Ctrl-C and a closed terminal to the parent, which hears them too; end when told to."""
+
+    def end(number: int, _: Any) -> None:
+        signal.signal(number, signal.SIG_IGN)  # its group and its parent may both tell
+        raise interrupts.Interrupted(number)
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, end)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, interrupts.SIGNALS)
+    # A parent that is killed outright tells nobody: the kernel does.
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, int(signal.SIGTERM), 0, 0, 0)
+    if os.getppid() != parent:
+        raise interrupts.Interrupted(signal.SIGTERM)
 
 
 def _death(exit_code: int) -> str:
-    if exit_code < 0:
+    if exit_code >= 0:
+        return f"its process ended with status {exit_code}"
+    try:
         return f"its process was ended by {signal.Signals(-exit_code).name}"
-    return f"its process ended with status {exit_code}"
+    except ValueError:  # most real-time signals have no name
+        return f"its process was ended by signal {-exit_code}"

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import argparse
 import os
-import signal
 import sys
 from typing import NoReturn, Sequence
 
-from .. import __version__
+from .. import __version__, interrupts
 from .._core import FlightError, InputError, QuadcoreError
 from . import compare, info, run, terminal, validate
 
@@ -32,24 +31,23 @@ def main(argv: Sequence[str] | None = None) -> int:
     -------
     int
         0 done; 2 bad input and 3 a flight that failed, each with one line ``error: ...`` on
-        standard error; 130 interrupted, the log so far being kept.
+        standard error; 130, 143, 129 ended by SIGINT, SIGTERM, SIGHUP, what was flown being kept.
     """
-    # A shell starts background jobs with SIGINT ignored, and Python keeps it so.
-    signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
-        arguments = _parser().parse_args(argv)
-        with terminal.warnings_as_lines():
-            arguments.action(arguments)
-        sys.stdout.flush()
+        with interrupts.heard():
+            arguments = _parser().parse_args(argv)
+            with terminal.warnings_as_lines():
+                arguments.action(arguments)
+            sys.stdout.flush()
     except QuadcoreError as error:
         print(f"error: {error}", file=sys.stderr)
         return 3 if isinstance(error, FlightError) else 2
     except MemoryError:
         print("error: no memory left for the log; shorten it by --log-every", file=sys.stderr)
         return 2
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as stop:
         print("interrupted", file=sys.stderr)
-        return 130
+        return interrupts.exit_status(stop)
     except BrokenPipeError:
         # The reader, such as `head`, has seen enough; the flush at exit must not fail again.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -8,6 +8,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
+from .. import interrupts
 from .._core import FlightError, InputError
 from ..comparison.compare import Comparison, fly
 from ..comparison.grid import parse_axis
@@ -63,7 +64,7 @@ def compare(arguments: argparse.Namespace) -> None:
     except KeyboardInterrupt as stop:
         partial = getattr(stop, "comparison", None)
         if out is not None and partial is not None:
-            with terminal.interrupt_held():
+            with interrupts.held():
                 write(partial, plan, _flight(arguments), out, plots=False)
             print(f"what was flown: {out}", file=sys.stderr)
         raise

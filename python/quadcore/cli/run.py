@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from rich.table import Table
 
+from .. import interrupts
 from .._core import FlightError
 from ..files import make_folder
 from ..log import Log, check_log_path
@@ -71,7 +72,7 @@ def _log_files(arguments: argparse.Namespace) -> list[Path]:
 
 
 def _write(log: Log, files: list[Path]) -> None:
-    with terminal.interrupt_held():
+    with interrupts.held():
         for file in files:
             log.to_file(file)
 

@@ -1,8 +1,7 @@
-"""What the commands print, and how they take Ctrl-C."""
+"""What the commands print."""
 
 from __future__ import annotations
 
-import signal
 import sys
 import time
 import warnings
@@ -73,23 +72,3 @@ def progress(quiet: bool, what: str = "flying") -> Iterator[Callable[[int, int],
         yield report
     finally:
         with_bar.stop()
-
-
-@contextmanager
-def interrupt_held() -> Iterator[None]:
-    """Let Ctrl-C wait until the block has ended; a second one does not wait."""
-    held = False
-
-    def hold(*_: object) -> None:
-        nonlocal held
-        if held:
-            raise KeyboardInterrupt
-        held = True
-
-    previous = signal.signal(signal.SIGINT, hold)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, previous)
-    if held:
-        raise KeyboardInterrupt

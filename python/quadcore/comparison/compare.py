@@ -23,7 +23,7 @@ import numpy as np
 from .._core import InputError, QuadcoreError
 from ..commands import CommandsLike
 from ..log import Log
-from ..parallel import each
+from ..parallel import contained, each
 from .difference import Difference
 from .grid import Values
 from .metrics import metrics, states
@@ -133,7 +133,7 @@ def fly(
                 return _measured(row, plan.fly(variant), reference, keep)
 
             start = tally.done
-            with closing(each(measured, flights, processes)) as outcomes:
+            with closing(each(contained(measured), flights, processes)) as outcomes:
                 for index, outcome in outcomes:
                     tally.note(start + index, outcome)
     except KeyboardInterrupt as stop:
@@ -148,7 +148,7 @@ def _first_flown(
     """Take flights until one succeeds, which all later ones are compared with."""
     for row, variant in flights:
         # In a process too: what crashes there does not end the comparison.
-        ((_, log),) = each(plan.fly, [variant], 1)
+        ((_, log),) = each(contained(plan.fly), [variant], 1)
         if isinstance(log, Log):
             tally.reference = row
             tally.note(row, _measured(row, log, log, tally.keep))
@@ -178,10 +178,10 @@ class _Tally:
         if isinstance(outcome, QuadcoreError):
             self._failures[row] = str(outcome)
         else:
-            self._failures[row] = ""
             self._metrics[row] = outcome[0]
             if self._kept:
                 self._kept[row] = outcome[1]
+            self._failures[row] = ""
         self.done += 1
         if self._progress is not None:
             self._progress(self.done, self._plan.count)

@@ -1,0 +1,229 @@
+"""SIGINT, SIGTERM and SIGHUP end long commands soon, and what was flown is kept."""
+
+from __future__ import annotations
+
+import csv
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import quadcore as qc
+from quadcore import interrupts
+from quadcore.files import atomic_write
+from quadcore.parallel import contained, each
+
+SIGNALS = list(interrupts.SIGNALS)
+QUADCORE = [sys.executable, "-m", "quadcore"]
+LONG = 120.0  # s; generous, because waiting costs nothing when things work
+
+
+def until(condition):
+    """Wait for a condition; returns what it gave."""
+    give_up = time.monotonic() + LONG
+    while time.monotonic() < give_up:
+        found = condition()
+        if found:
+            return found
+        time.sleep(0.01)
+    raise AssertionError("waited in vain")
+
+
+def files(folder):
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
+
+
+def hidden(folder):
+    return [name for name in files(folder) if Path(name).name.startswith(".")]
+
+
+def children(pid):
+    """Processes whose parent this is, that have not ended."""
+    found = []
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdigit():
+            try:
+                state, parent = (entry / "stat").read_text().rpartition(")")[2].split()[:2]
+            except OSError:
+                continue
+            if int(parent) == pid and state != "Z":
+                found.append(int(entry.name))
+    return found
+
+
+def alive(pid):
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def ended(process, number):
+    """What a command prints that is asked to end."""
+    process.send_signal(number)
+    _, error = process.communicate(timeout=LONG)
+    assert process.returncode == 128 + number, error
+    assert error.endswith("interrupted\n") and "Traceback" not in error
+    return error
+
+
+def started(*arguments, folder):
+    return subprocess.Popen(
+        [*QUADCORE, *arguments],
+        cwd=folder,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        universal_newlines=True,
+    )
+
+
+@pytest.mark.parametrize("number", SIGNALS)
+def test_a_run_ended_at_random_moments_keeps_what_was_flown(number, tmp_path):
+    moments = random.Random(int(number))
+    for trial in range(10):
+        folder = tmp_path / str(trial)
+        folder.mkdir()
+        process = started(
+            *("run", "quadrotor", "--engine", "eigen", "--duration", "100000"),
+            *("--log", "log.csv", "--out", "out", "--no-plots"),
+            folder=folder,
+        )
+        until(lambda log=folder / "log.csv": log.exists() and log.stat().st_size > 0)
+        time.sleep(moments.uniform(0, 0.3))
+        ended(process, number)
+        assert files(folder) == ["log.csv", "out/log.csv"]
+        table = np.loadtxt(folder / "log.csv", delimiter=",", skiprows=1)
+        assert table[:, 0] == pytest.approx(1e-3 * np.arange(len(table)))
+        assert (folder / "log.csv").read_bytes() == (folder / "out" / "log.csv").read_bytes()
+
+
+@pytest.mark.parametrize("number", SIGNALS)
+def test_a_comparison_ended_at_random_moments_keeps_what_was_flown(number, tmp_path):
+    moments = random.Random(int(number))
+    for trial in range(10):
+        folder = tmp_path / str(trial)
+        folder.mkdir()
+        process = started(
+            *("compare", "quadrotor", "--engine", "eigen", "--duration", "0.5", "--logs"),
+            *("--vary", "motorpid_plugin.kp=1e-4:5e-4:20000", "--jobs", "2", "--out", "out"),
+            folder=folder,
+        )
+        until(lambda logs=folder / "out" / "logs": len(list(logs.glob("[0-9]*"))) > 2)
+        time.sleep(moments.uniform(0, 0.3))
+        ended(process, number)
+        assert hidden(folder) == []
+        with (folder / "out" / "table.csv").open(newline="") as stream:
+            rows = list(csv.DictReader(stream))
+        flown = [row["number"] for row in rows if row["failure"] == ""]
+        kept = [str(int(path.stem)) for path in (folder / "out" / "logs").iterdir()]
+        assert set(kept) == set(flown) and len(rows) == 20000
+        assert {row["failure"] for row in rows} == {"", "not flown: interrupted"}
+        for path in (folder / "out" / "logs").iterdir():
+            assert path.read_text().count("\n") == 502
+
+
+def test_processes_end_with_a_parent_that_is_killed(tmp_path):
+    process = started(
+        *("compare", "quadrotor", "--duration", "1e5", "--jobs", "2", "--log-every", "1000"),
+        *("--vary", "motorpid_plugin.kp=1e-4:5e-4:3"),
+        folder=tmp_path,
+    )
+    workers = until(lambda: children(process.pid))
+    process.kill()
+    process.communicate(timeout=LONG)
+    until(lambda: not any(alive(pid) for pid in workers))
+
+
+def test_nohup_keeps_a_flight_in_the_air(tmp_path):
+    process = subprocess.Popen(
+        [*QUADCORE, "run", "quadrotor", "--engine", "eigen", "--duration", "1e5", "--log", "l.csv"],
+        cwd=tmp_path,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        universal_newlines=True,
+        preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN),
+    )
+    log = tmp_path / "l.csv"
+    until(lambda: log.exists() and log.stat().st_size > 0)
+    process.send_signal(signal.SIGHUP)
+    size = log.stat().st_size
+    until(lambda: log.stat().st_size > size)
+    ended(process, signal.SIGTERM)
+
+
+@pytest.mark.parametrize("number", SIGNALS)
+def test_a_signal_that_is_sent_twice_is_heard_once(number):
+    kept = []
+    with pytest.raises(interrupts.Interrupted) as stop, interrupts.heard():
+        try:
+            signal.raise_signal(number)
+        finally:
+            signal.raise_signal(number)  # `timeout` signals the process and its group
+            kept.append("kept")
+    assert kept == ["kept"]
+    assert interrupts.exit_status(stop.value) == 128 + number
+
+
+def test_handlers_are_as_before_afterwards():
+    before = [signal.getsignal(number) for number in SIGNALS]
+    with interrupts.heard(), interrupts.held():
+        pass
+    assert [signal.getsignal(number) for number in SIGNALS] == before
+
+
+@pytest.mark.parametrize("number", SIGNALS)
+def test_what_is_held_is_done_before_the_interrupt(number):
+    done = []
+    with pytest.raises(KeyboardInterrupt), interrupts.heard(), interrupts.held():
+        with interrupts.held():
+            signal.raise_signal(number)
+            done.append("inner")
+        done.append("outer")
+    assert done == ["inner", "outer"]
+
+
+@pytest.mark.parametrize("number", SIGNALS)
+def test_an_interrupted_file_leaves_the_old_one_and_nothing_else(number, tmp_path):
+    (tmp_path / "a").write_text("old")
+    with pytest.raises(KeyboardInterrupt), interrupts.heard(), atomic_write(tmp_path / "a") as file:
+        file.write(b"new")
+        signal.raise_signal(number)
+    assert (tmp_path / "a").read_text() == "old"
+    assert files(tmp_path) == ["a"]
+
+
+def test_a_process_ended_by_a_signal_without_a_name_is_a_case_that_failed():
+    def die(number):
+        if number == 1:
+            os.kill(os.getpid(), 40)
+        return number
+
+    results = dict(each(die, range(3), 2))
+    assert (results[0], results[2]) == (0, 2)
+    assert str(results[1]) == "its process was ended by signal 40"
+
+
+def test_a_foreign_exception_in_a_case_is_that_case_alone():
+    results = dict(each(contained(lambda number: 1 / number), [1, 0, 2], 2))
+    assert (results[0], results[2]) == (1, 0.5)
+    assert isinstance(results[1], qc.QuadcoreError)
+    assert str(results[1]).startswith("ZeroDivisionError: division by zero (")
+
+
+def test_fewer_processes_than_asked_for_do_all_cases():
+    """A limit of open files that two processes reach."""
+    import resource
+
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    open_now = max(int(name) for name in os.listdir("/proc/self/fd"))
+    resource.setrlimit(resource.RLIMIT_NOFILE, (open_now + 9, hard))
+    try:
+        assert dict(each(lambda number: -number, range(20), 16)) == {i: -i for i in range(20)}
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
