@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from gyrostat import Gyrostat, angle_between
 from scipy.spatial.transform import Rotation
-from vehicles import CROSS, MOTOR, ODD, ROUND, SKEW, start, vehicle
+from vehicles import CROSS, MOTOR, ODD, ROUND, SKEW, Rotor, start, vehicle
 
 HOVER = np.sqrt(1.04 * 9.8 / 4 / 1.1487e-5)  # 471 rad/s
 STEPS = (1e-3, 5e-4, 2.5e-4, 1.25e-4)
@@ -78,10 +78,10 @@ def test_gazebo_does_not(hangar, rotors, inertia, com, spin):
     assert flight.energy > 3e-5
 
 
-def pitch_decay(hangar, engine, sim_slow, dt=1e-3):
+def pitch_decay(hangar, engine, sim_slow, dt=1e-3, rotors=CROSS):
     """Decay of a small pitch rate, 1/s, with the rotors held at hover speed and no other force."""
     spin = HOVER / sim_slow * np.array([1, -1, 1, -1])
-    simulation = hangar(vehicle(motor=MOTOR), engine=engine, dt=dt)
+    simulation = hangar(vehicle(rotors, motor=MOTOR), engine=engine, dt=dt)
     start(simulation, angular_velocity=[0, 0.01, 0], rotor_velocity=spin)
     simulation.command(spin)
     log = simulation.run(1)
@@ -113,3 +113,60 @@ def test_gazebos_damping_is_that_of_an_explicit_torque_on_four_propellers(hangar
     assert Jx == pytest.approx(0.00769, rel=1e-3)
     expected = 4 * (Izz - Ixx) * W**2 * dt / (2 * Jx)
     assert pitch_decay(hangar, "gazebo11", sim_slow, dt) == pytest.approx(expected, rel=0.01)
+
+
+def test_gazebos_damping_drives_where_propellers_are_long_rather_than_flat(hangar):
+    Ixx, Izz = 2e-5, 1e-5
+    rotors = [rotor._replace(inertia=(Ixx, Ixx, Izz)) for rotor in CROSS]
+    Jx = Gyrostat(rotors, 1, ROUND).inertia[0, 0]
+    expected = 4 * (Izz - Ixx) * HOVER**2 * 1e-3 / (2 * Jx)
+    assert expected == pytest.approx(-0.5751, abs=5e-5)
+    decay = pitch_decay(hangar, "gazebo11", 1, rotors=rotors)
+    assert decay == pytest.approx(expected, rel=0.02)
+    assert abs(pitch_decay(hangar, "ode", 1, rotors=rotors)) < 0.01
+
+
+class Tumbling:
+    """Ten seconds of tumbling, the rotors still at first: energy and momentum over the first."""
+
+    def __init__(self, hangar, engine, rate, inertia=ROUND, way=(0.02, 0.3, 1)):
+        simulation = hangar(vehicle(inertia=inertia), engine=engine)
+        w = rate * np.array(way) / np.linalg.norm(way)
+        log = start(simulation, angular_velocity=w).run(10, log_every=10)
+        rates = list(zip(log.angular_velocity, log.rotor_velocity))
+        true = Gyrostat(CROSS, 1, inertia)
+        energy = np.array([true.energy(*r) for r in rates])
+        momentum = np.array([np.linalg.norm(true.momentum(*r)) for r in rates])
+        self.energy = energy / energy[0]
+        self.momentum = momentum / momentum[0]
+
+
+@pytest.mark.parametrize(
+    ("rate", "energy", "momentum"), [(10.4, 0.002, 0.002), (20.9, 0.01, 0.005), (52, 0.15, 0.1)]
+)
+@pytest.mark.parametrize("inertia", [ROUND, (0.01, 0.014, 0.02, 0, 0, 0)], ids=["round", "three"])
+@pytest.mark.parametrize("way", [(0.02, 0.3, 1), (1, 0.5, 0.3)])
+def test_tumbling_makes_no_energy_in_ode(hangar, rate, energy, momentum, inertia, way):
+    tumbling = Tumbling(hangar, "ode", rate, inertia, way)
+    assert tumbling.energy.min() > 1 - energy
+    assert tumbling.momentum.min() > 1 - momentum
+    assert tumbling.energy.max() < 1 + 1e-9
+    assert tumbling.momentum.max() < 1 + 1e-3
+
+
+def test_tumbling_makes_energy_in_gazebo(hangar):
+    assert Tumbling(hangar, "gazebo11", 20.9).energy.max() == pytest.approx(2.30, abs=0.05)
+    assert Tumbling(hangar, "gazebo11", 52).energy.max() > 5
+
+
+@pytest.mark.parametrize("engine", ["ode", "gazebo11"])
+def test_a_two_bladed_rotor_turns_under_its_own_gyroscopic_torque(hangar, engine):
+    """On a frame too heavy to answer, Euler: Izz dW/dt = (Ixx - Iyy) wx wy, along the axis."""
+    blades = Rotor((0.1, 0.05, 0.02), inertia=(4e-6, 6e-5, 6.3e-5))
+    heavy = (1e4, 1e4, 1e4, 0, 0, 0)
+    simulation = hangar(vehicle([blades], 1e4, heavy), engine=engine, dt=1e-4)
+    start(simulation, angular_velocity=[3, 2, 0.5])
+    simulation.step(10)
+    Ixx, Iyy, Izz = blades.inertia
+    expected = (Ixx - Iyy) / Izz * 3 * 2 * 1e-3
+    assert simulation.state.rotor_velocity[0] == pytest.approx(expected, rel=5e-3)

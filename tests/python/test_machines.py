@@ -1,0 +1,82 @@
+"""The same bytes on every x86-64 processor.
+
+glibc picks a variant of sin, cos, log and the like by what the processor can do. Whatever feeds a
+state must therefore not come from there.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from flights import ENGINES
+from vehicles import AIR, DRAG, FLAPPING, MOTOR, ODD, SKEW, plugin, vehicle
+
+import quadcore as qc
+
+TESTS = Path(__file__).resolve().parent
+LIBRARIES = sorted((Path(qc.__file__).parent / "lib").glob("lib*.so"))
+AS_AN_OLD_PROCESSOR = "glibc.cpu.hwcaps=-AVX2_Usable,-FMA_Usable,-AVX2,-FMA,-FMA4"
+
+# Rotations and poses with many digits in the file and at the start; noise on all that is sensed.
+NOISE = {
+    "positionNoise": 0.1,
+    "orientationNoise": 0.02,
+    "linearVelocityNoise": 0.3,
+    "angularVelocityNoise": 0.4,
+}
+FLY = """
+import hashlib, sys
+import quadcore as qc
+from flights import bits
+for engine in sys.argv[2:]:
+    for drag in ("appendix", "chapter2"):
+        simulation = qc.Simulation(
+            sys.argv[1],
+            engine=engine,
+            parameters={"aerodynamic.dragModel": drag},
+            spawn=(1, 2, 10, 0.3, -0.2, 1),
+            seed=7,
+        )
+        simulation.command([471, -400, 480, -395])
+        digest = hashlib.sha256()
+        for _ in range(400):
+            simulation.step(5)
+            digest.update(bits(simulation))
+        print(engine, drag, digest.hexdigest())
+"""
+
+
+def fly(model, **environment):
+    """Hash of every bit of state and odometry on the way, for each engine and drag model."""
+    command = [sys.executable, "-c", FLY, str(model), *ENGINES]
+    environment = {**os.environ, "PYTHONPATH": str(TESTS), **environment}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    return done.stdout.splitlines()
+
+
+def test_flights_and_noise_are_the_same_with_and_without_fused_multiply_adds(tmp_path):
+    urdf = vehicle(ODD, 1, SKEW, (0.01, -0.02, 0.015), {**AIR, **DRAG, **FLAPPING}, MOTOR)
+    urdf = urdf.replace("</robot>", plugin("odometry", NOISE) + "</robot>")
+    (tmp_path / "odd.urdf").write_text(urdf)
+    here = fly(tmp_path / "odd.urdf")
+    assert len(here) == 2 * len(ENGINES)
+    assert fly(tmp_path / "odd.urdf", GLIBC_TUNABLES=AS_AN_OLD_PROCESSOR) == here
+
+
+@pytest.mark.parametrize("library", LIBRARIES, ids=lambda library: library.name)
+def test_no_library_asks_libm_for_what_it_does_not_round_exactly(library):
+    listed = subprocess.run(
+        ["nm", "-D", "--undefined-only", str(library)], capture_output=True, text=True, check=True
+    )
+    names = {line.split()[-1].split("@")[0] for line in listed.stdout.splitlines()}
+    assert names
+    transcendental = re.compile(
+        r"(__)?(sin|cos|sincos|tan|a(sin|cos|tan)h?|atan2|(sin|cos|tan)h|sinpi|cospi|exp(2|10|m1)?"
+        r"|log(2|10|1p|b)?|pow|cbrt|hypot|erfc?|[lt]gamma|j[01n]|y[01n])(_finite|f|l)?"
+    )
+    assert not sorted(name for name in names if transcendental.fullmatch(name))
