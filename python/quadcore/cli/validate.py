@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any, Dict, List
 
 from rich.table import Table
 
+from .. import interrupts
 from .._core import FlightError, QuadcoreError
 from ..files import check_writable, make_folder
-from ..parallel import each
+from ..parallel import contained, each
 from . import options, terminal
 
 if TYPE_CHECKING:
@@ -114,7 +115,7 @@ def _write(study: Study, out: Path) -> List[Path]:
     """Write page and tables, before any picture is drawn: flights are not flown twice."""
     from ..validation.output import write_report, write_tables
 
-    with terminal.interrupt_held():
+    with interrupts.held():
         tables = write_tables(study, out)
         return [write_report(study, {}, out), *tables]
 
@@ -135,7 +136,7 @@ def _draw(study: Study, arguments: argparse.Namespace, failures: List[str]) -> D
 
     try:
         with terminal.progress(arguments.quiet, "drawing") as progress, closing(
-            each(draw, names, arguments.jobs)
+            each(contained(draw), names, arguments.jobs)
         ) as outcomes:
             for done, (index, picture) in enumerate(outcomes, start=1):
                 if isinstance(picture, QuadcoreError):
@@ -147,7 +148,7 @@ def _draw(study: Study, arguments: argparse.Namespace, failures: List[str]) -> D
                     progress(done, len(names))
     finally:
         in_order = {name: drawn[name] for name in names if name in drawn}
-        with terminal.interrupt_held():
+        with interrupts.held():
             write_report(study, in_order, arguments.out)
     if failed:
         failures.append(f"{len(failed)} of {len(names)} pictures failed; the first, {failed[0]}")
