@@ -1,15 +1,19 @@
 #!/usr/bin/env python3
-"""Draw the pictures of docs/validation.md into docs/images: ``scripts/document`` runs it."""
+"""Fly what docs/validation.md shows: its pictures and tables. ``scripts/document`` runs it."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any, Iterator
 
 import numpy as np
+from measured import figures, put
 
 from quadcore.plots import PALETTE, dress, png, titled
-from quadcore.validation import Experiment, conduct
+from quadcore.validation import Case, Experiment, Study, conduct
 from quadcore.validation.figures import pictures
+from quadcore.validation.output import size
+from quadcore.validation.thesis import KINDS, thesis_figures
 
 IMAGES = Path(__file__).resolve().parents[1] / "docs" / "images"
 FROM_THE_COMMAND = {"position": "position_all", "error": "error_all", "chain": "chain_all"}
@@ -37,10 +41,86 @@ def draw_gains() -> bytes:
     return png(figure)
 
 
+def distances(study: Study) -> Iterator[Any]:
+    """Tabulate the largest distance of every engine from the model."""
+    rows = {row.case: row.difference for row in study.rows}
+    for engine in study.engines:
+        for slow in study.sim_slow:
+            found = [rows[Case(engine, slow, drag)] for drag in study.drags]
+            yield engine, f"{slow:g}", *(size(one.largest["distance"]) for one in found if one)
+
+
+def shares(study: Study) -> Iterator[Any]:
+    """Tabulate the chains with all drags side by side."""
+    chains = [chain for chain in study.chains if chain.drag == "all"]
+    changes = max((chain.links for chain in chains), key=len)
+    for change in (link.change for link in changes):
+        links = [{link.change: link for link in chain.links}.get(change) for chain in chains]
+        largest = list(dict.fromkeys(size(link.largest) for link in links if link))
+        yield change, *(size(link.share) if link else "" for link in links), ", ".join(largest)
+    yield "sum: distance from the model", *(size(chain.distance) for chain in chains), ""
+
+
+def numbers(study: Study) -> Iterator[Any]:
+    """Tabulate which figures of the thesis the pictures correspond to."""
+    for drag in study.drags:
+        found = [thesis_figures(drag, kind, study.sim_slow) for kind in KINDS]
+        if any(found):
+            yield f"`{drag}`", *found
+
+
+def decays(study: Study) -> Iterator[Any]:
+    """Tabulate the artificial damper."""
+    for entry in study.damping:
+        found = [abs(entry.measured[engine]) for engine in study.engines]
+        shown = [size(one) if one > 1e-9 else "below 1e-9" for one in found]
+        yield f"{entry.sim_slow:g}", size(entry.formula), *shown
+
+
+def slowed(study: Study) -> Iterator[Any]:
+    """Tabulate what slowing down changes in itself."""
+    for drag in ("none", "all"):
+        for row in study.slowed:
+            if row.case.drag == drag and row.difference:
+                apart = row.difference.largest
+                yaw = f"{np.degrees(apart['psi']):.3g}"
+                yield f"{row.case.sim_slow:g}", drag, size(apart["distance"]), yaw
+
+
+def steps() -> Iterator[Any]:
+    """Tabulate how the step of ODE matters with all drags, at several slow-downs."""
+    for dt in (1e-3, 5e-4, 2.5e-4, 1.25e-4):
+        experiment = Experiment.of(dt=dt, log_every=round(1e-2 / dt))
+        found = []
+        for engine, slow in (("ode", 1.0), ("ode", 8.0), ("ode", 18.0), ("gazebo11", 1.0)):
+            logs = [experiment.fly(Case(one, slow)).log for one in (engine, "eigen")]
+            apart = logs[0].position - logs[1].position  # type: ignore[union-attr]
+            found.append(size(float(np.linalg.norm(apart, axis=1).max())))
+        yield f"{figures(dt * 1e3, 3)} ms", *found
+
+
+def write_tables(study: Study) -> None:
+    """Write the tables that stand between marks."""
+    slow = [f"{n:g}" for n in study.sim_slow]
+    page = "validation.md"
+    put(page, "distances", ("engine", "sim_slow", *study.drags), distances(study))
+    heading = ("what changes", f"from sim_slow {slow[0]}", *(f"from {n}" for n in slow[1:]))
+    put(page, "shares", (*heading, "largest"), shares(study))
+    titles = [kind.title.lower() for kind in KINDS.values()]
+    put(page, "figures", ("drag", *titles), numbers(study))
+    engines = [f"`{engine}`" for engine in study.engines]
+    put(page, "decays", ("sim_slow", "formula", *engines), decays(study))
+    put(page, "slowed", ("sim_slow", "drag", "distance (m)", "yaw (degrees)"), slowed(study))
+    heading = ("step", "`ode`, sim_slow 1", "8", "18", "`gazebo11`, sim_slow 1")
+    put(page, "steps", heading, steps())
+
+
 def main() -> None:
-    """Fly the experiment as ``quadcore validate`` does, and draw."""
+    """Fly the experiment as ``quadcore validate`` does; write and draw."""
+    study = conduct(Experiment.of())
+    write_tables(study)
     drawn = {"gains": draw_gains()}
-    wanted = pictures(conduct(Experiment.of()))
+    wanted = pictures(study)
     for name, picture in {**FROM_THE_COMMAND, "commands": "commands", "damping": "damping"}.items():
         function, arguments = wanted[picture]
         drawn[name] = function(*arguments)

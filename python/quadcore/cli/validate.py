@@ -13,7 +13,7 @@ from rich.table import Table
 from .. import interrupts
 from .._core import FlightError, QuadcoreError
 from ..files import check_writable, make_folder
-from ..parallel import each
+from ..parallel import contained, each
 from . import options, terminal
 
 if TYPE_CHECKING:
@@ -136,7 +136,7 @@ def _draw(study: Study, arguments: argparse.Namespace, failures: List[str]) -> D
 
     try:
         with terminal.progress(arguments.quiet, "drawing") as progress, closing(
-            each(draw, names, arguments.jobs)
+            each(contained(draw), names, arguments.jobs)
         ) as outcomes:
             for done, (index, picture) in enumerate(outcomes, start=1):
                 if isinstance(picture, QuadcoreError):

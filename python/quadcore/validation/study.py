@@ -6,7 +6,7 @@ from contextlib import closing
 from typing import Callable, Dict, List, NamedTuple, Optional, Sequence
 
 from .._core import InputError, QuadcoreError
-from ..parallel import each
+from ..parallel import contained, each
 from .chain import ORDER, Chain, forge, stages
 from .damping import Damping, measure
 from .experiment import LAG, MODEL, NO_LAG, TERMS, Case, Experiment, Flight
@@ -122,7 +122,7 @@ def _fly(
 ) -> None:
     # The model is slow: it goes first, so that no core waits for it at the end.
     cases = sorted(flights, key=lambda case: case.plant != MODEL)
-    with closing(each(experiment.fly, cases, processes)) as outcomes:
+    with closing(each(contained(experiment.fly), cases, processes)) as outcomes:
         for done, (index, flight) in enumerate(outcomes, start=1):
             case = cases[index]
             if isinstance(flight, QuadcoreError):  # its process died

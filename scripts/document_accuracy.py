@@ -1,0 +1,162 @@
+#!/usr/bin/env python3
+"""Measure how far the engines are from exact: ``scripts/document`` runs it.
+
+It writes the tables of docs/physics.md and docs/gazebo.md that stand between marks.
+"""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from pathlib import Path
+from typing import Any, Iterator
+
+import numpy as np
+from measured import figures, put
+
+import quadcore as qc
+
+DATA = Path(__file__).resolve().parents[1] / "tests" / "data"
+CASES = DATA / "gazebo11" / "cases"
+HOVER = 471.0  # rad/s
+SPIN = np.array([1, -1, 1, -1])
+NO_AIR = {
+    f"drone_plugin.{name}": 0
+    for name in (
+        *("rotorThrustCoeff", "rotorTorqueCoeff", "profileDragCoeff", "parasiticDragCoeff"),
+        *("translationalDragCoeff", "inducedDragCoeff"),
+    )
+}
+# What real Gazebo 11.1.0 did; recorded by plugins made for it.
+GAZEBO_DECAY = {1: 0.812, 8: 0.0128, 10: 0.0082, 18: 0.0025}
+GAZEBO_SWEEPS = {20: 4e-10, 15: 5e-7, 10: 2e-4, 7: 7e-3, 5: 0.06, 3: 0.42}
+
+
+def distance(a: Any, b: Any) -> float:
+    """Largest distance between two flights that were logged at the same times (m)."""
+    return float(np.linalg.norm(a.position - b.position, axis=1).max())
+
+
+def doublet(engine: str, dt: float, world: Path, case: Any) -> float:
+    """Distance from the exact end of the doublet (m)."""
+    simulation = qc.Simulation(
+        "quadrotor",
+        engine,
+        world,
+        dt,
+        parameters={"drone_plugin.dragModel": "chapter2"},
+        xacro_args={"sim_slow": 1},
+        spawn=(0, 0, 10),
+    )
+    state = simulation.state.copy()
+    state.rotor_velocity[:] = case["initial"]["rotor_velocity"]
+    simulation.set_state(state)
+    commands = [[row["t"], *row["w"]] for row in case["commands"]]
+    end = case["states"][-1]
+    log = simulation.run(end["t"], commands, log_every=round(1 / dt))
+    return float(np.linalg.norm(log.position[-1] - end["position"]))
+
+
+def exactness(folder: Path) -> Iterator[Any]:
+    """Compare with DOP853 at several steps."""
+    case = json.loads((DATA / "exact" / "E1_doublet_all.json").read_text())
+    world = folder / "earth.world"
+    gravity = case["parameters"]["g"]
+    world.write_text(
+        f"<sdf version='1.6'><world name='w'><gravity>0 0 -{gravity}</gravity></world></sdf>"
+    )
+    for dt in (2e-3, 1e-3, 5e-4, 2.5e-4):
+        apart = [figures(doublet(engine, dt, world, case)) for engine in ("ode", "eigen")]
+        yield f"{dt * 1e3:g} ms", *apart
+
+
+def tumbling(rate: float, dt: float) -> Any:
+    """Fly two seconds at hover speeds from a rate about an axis that is none of the vehicle's."""
+    simulation = qc.Simulation(
+        "quadrotor",
+        "eigen",
+        dt=dt,
+        parameters={"drone_plugin.dragModel": "chapter2"},
+        xacro_args={"sim_slow": 1},
+        spawn=(0, 0, 10),
+    )
+    state = simulation.state.copy()
+    state.rotor_velocity[:] = HOVER * SPIN
+    state.angular_velocity[:] = rate * np.array([0.6, 0.48, 0.64])
+    simulation.set_state(state)
+    simulation.command(HOVER * SPIN)
+    return simulation.run(2.0, log_every=round(1e-2 / dt))
+
+
+def fourth_order() -> Iterator[Any]:
+    """Compare `eigen` with itself at an eighth of a ms, for ever faster attitudes."""
+    for rate in (5, 10, 20, 40):
+        exact = tumbling(rate, 6.25e-5)
+        apart = [distance(tumbling(rate, dt), exact) for dt in (2e-3, 1e-3, 5e-4)]
+        yield rate, *(figures(one) for one in apart)
+
+
+def pitching(engine: str, slow: float) -> Any:
+    """Let a vehicle without air and weight pitch for two seconds; log of its tilting rate."""
+    world = "<sdf version='1.6'><world name='w'><gravity>0 0 0</gravity></world></sdf>"
+    with tempfile.NamedTemporaryFile("w", suffix=".world") as file:
+        file.write(world)
+        file.flush()
+        simulation = qc.Simulation(
+            "quadrotor", engine, file.name, parameters=NO_AIR, xacro_args={"sim_slow": slow}
+        )
+    state = simulation.state.copy()
+    state.rotor_velocity[:] = HOVER * SPIN / slow
+    state.angular_velocity[1] = 0.01
+    simulation.set_state(state)
+    simulation.command(HOVER * SPIN)
+    return simulation, np.log(np.abs(simulation.run(2.0).angular_velocity[:, 1]))
+
+
+def decays() -> Iterator[Any]:
+    """Tabulate the loss of a pitch rate in its first second, and in gazebo11 in its second."""
+    for slow, recorded in GAZEBO_DECAY.items():
+        found, later = {}, {}
+        for engine, _ in qc.engines():
+            simulation, rate = pitching(engine, slow)
+            found[engine] = rate[0] - rate[1000]
+            later[engine] = rate[1000] - rate[2000]
+        flat = 2.8125e-5 - 1.40625e-5
+        formula = 4 * flat * (HOVER / slow) ** 2 * 1e-3 / (2 * simulation.inertia[1, 1])
+        first = [figures(abs(found[engine]), 3) for engine, _ in qc.engines()]
+        then = [figures(abs(later[engine]), 3) for engine in ("gazebo11", "ode")]
+        yield slow, figures(formula, 3), recorded, *first, *then
+
+
+def sweeps(folder: Path) -> Iterator[Any]:
+    """Tabulate what fewer sweeps change in a flight at full speed."""
+    case = CASES / "A7_multisine_slow1"
+    text = (case / "case.world").read_text()
+
+    def fly(count: int) -> Any:
+        world = folder / "sweeps.world"
+        world.write_text(text.replace("<iters>50</iters>", f"<iters>{count}</iters>"))
+        simulation = qc.Simulation(case / "model.urdf", world=world, spawn=(0, 0, 10))
+        return simulation.run(10.0, case / "commands.csv", log_every=10)
+
+    usual = fly(50)
+    for count, recorded in GAZEBO_SWEEPS.items():
+        yield count, figures(recorded), figures(distance(fly(count), usual))
+
+
+def main() -> None:
+    """Measure, and write the tables."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        put("physics.md", "exact", ("step", "`ode`", "`eigen`"), exactness(folder))
+        heading = ("rate (rad/s)", "2 ms", "1 ms", "0.5 ms")
+        put("physics.md", "order", heading, fourth_order())
+        heading = ("sweeps", "real Gazebo", "`gazebo11`")
+        put("gazebo.md", "sweeps", heading, sweeps(folder))
+    engines = [f"`{engine}`" for engine, _ in qc.engines()]
+    later = [f"next second: `{engine}`" for engine in ("gazebo11", "ode")]
+    put("gazebo.md", "decay", ("sim_slow", "formula", "real Gazebo", *engines, *later), decays())
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,35 @@
+"""Tables of measured figures in the docs, each between marks that say what it is.
+
+    <!-- measured: NAME -->
+    | ... |
+    <!-- end -->
+
+What measures them writes them, so that no figure is copied by hand.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Iterable, Sequence
+
+DOCS = Path(__file__).resolve().parents[1] / "docs"
+
+
+def put(page: str, name: str, heading: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+    """Write a table to its place in docs/PAGE."""
+    path = DOCS / page
+    lines = [heading, ["---"] * len(heading), *rows]
+    table = "".join(f"| {' | '.join(map(str, line))} |\n" for line in lines)
+    place = re.compile(rf"(<!-- measured: {name} -->\n).*?(<!-- end -->)", re.DOTALL)
+    text, count = place.subn(lambda found: found[1] + table + found[2], path.read_text())
+    if count != 1:
+        raise SystemExit(f"docs/{page}: {count} places for the table '{name}'")
+    path.write_text(text)
+    print(f"docs/{page}: {name}")
+
+
+def figures(value: float, digits: int = 2) -> str:
+    """Write a number with so many digits, without trailing zeros of an exponent."""
+    text = f"{value:.{digits}g}"
+    return re.sub(r"e([+-])0*(\d)", lambda found: f"e{found[1].strip('+')}{found[2]}", text)
