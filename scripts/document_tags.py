@@ -213,7 +213,8 @@ def topic_section(simulation: qc.Simulation) -> str:
         rows.append((f"`{name}`", " ".join(f"`{field}`" for field in fields), meaning))
     return (
         "\n## Topics\n\nMessages between plugins, and between them and Python "
-        "(`sim.topic(name)`) or a ROS node.\n\n" + table(("topic", "fields", "direction"), rows)
+        "(`sim.topic(name)`); these two are the ROS node's, too.\n\n"
+        + table(("topic", "fields", "direction"), rows)
     )
 
 

@@ -8,14 +8,14 @@ cd "$(dirname "$0")/.."
 say() { echo "quadcore: $*"; }
 skip() { say "ROS tests skipped: $*"; exit 0; }
 
-debian_packages="catkin rosout python3-roslaunch python3-rostest python3-rostopic python3-rosservice
-  python3-rospy python3-diagnostic-msgs python3-geometry-msgs python3-nav-msgs python3-sensor-msgs
-  python3-std-srvs python3-tf2-msgs ros-diagnostic-msgs ros-geometry-msgs ros-nav-msgs
-  ros-rosgraph-msgs ros-sensor-msgs ros-std-msgs ros-std-srvs ros-tf2-msgs ros-message-generation
-  ros-message-runtime libdiagnostic-msgs-dev libgeometry-msgs-dev libnav-msgs-dev libroscpp-dev
-  libros-rosgraph-msgs-dev librostest-dev libsensor-msgs-dev libstd-msgs-dev libstd-srvs-dev
-  libtf2-ros-dev"
-noetic_packages="ros-noetic-ros-base ros-noetic-rostest ros-noetic-tf2-ros ros-noetic-diagnostic-msgs
+debian_packages="catkin rosout python3-rosbag python3-roslaunch python3-rosnode python3-rosparam
+  python3-rostest python3-rostopic python3-rosservice python3-rospy python3-diagnostic-msgs
+  python3-geometry-msgs python3-nav-msgs python3-sensor-msgs python3-std-srvs python3-tf2-msgs
+  ros-diagnostic-msgs ros-geometry-msgs ros-nav-msgs ros-rosgraph-msgs ros-sensor-msgs ros-std-msgs
+  ros-std-srvs ros-tf2-msgs ros-message-generation ros-message-runtime libdiagnostic-msgs-dev
+  libgeometry-msgs-dev libnav-msgs-dev libroscpp-dev libros-rosgraph-msgs-dev librostest-dev
+  libsensor-msgs-dev libstd-msgs-dev libstd-srvs-dev libtf2-msgs-dev"
+noetic_packages="ros-noetic-ros-base ros-noetic-rostest ros-noetic-tf2-msgs ros-noetic-diagnostic-msgs
   ros-noetic-nav-msgs ros-noetic-sensor-msgs ros-noetic-std-srvs"
 
 as_root() {
@@ -109,6 +109,7 @@ copy_sources
 build
 say "running the ROS tests"
 SECONDS=0
-(run_in devel topics services lockstep faults fly_from_python launch plugin_by_others; [ -z "$failed" ])
-(run_in install launch plugin_by_others; [ -z "$failed" ])
+(run_in devel topics services lockstep playing clock several parameters faults fly_from_python \
+  launch plugin_by_others; [ -z "$failed" ])
+(run_in install launch playing plugin_by_others; [ -z "$failed" ])
 say "the ROS tests passed in $SECONDS s"

@@ -1,66 +1,59 @@
 #pragma once
 
 #include <nav_msgs/Odometry.h>
-#include <nav_msgs/Path.h>
 #include <ros/ros.h>
 #include <rosgraph_msgs/Clock.h>
 #include <sensor_msgs/JointState.h>
-#include <tf2_ros/static_transform_broadcaster.h>
-#include <tf2_ros/transform_broadcaster.h>
+#include <tf2_msgs/TFMessage.h>
 
+#include <string>
+
+#include "odometry_topic.hpp"
+#include "path.hpp"
 #include "quadcore/simulation.hpp"
+#include "thinned.hpp"
 
 namespace quadcore::node {
 
-/// A topic for something that is worth sending less often than each step.
-class ThinnedTopic {
- public:
-  explicit ThinnedTopic(double rate) : rate_(rate) {}
-
-  /// Whether a message is due at `time`, the first after a jump at once.
-  bool due(double time, bool jumped);
-
-  ros::Publisher publisher;
-
- private:
-  double rate_;  // 1/s
-  double last_ = -1;
-};
-
 /// Sends what the original package sends: /clock each step, then odom and tf world->drone with each
-/// message of the odometry plugin; besides, joint_states and path for rviz. Stamps are simulation
-/// time, those of odom among the values of /clock.
+/// message of the odometry plugin; besides, ground_truth/odometry, joint_states, and path for rviz.
+/// Stamps are simulation time, those of odom among the values of /clock. The last message of all is
+/// kept for those who subscribe later, so that a paused flight is seen, too.
 class Broadcast {
  public:
-  /// \param keep_last  whether odom is kept for subscribers that come later; in lockstep a
-  ///                   controller must not miss the message that the plant waits on.
-  Broadcast(ros::NodeHandle& nh, const Simulation& simulation, bool keep_last);
+  /// \param clock  where the clock is sent; an empty publisher = somebody else sends it
+  /// \param frame_prefix  of the vehicle's frames, "" or such as "uav1/"
+  Broadcast(ros::NodeHandle& nh, const Simulation& simulation, const ros::Publisher& clock,
+            const std::string& frame_prefix);
 
   /// After a step; `jumped`: after the start, a reset or a new state.
   void send(const Simulation& simulation, bool jumped);
+  /// Sends what is there to see, but no odometry, which somebody might answer.
+  void show(const Simulation& simulation);
 
  private:
-  void send_odometry(const Topic& topic);
-  void send_joint_states(const Simulation& simulation);
-  void send_path(const Simulation& simulation);
+  void send_odometry(const Simulation& simulation, const Topic& topic);
+  void send_transform(const VehicleState& state);
+  void send_joint_states(const VehicleState& state);
 
-  const int odometry_topic_;
-  bool publish_tf_ = false;
+  const OdometryTopic odometry_topic_;
   double sent_ = 0;  ///< count of the odometry message that was sent last
+  Thinned joint_states_due_{50};
 
   ros::Publisher clock_publisher_;
   ros::Publisher odometry_publisher_;
-  ThinnedTopic joint_states_topic_{50};
-  ThinnedTopic path_topic_{10};
-  tf2_ros::TransformBroadcaster tf_;
-  tf2_ros::StaticTransformBroadcaster static_tf_;
+  ros::Publisher truth_publisher_;
+  ros::Publisher tf_publisher_;
+  ros::Publisher static_tf_publisher_;
+  ros::Publisher joint_states_publisher_;
+  PathTopic path_;
 
   // Kept, so that sending them needs no new memory.
   rosgraph_msgs::Clock clock_;
   nav_msgs::Odometry odometry_;
-  geometry_msgs::TransformStamped transform_;
+  nav_msgs::Odometry truth_;
+  tf2_msgs::TFMessage transform_;
   sensor_msgs::JointState joint_states_;
-  nav_msgs::Path path_;
 };
 
 }  // namespace quadcore::node

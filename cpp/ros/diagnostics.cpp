@@ -16,10 +16,9 @@ std::string to_text(double value) {
 
 }  // namespace
 
-Diagnostics::Diagnostics(ros::NodeHandle& nh, const FlightReport& start, double real_time_factor,
+Diagnostics::Diagnostics(ros::NodeHandle& nh, const FlightReport& start,
                          const std::string& command_topic)
-    : wanted_factor_(real_time_factor),
-      command_topic_(command_topic),
+    : command_topic_(command_topic),
       publisher_(nh.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 10)),
       last_(start) {}
 
@@ -36,13 +35,17 @@ void Diagnostics::send(const FlightReport& report, const Refusals& refusals) {
   if (!report.failure.empty()) {
     status.level = diagnostic_msgs::DiagnosticStatus::ERROR;
     status.message = report.failure;
-  } else if (report.waiting && report.steps == last_.steps) {
+  } else if (report.waits_for_clock) {
+    status.level = diagnostic_msgs::DiagnosticStatus::WARN;
+    status.message = "waiting for somebody to publish /clock";
+    ROS_WARN_ONCE("%s", status.message.c_str());
+  } else if (report.waits_for_command && report.steps == last_.steps) {
     status.level = diagnostic_msgs::DiagnosticStatus::WARN;
     status.message = "waiting for a command on " + command_topic_;
     ROS_WARN_ONCE("lockstep: %s", status.message.c_str());
-  } else if (!report.paused && !last_.paused && factor < fair_share * wanted_factor_) {
+  } else if (!report.paused && !last_.paused && factor < fair_share * report.real_time_factor) {
     status.level = diagnostic_msgs::DiagnosticStatus::WARN;
-    status.message = "behind the real-time factor of " + to_text(wanted_factor_);
+    status.message = "behind the real-time factor of " + to_text(report.real_time_factor);
   } else if (refusals.count != refused_before_) {
     status.level = diagnostic_msgs::DiagnosticStatus::WARN;
     status.message = "commands rejected: " + refusals.last;
@@ -58,6 +61,7 @@ void Diagnostics::send(const FlightReport& report, const Refusals& refusals) {
   add("steps", std::to_string(report.steps));
   add("overruns", std::to_string(report.overruns));
   add("commands", std::to_string(report.commands));
+  add("waiting commands", std::to_string(report.waiting_commands));
   add("late commands", std::to_string(report.late_commands));
   add("rejected commands", std::to_string(refusals.count));
 

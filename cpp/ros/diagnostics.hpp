@@ -19,14 +19,12 @@ struct Refusals {
 /// Sends, once a second of wall time, how the flight keeps up.
 class Diagnostics {
  public:
-  Diagnostics(ros::NodeHandle& nh, const FlightReport& start, double real_time_factor,
-              const std::string& command_topic);
+  Diagnostics(ros::NodeHandle& nh, const FlightReport& start, const std::string& command_topic);
   void send(const FlightReport& report, const Refusals& refusals);
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  const double wanted_factor_;
   const std::string command_topic_;
   ros::Publisher publisher_;
   FlightReport last_;

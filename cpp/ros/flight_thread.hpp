@@ -5,12 +5,14 @@
 #include <deque>
 #include <functional>
 #include <future>
+#include <limits>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "answers.hpp"
+#include "command_queue.hpp"
 #include "pacer.hpp"
 #include "quadcore/simulation.hpp"
 
@@ -18,17 +20,21 @@ namespace quadcore::node {
 
 struct FlightSettings {
   double real_time_factor = 1;  ///< simulated seconds per second; 0 = as fast as possible
+  bool follows_clock = false;   ///< steps are due by clock() instead
   bool paused = false;          ///< at the start
   bool lockstep = false;        ///< wait for one command per odometry message
   double lockstep_timeout = 1;  ///< s; a command later than this is done without
 };
 
-/// Follows a flight. All calls come from the flight's own thread.
+/// Follows a flight. All calls come from the flight's own thread, which holds no lock then.
 class FlightListener {
  public:
   virtual ~FlightListener() = default;
   /// The simulation has made a step or, `jumped`, was reset or given a state.
   virtual void observe(const Simulation& simulation, bool jumped) = 0;
+  /// The simulation waits at its start or at a jump for someone who can answer; it will be observed
+  /// then. Until then it may be looked at.
+  virtual void show(const Simulation& simulation) = 0;
   /// What was observed last is to be sent once more.
   virtual void repeat(const Simulation& simulation) = 0;
   virtual void warn(const std::string& what) = 0;
@@ -38,14 +44,17 @@ class FlightListener {
 
 /// What has happened so far.
 struct FlightReport {
-  double time = 0;  ///< of the simulation [s]
+  double time = 0;              ///< of the simulation [s]
+  double real_time_factor = 0;  ///< asked for; 0 = none: no limit, or others set the pace
   std::int64_t steps = 0;
-  std::int64_t commands = 0;       ///< accepted
-  std::int64_t late_commands = 0;  ///< odometry messages not answered before the next one
-  std::int64_t overruns = 0;       ///< steps that began more than one period late
+  std::int64_t commands = 0;         ///< accepted
+  std::size_t waiting_commands = 0;  ///< accepted, in lockstep, for messages to come
+  std::int64_t late_commands = 0;    ///< odometry messages not answered before the next one
+  std::int64_t overruns = 0;         ///< steps that began more than one period late
   bool paused = false;
-  bool waiting = false;  ///< in lockstep, for the first command since the start or the last jump
-  std::string failure;   ///< why the flight has ended; "" while it goes on
+  bool waits_for_clock = false;    ///< of somebody else, who has sent none yet
+  bool waits_for_command = false;  ///< in lockstep, the first since the start or the last jump
+  std::string failure;             ///< why the flight has ended; "" while it goes on
 };
 
 /// Flies a simulation in a thread of its own. Every public member may be called from any thread;
@@ -57,17 +66,23 @@ class FlightThread {
   FlightThread(const FlightThread&) = delete;
   FlightThread& operator=(const FlightThread&) = delete;
 
-  /// Rotor speeds for the next step and all later ones. Throws InputError on a wrong count or a
-  /// number that is not finite; the last good command stays.
+  /// Rotor speeds for the next step and all later ones, in lockstep for those after the message
+  /// they answer. Throws what CommandQueue::take() throws; the last good command stays.
   void command(const std::vector<double>& speeds);
+  /// Of a flight that follows the clock: its vehicle stands still, and goes on at the clock's time.
   void set_paused(bool paused);
+  void set_real_time_factor(double factor);
+  /// The clock that is followed has come to this time.
+  void clock(double time);
+  /// No step may begin later than this; for one who leads the clock of others.
+  void hold(double time);
   /// Pauses, flies n steps and returns once the last is observed. Throws InputError if stopped
-  /// short or while another call steps, FlightError if the flight fails.
+  /// short, while another call steps or if the flight follows a clock, FlightError if it fails.
   void step(std::int64_t n);
   /// Runs `change` between two steps and returns once the result is observed. Rethrows what it
   /// throws.
   void change(const std::function<void(Simulation&)>& change);
-  /// The same; besides, a command that has not been flown yet is forgotten.
+  /// The same; besides, commands that have not been flown yet are forgotten.
   void reset(const std::function<void(Simulation&)>& change);
   FlightReport report() const;
   /// Ends the flight; callers that still wait for a step or a change are told so. To be called by
@@ -77,25 +92,30 @@ class FlightThread {
  private:
   using Lock = std::unique_lock<std::mutex>;
 
+  // In flight_loop.cpp: the flight's own thread.
   void fly();
   bool wait_until_due();
-  template <class Condition>
-  bool wait(Lock& lock, std::chrono::duration<double> patience, const Condition& condition);
+  void wait_for_pace(Lock& lock);
+  void join_clock(Lock& lock);
   void wait_for_commander(Lock& lock);
   void wait_for_command(Lock& lock);
-  void repeat_message(Lock& lock);
-  void run(const std::function<void(Simulation&)>& change, bool forget_command);
   void observe_jump();
   void run_changes(Lock& lock);
   void take_step();
+  std::string try_step();
+  void fail(const std::string& why);
+  template <class Action>
+  void unlocked(Lock& lock, const Action& action);
+  template <class Condition>
+  bool wait(Lock& lock, std::chrono::duration<double> patience, const Condition& condition);
+
+  void run(const std::function<void(Simulation&)>& change, bool forget_commands);
   bool may_step() const { return failure_.empty() && (!paused_ || steps_allowed_ > 0); }
   bool disturbed() const { return ending_ || !changes_.empty() || !may_step(); }
-  bool waits_to_begin() const { return settings_.lockstep && !commanded_ && may_step(); }
 
   Simulation& simulation_;
   const FlightSettings settings_;
   FlightListener& listener_;
-  const std::size_t command_width_;
   const int odometry_topic_;
 
   mutable std::mutex mutex_;  // guards what follows
@@ -104,16 +124,17 @@ class FlightThread {
   bool paused_;
   std::int64_t steps_allowed_ = 0;  ///< by step(), while paused
   std::deque<std::packaged_task<void()>> changes_;
-  std::vector<double> command_;
-  bool commanded_ = false;      ///< a command has come since the start or the last jump
-  bool command_waits_ = false;  ///< command_ has not been flown yet
-  Answers answers_;
-  bool jump_observed_ = false;  ///< the present start or jump has been observed
+  CommandQueue commands_;
+  bool jump_observed_ = false;   ///< the present start or jump has been observed
+  std::optional<double> clock_;  ///< of somebody else [s]
+  bool joined_ = false;          ///< the simulation goes by clock_
+  double hold_ = std::numeric_limits<double>::infinity();
+  double real_time_factor_;
+  Pacer pacer_;
   FlightReport report_;
   std::string failure_;
 
   std::mutex stepping_;  ///< one step() at a time
-  Pacer pacer_;          ///< the flight thread's own
   std::thread thread_;
 };
 

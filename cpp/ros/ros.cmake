@@ -4,7 +4,7 @@
 # What needs others stands after them, for a package that lacks one of its own ends everything.
 set(ros_packages
   message_generation roscpp std_msgs std_srvs geometry_msgs sensor_msgs nav_msgs rosgraph_msgs
-  diagnostic_msgs tf2_ros)
+  diagnostic_msgs tf2_msgs)
 
 # The first python3 on PATH may be one that ROS' packages were not made for, and catkin ends the
 # configuration over it even when asked quietly. Some packages load catkin, so this comes first.
@@ -62,7 +62,7 @@ catkin_package(
   INCLUDE_DIRS cpp/core/include
   LIBRARIES quadcore
   CATKIN_DEPENDS diagnostic_msgs geometry_msgs message_runtime nav_msgs roscpp rosgraph_msgs
-                 sensor_msgs std_msgs std_srvs tf2_ros
+                 sensor_msgs std_msgs std_srvs tf2_msgs
   CFG_EXTRAS ${CMAKE_CURRENT_LIST_DIR}/quadcore-target.cmake)
 export(EXPORT quadcore NAMESPACE quadcore::
        FILE ${CATKIN_DEVEL_PREFIX}/lib/cmake/quadcore/quadcore.cmake)
@@ -86,8 +86,12 @@ function(add_ros_node name)
 endfunction()
 
 add_ros_node(quadcore_node
-  cpp/ros/broadcast.cpp cpp/ros/csv_log.cpp cpp/ros/diagnostics.cpp cpp/ros/flight_thread.cpp
-  cpp/ros/master_watch.cpp cpp/ros/quadcore_node.cpp cpp/ros/services.cpp cpp/ros/settings.cpp)
+  cpp/ros/broadcast.cpp cpp/ros/clock.cpp cpp/ros/command_queue.cpp cpp/ros/command_subscriber.cpp
+  cpp/ros/csv_log.cpp cpp/ros/diagnostics.cpp cpp/ros/drag_choice.cpp cpp/ros/flight_loop.cpp
+  cpp/ros/flight_thread.cpp cpp/ros/listener.cpp cpp/ros/master_api.cpp cpp/ros/master_check.cpp
+  cpp/ros/master_watch.cpp cpp/ros/odometry_topic.cpp cpp/ros/parameter_watch.cpp cpp/ros/path.cpp
+  cpp/ros/private_parameters.cpp cpp/ros/quadcore_node.cpp cpp/ros/services.cpp
+  cpp/ros/settings.cpp)
 target_link_libraries(quadcore_node PRIVATE quadcore)
 add_ros_node(hover_node cpp/ros/hover_node.cpp)
 if(QUADCORE_BUILD_BENCHMARKS)
@@ -95,13 +99,16 @@ if(QUADCORE_BUILD_BENCHMARKS)
 endif()
 
 # Not catkin_install_python: it would fix the interpreter, and these want the one that has quadcore.
-install(PROGRAMS scripts/ros/expand_model.py scripts/ros/fly_from_python.py
+install(PROGRAMS scripts/ros/bag_player.py scripts/ros/expand_model.py
+                 scripts/ros/fly_from_python.py scripts/ros/with_frames.sh
         DESTINATION lib/quadcore)
+install(FILES scripts/ros/recorded_commands.py DESTINATION lib/quadcore)
 
 if(CATKIN_ENABLE_TESTING)
   find_package(rostest QUIET)
   if(rostest_FOUND)
-    foreach(test topics services lockstep faults launch fly_from_python)
+    foreach(test topics services lockstep playing clock several parameters faults launch
+                 fly_from_python)
       add_rostest(tests/ros/${test}.test)
     endforeach()
   endif()

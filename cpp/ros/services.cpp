@@ -4,10 +4,16 @@
 #include <quadcore/Step.h>
 #include <std_srvs/Empty.h>
 
+#include <cmath>
+#include <cstdio>
+
 #include "quadcore/error.hpp"
 
 namespace quadcore::node {
 namespace {
+
+/// By so much a quaternion may miss unit length: typed with four digits, or in single precision.
+constexpr double unit_tolerance = 1e-3;
 
 void reset_simulation(Simulation& simulation) { simulation.reset(); }
 
@@ -28,6 +34,12 @@ void set_state(const SetState::Request& request, Simulation& simulation) {
   const auto& w = request.twist.angular;
   state.position = {p.x, p.y, p.z};
   state.orientation = Quaterniond(q.w, q.x, q.y, q.z);
+  const double length = state.orientation.norm();
+  if (std::abs(length - 1) > unit_tolerance) {
+    char text[100];
+    std::snprintf(text, sizeof text, "state: the orientation is a quaternion of length %g", length);
+    throw InputError(std::string(text) + "; give one of length 1");
+  }
   state.linear_velocity = {v.x, v.y, v.z};
   state.angular_velocity = {w.x, w.y, w.z};
   if (!request.rotor_velocity.empty()) {
@@ -50,7 +62,8 @@ void answer(Response& response, const Action& action) {
 
 }  // namespace
 
-Services::Services(ros::NodeHandle nh, FlightThread& flight) : spinner_(2, &queue_) {
+Services::Services(ros::NodeHandle nh, FlightThread& flight, bool own_clock)
+    : spinner_(2, &queue_) {
   nh.setCallbackQueue(&queue_);
   using Empty = std_srvs::Empty;
   // std_srvs/Empty cannot say what went wrong: a call that returns false fails.
@@ -68,7 +81,8 @@ Services::Services(ros::NodeHandle nh, FlightThread& flight) : spinner_(2, &queu
   };
   offer("gazebo/pause_physics", [&flight] { flight.set_paused(true); });
   offer("gazebo/unpause_physics", [&flight] { flight.set_paused(false); });
-  offer("gazebo/reset_simulation", [&flight] { flight.reset(reset_simulation); });
+  offer("gazebo/reset_simulation",
+        [&flight, own_clock] { flight.reset(own_clock ? reset_simulation : reset_world); });
   offer("gazebo/reset_world", [&flight] { flight.reset(reset_world); });
 
   servers_.push_back(nh.advertiseService<Step::Request, Step::Response>(

@@ -14,7 +14,8 @@ namespace quadcore::node {
 /// in threads of their own, so that one that takes long holds up neither commands nor the others.
 class Services {
  public:
-  Services(ros::NodeHandle nh, FlightThread& flight);
+  /// \param own_clock  whether a reset of the simulation sets the clock back; else time goes on
+  Services(ros::NodeHandle nh, FlightThread& flight, bool own_clock);
 
   /// Resolved names.
   std::vector<std::string> names() const;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "clock.hpp"
 #include "flight_thread.hpp"
 #include "quadcore/document.hpp"
 #include "quadcore/simulation.hpp"
@@ -14,10 +15,13 @@ namespace quadcore::node {
 /// What the node's private parameters say.
 struct Settings {
   Document model;
-  std::string world;  ///< path; "" = empty.world
-  std::string name;   ///< of the model, for its topic; "" = as the URDF says
-  std::string log;    ///< path of a CSV log; "" = none
+  std::string description;  ///< the parameter that holds the model; "" = it is a file
+  std::string world;        ///< path; "" = Gazebo's empty world, which has a ground
+  std::string name;         ///< of the model, for its topic; "" = as the URDF says
+  std::string log;          ///< path of a CSV log; "" = none
+  std::string drag;         ///< the one effect that drags, or "all", "none"
   bool verbose = false;
+  ClockRole clock = ClockRole::automatic;
   std::optional<double> real_time_factor;  ///< absent = what the world asks for
   SimulationOptions simulation;
   FlightSettings flight;

@@ -214,3 +214,23 @@ def test_a_plugin_that_throws_before_the_first_step_is_named(bad, faulty, hook):
     message = str(failed.value)
     assert f"plugin 'bad' ({faulty}/libfaulty_plugin.so): out of luck" in message
     assert "\n" not in message
+
+
+def test_two_plugins_that_write_one_topic_are_refused_by_name(toy):
+    with_plugin('<plugin name="first" filename="libodometry_plugin.so"/>')
+    message = refusal(qc.Simulation, "toy.urdf")
+    assert "plugin 'odometry' writes topic 'odom', which toy.urdf" in message
+    assert message.endswith(f":{LINE}: plugin 'first' writes already; keep one of the two")
+
+
+def test_a_plugin_that_commands_and_a_caller_who_commands_are_told_of_each_other(bad):
+    simulation = bad("command")
+    simulation.step()
+    assert refusal(simulation.command, [300]) == (
+        f"the caller writes topic 'vel_cmd', which {AT} writes already; keep one of the two"
+    )
+    simulation.step()  # nothing was changed
+    simulation.reset()
+    simulation.command([300])
+    with pytest.raises(qc.QuadcoreError, match="plugin 'bad' writes topic 'vel_cmd', which the"):
+        simulation.step()

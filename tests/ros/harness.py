@@ -23,6 +23,8 @@ from std_srvs.srv import Empty
 
 from quadcore.description import load_description
 
+# s; a ceiling for whatever is waited for, on machines that are busy with other things
+LONG = 60.0
 HOVER = [475.0, -475.0, 475.0, -475.0]  # rad/s, a little more than the weight
 
 
@@ -64,7 +66,7 @@ class Process:
         start = time.monotonic()
         self.process.send_signal(number)
         try:
-            _, self.error = self.process.communicate(timeout=10)
+            _, self.error = self.process.communicate(timeout=LONG)
         except subprocess.TimeoutExpired:
             self.process.kill()
             raise
@@ -72,18 +74,25 @@ class Process:
 
     def result(self) -> tuple[int, str]:
         """Exit status and standard error of a process that ends by itself."""
-        _, error = self.process.communicate(timeout=10)
+        _, error = self.process.communicate(timeout=LONG)
         return self.process.returncode, error
 
 
 @contextmanager
-def flight(*arguments: str, urdf: str | None = None, namespace: str = ""):
+def flight(
+    *arguments: str,
+    urdf: str | None = None,
+    namespace: str = "",
+    parameters: dict | None = None,
+):
     """A quadcore_node that is ready; `arguments` such as "_paused:=true"."""
     rospy.set_param(f"{namespace}/robot_description", urdf or description())
     if rospy.has_param(f"{namespace}/quadcore"):
         rospy.delete_param(f"{namespace}/quadcore")
+    for name, value in (parameters or {}).items():
+        rospy.set_param(f"{namespace}/quadcore/{name}", value)
     with Process("quadcore_node", f"__ns:={namespace}", "_z:=10", *arguments) as node:
-        rospy.wait_for_service(f"{namespace}/quadcore/set_state", 10)
+        rospy.wait_for_service(f"{namespace}/quadcore/set_state", LONG)
         yield node
 
 
@@ -109,7 +118,7 @@ class Recording:
             self.messages.append(message)
             self._came.notify_all()
 
-    def wait(self, until: Callable[[list], bool], seconds: float = 10) -> list:
+    def wait(self, until: Callable[[list], bool], seconds: float = LONG) -> list:
         """Messages once `until` holds of them."""
         with self._came:
             if not self._came.wait_for(lambda: until(self.messages), seconds):
@@ -121,25 +130,43 @@ class Recording:
         return self.wait(lambda messages: len(messages) >= count)
 
     def wait_for_publisher(self) -> Recording:
-        """Return once a publisher is connected."""
+        """Return once a node sends here.
+
+        What it keeps for newcomers has come then, and is forgotten: nothing that follows is lost.
+        """
+        self.wait_for_count(1)
+        self.messages.clear()
+        return self
+
+    def wait_for_connection(self) -> Recording:
+        """Return once a publisher is known on this side."""
         wait_until(lambda: self._subscriber.get_num_connections() > 0)
         return self
 
 
 @contextmanager
-def commander(topic: str = "/quadrotor/vel_cmd"):
-    """Give a function that sends commands, once the node listens."""
+def commander(topic: str = "/quadrotor/vel_cmd", listeners: int = 1):
+    """Give a function that sends commands, once so many listen."""
     publisher = rospy.Publisher(topic, Float64MultiArray, queue_size=1000, tcp_nodelay=True)
     try:
-        wait_until(lambda: publisher.get_num_connections() > 0)
+        wait_until(lambda: publisher.get_num_connections() >= listeners)
         yield lambda speeds: publisher.publish(data=speeds)
     finally:
         publisher.unregister()
 
 
-def step(n: int) -> None:
+def settled(recording: Recording):
+    """Newest message, once none has come for a while."""
+    count = -1
+    while count != len(recording.messages):
+        count = len(recording.messages)
+        time.sleep(0.3)
+    return recording.messages[-1]
+
+
+def step(n: int, namespace: str = "") -> None:
     """Fly n steps of a paused flight."""
-    response = rospy.ServiceProxy("/quadcore/step", Step)(n)
+    response = rospy.ServiceProxy(f"{namespace}/quadcore/step", Step)(n)
     if not response.success:
         raise AssertionError(response.message)
 
@@ -157,11 +184,11 @@ def diagnostic(key: str, until: Callable[[float], bool] = lambda _: True) -> flo
         return next((float(pair.value) for pair in pairs if pair.key == key), float("nan"))
 
     with Recording("/diagnostics", DiagnosticArray) as recording:
-        known = recording.wait(lambda m: value(m) == value(m) and until(value(m)), 5)
+        known = recording.wait(lambda m: value(m) == value(m) and until(value(m)))
         return value(known)
 
 
-def wait_until(condition: Callable[[], bool], seconds: float = 10) -> None:
+def wait_until(condition: Callable[[], bool], seconds: float = LONG) -> None:
     """Return once `condition` holds."""
     limit = time.monotonic() + seconds
     while not condition():

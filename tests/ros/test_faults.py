@@ -60,7 +60,12 @@ class TestFaults(unittest.TestCase):
         """Output of a ROS command under another master."""
         environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}"}
         return subprocess.run(
-            command, env=environment, stdout=subprocess.PIPE, timeout=20, text=True, check=True
+            command,
+            env=environment,
+            stdout=subprocess.PIPE,
+            timeout=harness.LONG,
+            text=True,
+            check=True,
         ).stdout
 
     def is_at(self, altitude, port):
@@ -73,9 +78,7 @@ class TestFaults(unittest.TestCase):
 
     def test_no_master(self):
         uri = f"http://localhost:{free_port()}"
-        start = time.monotonic()
         status, error = outcome(ROS_MASTER_URI=uri)
-        self.assertLess(time.monotonic() - start, 2)
         self.assertEqual(status, 2)
         self.assertIn(f"error: no ROS master at {uri}; start roscore", error)
 
@@ -107,7 +110,7 @@ class TestFaults(unittest.TestCase):
                     stack.enter_context(node)
                     hover = Process("hover_node", "_altitude:=2", ROS_MASTER_URI=uri)
                     stack.enter_context(hover)
-                    harness.wait_until(lambda: self.is_at(2, port), 30)
+                    harness.wait_until(lambda: self.is_at(2, port))
                 time.sleep(1.5)
                 self.assertIsNone(node.process.poll())
                 with master(port):
@@ -121,16 +124,41 @@ class TestFaults(unittest.TestCase):
                     self.shell(port, "rosservice", "call", "/gazebo/pause_physics")
                     self.assertLess(node.end(), 1)
 
+    def test_a_new_master_is_given_the_parameters_of_the_old_one(self):
+        port = free_port()
+        uri = f"http://localhost:{port}"
+        text = description()
+        with contextlib.ExitStack() as stack:
+            with master(port):
+                rosgraph.Master("/test", uri).setParam("/robot_description", text)
+                node = Process("quadcore_node", "_paused:=true", ROS_MASTER_URI=uri)
+                stack.enter_context(node)
+                harness.wait_until(lambda: "/odom" in self.shell(port, "rostopic", "list"))
+            with master(port):
+                again = rosgraph.Master("/test", uri)
+                harness.wait_until(lambda: again.hasParam("/use_sim_time"))
+                self.assertIs(again.getParam("/use_sim_time"), True)
+                self.assertEqual(again.getParam("/robot_description"), text)
+
     def test_wrong_commands_are_refused_and_the_last_good_one_kept(self):
-        wrong = [[400.0] * 3, [], [400.0] * 5, [NAN, 1, 1, 1], [1, 1, 1, -INFINITY]]
+        wrong = [[400.0] * 3, [], [400.0] * 5, [NAN, 1, 1, 1], [1, 1, 1, -INFINITY], [1e300] * 4]
         topic = Recording("/joint_states", JointState)
         with flight(), commander() as send, topic as joints:
             send(HOVER)
             for speeds in wrong:
                 send(speeds)
-            self.assertEqual(diagnostic("rejected commands", lambda count: count > 0), 5)
+            diagnostic("rejected commands", lambda count: count == 6)
             self.assertEqual(diagnostic("commands"), 1)
             joints.wait(lambda m: np.allclose(m[-1].velocity, HOVER, rtol=0.01))
+
+    def test_each_kind_of_wrong_command_is_told(self):
+        with flight() as node, commander() as send:
+            for speeds in ([1.0], [NAN] * 4, [1e300] * 4):
+                send(speeds)
+            diagnostic("rejected commands", lambda count: count == 3)
+            node.end()
+        for kind in ("a command of 1 numbers", "not finite", "beyond 1e+06 rad/s"):
+            self.assertEqual(node.error.count(kind), 1, kind)
 
     def test_bad_commands_are_reported_once_a_second(self):
         with flight() as node, commander() as send:
@@ -158,6 +186,24 @@ class TestFaults(unittest.TestCase):
         cut = "/dev/full: the log is cut short: No space left on device"
         self.assertEqual(node.error.splitlines()[-1], f"error: {cut}")
         self.assertEqual(node.error.count(cut), 2)  # at once and at the end
+
+    def test_a_log_that_cannot_be_closed_in_time_is_no_success(self):
+        with tempfile.TemporaryDirectory() as folder:
+            stuck = os.path.join(folder, "log.csv")
+            os.mkfifo(stuck)
+            reader = os.open(stuck, os.O_RDONLY | os.O_NONBLOCK)  # and never reads
+            with flight(f"_log:={stuck}", "_real_time_factor:=0") as node:
+                steps = [-1]
+
+                def stands(count):
+                    steps.append(count)
+                    return steps[-1] == steps[-2]
+
+                diagnostic("steps", stands)
+                node.end()
+            os.close(reader)
+        self.assertEqual(node.process.returncode, 2)
+        self.assertIn("the flight could not be ended in time; its log may be cut", node.error)
 
     def test_lockstep_without_a_controller_says_what_it_waits_for(self):
         with flight("_lockstep:=true") as node, Recording("/diagnostics", DiagnosticArray) as says:
@@ -256,6 +302,7 @@ class TestFaults(unittest.TestCase):
             ("_engine:=gazebo12", "engine 'gazebo12' is not there (did you mean 'gazebo11'?)"),
             ("_world:=/none.world", "/none.world: cannot be read"),
             ("_log:=/none/log.csv", "/none/log.csv: cannot be written"),
+            ("_clock:=both", "parameter ~clock: give auto, lead or follow"),
             ("_name:=a-b", "model name 'a-b' cannot name a topic"),
         ):
             status, error = outcome(argument)

@@ -9,6 +9,7 @@ import unittest
 from pathlib import Path
 
 import harness
+import numpy as np
 import rospkg
 import rospy
 from harness import Recording
@@ -31,16 +32,41 @@ def settled(altitude):
 class TestLaunch(unittest.TestCase):
     def test_the_first_launch_flies(self):
         with Recording("/odom", Odometry) as odometry:
-            odometry.wait(settled(1), 20)
+            odometry.wait(settled(1))
         self.assertTrue(rospy.get_param("/use_sim_time"))
         self.assertIn("<robot", rospy.get_param("/robot_description"))
 
     def test_a_namespace_with_other_arguments_flies(self):
         with Recording("/uav1/odom", Odometry) as odometry:
-            odometry.wait(settled(1), 20)
+            odometry.wait(settled(1))
         with Recording("/uav1/joint_states", JointState) as joints:
             self.assertAlmostEqual(joints.wait_for_count(1)[0].velocity[0], 471, delta=1)
         self.assertEqual(rospy.get_param("/uav1/quadcore/engine"), "ode")
+
+    def test_the_model_can_be_changed_by_arguments(self):
+        changes = ("name:=blue", "set:=odometry.rate=50 odometry.twistFrame=body", "drag:=none")
+        start = ("roll:=0.5", "pitch:=-0.5", "z:=50", "dt:=0.002", "engine:=eigen")
+        launch = subprocess.Popen(
+            ["roslaunch", "quadcore", "quadrotor.launch", "gui:=false", *changes, *start],
+            env={**os.environ, "ROS_NAMESPACE": "changed"},
+            stdout=subprocess.DEVNULL,
+        )
+        try:
+            topic = Recording("/changed/odom", Odometry)
+            with harness.commander("/changed/blue/vel_cmd"), topic as odometry:
+                messages = odometry.wait_for_count(20)
+        finally:
+            launch.send_signal(signal.SIGINT)
+            launch.wait(harness.LONG)
+        times = [m.header.stamp.to_nsec() for m in messages[1:]]
+        self.assertEqual({b - a for a, b in zip(times, times[1:])}, {20000000})
+        # Without drag a fall is a fall, seen along the axes of a vehicle that leans.
+        v, t = messages[-1].twist.twist.linear, times[-1] * 1e-9
+        self.assertGreater(abs(v.y), 0.1 * abs(v.z))
+        falls = np.linalg.norm([v.x, v.y, v.z]) - np.linalg.norm(
+            [getattr(messages[1].twist.twist.linear, axis) for axis in "xyz"]
+        )
+        self.assertAlmostEqual(falls, 9.8 * (t - times[0] * 1e-9), delta=1e-6)
 
     def test_relative_paths_begin_where_roslaunch_was_called(self):
         worlds = Path(rospkg.RosPack().get_path("quadcore")) / "worlds"
@@ -59,7 +85,7 @@ class TestLaunch(unittest.TestCase):
                     odometry.wait(lambda m: m and m[-1].header.stamp.to_sec() > 0.1)
             finally:
                 launch.send_signal(signal.SIGINT)
-                launch.wait(20)
+                launch.wait(harness.LONG)
             self.assertGreater(len((Path(folder) / "my.csv").read_text().splitlines()), 100)
 
 

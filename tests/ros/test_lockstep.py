@@ -12,6 +12,8 @@ import numpy as np
 import rospy
 from harness import HOVER, Recording, call, commander, diagnostic, flight, step
 from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Clock
+from tf2_msgs.msg import TFMessage
 
 import quadcore as qc
 
@@ -57,7 +59,7 @@ def fly_with(act, steps, *arguments):
             act(message, send)
 
         with Recording("/odom", Odometry, act=answer) as odometry:
-            odometry.wait_for_publisher()
+            odometry.wait_for_connection()
             step(steps)
             return odometry.wait_for_count(steps + 1)
 
@@ -154,7 +156,7 @@ class TestLockstep(unittest.TestCase):
         urdf = harness.description(rate="100")
         with flight(*LOCKSTEP, urdf=urdf), commander() as send:
             with Recording("/odom", Odometry, act=lambda _: send(HOVER)) as odometry:
-                odometry.wait_for_publisher()
+                odometry.wait_for_connection()
                 step(200)
                 odometry.wait_for_count(21)
             self.assertEqual(diagnostic("commands", lambda count: count >= 20), 21)
@@ -165,6 +167,46 @@ class TestLockstep(unittest.TestCase):
             with Recording("/odom", Odometry, act=answer_until(3, send)) as odometry:
                 odometry.wait(lambda m: m and m[-1].header.stamp.to_nsec() == 5000000)
             diagnostic("late commands", lambda count: count >= 2)
+
+    def test_surplus_commands_wait_in_order_for_their_messages(self):
+        table = random_commands(1000)
+        sent = []
+
+        def in_pairs(message, send):
+            for _ in range(2):
+                if len(sent) < len(table):
+                    sent.append(message)
+                    send(table[len(sent) - 1, 1:])
+
+        self.assert_flown(fly_with(in_pairs, 1000), table)
+
+    def test_a_sender_at_a_rate_of_its_own_loses_no_command(self):
+        table = random_commands(3000)
+        with flight(*LOCKSTEP, "_paused:=false"), commander() as send:
+            for command in table[:, 1:]:
+                send(command)
+            with Recording("/odom", Odometry) as odometry:
+                final = odometry.wait(lambda m: m and tick(m[-1]) == len(table))[-1]
+        simulation = qc.Simulation("quadrotor", xacro_args={"sim_slow": 1})
+        core = simulation.run(len(table) * 0.001, table)
+        self.assertEqual(row(final), list(core.table[-1, 1:14]))
+
+    def test_too_many_surplus_commands_are_refused_and_counted(self):
+        with flight(*LOCKSTEP) as node, commander() as send:
+            for _ in range(10003):  # a paused flight takes none of them
+                send(HOVER)
+                rospy.sleep(1e-5)
+            diagnostic("waiting commands", lambda count: count == 10000)
+            diagnostic("rejected commands", lambda count: count == 3)
+            node.end()
+        self.assertIn("10000 commands wait for their odometry already", node.error)
+
+    def test_before_anyone_can_answer_the_start_is_seen(self):
+        topics = Recording("/clock", Clock), Recording("/tf", TFMessage)
+        with flight(*LOCKSTEP), topics[0] as clock, topics[1] as tf:
+            self.assertEqual(clock.wait_for_count(1)[0].clock.to_nsec(), 0)
+            pose = tf.wait_for_count(1)[0].transforms[0].transform
+        self.assertEqual(pose.translation.z, 10)
 
     def test_without_a_controller_the_plant_waits(self):
         with flight(*LOCKSTEP, "_paused:=false"), Recording("/odom", Odometry) as odometry:

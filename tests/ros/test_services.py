@@ -63,7 +63,7 @@ class TestServices(unittest.TestCase):
         with flight():
             step(1)
             with Recording("/clock", Clock) as clock:
-                self.assertEqual(clock.messages, [])
+                clock.wait_for_publisher()
                 rospy.sleep(0.2)
                 self.assertEqual(clock.messages, [])
             with Recording("/clock", Clock, act=lambda _: call("/gazebo/pause_physics")):
@@ -138,7 +138,8 @@ class TestServices(unittest.TestCase):
             odometry.wait_for_publisher()
             for wrong, why in (
                 ({"rotors": [1.0]}, "4 rotors"),
-                ({"pose": Pose(Point(), Quaternion())}, "no quaternion"),
+                ({"pose": Pose(Point(), Quaternion())}, "a quaternion of length 0; give one of"),
+                ({"pose": Pose(Point(), Quaternion(0, 0, 0, 2))}, "a quaternion of length 2;"),
                 ({"pose": Pose(Point(0, 0, float("nan")), POSE.orientation)}, "not a finite"),
             ):
                 response = set_state(**wrong)
@@ -155,6 +156,7 @@ class TestServices(unittest.TestCase):
             self.assertIn("the flight failed at t = ", response.message)
             call("/gazebo/reset_simulation")
             with Recording("/clock", Clock) as clock:  # what was not flown stays so
+                clock.wait_for_publisher()
                 rospy.sleep(0.2)
                 self.assertEqual(clock.messages, [])
             step(10)
@@ -181,7 +183,7 @@ class TestServices(unittest.TestCase):
             self.assertIn("another step is under way", messages[0])
             call("/gazebo/pause_physics")
             for each in calls:
-                each.join(5)
+                each.join(harness.LONG)
             self.assertIn("stopped with 10 steps to go", messages[1])
 
     def test_a_command_that_is_not_flown_yet_outlives_a_set_state_but_no_reset(self):

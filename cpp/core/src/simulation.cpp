@@ -13,7 +13,6 @@ namespace {
 constexpr const char* command_topic_name = "vel_cmd";
 /// Beyond these no flight is meant; the numbers only say "diverged" before they overflow.
 constexpr double max_speed = 1e6;     // m/s
-constexpr double max_rate = 1e6;      // rad/s
 constexpr double max_distance = 1e9;  // m
 constexpr const char* no_longer_finite = "the state is no longer finite";
 
@@ -76,8 +75,8 @@ void Simulation::command(const double* speeds, std::size_t count) {
     }
   }
   const auto topic = static_cast<std::size_t>(command_topic_);
-  std::copy(speeds, speeds + count, topics_.values(topic).begin());
   topics_.publish(topic, time());
+  std::copy(speeds, speeds + count, topics_.values(topic).begin());
 }
 
 void Simulation::evaluate(const Kinematics& kinematics, Loads& loads) const {
@@ -120,21 +119,21 @@ const std::vector<Wrench>& Simulation::wrenches() {
 void Simulation::sense(bool jumped) {
   const Sample sample{time(), dt_, engine_->kinematics(), topics_, said_, jumped};
   for (const LoadedPlugin& p : plugins_) {
-    active_ = &p;
+    enter(p);
     p.plugin->sense(sample, state_of(p));
     if (!said_.empty()) collect_warnings();
   }
-  active_ = nullptr;
+  leave();
 }
 
 void Simulation::update() {
   const Sample sample{time(), dt_, engine_->kinematics(), topics_, said_};
   for (const LoadedPlugin& p : plugins_) {
-    active_ = &p;
+    enter(p);
     p.plugin->update(sample, state_of(p));
     if (!said_.empty()) collect_warnings();
   }
-  active_ = nullptr;
+  leave();
 }
 
 void Simulation::collect_warnings() {
@@ -169,7 +168,7 @@ void Simulation::fail(const std::string& what) {
   failure_ = "the flight failed at t = " + std::to_string(time()) + " s: ";
   if (active_) failure_ += "plugin '" + active_->name + "' (" + active_->path + "): ";
   failure_ += what;
-  active_ = nullptr;
+  leave();
   show_state();
   throw FlightError(time(), failure_);
 }
@@ -217,6 +216,9 @@ void Simulation::set_state(const VehicleState& state) {
   show_state();
   try {
     sense(true);
+  } catch (const InputError&) {  // two writers of one topic
+    leave();
+    throw;
   } catch (...) {
     fail(what_was_thrown());
   }

@@ -26,4 +26,16 @@ int Topics::find(const std::string& name) const {
   return -1;
 }
 
+std::string Topics::name_of(int writer) const {
+  return writer < 0 ? "the caller" : writers_[static_cast<std::size_t>(writer)];
+}
+
+void Topics::claim(Topic& topic) const {
+  if (topic.writer != nobody) {
+    throw InputError(name_of(writer_) + " writes topic '" + topic.name + "', which " +
+                     name_of(topic.writer) + " writes already; keep one of the two");
+  }
+  topic.writer = writer_;
+}
+
 }  // namespace quadcore

@@ -15,12 +15,14 @@ class FaultyPlugin final : public quadcore::Plugin {
       : fault_(setup.parameters.choice("fault")), after_(setup.parameters.number("after")) {
     throw_in("create", 0);
     if (fault_ == "tag") setup.parameters.number("speed");
+    if (fault_ == "command") topic_ = setup.topics.declare("vel_cmd", {"w1"});
   }
 
   std::size_t state_size() const override { return fault_ == "state" ? std::size_t(1) << 60 : 1; }
   void update(const quadcore::Sample& sample, quadcore::PluginState state) const override {
     state[0] = sample.time;
     throw_in("update", sample.time);
+    if (fault_ == "command") sample.topics.publish(topic_, sample.time);
   }
   void sense(const quadcore::Sample& sample, quadcore::PluginState) const override {
     throw_in("sense", sample.time);
@@ -47,6 +49,7 @@ class FaultyPlugin final : public quadcore::Plugin {
 
   std::string fault_;
   double after_;  ///< s
+  std::size_t topic_ = 0;
 };
 
 quadcore::PluginDescriptor describe() {
@@ -58,7 +61,7 @@ quadcore::PluginDescriptor describe() {
       {TagSpec::choice("fault",
                        {"none", "create", "create_number", "null", "tag", "update", "update_number",
                         "forces", "forces_number", "sense", "sense_number", "state", "nan",
-                        "infinity", "rotor_force", "rotor_torque", "term_force", "term_torque"},
+                        "infinity", "rotor_force", "rotor_torque", "term_force", "term_torque", "command"},
                        "where"),
        TagSpec::number("after", "s", "0", "not before this time")},
       {"fault"},

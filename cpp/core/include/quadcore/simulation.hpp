@@ -52,10 +52,14 @@ struct SimulationOptions {
 /// One vehicle in one world: plugins and an engine, stepped from outside.
 class Simulation : private ForceField {
  public:
+  /// Anything that turns faster [rad/s] counts as diverged.
+  static constexpr double max_rate = 1e6;
+
   Simulation(Model model, const World& world, const SimulationOptions& options);
 
   /// Publishes rotor speeds [rad/s], signed, on topic `vel_cmd`.
-  /// Throws InputError, nothing changed, on a wrong count or a number that is not finite.
+  /// Throws InputError, nothing changed, on a wrong count, a number that is not finite, or if a
+  /// plugin writes the topic.
   void command(const double* speeds, std::size_t count);
   /// Advances by n steps. Throws FlightError if the flight fails; then only restore, reset and
   /// set_state make the simulation usable again.
@@ -101,6 +105,15 @@ class Simulation : private ForceField {
   void show_state();  ///< brings state_ up to date
   PluginState state_of(const LoadedPlugin& p) {
     return {plugin_state_.data() + p.state_begin, p.state_size};
+  }
+  /// The hook of a plugin runs next: who to blame, and whose messages those are.
+  void enter(const LoadedPlugin& p) {
+    active_ = &p;
+    topics_.write_as(static_cast<int>(&p - plugins_.data()));
+  }
+  void leave() {
+    active_ = nullptr;
+    topics_.write_as(the_caller);
   }
   void update();
   void sense(bool jumped);

@@ -6,14 +6,19 @@
 
 namespace quadcore {
 
+/// Who writes a topic: the index of a plugin among Simulation::plugins(), or one of these.
+constexpr int nobody = -2;
+constexpr int the_caller = -1;  ///< of Simulation::command()
+
 /// A named message inside the simulation: a fixed row of numbers. Values belong to the simulation,
-/// so snapshots hold them; a ROS node carries them to topics of the same name.
+/// so snapshots hold them. The ROS node carries `vel_cmd` and `odom`, no others.
 struct Topic {
   std::string name;
   std::vector<std::string> fields;
   std::vector<double> values;
   double stamp = 0;  ///< time of the last message [s]
   double count = 0;  ///< messages so far; 0 = none yet
+  int writer = nobody;
 };
 
 /// The topics of one simulation.
@@ -28,14 +33,28 @@ class Topics {
   const Topic& operator[](std::size_t index) const { return topics_[index]; }
   /// Where a publisher writes its values; publish() afterwards.
   std::vector<double>& values(std::size_t index) { return topics_[index].values; }
+  /// Throws InputError if the topic has another writer already.
   void publish(std::size_t index, double time) {
-    topics_[index].stamp = time;
-    topics_[index].count += 1;
+    Topic& topic = topics_[index];
+    if (topic.writer != writer_) claim(topic);
+    topic.stamp = time;
+    topic.count += 1;
   }
   std::size_t size() const { return topics_.size(); }
 
+  /// Names the next plugin for errors: "FILE:LINE: plugin 'name'". The simulation's to call.
+  void add_writer(const std::string& who) { writers_.push_back(who); }
+  /// Whose publish() calls follow. The simulation's to call.
+  void write_as(int writer) { writer_ = writer; }
+  /// How errors call a writer.
+  std::string name_of(int writer) const;
+
  private:
+  void claim(Topic& topic) const;
+
   std::vector<Topic> topics_;
+  std::vector<std::string> writers_;
+  int writer_ = the_caller;
 };
 
 }  // namespace quadcore

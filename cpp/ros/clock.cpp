@@ -1,0 +1,124 @@
+#include "clock.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "master_api.hpp"
+#include "quadcore/error.hpp"
+
+namespace quadcore::node {
+namespace {
+
+using XmlRpc::XmlRpcValue;
+using Wall = std::chrono::steady_clock;
+
+/// Followers tell how far they are at least so often.
+constexpr auto longest_silence = std::chrono::seconds(1);
+/// They tell it after each such piece of time [s of simulation].
+constexpr double telling_period = longest_lead / 4;
+
+bool is_alive(const std::string& node) {
+  XmlRpcValue uri, pid;
+  return call_master("lookupNode", {node}, uri) &&
+         call_node(static_cast<std::string>(uri), "getPid", {}, pid);
+}
+
+/// The first living node that publishes a topic; the master lists them in the order in which they
+/// came. "" = none before this one.
+std::string first_publisher(const std::string& topic) {
+  XmlRpcValue state;
+  if (!call_master("getSystemState", {}, state)) return "";
+  XmlRpcValue& topics = state[0];
+  for (int i = 0; i < topics.size(); ++i) {
+    if (static_cast<std::string>(topics[i][0]) != topic) continue;
+    XmlRpcValue& publishers = topics[i][1];
+    for (int j = 0; j < publishers.size(); ++j) {
+      const std::string node = publishers[j];
+      if (node == ros::this_node::getName()) return "";
+      if (is_alive(node)) return node;
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+ros::Publisher take_part_in_clock(ros::NodeHandle& nh, ClockRole role) {
+  if (role == ClockRole::follow) return {};
+  ros::Publisher publisher = nh.advertise<rosgraph_msgs::Clock>("/clock", 1000, true);
+  const std::string leader = first_publisher("/clock");
+  if (leader.empty()) return publisher;
+  if (role == ClockRole::lead) {
+    throw InputError("parameter ~clock: is lead, but " + leader +
+                     " publishes /clock already; there can be one clock only, follow it");
+  }
+  publisher.shutdown();
+  ROS_INFO("following /clock of %s", leader.c_str());
+  return {};
+}
+
+ClockLeader::ClockLeader(ros::NodeHandle& nh, FlightThread& flight)
+    : flight_(flight),
+      subscriber_(nh.subscribe(followers_topic, 1000, &ClockLeader::take, this,
+                               ros::TransportHints().tcpNoDelay())) {}
+
+void ClockLeader::take(const std_msgs::Header& needs) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  followers_[needs.frame_id] = {needs.stamp.toSec(), Wall::now()};
+  hold();
+}
+
+void ClockLeader::look() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto silent_since = Wall::now() - longest_silence;
+  const std::size_t before = followers_.size();
+  for (auto follower = followers_.begin(); follower != followers_.end();) {
+    follower =
+        follower->second.heard < silent_since ? followers_.erase(follower) : std::next(follower);
+  }
+  if (followers_.size() != before) hold();
+}
+
+void ClockLeader::hold() {
+  double slowest = std::numeric_limits<double>::infinity();
+  for (const auto& [name, follower] : followers_) slowest = std::min(slowest, follower.needs);
+  flight_.hold(slowest + longest_lead);
+}
+
+ClockFollower::ClockFollower(ros::NodeHandle& nh, double dt)
+    : dt_(dt), publisher_(nh.advertise<std_msgs::Header>(followers_topic, 1000)) {}
+
+void ClockFollower::follow(ros::NodeHandle& nh, FlightThread& flight) {
+  subscriber_ = nh.subscribe<rosgraph_msgs::Clock>(
+      "/clock", 1000,
+      [&flight](const rosgraph_msgs::Clock::ConstPtr& clock) {
+        flight.clock(clock->clock.toSec());
+      },
+      {}, ros::TransportHints().tcpNoDelay());
+}
+
+void ClockFollower::reached(double time) {
+  if (std::abs(time - told_) < telling_period) return;
+  told_ = time;
+  tell(time);
+}
+
+void ClockFollower::tell(const FlightReport& report) {
+  if (report.waits_for_clock) return;
+  if (report.paused || !report.failure.empty()) {
+    tell(std::numeric_limits<double>::infinity());
+  } else {
+    tell(report.time);
+  }
+}
+
+void ClockFollower::tell(double time) {
+  std_msgs::Header header;
+  header.frame_id = ros::this_node::getName();
+  header.stamp = std::isfinite(time) ? ros::Time(time + dt_) : ros::TIME_MAX;
+  publisher_.publish(header);
+}
+
+}  // namespace quadcore::node

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <ros/ros.h>
+#include <rosgraph_msgs/Clock.h>
+#include <std_msgs/Header.h>
+
+#include <chrono>
+#include <map>
+#include <mutex>
+#include <string>
+
+#include "flight_thread.hpp"
+
+namespace quadcore::node {
+
+/// Whose clock a node goes by.
+enum class ClockRole {
+  automatic,  ///< leads, unless somebody leads already
+  lead,
+  follow
+};
+
+/// Takes this node's part in the one clock that all have: whoever leads publishes /clock, the
+/// others make their steps by it. If several start at once, the one that the master knew first
+/// leads.
+/// \return the publisher of /clock; empty if this node follows.
+/// Throws InputError if another node leads though this one is to.
+ros::Publisher take_part_in_clock(ros::NodeHandle& nh, ClockRole role);
+
+/// Followers tell the leader up to where they need the clock for their next step, so that it does
+/// not run away from them.
+constexpr const char* followers_topic = "/clock_followers";
+/// The leader is ahead of that by at most this [s of simulation].
+constexpr double longest_lead = 0.02;
+
+/// The leader's side: holds the flight back for those who follow.
+class ClockLeader {
+ public:
+  ClockLeader(ros::NodeHandle& nh, FlightThread& flight);
+  /// Forgets followers that have gone. To be called now and then.
+  void look();
+
+ private:
+  struct Follower {
+    double needs = 0;  ///< the clock to come to this [s]
+    std::chrono::steady_clock::time_point heard;
+  };
+  void take(const std_msgs::Header& needs);
+  void hold();
+
+  FlightThread& flight_;
+  std::mutex mutex_;
+  std::map<std::string, Follower> followers_;
+  ros::Subscriber subscriber_;
+};
+
+/// The follower's side: hands the clock to the flight, and tells the leader how far that has come.
+class ClockFollower {
+ public:
+  /// \param dt  length of the flight's steps [s]
+  ClockFollower(ros::NodeHandle& nh, double dt);
+  void follow(ros::NodeHandle& nh, FlightThread& flight);
+  /// A step has ended. From the flight's thread.
+  void reached(double time);
+  /// To be called now and then, or the leader takes this node for gone.
+  void tell(const FlightReport& report);
+
+ private:
+  void tell(double time);
+
+  const double dt_;
+  double told_ = -1;
+  ros::Publisher publisher_;
+  ros::Subscriber subscriber_;
+};
+
+}  // namespace quadcore::node

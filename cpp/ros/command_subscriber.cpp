@@ -1,0 +1,40 @@
+#include "command_subscriber.hpp"
+
+#include "quadcore/error.hpp"
+
+namespace quadcore::node {
+namespace {
+
+constexpr std::uint32_t queue_of_original = 1000;
+
+}  // namespace
+
+CommandSubscriber::CommandSubscriber(ros::NodeHandle& nh, const std::string& topic, bool lockstep,
+                                     FlightThread& flight)
+    : flight_(flight) {
+  // In lockstep roscpp's queue, which drops in silence, must not be the shorter one.
+  const std::uint32_t queue = lockstep ? CommandQueue::most_waiting : queue_of_original;
+  // No delay, lest a command waits for the next one.
+  subscriber_ = nh.subscribe(topic, queue, &CommandSubscriber::take, this,
+                             ros::TransportHints().tcpNoDelay());
+}
+
+Refusals CommandSubscriber::refusals() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return refusals_;
+}
+
+void CommandSubscriber::take(const std_msgs::Float64MultiArray& message) {
+  try {
+    flight_.command(message.data);
+  } catch (const InputError& error) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      ++refusals_.count;
+      refusals_.last = error.what();
+    }
+    sayer_.warn(subscriber_.getTopic() + ": " + error.what());
+  }
+}
+
+}  // namespace quadcore::node

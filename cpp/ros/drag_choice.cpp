@@ -1,0 +1,48 @@
+#include "drag_choice.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "quadcore/error.hpp"
+#include "quadcore/plugin_library.hpp"
+#include "quadcore/text.hpp"
+
+namespace quadcore::node {
+namespace {
+
+/// The effect whose coefficient a tag holds.
+std::optional<std::string> effect_of(const std::string& tag) {
+  const std::string suffix = "DragCoeff";
+  if (tag.size() <= suffix.size()) return std::nullopt;
+  const std::size_t end = tag.size() - suffix.size();
+  if (tag.compare(end, suffix.size(), suffix) != 0) return std::nullopt;
+  return tag.substr(0, end);
+}
+
+}  // namespace
+
+void choose_drag(const std::string& drag, const Model& model,
+                 std::map<std::string, std::string>& parameters) {
+  if (drag == "all") return;
+  std::vector<std::string> choices = {"none", "all"};
+  for (const PluginElement& element : model.plugins) {
+    for (const TagSpec& tag : open_plugin(element).descriptor->tags) {
+      const std::optional<std::string> effect = effect_of(tag.name);
+      if (!effect) continue;
+      choices.push_back(*effect);
+      if (*effect == drag) continue;
+      const std::string key = element.name + "." + tag.name;
+      if (!parameters.emplace(key, "0").second) {
+        throw InputError("parameter ~drag: " + drag + " sets " + key +
+                         " to 0, and ~set gives it, "
+                         "too; keep one");
+      }
+    }
+  }
+  if (std::find(choices.begin(), choices.end(), drag) != choices.end()) return;
+  throw InputError("parameter ~drag: '" + drag + "' is no effect of this model" +
+                   did_you_mean(drag, choices) + "; give one of " + joined(choices));
+}
+
+}  // namespace quadcore::node

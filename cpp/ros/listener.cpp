@@ -1,0 +1,38 @@
+#include "listener.hpp"
+
+#include <ros/topic_manager.h>
+
+namespace quadcore::node {
+
+Listener::Listener(Broadcast& broadcast, const Simulation& simulation,
+                   const std::string& command_topic, const std::string& log,
+                   ClockFollower* follower)
+    : broadcast_(broadcast),
+      command_topic_(command_topic),
+      follower_(follower),
+      warnings_told_(simulation.warnings().size()) {
+  if (!log.empty()) log_.emplace(log, simulation);
+}
+
+void Listener::observe(const Simulation& simulation, bool jumped) {
+  if (log_) log_->add(simulation.state());
+  if (log_ && !log_->error().empty()) ROS_ERROR_ONCE("%s", log_->error().c_str());
+  broadcast_.send(simulation, jumped);
+  if (follower_) follower_->reached(simulation.time());
+  // A flight may bring warnings of its own.
+  for (; warnings_told_ < simulation.warnings().size(); ++warnings_told_) {
+    ROS_WARN("%s", simulation.warnings()[warnings_told_].c_str());
+  }
+}
+
+bool Listener::has_commander() const {
+  return ros::TopicManager::instance()->getNumPublishers(command_topic_) > 0;
+}
+
+std::string Listener::close_log() {
+  if (!log_) return "";
+  log_->close();
+  return log_->error();
+}
+
+}  // namespace quadcore::node

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "broadcast.hpp"
+#include "clock.hpp"
+#include "csv_log.hpp"
+#include "flight_thread.hpp"
+#include "sayer.hpp"
+
+namespace quadcore::node {
+
+/// What the node does with a flight: sends it, logs it if asked to, and passes on what is wrong.
+class Listener final : public FlightListener {
+ public:
+  /// \param log       path of a CSV log; "" = none
+  /// \param follower  to be told of each step; null = this node leads the clock
+  Listener(Broadcast& broadcast, const Simulation& simulation, const std::string& command_topic,
+           const std::string& log, ClockFollower* follower);
+
+  void observe(const Simulation& simulation, bool jumped) override;
+  void show(const Simulation& simulation) override { broadcast_.show(simulation); }
+  void repeat(const Simulation& simulation) override { broadcast_.send(simulation, true); }
+  void warn(const std::string& what) override { sayer_.warn(what); }
+  bool has_commander() const override;
+  /// Once the flight has ended. Returns what went wrong with the log; "" = nothing.
+  std::string close_log();
+
+ private:
+  Broadcast& broadcast_;
+  const std::string command_topic_;
+  std::optional<CsvLog> log_;
+  ClockFollower* const follower_;
+  std::size_t warnings_told_;  ///< of the simulation
+  Sayer sayer_;
+};
+
+}  // namespace quadcore::node

@@ -1,0 +1,48 @@
+#include "master_api.hpp"
+
+#include <ros/init.h>
+#include <ros/network.h>
+
+namespace quadcore::node {
+namespace {
+
+using XmlRpc::XmlRpcValue;
+
+XmlRpcValue list(const XmlRpcValue& first, std::initializer_list<XmlRpcValue> others) {
+  XmlRpcValue all;
+  all[0] = first;
+  int i = 1;
+  for (const XmlRpcValue& other : others) all[i++] = other;
+  return all;
+}
+
+}  // namespace
+
+bool call_master(const std::string& method, std::initializer_list<XmlRpcValue> arguments,
+                 XmlRpcValue& result) {
+  // `rosnode kill` makes roscpp shut down, and unregister, in a thread of its own.
+  if (ros::isShuttingDown()) return false;
+  XmlRpcValue response;
+  return ros::master::execute(method, list(ros::this_node::getName(), arguments), response, result,
+                              false);
+}
+
+bool call_node(const std::string& uri, const std::string& method,
+               std::initializer_list<XmlRpcValue> arguments, XmlRpcValue& result) {
+  std::string host;
+  std::uint32_t port = 0;
+  if (!ros::network::splitURI(uri, host, port)) return false;
+  XmlRpc::XmlRpcClient* const client =
+      ros::XMLRPCManager::instance()->getXMLRPCClient(host, static_cast<int>(port), "/");
+  XmlRpcValue response;
+  const bool answered =
+      client->execute(method.c_str(), list(ros::this_node::getName(), arguments), response);
+  ros::XMLRPCManager::instance()->releaseXMLRPCClient(client);
+  // A status, a remark, and what was asked for.
+  if (!answered || response.getType() != XmlRpcValue::TypeArray || response.size() < 3)
+    return false;
+  result = response[2];
+  return true;
+}
+
+}  // namespace quadcore::node

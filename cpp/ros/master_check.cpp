@@ -1,0 +1,38 @@
+#include "master_check.hpp"
+
+#include <ros/master.h>
+#include <ros/network.h>
+
+#include <cstdlib>
+#include <future>
+#include <thread>
+
+#include "quadcore/error.hpp"
+
+namespace quadcore::node {
+
+void check_master_uri() {
+  // The default of rospy and the ros tools.
+  setenv("ROS_MASTER_URI", "http://localhost:11311", 0);
+  const std::string uri = std::getenv("ROS_MASTER_URI");
+  std::string host;
+  std::uint32_t port = 0;
+  if (!ros::network::splitURI(uri, host, port)) {
+    throw InputError("ROS_MASTER_URI: '" + uri +
+                     "' is no address; write http://HOST:PORT, such as http://localhost:11311");
+  }
+}
+
+void check_master() {
+  // In a thread, because roscpp waits without end for a master that is there but mute.
+  std::packaged_task<bool()> check(ros::master::check);
+  std::future<bool> answer = check.get_future();
+  std::thread(std::move(check)).detach();
+  const bool in_time = answer.wait_for(std::chrono::seconds(5)) == std::future_status::ready;
+  if (in_time && answer.get()) return;
+  throw InputError((in_time ? "no ROS master at " : "no answer within 5 s from a ROS master at ") +
+                   ros::master::getURI() +
+                   "; start roscore or use roslaunch, or correct ROS_MASTER_URI");
+}
+
+}  // namespace quadcore::node

@@ -1,0 +1,39 @@
+"""Commands that were recorded in a file."""
+
+from pathlib import Path
+
+TYPE = "std_msgs/Float64MultiArray"
+
+
+def read_commands(path, topic=""):
+    """Read a bag's commands in the order in which they were recorded.
+
+    Returns the topic's name and a list of rotor speeds (rad/s) for each command. Without `topic`,
+    the only topic that ends in ``vel_cmd``. Raises `ValueError` with one line if there is none.
+    """
+    import rosbag
+
+    if not Path(path).is_file():
+        raise ValueError(f"{path}: no such file; give a bag that holds the topic vel_cmd")
+    try:
+        bag = rosbag.Bag(path)
+    except rosbag.ROSBagUnindexedException:
+        raise ValueError(f"{path}: was cut short; run: rosbag reindex {path}") from None
+    except rosbag.ROSBagException as error:
+        raise ValueError(f"{path}: is no bag that can be read: {error}") from None
+    with bag:
+        types = {name: info.msg_type for name, info in bag.get_type_and_topic_info().topics.items()}
+        fitting = sorted(name for name, kind in types.items() if kind == TYPE)
+        if not topic:
+            candidates = [name for name in fitting if name.endswith("vel_cmd")]
+            if len(candidates) != 1:
+                found = ", ".join(candidates) or "none"
+                raise ValueError(f"{path}: topics of commands: {found}; name one as _topic:=NAME")
+            topic = candidates[0]
+        elif topic not in fitting:
+            found = ", ".join(fitting) or "none"
+            raise ValueError(f"{path}: no topic {topic} of {TYPE}; there are: {found}")
+        commands = [list(message.data) for _, message, _ in bag.read_messages(topics=[topic])]
+    if not commands:
+        raise ValueError(f"{path}: holds no message of {topic}")
+    return topic, commands

@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# Runs robot_state_publisher or rviz on the frames of this namespace: "with_frames.sh PROGRAM ...".
+# In uav1 they begin with uav1/, which the first knows as a parameter, the second by its file only.
+set -euo pipefail
+
+frames=${ROS_NAMESPACE:-}
+frames=${frames#/}
+[ -n "$frames" ] || exec "$@"
+case $1 in
+  *robot_state_publisher) exec "$@" "_tf_prefix:=$frames" ;;
+  *)
+    copy=$(mktemp --suffix .rviz)
+    trap 'rm -f "$copy"' EXIT
+    arguments=()
+    for argument in "$@"; do
+      if [[ $argument = *.rviz ]]; then
+        sed -e "s|TF Prefix: .*|TF Prefix: $frames|" -e "s|drone|$frames/drone|" "$argument" >"$copy"
+        argument=$copy
+      fi
+      arguments+=("$argument")
+    done
+    "${arguments[@]}" &
+    trap 'kill -INT $!' INT TERM
+    wait || wait
+    ;;
+esac
