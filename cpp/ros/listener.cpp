@@ -2,6 +2,8 @@
 
 #include <ros/topic_manager.h>
 
+#include <algorithm>
+
 namespace quadcore::node {
 
 Listener::Listener(Broadcast& broadcast, const Simulation& simulation,
@@ -19,7 +21,8 @@ void Listener::observe(const Simulation& simulation, bool jumped) {
   if (log_ && !log_->error().empty()) ROS_ERROR_ONCE("%s", log_->error().c_str());
   broadcast_.send(simulation, jumped);
   if (follower_) follower_->reached(simulation.time());
-  // A flight may bring warnings of its own.
+  // A flight may bring warnings of its own; a reset takes them back.
+  warnings_told_ = std::min(warnings_told_, simulation.warnings().size());
   for (; warnings_told_ < simulation.warnings().size(); ++warnings_told_) {
     ROS_WARN("%s", simulation.warnings()[warnings_told_].c_str());
   }
