@@ -110,6 +110,23 @@ def test_a_minute_without_torque_keeps_energy_and_momentum(hangar, rotors, inert
     assert np.linalg.norm(momentum - momentum[0], axis=1).max() < 1e-10 * size
 
 
+@pytest.mark.parametrize("engine", ENGINES)
+def test_joint_angles_wrap_at_half_a_turn(hangar, engine):
+    spin = np.array([300, -410, 55, -3.5])
+    simulation = start(hangar(vehicle(ODD), engine=engine), rotor_velocity=spin)
+    wrapped = np.zeros(4, dtype=bool)
+    before = simulation.state.rotor_angle.copy()
+    for _ in range(1500):
+        simulation.step()
+        angle = simulation.state.rotor_angle.copy()
+        assert (np.abs(angle) <= np.pi).all()
+        turned = (angle - before + np.pi) % (2 * np.pi) - np.pi
+        assert np.allclose(turned, simulation.state.rotor_velocity * 1e-3, rtol=0.03, atol=1e-3)
+        wrapped |= np.abs(angle - before) > np.pi
+        before = angle
+    assert wrapped.all()
+
+
 def test_a_flight_turns_with_the_world(hangar):
     """Gravity, wind and start turned by any rotation turn the flight."""
     urdf = vehicle(ODD, 1, SKEW, (0.004, -0.003, 0.005), {**CHAPTER2, **FLAPPING}, MOTOR)

@@ -7,6 +7,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 from vehicles import AIR, CROSS, DRAG, FLAPPING, HEIGHT, ODD, Rotor, start, vehicle, wrenches
 
+import quadcore as qc
+
+ENGINES = [name for name, _ in qc.engines()]
 DRAGS = ("induced", "translational", "profile", "parasitic")
 EVERYTHING = {**AIR, **DRAG, **FLAPPING}
 CHAPTER2 = {**EVERYTHING, "dragModel": "chapter2"}
@@ -220,6 +223,26 @@ def test_rotor_drag_opposes_the_velocity_in_the_disc(hangar, model, term, coeffi
     # Yawing at 1 rad/s, each rotor moves at 0.2 m/s across its arm.
     yawing = upright(hangar, air, w=(0, 0, 1), engine="ode")[term]
     assert np.allclose(yawing, [0, 0, 0, 0, 0, -4 * coefficient * 0.2 * 0.2], rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize(("model", "at_origin"), [("appendix", True), ("chapter2", False)])
+def test_drag_takes_the_velocity_of_the_links_origin_or_of_its_centre_of_mass(
+    hangar, engine, model, at_origin
+):
+    # The hub hangs 0.05 m below the blades' centre of mass; both lean by the joint's angles.
+    mast = Rotor((0.2, -0.1, 0.03), (0.2, -0.1, 0.4), com=(0, 0, 0.05))
+    air = {**AIR, "inducedDragCoeff": 0.01, "dragModel": model}
+    w = np.array([1.5, -2, 0.7])
+    simulation = start(hangar(vehicle([mast], air=air), engine=engine), angular_velocity=w)
+    lean = Rotation.from_euler("xyz", mast.rpy)
+    center = np.array(mast.xyz) + lean.apply(mast.com)
+    v = np.cross(w, mast.xyz if at_origin else center)
+    across = np.eye(3) - np.outer(lean.apply([0, 0, 1]), lean.apply([0, 0, 1]))
+    force = -0.01 * across @ v
+    arm = center * (1 - mast.mass / (1 + mast.mass))  # the frame weighs 1 kg and sits at 0
+    expected = [*force, *np.cross(arm, force)]
+    assert np.allclose(wrenches(simulation)["induced"], expected, rtol=0, atol=1e-12)
 
 
 def test_parasitic_drag_acts_once_at_the_centre_of_mass_in_chapter2(hangar):

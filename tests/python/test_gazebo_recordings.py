@@ -70,6 +70,32 @@ def test_the_shipped_quadrotor_flies_as_recorded(record):
     assert angle < 1e-8
 
 
+COMPILED_IN = {"induced": 0.01, "translational": 0.0025, "profile": 0.005, "parasitic": 0.003}
+
+
+def test_the_urdf_of_the_thesis_flies_as_recorded_once_its_drag_is_written_out():
+    model = DATA.parent / "thesis" / "quadrotor.urdf.xacro"
+    drag = {f"drone_plugin.{name}DragCoeff": value for name, value in COMPILED_IN.items()}
+    simulation = qc.Simulation(model, parameters=drag, spawn=(0, 0, 10))
+    assert simulation.warnings == []
+    apart, angle = distances(simulation, DATA / "commands_S5.csv", DATA / "S5_slow10_all.csv.gz")
+    assert apart < 1e-9
+    assert angle < 1e-8
+
+
+def test_the_urdf_of_the_thesis_as_printed_flies_another_vehicle_and_is_told_so():
+    model = DATA.parent / "thesis" / "quadrotor.urdf.xacro"
+    with pytest.warns(qc.QuadcoreWarning, match="no drag is set.*A.5"):
+        simulation = qc.Simulation(model, spawn=(0, 0, 10))
+    simulation.command([500, -500, 500, -500])
+    as_printed = simulation.run(10, log_every=1000).position[-1, 2] - 10
+    meant = qc.Simulation("quadrotor", spawn=(0, 0, 10))
+    meant.command([500, -500, 500, -500])
+    climb = meant.run(10, log_every=1000).position[-1, 2] - 10
+    assert as_printed == pytest.approx(53.03, abs=0.005)
+    assert climb == pytest.approx(44.74, abs=0.005)
+
+
 @pytest.mark.parametrize("case", CASES, ids=name_of)
 def test_other_models_and_worlds_fly_as_recorded(case):
     lines = (case / "params.txt").read_text().splitlines()

@@ -19,6 +19,7 @@ class Rotor(NamedTuple):
     mass: float = 0.01
     inertia: Sequence[float] = (1.40625e-5, 1.40625e-5, 2.8125e-5)
     damping: float = 0
+    com: Sequence[float] = (0, 0, 0)
 
 
 # The thesis' quadrotor: 1 at +x, 2 at -y, 3 at -x, 4 at +y.
@@ -34,7 +35,8 @@ ODD = (
 ROUND = (0.0068229166666667, 0.0068229166666667, 0.0135416666666667, 0, 0, 0)
 SKEW = (0.007, 0.009, 0.0135, 0.0004, -0.0003, 0.0002)
 
-AIR = {"rotorThrustCoeff": 1.1487e-5, "rotorTorqueCoeff": 2.69e-7}
+LIFT = {"rotorThrustCoeff": 1.1487e-5, "rotorTorqueCoeff": 2.69e-7}
+AIR = {**LIFT, "inducedDragCoeff": 0}  # without drag, as is meant
 DRAG = {
     "inducedDragCoeff": 0.01,
     "translationalDragCoeff": 0.0025,
@@ -77,7 +79,7 @@ def vehicle(rotors=CROSS, mass=1, inertia=ROUND, com=(0, 0, 0), air=None, motor=
     """URDF of a frame with rotors; without tags for a plugin, it has none."""
     parts = ['<robot name="vehicle">', body("frame", mass, inertia, com)]
     for i, rotor in enumerate(rotors, 1):
-        parts += [body(f"propeller{i}", rotor.mass, rotor.inertia), joint(i, rotor)]
+        parts += [body(f"propeller{i}", rotor.mass, rotor.inertia, rotor.com), joint(i, rotor)]
     if air is not None:
         parts.append(plugin("aerodynamic", air))
     if motor is not None:

@@ -185,7 +185,8 @@ PluginDescriptor describe() {
               .from("chapter 4")
               .agreed(),
           T::choice("dragModel", {"appendix", "chapter2"},
-                    "forces as the thesis' plugin computes them, or as its chapter 2 says")
+                    "forces as the thesis' plugin computes them, or as its chapter 2 says; the "
+                    "parasitic drag of appendix drives a vehicle tilted beyond 90 degrees")
               .from("A.5, (2.28)-(2.31)"),
           T::number("inducedDragCoeff", "N s/m", "0", "induced drag of a rotor, K_I")
               .at_least(0)
