@@ -43,9 +43,10 @@ WORLD = {
     "include/uri": (
         "",
         "",
-        "`model://ground_plane`: solid ground at z = 0; `model://sun`: ignored",
+        "`model://ground_plane`: solid ground at z = 0; `model://sun`: ignored; another is foreign",
     ),
-    "model": ("", "", "a ground plane in line: static, one link"),
+    "plugin": ("", "", "a module that only senses or publishes, see below; another is foreign"),
+    "model": ("", "", "a ground plane in line: static, one link; another is foreign"),
     "model/static": ("", "", "must be `true`"),
     "model/link/collision/geometry/plane/normal": ("", "`0 0 1`", "must be `0 0 1`"),
     "model/link/collision/geometry/plane/size": ("m", "", "ignored: the ground has no edge"),
@@ -71,6 +72,7 @@ WORLD = {
     ),
     "physics/ode/solver/iters": ("", "50", "sweeps of the quick solver"),
     "physics/ode/solver/sor": ("", "1.3", "its over-relaxation"),
+    "physics/ode/solver/use_dynamic_moi_rescaling": ("", "0", "must be `0`"),
     "physics/ode/constraints/erp": ("", "0.2", "part of a hinge's error that a step removes"),
     "physics/ode/constraints/cfm": ("", "0", "softness of the hinges"),
 }
@@ -144,15 +146,35 @@ def world_section() -> str:
     return (
         "\n## Worlds\n\n"
         "An SDF file with one `<world>`. Of it these elements are read; any other is an error\n"
-        "that names it. `empty` and `default` are shipped: Gazebo's defaults without and with\n"
-        "ground.\n\n" + table(("element", "unit", "default", "range", "meaning"), rows)
+        "that names it, unless [nothing feels it](#seen-or-sensed). `empty` and `default` are\n"
+        "shipped: Gazebo's defaults without and with ground.\n\n"
+        + table(("element", "unit", "default", "range", "meaning"), rows)
+    )
+
+
+def unfelt_section() -> str:
+    """Tabulate what is passed over."""
+    everything = _core.everything_unfelt()
+    elements = ((f"`<{u.name}>`", f"`<{u.parent}>`", u.what) for u in everything if u.parent)
+    modules: dict[str, list[str]] = {}
+    for unfelt in everything:
+        if not unfelt.parent:
+            modules.setdefault(unfelt.what, []).append(f"`{unfelt.name}`")
+    return (
+        "\n## Seen or sensed\n\n"
+        "What no vehicle feels is passed over with one warning that names all of it, see\n"
+        "[models.md](models.md#models-made-for-gazebo). Elements, by the document and the element\n"
+        "that they stand in:\n\n"
+        + table(("element", "in", "what it is"), elements)
+        + "\nModules of Gazebo, where no library of that name lies in a plugin folder:\n\n"
+        + table(("what it tells", "modules"), ((k, ", ".join(v)) for k, v in modules.items()))
     )
 
 
 def _accepted(path: str, element: str) -> Iterator[str]:
     """Every path below `path`, from what the reader says to an element that it does not know."""
     message = _refusal(path, "<unknown/>")
-    takes = re.search(rf"<{element}> takes (.*)", message)
+    takes = re.search(rf"<{element}> takes ([^;]*)", message)
     for name in takes.group(1).split(", ") if takes else ():
         yield f"{path}/{name}"
         yield from _accepted(f"{path}/{name}", name)
@@ -226,6 +248,7 @@ def page() -> str:
             INTRODUCTION,
             *plugin_sections(simulation),
             world_section(),
+            unfelt_section(),
             engine_section(),
             log_section(simulation),
             topic_section(simulation),

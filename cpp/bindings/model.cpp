@@ -5,6 +5,7 @@
 
 #include "bindings.hpp"
 #include "quadcore/document.hpp"
+#include "quadcore/seen_or_sensed.hpp"
 #include "quadcore/world.hpp"
 
 namespace quadcore::bindings {
@@ -25,6 +26,15 @@ void bind_model(py::module_& m) {
                                     [](const py::object&) { return Document::most_levels; })
       .def_property_readonly_static("most_attributes",
                                     [](const py::object&) { return Document::most_attributes; });
+
+  py::class_<PassedOver>(m, "PassedOver", "What a reader met and did not take in.")
+      .def_property_readonly("ignored", &PassedOver::ignored)
+      .def_property_readonly("warning", &PassedOver::warning);
+
+  py::class_<Unfelt>(m, "Unfelt", "An element or a module that no vehicle feels.")
+      .def_readonly("name", &Unfelt::name)
+      .def_readonly("parent", &Unfelt::parent)
+      .def_readonly("what", &Unfelt::what);
 
   py::class_<Link>(m, "Link", "A moving body: a link and every link fixed to it.")
       .def_readonly("name", &Link::name)
@@ -47,19 +57,26 @@ void bind_model(py::module_& m) {
       .def_readonly("name", &Model::name)
       .def_readonly("links", &Model::links)
       .def_readonly("joints", &Model::joints)
-      .def_readonly("warnings", &Model::warnings);
+      .def_readonly("warnings", &Model::warnings)
+      .def_readonly("passed_over", &Model::passed_over);
 
   py::class_<World>(m, "World", "What a world file sets.")
       .def_property_readonly("gravity", [](const World& w) -> Vector3d { return w.gravity_W; })
       .def_property_readonly("wind", [](const World& w) -> Vector3d { return w.wind_W; })
       .def_readonly("max_step_size", &World::max_step_size)
       .def_readonly("real_time_update_rate", &World::real_time_update_rate)
-      .def_readonly("ground_plane", &World::ground_plane);
+      .def_readonly("ground_plane", &World::ground_plane)
+      .def_readonly("passed_over", &World::passed_over);
 
-  m.def("read_model", &read_model, py::arg("document"),
+  const auto nothing = std::vector<std::string>{};
+  m.def("read_model", &read_model, py::arg("document"), py::arg("ignore") = nothing,
         "Reads a URDF as Gazebo does: fixed links are lumped. Raises InputError with FILE:LINE.");
-  m.def("read_world", &read_world, py::arg("document"),
+  m.def("read_world", &read_world, py::arg("document"), py::arg("ignore") = nothing,
         "Reads a world file. Raises InputError with FILE:LINE.");
+  m.def("check_ignored", &check_ignored, py::arg("ignore"), py::arg("readings"),
+        "Raises InputError if a name to ignore was met in none of what was read.");
+  m.def("everything_unfelt", &everything_unfelt,
+        "Every element and module that is known to be seen or sensed only.");
 }
 
 }  // namespace quadcore::bindings

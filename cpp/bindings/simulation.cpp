@@ -259,6 +259,7 @@ void bind_simulation(py::module_& m) {
       .def_property_readonly("engine", [sim](const Guarded& g) { return sim(g).engine_name(); })
       .def_property_readonly("model", [sim](const Guarded& g) { return sim(g).model(); })
       .def_property_readonly("warnings", [sim](const Guarded& g) { return sim(g).warnings(); })
+      .def_property_readonly("ignored", [sim](const Guarded& g) { return sim(g).ignored(); })
       .def_property_readonly(
           "plugins", [](const Guarded& g) { return &g.simulation.plugins(); },
           py::return_value_policy::reference_internal)
@@ -316,6 +317,7 @@ void bind_simulation(py::module_& m) {
       });
 
   m.def("log_columns", &log_columns, py::arg("rotor_count"));
+  m.def("log_remark", &log_remark, py::arg("ignored"));
   m.def(
       "load_plugin_path",
       [](const py::object& folder) {

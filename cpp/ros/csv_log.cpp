@@ -15,6 +15,7 @@ CsvLog::CsvLog(const std::string& path, const Simulation& simulation)
   for (const std::string& column : log_columns(simulation.model().joints.size())) {
     header += (header.empty() ? "" : ",") + column;
   }
+  header += log_remark(simulation.ignored());
   std::fprintf(file_.get(), "%s\n", header.c_str());
 }
 

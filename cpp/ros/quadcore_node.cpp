@@ -45,7 +45,7 @@ std::string command_topic(const ros::NodeHandle& nh, const Settings& settings, c
 
 /// The world that was asked for. gazebo_ros' empty world has a ground plane, too.
 World read_world_of(const Settings& settings) {
-  if (!settings.world.empty()) return read_world(Document::read(settings.world));
+  if (!settings.world.empty()) return read_world(Document::read(settings.world), settings.ignore);
   World world;
   world.ground_plane = true;
   return world;
@@ -53,7 +53,8 @@ World read_world_of(const Settings& settings) {
 
 /// The simulation that was asked for.
 Simulation make_simulation(const Settings& settings, const World& world) {
-  Model model = read_model(settings.model);
+  Model model = read_model(settings.model, settings.ignore);
+  check_ignored(settings.ignore, {&model.passed_over, &world.passed_over});
   SimulationOptions options = settings.simulation;
   choose_drag(settings.drag, model, options.parameters);
   return {std::move(model), world, options};

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "clock.hpp"
 #include "flight_thread.hpp"
@@ -22,6 +23,7 @@ struct Settings {
   std::string drag;         ///< the one effect that drags, or "all", "none"
   bool verbose = false;
   ClockRole clock = ClockRole::automatic;
+  std::vector<std::string> ignore;  ///< what model and world are read without
   std::optional<double> real_time_factor;  ///< absent = what the world asks for
   SimulationOptions simulation;
   FlightSettings flight;

@@ -15,18 +15,23 @@ def load_description(model: str, xacro_args: Mapping[str, str]) -> Document:
     Parameters
     ----------
     model
-        Path to a URDF file or to a xacro file (name ending in ``.xacro``, then it is expanded),
-        or the name of a shipped model, such as ``"quadrotor"``.
+        Path to a URDF file or to a xacro file (name ending in ``.xacro`` or, as RotorS has it,
+        ``.gazebo``; then it is expanded), or the name of a shipped model, such as ``"quadrotor"``.
     xacro_args
         Values of the xacro file's arguments, by name.
 
     Raises
     ------
     InputError
-        No such model, malformed XML, a fault in the xacro, or an argument the model does not have.
+        No such model, malformed XML, a fault in the xacro, or arguments for a file that is none.
+
+    Warns
+    -----
+    QuadcoreWarning
+        An argument that the xacro file does not have.
     """
     path = _find("model", model, "urdf")
-    if path.suffix != ".xacro":
+    if path.suffix not in (".xacro", ".gazebo"):
         if xacro_args:
             raise InputError(f"{path}: takes no xacro arguments: it is no .xacro file")
         return _plain(path)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Mapping, Union
+from typing import Mapping, Sequence, Union
 
 import numpy as np
 
-from ._core import InputError, log_columns
+from ._core import InputError, log_columns, log_remark
 from .files import atomic_write, check_writable
 
 PathLike = Union[str, "os.PathLike[str]"]
@@ -27,14 +27,21 @@ class Log:
         Force (N), then torque (N m), frame axes, about the vehicle's centre of mass.
     title : str
         What flew, for the plots.
+    ignored : sequence of str
+        What was left out of model and world at the user's wish.
     """
 
     def __init__(
-        self, table: np.ndarray, wrenches: Mapping[str, np.ndarray], title: str = ""
+        self,
+        table: np.ndarray,
+        wrenches: Mapping[str, np.ndarray],
+        title: str = "",
+        ignored: Sequence[str] = (),
     ) -> None:
         self.table = table
         self.wrenches = dict(wrenches)
         self.title = title
+        self.ignored = list(ignored)
 
     def __len__(self) -> int:
         return len(self.table)
@@ -75,17 +82,25 @@ class Log:
         return self.table[:, _STATE_SIZE:]
 
     def to_csv(self, path: PathLike) -> None:
-        """Write `table` as text with 17 significant digits, so that reading restores every bit."""
+        """Write `table` as text with 17 significant digits, so that reading restores every bit.
+
+        What was `ignored`, if anything, stands in a comment below the names of the columns.
+        """
         with atomic_write(Path(path)) as stream:
-            header = ",".join(self.columns)
+            header = ",".join(self.columns) + log_remark(self.ignored)
             np.savetxt(stream, self.table, "%.17g", ",", header=header, comments="")
 
     def to_mat(self, path: PathLike) -> None:
-        """Write a MATLAB file of each column as a vector and each wrench as ``wrench_NAME``."""
+        """Write a MATLAB file of each column as a vector and each wrench as ``wrench_NAME``.
+
+        What was `ignored`, if anything, is the cell array ``ignored``.
+        """
         import scipy.io
 
         variables = {name: self.table[:, i] for i, name in enumerate(self.columns)}
         variables.update((f"wrench_{name}", value) for name, value in self.wrenches.items())
+        if self.ignored:
+            variables["ignored"] = np.array(self.ignored, dtype=object)
         with atomic_write(Path(path)) as stream:
             scipy.io.savemat(stream, variables, oned_as="column")
 

@@ -48,6 +48,9 @@ class Simulation(_core.Simulation):
         Arguments of a xacro model.
     spawn : sequence of 3 or 6 numbers
         x, y, z (m) and roll, pitch, yaw (rad) of the frame link in the world.
+    ignore : sequence of str
+        What to leave out of model and world because quadcore does not know it: names or file names
+        of plugins, names of elements, uris or names of a world's models. `ignored` keeps it.
 
     Raises
     ------
@@ -70,14 +73,17 @@ class Simulation(_core.Simulation):
         parameters: Optional[Mapping[str, Value]] = None,
         xacro_args: Optional[Mapping[str, object]] = None,
         spawn: Sequence[Number] = (0, 0, 10),
+        ignore: Sequence[str] = (),
     ) -> None:
+        names = names_to_ignore(ignore)
         if not isinstance(model, _core.Model):
             arguments = {name: str(value) for name, value in (xacro_args or {}).items()}
-            model = _core.read_model(load_description(str(model), arguments))
+            model = _core.read_model(load_description(str(model), arguments), names)
         elif xacro_args:
             raise _core.InputError("xacro_args: the model is read already; give them to its reader")
         if not isinstance(world, _core.World):
-            world = _core.read_world(load_world(None if world is None else str(world)))
+            world = _core.read_world(load_world(None if world is None else str(world)), names)
+        _core.check_ignored(names, [model.passed_over, world.passed_over])
         self.world = world
         super().__init__(
             model=model,
@@ -153,7 +159,8 @@ class Simulation(_core.Simulation):
 
     def _log(self, flight: _core.Flight) -> Log:
         wrenches = flight.wrenches
-        return Log(flight.table, {term: wrenches[:, i] for i, term in enumerate(self.wrench_terms)})
+        terms = {term: wrenches[:, i] for i, term in enumerate(self.wrench_terms)}
+        return Log(flight.table, terms, ignored=self.ignored)
 
 
 def steps_within(duration: float, dt: float) -> int:
@@ -170,6 +177,13 @@ def check_logged(duration: float, dt: float, log_every: int) -> None:
         raise _core.InputError(
             f"log_every is {log_every} but the flight has {steps} steps; log more often"
         )
+
+
+def names_to_ignore(ignore: Sequence[str]) -> list[str]:
+    """Check names given as `ignore`."""
+    if isinstance(ignore, str) or not all(isinstance(name, str) for name in ignore):
+        raise _core.InputError(f"ignore is {ignore!r}; give a list of names")
+    return list(ignore)
 
 
 def _whole(seed: object) -> int:

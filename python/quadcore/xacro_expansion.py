@@ -51,12 +51,12 @@ def expand(path: str, arguments: Mapping[str, str]) -> list[tuple[str, xml_sourc
     Raises
     ------
     InputError
-        Whatever is wrong in the file or one it includes, or an argument it does not know.
+        Whatever is wrong in the file or one it includes.
 
     Warns
     -----
     QuadcoreWarning
-        What xacro itself warns of.
+        What xacro itself warns of, and an argument that the file does not know.
     """
     table = _Arguments(arguments)
     with _LOCK, _replaced_hooks(table):
@@ -70,7 +70,8 @@ def expand(path: str, arguments: Mapping[str, str]) -> list[tuple[str, xml_sourc
             raise InputError(f"{place}: {_reason(error)}") from error
     for name in arguments:
         if name not in table.asked:
-            raise InputError(f"{path}: there is no xacro argument {_named(name, table.asked)}")
+            what = f"there is no xacro argument {_named(name, table.asked)}: it has no effect"
+            warn(f"{path}: {what}", QuadcoreWarning, stacklevel=2)
     return xml_source.write(document)
 
 

@@ -2,8 +2,10 @@
 
 const std::map<std::string, Production>& grammar() {
   static const std::map<std::string, Production> productions = {
-      {"robot", {{"name"}, {"link", "joint", "gazebo", "material", "transmission", "plugin"}}},
-      {"link", {{"name"}, {"inertial", "collision", "visual"}}},
+      {"robot",
+       {{"name"},
+        {"link", "joint", "gazebo", "material", "transmission", "plugin", "sensor", "frame"}}},
+      {"link", {{"name"}, {"inertial", "collision", "visual", "pose"}}},
       {"inertial", {{}, {"origin", "mass", "inertia"}}},
       {"origin", {{"xyz", "rpy"}}},
       {"mass", {{"value"}}},
@@ -54,7 +56,9 @@ const std::map<std::string, Production>& grammar() {
          "twistFrame",
          "seed"}}},
       {"sdf", {{"version"}, {"world"}}},
-      {"world", {{"name"}, {"gravity", "physics", "physics:ode", "wind", "include", "model"}}},
+      {"world",
+       {{"name"},
+        {"gravity", "physics", "physics:ode", "wind", "include", "model", "plugin", "gui"}}},
       {"physics",
        {{"type", "name"},
         {"max_step_size", "real_time_update_rate", "updateRate", "real_time_factor", "gravity",

@@ -46,8 +46,10 @@ def test_a_value_that_is_none(broken):
     [
         *(
             fault(GRAVITY, f"<{name}/>", f"<{name}> in <world> is not supported", "takes gravity")
-            for name in ("light", "scene", "plugin", "atmosphere", "magnetic_field", "gui", "state")
+            for name in ("state", "population", "joint")
         ),
+        fault(GRAVITY, "<plugin/>", '<plugin> needs the attribute name="..."'),
+        fault("<sor>1.3</sor>", "<use_dynamic_moi_rescaling>1</use_dynamic_moi_rescaling>", "0"),
         fault(GRAVITY, "<gravty>0 0 1</gravty>", "<gravty> in <world>", "did you mean 'gravity'?"),
         fault(PHYSICS, '<physics type="bullet">', "physics type 'bullet'", "write ode"),
         fault(STEP, "<max_contacts>20</max_contacts>", "<max_contacts> in <physics>", "takes"),

@@ -1,6 +1,9 @@
 #include "quadcore/flight.hpp"
 
+#include <algorithm>
+
 #include "quadcore/error.hpp"
+#include "quadcore/text.hpp"
 
 namespace quadcore {
 namespace {
@@ -17,6 +20,13 @@ std::vector<std::string> log_columns(std::size_t rotor_count) {
                                       "qw", "vx", "vy", "vz", "wx", "wy", "wz"};
   for (std::size_t i = 0; i < rotor_count; ++i) columns.push_back("j" + std::to_string(i + 1));
   return columns;
+}
+
+std::string log_remark(const std::vector<std::string>& ignored) {
+  if (ignored.empty()) return "";
+  std::string names = joined(ignored);
+  std::replace_if(names.begin(), names.end(), [](unsigned char c) { return c < 0x20; }, ' ');
+  return "\n# ignored: " + names;
 }
 
 void append_log_row(const VehicleState& state, std::vector<double>& table) {

@@ -145,6 +145,7 @@ Model lump(const UrdfTree& tree) {
   model.name = tree.name;
   model.plugins = tree.plugins;
   model.warnings = tree.warnings;
+  model.passed_over = tree.passed_over;
 
   std::map<std::string, Carried> carried;
   std::vector<bool> has_inertial;
@@ -207,6 +208,8 @@ Model lump(const UrdfTree& tree) {
   return model;
 }
 
-Model read_model(const Document& document) { return lump(read_urdf_tree(document)); }
+Model read_model(const Document& document, const std::vector<std::string>& ignore) {
+  return lump(read_urdf_tree(document, ignore));
+}
 
 }  // namespace quadcore

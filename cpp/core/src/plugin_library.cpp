@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <mutex>
@@ -20,6 +21,24 @@ std::string own_folder() {
   Dl_info info;
   if (!dladdr(reinterpret_cast<const void*>(&own_folder), &info)) return ".";
   return std::filesystem::canonical(info.dli_fname).parent_path().string();
+}
+
+std::string who_is(const PluginElement& element) {
+  return element.where + ": plugin '" + element.name + "': " + element.filename + " ";
+}
+
+/// The nearest module in the folders, if it differs by a slip only.
+std::string misspelt(const std::string& filename) {
+  std::vector<std::string> modules;
+  for (const std::string& folder : plugin_folders()) {
+    std::error_code unreachable;
+    for (const auto& file : std::filesystem::directory_iterator(folder, unreachable)) {
+      const std::string name = file.path().filename().string();
+      if (file.path().extension() == ".so" && is_slip(filename, name)) modules.push_back(name);
+    }
+  }
+  std::sort(modules.begin(), modules.end());
+  return did_you_mean(filename, modules);
 }
 
 }  // namespace
@@ -48,50 +67,55 @@ std::vector<std::string> plugin_folders() {
   return folders;
 }
 
-PluginLibrary open_plugin(const PluginElement& element) {
-  const std::string who =
-      element.where + ": plugin '" + element.name + "': " + element.filename + " ";
-  if (element.filename.find('/') != std::string::npos) {
-    throw InputError(who +
-                     "is a path; write the file name alone and add its folder to "
-                     "QUADCORE_PLUGIN_PATH");
-  }
-  const std::vector<std::string> folders = plugin_folders();
-  for (const std::string& folder : folders) {
-    const std::string path = (std::filesystem::path(folder) / element.filename).string();
+std::optional<std::string> find_plugin(const std::string& filename) {
+  if (filename.find('/') != std::string::npos) return std::nullopt;
+  for (const std::string& folder : plugin_folders()) {
+    const std::string path = (std::filesystem::path(folder) / filename).string();
     std::error_code unreachable;
-    if (!std::filesystem::exists(path, unreachable)) continue;
-    void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (!handle) {
-      throw InputError(who + "cannot be loaded: " + dlerror() + "; rebuild it");
-    }
-    const auto* abi = static_cast<const int*>(dlsym(handle, "quadcore_plugin_abi"));
-    const auto describe = reinterpret_cast<const PluginDescriptor* (*)()>(
-        dlsym(handle, "quadcore_plugin_descriptor"));
-    if (!abi || !describe) {
-      throw InputError(who + "in " + folder +
-                       " is not a quadcore plugin; it must use QUADCORE_REGISTER_PLUGIN");
-    }
-    if (*abi != plugin_abi) {
-      throw InputError(who + "in " + folder + " was built for plugin interface " +
-                       std::to_string(*abi) + ", this is " + std::to_string(plugin_abi) +
-                       "; rebuild it against the installed quadcore");
-    }
-    const PluginDescriptor* descriptor = nullptr;
-    try {
-      descriptor = describe();
-    } catch (...) {
-      throw InputError(who + "in " + folder + " cannot describe itself: " + what_was_thrown());
-    }
-    if (!descriptor || !descriptor->create) {
-      throw InputError(who + "in " + folder + " has no " +
-                       (descriptor ? "create in its descriptor" : "descriptor") +
-                       "; give it one and rebuild it");
-    }
-    return {path, descriptor};
+    if (std::filesystem::exists(path, unreachable)) return path;
   }
-  throw InputError(who + "was not found in " + joined(folders) +
-                   "; correct the filename or add its folder to QUADCORE_PLUGIN_PATH");
+  return std::nullopt;
+}
+
+PluginLibrary open_plugin(const PluginElement& element, const std::string& path) {
+  const std::string who = who_is(element);
+  const std::string in = "in " + std::filesystem::path(path).parent_path().string();
+  void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!handle) throw InputError(who + "cannot be loaded: " + dlerror() + "; rebuild it");
+  const auto* abi = static_cast<const int*>(dlsym(handle, "quadcore_plugin_abi"));
+  const auto describe =
+      reinterpret_cast<const PluginDescriptor* (*)()>(dlsym(handle, "quadcore_plugin_descriptor"));
+  if (!abi || !describe) {
+    throw InputError(who + in + " is not a quadcore plugin; it must use QUADCORE_REGISTER_PLUGIN");
+  }
+  if (*abi != plugin_abi) {
+    throw InputError(who + in + " was built for plugin interface " + std::to_string(*abi) +
+                     ", this is " + std::to_string(plugin_abi) +
+                     "; rebuild it against the installed quadcore");
+  }
+  const PluginDescriptor* descriptor = nullptr;
+  try {
+    descriptor = describe();
+  } catch (...) {
+    throw InputError(who + in + " cannot describe itself: " + what_was_thrown());
+  }
+  if (!descriptor || !descriptor->create) {
+    throw InputError(who + in + " has no " +
+                     (descriptor ? "create in its descriptor" : "descriptor") +
+                     "; give it one and rebuild it");
+  }
+  return {path, descriptor};
+}
+
+std::string describe_missing(const PluginElement& element) {
+  const std::string who = who_is(element);
+  const std::string remedy = ignoring(element.filename);
+  if (element.filename.find('/') != std::string::npos) {
+    return who + "is a path; write the file name alone and add its folder to QUADCORE_PLUGIN_PATH" +
+           remedy;
+  }
+  return who + "was not found in " + joined(plugin_folders()) + misspelt(element.filename) +
+         "; correct the filename or add its folder to QUADCORE_PLUGIN_PATH" + remedy;
 }
 
 }  // namespace quadcore

@@ -2,6 +2,7 @@
 
 #include "quadcore/error.hpp"
 #include "quadcore/plugin_library.hpp"
+#include "quadcore/seen_or_sensed.hpp"
 #include "quadcore/simulation.hpp"
 #include "quadcore/text.hpp"
 
@@ -11,11 +12,40 @@ namespace {
 /// Numbers of state that a plugin may ask for.
 constexpr std::size_t max_plugin_state = 1000000;
 
+/// A plugin tag and the path of its module.
+struct Found {
+  const PluginElement& element;
+  std::string path;
+};
+
+/// The plugins to load. A module that is not there is passed over if it only senses; otherwise it
+/// is refused, as are two plugins of one name and one whose tags cannot be read.
+std::vector<Found> find_plugins(const Model& model, PassedOver& passed_over) {
+  std::vector<Found> plugins;
+  std::map<std::string, const PluginElement*> by_name;
+  for (const PluginElement& element : model.plugins) {
+    const auto path = find_plugin(element.filename);
+    if (!path && verdict_on_module(element.filename) == Verdict::unfelt) {
+      passed_over.add_unfelt(element.filename, element.where);
+      continue;
+    }
+    if (!path) throw InputError(describe_missing(element));
+    if (!element.fault.empty()) throw InputError(element.fault);
+    const auto [first, added] = by_name.emplace(element.name, &element);
+    if (!added) {
+      throw InputError(element.where + ": a second plugin named '" + element.name + "' (first at " +
+                       first->second->where + "); give it another name");
+    }
+    plugins.push_back({element, *path});
+  }
+  return plugins;
+}
+
 /// "PLUGIN.TAG" -> value becomes PLUGIN -> (TAG -> value); unknown plugins are refused.
 std::map<std::string, std::map<std::string, std::string>> by_plugin(
-    const std::map<std::string, std::string>& parameters, const Model& model) {
+    const std::map<std::string, std::string>& parameters, const std::vector<Found>& plugins) {
   std::vector<std::string> names;
-  for (const PluginElement& element : model.plugins) names.push_back(element.name);
+  for (const Found& found : plugins) names.push_back(found.element.name);
   std::map<std::string, std::map<std::string, std::string>> result;
   for (const auto& [key, value] : parameters) {
     const auto dot = key.rfind('.');
@@ -57,12 +87,26 @@ void check_shared_tags(const std::vector<LoadedPlugin>& plugins) {
 
 }  // namespace
 
+/// What a model lacks that would make it a vehicle; "" for nothing.
+std::string Simulation::describe_idle(const Model& model) const {
+  const std::string who = "model '" + model.name + "' has ";
+  if (model.joints.empty()) return who + "no rotors: no joint of it is continuous";
+  if (wrench_terms_.empty()) {
+    return who + "no plugin that reports a force: unless one pushes unsaid, it only falls; add " +
+           "libaerodynamic_plugin.so";
+  }
+  return "";
+}
+
 void Simulation::load_plugins(const Model& model, const SimulationOptions& options) {
-  const auto overrides = by_plugin(options.parameters, model);
+  PassedOver passed_over = model.passed_over;
+  const std::vector<Found> found_plugins = find_plugins(model, passed_over);
+  warn(passed_over.warning());
+  const auto overrides = by_plugin(options.parameters, found_plugins);
   const double fastest_decay = engine_info(options.engine).largest_decay_per_step / dt_;
   Eigen::Index state_size = 0;
-  for (const PluginElement& element : model.plugins) {
-    const PluginLibrary library = open_plugin(element);
+  for (const auto& [element, path] : found_plugins) {
+    const PluginLibrary library = open_plugin(element, path);
     const auto given = overrides.find(element.name);
     LoadedPlugin loaded{
         element.name,
@@ -103,6 +147,7 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
     plugins_.push_back(std::move(loaded));
   }
   check_shared_tags(plugins_);
+  warn(describe_idle(model));
   plugin_state_ = VectorXd::Zero(state_size);
   wrenches_.resize(wrench_terms_.size());
 }

@@ -39,6 +39,8 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
     throw InputError("spawn holds a number that is not finite; write x,y,z[,roll,pitch,yaw]");
   }
   load_plugins(model, options);
+  warn(world.passed_over.warning());
+  ignored_ = ignored_in({&model.passed_over, &world.passed_over});
   engine_ = make_engine(options.engine, model, world);
   warnings_at_load_ = warnings_.size();
   command_topic_ = topics_.find(command_topic_name);
@@ -52,6 +54,10 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
   start.orientation = options.spawn.rotation();
   set_state(start);
   initial_ = snapshot();
+}
+
+void Simulation::warn(const std::string& warning) {
+  if (!warning.empty()) warnings_.push_back(warning);
 }
 
 std::size_t Simulation::command_width() const {

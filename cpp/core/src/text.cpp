@@ -104,6 +104,11 @@ std::string did_you_mean(const std::string& name, const std::vector<std::string>
   return nearest ? " (did you mean '" + *nearest + "'?)" : "";
 }
 
+bool is_slip(const std::string& a, const std::string& b) {
+  if (std::max(a.size(), b.size()) > longest_misspelling) return false;
+  return edit_distance(a, b) <= std::max(a.size(), b.size()) / 5;
+}
+
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;

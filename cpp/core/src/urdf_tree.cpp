@@ -19,7 +19,8 @@ Pose read_origin(const Xml& xml, const Element& parent) {
           xml.vector(*origin, "rpy", Vector3d::Zero())};
 }
 
-Inertial read_inertial(const Xml& xml, const Element& element, const std::string& link) {
+Inertial read_inertial(const Xml& xml, const Element& element, const std::string& link,
+                       std::vector<std::string>& warnings) {
   xml.only_attributes(element, {});
   xml.children(element, {"origin", "mass", "inertia"});
   Inertial inertial;
@@ -48,11 +49,11 @@ Inertial read_inertial(const Xml& xml, const Element& element, const std::string
                           "semi-definite inertia in kg m^2");
   }
   if (principal[0] + principal[1] < principal[2] - tolerance) {
-    xml.fail(
-        inertia,
-        "link '" + link +
-            "' has an inertia no rigid body can have: the largest principal moment exceeds the "
-            "sum of the other two; correct ixx, iyy, izz");
+    // The equations of motion stay well posed.
+    warnings.push_back(xml.where(inertia) + ": link '" + link +
+                       "' has an inertia no rigid body can have: the largest principal moment "
+                       "exceeds the sum of the other two; it flies as written, correct ixx, iyy, "
+                       "izz");
   }
   return inertial;
 }
@@ -92,7 +93,7 @@ Collision read_collision(const Xml& xml, const Element& element) {
   return collision;
 }
 
-UrdfLink read_link(const Xml& xml, const Element& element) {
+UrdfLink read_link(const Xml& xml, const Element& element, std::vector<std::string>& warnings) {
   UrdfLink link;
   xml.only_attributes(element, {"name"});
   link.name = xml.attribute(element, "name");
@@ -100,7 +101,7 @@ UrdfLink read_link(const Xml& xml, const Element& element) {
   for (const Element* child :
        xml.children(element, {"inertial", "visual", "collision"}, {"visual", "collision"})) {
     const std::string kind = child->Name();
-    if (kind == "inertial") link.inertial = read_inertial(xml, *child, link.name);
+    if (kind == "inertial") link.inertial = read_inertial(xml, *child, link.name, warnings);
     if (kind == "collision") link.collisions.push_back(read_collision(xml, *child));
   }
   return link;
@@ -167,10 +168,7 @@ UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::st
   return joint;
 }
 
-PluginElement read_plugin(const Xml& xml, const Element& element) {
-  xml.only_attributes(element, {"name", "filename"});
-  PluginElement plugin{
-      xml.attribute(element, "name"), xml.attribute(element, "filename"), {}, xml.where(element)};
+void read_plugin_tags(const Xml& xml, const Element& element, PluginElement& plugin) {
   for (const auto* node = element.FirstChild(); node; node = node->NextSibling()) {
     if (node->ToText()) {
       xml.fail(element, "stray text '" + trimmed(node->Value()) + "' in <plugin name=\"" +
@@ -180,49 +178,54 @@ PluginElement read_plugin(const Xml& xml, const Element& element) {
       plugin.tags.push_back({tag->Name(), xml.text(*tag), xml.where(*tag)});
     }
   }
+}
+
+PluginElement read_plugin(const Xml& xml, const Element& element) {
+  xml.only_attributes(element, {"name", "filename"});
+  PluginElement plugin{
+      xml.attribute(element, "name"), xml.attribute(element, "filename"), {}, xml.where(element)};
+  try {
+    read_plugin_tags(xml, element, plugin);
+  } catch (const InputError& error) {
+    plugin.fault = error.what();  // of a module that is not loaded it does not matter
+  }
   return plugin;
 }
 
 void read_gazebo(const Xml& xml, const Element& element, UrdfTree& tree) {
-  xml.only_attributes(element, {"reference"});
+  xml.only_attributes(element, {"reference", "name"});
   if (element.Attribute("reference")) {
     // Only what is seen but not felt; anything else Gazebo would feel.
     xml.children(element, {"material", "visual"});
     return;
   }
   for (const Element* child : xml.children(element, {"plugin"}, {"plugin"})) {
-    tree.plugins.push_back(read_plugin(xml, *child));
-    for (std::size_t i = 0; i + 1 < tree.plugins.size(); ++i) {
-      if (tree.plugins[i].name == tree.plugins.back().name) {
-        xml.fail(*child, "a second plugin named '" + tree.plugins.back().name + "' (first at " +
-                             tree.plugins[i].where + "); give it another name");
-      }
-    }
+    PluginElement plugin = read_plugin(xml, *child);
+    if (xml.passed_over().ignores({plugin.name, plugin.filename})) continue;
+    tree.plugins.push_back(std::move(plugin));
   }
 }
 
 }  // namespace
 
-UrdfTree read_urdf_tree(const Document& document) {
-  const Xml xml(document, "robot");
+UrdfTree read_urdf_tree(const Document& document, const std::vector<std::string>& ignore) {
   UrdfTree tree;
+  tree.passed_over = PassedOver(ignore);
+  const Xml xml(document, "robot", tree.passed_over);
   xml.only_attributes(xml.root(), {"name", "version"});
   tree.name = xml.attribute(xml.root(), "name");
   tree.where = xml.where(xml.root());
-  const std::set<std::string> elements = {"link",     "joint",        "gazebo",
-                                          "material", "transmission", "plugin"};
+  const std::set<std::string> elements = {"link", "joint", "gazebo", "material", "plugin"};
   for (const Element* element : xml.children(xml.root(), elements, elements)) {
     const std::string kind = element->Name();
     if (kind == "plugin") {
       xml.fail(*element, "<plugin> stands outside <gazebo>; wrap it in <gazebo>...</gazebo>");
     } else if (kind == "link") {
-      tree.links.push_back(read_link(xml, *element));
+      tree.links.push_back(read_link(xml, *element, tree.warnings));
     } else if (kind == "joint") {
       tree.joints.push_back(read_joint(xml, *element, tree.warnings));
     } else if (kind == "gazebo") {
       read_gazebo(xml, *element, tree);
-    } else if (kind == "transmission") {
-      tree.warnings.push_back(xml.where(*element) + ": <transmission> has no effect");
     }
   }
   return tree;

@@ -36,10 +36,12 @@ struct UrdfTree {
   std::vector<UrdfJoint> joints;
   std::vector<PluginElement> plugins;
   std::vector<std::string> warnings;
+  PassedOver passed_over;
 };
 
 /// Reads the elements of a URDF, each checked by itself.
-UrdfTree read_urdf_tree(const Document& document);
+/// \param ignore  see PassedOver.
+UrdfTree read_urdf_tree(const Document& document, const std::vector<std::string>& ignore);
 
 /// Checks how links and joints hang together, lumps fixed links and checks the moving bodies.
 Model lump(const UrdfTree& tree);

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "quadcore/error.hpp"
+#include "quadcore/seen_or_sensed.hpp"
 #include "quadcore/text.hpp"
 #include "xml.hpp"
 
@@ -30,7 +31,10 @@ std::set<std::string> attributes_of(const std::string& element) {
 /// Reads the elements that a world may hold into a World.
 class WorldReader {
  public:
-  explicit WorldReader(const Document& document) : xml_(document, "sdf") {}
+  WorldReader(const Document& document, const std::vector<std::string>& ignore)
+      : xml_(document, "sdf", world_.passed_over) {
+    world_.passed_over = PassedOver(ignore);
+  }
 
   World read() {
     const Element& world = xml_.required_child(xml_.root(), "world");
@@ -48,8 +52,9 @@ class WorldReader {
          {"physics:ode", physics},
          {"wind", [this](const Element& e) { read_wind(e); }},
          {"include", [this](const Element& e) { read_include(e); }},
-         {"model", [this](const Element& e) { read_model(e); }}},
-        {"include", "model"});
+         {"model", [this](const Element& e) { read_model(e); }},
+         {"plugin", [this](const Element& e) { read_plugin(e); }}},
+        {"include", "model", "plugin"});
     return world_;
   }
 
@@ -128,9 +133,15 @@ class WorldReader {
       }
       world_.solver_iterations = static_cast<int>(value);
     };
-    read_children(
-        solver,
-        {{"type", type}, {"iters", iterations}, {"sor", number(world_.solver_sor, 0, true, 2)}});
+    const auto rescaling = [this](const Element& e) {
+      if (xml_.text(e) == "0" || xml_.text(e) == "false") return;
+      xml_.fail(e, "<use_dynamic_moi_rescaling> is '" + xml_.text(e) +
+                       "'; the engines rescale no moments of inertia, write 0");
+    };
+    read_children(solver, {{"type", type},
+                           {"iters", iterations},
+                           {"sor", number(world_.solver_sor, 0, true, 2)},
+                           {"use_dynamic_moi_rescaling", rescaling}});
   }
 
   void read_wind(const Element& wind) {
@@ -140,22 +151,46 @@ class WorldReader {
   }
 
   void read_include(const Element& include) {
-    read_children(include, {{"uri", [this](const Element& e) {
-                               const std::string uri = xml_.text(e);
-                               if (uri == "model://sun") return;  // there is no light here
-                               if (uri == "model://ground_plane") {
-                                 world_.ground_plane = true;
-                                 return;
-                               }
-                               xml_.fail(e, "'" + uri +
-                                                "' is not supported; a world may include "
-                                                "model://ground_plane and model://sun");
-                             }}});
+    const Element* source = xml_.child(include, "uri");
+    const std::string uri = source ? xml_.text(*source) : "";
+    if (source && uri != "model://ground_plane" && uri != "model://sun") {
+      if (xml_.passed_over().ignores({uri})) return;
+      xml_.fail(*source, "'" + uri +
+                             "' is not supported; a world may include model://ground_plane and "
+                             "model://sun" +
+                             ignoring(uri));
+    }
+    read_children(include, {{"uri", [](const Element&) {}}});
     xml_.required_child(include, "uri");
+    if (uri == "model://ground_plane") world_.ground_plane = true;  // the sun: no light here
   }
 
-  /// A model in line may only be a ground plane: static, a plane through the origin, normal up.
+  void read_plugin(const Element& plugin) {
+    const std::string name = xml_.attribute(plugin, "name");
+    const std::string filename = xml_.attribute(plugin, "filename");
+    if (xml_.passed_over().ignores({name, filename})) return;
+    if (verdict_on_module(filename) == Verdict::unfelt) {
+      return xml_.passed_over().add_unfelt(filename, xml_.where(plugin));
+    }
+    xml_.fail(plugin, "plugin '" + name + "': " + filename +
+                          " is a module of Gazebo's worlds, which are not loaded here; remove it" +
+                          ignoring(filename));
+  }
+
+  /// A model in line may only be a ground plane; another may be left out.
   void read_model(const Element& model) {
+    const char* name = model.Attribute("name");
+    if (!name) return read_ground_plane(model);
+    if (xml_.passed_over().ignores({name})) return;
+    try {
+      read_ground_plane(model);
+    } catch (const InputError& error) {
+      throw InputError(error.what() + ignoring(name));
+    }
+  }
+
+  /// Static, a plane through the origin, normal up.
+  void read_ground_plane(const Element& model) {
     const Handler seen_only = [](const Element&) {};
     const Handler plane = [this](const Element& e) {
       read_children(e, {{"normal",
@@ -189,12 +224,14 @@ class WorldReader {
     xml_.required_child(model, "link");
   }
 
-  Xml xml_;
   World world_;
+  Xml xml_;
 };
 
 }  // namespace
 
-World read_world(const Document& document) { return WorldReader(document).read(); }
+World read_world(const Document& document, const std::vector<std::string>& ignore) {
+  return WorldReader(document, ignore).read();
+}
 
 }  // namespace quadcore

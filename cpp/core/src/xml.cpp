@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "quadcore/error.hpp"
+#include "quadcore/seen_or_sensed.hpp"
 #include "quadcore/text.hpp"
 #include "xml_limits.hpp"
 
@@ -16,7 +17,8 @@ std::string takes(const Xml::Element& element, const std::vector<std::string>& n
 
 }  // namespace
 
-Xml::Xml(const Document& document, const std::string& root_name) : document_(document) {
+Xml::Xml(const Document& document, const std::string& root_name, PassedOver& passed_over)
+    : document_(document), passed_over_(passed_over) {
   check_xml_limits(document);
   if (trimmed(document.text).empty()) {
     throw InputError(document.at(1) + ": is empty; write a <" + root_name + "> element");
@@ -54,16 +56,20 @@ std::vector<const Xml::Element*> Xml::children(const Element& element,
   std::set<std::string> seen;
   for (const auto* node = element.FirstChild(); node; node = node->NextSibling()) {
     if (node->ToText()) {
-      throw InputError(document_.at(node->GetLineNum()) + ": stray text '" +
-                       trimmed(node->Value()) + "' in <" + element.Name() + ">; remove it");
+      const std::string place = document_.at(node->GetLineNum());
+      const std::string parent = "in <" + std::string(element.Name()) + ">";
+      if (verdict_on_text(path(element)) == Verdict::felt) {
+        throw InputError(place + ": stray text '" + trimmed(node->Value()) + "' " + parent +
+                         "; remove it");
+      }
+      passed_over_.add_unfelt("text " + parent, place);
     }
     const Element* child = node->ToElement();
     if (!child) continue;
     const std::string name = child->Name();
     if (!allowed.count(name)) {
-      const std::vector<std::string> names(allowed.begin(), allowed.end());
-      fail(*child, "<" + name + "> in <" + element.Name() + "> is not supported" +
-                       did_you_mean(name, names) + takes(element, names));
+      pass_over(element, *child, allowed);
+      continue;
     }
     if (!seen.insert(name).second && !repeatable.count(name)) {
       fail(*child, "a second <" + name + "> in <" + element.Name() + ">; keep one of them");
@@ -71,6 +77,23 @@ std::vector<const Xml::Element*> Xml::children(const Element& element,
     found.push_back(child);
   }
   return found;
+}
+
+std::string Xml::path(const Element& element) const {
+  const std::string name = element.Name();
+  return &element == &root() ? name : root().Name() + ("/" + name);
+}
+
+void Xml::pass_over(const Element& parent, const Element& child,
+                    const std::set<std::string>& allowed) const {
+  const std::string name = child.Name();
+  const Verdict verdict = verdict_on_element(path(parent), name);
+  if (verdict != Verdict::felt && passed_over_.ignores({name})) return;
+  if (verdict == Verdict::unfelt) return passed_over_.add_unfelt("<" + name + ">", where(child));
+  const std::vector<std::string> names(allowed.begin(), allowed.end());
+  fail(child, "<" + name + "> in <" + parent.Name() + "> is not supported" +
+                  did_you_mean(name, names) + takes(parent, names) +
+                  (verdict == Verdict::foreign ? ignoring(name) : ""));
 }
 
 const Xml::Element& Xml::required_child(const Element& element, const char* name) const {
@@ -85,6 +108,10 @@ void Xml::only_attributes(const Element& element, const std::set<std::string>& a
   for (const auto* a = element.FirstAttribute(); a; a = a->Next()) {
     const std::string name = a->Name();
     if (allowed.count(name) || name.rfind("xmlns", 0) == 0) continue;
+    if (name.find(':') != std::string::npos) {
+      passed_over_.add_unfelt("attribute " + name, where(element));
+      continue;
+    }
     const std::vector<std::string> names(allowed.begin(), allowed.end());
     fail(element, "attribute " + name + " of <" + element.Name() + "> is not supported" +
                       did_you_mean(name, names) + takes(element, names));

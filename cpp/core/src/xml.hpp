@@ -7,23 +7,28 @@
 #include <vector>
 
 #include "quadcore/document.hpp"
+#include "quadcore/passed_over.hpp"
 #include "quadcore/spatial.hpp"
 
 namespace quadcore {
 
-/// An XML document read strictly: every error names FILE:LINE and what to write instead.
+/// An XML document read strictly: every error names FILE:LINE and what to write instead. What is
+/// neither read nor felt, and what the user wants left out, goes to a PassedOver.
 class Xml {
  public:
   using Element = tinyxml2::XMLElement;
 
   /// Parses the document and checks the name of its root element.
-  Xml(const Document& document, const std::string& root_name);
+  Xml(const Document& document, const std::string& root_name, PassedOver& passed_over);
 
   const Element& root() const { return *xml_.RootElement(); }
   std::string where(const Element& element) const { return document_.at(element.GetLineNum()); }
   [[noreturn]] void fail(const Element& element, const std::string& what) const;
 
-  /// The child elements; a name outside `allowed`, or one outside `repeatable` given twice, fails.
+  PassedOver& passed_over() const { return passed_over_; }
+
+  /// The child elements named in `allowed`, those outside `repeatable` once at most; another fails
+  /// unless it may be passed over.
   std::vector<const Element*> children(const Element& element, const std::set<std::string>& allowed,
                                        const std::set<std::string>& repeatable = {}) const;
   /// The child of that name, or null.
@@ -32,7 +37,7 @@ class Xml {
   }
   const Element& required_child(const Element& element, const char* name) const;
 
-  /// Refuses an attribute outside `allowed`; namespace declarations are always allowed.
+  /// Refuses an attribute outside `allowed`; one with a prefix is another vocabulary's.
   void only_attributes(const Element& element, const std::set<std::string>& allowed) const;
   /// Refuses the same, and anything within the element.
   void attributes_alone(const Element& element, const std::set<std::string>& allowed) const;
@@ -51,7 +56,14 @@ class Xml {
   Vector3d as_vector(const Element& element, const std::string& what,
                      const std::string& text) const;
 
+  /// As verdict_on_element() takes it.
+  std::string path(const Element& element) const;
+  /// Fails at a child that is not read, unless it may be passed over.
+  void pass_over(const Element& parent, const Element& child,
+                 const std::set<std::string>& allowed) const;
+
   const Document& document_;
+  PassedOver& passed_over_;
   tinyxml2::XMLDocument xml_;
 };
 

@@ -128,6 +128,7 @@ def _flight(arguments: argparse.Namespace) -> dict[str, str]:
         },
         **{f"set {key}": value for key, value in arguments.set},
         **{f"xacro {key}": value for key, value in arguments.xacro},
+        **({"ignored": ", ".join(arguments.ignore)} if arguments.ignore else {}),
     }
 
 

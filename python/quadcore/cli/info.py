@@ -28,6 +28,8 @@ def info(arguments: argparse.Namespace) -> None:
     simulation = Simulation(**options.model_arguments(arguments))
     console = terminal.console()
     console.print(f"model {simulation.model.name}\n")
+    if simulation.ignored:
+        console.print(f"ignored: {', '.join(simulation.ignored)}\n")
     for table in (_links(simulation), _body(simulation), _rotors(simulation)):
         console.print(table, "")
     for plugin in simulation.plugins:

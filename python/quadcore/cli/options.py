@@ -44,6 +44,14 @@ def add_model(parser: argparse.ArgumentParser, nargs: str | None = None) -> None
         default=[],
         help="value of an argument of the xacro file; repeatable",
     )
+    parser.add_argument(
+        "--ignore",
+        metavar="NAME",
+        action="append",
+        default=[],
+        help="leave out a foreign plugin (its name or file name), element, or model of the world; "
+        "repeatable",
+    )
 
 
 def add_flight(
@@ -101,6 +109,7 @@ def model_arguments(arguments: argparse.Namespace) -> dict[str, Any]:
         "model": arguments.model,
         "parameters": unique("--set", arguments.set),
         "xacro_args": unique("--xacro", arguments.xacro),
+        "ignore": arguments.ignore,
     }
 
 

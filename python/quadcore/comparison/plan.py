@@ -11,7 +11,7 @@ from .._core import InputError, QuadcoreError, engines
 from ..commands import CommandsLike, as_commands
 from ..description import load_description, load_world
 from ..log import Log
-from ..simulation import Simulation, check_logged
+from ..simulation import Simulation, check_logged, names_to_ignore
 from .difference import Difference, differences, facts
 from .grid import Axis, Values, axes_of, check_size, variants
 
@@ -58,8 +58,16 @@ class Plan:
         arguments = self._options.pop("xacro_args", None) or {}
         arguments = {name: str(value) for name, value in arguments.items()}
         self._documents = [load_description(name, arguments) for name in self.names]
-        self._models = [_core.read_model(document) for document in self._documents]
-        self._worlds = {name: _core.read_world(load_world(name)) for name in self._values("world")}
+        ignore = names_to_ignore(self._options.pop("ignore", ()))
+        self._models = [_core.read_model(document, ignore) for document in self._documents]
+        worlds = self._values("world")
+        self._worlds = {name: _core.read_world(load_world(name), ignore) for name in worlds}
+        world = self._options.get("world")
+        if not isinstance(world, _core.World):
+            document = load_world(None if world is None else str(world))
+            world = self._options["world"] = _core.read_world(document, ignore)
+        read = [*self._models, *self._worlds.values(), world]
+        _core.check_ignored(ignore, [each.passed_over for each in read])
         self._check_engines()
         built = self._built()
         self.dt = built[0].dt if built else 1e-3

@@ -68,6 +68,7 @@ class Experiment:
     world: Optional[str]
     parameters: Dict[str, Value]
     xacro_args: Dict[str, str]
+    ignore: Tuple[str, ...]
     dt: float
     duration: float
     spawn: Tuple[float, ...]
@@ -85,6 +86,7 @@ class Experiment:
         world: Optional[str] = None,
         parameters: Optional[Mapping[str, Value]] = None,
         xacro_args: Optional[Mapping[str, str]] = None,
+        ignore: Sequence[str] = (),
         dt: Optional[float] = None,
         duration: float = 10.0,
         spawn: Sequence[float] = (0.0, 0.0, 10.0),
@@ -103,7 +105,7 @@ class Experiment:
         for key in parameters:
             if key.endswith(".sim_slow"):
                 raise InputError(f"{key}: every flight has its own; give a list of sim_slow")
-        simulation = Simulation(model, "eigen", world, dt, 0, parameters, xacro_args, spawn)
+        simulation = Simulation(model, "eigen", world, dt, 0, parameters, xacro_args, spawn, ignore)
         check_logged(duration, simulation.dt, log_every)
         vehicle = Vehicle.of(simulation)
         rotors = len(vehicle.arms)
@@ -116,6 +118,7 @@ class Experiment:
             world,
             parameters,
             xacro_args,
+            tuple(ignore),
             simulation.dt,
             duration,
             tuple(spawn),
@@ -145,7 +148,15 @@ class Experiment:
         parameters.update(more or {})
         engine = "eigen" if case.plant == MODEL else case.plant
         simulation = Simulation(
-            self.model, engine, self.world, self.dt, 0, parameters, self.xacro_args, self.spawn
+            self.model,
+            engine,
+            self.world,
+            self.dt,
+            0,
+            parameters,
+            self.xacro_args,
+            self.spawn,
+            self.ignore,
         )
         state = simulation.state.copy()
         state.rotor_velocity[command_order(simulation)] = self.commands[0, 1:] / case.sim_slow

@@ -97,7 +97,17 @@ def write_report(study: Study, pictures: Mapping[str, bytes], directory: Path) -
 def as_json(study: Study) -> Dict[str, Any]:
     """All numbers of a study as plain lists and dictionaries; angles in rad."""
     experiment = study.experiment
-    shared = ("model", "world", "parameters", "xacro_args", "dt", "duration", "spawn", "motor_lag")
+    shared = (
+        "model",
+        "world",
+        "parameters",
+        "xacro_args",
+        "ignore",
+        "dt",
+        "duration",
+        "spawn",
+        "motor_lag",
+    )
     return {
         "experiment": {name: getattr(experiment, name) for name in shared},
         "commands": experiment.commands.tolist(),

@@ -12,6 +12,9 @@ namespace quadcore {
 
 /// Names of the log columns for n rotors: t, pose, velocities, rotor speeds.
 std::vector<std::string> log_columns(std::size_t rotor_count);
+/// What follows the names in a CSV log: "" or, on a line of its own, "# ignored: NAME, ...". Below
+/// them, because most programs take the first line for the names and skip comments afterwards.
+std::string log_remark(const std::vector<std::string>& ignored);
 /// Appends what stands in them.
 void append_log_row(const VehicleState& state, std::vector<double>& table);
 

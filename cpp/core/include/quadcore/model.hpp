@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "quadcore/document.hpp"
+#include "quadcore/passed_over.hpp"
 #include "quadcore/spatial.hpp"
 
 namespace quadcore {
@@ -68,6 +69,7 @@ struct PluginElement {
   std::string filename;
   std::vector<PluginTag> tags;
   std::string where;
+  std::string fault = {};  ///< FILE:LINE: what is wrong with the tags, told if it is loaded
 };
 
 /// A vehicle: bodies, joints, plugins. Bodies are indexed links[0] = frame, links[i+1] = child of
@@ -78,6 +80,7 @@ struct Model {
   std::vector<Joint> joints;
   std::vector<PluginElement> plugins;
   std::vector<std::string> warnings;
+  PassedOver passed_over;
   /// Every link name of the URDF, lumped ones included, and the body that carries it.
   std::map<std::string, std::size_t> body_of_link;
   /// Indices of the links in the order of Gazebo's SDF: depth first, joints by name.
@@ -102,7 +105,9 @@ std::vector<Eigen::Isometry3d> link_poses(const Model& model);
 double moment_about_joint(const Model& model, std::size_t i);
 
 /// Reads a URDF as Gazebo does: links on fixed joints are lumped into the body that carries them.
-/// Throws InputError with FILE:LINE on anything that Gazebo or the engines would not honour.
-Model read_model(const Document& document);
+/// \param ignore  names of what is to be left out, see PassedOver.
+/// Throws InputError with FILE:LINE on anything felt that Gazebo or the engines would not honour,
+/// and on anything foreign that is not ignored.
+Model read_model(const Document& document, const std::vector<std::string>& ignore = {});
 
 }  // namespace quadcore

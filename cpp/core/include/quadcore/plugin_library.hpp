@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,16 @@ void load_plugin_path(const std::string& folder);
 /// QUADCORE_PLUGIN_PATH, the one this library lies in.
 std::vector<std::string> plugin_folders();
 
-/// Finds and loads the module of a plugin tag. Throws InputError naming the tag, the file and what
-/// is wrong with it (not found: every folder that was searched).
-PluginLibrary open_plugin(const PluginElement& element);
+/// The path of a module in the first of the folders that holds it.
+/// \param filename  of a plugin tag, without folder.
+std::optional<std::string> find_plugin(const std::string& filename);
+
+/// Loads the module of a plugin tag from where find_plugin() found it. Throws InputError naming the
+/// tag, the file and what is wrong with it.
+PluginLibrary open_plugin(const PluginElement& element, const std::string& path);
+
+/// Why a plugin tag's module, which is not there, is refused: the folders that were searched, the
+/// nearest file in them, and how to fly without it.
+std::string describe_missing(const PluginElement& element);
 
 }  // namespace quadcore

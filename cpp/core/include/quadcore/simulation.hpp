@@ -78,6 +78,8 @@ class Simulation : private ForceField {
   /// then, growing as it happens, what plugins said of this flight. The latter are part of a
   /// snapshot; a reset leaves the former.
   const std::vector<std::string>& warnings() const { return warnings_; }
+  /// Names that the user gave of what model and world hold and this simulation left out.
+  const std::vector<std::string>& ignored() const { return ignored_; }
 
   /// Throws InputError on a state that is not finite or whose sizes differ.
   void set_state(const VehicleState& state);
@@ -97,6 +99,8 @@ class Simulation : private ForceField {
   void evaluate(const Kinematics& kinematics, Loads& loads) const override;
   /// Blames the first plugin that makes the sum infinite or NaN.
   [[noreturn]] void refuse(const Kinematics& kinematics, Loads& loads) const override;
+  void warn(const std::string& warning);  ///< nothing if empty
+  std::string describe_idle(const Model& model) const;
   void load_plugins(const Model& model, const SimulationOptions& options);
   void check_flight() const;
   /// What to do about a motion that got out of hand, or the warning that told it.
@@ -128,6 +132,7 @@ class Simulation : private ForceField {
   std::vector<std::string> warnings_;
   std::size_t warnings_at_load_ = 0;  ///< the first of warnings_, which are not of a flight
   std::vector<std::string> said_;     ///< by the plugin whose hook is running
+  std::vector<std::string> ignored_;
   Topics topics_;
   std::vector<LoadedPlugin> plugins_;
   std::vector<std::string> wrench_terms_;

@@ -23,6 +23,8 @@ std::size_t character_size(const std::string& text, std::size_t at);
 
 /// " (did you mean 'x'?)" for the candidate nearest to `name`, or "" if none is near.
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& candidates);
+/// Whether two names differ in a few letters only.
+bool is_slip(const std::string& a, const std::string& b);
 /// "a, b, c"
 std::string joined(const std::vector<std::string>& names);
 

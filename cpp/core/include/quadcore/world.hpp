@@ -3,6 +3,7 @@
 #include <string>
 
 #include "quadcore/document.hpp"
+#include "quadcore/passed_over.hpp"
 #include "quadcore/spatial.hpp"
 
 namespace quadcore {
@@ -22,9 +23,13 @@ struct World {
   double cfm = 0;
   bool ground_plane = false;
   Vector3d wind_W{0, 0, 0};  ///< velocity of the air [m/s]
+  PassedOver passed_over;
 };
 
-/// Reads a world file. Throws InputError with FILE:LINE on every element it does not honour.
-World read_world(const Document& document);
+/// Reads a world file.
+/// \param ignore  names of what is to be left out, see PassedOver.
+/// Throws InputError with FILE:LINE on every element that is felt and not honoured, and on
+/// everything foreign that is not ignored.
+World read_world(const Document& document, const std::vector<std::string>& ignore = {});
 
 }  // namespace quadcore
