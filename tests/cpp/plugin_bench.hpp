@@ -67,6 +67,7 @@ struct PluginBench {
   const LoadedPlugin& loaded = simulation.plugins().front();
   Topics topics = simulation.topics();
   VectorXd memory = VectorXd::Zero(loaded.state_size);
+  std::vector<std::string> warnings;
 
   PluginBench(const std::string& plugin, const std::string& tags, std::size_t rotors,
               std::uint64_t seed = 0)
@@ -74,7 +75,7 @@ struct PluginBench {
 
   PluginState state() { return {memory.data(), memory.size()}; }
   Sample sample(const Kinematics& kinematics, double time, double dt, bool jumped = false) {
-    return {time, dt, kinematics, topics, jumped};
+    return {time, dt, kinematics, topics, warnings, jumped};
   }
   void update(const Kinematics& kinematics, double time, double dt) {
     loaded.plugin->update(sample(kinematics, time, dt), state());
