@@ -111,17 +111,23 @@ bool FlightThread::wait(Lock& lock, std::chrono::duration<double> patience,
 }
 
 /// Brings the simulation to the clock's time: at the start, after a pause, and if the clock was set
-/// back. Only time changes, so no bit of the motion does.
+/// back. Of a flight under way only the time changes, so no bit of the motion does.
 void FlightThread::join_clock(Lock& lock) {
   joined_ = true;
   const double time = *clock_;
   report_.time = time;
-  const bool observe = !jump_observed_;
+  const bool starts = !jump_observed_;
   unlocked(lock, [&] {
-    Snapshot snapshot = simulation_.snapshot();
-    snapshot.start_time += time - simulation_.time();
-    simulation_.restore(snapshot);
-    if (observe) observe_jump();
+    if (starts) {
+      VehicleState start = simulation_.state();
+      start.time = time;
+      simulation_.set_state(start);  // sensors begin with it
+      observe_jump();
+    } else {
+      Snapshot snapshot = simulation_.snapshot();
+      snapshot.start_time += time - simulation_.time();
+      simulation_.restore(snapshot);
+    }
   });
 }
 

@@ -73,7 +73,7 @@ class TestParameters(unittest.TestCase):
             ("kp", "parameter ~set: 'kp' is not of the form PLUGIN.TAG=VALUE"),
             ("motorpid_plugin.kp=", "is not of the form PLUGIN.TAG=VALUE"),
             ("a.b=1 a.b=2", "parameter ~set: a.b is given twice; keep one"),
-            ("motorpid.kp=1", "set motorpid.kp: the model has no plugin 'motorpid' (did you mean"),
+            ("motorpid.kp=1", "set motorpid.kp: the model has no plugin 'motorpid'; it has drone_"),
             ("motorpid_plugin.kq=1", "kq"),
             ("motorpid_plugin.kp=-1", "kp"),
         ):
