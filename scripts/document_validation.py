@@ -3,14 +3,17 @@
 
 from __future__ import annotations
 
+import re
+import tempfile
 from pathlib import Path
 from typing import Any, Iterator
 
 import numpy as np
-from measured import figures, put
+from measured import DOCS, figures, put
 
 from quadcore.plots import PALETTE, dress, png, titled
 from quadcore.validation import Case, Experiment, Study, conduct
+from quadcore.validation.experiment import NO_LAG
 from quadcore.validation.figures import pictures
 from quadcore.validation.output import size
 from quadcore.validation.thesis import KINDS, thesis_figures
@@ -99,6 +102,44 @@ def steps() -> Iterator[Any]:
         yield f"{figures(dt * 1e3, 3)} ms", *found
 
 
+# Terms that chapter 2 leaves out: what they are, and where the thesis has them.
+LEFT_OUT = {
+    NO_LAG: (
+        "lag of the motors, $`I_R\\dot\\omega_i = k_p(u_i-\\omega_i)`$",
+        "none; the model here has it (`--motors lag`)",
+    ),
+    "the torque of rotors that spin up": (
+        "torque of rotors that spin up, $`-\\sum I_R\\dot\\omega_i\\,a_i`$",
+        "in (2.11), dropped after (2.13)",
+    ),
+    "rotors that a turning frame leaves behind": (
+        "rotors that a turning frame leaves behind, $`\\dot\\omega_i = \\dots - a_i\\cdot\\dot\\nu`$",
+        "none",
+    ),
+}
+
+
+def left_out(study: Study) -> Iterator[Any]:
+    """Tabulate what the terms move that chapter 2 leaves out."""
+    rows = {row.case.variant: row.difference for row in study.left_out}
+    for variant, texts in LEFT_OUT.items():
+        difference = rows[variant]
+        yield *texts, size(difference.largest["distance"]) if difference else "failed"
+
+
+def hexarotor() -> Iterator[Any]:
+    """Fly the hexarotor of docs/models.md with all drags."""
+    text = re.findall(r"```xml\n(<\?xml.*?)```", (DOCS / "models.md").read_text(), re.DOTALL)[0]
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "hexarotor.urdf.xacro"
+        file.write_text(text)
+        study = conduct(Experiment.of(str(file)), drags=["all"])
+    rows = {row.case: row.difference for row in study.rows}
+    for engine in study.engines:
+        found = [rows[Case(engine, slow, "all")] for slow in study.sim_slow]
+        yield engine, *(size(one.largest["distance"]) if one else "failed" for one in found)
+
+
 def write_tables(study: Study) -> None:
     """Write the tables that stand between marks."""
     slow = [f"{n:g}" for n in study.sim_slow]
@@ -111,6 +152,9 @@ def write_tables(study: Study) -> None:
     engines = [f"`{engine}`" for engine in study.engines]
     put(page, "decays", ("sim_slow", "formula", *engines), decays(study))
     put(page, "slowed", ("sim_slow", "drag", "distance (m)", "yaw (degrees)"), slowed(study))
+    heading = ("term", "in the thesis", "moves the model by (m)")
+    put(page, "left out", heading, left_out(study))
+    put(page, "hexarotor", ("engine", f"sim_slow {slow[0]}", *slow[1:]), hexarotor())
     heading = ("step", "`ode`, sim_slow 1", "8", "18", "`gazebo11`, sim_slow 1")
     put(page, "steps", heading, steps())
 

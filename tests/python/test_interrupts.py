@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 import os
 import random
 import signal
@@ -126,6 +127,44 @@ def test_a_comparison_ended_at_random_moments_keeps_what_was_flown(number, tmp_p
         assert {row["failure"] for row in rows} == {"", "not flown: interrupted"}
         for path in (folder / "out" / "logs").iterdir():
             assert path.read_text().count("\n") == 502
+
+
+@pytest.mark.parametrize("number", SIGNALS)
+def test_a_validation_ended_at_random_moments_keeps_what_was_flown(number, tmp_path):
+    """In turn while it flies and while it draws."""
+    moments = random.Random(int(number))
+    for trial in range(10):
+        out = tmp_path / str(trial)
+        drawing = trial % 2 == 1
+        process = started(
+            *("validate", "--drag", "none,profile,all", "--sim-slow", "1,2", "--jobs", "2"),
+            *("--engine", "eigen", "--duration", "0.5" if drawing else "200", "--out", str(out)),
+            folder=tmp_path,
+        )
+        until(lambda seen=out / "errors.csv" if drawing else out: seen.exists())
+        time.sleep(moments.uniform(0, 0.3))
+        ended(process, number)
+        assert hidden(out) == []
+        if not drawing and files(out) == []:
+            continue  # before the first flight
+        tables = ["chains.csv", "commands.csv", "errors.csv", "report.html", "validation.json"]
+        assert [name for name in files(out) if not name.endswith(".png")] == tables
+        with (out / "errors.csv").open(newline="") as stream:
+            rows = list(csv.DictReader(stream))
+        assert [(row["sim_slow"], row["drag"]) for row in rows] == [
+            (slow, drag) for slow in ("1.0", "2.0") for drag in ("none", "profile", "all")
+        ]
+        for row in rows:
+            assert row["failure"] or float(row["max_distance"]) >= 0
+            assert not (drawing and row["failure"])
+        found = json.loads((out / "validation.json").read_text())
+        assert [row["failure"] for row in found["errors"]] == [row["failure"] for row in rows]
+        page = (out / "report.html").read_text()
+        assert page.endswith("</html>")
+        pictures = list(out.glob("*.png"))
+        assert page.count("data:image/png") == len(pictures)
+        for picture in pictures:
+            assert picture.read_bytes().endswith(b"IEND\xaeB`\x82")
 
 
 def test_processes_end_with_a_parent_that_is_killed(tmp_path):
