@@ -257,22 +257,22 @@ def test_a_failed_flight_keeps_its_log_and_can_be_taken_up_again(engine):
 
 @pytest.fixture
 def alarm():
-    """A function that makes this process receive an interrupt after some seconds."""
-    before = signal.signal(signal.SIGALRM, signal.default_int_handler)
-    yield lambda seconds: signal.setitimer(signal.ITIMER_REAL, seconds)
-    signal.setitimer(signal.ITIMER_REAL, 0)
-    signal.signal(signal.SIGALRM, before)
+    """A function that interrupts this process after some seconds of processor time."""
+    before = signal.signal(signal.SIGPROF, signal.default_int_handler)
+    yield lambda seconds: signal.setitimer(signal.ITIMER_PROF, seconds)
+    signal.setitimer(signal.ITIMER_PROF, 0)
+    signal.signal(signal.SIGPROF, before)
 
 
 @pytest.mark.parametrize("rotors", [4, 60])
 @pytest.mark.parametrize("call", ["step", "run"])
 def test_an_interrupt_is_heard_soon_however_slow_a_step(rotors, call, hangar, alarm):
     simulation = hangar(vehicle([Rotor((0.1 * i, 0, 0)) for i in range(rotors)]))
-    begin = time.monotonic()
+    begin = time.process_time()
     alarm(0.1)
     with pytest.raises(KeyboardInterrupt) as interrupted:
         simulation.step(10**9) if call == "step" else simulation.run(10**6)
-    assert time.monotonic() - begin < 1
+    assert time.process_time() - begin < 1
     if call == "run":
         assert len(interrupted.value.log) > 1
     simulation.step(1)
