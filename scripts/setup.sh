@@ -2,9 +2,11 @@
 # Afterwards .venv/bin/python has quadcore as it lies in this checkout.
 
 apt_packages="g++ make cmake ninja-build pkg-config python3-dev python3-venv
-  libode-dev libeigen3-dev libtinyxml2-dev doctest-dev ${extra_apt_packages:-}"
-python_packages="scikit-build-core>=0.5 pybind11>=2.10 numpy scipy matplotlib rich xacro rospkg
-  jinja2 pytest hypothesis ruff mypy clang-format==23.1.5"
+  libode-dev libeigen3-dev libtinyxml2-dev ${extra_apt_packages:-}"
+# What must be there before the package can be built; pyproject.toml names the rest.
+build_packages="scikit-build-core>=0.5 pybind11>=2.10"
+# With "test", the tools of the tests too.
+python_extras=${python_extras:-}
 
 say() { echo "quadcore: $*"; }
 
@@ -30,29 +32,33 @@ install_apt_packages() {
   $as_root env DEBIAN_FRONTEND=noninteractive $install >/dev/null
 }
 
+# Installs with pip, in the versions that were tested, and says what was not there.
+pip_install() {
+  local log=.venv/pip.log
+  .venv/bin/python -m pip install --constraint constraints.txt "$@" >$log 2>&1 ||
+    { cat $log >&2; say "pip could not install $*" >&2; exit 2; }
+  { grep '^Successfully installed' $log || true; } | sed 's/^S/quadcore: pip s/'
+}
+
 # The interpreter of the distribution, because that is the one for which ROS' packages are built.
 create_venv() {
   [ -x .venv/bin/python ] || {
     say "creating a virtual environment in .venv"
     /usr/bin/python3 -m venv --system-site-packages .venv
   }
-  local wanted
-  wanted=$(echo "$python_packages" | sha256sum)
-  [ "$(cat .venv/packages.sha256 2>/dev/null)" = "$wanted" ] && return
-  say "installing with pip:" $python_packages
-  .venv/bin/python -m pip install --quiet --upgrade pip
-  .venv/bin/python -m pip install --quiet $python_packages
-  echo "$wanted" > .venv/packages.sha256
 }
 
 install_quadcore() {
-  local sources
-  sources=$(find CMakeLists.txt pyproject.toml cpp python urdf worlds config launch srv \
-    -type f -not -name '*.pyc' -print0 | sort -z | xargs -0 sha256sum | sha256sum)
-  [ "$(cat .venv/quadcore.sha256 2>/dev/null)" = "$sources" ] && return
-  say "building and installing quadcore into .venv"
-  .venv/bin/python -m pip install --quiet --no-build-isolation --no-deps --force-reinstall .
-  echo "$sources" > .venv/quadcore.sha256
+  local sources extras=$python_extras
+  [ -x .venv/bin/pytest ] && extras=test  # once there, they stay in step
+  sources=$(find CMakeLists.txt pyproject.toml constraints.txt cpp python urdf worlds config launch \
+    srv -type f -not -name '*.pyc' -print0 | sort -z | xargs -0 sha256sum | sha256sum)
+  [ "$(cat .venv/quadcore.sha256 2>/dev/null)" = "$sources $extras" ] && return
+  say "building and installing quadcore and what it needs into .venv"
+  # An older pip does not know the names of today's binary packages.
+  pip_install "pip>=20.3" $build_packages
+  pip_install --no-build-isolation ".${extras:+[$extras]}"
+  echo "$sources $extras" > .venv/quadcore.sha256
 }
 
 # A Python of somebody else's (conda, pyenv) must not lend its packages.

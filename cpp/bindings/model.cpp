@@ -6,6 +6,7 @@
 #include "bindings.hpp"
 #include "quadcore/document.hpp"
 #include "quadcore/seen_or_sensed.hpp"
+#include "quadcore/text.hpp"
 #include "quadcore/world.hpp"
 
 namespace quadcore::bindings {
@@ -68,6 +69,8 @@ void bind_model(py::module_& m) {
       .def_readonly("ground_plane", &World::ground_plane)
       .def_readonly("passed_over", &World::passed_over);
 
+  m.def("parse_number", &parse_number, py::arg("text"),
+        "The finite number that a text is, as in a URDF; None otherwise.");
   const auto nothing = std::vector<std::string>{};
   m.def("read_model", &read_model, py::arg("document"), py::arg("ignore") = nothing,
         "Reads a URDF as Gazebo does: fixed links are lumped. Raises InputError with FILE:LINE.");

@@ -4,5 +4,7 @@ PYBIND11_MODULE(_core, m) {
   m.doc() = "The C++ core of quadcore; use the package quadcore instead.";
   quadcore::bindings::bind_errors(m);
   quadcore::bindings::bind_model(m);
+  quadcore::bindings::bind_plugins(m);
   quadcore::bindings::bind_simulation(m);
+  quadcore::bindings::bind_flight(m);
 }

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "quadcore/error.hpp"
-#include "quadcore/flight.hpp"
+#include "quadcore/log.hpp"
 
 namespace quadcore::node {
 
@@ -22,10 +22,9 @@ CsvLog::CsvLog(const std::string& path, const Simulation& simulation)
 void CsvLog::add(const VehicleState& state) {
   row_.clear();
   append_log_row(state, row_);
-  for (std::size_t i = 0; i < row_.size(); ++i) {
-    std::fprintf(file_.get(), i == 0 ? "%.17g" : ",%.17g", row_[i]);
-  }
-  std::fputc('\n', file_.get());
+  line_.clear();
+  append_csv(row_.data(), row_.size(), line_);
+  std::fwrite(line_.data(), 1, line_.size(), file_.get());
   check(std::ferror(file_.get()) == 0);
 }
 

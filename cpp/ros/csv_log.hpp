@@ -30,6 +30,7 @@ class CsvLog {
   const std::string path_;
   std::string error_;
   std::vector<double> row_;
+  std::string line_;
   std::unique_ptr<std::FILE, Close> file_;
 };
 

@@ -7,6 +7,8 @@ from typing import Mapping
 
 from . import resources, xml_source
 from ._core import Document, InputError
+from .files import is_file, shown
+from .forks import LOCK
 
 
 def load_description(model: str, xacro_args: Mapping[str, str]) -> Document:
@@ -36,13 +38,14 @@ def load_description(model: str, xacro_args: Mapping[str, str]) -> Document:
             raise InputError(f"{path}: takes no xacro arguments: it is no .xacro file")
         return _plain(path)
     # Only models that need it pay for importing xacro.
-    from .xacro_expansion import expand
+    with LOCK:
+        from .xacro_expansion import expand
 
     lines = expand(str(path), xacro_args)
     return Document(
-        str(path),
+        shown(path),
         "\n".join(text for text, _ in lines),
-        [(place.file, place.line) for _, place in lines],
+        [(shown(place.file), place.line) for _, place in lines],
     )
 
 
@@ -59,7 +62,7 @@ def load_world(world: str | None) -> Document:
 
 def _find(kind: str, name: str, folder: str) -> Path:
     path = Path(name)
-    if path.is_file():
+    if is_file(path):
         return path
     shipped = resources.shipped(folder)
     by_name = {**shipped, **{file.name: file for file in shipped.values()}}
@@ -73,5 +76,5 @@ def _find(kind: str, name: str, folder: str) -> Path:
 
 def _plain(path: Path) -> Document:
     text = xml_source.read(path)
-    xml_source.check(str(path), text)
-    return Document(str(path), text)
+    xml_source.check(shown(path), text)
+    return Document(shown(path), text)

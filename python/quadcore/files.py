@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+import shutil
+import stat
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, Iterator, Optional
+from typing import IO, Iterator, Optional, Union
 
 from . import interrupts
 from ._core import InputError
@@ -27,6 +30,7 @@ def read_text(path: Path, largest: Optional[int] = None) -> str:
         The file is missing, unreadable, too large or no text.
     """
     try:
+        check_regular(path)
         with path.open("rb") as stream:
             data = stream.read(-1 if largest is None else largest + 1)
     except OSError as error:
@@ -42,26 +46,116 @@ def read_text(path: Path, largest: Optional[int] = None) -> str:
         raise InputError(f"{path}:{line}: not UTF-8 text; save the file as UTF-8") from error
 
 
+def is_file(path: Path) -> bool:
+    """Whether `path` is a regular file.
+
+    Raises
+    ------
+    InputError
+        Nobody can tell: a folder above may not be entered, or the name is too long.
+    """
+    try:
+        return stat.S_ISREG(path.stat().st_mode)
+    except (FileNotFoundError, NotADirectoryError, ValueError):
+        return False
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+
+
+def check_regular(path: Path) -> None:
+    """Raise `InputError` for a pipe or a device, which could be waited for without end."""
+    mode = path.stat().st_mode
+    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
+        raise InputError(f"{path}: is no regular file; save what it gives in one")
+
+
+def shown(name: Union[str, Path]) -> str:
+    """Name of a file as it can be shown anywhere: bytes that are no UTF-8 are escaped."""
+    return os.fsencode(name).decode("utf-8", "backslashreplace")
+
+
 @contextmanager
 def atomic_write(path: Path) -> Iterator[IO[bytes]]:
     """Open `path` for writing so that it appears whole or not at all.
+
+    A link is followed, and what an older file may be read and written by stays.
 
     Raises
     ------
     InputError
         The file cannot be written. Nothing is left behind then, and an older file stays.
     """
-    part = _beside(path)
+    target = Path(os.path.realpath(str(path)))
+    part = _beside(target)
     try:
+        if not _replaceable(target):
+            with target.open("wb") as stream:
+                yield stream
+            return
         with part.open("wb") as stream:
             yield stream
-        os.replace(part, path)
+        if target.exists():
+            shutil.copymode(str(target), str(part))
+        os.replace(part, target)
     except OSError as error:
-        raise _unwritable(path, error) from error
+        raise unwritable(path, error) from error
     finally:
-        with interrupts.held():
-            if part.exists():
-                part.unlink()
+        with interrupts.held(), contextlib.suppress(OSError):
+            part.unlink()
+
+
+class Appended:
+    """A file that grows by whole lines and is complete up to the last one at any time.
+
+    Parameters
+    ----------
+    path
+        Emptied if it exists.
+
+    Raises
+    ------
+    InputError
+        It cannot be written.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        try:
+            self._stream = path.open("wb", buffering=0)
+        except OSError as error:
+            raise unwritable(path, error) from error
+
+    def write(self, lines: bytes) -> None:
+        """Append lines; of those that do not fit, the whole ones stay.
+
+        Raises
+        ------
+        InputError
+            The disk is full, for instance.
+        """
+        written = 0
+        try:
+            while written < len(lines):
+                written += self._stream.write(memoryview(lines)[written:]) or 0
+        except OSError as error:
+            with contextlib.suppress(OSError):
+                rest = written - (lines.rfind(b"\n", 0, written) + 1)
+                self._stream.truncate(self._stream.tell() - rest)
+            raise unwritable(self._path, error) from error
+
+    def close(self) -> None:
+        """Close the file."""
+        self._stream.close()
+
+
+def text_bytes(text: str) -> bytes:
+    """UTF-8 of a text; file names in it that are none are escaped."""
+    return text.encode("utf-8", "backslashreplace")
+
+
+def cell(value: object) -> object:
+    """Keep a text in a CSV table from being taken for a formula by a spreadsheet."""
+    return f"'{value}" if isinstance(value, str) and value[:1] in tuple("=+-@") else value
 
 
 def make_folder(path: Path) -> None:
@@ -80,23 +174,34 @@ def make_folder(path: Path) -> None:
 
 def check_writable(path: Path) -> None:
     """Raise `InputError` now if `path` could not be written later; an older file is not touched."""
-    if path.is_dir():
-        raise InputError(f"{path}: is a folder; name a file in it")
-    if not path.parent.is_dir():
-        raise InputError(f"{path}: there is no folder {path.parent}; create it first")
-    probe = _beside(path)
     try:
+        if path.is_dir():
+            raise InputError(f"{path}: is a folder; name a file in it")
+        if not path.parent.is_dir():
+            raise InputError(f"{path}: there is no folder {path.parent}; create it first")
+        target = Path(os.path.realpath(str(path)))
+        if not _replaceable(target):
+            return
+        if target.exists() and not os.access(str(target), os.W_OK):
+            raise InputError(f"{path}: cannot be written: it is read-only")
+        probe = _beside(target)
         with interrupts.held():
             probe.touch()
             probe.unlink()
     except OSError as error:
-        raise _unwritable(path, error) from error
+        raise unwritable(path, error) from error
+
+
+def unwritable(path: Path, error: OSError) -> InputError:
+    """Make the error that says why a file cannot be written."""
+    return InputError(f"{path}: cannot be written: {error.strerror or error}")
+
+
+def _replaceable(path: Path) -> bool:
+    """Whether a new file may take the place of what is there: not of a device or a pipe."""
+    return not path.exists() or path.is_file()
 
 
 def _beside(path: Path) -> Path:
     # In the same folder, because a rename is atomic only within one file system.
     return path.with_name(f".{path.name}.{os.getpid()}.part")
-
-
-def _unwritable(path: Path, error: OSError) -> InputError:
-    return InputError(f"{path}: cannot be written: {error.strerror or error}")

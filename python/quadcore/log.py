@@ -8,12 +8,14 @@ from typing import Mapping, Sequence, Union
 
 import numpy as np
 
-from ._core import InputError, log_columns, log_remark
+from ._core import InputError, csv_rows, log_columns, log_remark
 from .files import atomic_write, check_writable
+from .forks import LOCK
 
 PathLike = Union[str, "os.PathLike[str]"]
 
 _STATE_SIZE = len(log_columns(0))
+_PIECE = 4096  # rows
 
 
 class Log:
@@ -86,22 +88,25 @@ class Log:
 
         What was `ignored`, if anything, stands in a comment below the names of the columns.
         """
-        with atomic_write(Path(path)) as stream:
-            header = ",".join(self.columns) + log_remark(self.ignored)
-            np.savetxt(stream, self.table, "%.17g", ",", header=header, comments="")
+        with atomic_write(_named(path, ".csv")) as stream:
+            stream.write(csv_head(self.columns, self.ignored))
+            for begin in range(0, len(self), _PIECE):
+                stream.write(csv_rows(self.table[begin : begin + _PIECE]))
 
     def to_mat(self, path: PathLike) -> None:
         """Write a MATLAB file of each column as a vector and each wrench as ``wrench_NAME``.
 
         What was `ignored`, if anything, is the cell array ``ignored``.
         """
-        import scipy.io
+        with LOCK:
+            import scipy.io
 
+        file = _named(path, ".mat")
         variables = {name: self.table[:, i] for i, name in enumerate(self.columns)}
         variables.update((f"wrench_{name}", value) for name, value in self.wrenches.items())
         if self.ignored:
             variables["ignored"] = np.array(self.ignored, dtype=object)
-        with atomic_write(Path(path)) as stream:
+        with atomic_write(file) as stream:
             scipy.io.savemat(stream, variables, oned_as="column")
 
     def to_file(self, path: PathLike) -> None:
@@ -112,23 +117,37 @@ class Log:
         InputError
             Another suffix, or a file that cannot be written; nothing is left behind then.
         """
-        {".csv": self.to_csv, ".mat": self.to_mat}[_suffix(Path(path))](path)
+        {".csv": self.to_csv, ".mat": self.to_mat}[log_suffix(Path(path))](path)
 
     def plot(self, directory: PathLike) -> list[Path]:
         """Draw the flight into PNG files in `directory` (made if missing); returns their paths."""
-        from .plots import draw  # matplotlib is slow to import
+        with LOCK:
+            from .plots import draw  # matplotlib is slow to import
 
         return draw(self, Path(directory))
 
 
 def check_log_path(path: PathLike) -> None:
     """Raise `InputError` now if `Log.to_file` could not write `path` later."""
-    _suffix(Path(path))
+    log_suffix(Path(path))
     check_writable(Path(path))
 
 
-def _suffix(path: Path) -> str:
+def csv_head(columns: Sequence[str], ignored: Sequence[str]) -> bytes:
+    """First line of a CSV log, and what was ignored."""
+    return (",".join(columns) + log_remark(ignored) + "\n").encode()
+
+
+def log_suffix(path: Path) -> str:
+    """Kind of log that a file's name asks for; raises `InputError` if there is none such."""
     suffix = path.suffix.lower()
     if suffix not in (".csv", ".mat"):
         raise InputError(f"{path}: logs are written to .csv and .mat files")
     return suffix
+
+
+def _named(path: PathLike, suffix: str) -> Path:
+    path = Path(path)
+    if path.suffix.lower() != suffix:
+        raise InputError(f"{path}: name a file that ends in {suffix}, which it would hold")
+    return path

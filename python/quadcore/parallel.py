@@ -31,16 +31,20 @@ from ._core import QuadcoreError
 
 Case = TypeVar("Case")
 Result = TypeVar("Result")
+Task = Tuple[Callable[[Any], Any], Callable[[Any], Any]]
 
 # Forked, so that the caller's data need not be copied and its script need not be importable.
 _FORK = multiprocessing.get_context("fork")
 
-_PATIENCE = 5.0  # s; how long a process that was asked to end may take
+_PATIENCE = 10.0  # s; how long a process that was asked to end may take
 _PR_SET_PDEATHSIG = 1  # of linux/prctl.h
 
 
 def each(
-    function: Callable[[Case], Result], cases: Iterable[Case], processes: Optional[int] = None
+    function: Callable[[Case], Any],
+    cases: Iterable[Case],
+    processes: Optional[int] = None,
+    conclude: Callable[[Any], Result] = lambda result: result,
 ) -> Generator[Tuple[int, Union[Result, QuadcoreError]], None, None]:
     """Call `function` on every case, in parallel.
 
@@ -54,6 +58,10 @@ def each(
     processes
         How many; None takes one per core that this process may use. Fewer if the system gives no
         more.
+    conclude
+        Called on the result, in the same process, for what stands in its place. An interrupt waits
+        until that is done and the outcome is on its way: a file that `conclude` writes is there if
+        and only if the outcome is.
 
     Yields
     ------
@@ -71,7 +79,7 @@ def each(
     RuntimeError
         Anything else that `function` raised, with its traceback; see `contained`.
     """
-    crew = _Crew(function, cases)
+    crew = _Crew(function, conclude, cases)
     done: Deque[Tuple[int, Any]] = collections.deque()
     try:
         crew.hire(processes or len(os.sched_getaffinity(0)))
@@ -108,8 +116,13 @@ def contained(function: Callable[[Case], Result]) -> Callable[[Case], Result]:
 class _Crew:
     """Processes that work on cases."""
 
-    def __init__(self, function: Callable[[Any], Any], cases: Iterable[Any]) -> None:
-        self._function = function
+    def __init__(
+        self,
+        function: Callable[[Any], Any],
+        conclude: Callable[[Any], Any],
+        cases: Iterable[Any],
+    ) -> None:
+        self._task = function, conclude
         self._queue = enumerate(cases)
         self.busy: Dict[Connection, Tuple[int, Any]] = {}
         """Index of the case and process, by the end of its pipe."""
@@ -157,7 +170,7 @@ class _Crew:
     def _replace(self) -> bool:
         """Start one more process; without success the others go on alone, if there are any."""
         try:
-            self._give(*_start(self._function, list(self.busy)))
+            self._give(*_start(self._task, list(self.busy)))
         except OSError as error:
             if not self.busy:
                 raise QuadcoreError(f"no process can be started: {error.strerror}") from error
@@ -174,10 +187,10 @@ class _Crew:
         process.join()
 
 
-def _start(function: Callable[[Any], Any], others: List[Connection]) -> Tuple[Connection, Any]:
+def _start(task: Task, others: List[Connection]) -> Tuple[Connection, Any]:
     here, there = _FORK.Pipe()
     process = _FORK.Process(
-        target=_work, args=(function, there, [here, *others], os.getpid()), daemon=True
+        target=_work, args=(task, there, [here, *others], os.getpid()), daemon=True
     )
     # What comes before the child is ready waits for it, instead of finding the parent's handlers.
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, interrupts.SIGNALS)
@@ -192,34 +205,39 @@ def _start(function: Callable[[Any], Any], others: List[Connection]) -> Tuple[Co
     return here, process
 
 
-def _work(
-    function: Callable[[Any], Any], pipe: Connection, inherited: List[Connection], parent: int
-) -> None:
+def _work(task: Task, pipe: Connection, inherited: List[Connection], parent: int) -> None:
     try:
         _obey(parent)
         for connection in inherited:  # else nobody would see that the parent is gone
             connection.close()
-        _serve(function, pipe)
+        _serve(*task, pipe)
     except interrupts.Interrupted as stop:  # everything is left as it should be
         signal.signal(stop.number, signal.SIG_DFL)
         os.kill(os.getpid(), stop.number)
 
 
-def _serve(function: Callable[[Any], Any], pipe: Connection) -> None:
+def _serve(
+    function: Callable[[Any], Any], conclude: Callable[[Any], Any], pipe: Connection
+) -> None:
     with contextlib.suppress(EOFError, BrokenPipeError, ConnectionResetError):
         while True:
-            case = pipe.recv()
-            outcome: Tuple[Any, Optional[str]]
-            try:
-                outcome = function(case), None
-            except QuadcoreError as error:
-                outcome = QuadcoreError(str(error)), None
-            except MemoryError:
-                outcome = QuadcoreError("no memory left"), None
-            except Exception:
-                outcome = None, traceback.format_exc()
+            result, fault = _outcome(function, pipe.recv())
             with interrupts.held():
-                pipe.send(outcome)
+                if fault is None and not isinstance(result, QuadcoreError):
+                    result, fault = _outcome(conclude, result)
+                pipe.send((result, fault))
+
+
+def _outcome(function: Callable[[Any], Any], argument: Any) -> Tuple[Any, Optional[str]]:
+    """Result, or the QuadcoreError in its place, and the traceback of any other fault."""
+    try:
+        return function(argument), None
+    except QuadcoreError as error:
+        return QuadcoreError(str(error)), None
+    except MemoryError:
+        return QuadcoreError("no memory left"), None
+    except Exception:
+        return None, traceback.format_exc()
 
 
 def _obey(parent: int) -> None:

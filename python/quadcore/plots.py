@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 import io
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Sequence
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-from mpl_toolkits.mplot3d import Axes3D  # noqa: F401  (matplotlib < 3.2 needs it for "3d")
 
 from .files import atomic_write, make_folder
 from .rotation import roll_pitch_yaw
+
+# Files need no window, and a wrong name of a toolkit for windows must not end a flight.
+_toolkit = os.environ.pop("MPLBACKEND", None)
+try:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    from mpl_toolkits.mplot3d import Axes3D  # noqa: F401  (matplotlib < 3.2 needs it for "3d")
+finally:
+    if _toolkit is not None:
+        os.environ["MPLBACKEND"] = _toolkit
 
 if TYPE_CHECKING:
     from .log import Log

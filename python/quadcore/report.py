@@ -7,7 +7,7 @@ from pathlib import Path
 
 import jinja2
 
-from .files import atomic_write
+from .files import atomic_write, text_bytes
 
 
 def write_page(path: Path, template: str, **values: object) -> None:
@@ -38,7 +38,7 @@ def write_page(path: Path, template: str, **values: object) -> None:
     environment.filters["picture"] = _picture
     page = environment.get_template(template).render(values)
     with atomic_write(path) as stream:
-        stream.write(page.encode())
+        stream.write(text_bytes(page))
 
 
 def _picture(data: bytes, meaning: str) -> str:

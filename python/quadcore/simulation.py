@@ -2,28 +2,22 @@
 
 from __future__ import annotations
 
-import math
-import time
-from numbers import Real
 from operator import attrgetter
 from pathlib import Path
-from typing import Callable, Mapping, Optional, Sequence, Union
+from typing import Mapping, Optional, Sequence, Union
 from warnings import warn
 
 import numpy as np
 
 from . import _core
-from .commands import as_commands
 from .description import load_description, load_world
+from .flight import Progress, Rows, fly
 from .log import Log
 from .state import LiveState
 from .warning import QuadcoreWarning
 
 Number = Union[float, str]
 Value = Union[float, str, bool, Sequence[str]]
-
-_LONGEST = 1e9  # s
-_PIECE = 0.02  # s, at least; what is flown between two looks at progress and Ctrl-C
 
 
 class Simulation(_core.Simulation):
@@ -109,7 +103,8 @@ class Simulation(_core.Simulation):
         duration: float,
         commands: Union[np.ndarray, str, Path, None] = None,
         log_every: int = 1,
-        progress: Optional[Callable[[int, int], None]] = None,
+        progress: Optional[Progress] = None,
+        wrenches: bool = True,
     ) -> Log:
         """Fly for a while and log it.
 
@@ -124,6 +119,8 @@ class Simulation(_core.Simulation):
             Steps between logged rows.
         progress : callable, optional
             Called as progress(steps_done, steps_total) every few hundredths of a second.
+        wrenches : bool
+            Whether to log them, which takes most of the memory of a log.
 
         Returns
         -------
@@ -136,47 +133,15 @@ class Simulation(_core.Simulation):
             An argument is at fault; nothing was flown.
         FlightError
             The flight failed. Its attribute `log` is the log so far, as it is of the
-            KeyboardInterrupt that ends a run.
+            KeyboardInterrupt that ends a run, and of the MemoryError when a log has no more room.
         """
-        total = steps_within(duration, self.dt)
-        table = None if commands is None else as_commands(commands, self.command_width)
-        flight = _core.Flight(self, table, log_every)
-        done, steps = 0, 1
+        rows = Rows(self)
         try:
-            while done < total:
-                steps = min(steps, total - done)
-                started = time.perf_counter()
-                flight.advance(steps)
-                done += steps
-                if time.perf_counter() - started < _PIECE:
-                    steps *= 2
-                if progress is not None:
-                    progress(done, total)
+            fly(self, duration, commands, log_every, rows.receive, wrenches, progress)
         except (_core.QuadcoreError, KeyboardInterrupt, MemoryError) as error:
-            error.log = self._log(flight)  # type: ignore[union-attr]
+            error.log = rows.log()  # type: ignore[union-attr]
             raise
-        return self._log(flight)
-
-    def _log(self, flight: _core.Flight) -> Log:
-        wrenches = flight.wrenches
-        terms = {term: wrenches[:, i] for i, term in enumerate(self.wrench_terms)}
-        return Log(flight.table, terms, ignored=self.ignored)
-
-
-def steps_within(duration: float, dt: float) -> int:
-    """Count the steps that end within a duration; raises `InputError` if it is none."""
-    if not (isinstance(duration, Real) and 0 <= duration <= _LONGEST):
-        raise _core.InputError(f"duration is {duration!r}; give seconds, from 0 to {_LONGEST:g}")
-    return math.floor(duration / dt + 1e-6)
-
-
-def check_logged(duration: float, dt: float, log_every: int) -> None:
-    """Raise `InputError` if a log would hold the start alone: nothing could be told from it."""
-    steps = steps_within(duration, dt)
-    if log_every > steps:
-        raise _core.InputError(
-            f"log_every is {log_every} but the flight has {steps} steps; log more often"
-        )
+        return rows.log()
 
 
 def names_to_ignore(ignore: Sequence[str]) -> list[str]:
@@ -203,9 +168,18 @@ def text_of(value: Union[Value, Path]) -> str:
 
 def _pose(spawn: Sequence[Number]) -> Sequence[float]:
     try:
-        pose = [float(value) for value in spawn]
+        pose = [_number(value) for value in spawn]
     except (TypeError, ValueError):
         pose = []
     if len(pose) not in (3, 6):
         raise _core.InputError(f"spawn is {spawn!r}; give x, y, z[, roll, pitch, yaw] in m and rad")
     return pose + [0.0] * (6 - len(pose))
+
+
+def _number(value: Number) -> float:
+    if not isinstance(value, str):
+        return float(value)
+    number = _core.parse_number(value)
+    if number is None:
+        raise ValueError(value)
+    return number

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, List
+from typing import TYPE_CHECKING, Any, Callable, Dict, List
 
 import numpy as np
 
@@ -67,12 +67,15 @@ class State:
 class LiveState:
     """The state of a simulation now: read-only views that change with every step.
 
-    Members as in `State`; `copy()` makes a free copy.
+    Members as in `State`; `copy()` makes a free copy, all of one moment, which is also what
+    `copy.copy`, `pickle` and `multiprocessing` make of it. A view that is read while another thread
+    steps may be torn, half old and half new: `copy()` refuses then.
     """
 
-    __slots__ = ("_clock", *_VECTORS)
+    __slots__ = ("_clock", "_copy", *_VECTORS)
 
     _clock: np.ndarray
+    _copy: Callable[[], Dict[str, Any]]
     position: np.ndarray
     orientation: np.ndarray
     linear_velocity: np.ndarray
@@ -83,6 +86,7 @@ class LiveState:
     def __init__(self, simulation: _core.Simulation) -> None:
         views = simulation._views()
         object.__setattr__(self, "_clock", views["time"])
+        object.__setattr__(self, "_copy", views["copy"])
         for name in _VECTORS:
             object.__setattr__(self, name, views[name])
 
@@ -97,7 +101,23 @@ class LiveState:
         return float(self._clock[0])
 
     def copy(self) -> State:
-        """Make a free copy of this state."""
-        return State.copy(self)  # type: ignore[arg-type]
+        """Make a free copy of this state.
+
+        Raises
+        ------
+        InputError
+            Another thread is stepping the simulation.
+        """
+        return _state(self._copy())
+
+    def __reduce__(self) -> Any:
+        return _state, (self._copy(),)
 
     __repr__ = State.__repr__
+
+
+def _state(members: Dict[str, Any]) -> State:
+    state = State()
+    for name, value in members.items():
+        setattr(state, name, value)
+    return state

@@ -9,7 +9,6 @@ from __future__ import annotations
 import contextlib
 import difflib
 import os
-import threading
 import traceback
 from pathlib import Path
 from types import FrameType
@@ -21,16 +20,10 @@ import xacro
 
 from . import resources, xml_source
 from ._core import InputError, QuadcoreError
+from .forks import LOCK
 from .warning import QuadcoreWarning
 
 _MOST_ELEMENTS = 20000  # a few lines of macros can ask for billions
-
-# xacro keeps its stacks in globals. A process is not forked while another thread expands a file:
-# the child would wait for that thread without end.
-_LOCK = threading.RLock()
-os.register_at_fork(
-    before=_LOCK.acquire, after_in_parent=_LOCK.release, after_in_child=_LOCK.release
-)
 
 
 def expand(path: str, arguments: Mapping[str, str]) -> list[tuple[str, xml_source.Origin]]:
@@ -59,7 +52,7 @@ def expand(path: str, arguments: Mapping[str, str]) -> list[tuple[str, xml_sourc
         What xacro itself warns of, and an argument that the file does not know.
     """
     table = _Arguments(arguments)
-    with _LOCK, _replaced_hooks(table):
+    with LOCK, _replaced_hooks(table):
         try:
             document = xacro.process_file(path, mappings=table)
         except QuadcoreError:

@@ -179,15 +179,15 @@ def test_an_interrupted_run_keeps_its_log_and_is_status_130(capsys, monkeypatch)
 
 
 def test_an_interrupt_while_the_log_is_written_waits_for_it(monkeypatch):
-    to_csv = Log.to_csv
+    to_mat = Log.to_mat
 
     def interrupted(log, path):
         signal.raise_signal(signal.SIGINT)
-        to_csv(log, path)
+        to_mat(log, path)
 
-    monkeypatch.setattr(Log, "to_csv", interrupted)
-    assert main([*FALL, "--log", "log.csv"]) == 130
-    assert len(np.loadtxt("log.csv", delimiter=",", skiprows=1)) == 51
+    monkeypatch.setattr(Log, "to_mat", interrupted)
+    assert main([*FALL, "--log", "log.mat"]) == 130
+    assert len(scipy.io.loadmat("log.mat")["t"]) == 51
 
 
 def test_a_second_interrupt_does_not_wait(monkeypatch):
@@ -195,8 +195,8 @@ def test_a_second_interrupt_does_not_wait(monkeypatch):
         signal.raise_signal(signal.SIGINT)
         signal.raise_signal(signal.SIGINT)
 
-    monkeypatch.setattr(np, "savetxt", lambda *_, **__: interrupted_twice())
-    assert main([*FALL, "--log", "log.csv"]) == 130
+    monkeypatch.setattr(scipy.io, "savemat", lambda *_, **__: interrupted_twice())
+    assert main([*FALL, "--log", "log.mat"]) == 130
     assert written() == []
 
 

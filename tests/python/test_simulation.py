@@ -278,18 +278,19 @@ def test_an_interrupt_is_heard_soon_however_slow_a_step(rotors, call, hangar, al
     simulation.step(1)
 
 
-def test_a_log_cannot_be_read_while_another_thread_writes_it():
+def test_log_state_and_topics_cannot_be_read_while_another_thread_writes_them():
     simulation = quadrotor("eigen")
     flight = _core.Flight(simulation, None, 1)
     flying = threading.Thread(target=flight.advance, args=(200000,))
     flying.start()
     while simulation.time == 0:
         pass
-    for name in ("table", "wrenches"):
+    for read in (flight.take, simulation.state.copy, lambda: simulation.topic("odom")):
         with pytest.raises(qc.InputError, match="is being used by another thread"):
-            getattr(flight, name)
+            read()
     flying.join()
-    assert len(flight.table) == len(flight.wrenches) == 200001
+    table, wrenches = flight.take()
+    assert len(table) == len(wrenches) == 200001
 
 
 @pytest.mark.parametrize("engine", ENGINES)

@@ -27,8 +27,9 @@ std::string shortened(const std::string& text) {
   return text.substr(0, end) + " ... " + text.substr(begin);
 }
 
-/// Well-formed characters that stay in their line; '?' stands for the others, a blank for ends of
-/// lines.
+}  // namespace
+
+// '?' stands for what is no character or leaves the line, a blank for ends of lines.
 std::string one_line(const std::string& text) {
   std::string line;
   for (std::size_t at = 0; at < text.size();) {
@@ -44,8 +45,6 @@ std::string one_line(const std::string& text) {
   }
   return shortened(line);
 }
-
-}  // namespace
 
 Error::Error(const std::string& what) : std::runtime_error(one_line(what)) {}
 

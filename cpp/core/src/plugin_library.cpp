@@ -41,14 +41,38 @@ std::string misspelt(const std::string& filename) {
   return did_you_mean(filename, modules);
 }
 
+/// Throws Error if a plugin names two of its tags, or two of its wrenches, alike.
+void check_names(const PluginDescriptor& descriptor) {
+  std::vector<std::string> tags;
+  for (const TagSpec& tag : descriptor.tags) {
+    tags.push_back(tag.name);
+    if (!tag.alias.empty()) tags.push_back(tag.alias);
+  }
+  for (std::vector<std::string> names : {tags, descriptor.wrenches}) {
+    std::sort(names.begin(), names.end());
+    const auto twice = std::adjacent_find(names.begin(), names.end());
+    if (twice != names.end()) throw Error("its descriptor names '" + *twice + "' twice; keep one");
+    for (const std::string& name : names) {
+      if (name != one_line(name))
+        throw Error("its descriptor has the name '" + name + "'; use text");
+    }
+  }
+}
+
 }  // namespace
 
 void load_plugin_path(const std::string& folder) {
-  if (!std::filesystem::is_directory(folder)) {
+  std::error_code unreachable;
+  const std::filesystem::path whole = std::filesystem::canonical(folder, unreachable);
+  if (unreachable && unreachable != std::errc::no_such_file_or_directory) {
+    throw InputError(folder + ": cannot be searched: " + unreachable.message() +
+                     "; give a folder that holds plugin libraries");
+  }
+  if (!std::filesystem::is_directory(whole, unreachable)) {
     throw InputError(folder + ": is not a folder; give one that holds plugin libraries");
   }
   const std::lock_guard<std::mutex> lock(added_mutex);
-  added_folders.insert(added_folders.begin(), std::filesystem::canonical(folder).string());
+  added_folders.insert(added_folders.begin(), whole.string());
 }
 
 std::vector<std::string> plugin_folders() {
@@ -103,6 +127,11 @@ PluginLibrary open_plugin(const PluginElement& element, const std::string& path)
     throw InputError(who + in + " has no " +
                      (descriptor ? "create in its descriptor" : "descriptor") +
                      "; give it one and rebuild it");
+  }
+  try {
+    check_names(*descriptor);
+  } catch (const Error& error) {
+    throw InputError(who + in + " does not fit: " + error.what());
   }
   return {path, descriptor};
 }

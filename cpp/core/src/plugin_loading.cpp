@@ -135,7 +135,9 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
                     std::to_string(max_plugin_state));
       }
       loaded.state_size = static_cast<Eigen::Index>(numbers);
-      for (const std::string& warning : warnings) warnings_.push_back(who + ": " + warning);
+      for (const std::string& warning : warnings) {
+        warnings_.push_back(one_line(who + ": " + warning));
+      }
     } catch (...) {
       throw InputError(who + " (" + library.path + "): " + what_was_thrown());
     }

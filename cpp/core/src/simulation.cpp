@@ -14,7 +14,15 @@ constexpr const char* command_topic_name = "vel_cmd";
 /// Beyond these no flight is meant; the numbers only say "diverged" before they overflow.
 constexpr double max_speed = 1e6;     // m/s
 constexpr double max_distance = 1e9;  // m
+constexpr double max_time = 1e9;      // s; far beyond, a step no longer moves the clock
 constexpr const char* no_longer_finite = "the state is no longer finite";
+
+/// Not std::to_string, which writes a decimal comma in some locales.
+std::string seconds(double time) {
+  std::ostringstream text;
+  text << std::fixed << time << " s";
+  return text.str();
+}
 
 bool is_finite(const Kinematics& k) {
   double rates = 0;
@@ -144,8 +152,7 @@ void Simulation::update() {
 
 void Simulation::collect_warnings() {
   for (const std::string& what : said_) {
-    warnings_.push_back("t = " + std::to_string(time()) + " s: plugin '" + active_->name +
-                        "': " + what);
+    warnings_.push_back("t = " + seconds(time()) + ": plugin '" + active_->name + "': " + what);
   }
   said_.clear();
 }
@@ -171,7 +178,7 @@ void Simulation::step(std::int64_t n) {
 
 void Simulation::fail(const std::string& what) {
   if (!said_.empty()) collect_warnings();
-  failure_ = "the flight failed at t = " + std::to_string(time()) + " s: ";
+  failure_ = "the flight failed at t = " + seconds(time()) + ": ";
   if (active_) failure_ += "plugin '" + active_->name + "' (" + active_->path + "): ";
   failure_ += what;
   leave();
@@ -211,6 +218,9 @@ void Simulation::set_state(const VehicleState& state) {
       !state.angular_velocity.allFinite() || !state.rotor_velocity.allFinite() ||
       !state.rotor_angle.allFinite()) {
     throw InputError("state: a value is not a finite number");
+  }
+  if (std::abs(state.time) > max_time) {
+    throw InputError("state: the time is beyond 1e9 s; give the seconds since the flight began");
   }
   if (!(state.orientation.norm() > 1e-6)) {
     throw InputError("state: the orientation is no quaternion; give a unit (x, y, z, w)");

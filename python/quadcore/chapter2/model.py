@@ -10,9 +10,9 @@ from scipy.spatial.transform import Rotation
 
 from .._core import FlightError
 from ..commands import as_commands
+from ..flight import steps_within
 from ..log import Log
 from ..rotation import roll_pitch_yaw
-from ..simulation import steps_within
 from ..state import State
 from . import matrices
 from .kinematics import euler_rates_to_body, gradient_of_W

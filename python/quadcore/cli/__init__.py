@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 from typing import NoReturn, Sequence
 
 from .. import __version__, interrupts
 from .._core import FlightError, InputError, QuadcoreError
+from ..files import shown
 from . import compare, info, run, terminal, validate
 
 
@@ -17,6 +17,10 @@ class _Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message}; see {self.prog} --help")
+
+    def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
+        sys.stdout.flush()  # while a full disk can still be told
+        super().exit(status, message)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -33,24 +37,36 @@ def main(argv: Sequence[str] | None = None) -> int:
         0 done; 2 bad input and 3 a flight that failed, each with one line ``error: ...`` on
         standard error; 130, 143, 129 ended by SIGINT, SIGTERM, SIGHUP, what was flown being kept.
     """
+    terminal.prepare()
     try:
         with interrupts.heard():
-            arguments = _parser().parse_args(argv)
-            with terminal.warnings_as_lines():
-                arguments.action(arguments)
-            sys.stdout.flush()
+            status = _act(argv)
+    except KeyboardInterrupt as stop:
+        terminal.say("interrupted")
+        status = interrupts.exit_status(stop)
+    return status
+
+
+def _act(argv: Sequence[str] | None) -> int:
+    try:
+        arguments = _parser().parse_args(argv)
+        with terminal.warnings_as_lines():
+            arguments.action(arguments)
+        sys.stdout.flush()
     except QuadcoreError as error:
-        print(f"error: {error}", file=sys.stderr)
+        terminal.say(f"error: {error}")
         return 3 if isinstance(error, FlightError) else 2
     except MemoryError:
-        print("error: no memory left for the log; shorten it by --log-every", file=sys.stderr)
+        terminal.say("error: no memory left; make the log shorter by --log-every")
         return 2
-    except KeyboardInterrupt as stop:
-        print("interrupted", file=sys.stderr)
-        return interrupts.exit_status(stop)
     except BrokenPipeError:
-        # The reader, such as `head`, has seen enough; the flush at exit must not fail again.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        # The reader, such as `head`, has seen enough.
+        terminal.forget_output()
+    except OSError as error:
+        terminal.forget_output()
+        where = shown(error.filename) if error.filename else "standard output"
+        terminal.say(f"error: {where}: {error.strerror or error}")
+        return 2
     return 0
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -66,7 +65,7 @@ def compare(arguments: argparse.Namespace) -> None:
         if out is not None and partial is not None:
             with interrupts.held():
                 write(partial, plan, _flight(arguments), out, plots=False)
-            print(f"what was flown: {out}", file=sys.stderr)
+            terminal.say(f"what was flown: {out}")
         raise
     files = []
     if out is not None:

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import math
 import re
 from typing import Any, Callable, Sequence
 
-from .._core import InputError, engines
+from .._core import InputError, engines, parse_number
 from ..simulation import Simulation
 
 
@@ -172,11 +171,8 @@ def _positive(text: str) -> float:
 
 
 def _finite(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
+    value = parse_number(text)
+    if value is None:
         raise argparse.ArgumentTypeError(f"'{text}' is not a finite number")
     return value
 
@@ -185,7 +181,7 @@ def integer(lowest: int, highest: int = 10**18) -> Callable[[str], int]:
     """Make the type of an option that takes a whole number."""
 
     def parse(text: str) -> int:
-        if not re.fullmatch(r"\d+", text) or int(text) < lowest:
+        if not re.fullmatch(r"[0-9]+", text) or int(text) < lowest:
             raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from {lowest} on")
         if int(text) > highest:
             raise argparse.ArgumentTypeError(f"{text} exceeds {highest}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import sys
+import os
 import time
 from pathlib import Path
 from typing import Any
@@ -12,9 +12,11 @@ import numpy as np
 from rich.table import Table
 
 from .. import interrupts
-from .._core import FlightError
+from .._core import InputError, QuadcoreError
 from ..files import make_folder
-from ..log import Log, check_log_path
+from ..flight import fly, steps_within
+from ..log import check_log_path
+from ..recording import Fastest, Recording, Thinned, log_file
 from ..rotation import roll_pitch_yaw
 from ..simulation import Simulation
 from . import options, terminal
@@ -29,65 +31,76 @@ def register(commands: Any) -> None:
     parser.add_argument(
         "--out", metavar="DIR", type=Path, help="write log.csv and plots here; made if missing"
     )
-    parser.add_argument("--log", metavar="FILE", type=Path, help="write the log here, .csv or .mat")
+    parser.add_argument(
+        "--log",
+        metavar="FILE",
+        type=Path,
+        action="append",
+        default=[],
+        help="write the log here, .csv or .mat; repeatable",
+    )
     parser.add_argument("--no-plots", action="store_true", help="no plots in --out")
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Fly, write what was asked for, and print a summary."""
     simulation = options.simulation(arguments)
-    files = _log_files(arguments)
+    steps = steps_within(arguments.duration, simulation.dt)
+    fastest, drawn = Fastest(), None
+    if arguments.out is not None and not arguments.no_plots:
+        drawn = Thinned(1 + steps // arguments.log_every, simulation)
+    logs = [log_file(file, simulation) for file in _log_files(arguments)]
+    recording = Recording(logs, [fastest, drawn] if drawn else [fastest])
     started = time.perf_counter()
     try:
         with terminal.progress(arguments.quiet) as progress:
-            log = simulation.run(
-                arguments.duration, arguments.commands, arguments.log_every, progress
+            fly(
+                simulation,
+                arguments.duration,
+                arguments.commands,
+                arguments.log_every,
+                recording.receive,
+                recording.wrenches,
+                progress,
             )
-    except (FlightError, KeyboardInterrupt) as stop:
-        partial = getattr(stop, "log", None)
-        if partial is not None:
-            _write(partial, files)
-            for file in files:
-                print(f"log until t = {partial.time[-1]:.6g} s: {file}", file=sys.stderr)
+    except (QuadcoreError, KeyboardInterrupt, MemoryError):
+        with interrupts.held():
+            for file in recording.close():
+                terminal.say(f"log until t = {fastest.time:.6g} s: {file}")
         raise
     elapsed = time.perf_counter() - started
-    _write(log, files)
-    if arguments.out is not None and not arguments.no_plots:
-        files += log.plot(arguments.out)
+    with interrupts.held():
+        files = recording.close()
+    if drawn is not None:
+        files += drawn.log().plot(arguments.out)
     if not arguments.quiet:
-        terminal.console().print(_summary(simulation, log, elapsed, files))
+        terminal.console().print(_summary(simulation, fastest.speed, elapsed, files))
+    recording.check()
 
 
 def _log_files(arguments: argparse.Namespace) -> list[Path]:
     """Name the logs to write and try each now: after the flight would be too late."""
-    files = []
+    files = list(arguments.log)
     if arguments.out is not None:
         make_folder(arguments.out)
-        files.append(arguments.out / "log.csv")
-    if arguments.log is not None:
-        files.append(arguments.log)
-    for file in files:
+        files.insert(0, arguments.out / "log.csv")
+    for i, file in enumerate(files):
         check_log_path(file)
+        if os.path.realpath(file) in [os.path.realpath(other) for other in files[:i]]:
+            raise InputError(f"{file}: would be written twice; name each log once")
     return files
 
 
-def _write(log: Log, files: list[Path]) -> None:
-    with interrupts.held():
-        for file in files:
-            log.to_file(file)
-
-
-def _summary(simulation: Simulation, log: Log, elapsed: float, files: list[Path]) -> Table:
-    table = Table(box=None, show_header=False, pad_edge=False)
+def _summary(simulation: Simulation, fastest: float, elapsed: float, files: list[Path]) -> Table:
+    table = terminal.table("", "", show_header=False)
     steps = round(simulation.time / simulation.dt)
     attitude = np.degrees(roll_pitch_yaw(simulation.state.orientation))
-    fastest = np.abs(log.rotor_velocity).max(initial=0.0)
     rows = [
         ("flown", f"{simulation.model.name}, {simulation.engine}"),
         ("duration", f"{simulation.time:.9g} s"),
         ("steps", f"{steps}, {steps / elapsed:,.0f} per s"),
-        ("final position", "{:.6f}, {:.6f}, {:.6f} m".format(*simulation.state.position)),
-        ("final roll, pitch, yaw", "{:.4f}, {:.4f}, {:.4f} deg".format(*attitude)),
+        ("final position", f"{_fixed(simulation.state.position, 6)} m"),
+        ("final roll, pitch, yaw", f"{_fixed(attitude, 4)} deg"),
         ("fastest rotor", f"{fastest:.3f} rad/s"),
     ]
     for i, file in enumerate(files):
@@ -95,3 +108,8 @@ def _summary(simulation: Simulation, log: Log, elapsed: float, files: list[Path]
     for row in rows:
         table.add_row(*row)
     return table
+
+
+def _fixed(values: np.ndarray, digits: int) -> str:
+    # Rounded before -0 becomes 0, so that no -0.0000 is printed.
+    return ", ".join(f"{round(float(value), digits) + 0.0:.{digits}f}" for value in values)

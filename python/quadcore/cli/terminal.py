@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import time
 import warnings
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any, Callable, Iterator
 
 from rich.console import Console
@@ -17,15 +18,53 @@ from ..warning import QuadcoreWarning
 _LONG = 1.0  # s; a run that is over sooner needs no progress bar
 
 
+def prepare() -> None:
+    """Make standard output and error take every text, whatever they are connected to."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:  # closed by the caller
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
+        elif hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def say(line: str) -> None:
+    """Print a line on standard error; if that fails there is nobody to tell."""
+    with suppress(OSError):
+        print(printable(line), file=sys.stderr)
+
+
+def forget_output() -> None:
+    """Let what standard output could not take go nowhere, so that the flush at exit succeeds."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def printable(text: str) -> str:
+    """Escape what would steer a terminal: names of files may hold anything."""
+    return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in text)
+
+
+class _Console(Console):
+    def print(self, *objects: Any, **options: Any) -> None:
+        shown = [printable(part) if isinstance(part, str) else part for part in objects]
+        super().print(*shown, **options)
+
+
+class _Table(Table):
+    def add_row(self, *cells: Any, **options: Any) -> None:
+        super().add_row(*(printable(str(cell)) for cell in cells), **options)
+
+
 def console() -> Console:
     """Make a console without markup that breaks no line unless a terminal needs it."""
     width = None if sys.stdout.isatty() else 10_000
-    return Console(width=width, markup=False, emoji=False, highlight=False)
+    return _Console(width=width, markup=False, emoji=False, highlight=False)
 
 
-def table(*columns: str, numbers: bool = False) -> Table:
+def table(*columns: str, numbers: bool = False, **options: Any) -> Table:
     """Make a table whose cells wrap, or one of numbers, which do not; the first column never."""
-    made = Table(box=None, pad_edge=False, header_style="bold")
+    made = _Table(box=None, pad_edge=False, header_style="bold", **options)
     for i, column in enumerate(columns):
         made.add_column(
             column,
@@ -43,7 +82,7 @@ def warnings_as_lines() -> Iterator[None]:
 
     def show(message: Any, category: Any, *where: Any, **to: Any) -> None:
         if issubclass(category, QuadcoreWarning):
-            print(f"warning: {message}", file=sys.stderr)
+            say(f"warning: {message}")
         else:
             show_others(message, category, *where, **to)
 

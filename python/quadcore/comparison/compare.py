@@ -20,6 +20,7 @@ from typing import (
 
 import numpy as np
 
+from .. import interrupts
 from .._core import InputError, QuadcoreError
 from ..commands import CommandsLike
 from ..log import Log
@@ -128,12 +129,18 @@ def fly(
         reference = _first_flown(plan, flights, tally)
         if reference is not None:
 
-            def measured(flight: Tuple[int, Variant]) -> Outcome:
+            def measured(flight: Tuple[int, Variant]) -> Any:
                 row, variant = flight
-                return _measured(row, plan.fly(variant), reference, keep)
+                log = plan.fly(variant)
+                return row, metrics(reference, log), log
+
+            def kept(flown: Any) -> Outcome:
+                return _kept(*flown, keep)
 
             start = tally.done
-            with closing(each(contained(measured), flights, processes)) as outcomes:
+            with closing(
+                each(contained(measured), flights, processes, contained(kept))
+            ) as outcomes:
                 for index, outcome in outcomes:
                     tally.note(start + index, outcome)
     except KeyboardInterrupt as stop:
@@ -151,14 +158,15 @@ def _first_flown(
         ((_, log),) = each(contained(plan.fly), [variant], 1)
         if isinstance(log, Log):
             tally.reference = row
-            tally.note(row, _measured(row, log, log, tally.keep))
+            with interrupts.held():
+                tally.note(row, _kept(row, metrics(log, log), log, tally.keep))
             return log
         tally.note(row, log)
     return None
 
 
-def _measured(row: int, log: Log, reference: Log, keep: Optional[Keep]) -> Outcome:
-    return metrics(reference, log), None if keep is None else keep(row, log)
+def _kept(row: int, measured: np.ndarray, log: Log, keep: Optional[Keep]) -> Outcome:
+    return measured, None if keep is None else keep(row, log)
 
 
 class _Tally:

@@ -10,7 +10,7 @@ from typing import Any, Iterator, List, Mapping, NamedTuple, Sequence, Tuple, Un
 
 import numpy as np
 
-from .._core import InputError
+from .._core import InputError, parse_number
 from ..simulation import Value, text_of
 
 LARGEST = 100_000
@@ -79,6 +79,8 @@ def axes_of(vary: Mapping[str, Values]) -> List[Axis]:
         name = ",".join(part.strip() for part in key.split(","))
         if isinstance(values, str) or len(values) == 0:
             raise InputError(f"vary {name}: holds no values; give at least one")
+        if {"engine", "world"} & set(name.split(",")) and "," in name:
+            raise InputError(f"vary {name}: engine and world take values of their own; vary each")
         axis = Axis(name, values if isinstance(values, Range) else [text_of(v) for v in values])
         for part in axis.tags or [name]:
             if part in taken:
@@ -108,10 +110,10 @@ def variants(models: int, axes: Sequence[Axis]) -> Iterator[Tuple[int, Tuple[str
 
 
 def _range(name: str, text: str) -> Range:
-    number = r"([-+\d.eE]+)"
-    match = re.fullmatch(rf"(log:)?{number}:{number}:(\d{{1,18}})", text)
-    first, last = (_number(match[2]), _number(match[3])) if match else (math.nan, math.nan)
-    if match is None or not math.isfinite(first - last):
+    number = r"([-+0-9.eE]+)"
+    match = re.fullmatch(rf"(log:)?{number}:{number}:([0-9]{{1,18}})", text)
+    first, last = (parse_number(match[2]), parse_number(match[3])) if match else (None, None)
+    if match is None or first is None or last is None or not math.isfinite(first - last):
         raise InputError(
             f"vary {name}: '{text}' is no range; write FIRST:LAST:COUNT or log:FIRST:LAST:COUNT"
         )
@@ -123,10 +125,3 @@ def _range(name: str, text: str) -> Range:
             f"vary {name}: '{text}' is no geometric range; write ends of one sign, none of them 0"
         )
     return Range(first, last, count, bool(match[1]))
-
-
-def _number(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        return math.nan

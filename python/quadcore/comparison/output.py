@@ -11,7 +11,7 @@ from typing import Any, Dict, List, Mapping, Optional
 
 import numpy as np
 
-from ..files import atomic_write
+from ..files import atomic_write, cell, text_bytes
 from ..log import Log
 from .compare import Comparison
 from .plan import Plan
@@ -52,16 +52,22 @@ def write(
     """
     from ..report import write_page  # not every command should pay for jinja2
 
-    images = _images(comparison, plan) if plots else {}
-    files = {f"{name}.png": data for name, data in images.items()}
-    files["table.csv"] = _csv(comparison).encode()
-    files["comparison.json"] = _json(comparison, plan, flight).encode()
-    for name, data in files.items():
+    written = []
+
+    def save(name: str, data: bytes) -> None:
         with atomic_write(folder / name) as stream:
             stream.write(data)
+        written.append(folder / name)
+
+    # What was flown comes first: pictures can fail, and take their time.
+    save("table.csv", text_bytes(_csv(comparison)))
+    save("comparison.json", text_bytes(_json(comparison, plan, flight)))
+    images = _images(comparison, plan) if plots else {}
+    for name, data in images.items():
+        save(f"{name}.png", data)
     page = folder / "report.html"
     write_page(page, "compare.html", **_page(comparison, plan, flight, images))
-    return [*(folder / name for name in files), page]
+    return [*written, page]
 
 
 def summary(comparison: Comparison) -> str:
@@ -92,7 +98,7 @@ def _csv(comparison: Comparison) -> str:
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(["number", *(comparison.table.dtype.names or ())])
     for number, row in enumerate(comparison.table.tolist(), start=1):
-        writer.writerow([number, *("" if value != value else value for value in row)])
+        writer.writerow([number, *("" if value != value else cell(value) for value in row)])
     return stream.getvalue()
 
 

@@ -10,8 +10,9 @@ from .. import _core
 from .._core import InputError, QuadcoreError, engines
 from ..commands import CommandsLike, as_commands
 from ..description import load_description, load_world
+from ..flight import check_logged
 from ..log import Log
-from ..simulation import Simulation, check_logged, names_to_ignore
+from ..simulation import Simulation, names_to_ignore
 from .difference import Difference, differences, facts
 from .grid import Axis, Values, axes_of, check_size, variants
 

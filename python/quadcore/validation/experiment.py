@@ -11,8 +11,9 @@ from .._core import InputError, QuadcoreError
 from ..chapter2 import GYROSTAT, MathematicalModel, Terms, Vehicle
 from ..chapter2.vehicle import AIR, MOTOR, command_order, parameters_of, the_plugin
 from ..commands import CommandsLike, as_commands
+from ..flight import check_logged
 from ..log import Log
-from ..simulation import Simulation, Value, check_logged
+from ..simulation import Simulation, Value
 from ..state import State
 from .ascent import ascent
 from .given_speeds import fly_given_speeds, stiff_gain

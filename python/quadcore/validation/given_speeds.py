@@ -15,8 +15,9 @@ import numpy as np
 from .. import _core
 from ..chapter2 import Vehicle
 from ..chapter2.vehicle import command_order
+from ..flight import steps_within
 from ..log import Log
-from ..simulation import Simulation, steps_within
+from ..simulation import Simulation
 
 # The rate of a stiff motor times the step; Runge-Kutta is stable below 2.78.
 STIFFNESS = 2.0
@@ -80,7 +81,7 @@ def fly_given_speeds(
     # What a stiff motor must be asked for to hold a speed against friction.
     asked = omega * (1 + vehicle.joint_damping / stiff_gain(vehicle, dt))
     before = np.vstack([simulation.state.rotor_velocity[order], omega[:-1]])
-    flight = _core.Flight(simulation, None, log_every)
+    flight = _core.Flight(simulation, None, log_every, wrenches=False)
     for now, jump in zip(asked, omega - before):
         if jump.any():
             state = simulation.state.copy()
@@ -88,4 +89,4 @@ def fly_given_speeds(
             simulation.set_state(state)
         simulation.command(now)
         flight.advance(1)
-    return Log(flight.table, {})
+    return Log(flight.take()[0], {})

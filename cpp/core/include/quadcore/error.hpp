@@ -29,6 +29,9 @@ class FlightError : public Error {
   double time_;
 };
 
+/// Text by others as Error has it: one line of UTF-8 without control characters.
+std::string one_line(const std::string& text);
+
 /// What the exception that is being handled says; for use in a catch block, where others' code may
 /// have thrown anything.
 std::string what_was_thrown();

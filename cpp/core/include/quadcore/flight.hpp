@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "quadcore/commands.hpp"
@@ -10,33 +9,32 @@
 
 namespace quadcore {
 
-/// Names of the log columns for n rotors: t, pose, velocities, rotor speeds.
-std::vector<std::string> log_columns(std::size_t rotor_count);
-/// What follows the names in a CSV log: "" or, on a line of its own, "# ignored: NAME, ...". Below
-/// them, because most programs take the first line for the names and skip comments afterwards.
-std::string log_remark(const std::vector<std::string>& ignored);
-/// Appends what stands in them.
-void append_log_row(const VehicleState& state, std::vector<double>& table);
+/// A piece of a log.
+struct LogRows {
+  std::int64_t count = 0;
+  /// (count, columns) in row-major order, columns as log_columns() names them.
+  std::vector<double> table;
+  /// (count, terms, 6) in row-major order, terms as Simulation::wrench_terms() names them: force
+  /// then torque, frame axes, about the vehicle's centre of mass, as they act from the logged state
+  /// on. Empty unless asked for.
+  std::vector<double> wrenches;
+};
 
-/// One logged run of a simulation, advanced piece by piece so that a caller can show progress and
-/// interrupt it without losing what is logged.
+/// One logged run of a simulation, advanced piece by piece so that a caller can show progress,
+/// interrupt it without losing what is logged, and put the rows where they belong as they come.
 class Flight {
  public:
   /// Logs the present state at once, then after every `log_every` steps.
   /// Throws InputError if log_every < 1.
-  Flight(Simulation& simulation, std::optional<Commands> commands, std::int64_t log_every);
+  Flight(Simulation& simulation, std::optional<Commands> commands, std::int64_t log_every,
+         bool wrenches);
 
   /// Flies n steps, each with the command that is due at its start. Throws what step() throws;
   /// what was logged stays.
   void advance(std::int64_t n);
 
-  std::int64_t rows() const { return rows_; }
-  /// (rows, columns) in row-major order, columns as log_columns() names them.
-  const std::vector<double>& table() const { return table_; }
-  /// (rows, terms, 6) in row-major order, terms as Simulation::wrench_terms() names them: force
-  /// then torque, frame axes, about the vehicle's centre of mass, as they act from the logged state
-  /// on.
-  const std::vector<double>& wrenches() const { return wrenches_; }
+  /// Hands over what was logged since the last call.
+  LogRows take();
 
  private:
   void log();
@@ -44,10 +42,9 @@ class Flight {
   Simulation& simulation_;
   std::optional<Commands> commands_;
   std::int64_t log_every_;
+  bool log_wrenches_;
   std::int64_t steps_ = 0;
-  std::int64_t rows_ = 0;
-  std::vector<double> table_;
-  std::vector<double> wrenches_;
+  LogRows rows_;
 };
 
 }  // namespace quadcore

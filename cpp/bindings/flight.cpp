@@ -1,0 +1,86 @@
+#include "quadcore/flight.hpp"
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include "arguments.hpp"
+#include "bindings.hpp"
+#include "guarded.hpp"
+#include "quadcore/log.hpp"
+
+namespace quadcore::bindings {
+namespace {
+
+struct BoundFlight {
+  std::shared_ptr<Guarded> guarded;
+  Flight flight;
+};
+
+std::unique_ptr<BoundFlight> create(const Self& self, const py::object& commands,
+                                    std::int64_t log_every, bool wrenches) {
+  std::optional<Commands> table;
+  if (!commands.is_none()) {
+    const Numbers rows = numbers(commands, 2, "commands");
+    table.emplace(Eigen::Map<const Commands::Table>(rows.data(), rows.shape(0), rows.shape(1)),
+                  self->command_width());
+  }
+  const Lock lock(*self);
+  return std::make_unique<BoundFlight>(
+      BoundFlight{self.guarded, Flight(*self.operator->(), std::move(table), log_every, wrenches)});
+}
+
+void advance(BoundFlight& bound, std::int64_t n) {
+  const Lock lock(*bound.guarded);
+  raising_warnings(*bound.guarded, [&] { without_gil([&] { bound.flight.advance(n); }); });
+}
+
+/// An array that owns the numbers: rows of a log are many, and are copied nowhere.
+py::array_t<double> array_of(std::vector<double>&& numbers, std::vector<py::ssize_t> shape) {
+  auto* const owned = new std::vector<double>(std::move(numbers));
+  const py::capsule owner(owned,
+                          [](void* vector) { delete static_cast<std::vector<double>*>(vector); });
+  return py::array_t<double>(std::move(shape), owned->data(), owner);
+}
+
+py::tuple take(BoundFlight& bound) {
+  const Lock lock(*bound.guarded);
+  const Simulation& simulation = bound.guarded->simulation;
+  LogRows rows = bound.flight.take();
+  const auto columns = static_cast<py::ssize_t>(
+      log_columns(static_cast<std::size_t>(simulation.state().rotor_velocity.size())).size());
+  const auto terms = static_cast<py::ssize_t>(simulation.wrench_terms().size());
+  const py::ssize_t with_wrenches = rows.wrenches.empty() ? 0 : rows.count;
+  return py::make_tuple(array_of(std::move(rows.table), {rows.count, columns}),
+                        array_of(std::move(rows.wrenches), {with_wrenches, terms, 6}));
+}
+
+py::bytes csv_rows(const Numbers& table) {
+  if (table.ndim() != 2) throw InputError("a table has rows and columns");
+  const auto columns = static_cast<std::size_t>(table.shape(1));
+  std::string text;
+  without_gil([&] {
+    for (py::ssize_t row = 0; row < table.shape(0); ++row) {
+      append_csv(table.data() + row * table.shape(1), columns, text);
+    }
+  });
+  return text;
+}
+
+}  // namespace
+
+void bind_flight(py::module_& m) {
+  py::class_<BoundFlight>(m, "Flight", "One logged run, advanced piece by piece.")
+      .def(py::init(&create), py::arg("simulation"), py::arg("commands"), py::arg("log_every"),
+           py::arg("wrenches") = true)
+      .def("advance", &advance, py::arg("n"))
+      .def("take", &take,
+           "Hands over what was logged since the last call: table (rows, columns) and wrenches "
+           "(rows, terms, 6), the latter without rows unless asked for.");
+
+  m.def("log_columns", &log_columns, py::arg("rotor_count"));
+  m.def("log_remark", &log_remark, py::arg("ignored"));
+  m.def("csv_rows", &csv_rows, py::arg("table"),
+        "Rows of a table as CSV with 17 significant digits.");
+}
+
+}  // namespace quadcore::bindings

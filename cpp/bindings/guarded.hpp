@@ -1,0 +1,112 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <atomic>
+#include <exception>
+#include <memory>
+
+#include "quadcore/error.hpp"
+#include "quadcore/simulation.hpp"
+
+/// \file
+/// What keeps Python's threads apart.
+
+namespace quadcore::bindings {
+
+namespace py = pybind11;
+
+/// A simulation that refuses to be used by two Python threads at once: the GIL does not guard it
+/// while it steps.
+struct Guarded {
+  Simulation simulation;
+  std::atomic<bool> busy{false};
+
+  Guarded(const Model& model, const World& world, const SimulationOptions& options)
+      : simulation(model, world, options) {}
+};
+
+class Lock {
+ public:
+  explicit Lock(Guarded& guarded) : guarded_(guarded) {
+    if (guarded.busy.exchange(true)) {
+      throw InputError("this simulation is being used by another thread; give each its own");
+    }
+  }
+  ~Lock() { guarded_.busy = false; }
+  Lock(const Lock&) = delete;
+  Lock& operator=(const Lock&) = delete;
+
+ private:
+  Guarded& guarded_;
+};
+
+/// Calls `function` without the GIL. Not by pybind11's guard: a daemon thread may find the
+/// interpreter gone when it comes back, Python then unwinds it, and no destructor survives that.
+template <class Function>
+void without_gil(const Function& function) {
+  PyThreadState* const thread = PyEval_SaveThread();
+  std::exception_ptr thrown;
+  try {
+    function();
+  } catch (...) {
+    thrown = std::current_exception();
+  }
+  PyEval_RestoreThread(thread);
+  if (thrown) std::rethrow_exception(thrown);
+}
+
+/// Raises in Python, as warnings, what a simulation warns of during a call, also where that fails.
+template <class Call>
+void raising_warnings(const Guarded& guarded, const Call& call) {
+  const Simulation& simulation = guarded.simulation;
+  const std::size_t before = simulation.warnings().size();
+  const auto raise = [&] {
+    for (std::size_t i = before; i < simulation.warnings().size(); ++i) {
+      const py::object category = py::module_::import("quadcore").attr("QuadcoreWarning");
+      if (PyErr_WarnEx(category.ptr(), simulation.warnings()[i].c_str(), 1) != 0) {
+        throw py::error_already_set();  // the user has made an error of it
+      }
+    }
+  };
+  try {
+    call();
+  } catch (...) {
+    raise();
+    throw;
+  }
+  if (simulation.warnings().size() > before) raise();
+}
+
+/// The simulation that a bound function is called on. A Python object whose __init__ was not called
+/// has none; pybind11 would give memory that nothing was built in.
+struct Self {
+  std::shared_ptr<Guarded> guarded;
+
+  Guarded& operator*() const { return *guarded; }
+  Simulation* operator->() const { return &guarded->simulation; }
+};
+
+}  // namespace quadcore::bindings
+
+namespace pybind11::detail {
+
+template <>
+struct type_caster<quadcore::bindings::Self> {
+  PYBIND11_TYPE_CASTER(quadcore::bindings::Self, const_name("quadcore._core.Simulation"));
+
+  bool load(handle source, bool convert) {
+    using quadcore::bindings::Guarded;
+    if (!isinstance<Guarded>(source)) return false;
+    auto* const instance = reinterpret_cast<pybind11::detail::instance*>(source.ptr());
+    if (!instance->get_value_and_holder().holder_constructed()) {
+      throw quadcore::InputError("this simulation is not made yet; call super().__init__() first");
+    }
+    make_caster<std::shared_ptr<Guarded>> held;
+    if (!held.load(source, convert)) return false;
+    value.guarded = cast_op<std::shared_ptr<Guarded>&>(held);
+    return true;
+  }
+};
+
+}  // namespace pybind11::detail

@@ -1,0 +1,57 @@
+#include <pybind11/stl.h>
+
+#include "arguments.hpp"
+#include "bindings.hpp"
+#include "quadcore/plugin_library.hpp"
+#include "quadcore/simulation.hpp"
+
+namespace quadcore::bindings {
+namespace {
+
+/// The bytes of a folder's name.
+std::string path_of(const py::object& folder) {
+  return py::cast<py::bytes>(py::module_::import("os").attr("fsencode")(folder));
+}
+
+}  // namespace
+
+void bind_plugins(py::module_& m) {
+  py::class_<Parameter>(m, "ParameterInfo", "One effective parameter of a plugin.")
+      .def_property_readonly("name", [](const Parameter& p) { return text(p.spec.name); })
+      .def_property_readonly(
+          "value", [](const Parameter& p) { return p.text.empty() ? p.spec.absent : p.text; })
+      .def_property_readonly("unit", [](const Parameter& p) { return text(p.spec.unit); })
+      .def_property_readonly("default",
+                             [](const Parameter& p) -> std::optional<std::string> {
+                               if (p.spec.required) return std::nullopt;
+                               return p.spec.fallback.empty() ? p.spec.absent : p.spec.fallback;
+                             })
+      .def_property_readonly("range", [](const Parameter& p) { return p.spec.range(); })
+      .def_property_readonly("meaning", [](const Parameter& p) { return text(p.spec.meaning); })
+      .def_property_readonly("equation", [](const Parameter& p) { return text(p.spec.equation); })
+      .def_property_readonly("alias", [](const Parameter& p) { return text(p.spec.alias); })
+      .def_readonly("origin", &Parameter::origin);
+
+  py::class_<LoadedPlugin>(m, "PluginInfo", "A loaded plugin.")
+      .def_readonly("name", &LoadedPlugin::name)
+      .def_readonly("filename", &LoadedPlugin::filename)
+      .def_property_readonly("path", [](const LoadedPlugin& p) { return file_name(p.path); })
+      .def_property_readonly("summary",
+                             [](const LoadedPlugin& p) { return text(p.descriptor->summary); })
+      .def_property_readonly("parameters",
+                             [](const LoadedPlugin& p) { return p.parameters.all(); });
+
+  m.def(
+      "load_plugin_path", [](const py::object& folder) { load_plugin_path(path_of(folder)); },
+      py::arg("folder"), "Adds a folder to search for plugin libraries, before all others.");
+  m.def(
+      "plugin_folders",
+      [] {
+        py::list folders;
+        for (const std::string& folder : plugin_folders()) folders.append(file_name(folder));
+        return folders;
+      },
+      "The folders searched for plugins, in order.");
+}
+
+}  // namespace quadcore::bindings

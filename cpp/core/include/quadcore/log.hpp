@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "quadcore/state.hpp"
+
+/// \file
+/// What the rows of a log hold, and how they are written.
+
+namespace quadcore {
+
+/// Names of the log columns for n rotors: t, pose, velocities, rotor speeds.
+std::vector<std::string> log_columns(std::size_t rotor_count);
+/// What follows the names in a CSV log: "" or, on a line of its own, "# ignored: NAME, ...". Below
+/// them, because most programs take the first line for the names and skip comments afterwards.
+std::string log_remark(const std::vector<std::string>& ignored);
+/// Appends what stands in them; without memory nothing.
+void append_log_row(const VehicleState& state, std::vector<double>& table);
+
+/// Appends a row of numbers as CSV with 17 significant digits, so that reading restores every bit,
+/// whatever the locale.
+void append_csv(const double* row, std::size_t columns, std::string& text);
+
+}  // namespace quadcore

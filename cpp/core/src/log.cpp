@@ -1,0 +1,72 @@
+#include "quadcore/log.hpp"
+
+#include <locale.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "quadcore/text.hpp"
+
+namespace quadcore {
+namespace {
+
+constexpr std::size_t fixed_columns = 14;
+
+/// The C locale for this thread: a host program may have chosen one with a decimal comma.
+class PlainNumbers {
+ public:
+  PlainNumbers() : before_(uselocale(plain())) {}
+  ~PlainNumbers() { uselocale(before_); }
+  PlainNumbers(const PlainNumbers&) = delete;
+  PlainNumbers& operator=(const PlainNumbers&) = delete;
+
+ private:
+  static locale_t plain() {
+    static const locale_t locale = newlocale(LC_ALL_MASK, "C", nullptr);
+    return locale;
+  }
+  const locale_t before_;
+};
+
+}  // namespace
+
+std::vector<std::string> log_columns(std::size_t rotor_count) {
+  std::vector<std::string> columns = {"t",  "x",  "y",  "z",  "qx", "qy", "qz",
+                                      "qw", "vx", "vy", "vz", "wx", "wy", "wz"};
+  for (std::size_t i = 0; i < rotor_count; ++i) columns.push_back("j" + std::to_string(i + 1));
+  return columns;
+}
+
+std::string log_remark(const std::vector<std::string>& ignored) {
+  if (ignored.empty()) return "";
+  std::string names = joined(ignored);
+  std::replace_if(names.begin(), names.end(), [](unsigned char c) { return c < 0x20; }, ' ');
+  return "\n# ignored: " + names;
+}
+
+void append_log_row(const VehicleState& state, std::vector<double>& table) {
+  const std::size_t rotors = static_cast<std::size_t>(state.rotor_velocity.size());
+  const std::size_t needed = table.size() + fixed_columns + rotors;
+  if (table.capacity() < needed) table.reserve(std::max(needed, 2 * table.capacity()));
+  const auto append = [&table](const auto& vector) {
+    table.insert(table.end(), vector.data(), vector.data() + vector.size());
+  };
+  table.push_back(state.time);
+  append(state.position);
+  append(state.orientation.coeffs());
+  append(state.linear_velocity);
+  append(state.angular_velocity);
+  append(state.rotor_velocity);
+}
+
+void append_csv(const double* row, std::size_t columns, std::string& text) {
+  const PlainNumbers plain;
+  char number[32];
+  for (std::size_t i = 0; i < columns; ++i) {
+    text.append(number, static_cast<std::size_t>(
+                            std::snprintf(number, sizeof number, i ? ",%.17g" : "%.17g", row[i])));
+  }
+  text += '\n';
+}
+
+}  // namespace quadcore

@@ -1,0 +1,139 @@
+"""A flight in pieces, whose rows go where they belong as they come."""
+
+from __future__ import annotations
+
+import math
+import time
+from numbers import Real
+from typing import TYPE_CHECKING, Callable, Optional
+
+import numpy as np
+
+from . import _core, interrupts
+from .commands import CommandsLike, as_commands
+from .log import Log
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
+
+Receive = Callable[[np.ndarray, np.ndarray], None]
+Progress = Callable[[int, int], None]
+
+_LONGEST = 1e9  # s
+_PIECE = 0.02  # s, at least; what is flown between two looks at progress and Ctrl-C
+
+
+def fly(
+    simulation: Simulation,
+    duration: float,
+    commands: Optional[CommandsLike],
+    log_every: int,
+    receive: Receive,
+    wrenches: bool,
+    progress: Optional[Progress] = None,
+) -> None:
+    """Fly for a while and hand over what is logged, every few hundredths of a second.
+
+    Parameters
+    ----------
+    duration, commands, log_every, progress
+        As for `Simulation.run`.
+    receive
+        Called as receive(table, wrenches) with new arrays of shape (rows, 14 + n) and
+        (rows, terms, 6), first with the present state, and with the last rows before anything is
+        raised. An interrupt waits for it.
+    wrenches
+        Whether to log them; else their array has no rows.
+
+    Raises
+    ------
+    InputError
+        An argument is at fault; nothing was flown.
+    FlightError
+        The flight failed.
+    """
+    total = steps_within(duration, simulation.dt)
+    table = None if commands is None else as_commands(commands, simulation.command_width)
+    flight = _core.Flight(simulation, table, log_every, wrenches)
+
+    def hand_over() -> None:
+        with interrupts.held():
+            receive(*flight.take())
+
+    done, steps = 0, 1
+    try:
+        while done < total:
+            hand_over()
+            steps = min(steps, total - done)
+            started = time.perf_counter()
+            flight.advance(steps)
+            done += steps
+            if time.perf_counter() - started < _PIECE:
+                steps *= 2
+            if progress is not None:
+                progress(done, total)
+    finally:
+        hand_over()
+
+
+class Rows:
+    """Collects what `fly` hands over; without memory for more it keeps what it has."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._columns = len(_core.log_columns(simulation.rotor_count))
+        self._terms = simulation.wrench_terms
+        self._ignored = simulation.ignored
+        self._count = 0
+        self._table = np.empty((0, self._columns))
+        self._wrenches = np.empty((0, len(self._terms), 6))
+        self._with_wrenches = False
+
+    def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
+        """Take over a piece."""
+        end = self._count + len(table)
+        _grow(self._table, end)
+        self._table[self._count : end] = table
+        if len(wrenches):
+            self._with_wrenches = True
+            _grow(self._wrenches, end)
+            self._wrenches[self._count : end] = wrenches
+        self._count = end
+
+    def log(self) -> Log:
+        """Give what came so far."""
+        wrenches = self._wrenches[: self._count]
+        named = {name: wrenches[:, i] for i, name in enumerate(self._terms)}
+        table = self._table[: self._count]
+        return Log(table, named if self._with_wrenches else {}, ignored=self._ignored)
+
+
+def _grow(array: np.ndarray, rows: int) -> None:
+    """Make room for so many rows and some more, where the array lies if possible."""
+    if rows <= len(array):
+        return
+    # By realloc, which moves large blocks without copying them.
+    try:
+        array.resize((rows + rows // 8, *array.shape[1:]), refcheck=False)
+    except MemoryError:
+        array.resize((rows, *array.shape[1:]), refcheck=False)
+
+
+def steps_within(duration: float, dt: float) -> int:
+    """Count the steps that end within a duration; raises `InputError` if it is none."""
+    if not (isinstance(duration, Real) and 0 <= duration <= _LONGEST):
+        raise _core.InputError(f"duration is {duration!r}; give seconds, from 0 to {_LONGEST:g}")
+    steps = math.floor(duration / dt + 1e-6)
+    if steps == 0 and duration > 0:
+        raise _core.InputError(
+            f"duration is {duration:g} s, less than a step of {dt:g} s; nothing would fly"
+        )
+    return steps
+
+
+def check_logged(duration: float, dt: float, log_every: int) -> None:
+    """Raise `InputError` if a log would hold the start alone: nothing could be told from it."""
+    steps = steps_within(duration, dt)
+    if log_every > steps:
+        raise _core.InputError(
+            f"log_every is {log_every} but the flight has {steps} steps; log more often"
+        )

@@ -1,0 +1,202 @@
+"""Where the rows of a flight go while it flies: files, and what is told or drawn afterwards."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Callable, List, Optional, Protocol, Sequence
+
+import numpy as np
+
+from . import _core
+from .files import Appended, unwritable
+from .log import Log, csv_head, log_suffix
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
+
+_DRAWN = 20_000  # rows, more than a picture can show
+
+
+class Recorder(Protocol):
+    """What takes over the rows of a flight."""
+
+    wrenches: bool
+    """Whether it wants the wrenches."""
+
+    def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
+        """Take over a piece, as `flight.fly` hands it over."""
+
+    def close(self) -> None:
+        """Finish, whether all was flown or not."""
+
+
+class LogFile(Recorder, Protocol):
+    """A file that holds a flight."""
+
+    path: Path
+
+
+def log_file(path: Path, simulation: Simulation) -> LogFile:
+    """Make the recorder that a file's name asks for."""
+    return CsvFile(path, simulation) if log_suffix(path) == ".csv" else MatFile(path, simulation)
+
+
+class CsvFile:
+    """A log that is written as it is flown, and complete up to its last row at any time."""
+
+    wrenches = False
+
+    def __init__(self, path: Path, simulation: Simulation) -> None:
+        self.path = path
+        self._head = csv_head(_core.log_columns(simulation.rotor_count), simulation.ignored)
+        self._file: Optional[Appended] = None
+
+    def receive(self, table: np.ndarray, _: np.ndarray) -> None:
+        """Write a piece."""
+        if self._file is None:  # not sooner: a flight that is refused leaves an older log alone
+            self._file = Appended(self.path)
+            self._file.write(self._head)
+        self._file.write(_core.csv_rows(table))
+
+    def close(self) -> None:
+        """Close the file."""
+        if self._file is not None:
+            self._file.close()
+
+
+class MatFile:
+    """A MATLAB file, whose variables are known at the end only: rows wait in a file without name.
+
+    It lies beside the log, where there must be room for the log as well.
+    """
+
+    wrenches = True
+
+    def __init__(self, path: Path, simulation: Simulation) -> None:
+        self.path = path
+        self._terms, self._ignored = simulation.wrench_terms, simulation.ignored
+        self._columns = len(_core.log_columns(simulation.rotor_count))
+        self._count = 0
+        try:
+            self._rows = tempfile.TemporaryFile(dir=str(path.parent))  # noqa: SIM115
+        except OSError as error:
+            raise unwritable(path, error) from error
+
+    def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
+        """Keep a piece."""
+        rows = np.hstack([table, wrenches.reshape(len(table), -1)])
+        try:
+            self._rows.write(rows.tobytes())
+            self._rows.flush()
+        except OSError as error:
+            raise unwritable(self.path, error) from error
+        self._count += len(table)
+
+    def close(self) -> None:
+        """Write the file."""
+        n = self._columns
+        with self._rows as stream:
+            if self._count == 0:
+                return
+            rows = np.memmap(
+                stream, dtype=float, mode="r", shape=(self._count, n + 6 * len(self._terms))
+            )
+            wrenches = {
+                name: rows[:, n + 6 * i : n + 6 * (i + 1)] for i, name in enumerate(self._terms)
+            }
+            Log(rows[:, :n], wrenches, ignored=self._ignored).to_mat(self.path)
+
+
+class Thinned:
+    """Rows enough to draw: all, or each so many of a long flight, and the last."""
+
+    wrenches = True
+
+    def __init__(self, rows: int, simulation: Simulation) -> None:
+        self.every = -(-rows // _DRAWN)
+        self._terms = simulation.wrench_terms
+        self._seen = 0
+        self._pieces: List[List[np.ndarray]] = [[], []]
+        self._last: List[np.ndarray] = []
+
+    def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
+        """Pick from a piece."""
+        if len(table) == 0:
+            return
+        picked = slice(-self._seen % self.every, None, self.every)
+        self._seen += len(table)
+        is_picked = (self._seen - 1) % self.every == 0
+        for pieces, rows in zip(self._pieces, (table, wrenches)):
+            pieces.append(rows[picked].copy())
+        self._last = [] if is_picked else [rows[-1:].copy() for rows in (table, wrenches)]
+
+    def close(self) -> None:
+        """Nothing is open."""
+
+    def log(self) -> Log:
+        """Give what was picked; the title tells if that is not all."""
+        title = f"each {self.every}th row" if self.every > 1 else ""
+        table, wrenches = (
+            np.concatenate([*pieces, *self._last[i : i + 1]])
+            for i, pieces in enumerate(self._pieces)
+        )
+        return Log(table, {name: wrenches[:, i] for i, name in enumerate(self._terms)}, title)
+
+
+class Fastest:
+    """The largest speed of a rotor, rad/s, and the time of the last row, s."""
+
+    wrenches = False
+
+    def __init__(self) -> None:
+        self.speed = 0.0
+        self.time = 0.0
+
+    def receive(self, table: np.ndarray, _: np.ndarray) -> None:
+        """Look at a piece."""
+        if len(table):
+            self.speed = max(self.speed, np.abs(table[:, 14:]).max(initial=0.0))
+            self.time = table[-1, 0]
+
+    def close(self) -> None:
+        """Nothing is open."""
+
+
+class Recording:
+    """Everything that records one flight; a file that fails does not take the others with it."""
+
+    def __init__(self, files: Sequence[LogFile], others: Sequence[Recorder]) -> None:
+        self._files, self._others = list(files), list(others)
+        self._failure: Optional[_core.InputError] = None
+
+    @property
+    def wrenches(self) -> bool:
+        """Whether any of them wants the wrenches."""
+        return any(recorder.wrenches for recorder in [*self._files, *self._others])
+
+    def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
+        """Give a piece to all; raises `InputError` when the last of the files has failed."""
+        for recorder in self._others:
+            recorder.receive(table, wrenches)
+        self._each(lambda file: file.receive(table, wrenches))
+        if self._failure is not None and not self._files:
+            raise self._failure
+
+    def close(self) -> List[Path]:
+        """Finish all; returns the files that hold the flight."""
+        self._each(lambda file: file.close())
+        return [file.path for file in self._files]
+
+    def check(self) -> None:
+        """Raise `InputError` if a file failed."""
+        if self._failure is not None:
+            raise self._failure
+
+    def _each(self, act: Callable[[Any], None]) -> None:
+        for file in list(self._files):
+            try:
+                act(file)
+            except _core.InputError as error:
+                self._files.remove(file)
+                self._failure = self._failure or error
