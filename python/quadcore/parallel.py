@@ -41,10 +41,10 @@ _PR_SET_PDEATHSIG = 1  # of linux/prctl.h
 
 
 def each(
-    function: Callable[[Case], Any],
+    function: Callable[[Case], Result],
     cases: Iterable[Case],
     processes: Optional[int] = None,
-    conclude: Callable[[Any], Result] = lambda result: result,
+    conclude: Callable[[Result], Any] = lambda result: result,
 ) -> Generator[Tuple[int, Union[Result, QuadcoreError]], None, None]:
     """Call `function` on every case, in parallel.
 
@@ -229,7 +229,7 @@ def _serve(
 
 
 def _outcome(function: Callable[[Any], Any], argument: Any) -> Tuple[Any, Optional[str]]:
-    """Result, or the QuadcoreError in its place, and the traceback of any other fault."""
+    """Give the result or the QuadcoreError in its place, and the traceback of any other fault."""
     try:
         return function(argument), None
     except QuadcoreError as error:

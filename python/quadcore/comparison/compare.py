@@ -129,18 +129,17 @@ def fly(
         reference = _first_flown(plan, flights, tally)
         if reference is not None:
 
-            def measured(flight: Tuple[int, Variant]) -> Any:
+            def flown(flight: Tuple[int, Variant]) -> Any:
                 row, variant = flight
                 log = plan.fly(variant)
                 return row, metrics(reference, log), log
 
-            def kept(flown: Any) -> Outcome:
-                return _kept(*flown, keep)
+            def kept(result: Any) -> Outcome:
+                row, measured, log = result
+                return _kept(row, measured, log, keep)
 
             start = tally.done
-            with closing(
-                each(contained(measured), flights, processes, contained(kept))
-            ) as outcomes:
+            with closing(each(contained(flown), flights, processes, contained(kept))) as outcomes:
                 for index, outcome in outcomes:
                     tally.note(start + index, outcome)
     except KeyboardInterrupt as stop:
