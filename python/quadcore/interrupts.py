@@ -38,29 +38,33 @@ def exit_status(stop: KeyboardInterrupt) -> int:
 
 
 @contextmanager
-def heard() -> Iterator[None]:
+def heard() -> Iterator[List[Interrupted]]:
     """Let each of `SIGNALS` raise `Interrupted` within the block; for the main thread.
 
     SIGTERM and SIGHUP stay ignored if they are (``nohup``); SIGINT is heard all the same, because
     shells start background jobs with it ignored. Once one was raised, no other is, so that work can
     be kept, but a second Ctrl-C of a person who does not want to wait. What comes within half a
-    second is not one: ``timeout`` sends its signal to the process and to its group.
+    second is not one: ``timeout`` sends its signal to the process and to its group. What was raised
+    stands in the list, for code by others may have made another error of it.
     """
-    raised_at: List[float] = []
+    raised: List[Interrupted] = []
+    first = 0.0
 
     def raise_it(number: int, _: Any) -> None:
+        nonlocal first
         now = time.monotonic()
-        if raised_at and (number != signal.SIGINT or now - raised_at[0] < _HEARD_TWICE):
+        if raised and (number != signal.SIGINT or now - first < _HEARD_TWICE):
             return
-        raised_at.append(now)
-        raise Interrupted(number)
+        first = first or now
+        raised.append(Interrupted(number))
+        raise raised[-1]
 
     before = {number: signal.getsignal(number) for number in SIGNALS}
     try:
         for number in SIGNALS:
             if number == signal.SIGINT or before[number] != signal.SIG_IGN:
                 signal.signal(number, raise_it)
-        yield
+        yield raised
     finally:
         for changed, handler in before.items():
             signal.signal(changed, handler)

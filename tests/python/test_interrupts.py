@@ -17,6 +17,7 @@ import pytest
 
 import quadcore as qc
 from quadcore import interrupts
+from quadcore.cli import main
 from quadcore.files import atomic_write
 from quadcore.parallel import contained, each
 
@@ -207,6 +208,20 @@ def test_a_signal_that_is_sent_twice_is_heard_once(number):
             kept.append("kept")
     assert kept == ["kept"]
     assert interrupts.exit_status(stop.value) == 128 + number
+
+
+def test_an_interrupt_that_others_take_for_a_fault_is_an_interrupt(capsys, monkeypatch):
+    import xacro
+
+    def expand(*_, **__):
+        try:
+            signal.raise_signal(signal.SIGTERM)
+        except BaseException:
+            raise NameError("name 'x' is not defined") from None
+
+    monkeypatch.setattr(xacro, "process_file", expand)
+    assert main(["info", "quadrotor"]) == 143
+    assert capsys.readouterr().err == "interrupted\n"
 
 
 def test_handlers_are_as_before_afterwards():

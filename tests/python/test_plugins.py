@@ -125,11 +125,17 @@ def test_the_cpp_example_flies_as_its_python_twin(tmp_path):
         ("nameless", "cannot describe itself: what am I?"),
         ("undescribed", "has no descriptor; give it one and rebuild it"),
         ("uncreatable", "has no create in its descriptor; give it one and rebuild it"),
+        ("twofold", "does not fit: its descriptor names 'fault' twice; keep one"),
     ],
 )
 def test_a_library_that_does_not_fit_is_refused_by_plugin_and_file(bad, faulty, variant, says):
     message = refusal(bad, "none", variant=variant)
     assert message.startswith(f"{AT}: lib{variant}_plugin.so in {faulty} {says}")
+
+
+def test_a_warning_of_a_plugin_that_is_no_text_can_be_shown(bad):
+    with pytest.warns(qc.QuadcoreWarning, match=r"no text: \? \?\[31m"):
+        bad("warning")
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ class FaultyPlugin final : public quadcore::Plugin {
   explicit FaultyPlugin(const quadcore::PluginSetup& setup)
       : fault_(setup.parameters.choice("fault")), after_(setup.parameters.number("after")) {
     throw_in("create", 0);
+    if (fault_ == "warning") setup.warnings.push_back("no text: \xff \x1b[31m");
     if (fault_ == "tag") setup.parameters.number("speed");
     if (fault_ == "command") topic_ = setup.topics.declare("vel_cmd", {"w1"});
   }
@@ -58,13 +59,18 @@ quadcore::PluginDescriptor describe() {
 #endif
   return {
       "throws",
-      {TagSpec::choice("fault",
-                       {"none", "create", "create_number", "null", "tag", "update", "update_number",
-                        "forces", "forces_number", "sense", "sense_number", "state", "nan",
-                        "infinity", "rotor_force", "rotor_torque", "term_force", "term_torque", "command"},
-                       "where"),
+      {TagSpec::choice(
+           "fault", {"none",        "create",       "create_number", "warning",     "null",
+                     "tag",         "update",       "update_number", "forces",      "forces_number",
+                     "sense",       "sense_number", "state",         "nan",         "infinity",
+                     "rotor_force", "rotor_torque", "term_force",    "term_torque", "command"},
+           "where"),
        TagSpec::number("after", "s", "0", "not before this time")},
+#ifdef NAMED_TWICE
+      {"fault", "fault"},
+#else
       {"fault"},
+#endif
 #ifdef WITHOUT_CREATE
       nullptr,
 #else
