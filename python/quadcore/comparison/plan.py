@@ -67,8 +67,9 @@ class Plan:
         if not isinstance(world, _core.World):
             document = load_world(None if world is None else str(world))
             world = self._options["world"] = _core.read_world(document, ignore)
-        read = [*self._models, *self._worlds.values(), world]
-        _core.check_ignored(ignore, [each.passed_over for each in read])
+        readings = [model.passed_over for model in self._models]
+        readings += [each.passed_over for each in (*self._worlds.values(), world)]
+        _core.check_ignored(ignore, readings)
         self._check_engines()
         built = self._built()
         self.dt = built[0].dt if built else 1e-3
