@@ -130,3 +130,33 @@ def test_a_mesh_cannot_touch_the_ground_and_is_named(tmp_path):
     for engine, _ in qc.engines():
         with pytest.raises(qc.InputError, match=r"mesh\.urdf:5: .*box, cylinder or sphere"):
             qc.Simulation(model, engine=engine, world="default")
+
+
+BOX = """
+<robot name="box">
+  <link name="frame">
+    <inertial>
+      <mass value="1"/>
+      <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/>
+    </inertial>
+    <collision><geometry><box size="1 1 0.02"/></geometry></collision>
+  </link>
+</robot>
+"""
+
+
+@pytest.mark.parametrize("engine", ["gazebo11", "ode"])
+@pytest.mark.parametrize(("heading", "share"), [(0, 1), (30, 1.3660254), (45, 2**0.5), (90, 1)])
+def test_friction_is_a_pyramid_along_the_axes_of_the_world(tmp_path, engine, heading, share):
+    (tmp_path / "box.urdf").write_text(BOX)
+    simulation = qc.Simulation(
+        tmp_path / "box.urdf", engine=engine, world="default", spawn=(0, 0, 0.01)
+    )
+    simulation.step(500)
+    state = simulation.state.copy()
+    way = np.array([np.cos(np.radians(heading)), np.sin(np.radians(heading)), 0])
+    state.linear_velocity[:] = 5 * way
+    simulation.set_state(state)
+    before, after = simulation.run(0.01).linear_velocity[[0, -1]]
+    # mu is 1; along each axis of the world along which it slides the body is slowed by mu g.
+    assert (before - after) @ way / 0.01 == pytest.approx(share * 9.8, rel=1e-3)
