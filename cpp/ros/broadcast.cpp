@@ -18,7 +18,7 @@ geometry_msgs::TransformStamped same_place(const std::string& parent, const std:
 }  // namespace
 
 Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation, const ros::Publisher& clock,
-                     const std::string& frame_prefix)
+                     const std::string& frame_prefix, bool rotor_tf)
     : odometry_topic_(simulation), clock_publisher_(clock), path_(nh) {
   joint_states_publisher_ = nh.advertise<sensor_msgs::JointState>("joint_states", 100, kept);
   const Model& model = simulation.model();
@@ -34,7 +34,8 @@ Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation, const ro
   odometry_.child_frame_id = truth_.child_frame_id = vehicle_frame;
   if (!odometry_topic_.publishes_tf()) return;
   tf_publisher_ = nh.advertise<tf2_msgs::TFMessage>("/tf", 100, kept);
-  transform_.transforms.push_back(same_place(world_frame, vehicle_frame));
+  transforms_.transforms.push_back(same_place(world_frame, vehicle_frame));
+  if (rotor_tf) add_rotor_frames(model, frame_prefix);
   const std::string root_frame = frame_prefix + model.links.front().name;
   if (root_frame == vehicle_frame) return;
   // robot_state_publisher begins at the URDF's root link, tf at the thesis' "drone".
@@ -59,7 +60,7 @@ void Broadcast::show(const Simulation& simulation) {
   clock_.clock = to_ros(simulation.time());
   if (clock_publisher_) clock_publisher_.publish(clock_);
   send_joint_states(simulation.state());
-  if (tf_publisher_) send_transform(simulation.state());
+  if (tf_publisher_) send_transforms(simulation);
 }
 
 void Broadcast::send_odometry(const Simulation& simulation, const Topic& topic) {
@@ -69,15 +70,33 @@ void Broadcast::send_odometry(const Simulation& simulation, const Topic& topic) 
   odometry_publisher_.publish(odometry_);
   odometry_topic_.truth_to_message(simulation.state(), truth_);
   truth_publisher_.publish(truth_);
-  if (tf_publisher_) send_transform(simulation.state());
+  if (tf_publisher_) send_transforms(simulation);
 }
 
-void Broadcast::send_transform(const VehicleState& state) {
-  geometry_msgs::TransformStamped& transform = transform_.transforms.front();
-  transform.header.stamp = clock_.clock;
-  set_vector(transform.transform.translation, state.position.data());
-  set_quaternion(transform.transform.rotation, state.orientation.coeffs().data());
-  tf_publisher_.publish(transform_);
+void Broadcast::add_rotor_frames(const Model& model, const std::string& frame_prefix) {
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    const Joint& joint = model.joints[i];
+    transforms_.transforms.push_back(same_place(frame_prefix + model.links[joint.parent].name,
+                                                frame_prefix + model.links[i + 1].name));
+    set_vector(transforms_.transforms.back().transform.translation, joint.pose.xyz.data());
+  }
+}
+
+void Broadcast::send_transforms(const Simulation& simulation) {
+  const VehicleState& state = simulation.state();
+  for (geometry_msgs::TransformStamped& transform : transforms_.transforms) {
+    transform.header.stamp = clock_.clock;
+  }
+  geometry_msgs::Transform& vehicle = transforms_.transforms.front().transform;
+  set_vector(vehicle.translation, state.position.data());
+  set_quaternion(vehicle.rotation, state.orientation.coeffs().data());
+  for (std::size_t i = 1; i < transforms_.transforms.size(); ++i) {
+    const Joint& joint = simulation.model().joints[i - 1];
+    const double angle = state.rotor_angle[static_cast<Eigen::Index>(i - 1)];
+    const Quaterniond turned = joint.pose.rotation() * Eigen::AngleAxisd(angle, joint.axis);
+    set_quaternion(transforms_.transforms[i].transform.rotation, turned.coeffs().data());
+  }
+  tf_publisher_.publish(transforms_);
 }
 
 void Broadcast::send_joint_states(const VehicleState& state) {

@@ -23,8 +23,10 @@ class Broadcast {
  public:
   /// \param clock  where the clock is sent; an empty publisher = somebody else sends it
   /// \param frame_prefix  of the vehicle's frames, "" or such as "uav1/"
+  /// \param rotor_tf  whether tf holds the rotors' links, too. What robot_state_publisher says of
+  ///                  them is not kept for those who come later.
   Broadcast(ros::NodeHandle& nh, const Simulation& simulation, const ros::Publisher& clock,
-            const std::string& frame_prefix);
+            const std::string& frame_prefix, bool rotor_tf);
 
   /// After a step; `jumped`: after the start, a reset or a new state.
   void send(const Simulation& simulation, bool jumped);
@@ -33,7 +35,8 @@ class Broadcast {
 
  private:
   void send_odometry(const Simulation& simulation, const Topic& topic);
-  void send_transform(const VehicleState& state);
+  void add_rotor_frames(const Model& model, const std::string& frame_prefix);
+  void send_transforms(const Simulation& simulation);
   void send_joint_states(const VehicleState& state);
 
   const OdometryTopic odometry_topic_;
@@ -52,7 +55,7 @@ class Broadcast {
   rosgraph_msgs::Clock clock_;
   nav_msgs::Odometry odometry_;
   nav_msgs::Odometry truth_;
-  tf2_msgs::TFMessage transform_;
+  tf2_msgs::TFMessage transforms_;  ///< world->drone, then those of the rotors
   sensor_msgs::JointState joint_states_;
 };
 

@@ -27,7 +27,9 @@ void choose_drag(const std::string& drag, const Model& model,
   if (drag == "all") return;
   std::vector<std::string> choices = {"none", "all"};
   for (const PluginElement& element : model.plugins) {
-    for (const TagSpec& tag : open_plugin(element).descriptor->tags) {
+    const std::optional<std::string> path = find_plugin(element.filename);
+    if (!path) continue;  // the simulation says what is to be said of it
+    for (const TagSpec& tag : open_plugin(element, *path).descriptor->tags) {
       const std::optional<std::string> effect = effect_of(tag.name);
       if (!effect) continue;
       choices.push_back(*effect);

@@ -101,7 +101,7 @@ void run(const EndSignal& end_signal) {
 
   std::optional<ClockFollower> follower;
   if (!clock) follower.emplace(nh, simulation.dt());
-  Broadcast broadcast(nh, simulation, clock, prefix);
+  Broadcast broadcast(nh, simulation, clock, prefix, settings.rotor_tf);
   Listener listener(broadcast, simulation, topic, settings.log, follower ? &*follower : nullptr);
   FlightThread flight(simulation, flight_settings, listener);
   std::optional<ClockLeader> leader;

@@ -82,6 +82,7 @@ Settings read_settings(const ros::NodeHandle& nh) {
   s.name = p.text("name", "");
   s.log = path_from(folder, p.text("log", ""));
   s.verbose = p.flag("verbose", false);
+  s.rotor_tf = p.flag("rotor_tf", false);
   s.ignore = p.words("ignore");
 
   s.drag = p.text("drag", "all");

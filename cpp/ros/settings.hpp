@@ -22,8 +22,9 @@ struct Settings {
   std::string log;          ///< path of a CSV log; "" = none
   std::string drag;         ///< the one effect that drags, or "all", "none"
   bool verbose = false;
+  bool rotor_tf = false;  ///< send the rotors' links, too
   ClockRole clock = ClockRole::automatic;
-  std::vector<std::string> ignore;  ///< what model and world are read without
+  std::vector<std::string> ignore;         ///< what model and world are read without
   std::optional<double> real_time_factor;  ///< absent = what the world asks for
   SimulationOptions simulation;
   FlightSettings flight;

@@ -128,8 +128,26 @@ class TestParameters(unittest.TestCase):
         ):
             self.assertEqual(node.error.count(message), 1, node.error)
 
-    def test_a_warning_of_the_flight_is_told_once(self):
-        self.skipTest("no warning of a flight yet")
+    def test_a_warning_of_the_flight_is_told_once_a_flight(self):
+        with flight("_roll:=3", "_paused:=true") as node:
+            for _ in "ab":
+                step(100)
+                step(100)
+                harness.call("/gazebo/reset_simulation")
+            node.end()
+        self.assertEqual(node.error.count("a propeller tilts beyond 90 degrees"), 2)
+
+    def test_what_is_foreign_can_be_ignored(self):
+        foreign = '<plugin name="other" filename="libforeign_plugin.so"/>'
+        urdf = description().replace("</robot>", f"<gazebo>{foreign}</gazebo></robot>")
+        rospy.set_param("robot_description", urdf)
+        with Process("quadcore_node") as node:
+            status, error = node.result()
+        self.assertEqual(status, 2)
+        self.assertIn("libforeign_plugin.so", error)
+        with flight("_ignore:=libforeign_plugin.so", "_paused:=true", urdf=urdf):
+            step(1)
+        self.assertIn("ignore nothing: nothing goes by that name", refusal("_ignore:=nothing"))
 
     def test_two_odometries_are_refused_by_name(self):
         second = '<plugin name="other" filename="libodometry_plugin.so"/>'

@@ -7,8 +7,10 @@ import harness
 import numpy as np
 import rosgraph
 import rospy
+from geometry_msgs.msg import Pose, Quaternion, Twist
 from harness import HOVER, Process, Recording, commander, description, flight
 from nav_msgs.msg import Odometry, Path
+from quadcore.srv import SetState
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
@@ -27,6 +29,7 @@ PUBLISHED = {
     "/path": ("nav_msgs/Path", "6227e2b7e9cce15051f669a5e197bbf7"),
     "/diagnostics": ("diagnostic_msgs/DiagnosticArray", "60810da900de1dd6ddd437c3503511da"),
 }
+PLACES = [[0.2, 0], [0, -0.2], [-0.2, 0], [0, 0.2]]  # of the rotors in the frame (m)
 COMMAND = ("std_msgs/Float64MultiArray", "4b7d974086d4060e7db4613a7e6c3ba4")
 
 
@@ -154,6 +157,23 @@ class TestTopics(unittest.TestCase):
                     stamp = message.clock if kind is Clock else message.header.stamp
                     seen = 0 if kind is JointState else 7000000  # those go out 50 times a second
                     self.assertEqual(stamp.to_nsec(), seen)
+
+    def test_the_rotors_frames_are_seen_late_too(self):
+        with flight("_paused:=true", "_rotor_tf:=true"):
+            set_state = rospy.ServiceProxy("/quadcore/set_state", SetState)
+            turning = [100.0, -80.0, 60.0, -40.0]
+            set_state(Pose(orientation=Quaternion(w=1)), Twist(), turning)
+            harness.step(10)
+            with Recording("/tf", TFMessage) as tf:
+                rotors = tf.wait_for_count(1)[0].transforms[1:]
+            with Recording("/joint_states", JointState) as joints:
+                angles = np.array(joints.wait_for_count(1)[0].velocity) * 0.01
+        self.assertEqual([t.child_frame_id for t in rotors], [f"propeller{i}" for i in range(1, 5)])
+        for transform, place, angle in zip(rotors, PLACES, angles):
+            self.assertEqual(transform.header.frame_id, "frame")
+            p, q = transform.transform.translation, transform.transform.rotation
+            np.testing.assert_allclose([p.x, p.y], place, atol=1e-12)
+            self.assertAlmostEqual(2 * np.arctan2(q.z, q.w), angle, delta=0.2 * abs(angle))
 
     def test_the_truth_stands_beside_noisy_odometry(self):
         noise = {"positionNoise": "0.5", "linearVelocityNoise": "0.5"}
