@@ -97,7 +97,7 @@ def fourth_order() -> Iterator[Any]:
 
 
 def pitching(engine: str, slow: float) -> Any:
-    """Let a vehicle without air and weight pitch for two seconds; log of its tilting rate."""
+    """Let a vehicle without air and weight pitch for 2 s; it and the logarithm of its rate."""
     world = "<sdf version='1.6'><world name='w'><gravity>0 0 0</gravity></world></sdf>"
     with tempfile.NamedTemporaryFile("w", suffix=".world") as file:
         file.write(world)
@@ -113,6 +113,11 @@ def pitching(engine: str, slow: float) -> Any:
     return simulation, np.log(np.abs(simulation.run(2.0).angular_velocity[:, 1]))
 
 
+def decay(value: float) -> str:
+    """Write a decay, or that it is none."""
+    return figures(value, 3) if abs(value) > 1e-9 else "below 1e-9"
+
+
 def decays() -> Iterator[Any]:
     """Tabulate the loss of a pitch rate in its first second, and in gazebo11 in its second."""
     for slow, recorded in GAZEBO_DECAY.items():
@@ -123,8 +128,8 @@ def decays() -> Iterator[Any]:
             later[engine] = rate[1000] - rate[2000]
         flat = 2.8125e-5 - 1.40625e-5
         formula = 4 * flat * (HOVER / slow) ** 2 * 1e-3 / (2 * simulation.inertia[1, 1])
-        first = [figures(abs(found[engine]), 3) for engine, _ in qc.engines()]
-        then = [figures(abs(later[engine]), 3) for engine in ("gazebo11", "ode")]
+        first = [decay(found[engine]) for engine, _ in qc.engines()]
+        then = [decay(later[engine]) for engine in ("gazebo11", "ode")]
         yield slow, figures(formula, 3), recorded, *first, *then
 
 

@@ -113,7 +113,8 @@ LEFT_OUT = {
         "in (2.11), dropped after (2.13)",
     ),
     "rotors that a turning frame leaves behind": (
-        "rotors that a turning frame leaves behind, $`\\dot\\omega_i = \\dots - a_i\\cdot\\dot\\nu`$",
+        "rotors that a turning frame leaves behind, "
+        "$`\\dot\\omega_i = \\dots - a_i\\cdot\\dot\\nu`$",
         "none",
     ),
 }
