@@ -12,9 +12,10 @@ from pathlib import Path
 from typing import Dict, Iterator, List, Sequence, Set
 
 from operators import Mutant
-from plan import Part
+from plan import PARTS, Part
 from schemata import CHOICE, HEADER, Schema, schema
 
+_MUTATED = [source for part in PARTS for source in part.sources]
 _COMPILED = ["CMakeLists.txt", "cpp", "tests", "examples", "urdf", "worlds", "config", "launch"]
 # Half of the time of a small file goes into these headers.
 _PRECOMPILED = ["Eigen/Geometry", "Eigen/LU", "map", "string", "vector", "cmath", "sstream"]
@@ -43,7 +44,7 @@ class Workshop:
         left = dict(mutants)
         while True:
             schemas = {}
-            for file in sorted({mutant.file for mutant in mutants.values()}):
+            for file in _MUTATED:
                 own = {n: m for n, m in left.items() if m.file == file}
                 schemas[file] = schema(self._original(file), own, str(self.header))
                 self._write(file, schemas[file].text)
@@ -59,7 +60,8 @@ class Workshop:
 
     def build_originals(self) -> None:
         """Build the sources as they are."""
-        self._copy()
+        for file in _MUTATED:
+            self._write(file, self._original(file))
         if not self._built(_TESTS):
             raise SystemExit(f"the copy of the sources does not build; see {self.log}")
 
@@ -120,7 +122,7 @@ class Workshop:
         ).stdout.decode()
         for name in names.rstrip("\0").split("\0"):
             there, here = self.sources / name, self.tree / name
-            if not there.is_file():
+            if not there.is_file() or (name in _MUTATED and here.exists()):
                 continue
             if not here.exists() or here.read_bytes() != there.read_bytes():
                 here.parent.mkdir(parents=True, exist_ok=True)
