@@ -257,6 +257,7 @@ void bind_simulation(py::module_& m) {
       .def_property_readonly("time", [sim](const Guarded& g) { return sim(g).time(); })
       .def_property_readonly("dt", [sim](const Guarded& g) { return sim(g).dt(); })
       .def_property_readonly("engine", [sim](const Guarded& g) { return sim(g).engine_name(); })
+      .def_property_readonly("method", [sim](const Guarded& g) { return sim(g).method(); })
       .def_property_readonly("model", [sim](const Guarded& g) { return sim(g).model(); })
       .def_property_readonly("warnings", [sim](const Guarded& g) { return sim(g).warnings(); })
       .def_property_readonly("ignored", [sim](const Guarded& g) { return sim(g).ignored(); })
