@@ -75,6 +75,12 @@ WORLD = {
     "physics/ode/solver/use_dynamic_moi_rescaling": ("", "0", "must be `0`"),
     "physics/ode/constraints/erp": ("", "0.2", "part of a hinge's error that a step removes"),
     "physics/ode/constraints/cfm": ("", "0", "softness of the hinges"),
+    "physics/ode/constraints/contact_max_correcting_vel": (
+        "m/s",
+        "100",
+        "caps what a correction leaves of velocity: a contact's `maxVel`, in `gazebo11` also a "
+        "hinge's, see [gazebo.md](gazebo.md#random-vehicles)",
+    ),
 }
 
 LOG = {
@@ -199,6 +205,27 @@ def _refusal(path: str, content: str) -> str:
     return ""
 
 
+def reference_section() -> str:
+    """Tabulate what a <gazebo reference> may hold."""
+    tags = _core.gazebo_tags()
+    felt = (
+        (f"`{tag.name}`", tag.of, tag.unit, tag.default, tag.range, tag.meaning)
+        for tag in tags
+        if tag.felt_by
+    )
+    unfelt = ((f"`{tag.name}`", tag.of, tag.range, tag.meaning) for tag in tags if not tag.felt_by)
+    return (
+        "\n## Tags of `<gazebo reference>`\n\n"
+        "Felt by the engines `gazebo11` and `ode`. `eigen` has no contact, in which the first\n"
+        "eight act; it refuses `dampingFactor` and `turnGravityOff`. A value is the element's\n"
+        "text or its attribute `value`. What a reference to a lumped link does:\n"
+        "[models.md](models.md#lumping).\n\n"
+        + table(("tag", "of a", "unit", "default", "range", "meaning"), felt)
+        + "\nWithout effect, as in Gazebo, within the range given:\n\n"
+        + table(("tag", "of a", "range", "why"), unfelt)
+    )
+
+
 def engine_section() -> str:
     """Tabulate the engines, the default first."""
     rows = ((f"`{name}`", summary) for name, summary in qc.engines())
@@ -247,6 +274,7 @@ def page() -> str:
         [
             INTRODUCTION,
             *plugin_sections(simulation),
+            reference_section(),
             world_section(),
             unfelt_section(),
             engine_section(),

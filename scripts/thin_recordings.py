@@ -3,9 +3,10 @@
 
 SOURCE holds flights ``S*.csv.gz`` of the shipped quadrotor with their ``commands_S*.csv``, and a
 folder ``cases/NAME`` for each flight of another model or world: ``model.urdf``, ``case.world``,
-``commands.csv``, ``params.txt``, ``record.csv.gz`` and Gazebo's conversion ``model.sdf``. All of it
-goes to ``tests/data/gazebo11``, laid out alike, the recordings with a few of their rows, each as it
-was recorded. Running it again writes the same bytes.
+``commands.csv``, ``params.txt``, ``record.csv.gz`` and Gazebo's conversion ``model.sdf``, and
+``random/NAME`` likewise for vehicles made by chance. All of it goes to ``tests/data/gazebo11``,
+laid out alike, the recordings with a few of their rows, each as it was recorded. Running it again writes the
+same bytes.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ def main() -> None:
     source = Path(sys.argv[1])
     for path in sorted(source.rglob("*")):
         target = TARGET / path.relative_to(source)
-        if path.is_dir():
+        if path.is_dir() or path.name == "README.md":
             continue
         target.parent.mkdir(parents=True, exist_ok=True)
         if path.name.endswith(".csv.gz"):

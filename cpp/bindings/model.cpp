@@ -5,6 +5,7 @@
 
 #include "bindings.hpp"
 #include "quadcore/document.hpp"
+#include "quadcore/gazebo_reference.hpp"
 #include "quadcore/seen_or_sensed.hpp"
 #include "quadcore/text.hpp"
 #include "quadcore/world.hpp"
@@ -37,6 +38,12 @@ void bind_model(py::module_& m) {
       .def_readonly("parent", &Unfelt::parent)
       .def_readonly("what", &Unfelt::what);
 
+  py::class_<Collision>(m, "Collision", "A shape that may touch the ground.")
+      .def_readonly("where", &Collision::where)
+      .def_property_readonly("size", [](const Collision& c) -> Vector3d { return c.size; })
+      .def_property_readonly("xyz", [](const Collision& c) -> Vector3d { return c.pose.xyz; })
+      .def_property_readonly("rpy", [](const Collision& c) -> Vector3d { return c.pose.rpy; });
+
   py::class_<Link>(m, "Link", "A moving body: a link and every link fixed to it.")
       .def_readonly("name", &Link::name)
       .def_readonly("where", &Link::where)
@@ -44,7 +51,8 @@ void bind_model(py::module_& m) {
       .def_property_readonly("center_of_mass",
                              [](const Link& link) -> Vector3d { return link.inertial.pose.xyz; })
       .def_property_readonly("inertia",
-                             [](const Link& link) { return link.inertial.inertia_in_link_axes(); });
+                             [](const Link& link) { return link.inertial.inertia_in_link_axes(); })
+      .def_readonly("collisions", &Link::collisions);
 
   py::class_<Joint>(m, "Joint", "A continuous joint.")
       .def_readonly("name", &Joint::name)
@@ -71,6 +79,16 @@ void bind_model(py::module_& m) {
 
   m.def("parse_number", &parse_number, py::arg("text"),
         "The finite number that a text is, as in a URDF; None otherwise.");
+  py::class_<GazeboTag>(m, "GazeboTag", "What a <gazebo reference> may hold.")
+      .def_readonly("name", &GazeboTag::name)
+      .def_readonly("of", &GazeboTag::of)
+      .def_readonly("felt_by", &GazeboTag::felt_by)
+      .def_readonly("unit", &GazeboTag::unit)
+      .def_readonly("default", &GazeboTag::fallback)
+      .def_readonly("range", &GazeboTag::range)
+      .def_readonly("meaning", &GazeboTag::meaning);
+  m.def("gazebo_tags", &gazebo_tags, "What a <gazebo reference> may hold, the felt tags first.");
+
   const auto nothing = std::vector<std::string>{};
   m.def("read_model", &read_model, py::arg("document"), py::arg("ignore") = nothing,
         "Reads a URDF as Gazebo does: fixed links are lumped. Raises InputError with FILE:LINE.");

@@ -178,6 +178,7 @@ void bind_simulation(py::module_& m) {
       .def_property_readonly("time", [](const Self& self) { return self->time(); })
       .def_property_readonly("dt", [](const Self& self) { return self->dt(); })
       .def_property_readonly("engine", [](const Self& self) { return self->engine_name(); })
+      .def_property_readonly("method", [](const Self& self) { return self->method(); })
       .def_property_readonly("model", [](const Self& self) { return self->model(); })
       .def_property_readonly("warnings", [](const Self& self) { return self->warnings(); })
       .def_property_readonly("ignored", [](const Self& self) { return self->ignored(); })

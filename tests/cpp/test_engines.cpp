@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "eigen/lowest_point.hpp"
 #include "quadcore/random.hpp"
 #include "vehicle.hpp"
 
@@ -104,6 +105,118 @@ TEST_CASE("the velocities that a force law sees are the rates of the places it s
       CHECK(a.axis_F.norm() == doctest::Approx(1));
     }
   }
+}
+
+TEST_CASE("a rotor on a turning link comes back with its angle, and shows its true place") {
+  const Model m = model(
+      link("frame", 1, skew_body) +
+      link("ring", 0.1, round_rotor, "xyz=\"0.01 0.02 0.03\" rpy=\"0.1 0 0.2\"") +
+      joint("tilt", "continuous", "frame", "ring", "xyz=\"0.1 0 0.05\" rpy=\"0.4 -0.3 1\"") +
+      link("rotor", 0.02, round_rotor, "xyz=\"0 0.01 0.02\"") +
+      joint("turn", "continuous", "ring", "rotor", "xyz=\"0 0.2 0.01\" rpy=\"0.7 0.2 -0.5\""));
+  for (const char* name : {"gazebo11", "ode"}) {
+    CAPTURE(name);
+    const auto engine = make_engine(name, m, World{});
+    const VehicleState wanted = random_state(11, 2);
+    VehicleState found = blank(2);
+    engine->set_state(wanted);
+    engine->get_state(found);
+    CHECK((found.rotor_angle - wanted.rotor_angle).norm() < 1e-11);
+    CHECK((found.rotor_velocity - wanted.rotor_velocity).norm() < 1e-11);
+    const auto turned = [](double angle) { return Eigen::AngleAxisd(angle, Vector3d::UnitZ()); };
+    const Matrix3d ring =
+        (quaternion_from_rpy({0.4, -0.3, 1}) * turned(wanted.rotor_angle[0])).toRotationMatrix();
+    const Matrix3d rotor =
+        ring *
+        (quaternion_from_rpy({0.7, 0.2, -0.5}) * turned(wanted.rotor_angle[1])).toRotationMatrix();
+    CHECK((engine->kinematics().R_FR(0) - ring).norm() < 1e-12);
+    CHECK((engine->kinematics().R_FR(1) - rotor).norm() < 1e-12);
+    CHECK(
+        (engine->kinematics().rotors[1].p_FRcm_F -
+         (Vector3d(0.1, 0, 0.05) + ring * Vector3d(0, 0.2, 0.01) + rotor * Vector3d(0, 0.01, 0.02)))
+            .norm() < 1e-12);
+  }
+}
+
+TEST_CASE("a state that is set leaves nothing of the flight before, on the ground neither") {
+  const Model m = read_model(Document::read(TEST_DATA "/gazebo11/cases/C1_drop/model.urdf"));
+  World world;
+  world.ground_plane = true;
+  for (const char* name : {"gazebo11", "ode"}) {
+    CAPTURE(name);
+    const auto landed = make_engine(name, m, world), fresh = make_engine(name, m, world);
+    VehicleState state = blank(4);
+    state.position.z() = 0.02;
+    landed->set_state(state);
+    for (int i = 0; i < 200; ++i) landed->step(1e-3, NoForces());
+    state.position = {0.1, -0.2, 0.0124};
+    state.angular_velocity = {0.1, 0.2, -0.3};
+    for (Engine* engine : {landed.get(), fresh.get()}) engine->set_state(state);
+    CHECK(landed->save() == fresh->save());
+    for (int i = 0; i < 10; ++i) {
+      landed->step(1e-3, NoForces());
+      fresh->step(1e-3, NoForces());
+    }
+    CHECK(landed->save() == fresh->save());
+  }
+}
+
+TEST_CASE("the lowest point of a tilted cylinder is that of its rims") {
+  const Model m = model(
+      "<link name=\"frame\"><inertial><mass value=\"1\"/><inertia " + skew_body +
+      "/></inertial><collision><origin xyz=\"0.1 -0.05 0.02\" rpy=\"0.9 0.4 -0.3\"/><geometry>"
+      "<cylinder radius=\"0.3\" length=\"0.1\"/></geometry></collision></link>\n");
+  const auto engine = make_engine("eigen", m, World{});
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const VehicleState state = random_state(seed, 0);
+    engine->set_state(state);
+    const Quaterniond q = state.orientation * quaternion_from_rpy({0.9, 0.4, -0.3});
+    const Vector3d center = state.position + state.orientation * Vector3d(0.1, -0.05, 0.02);
+    double lowest = 1e9;
+    for (int i = 0; i < 20000; ++i) {
+      const double angle = 2 * M_PI * i / 20000;
+      for (const double half : {-0.05, 0.05}) {
+        const Vector3d rim(0.3 * std::cos(angle), 0.3 * std::sin(angle), half);
+        lowest = std::min(lowest, (center + q * rim).z());
+      }
+    }
+    CHECK(lowest_point(m, engine->kinematics()) == doctest::Approx(lowest).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("whether sweeps converge is found for each vehicle, and told") {
+  const Model shipped = read_model(Document::read(TEST_DATA "/gazebo11/cases/C1_drop/model.urdf"));
+  const auto method = [](const std::string& engine, const Model& model, int sweeps) {
+    World world;
+    world.solver_iterations = sweeps;
+    return make_engine(engine, model, world)->method();
+  };
+  CHECK(contains(method("gazebo11", shipped, 50), "direct solver, to which Gazebo's 50 sweeps"));
+  CHECK(contains(method("gazebo11", shipped, 20), "Gazebo's own 20 sweeps, which leave"));
+  CHECK(contains(method("ode", shipped, 20), "direct solver"));
+  // A light rotor far out on a heavy frame.
+  const Model heavy = model(link("frame", 3,
+                                 "ixx=\"0.03\" iyy=\"0.04\" izz=\"0.06\" ixy=\"0\" "
+                                 "ixz=\"0\" iyz=\"0\"") +
+                            link("rotor", 0.005,
+                                 "ixx=\"1e-7\" iyy=\"1e-5\" izz=\"1e-5\" "
+                                 "ixy=\"0\" ixz=\"0\" iyz=\"0\"") +
+                            joint("turn", "continuous", "frame", "rotor"));
+  CHECK(contains(method("gazebo11", heavy, 50), "Gazebo's own 50 sweeps"));
+  CHECK(contains(method("gazebo11", heavy, 100000), "direct solver, to which"));
+}
+
+TEST_CASE("solver type world on the ground is warned of where it is written") {
+  const Document document{"a.world",
+                          "<sdf><world>\n<physics><ode><solver>\n<type>world</type>"
+                          "</solver></ode></physics>\n<include><uri>model://ground_plane</uri>"
+                          "</include></world></sdf>"};
+  World world = read_world(document);
+  const auto warnings = make_engine("gazebo11", hexarotor(), world)->warnings();
+  REQUIRE(warnings.size() == 1);
+  CHECK(warnings[0].rfind("a.world:3: on the ground", 0) == 0);
+  world.ground_plane = false;
+  CHECK(make_engine("gazebo11", hexarotor(), world)->warnings().empty());
 }
 
 TEST_CASE("all engines show a force law the same motion") {

@@ -50,6 +50,7 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
   warn(world.passed_over.warning());
   ignored_ = ignored_in({&model.passed_over, &world.passed_over});
   engine_ = make_engine(options.engine, model, world);
+  for (const std::string& warning : engine_->warnings()) warn(warning);
   warnings_at_load_ = warnings_.size();
   command_topic_ = topics_.find(command_topic_name);
   kind_ = describe_kind();

@@ -1,9 +1,10 @@
-#include "urdf_tree.hpp"
+#include "quadcore/urdf_tree.hpp"
 
 #include <cmath>
 
 #include "quadcore/error.hpp"
 #include "quadcore/text.hpp"
+#include "references.hpp"
 #include "xml.hpp"
 
 namespace quadcore {
@@ -66,8 +67,9 @@ Collision read_collision(const Xml& xml, const Element& element) {
   const auto shapes = xml.children(geometry, {"box", "cylinder", "sphere", "mesh"});
   if (shapes.size() != 1) xml.fail(geometry, "<geometry> takes exactly one shape");
   const Element& shape = *shapes.front();
+  const char* name = element.Attribute("name");
   Collision collision{ShapeKind::mesh, Vector3d::Zero(), read_origin(xml, element),
-                      xml.where(shape)};
+                      xml.where(shape), name ? name : ""};
   const std::string kind = shape.Name();
   if (kind == "mesh") {
     xml.attributes_alone(shape, {"filename", "scale"});
@@ -107,17 +109,31 @@ UrdfLink read_link(const Xml& xml, const Element& element, std::vector<std::stri
   return link;
 }
 
+/// A revolute joint without any travel is a fixed one; one that turns has no model.
+void check_locked(const Xml& xml, const Element& element, const std::string& name) {
+  const Element* limit = xml.child(element, "limit");
+  if (limit) {
+    xml.attributes_alone(*limit, {"effort", "velocity", "lower", "upper"});
+    if (xml.number(*limit, "lower", 0) == 0 && xml.number(*limit, "upper", 0) == 0) return;
+  }
+  xml.fail(limit ? *limit : element,
+           "joint '" + name +
+               "' is of type 'revolute' and may turn up to a limit, which the engines do not "
+               "model; write continuous or fixed, or lower=\"0\" upper=\"0\", which locks it");
+}
+
 UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::string>& warnings) {
   UrdfJoint joint;
   xml.only_attributes(element, {"name", "type"});
   joint.name = xml.attribute(element, "name");
   joint.where = xml.where(element);
   const std::string type = xml.attribute(element, "type");
-  if (type != "fixed" && type != "continuous") {
+  if (type != "fixed" && type != "continuous" && type != "revolute") {
     xml.fail(element, "joint '" + joint.name + "' is of type '" + type +
                           "', which the engines do not model; write continuous or fixed");
   }
-  joint.fixed = type == "fixed";
+  joint.locked = type == "revolute";
+  joint.fixed = type == "fixed" || joint.locked;
   // A mimic, a safety controller or a calibration would change the motion; none is modelled.
   xml.children(element, {"origin", "parent", "child", "axis", "dynamics", "limit"});
   const auto linked = [&](const char* role) {
@@ -128,6 +144,7 @@ UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::st
   joint.parent = linked("parent");
   joint.child = linked("child");
   joint.pose = read_origin(xml, element);
+  if (joint.locked) check_locked(xml, element, joint.name);
   if (joint.fixed) return joint;
 
   if (const Element* axis = xml.child(element, "axis")) {
@@ -144,10 +161,9 @@ UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::st
       xml.fail(*dynamics,
                "joint '" + joint.name + "' has a negative damping; write N m s/rad, >= 0");
     }
-    if (xml.number(*dynamics, "friction", 0) != 0) {
-      xml.fail(*dynamics,
-               "joint '" + joint.name +
-                   "' has friction, which the engines do not model; write friction=\"0\"");
+    joint.friction = xml.number(*dynamics, "friction", 0);
+    if (joint.friction < 0) {
+      xml.fail(*dynamics, "joint '" + joint.name + "' has a negative friction; write N m, >= 0");
     }
   }
   if (const Element* limit = xml.child(element, "limit")) {
@@ -195,8 +211,7 @@ PluginElement read_plugin(const Xml& xml, const Element& element) {
 void read_gazebo(const Xml& xml, const Element& element, UrdfTree& tree) {
   xml.only_attributes(element, {"reference", "name"});
   if (element.Attribute("reference")) {
-    // Only what is seen but not felt; anything else Gazebo would feel.
-    xml.children(element, {"material", "visual"});
+    tree.references.push_back(read_reference(xml, element));
     return;
   }
   for (const Element* child : xml.children(element, {"plugin"}, {"plugin"})) {

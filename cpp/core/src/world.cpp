@@ -114,14 +114,18 @@ class WorldReader {
   void read_ode(const Element& ode) {
     read_children(ode, {{"solver", [this](const Element& e) { read_solver(e); }},
                         {"constraints", [this](const Element& e) {
-                           read_children(e, {{"erp", number(world_.erp, 0, false, 1)},
-                                             {"cfm", number(world_.cfm, 0)}});
+                           read_children(e,
+                                         {{"erp", number(world_.erp, 0, false, 1)},
+                                          {"cfm", number(world_.cfm, 0)},
+                                          {"contact_max_correcting_vel",
+                                           number(world_.contact_max_correcting_vel, 0)}});
                          }}});
   }
 
   void read_solver(const Element& solver) {
     const auto type = [this](const Element& e) {
       world_.solver_type = xml_.text(e);
+      world_.solver_type_where = xml_.where(e);
       if (world_.solver_type != "quick" && world_.solver_type != "world") {
         xml_.fail(e, "<type> is '" + world_.solver_type + "'; write quick or world");
       }

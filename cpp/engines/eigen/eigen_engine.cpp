@@ -7,6 +7,27 @@
 #include "quadcore/error.hpp"
 
 namespace quadcore {
+namespace {
+
+/// What only an engine of separate bodies can feel.
+void refuse_tags(const Model& model) {
+  const auto refuse = [](const std::string& where, const std::string& what) {
+    throw InputError(where + ": " + what +
+                     ", which the engine eigen does not model; remove it, or use the engine ode or "
+                     "gazebo11");
+  };
+  for (const Link& link : model.links) {
+    if (!link.tags.gravity) refuse(link.tags.where, "link '" + link.name + "' has no gravity");
+    if (link.tags.damping_factor > 0) {
+      refuse(link.tags.where, "link '" + link.name + "' has a <dampingFactor>");
+    }
+  }
+  for (const Joint& joint : model.joints) {
+    if (joint.friction > 0) refuse(joint.where, "joint '" + joint.name + "' has friction");
+  }
+}
+
+}  // namespace
 
 EigenEngine::EigenEngine(const Model& model, const World& world)
     : model_(model),
@@ -22,6 +43,7 @@ EigenEngine::EigenEngine(const Model& model, const World& world)
       sum_(state_),
       kinematics_(model.joints.size()),
       loads_(model.joints.size()) {
+  refuse_tags(model_);
   if (ground_) check_collisions(model_);
   kinematics_.p_FCcm_F = body_.p_FCcm_F;
   for (std::size_t i = 0; i < body_.rotors.size(); ++i) {
@@ -152,6 +174,10 @@ void EigenEngine::set_state(const VehicleState& state) {
   state_.segment(joint_angles(), rotor_count_) =
       state.rotor_angle.unaryExpr([](double angle) { return std::remainder(angle, 2 * M_PI); });
   look(state_);
+}
+
+std::string EigenEngine::method() const {
+  return "classical Runge-Kutta of fourth order on the reduced equations of motion";
 }
 
 std::vector<double> EigenEngine::save() const {

@@ -21,6 +21,7 @@ class EigenEngine final : public Engine {
   void set_state(const VehicleState& state) override;
   std::vector<double> save() const override;
   void restore(const std::vector<double>& saved) override;
+  std::string method() const override;
 
  private:
   /// The layout of a state, or of its rate: p_WC, quaternion of F in W (x, y, z, w), v_WC_W,

@@ -9,23 +9,20 @@ namespace quadcore {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Gazebo's max_vel of a contact [m/s].
-constexpr double max_contact_correction = 0.01;
 
 }  // namespace
 
 ConstraintRows::ConstraintRows(const std::vector<dBodyID>& bodies, std::vector<Hinge> hinges,
-                               const std::vector<std::size_t>& order, double erp, double cfm)
+                               const std::vector<std::size_t>& order, const Options& options)
     : bodies_(bodies),
       hinges_(std::move(hinges)),
       newest_first_(order.rbegin(), order.rend()),
-      erp_(erp),
-      cfm_(cfm) {
+      options_(options) {
   stack_.reserve(bodies_.size());
 }
 
 const std::vector<ConstraintRow>& ConstraintRows::build(const std::vector<Contact>& contacts,
-                                                        const Surface& surface, double dt) {
+                                                        double dt) {
   rows_.clear();
   body_tagged_.assign(bodies_.size(), 0);
   hinge_tagged_.assign(hinges_.size(), 0);
@@ -36,16 +33,15 @@ const std::vector<ConstraintRow>& ConstraintRows::build(const std::vector<Contac
     while (!stack_.empty()) {
       const std::size_t body = stack_.back();
       stack_.pop_back();
-      visit(body, contacts, surface, dt);
+      visit(body, contacts, dt);
     }
   }
   return rows_;
 }
 
-void ConstraintRows::visit(std::size_t body, const std::vector<Contact>& contacts,
-                           const Surface& surface, double dt) {
+void ConstraintRows::visit(std::size_t body, const std::vector<Contact>& contacts, double dt) {
   for (auto contact = contacts.rbegin(); contact != contacts.rend(); ++contact) {
-    if (contact->body == body) add_contact(*contact, surface, dt);
+    if (contact->body == body) add_contact(*contact, dt);
   }
   for (const std::size_t child : newest_first_) {
     if (child == 0) continue;  // the frame hangs on no hinge
@@ -66,12 +62,12 @@ void ConstraintRows::add_hinge(std::size_t index, double dt) {
   const dBodyID child = bodies_[hinge.child], parent = bodies_[hinge.parent];
   const Matrix3d R_WC = rotation(dBodyGetRotation(child));
   const Matrix3d R_WP = rotation(dBodyGetRotation(parent));
-  const double rate = erp_ / dt;
+  const double rate = options_.erp / dt;
   ConstraintRow row;
   row.body[0] = static_cast<int>(hinge.child);
   row.body[1] = static_cast<int>(hinge.parent);
-  row.max_correction = infinity;
-  row.cfm = cfm_ / dt;
+  row.max_correction = options_.max_hinge_correction;
+  row.cfm = options_.cfm / dt;
   row.low = -infinity;
   row.high = infinity;
   row.hinge = static_cast<int>(index);
@@ -98,26 +94,45 @@ void ConstraintRows::add_hinge(std::size_t index, double dt) {
     ++row.hinge_row;
     rows_.push_back(row);
   }
+  if (hinge.friction == 0 && hinge.implicit_damping == 0) return;
+  // The joint stands still, as far as friction can hold it or damping is stiff.
+  row.J[0] << Vector3d::Zero(), axis_W;
+  row.J[1] = -row.J[0];
+  row.correction = 0;
+  ++row.hinge_row;
+  if (hinge.implicit_damping > 0) {
+    row.cfm = 1 / hinge.implicit_damping / dt;
+  } else {
+    row.low = -hinge.friction;
+    row.high = hinge.friction;
+  }
+  rows_.push_back(row);
 }
 
-void ConstraintRows::add_contact(const Contact& contact, const Surface& surface, double dt) {
+void ConstraintRows::add_contact(const Contact& contact, double dt) {
+  const SurfacePair& surface = *contact.surface;
+  const double hardness = dt * surface.stiffness + surface.damping;
+  const double erp = dt * surface.stiffness / hardness, cfm = 1 / hardness;
   const Vector3d arm_W = contact.position_W - vec(dBodyGetPosition(bodies_[contact.body]));
   ConstraintRow row;
   row.body[0] = static_cast<int>(contact.body);
   row.J[0] << contact.normal_W, arm_W.cross(contact.normal_W);
-  row.correction = surface.erp / dt * contact.depth;
-  row.max_correction = max_contact_correction;
-  row.cfm = surface.cfm / dt;
+  row.correction = erp / dt * contact.depth;
+  row.max_correction = surface.max_correction;
+  row.cfm = cfm / dt;
   row.high = infinity;
   const int normal = static_cast<int>(rows_.size());
   rows_.push_back(row);
 
   row.correction = 0;
   row.cfm = 0;
-  row.friction = surface.friction;
   row.normal = normal;
-  for (const Vector3d& along_W : plane_space(contact.normal_W)) {
-    row.J[0] << along_W, arm_W.cross(along_W);
+  std::array<Vector3d, 2> along_W = {contact.fdir1_W, contact.normal_W.cross(contact.fdir1_W)};
+  if (along_W[1].isZero(1e-12)) along_W = plane_space(contact.normal_W);
+  const std::array<double, 2> friction = {surface.mu1, surface.mu2};
+  for (std::size_t i = 0; i < 2; ++i) {
+    row.J[0] << along_W[i], arm_W.cross(along_W[i]);
+    row.friction = friction[i];
     rows_.push_back(row);
   }
 }

@@ -13,6 +13,15 @@ struct Hinge {
   std::size_t child, parent;    ///< indices of the bodies
   Vector3d anchor_C, anchor_P;  ///< from each body's centre of mass [m]
   Vector3d axis_C, axis_P;      ///< unit
+  double friction = 0;          ///< dry, about the axis [N m]
+  double implicit_damping = 0;  ///< about the axis [N m s/rad]
+};
+
+/// How a shape and the ground feel each other.
+struct SurfacePair {
+  double stiffness, damping;  ///< N/m, N s/m
+  double mu1, mu2;            ///< friction along the first direction and across it
+  double max_correction;      ///< cap of the correction where velocities are solved for [m/s]
 };
 
 /// A point where a body touches the ground.
@@ -20,12 +29,9 @@ struct Contact {
   std::size_t body;
   Vector3d position_W;  ///< m
   Vector3d normal_W;    ///< unit, out of the ground
-  double depth;         ///< of the penetration [m]
-};
-
-/// How hard and rough a contact is, in ODE's terms.
-struct Surface {
-  double erp, cfm, friction;
+  Vector3d fdir1_W;     ///< first direction of friction, of any length; zero: ODE's choice
+  double depth;         ///< of the penetration to be corrected [m]
+  const SurfacePair* surface;
 };
 
 /// One row J v = correction of the constraints between up to two bodies, in ODE's terms.
@@ -41,35 +47,38 @@ struct ConstraintRow {
   double friction = 0;       ///< of a friction row: bound per multiplier of its normal
   int normal = -1;           ///< of a friction row: the row of its normal
   int hinge = -1;            ///< of a hinge row: its hinge
-  int hinge_row = 0;         ///< of a hinge row: which of the five
+  int hinge_row = 0;         ///< of a hinge row: which of them
 };
 
-/// Rows of a hinge.
-constexpr int rows_per_hinge = 5;
+/// Rows of a hinge: three for the anchor, two for the axis, one for friction or implicit damping.
+constexpr int rows_per_hinge = 6;
 
 /// Writes the rows of hinges and contacts in the order in which Gazebo 11's ODE does: it walks an
 /// island from its newest body and a body's joints from the newest, contacts before hinges. Gazebo
 /// makes bodies and hinges in the order of its SDF.
 class ConstraintRows {
  public:
+  struct Options {
+    double erp, cfm;
+    double max_hinge_correction;  ///< cap of a hinge's where velocities are solved for [m/s, rad/s]
+  };
+
   /// hinges[i] carries bodies[i + 1]; `order` holds the indices of the bodies, the oldest first.
   ConstraintRows(const std::vector<dBodyID>& bodies, std::vector<Hinge> hinges,
-                 const std::vector<std::size_t>& order, double erp, double cfm);
+                 const std::vector<std::size_t>& order, const Options& options);
 
-  const std::vector<ConstraintRow>& build(const std::vector<Contact>& contacts,
-                                          const Surface& surface, double dt);
+  const std::vector<ConstraintRow>& build(const std::vector<Contact>& contacts, double dt);
   const std::vector<Hinge>& hinges() const { return hinges_; }
 
  private:
-  void visit(std::size_t body, const std::vector<Contact>& contacts, const Surface& surface,
-             double dt);
+  void visit(std::size_t body, const std::vector<Contact>& contacts, double dt);
   void add_hinge(std::size_t index, double dt);
-  void add_contact(const Contact& contact, const Surface& surface, double dt);
+  void add_contact(const Contact& contact, double dt);
 
   const std::vector<dBodyID>& bodies_;
   std::vector<Hinge> hinges_;
   std::vector<std::size_t> newest_first_;  ///< indices of the bodies
-  double erp_, cfm_;
+  Options options_;
   std::vector<ConstraintRow> rows_;
   std::vector<char> body_tagged_, hinge_tagged_;
   std::vector<std::size_t> stack_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ode_math.hpp"
+#include "quadcore/random.hpp"
 
 namespace quadcore {
 namespace {
@@ -20,13 +21,13 @@ GazeboStep::GazeboStep(const std::vector<dBodyID>& bodies, std::vector<Hinge> hi
                        const std::vector<std::size_t>& order, const Options& options)
     : warm_start(hinges.size()),
       ode_bodies_(bodies),
-      constraints_(bodies, std::move(hinges), order, options.erp, options.cfm),
+      constraints_(bodies, std::move(hinges), order, options.rows),
       options_(options),
       bodies_(bodies.size()) {}
 
-void GazeboStep::step(const std::vector<Contact>& contacts, const Surface& surface, double dt) {
+void GazeboStep::step(const std::vector<Contact>& contacts, double dt) {
   read_bodies();
-  rows_ = &constraints_.build(contacts, surface, dt);
+  rows_ = &constraints_.build(contacts, dt);
   order_rows();
   prepare_rows();
   solve(&WarmStart::pose, false, 0, dt);
@@ -46,8 +47,9 @@ void GazeboStep::read_bodies() {
     body.inverse_mass = 1 / mass.mass;
     body.inverse_inertia_W = R_WB * rotation(mass.I).inverse() * R_WB.transpose();
     body.velocity << vec(dBodyGetLinearVel(ode)), vec(dBodyGetAngularVel(ode));
-    body.free_acceleration << body.inverse_mass * vec(dBodyGetForce(ode)) + options_.gravity_W,
+    body.free_acceleration << body.inverse_mass * vec(dBodyGetForce(ode)),
         body.inverse_inertia_W * vec(dBodyGetTorque(ode));
+    if (dBodyGetGravityMode(ode)) body.free_acceleration.head<3>() += options_.gravity_W;
   }
 }
 
@@ -94,7 +96,9 @@ void GazeboStep::solve(Multipliers WarmStart::* start, bool cap, double smoothin
     const ConstraintRow& row = rows[i];
     Sweep& sweep = sweeps_[i];
     sweep.multiplier = row.hinge < 0 ? 0 : warm_start_factor * remembered(row);
-    sweep.wanted = (cap ? std::min(row.correction, row.max_correction) : row.correction) / dt;
+    // Gazebo forgets the sign of what it caps.
+    const bool capped = cap && std::abs(row.correction) > row.max_correction;
+    sweep.wanted = (capped ? row.max_correction : row.correction) / dt;
     for (int side = 0; side < 2 && row.body[side] >= 0; ++side) {
       Body& body = bodies_[static_cast<std::size_t>(row.body[side])];
       sweep.wanted -= row.J[side].dot(body.velocity / dt + body.free_acceleration);
@@ -110,6 +114,47 @@ void GazeboStep::solve(Multipliers WarmStart::* start, bool cap, double smoothin
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows[i].hinge >= 0) remembered(rows[i]) = sweeps_[i].multiplier;
   }
+}
+
+double GazeboStep::remaining_error(double dt, std::uint64_t seed) {
+  static const std::vector<Contact> none;
+  read_bodies();
+  rows_ = &constraints_.build(none, dt);
+  order_rows();
+  prepare_rows();
+  for (Body& body : bodies_) body.constraint.setZero();
+  double count = 0;
+  for (std::size_t i = 0; i < rows_->size(); ++i) {
+    const ConstraintRow& row = (*rows_)[i];
+    Sweep& sweep = sweeps_[i];
+    // In units of the multiplier that would stop the row's bodies by itself.
+    sweep.multiplier = random_normal(seed, count) * std::sqrt(sweep.relaxation);
+    sweep.wanted = 0;
+    for (int side = 0; side < 2 && row.body[side] >= 0; ++side) {
+      bodies_[static_cast<std::size_t>(row.body[side])].constraint +=
+          sweep.multiplier * sweep.inverse_mass_J[side];
+    }
+  }
+  const auto energy = [this] {
+    double sum = 0;
+    for (std::size_t i = 0; i < rows_->size(); ++i) {
+      const ConstraintRow& row = (*rows_)[i];
+      double acceleration = row.cfm * sweeps_[i].multiplier;
+      for (int side = 0; side < 2 && row.body[side] >= 0; ++side) {
+        acceleration +=
+            row.J[side].dot(bodies_[static_cast<std::size_t>(row.body[side])].constraint);
+      }
+      sum += sweeps_[i].multiplier * acceleration;
+    }
+    return sum;
+  };
+  const double first = energy();
+  double part = 1;
+  for (int n = 0; n < options_.iterations && part > 1e-16; ++n) {
+    for (const std::size_t row : order_) relax(row, 0);
+    part = std::sqrt(std::abs(energy() / first));
+  }
+  return part;
 }
 
 void GazeboStep::relax(std::size_t index, double smoothing) {

@@ -1,17 +1,25 @@
 #include "ground_contact.hpp"
 
+#include <algorithm>
+
 #include "ode_math.hpp"
 #include "quadcore/error.hpp"
 
 namespace quadcore {
 namespace {
 
+// Measured in the running Gazebo 11.
 constexpr int max_contacts_per_pair = 10;
-// Measured in the running Gazebo 11: a model's kp 1e12 and kd 1 in series and sum with the
-// ground's, its friction 1 (the smaller of a pair), no bounce, no slip.
-constexpr double stiffness = 5e11;  // N/m
-constexpr double damping = 2;       // N s/m
-constexpr double friction = 1;
+constexpr double ground_stiffness = 1e12;  // N/m
+constexpr double ground_damping = 1;       // N s/m
+constexpr double ground_mu1 = 100, ground_mu2 = 50;
+
+/// Springs in series, dampers in sum, the smaller friction of the two.
+SurfacePair on_ground(const Surface& surface, double max_correction) {
+  return {1 / (1 / surface.kp + 1 / ground_stiffness), surface.kd + ground_damping,
+          std::min(surface.mu1, ground_mu1), std::min(surface.mu2, ground_mu2),
+          std::min(surface.max_vel, max_correction)};
+}
 
 dGeomID create_shape(const Collision& collision) {
   const Vector3d& size = collision.size;
@@ -33,12 +41,18 @@ dGeomID create_shape(const Collision& collision) {
 
 }  // namespace
 
-GroundContact::GroundContact(const Model& model, const std::vector<dBodyID>& bodies)
-    : plane_(dCreatePlane(nullptr, 0, 0, 1, 0)) {
+GroundContact::GroundContact(const Model& model, const std::vector<dBodyID>& bodies,
+                             double max_correction)
+    : bodies_(bodies), plane_(dCreatePlane(nullptr, 0, 0, 1, 0)) {
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     for (const Collision& collision : model.links[i].collisions) {
       const dGeomID geom = create_shape(collision);
-      shapes_.push_back({Geom(geom), i});
+      Surface surface = collision.surface;
+      // Gazebo's ODE keeps these two with the body, where the last shape leaves them.
+      surface.max_vel = model.links[i].collisions.back().surface.max_vel;
+      surface.min_depth = model.links[i].collisions.back().surface.min_depth;
+      shapes_.push_back({Geom(geom), i, on_ground(surface, max_correction), surface.fdir1,
+                         surface.min_depth, std::min(surface.max_contacts, max_contacts_per_pair)});
       const Vector3d p_cm = collision.pose.xyz - model.links[i].inertial.pose.xyz;
       const Quaterniond q = collision.pose.rotation();
       const dQuaternion ode_q = {q.w(), q.x(), q.y(), q.z()};
@@ -54,18 +68,31 @@ const std::vector<Contact>& GroundContact::find() {
   contacts_.clear();
   dContactGeom touching[max_contacts_per_pair];
   for (const Shape& shape : shapes_) {
-    const int found = dCollide(shape.geom.get(), plane_.get(), max_contacts_per_pair, touching,
+    const int found = dCollide(shape.geom.get(), plane_.get(), shape.max_contacts, touching,
                                sizeof(dContactGeom));
+    if (found == 0) continue;
+    const Vector3d fdir1_W = rotation(dGeomGetRotation(shape.geom.get())) * shape.fdir1;
     for (int i = 0; i < found; ++i) {
-      contacts_.push_back(
-          {shape.body, vec(touching[i].pos), vec(touching[i].normal), touching[i].depth});
+      contacts_.push_back({shape.body, vec(touching[i].pos), vec(touching[i].normal), fdir1_W,
+                           std::max(0.0, touching[i].depth - shape.min_depth), &shape.surface});
     }
   }
   return contacts_;
 }
 
-Surface GroundContact::surface(double dt) {
-  return {dt * stiffness / (dt * stiffness + damping), 1 / (dt * stiffness + damping), friction};
+bool GroundContact::is_ahead(double time, double gravity_z) const {
+  const Vector3d w_WF_W = vec(dBodyGetAngularVel(bodies_[0]));
+  const double fallen = std::min(0.0, gravity_z) * time * time / 2;
+  for (const Shape& shape : shapes_) {
+    const dBodyID body = bodies_[shape.body];
+    const Vector3d arm_W = vec(dGeomGetPosition(shape.geom.get())) - vec(dBodyGetPosition(body));
+    dReal box[6];
+    dGeomGetAABB(shape.geom.get(), box);
+    const double reach = Vector3d(box[1] - box[0], box[3] - box[2], box[5] - box[4]).norm() / 2;
+    const double v_z = dBodyGetLinearVel(body)[2] + w_WF_W.cross(arm_W).z();
+    if (box[4] + fallen + time * (v_z - w_WF_W.norm() * reach) < 0) return true;
+  }
+  return false;
 }
 
 }  // namespace quadcore

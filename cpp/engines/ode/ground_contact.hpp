@@ -15,14 +15,16 @@ namespace quadcore {
 class GroundContact {
  public:
   /// \param bodies  one per link of the model, each at its link's centre of mass.
+  /// \param max_correction  cap of every contact's correction [m/s].
   /// Throws InputError on a shape that cannot collide (a mesh).
-  GroundContact(const Model& model, const std::vector<dBodyID>& bodies);
+  GroundContact(const Model& model, const std::vector<dBodyID>& bodies, double max_correction);
 
   /// The contacts of the present poses, at most ten for each shape.
   const std::vector<Contact>& find();
 
-  /// What Gazebo 11 makes of a model on its ground plane, for steps of dt.
-  static Surface surface(double dt);
+  /// Whether a shape may be below the ground within `time` [s], by the present velocities. Shapes
+  /// of rotors count as turning with the frame alone.
+  bool is_ahead(double time, double gravity_z) const;
 
  private:
   struct DestroyGeom {
@@ -32,8 +34,13 @@ class GroundContact {
   struct Shape {
     Geom geom;
     std::size_t body;
+    SurfacePair surface;
+    Vector3d fdir1;  ///< in the shape's axes
+    double min_depth;
+    int max_contacts;
   };
 
+  const std::vector<dBodyID>& bodies_;
   Geom plane_;
   std::vector<Shape> shapes_;
   std::vector<Contact> contacts_;

@@ -14,7 +14,9 @@ namespace quadcore {
 
 /// How an ODE world is set up.
 struct OdeRecipe {
-  bool round_like_sdf;  ///< fly the numbers that Gazebo's URDF -> SDF conversion leaves
+  /// Fly what Gazebo's conversion from URDF to SDF leaves, by Gazebo's sweeps wherever they are not
+  /// the direct solver's answer.
+  bool like_gazebo;
   void (*add_gyroscopic)(GyroscopicVehicle&, double dt);
 };
 
@@ -36,6 +38,8 @@ class OdeEngine final : public Engine {
   void set_state(const VehicleState& state) override;
   std::vector<double> save() const override;
   void restore(const std::vector<double>& saved) override;
+  std::string method() const override { return method_; }
+  std::vector<std::string> warnings() const override { return warnings_; }
 
  private:
   struct FreeThreading {
@@ -47,11 +51,15 @@ class OdeEngine final : public Engine {
 
   void create_bodies();
   std::vector<Hinge> create_hinges();
+  void choose_method(const World& world);
+  double remaining_error();
   void place(std::size_t link, const Eigen::Isometry3d& X_WL, const Vector3d& v_WL_W,
              const Vector3d& w_WL_W);
   void take_threading();
   void solve(double dt);
+  bool is_near_contact(double dt, bool touching);
   void apply_loads();
+  void damp_bodies();
   void remember_hinge_forces();
   std::size_t saved_size() const;
   void read_kinematics();
@@ -61,15 +69,19 @@ class OdeEngine final : public Engine {
   /// The world's own: ODE's default job list is shared by all worlds, without a lock.
   std::unique_ptr<dxThreadingImplementation, FreeThreading> threading_;
   std::unique_ptr<dxWorld, DestroyWorld> world_;
-  bool iterate_;  ///< every step by sweeps, because the world asks for few of them
+  bool iterate_ = false;  ///< every step by sweeps, because they do not converge
+  std::string method_;
+  std::vector<std::string> warnings_;
   std::vector<dBodyID> bodies_;
   std::unique_ptr<GroundContact> ground_;  ///< null in a world without ground
+  int steps_since_contact_;                ///< counted no further than it matters
   std::unique_ptr<GazeboStep> gazebo_step_;
   std::vector<dJointID> hinges_;
   std::vector<dJointFeedback> feedback_;  ///< one per hinge in a world with ground
   std::unique_ptr<GyroscopicVehicle> gyroscopic_;
   double mass_ = 0;
   Vector3d wind_W_;
+  double gravity_z_ = 0;
   Kinematics kinematics_;
   Loads loads_;
 };

@@ -27,7 +27,8 @@ def info(arguments: argparse.Namespace) -> None:
     """Print the model as it would fly."""
     simulation = Simulation(**options.model_arguments(arguments))
     console = terminal.console()
-    console.print(f"model {simulation.model.name}\n")
+    console.print(f"model {simulation.model.name}")
+    console.print(f"engine {simulation.engine}: {simulation.method}\n")
     if simulation.ignored:
         console.print(f"ignored: {', '.join(simulation.ignored)}\n")
     for table in (_links(simulation), _body(simulation), _rotors(simulation)):

@@ -43,6 +43,11 @@ class Engine {
   /// Everything that the next steps depend on, bit for bit.
   virtual std::vector<double> save() const = 0;
   virtual void restore(const std::vector<double>& saved) = 0;
+
+  /// How it takes its steps, in one line for a person.
+  virtual std::string method() const = 0;
+  /// What the author of model and world should know, FILE:LINE first.
+  virtual std::vector<std::string> warnings() const { return {}; }
 };
 
 struct EngineInfo {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,17 @@ struct Inertial {
 
 enum class ShapeKind { box, cylinder, sphere, mesh };
 
+/// How a shape feels the ground; the defaults are Gazebo 11's.
+struct Surface {
+  double mu1 = 1, mu2 = 1;            ///< friction along fdir1 and across it
+  Vector3d fdir1 = Vector3d::Zero();  ///< in the shape's axes, of any length; zero: the world's -y
+  double kp = 1e12;                   ///< N/m
+  double kd = 1;                      ///< N s/m
+  double min_depth = 0;               ///< m of penetration that are not corrected
+  double max_vel = 0.01;              ///< m/s of velocity that a correction may leave
+  int max_contacts = 10;              ///< points
+};
+
 /// A collision shape. `size`: box x, y, z; cylinder radius, length; sphere radius [m]. A mesh has
 /// none: no engine collides one, and a world with a ground plane refuses it.
 struct Collision {
@@ -35,6 +47,15 @@ struct Collision {
   Vector3d size;
   Pose pose;
   std::string where;
+  std::string name = {};  ///< as the URDF writes it; "" without
+  Surface surface = {};
+};
+
+/// What a <gazebo reference> says of how a whole body moves.
+struct BodyTags {
+  bool gravity = true;
+  double damping_factor = 0;  ///< part of its velocity that a body loses in each step
+  std::string where;          ///< FILE:LINE of the tag that is not at its default
 };
 
 /// A moving body: a URDF link together with every link fixed to it.
@@ -43,6 +64,7 @@ struct Link {
   Inertial inertial;
   std::vector<Collision> collisions;
   std::string where;
+  BodyTags tags = {};
 };
 
 /// A continuous joint. Joint i carries link i + 1; link 0 is the frame, the root of the tree.
@@ -51,8 +73,9 @@ struct Joint {
   std::size_t parent = 0;             ///< index of the parent link
   Pose pose;                          ///< of the child link in the parent link at angle zero
   Vector3d axis = Vector3d::UnitX();  ///< unit, in the child link's axes
-  Vector3d axis_as_written = axis;    ///< of any length; Gazebo rounds this one
   double damping = 0;                 ///< N m s/rad
+  double friction = 0;                ///< N m, dry
+  bool implicit_damping = false;      ///< damping as a constraint instead of a torque
   std::string where;
 };
 
@@ -72,6 +95,8 @@ struct PluginElement {
   std::string fault = {};  ///< FILE:LINE: what is wrong with the tags, told if it is loaded
 };
 
+struct UrdfTree;
+
 /// A vehicle: bodies, joints, plugins. Bodies are indexed links[0] = frame, links[i+1] = child of
 /// joints[i]; parents come before their children.
 struct Model {
@@ -83,8 +108,10 @@ struct Model {
   PassedOver passed_over;
   /// Every link name of the URDF, lumped ones included, and the body that carries it.
   std::map<std::string, std::size_t> body_of_link;
-  /// Indices of the links in the order of Gazebo's SDF: depth first, joints by name.
-  std::vector<std::size_t> sdf_order;
+  /// Every link name of the URDF, and where the link sits in that body.
+  std::map<std::string, Pose> pose_of_link;
+  /// What it was read from, for an engine that lumps in another way.
+  std::shared_ptr<const UrdfTree> urdf;
 
   std::vector<std::string> joint_names() const;
 };

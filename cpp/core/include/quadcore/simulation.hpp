@@ -70,6 +70,8 @@ class Simulation : private ForceField {
   double time() const { return start_time_ + static_cast<double>(steps_) * dt_; }
   double dt() const { return dt_; }
   const std::string& engine_name() const { return engine_name_; }
+  /// How the engine takes its steps, in one line for a person.
+  std::string method() const { return engine_->method(); }
   const Model& model() const { return engine_->model(); }
   const VehicleState& state() const { return state_; }
   const Topics& topics() const { return topics_; }

@@ -17,10 +17,12 @@ struct World {
   double max_step_size = 0.001;         ///< s
   double real_time_update_rate = 1000;  ///< 1/s, 0 = as fast as possible; for nodes that pace
   std::string solver_type = "quick";    ///< quick | world
+  std::string solver_type_where;        ///< FILE:LINE of the type
   int solver_iterations = 50;
   double solver_sor = 1.3;
   double erp = 0.2;
   double cfm = 0;
+  double contact_max_correcting_vel = 100;  ///< m/s, also rad/s of hinges
   bool ground_plane = false;
   Vector3d wind_W{0, 0, 0};  ///< velocity of the air [m/s]
   PassedOver passed_over;

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "quadcore/spatial.hpp"
+
+namespace quadcore {
+
+/// What a <gazebo reference="LINK or JOINT"> may hold. Parsing, errors and the docs come from here.
+struct GazeboTag {
+  std::string name;
+  std::string of;        ///< what the reference must name: link | joint
+  std::string felt_by;   ///< shapes | body | joint; "" = nothing
+  std::string unit;      ///< "" = none
+  std::string fallback;  ///< the default, "" = none
+  std::string range;     ///< as a person reads it
+  std::string meaning;   ///< one line
+};
+
+/// All of them, the felt ones first.
+std::vector<GazeboTag> gazebo_tags();
+
+/// A felt tag with its value; a number or a flag (0 or 1) is the first component.
+struct GivenTag {
+  std::string name;
+  Vector3d value;
+  std::string where;
+};
+
+/// One <gazebo reference="...">, with the tags that are felt.
+struct GazeboReference {
+  std::string name;  ///< of a link or a joint
+  std::string where;
+  std::vector<GivenTag> tags;
+};
+
+}  // namespace quadcore

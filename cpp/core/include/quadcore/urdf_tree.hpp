@@ -1,0 +1,83 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "quadcore/gazebo_reference.hpp"
+#include "quadcore/model.hpp"
+
+namespace quadcore {
+
+/// A link as the URDF writes it.
+struct UrdfLink {
+  std::string name;
+  std::optional<Inertial> inertial;
+  std::vector<Collision> collisions;
+  std::string where;
+  BodyTags tags = {};  ///< of the body that begins with this link
+};
+
+/// A joint as the URDF writes it: continuous, or fixed.
+struct UrdfJoint {
+  std::string name;
+  bool fixed = false;
+  /// Of a fixed joint: written as a revolute one without any travel. Gazebo keeps its child as a
+  /// link, though it does not move.
+  bool locked = false;
+  std::string parent;
+  std::string child;
+  Pose pose;
+  Vector3d axis = Vector3d::UnitX();
+  double damping = 0;
+  double friction = 0;
+  bool implicit_damping = false;
+  std::string where;
+};
+
+/// The URDF before fixed links are lumped.
+struct UrdfTree {
+  std::string name;
+  std::string where;
+  std::vector<UrdfLink> links;
+  std::vector<UrdfJoint> joints;
+  std::vector<PluginElement> plugins;
+  std::vector<GazeboReference> references;
+  std::vector<std::string> warnings;
+  PassedOver passed_over;
+  std::string root;  ///< the link that no joint carries, as check_topology() finds it
+};
+
+/// Reads the elements of a URDF, each checked by itself.
+/// \param ignore  see PassedOver.
+UrdfTree read_urdf_tree(const Document& document, const std::vector<std::string>& ignore);
+
+/// Checks how links and joints hang together, and finds the root.
+void check_topology(UrdfTree& tree);
+
+/// Lumps fixed links and checks the moving bodies. The topology has been checked.
+Model lump(const UrdfTree& tree);
+
+/// \name The order of Gazebo, which walks a model depth first and the joints of a link by name
+/// @{
+
+/// The joints below each link, by name.
+using JointsBelow = std::map<std::string, std::map<std::string, const UrdfJoint*>>;
+JointsBelow joints_below(const UrdfTree& tree);
+
+/// A link that Gazebo has as its own: the root, or one on a joint that turns or is locked.
+struct SdfLink {
+  /// A URDF link that it is made of.
+  struct Part {
+    std::string link;
+    const UrdfJoint* joint;  ///< the fixed joint that carries it; null for the first part
+    std::size_t parent;      ///< index of the part that it is fixed to
+  };
+  std::vector<Part> parts;           ///< its own link first, parents before what they carry
+  const UrdfJoint* joint = nullptr;  ///< that carries it; null for the root
+};
+std::vector<SdfLink> sdf_links(const UrdfTree& tree);
+/// @}
+
+}  // namespace quadcore

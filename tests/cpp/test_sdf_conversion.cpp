@@ -1,0 +1,274 @@
+#include <cmath>
+
+#include "ode/sdf_conversion.hpp"
+#include "ode/sdf_numbers.hpp"
+#include "vehicle.hpp"
+
+using namespace quadcore;
+using namespace quadcore::test;
+
+namespace {
+
+std::string shape(const std::string& geometry, const std::string& origin = "",
+                  const std::string& name = "") {
+  return "<collision" + (name.empty() ? "" : " name=\"" + name + "\"") + "><origin " + origin +
+         "/><geometry>" + geometry + "</geometry></collision>";
+}
+
+/// A link with shapes.
+std::string shaped(const std::string& name, const std::string& shapes,
+                   const std::string& inertial = "") {
+  return "<link name=\"" + name + "\">" + inertial + shapes + "</link>\n";
+}
+
+std::string inertial(const std::string& mass, const std::string& inertia,
+                     const std::string& origin = "") {
+  return "<inertial><origin " + origin + "/><mass value=\"" + mass + "\"/><inertia " + inertia +
+         "/></inertial>";
+}
+
+const std::string ball = "<sphere radius=\"0.02\"/>";
+const std::string turning_rotor =
+    link("rotor", 0.01, round_rotor) + joint("turn", "continuous", "frame", "rotor");
+
+/// Odd rotations everywhere: pitch near 90 degrees in a joint and in an inertial, an inertial with
+/// axes of its own in the link that carries all, names in another order than the file.
+const std::string odd =
+    shaped(
+        "frame",
+        shape("<box size=\"0.12345678 0.2 0.0333333333\"/>", "xyz=\"0 0 -0.01\" rpy=\"3 2.2 0.1\""),
+        inertial("1.2", skew_body, "xyz=\"0.01 -0.02 0.03\" rpy=\"0.1 0.2 0.3\"")) +
+    shaped("z_arm",
+           shape("<cylinder radius=\"0.012345678\" length=\"0.1\"/>",
+                 "xyz=\"0.1 0 0\" rpy=\"0.3 0 0.2\""),
+           inertial("0.3",
+                    "ixx=\"0.0002\" iyy=\"0.0003\" izz=\"0.00025\" ixy=\"1e-5\" ixz=\"2e-5\" "
+                    "iyz=\"-3e-5\"",
+                    "xyz=\"0.05 0.02 0.1\" rpy=\"0.4 1.5668 -0.7\"")) +
+    joint("b_weld", "fixed", "frame", "z_arm", "xyz=\"0.1 0.05 0.02\" rpy=\"0.2 1.5668 0.5\"") +
+    shaped(
+        "a_foot", shape(ball),
+        inertial("0.1", "ixx=\"1e-4\" iyy=\"2e-4\" izz=\"1.5e-4\" ixy=\"0\" ixz=\"0\" iyz=\"1e-5\"",
+                 "xyz=\"0 0.02 -0.05\"")) +
+    joint("a_weld", "fixed", "z_arm", "a_foot", "xyz=\"-0.1 0.3 0.2\" rpy=\"-0.7 0.5 -2\"") +
+    shaped("c_foot", shape("<sphere radius=\"0.03\"/>", "xyz=\"0.01 0.02 0.03\"")) +
+    joint("a_foot", "fixed", "frame", "c_foot", "xyz=\"0.2 0.3 -0.1\" rpy=\"0.1 0.2 0.3\"") +
+    link("rotor", 0.01, round_rotor) +
+    joint("turn", "continuous", "a_foot", "rotor", "xyz=\"0.01 0.02 0.05\" rpy=\"0.1 0 0\"");
+
+Vector3d rounded_rpy(double roll, double pitch, double yaw) {
+  return sdf_pose(SdfPose(Pose{{0, 0, 0}, {roll, pitch, yaw}})).rpy;
+}
+
+}  // namespace
+
+// The numbers below are those of libsdformat 12.3, rounded to 6 decimals and digits by hand.
+TEST_CASE("a body is lumped as sdformat lumps it, rounded along the axes of its own inertial") {
+  const Model sdf = converted_to_sdf(model(odd));
+  const Inertial& frame = sdf.links[0].inertial;
+  CHECK(frame.mass == 1.6);
+  CHECK(frame.pose.xyz == Vector3d(0.05251, 0.029137, 0.024699));
+  CHECK(frame.pose.rpy == Vector3d(0.1, 0.2, 0.3));
+  CHECK(frame.inertia(0, 0) == 0.0273342);
+  CHECK(frame.inertia(0, 1) == -0.0093626);
+  CHECK(frame.inertia(0, 2) == -0.0011154);
+  CHECK(frame.inertia(1, 1) == 0.0303273);
+  CHECK(frame.inertia(1, 2) == -0.00338681);
+  CHECK(frame.inertia(2, 2) == 0.0497549);
+  CHECK(sdf.joints[0].pose.xyz == Vector3d(0.230327, 0.363667, 0.086571));
+  CHECK(sdf.joints[0].pose.rpy == Vector3d(-1.95164, -0.371152, -1.81295));
+}
+
+TEST_CASE("lumped shapes come by the names of their joints, a link's own first") {
+  const Model sdf = converted_to_sdf(model(odd));
+  const std::vector<Collision>& shapes = sdf.links[0].collisions;
+  REQUIRE(shapes.size() == 4);
+  CHECK(shapes[0].size == Vector3d(0.123457, 0.2, 0.033333));
+  CHECK(shapes[0].pose.xyz == Vector3d(0, 0, -0.01));
+  CHECK(shapes[0].pose.rpy == Vector3d(-0.141593, 0.941593, -3.04159));
+  CHECK(shapes[1].size.x() == 0.03);
+  CHECK(shapes[1].pose.xyz == Vector3d(0.210412, 0.320916, -0.070775));
+  CHECK(shapes[2].size == Vector3d(0.0123457, 0.1, 1));
+  CHECK(shapes[2].pose.xyz == Vector3d(0.100351, 0.050192, -0.079999));
+  CHECK(shapes[2].pose.rpy == Vector3d(1.85116, 1.36996, 1.85155));
+  CHECK(shapes[3].size.x() == 0.02);
+  CHECK(shapes[3].pose.xyz == Vector3d(0.202059, 0.395512, 0.121021));
+}
+
+TEST_CASE("the names of the links that are lumped stay known, and the exact numbers too") {
+  const Model exact = model(odd), sdf = converted_to_sdf(exact);
+  CHECK(sdf.body_of_link == exact.body_of_link);
+  CHECK(sdf.pose_of_link.size() == exact.links.size() + 3);
+  const Pose& foot = exact.pose_of_link.at("a_foot");
+  CHECK((foot.xyz - (Vector3d(0.1, 0.05, 0.02) +
+                     quaternion_from_rpy({0.2, 1.5668, 0.5}) * Vector3d(-0.1, 0.3, 0.2)))
+            .norm() < 1e-15);
+  CHECK(make_engine("ode", exact, World{})->model().links[0].inertial.pose.xyz ==
+        exact.links[0].inertial.pose.xyz);
+}
+
+TEST_CASE(
+    "a scalar keeps six digits; a component six decimals, ties away from zero, then six digits") {
+  CHECK(sdf_scalar(1234.5678) == 1234.57);
+  CHECK(sdf_scalar(1.23456789e-9) == 1.23457e-9);
+  CHECK(sdf_vector({123.4567891, 1.23456789e-5, -4e-7}) == Vector3d(123.457, 1.2e-5, 0));
+  CHECK(sdf_vector({0.0338985, -0.0338985, 0.0000005}) == Vector3d(0.033899, -0.033899, 1e-6));
+  CHECK(sdf_vector({0.0012345, 0.1234565, 0.0000025}) == Vector3d(0.001235, 0.123457, 3e-6));
+}
+
+TEST_CASE("a rotation passes through a quaternion, and at 90 degrees of pitch all yaw is roll") {
+  CHECK(rounded_rpy(3, 2.2, 0.1) == Vector3d(-0.141593, 0.941593, -3.04159));
+  CHECK(rounded_rpy(0.3, M_PI_2, 0.1) == Vector3d(0.2, 1.5708, 0));
+  CHECK(rounded_rpy(0.3, -M_PI_2, 0.1) == Vector3d(0.4, -1.5708, 0));
+  CHECK(rounded_rpy(0, 1.5668, 0.5) == Vector3d(0, 1.5668, 0.5));
+  // Shapes pass through urdfdom's angles, which are coarse there.
+  CHECK(sdf_shape_pose(SdfPose(Pose{{0, 0, 0}, {0, 1.5668, 0.5}})).rpy ==
+        Vector3d(-0.5, 1.5708, 0));
+}
+
+TEST_CASE("a rotor that Gazebo loses is refused by the engine that is Gazebo, with a remedy") {
+  const auto vehicle = [](const std::string& mount) {
+    return model(link("frame", 1, round_body) + mount +
+                 joint("weld", "fixed", "frame", "mount", "xyz=\"0.1 0 0\"") +
+                 link("rotor", 0.01, round_rotor) + joint("turn", "continuous", "mount", "rotor"));
+  };
+  const auto mass = [](const std::string& kg) {
+    return shaped("mount", "", inertial(kg, round_rotor));
+  };
+  for (const std::string& lost : {shaped("mount", ""), mass("9.9e-7")}) {
+    const Model m = vehicle(lost);
+    const std::string message = refusal([&] { make_engine("gazebo11", m, World{}); });
+    CHECK(message.rfind("test.urdf:3: link 'mount' has", 0) == 0);
+    CHECK(contains(message, "'turn'"));
+    CHECK(contains(message, "use the engine ode or eigen"));
+    make_engine("ode", m, World{});
+    make_engine("eigen", m, World{});
+  }
+  make_engine("gazebo11", vehicle(mass("1.1e-6")), World{});
+}
+
+TEST_CASE("mounts that carry nothing that turns, or something heavy, may be massless") {
+  const std::string heavy_end =
+      "<link name=\"arm\"/>\n" + link("end", 0.2, round_rotor) +
+      joint("a", "fixed", "frame", "arm") + joint("b", "fixed", "arm", "end") +
+      "<link name=\"mark\"/>\n" + joint("c", "fixed", "frame", "mark") +
+      link("rotor", 0.01, round_rotor) + joint("turn", "continuous", "arm", "rotor");
+  CHECK(converted_to_sdf(model(link("frame", 1, round_body) + heavy_end)).links[0].inertial.mass ==
+        1.2);
+}
+
+TEST_CASE("a locked joint is fixed, and the link behind it is rounded by itself") {
+  std::string weld = joint("weld", "revolute", "frame", "sensor", "xyz=\"0.1234567 0 0\"");
+  weld.replace(weld.find("</joint>"), 0,
+               "<limit lower=\"0\" upper=\"0\" effort=\"1\" velocity=\"1\"/>");
+  const Model m =
+      model(shaped("frame", "", inertial("1.0000001", round_body)) +
+            shaped("sensor", "", inertial("0.1000004", round_rotor, "xyz=\"0 0 0.0000004\"")) +
+            weld + turning_rotor);
+  REQUIRE(m.links.size() == 2);
+  CHECK(m.body_of_link.at("sensor") == 0);
+  CHECK(m.pose_of_link.at("sensor").xyz == Vector3d(0.1234567, 0, 0));
+  CHECK(m.links[0].inertial.mass == 1.1000005);
+  const Model sdf = converted_to_sdf(m);
+  REQUIRE(sdf.links.size() == 2);
+  CHECK(sdf.pose_of_link.at("sensor").xyz == Vector3d(0.123457, 0, 0));
+  CHECK(sdf.links[0].inertial.mass == 1 + 0.1);  // 1.1000005 would have become 1.1 or 1.10001
+  CHECK(sdf.links[0].inertial.pose.xyz.x() == doctest::Approx(0.1 * 0.123457 / 1.1).epsilon(1e-15));
+  CHECK(sdf.links[0].inertial.pose.xyz.z() == 0);
+}
+
+TEST_CASE("a shape feels the tags of its own link, as Gazebo finds them by its name") {
+  const auto tags = [](const std::string& name, const std::string& inside) {
+    return "<gazebo reference=\"" + name + "\">" + inside + "</gazebo>\n";
+  };
+  const std::string body =
+      shaped("base", shape(ball) + shape(ball, "", "named"), inertial("1", round_body)) +
+      shaped("arm", shape(ball)) + joint("a", "fixed", "base", "arm") +
+      shaped("base_foot", shape(ball)) + joint("b", "fixed", "base", "base_foot");
+  const Model m = model(body + tags("base", "<mu1>0.5</mu1><kp value=\"1e6\"/>") +
+                        tags("arm", "<mu1>0.25</mu1><fdir1>1 2 0</fdir1>") +
+                        tags("base_foot", "<mu1>0.125</mu1>") + tags("arm", "<mu2>0.75</mu2>"));
+  const std::vector<Collision>& shapes = m.links[0].collisions;
+  REQUIRE(shapes.size() == 4);
+  CHECK(shapes[0].surface.mu1 == 0.5);
+  CHECK(shapes[0].surface.kp == 1e6);
+  CHECK(shapes[0].surface.mu2 == 1);
+  CHECK(shapes[1].surface.mu1 == 1);  // its name hides it
+  CHECK(shapes[2].surface.mu1 == 0.25);
+  CHECK(shapes[2].surface.mu2 == 0.75);
+  CHECK(shapes[2].surface.fdir1 == Vector3d(1, 2, 0));
+  CHECK(shapes[3].surface.mu1 == 0.5);  // its link's name begins with that of the base
+  CHECK(m.warnings.size() == 3);
+  for (const std::string& warning : m.warnings) CHECK(contains(warning, "as in Gazebo"));
+}
+
+TEST_CASE("of a body's references Gazebo takes the last for gravity and the first for damping") {
+  const auto tags = [](const std::string& name, const std::string& inside) {
+    return "<gazebo reference=\"" + name + "\">" + inside + "</gazebo>\n";
+  };
+  const std::string body = link("frame", 1, round_body) + "<link name=\"arm\"/>\n" +
+                           joint("a", "fixed", "frame", "arm") + turning_rotor;
+  const auto read = [&](const std::string& references) { return model(body + references); };
+  const std::string both =
+      "<turnGravityOff>true</turnGravityOff><dampingFactor>0.1</dampingFactor>";
+
+  Model m = read(tags("frame", both));
+  CHECK_FALSE(m.links[0].tags.gravity);
+  CHECK(m.links[0].tags.damping_factor == 0.1);
+  CHECK(m.links[1].tags.gravity);
+  CHECK(m.warnings.empty());
+
+  m = read(tags("frame", both) + tags("frame", "<mu1>1</mu1>"));
+  CHECK(m.links[0].tags.gravity);
+  CHECK(m.links[0].tags.damping_factor == 0.1);
+  CHECK(contains(m.warnings.at(0), "turns gravity on again"));
+
+  m = read(tags("arm", both) + tags("frame", "<material>Red</material>"));  // frame's come first
+  CHECK_FALSE(m.links[0].tags.gravity);
+  CHECK(m.links[0].tags.damping_factor == 0);
+  CHECK(contains(m.warnings.at(0), "the first <gazebo reference>"));
+
+  for (const std::string& tag :
+       {"<turnGravityOff>1</turnGravityOff>", "<dampingFactor>0.01</dampingFactor>"}) {
+    const Model felt = read(tags("rotor", tag));
+    const std::string message = refusal([&] { make_engine("eigen", felt, World{}); });
+    CHECK(message.rfind("test.urdf:6: link 'rotor' has ", 0) == 0);
+    make_engine("ode", felt, World{});
+  }
+}
+
+TEST_CASE("a felt tag that names nothing that feels it, or has no such value, is refused") {
+  const auto refused = [](const std::string& name, const std::string& inside) {
+    return refusal([&] {
+      model(link("frame", 1, round_body) + turning_rotor + "<gazebo reference=\"" + name + "\">" +
+            inside + "</gazebo>\n");
+    });
+  };
+  CHECK(contains(refused("fram", "<mu1>1</mu1>"), "test.urdf:5: <mu1> acts on a link, but 'fram'"));
+  CHECK(contains(refused("fram", "<mu1>1</mu1>"), "did you mean 'frame'?"));
+  CHECK(contains(refused("turn", "<kp>1</kp>"), "'turn' is no link"));
+  CHECK(
+      contains(refused("frame", "<implicitSpringDamper>1</implicitSpringDamper>"), "is no joint"));
+  CHECK(contains(refused("frame", "<mu1>-1</mu1>"), "<mu1> is '-1'; write >= 0"));
+  CHECK(contains(refused("frame", "<kp>0</kp>"), "<kp> is '0'; write > 0"));
+  CHECK(contains(refused("frame", "<kp>nan</kp>"), "<kp> is 'nan'"));
+  CHECK(contains(refused("frame", "<maxContacts>1.5</maxContacts>"), "whole number >= 1"));
+  CHECK(contains(refused("frame", "<fdir1>1 0</fdir1>"), "write three numbers"));
+  CHECK(contains(refused("frame", "<turnGravityOff>maybe</turnGravityOff>"), "true | false"));
+  CHECK(contains(refused("frame", "<gravity>0</gravity>"), "<gravity> is '0'; write true"));
+  CHECK(contains(refused("turn", "<springStiffness>1</springStiffness>"), "write 0"));
+  CHECK(contains(refused("frame", "<mu3>1</mu3>"), "did you mean 'mu1'?"));
+  model(link("frame", 1, round_body) + turning_rotor +
+        "<gazebo reference=\"nobody\"><material>Red</material></gazebo>\n");
+}
+
+TEST_CASE("tags are rounded to six digits, a direction to six decimals") {
+  const Model m = model(shaped("frame", shape(ball), inertial("1", round_body)) + turning_rotor +
+                        "<gazebo reference=\"frame\"><mu1>0.12345678</mu1><kp>1234567.8</kp>"
+                        "<fdir1>0.12345678 0 1234.56789</fdir1></gazebo>\n");
+  CHECK(m.links[0].collisions[0].surface.mu1 == 0.12345678);
+  const Surface surface = converted_to_sdf(m).links[0].collisions[0].surface;
+  CHECK(surface.mu1 == 0.123457);
+  CHECK(surface.kp == 1234570);
+  CHECK(surface.fdir1 == Vector3d(0.123457, 0, 1234.57));
+}
