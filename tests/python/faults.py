@@ -48,7 +48,7 @@ MODEL = """\
   <gazebo>
     <plugin name="air" filename="libaerodynamic_plugin.so">
       <rotorThrustCoeff>1e-5</rotorThrustCoeff>
-      <rotorTorqueCoeff>2e-7</rotorTorqueCoeff>
+      <rotorTorqueCoeff>2e-7</rotorTorqueCoeff><inducedDragCoeff>0</inducedDragCoeff>
       <sim_slow>10</sim_slow>
     </plugin>
     <plugin name="motor" filename="libmotorpid_plugin.so">

@@ -300,7 +300,7 @@ def test_a_process_that_dies_is_a_case_that_failed():
         ("toy.urdf --vary motor.kp=log:0:1:3", "is no geometric range"),
         ("toy.urdf --vary motor.kp=1 --vary motor.kp=2", "motor.kp is given twice"),
         ("toy.urdf --vary motor.kp=1 --vary motor.kp,motor.ki=2", "motor.kp is varied twice"),
-        ("toy.urdf --vary motor.kp=1 --set motor.kp=2", "motor.kp: it is set as well"),
+        ("toy.urdf --vary motor.kp=1 --set motor.kp=2e-4", "motor.kp: it is set as well"),
         ("toy.urdf --vary motor.kp=0:1:1000000000", "makes 1000000000 flights"),
         (
             "toy.urdf --vary motor.kp=0:1:1000 --vary motor.ki=0:1:1000 --vary motor.kd=0:1:1000",

@@ -52,9 +52,9 @@ def test_what_is_sensed_is_named_in_one_warning_with_its_lines(flown):
     (warning,) = simulation.warnings
     first, second = (at("toy.urdf", f'<transmission name="{name}"') for name in "ab")
     assert warning == (
-        f"{UNFELT}<sensor> ({at('toy.urdf', '<sensor')}), "
-        f"<transmission> ({first}, {second}), "
+        f"{UNFELT}<transmission> ({first}, {second}), "
         f"<properties> ({at('toy.urdf', '<properties')}), "
+        f"<sensor> ({at('toy.urdf', '<sensor')}), "
         f"libgazebo_ros_p3d.so ({at('toy.urdf', 'libgazebo_ros_p3d')})"
     )
     simulation.step(3)
