@@ -14,7 +14,8 @@ case $1 in
     arguments=()
     for argument in "$@"; do
       if [[ $argument = *.rviz ]]; then
-        sed -e "s|TF Prefix: .*|TF Prefix: $frames|" -e "s|drone|$frames/drone|" "$argument" >"$copy"
+        sed -e "s|TF Prefix: .*|TF Prefix: $frames|" -e "s|Target Frame: |&$frames/|" \
+          -e "/world:/!s|[a-z0-9]*: {Value: |$frames/&|" "$argument" >"$copy"
         argument=$copy
       fi
       arguments+=("$argument")
