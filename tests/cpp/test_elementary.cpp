@@ -13,7 +13,7 @@ using namespace quadcore;
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// Distance to the true value in units of the last place of a double.
 double error(double found, long double exact) {
@@ -67,7 +67,7 @@ TEST_CASE("sine and cosine are within one unit in the last place for every angle
   CHECK(worst_of_angles(elementary::cos, [](double x) { return cosl(x); }) < 1);
   CHECK(same_bits(elementary::sin(-0.0), -0.0));
   CHECK(elementary::cos(0) == 1);
-  for (const double x : {infinity, -infinity, nan}) {
+  for (const double x : {infinity, -infinity, not_a_number}) {
     CHECK(std::isnan(elementary::sin(x)));
     CHECK(std::isnan(elementary::cos(x)));
   }
@@ -87,8 +87,8 @@ TEST_CASE("the arc tangent of a point and the arc sine are within two and three 
   }
   CHECK(worst_atan2 < 2);
   CHECK(worst_asin < 3);
-  for (const double y : {0.0, -0.0, 1.0, -1.0, infinity, -infinity, nan}) {
-    for (const double x : {0.0, -0.0, 1.0, -1.0, infinity, -infinity, nan}) {
+  for (const double y : {0.0, -0.0, 1.0, -1.0, infinity, -infinity, not_a_number}) {
+    for (const double x : {0.0, -0.0, 1.0, -1.0, infinity, -infinity, not_a_number}) {
       CAPTURE(y);
       CAPTURE(x);
       if (std::isnan(x) || std::isnan(y)) {
@@ -100,7 +100,8 @@ TEST_CASE("the arc tangent of a point and the arc sine are within two and three 
   }
   CHECK(elementary::asin(1) == M_PI_2);
   CHECK(same_bits(elementary::asin(-0.0), -0.0));
-  for (const double x : {1.0000001, -2.0, infinity, nan}) CHECK(std::isnan(elementary::asin(x)));
+  for (const double x : {1.0000001, -2.0, infinity, not_a_number})
+    CHECK(std::isnan(elementary::asin(x)));
 }
 
 TEST_CASE("logarithm and exponential are within one unit in the last place") {
@@ -119,11 +120,11 @@ TEST_CASE("logarithm and exponential are within one unit in the last place") {
   CHECK(elementary::log(0) == -infinity);
   CHECK(elementary::log(infinity) == infinity);
   CHECK(std::isnan(elementary::log(-1)));
-  CHECK(std::isnan(elementary::log(nan)));
+  CHECK(std::isnan(elementary::log(not_a_number)));
   CHECK(elementary::exp(0) == 1);
   CHECK(elementary::exp(710) == infinity);
   CHECK(elementary::exp(-745) == 5e-324);
   CHECK(elementary::exp(-746) == 0);
   CHECK(elementary::exp(-infinity) == 0);
-  CHECK(std::isnan(elementary::exp(nan)));
+  CHECK(std::isnan(elementary::exp(not_a_number)));
 }
