@@ -31,12 +31,12 @@ PARTS = [
     _plugin(
         "aerodynamic",
         ["aerodynamic_plugin.cpp", "drag.hpp", "flapping.hpp", "rotor_disc.hpp", "thrust.hpp"],
-        ["test_forces.py", "test_physics.py", "test_simulation.py", "test_bad_models.py"],
+        ["test_forces.py", "test_warnings.py", "test_simulation.py", "test_bad_models.py"],
     ),
     _plugin(
         "motorpid",
         ["motorpid_plugin.cpp"],
-        ["test_motors.py", "test_simulation.py", "test_bad_models.py", "test_determinism.py"],
+        ["test_motors.py", "test_warnings.py", "test_bad_models.py", "test_determinism.py"],
     ),
     _plugin(
         "odometry",
@@ -52,12 +52,13 @@ PARTS = [
         "ode",
         [
             f"cpp/engines/ode/{name}.cpp"
-            for name in ("body_state", "gyroscopic", "ode_engine", "ode_process", "sdf_rounding")
+            for name in ("body_state", "gyroscopic", "ode_engine", "ode_process")
         ],
         [
             "test_gyroscopics.py",
             "test_gazebo_recordings.py",
             "test_ground_contact.py",
+            "test_random_recordings.py",
             "test_motors.py",
             "test_simulation.py",
         ],
@@ -65,11 +66,15 @@ PARTS = [
     _core(
         "contact",
         [f"cpp/engines/ode/{n}.cpp" for n in ("constraint_rows", "gazebo_step", "ground_contact")],
-        ["test_ground_contact.py", "test_gazebo_recordings.py", "test_determinism.py"],
+        ["test_ground_contact.py", "test_random_recordings.py", "test_determinism.py"],
     ),
     _core(
         "lumping",
-        [f"cpp/core/src/{n}.cpp" for n in ("lumping", "model", "kinematics", "loads", "spatial")],
-        ["test_gazebo_recordings.py", "test_bad_models.py", "test_forces.py", "test_eigen.py"],
+        [
+            f"cpp/core/src/{name}.cpp"
+            for name in ("lumping", "urdf_topology", "model", "kinematics", "loads", "spatial")
+        ]
+        + [f"cpp/engines/ode/sdf_{n}.cpp" for n in ("conversion", "lumping", "numbers")],
+        ["test_bad_models.py", "test_random_recordings.py", "test_forces.py", "test_eigen.py"],
     ),
 ]

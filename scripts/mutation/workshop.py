@@ -130,6 +130,7 @@ class Workshop:
         headers = " ".join(f"<{name}>" for name in _PRECOMPILED)
         with (self.tree / "CMakeLists.txt").open("a") as stream:
             stream.write(f"target_precompile_headers(quadcore PRIVATE {headers})\n")
+            stream.write(f"target_compile_options({_TESTS} PRIVATE -O0)\n")
 
     def _configure(self) -> None:
         self.header.write_text(HEADER)

@@ -228,7 +228,7 @@ TEST_CASE("of a body's references Gazebo takes the last for gravity and the firs
   CHECK(m.links[0].tags.damping_factor == 0);
   CHECK(contains(m.warnings.at(0), "the first <gazebo reference>"));
 
-  for (const std::string& tag :
+  for (const std::string tag :
        {"<turnGravityOff>1</turnGravityOff>", "<dampingFactor>0.01</dampingFactor>"}) {
     const Model felt = read(tags("rotor", tag));
     const std::string message = refusal([&] { make_engine("eigen", felt, World{}); });
