@@ -52,7 +52,7 @@ PARTS = [
         "ode",
         [
             f"cpp/engines/ode/{name}.cpp"
-            for name in ("body_state", "gyroscopic", "ode_engine", "ode_process", "sdf_rounding")
+            for name in ("body_state", "gyroscopic", "ode_engine", "ode_process")
         ],
         [
             "test_gyroscopics.py",
@@ -65,7 +65,18 @@ PARTS = [
     _core(
         "contact",
         [f"cpp/engines/ode/{n}.cpp" for n in ("constraint_rows", "gazebo_step", "ground_contact")],
-        ["test_ground_contact.py", "test_gazebo_recordings.py", "test_determinism.py"],
+        [
+            "test_ground_contact.py",
+            "test_gazebo_recordings.py",
+            "test_random_recordings.py",
+            "test_determinism.py",
+        ],
+    ),
+    _core(
+        "sdf",
+        [f"cpp/engines/ode/sdf_{n}.cpp" for n in ("conversion", "lumping", "numbers")]
+        + ["cpp/core/src/references.cpp", "cpp/core/src/urdf_topology.cpp"],
+        ["test_random_recordings.py", "test_gazebo_recordings.py", "test_bad_models.py"],
     ),
     _core(
         "lumping",
