@@ -66,13 +66,26 @@ PARTS = [
     _core(
         "contact",
         [f"cpp/engines/ode/{n}.cpp" for n in ("constraint_rows", "gazebo_step", "ground_contact")],
-        ["test_ground_contact.py", "test_random_recordings.py", "test_determinism.py"],
+        [
+            "test_ground_contact.py",
+            "test_gazebo_recordings.py",
+            "test_random_recordings.py",
+            "test_determinism.py",
+        ],
     ),
     _core(
         "lumping",
         [
             f"cpp/core/src/{name}.cpp"
-            for name in ("lumping", "urdf_topology", "model", "kinematics", "loads", "spatial")
+            for name in (
+                "lumping",
+                "urdf_topology",
+                "references",
+                "model",
+                "kinematics",
+                "loads",
+                "spatial",
+            )
         ]
         + [f"cpp/engines/ode/sdf_{n}.cpp" for n in ("conversion", "lumping", "numbers")],
         ["test_bad_models.py", "test_random_recordings.py", "test_forces.py", "test_eigen.py"],

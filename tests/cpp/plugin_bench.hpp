@@ -78,10 +78,14 @@ struct PluginBench {
     return {time, dt, kinematics, topics, warnings, jumped};
   }
   void update(const Kinematics& kinematics, double time, double dt) {
+    topics.write_as(0);
     loaded.plugin->update(sample(kinematics, time, dt), state());
+    topics.write_as(the_caller);
   }
   void sense(const Kinematics& kinematics, double time, bool jumped = false) {
+    topics.write_as(0);
     loaded.plugin->sense(sample(kinematics, time, 1e-3, jumped), state());
+    topics.write_as(the_caller);
   }
   Loads forces(const Kinematics& kinematics) {
     Loads loads(kinematics.rotors.size());
