@@ -503,11 +503,13 @@ def test_tables_are_written_before_pictures(toy, monkeypatch):
 
 def test_a_view_read_beside_a_step_is_not_a_copy():
     """`copy` is of one moment, or refused: positions and velocities belong together."""
-    simulation = quadrotor("eigen")
+    drags = ("induced", "translational", "profile", "parasitic")
+    still = {f"drone_plugin.{drag}DragCoeff": 0 for drag in drags}
+    simulation = quadrotor("eigen", parameters=still)
     ending = threading.Event()
 
     def fly():
-        while not ending.is_set():
+        while not ending.wait(0.001):
             simulation.step(200)
 
     thread = threading.Thread(target=fly)
@@ -520,6 +522,7 @@ def test_a_view_read_beside_a_step_is_not_a_copy():
         except qc.InputError:
             continue
         copies += 1
-        assert state.position[2] == pytest.approx(10 - 4.9 * state.time**2, abs=1e-3 + state.time)
+        assert state.linear_velocity[2] == pytest.approx(-9.8 * state.time, rel=1e-9)
+        assert state.position[2] == pytest.approx(10 - 4.9 * state.time**2, rel=1e-9)
     ending.set()
     thread.join()
