@@ -10,6 +10,7 @@ from .. import _core
 from .._core import InputError, QuadcoreError, engines
 from ..commands import CommandsLike, as_commands
 from ..description import load_description, load_world
+from ..files import shown
 from ..flight import check_logged
 from ..log import Log
 from ..simulation import Simulation, names_to_ignore
@@ -53,12 +54,12 @@ class Plan:
     ) -> None:
         self.axes = axes_of(vary)
         self.count = check_size(len(models), self.axes)
-        self.names = [str(model) for model in models]
+        self.names = [shown(model) for model in models]
         self._options = dict(options)
         self._options["parameters"] = dict(options.get("parameters") or {})
         arguments = self._options.pop("xacro_args", None) or {}
         arguments = {name: str(value) for name, value in arguments.items()}
-        self._documents = [load_description(name, arguments) for name in self.names]
+        self._documents = [load_description(name, arguments) for name in map(str, models)]
         ignore = names_to_ignore(self._options.pop("ignore", ()))
         self._models = [_core.read_model(document, ignore) for document in self._documents]
         worlds = self._values("world")
