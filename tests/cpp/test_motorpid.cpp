@@ -117,7 +117,7 @@ TEST_CASE("motors are free until the first command, even one of zeros") {
 
 TEST_CASE("limits of the integral are checked against each other and against its gain") {
   const auto limits = [](const std::string& high, const std::string& low) {
-    return tag("kp", "1") + tag("ki", "1") + tag("iMax", high) + tag("iMin", low);
+    return tag("kp", "5e-4") + tag("ki", "1") + tag("iMax", high) + tag("iMin", low);
   };
   const auto warnings = [&](const std::string& tags) {
     std::vector<std::string> of_limits;
