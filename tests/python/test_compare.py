@@ -200,24 +200,6 @@ def test_metrics_are_those_of_the_logs():
     assert all(result.table[0][f"largest_{state}"] == 0 for state in result.states)
 
 
-def test_angles_on_either_side_of_half_a_turn_are_near_each_other():
-    """Rolls and yaws of 179 and -178 degrees differ by 3 degrees, not by 357."""
-
-    def turned(axis, degrees):
-        half = np.radians(degrees) / 2
-        row = np.zeros(14)
-        row[3 + axis], row[6] = np.sin(half), np.cos(half)
-        table = np.vstack([np.insert(row, 0, t) for t in (0.0, 1.0)])
-        return qc.Log(table, {})
-
-    for axis, name in ((0, "roll"), (2, "yaw")):
-        column = list(metrics.states(1)).index(name)
-        for before, after, apart in ((179, -178, 3), (-178, 179, -3), (10, 30, 20), (91, -91, 178)):
-            final, largest = metrics.metrics(turned(axis, before), turned(axis, after))
-            assert final[column] == pytest.approx(np.radians(apart), abs=1e-12)
-            assert largest[column] == pytest.approx(np.radians(abs(apart)), abs=1e-12)
-
-
 def test_flights_logged_at_other_times_are_compared_in_between():
     coarse, fine = (qc.Simulation("quadrotor", "eigen", dt=dt).run(0.5) for dt in (0.002, 0.0005))
     assert metrics.differences(coarse, fine)[:, 0].max() < 1e-5  # of a parabola, by chords

@@ -20,7 +20,7 @@ BEFORE = """<robot name="r">
     <collision><geometry><sphere radius="2"/></geometry></collision>
   </link>
   <material name="red"/>
-  <link name="b"/>
+  <link name="b" kind="round"/>
   <joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint>
   <gazebo>
     <plugin name="p" filename="x.so"><gain>1</gain><flag/><old>7</old></plugin>
@@ -36,7 +36,7 @@ AFTER = """<robot name="r">
     <collision><geometry><sphere radius="3"/></geometry></collision>
   </link>
   <material name="blue"/>
-  <link name="b"/>
+  <link name="b" kind="round"/>
   <joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>
   <gazebo reference="a"><mu1>0.5</mu1></gazebo>
   <gazebo>
@@ -72,6 +72,7 @@ def test_facts_are_named_by_their_path_and_hang_on_their_link_joint_or_plugin():
     found = facts(document(BEFORE))
     assert found["link a"] == Fact("", "b.urdf:2", None)
     assert found["link a/inertial/origin xyz"] == Fact("0 0 1", "b.urdf:3", "link a")
+    assert found["link b kind"] == Fact("round", "b.urdf:9", "link b")
     assert found["joint j/parent link"] == Fact("a", "b.urdf:10", "joint j")
     assert found["plugin p"] == Fact("x.so", "b.urdf:12", None)
     assert found["p.flag"] == Fact("", "b.urdf:12", "plugin p")
@@ -95,6 +96,10 @@ def test_joints_in_another_order_are_told_with_the_first_places():
     assert differences(robot("a", "b", "c"), robot("b", "a", "c")) == [
         Difference("order of the joints", "a b c", "b a c", "b.urdf:2", "b.urdf:2")
     ]
+    links = [
+        document(f"<robot><link name='{a}'/><link name='{b}'/></robot>") for a, b in ("ab", "ba")
+    ]
+    assert differences(*links) == []
     # Only of those that both have.
     (gone,) = differences(robot("x", "a", "b"), robot("a", "b"))
     assert gone == Difference("joint x", "t", ABSENT, "b.urdf:2", "")
@@ -104,7 +109,15 @@ def test_joints_in_another_order_are_told_with_the_first_places():
 
 @pytest.mark.parametrize(
     ("a", "b", "same"),
-    [("1", "1.0", True), ("1e3 2", "1000  2", True), ("1", "2", False), ("x", "1", False)],
+    [
+        ("1 2", "1\n2", True),
+        ("1 2", "1\n3", False),
+        ("a b", "a\nb", True),
+        ("1", "1.0", True),
+        ("1e3 2", "1000  2", True),
+        ("1", "2", False),
+        ("x", "1", False),
+    ],
 )
 def test_numbers_are_compared_as_numbers(a, b, same):
     first, second = (document(f"<robot><k>{text}</k></robot>") for text in (a, b))
@@ -155,6 +168,24 @@ def test_differences_are_those_of_each_state_row_by_row():
     assert np.array_equal(largest, np.abs(found).max(axis=0))
 
 
+def test_angles_on_either_side_of_half_a_turn_are_near_each_other():
+    """Rolls and yaws of 179 and -178 degrees differ by 3 degrees, not by 357."""
+
+    def turned(axis, degrees):
+        half = np.radians(degrees) / 2
+        row = np.zeros(14)
+        row[3 + axis], row[6] = np.sin(half), np.cos(half)
+        table = np.vstack([np.insert(row, 0, t) for t in (0.0, 1.0)])
+        return Log(table, {})
+
+    for axis, name in ((0, "roll"), (2, "yaw")):
+        column = list(metrics.states(1)).index(name)
+        for before, after, apart in ((179, -178, 3), (-178, 179, -3), (10, 30, 20), (91, -91, 178)):
+            final, largest = metrics.metrics(turned(axis, before), turned(axis, after))
+            assert final[column] == pytest.approx(np.radians(apart), abs=1e-12)
+            assert largest[column] == pytest.approx(np.radians(abs(apart)), abs=1e-12)
+
+
 def test_the_sign_of_a_quaternion_makes_no_difference():
     reference, log = a_log(1, TIMES), a_log(2, TIMES)
     turned = Log(log.table.copy(), {})
@@ -179,7 +210,7 @@ def test_only_the_time_that_both_cover_is_compared_and_a_reference_interpolated(
     assert found.shape[0] == 3
     assert np.abs(found).max() < 1e-6
     coarse = metrics.differences(a_log(1, [0, 0.7]), a_log(1, [0.2]))
-    assert np.abs(coarse[:, 4:7]).max() < 1e-12  # straight lines stay
+    assert np.abs(coarse[:, [4, 5, 6, 10, 11, 12]]).max() < 1e-12  # straight lines stay
     assert 1e-4 < coarse[0, 1] < 0.1  # the turn lies on its chord, of unit length
     assert np.linalg.norm(metrics._at(np.array([0.2]), a_log(1, [0, 0.7])).orientation) == (
         pytest.approx(1, abs=1e-15)
