@@ -5,8 +5,8 @@ SOURCE holds flights ``S*.csv.gz`` of the shipped quadrotor with their ``command
 folder ``cases/NAME`` for each flight of another model or world: ``model.urdf``, ``case.world``,
 ``commands.csv``, ``params.txt``, ``record.csv.gz`` and Gazebo's conversion ``model.sdf``, and
 ``random/NAME`` likewise for vehicles made by chance. All of it goes to ``tests/data/gazebo11``,
-laid out alike, the recordings with a few of their rows, each as it was recorded. Running it again writes the
-same bytes.
+laid out alike, the recordings with a few of their rows, each as it was recorded. Running it again
+writes the same bytes.
 """
 
 from __future__ import annotations

@@ -39,7 +39,10 @@ MODEL = """\
     <dynamics damping="1e-6"/>
   </joint>
   <link name='bearing'>
-    <inertial><mass value='2e-6'/><inertia ixx='0' ixy='0' ixz='0' iyy='0' iyz='0' izz='0'/></inertial>
+    <inertial>
+      <mass value='2e-6'/>
+      <inertia ixx='0' ixy='0' ixz='0' iyy='0' iyz='0' izz='0'/>
+    </inertial>
   </link>
   <joint name='pressed' type='fixed'>
     <parent link='mount'/>
