@@ -65,14 +65,13 @@ void check_topology(UrdfTree& tree) {
   // Walking up from any link must end at the root, or at a link from where it is known to.
   std::set<std::string> rooted = {tree.root};
   for (const UrdfLink& link : tree.links) {
-    std::vector<std::string> path;
+    std::set<std::string> path;
     for (std::string at = link.name; !rooted.count(at);) {
       const UrdfJoint& joint = *joint_above.at(at);
-      if (path.size() > tree.links.size()) {
+      if (!path.insert(at).second) {
         throw InputError(joint.where + ": joint '" + joint.name +
                          "' closes a loop of links; a model must be a tree");
       }
-      path.push_back(at);
       at = joint.parent;
     }
     rooted.insert(path.begin(), path.end());
