@@ -38,16 +38,6 @@ MODEL = """\
     <axis xyz="0 0 1"/>
     <dynamics damping="1e-6"/>
   </joint>
-  <link name='bearing'>
-    <inertial>
-      <mass value='2e-6'/>
-      <inertia ixx='0' ixy='0' ixz='0' iyy='0' iyz='0' izz='0'/>
-    </inertial>
-  </link>
-  <joint name='pressed' type='fixed'>
-    <parent link='mount'/>
-    <child link='bearing'/>
-  </joint>
   <gazebo>
     <plugin name="air" filename="libaerodynamic_plugin.so">
       <rotorThrustCoeff>1e-5</rotorThrustCoeff>
@@ -62,6 +52,16 @@ MODEL = """\
       <rate>100</rate>
     </plugin>
   </gazebo>
+  <link name='bearing'>
+    <inertial>
+      <mass value='2e-6'/>
+      <inertia ixx='0' ixy='0' ixz='0' iyy='0' iyz='0' izz='0'/>
+    </inertial>
+  </link>
+  <joint name='pressed' type='fixed'>
+    <parent link='mount'/>
+    <child link='bearing'/>
+  </joint>
 </robot>
 """
 
