@@ -136,7 +136,6 @@ def test_the_same_seed_gives_the_same_bytes():
         ("run quadrotor --set a.b=1 --set a.b=2", "--set: a.b is given twice"),
         ("run quadrotor --set drone_plugin.nope=1", "nope"),
         ("run quadrotor --xacro sim_slow=1", "--xacro: 'sim_slow=1' is not of the form"),
-        ("run quadrotor --xacro sim_slwo:=1", "the nearest is 'sim_slow'"),
         ("run quadrotor --commands nope.csv", "nope.csv: cannot be read"),
         ("run quadrotor --commands w.csv", "w.csv:3: w2 is nan"),
         ("run quadrotor --log nope/log.csv", "there is no folder nope"),

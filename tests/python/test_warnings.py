@@ -127,6 +127,11 @@ def test_an_axis_against_the_lift_is_told(hangar, model, harm):
     assert "write the axis along the lift" in message
 
 
+def stiff(call):
+    """Messages of motors that are too stiff for the step."""
+    return [message for message in told(call) if "<kp> is too stiff for the step" in message]
+
+
 @pytest.mark.parametrize("dt", [1e-3, 5e-4])
 @pytest.mark.parametrize(("engine", "bound"), [("gazebo11", 2), ("ode", 2), ("eigen", 2.785)])
 def test_a_motor_too_stiff_for_the_step_is_told_and_is(hangar, engine, bound, dt):
@@ -136,13 +141,12 @@ def test_a_motor_too_stiff_for_the_step_is_told_and_is(hangar, engine, bound, dt
         kp = factor * CROSS[0].inertia[2] / dt
         urdf = vehicle(CROSS, 1e3, (1e3, 1e3, 1e3, 0, 0, 0), motor={"kp": kp})
         simulations = []
-        messages = told(lambda: simulations.append(hangar(urdf, engine=engine, dt=dt)))
+        messages = stiff(lambda: simulations.append(hangar(urdf, engine=engine, dt=dt)))
         [simulation] = simulations
         simulation.command([1, 2, 3, -4])
         simulation.step(100)
         grows = np.abs(simulation.state.rotor_velocity - [1, 2, 3, -4]).max() > 8
         assert len(messages) == (4 if grows else 0)
-        assert all("<kp> is too stiff for the step" in message for message in messages)
         return grows
 
     assert error_grows(1.01 * bound)
@@ -151,7 +155,7 @@ def test_a_motor_too_stiff_for_the_step_is_told_and_is(hangar, engine, bound, dt
 
 def test_joint_damping_counts_as_stiffness(hangar):
     damped = [rotor._replace(damping=0.04) for rotor in CROSS]  # 1422 1/s
-    assert told(lambda: hangar(vehicle(damped, motor=MOTOR))) == []
-    messages = told(lambda: hangar(vehicle(damped, motor={"kp": 0.02})))
+    assert stiff(lambda: hangar(vehicle(damped, motor=MOTOR))) == []
+    messages = stiff(lambda: hangar(vehicle(damped, motor={"kp": 0.02})))
     assert len(messages) == 4
     assert "take <kp> below 0.01625 N m s/rad" in messages[0]
