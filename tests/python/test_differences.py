@@ -76,6 +76,7 @@ def test_facts_are_named_by_their_path_and_hang_on_their_link_joint_or_plugin():
     assert found["joint j/parent link"] == Fact("a", "b.urdf:10", "joint j")
     assert found["plugin p"] == Fact("x.so", "b.urdf:12", None)
     assert found["p.flag"] == Fact("", "b.urdf:12", "plugin p")
+    assert facts(document("<robot><k><m>a \n b</m></k></robot>"))["k/m"].text == "a b"
     assert not any("visual" in name or "material" in name for name in found)
     assert "link a/inertial" not in found and "plugin p filename" not in found
 
