@@ -90,7 +90,7 @@ TEST_CASE("lumped shapes come by the names of their joints, a link's own first")
   CHECK(shapes[1].pose.xyz == Vector3d(0.210412, 0.320916, -0.070775));
   CHECK(shapes[2].size == Vector3d(0.0123457, 0.1, 1));
   CHECK(shapes[2].pose.xyz == Vector3d(0.100351, 0.050192, -0.079999));
-  CHECK(shapes[2].pose.rpy == Vector3d(1.85116, 1.36996, 1.85155));
+  CHECK(shapes[2].pose.rpy == Vector3d(1.85116, 1.36997, 1.85155));
   CHECK(shapes[3].size.x() == 0.02);
   CHECK(shapes[3].pose.xyz == Vector3d(0.202059, 0.395512, 0.121021));
 }
@@ -102,7 +102,7 @@ TEST_CASE("the names of the links that are lumped stay known, and the exact numb
   const Pose& foot = exact.pose_of_link.at("a_foot");
   CHECK((foot.xyz - (Vector3d(0.1, 0.05, 0.02) +
                      quaternion_from_rpy({0.2, 1.5668, 0.5}) * Vector3d(-0.1, 0.3, 0.2)))
-            .norm() < 1e-15);
+            .norm() < 1e-13);
   CHECK(make_engine("ode", exact, World{})->model().links[0].inertial.pose.xyz ==
         exact.links[0].inertial.pose.xyz);
 }
@@ -168,7 +168,7 @@ TEST_CASE("a locked joint is fixed, and the link behind it is rounded by itself"
   REQUIRE(m.links.size() == 2);
   CHECK(m.body_of_link.at("sensor") == 0);
   CHECK(m.pose_of_link.at("sensor").xyz == Vector3d(0.1234567, 0, 0));
-  CHECK(m.links[0].inertial.mass == 1.1000005);
+  CHECK(m.links[0].inertial.mass == doctest::Approx(1.1000005).epsilon(1e-15));
   const Model sdf = converted_to_sdf(m);
   REQUIRE(sdf.links.size() == 2);
   CHECK(sdf.pose_of_link.at("sensor").xyz == Vector3d(0.123457, 0, 0));
@@ -232,7 +232,7 @@ TEST_CASE("of a body's references Gazebo takes the last for gravity and the firs
        {"<turnGravityOff>1</turnGravityOff>", "<dampingFactor>0.01</dampingFactor>"}) {
     const Model felt = read(tags("rotor", tag));
     const std::string message = refusal([&] { make_engine("eigen", felt, World{}); });
-    CHECK(message.rfind("test.urdf:6: link 'rotor' has ", 0) == 0);
+    CHECK(message.rfind("test.urdf:7: link 'rotor' has ", 0) == 0);
     make_engine("ode", felt, World{});
   }
 }
