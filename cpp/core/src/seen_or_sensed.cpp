@@ -48,6 +48,7 @@ const std::vector<Unfelt>& everything_unfelt() {
       {"audio", "sdf/world", "sound"},
       {"road", "sdf/world", "a picture on the ground"},
       {"actor", "sdf/world", "a figure without body"},
+      {"contact_surface_layer", "sdf/constraints", "of no effect in Gazebo, either"},
       {"min_step_size", "sdf/solver", "of solvers that choose their step"},
 
       {"libgazebo_ros_camera.so", "", camera},
