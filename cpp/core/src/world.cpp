@@ -114,11 +114,10 @@ class WorldReader {
   void read_ode(const Element& ode) {
     read_children(ode, {{"solver", [this](const Element& e) { read_solver(e); }},
                         {"constraints", [this](const Element& e) {
-                           read_children(e,
-                                         {{"erp", number(world_.erp, 0, false, 1)},
-                                          {"cfm", number(world_.cfm, 0)},
-                                          {"contact_max_correcting_vel",
-                                           number(world_.contact_max_correcting_vel, 0)}});
+                           read_children(e, {{"erp", number(world_.erp, 0, false, 1)},
+                                             {"cfm", number(world_.cfm, 0)},
+                                             {"contact_max_correcting_vel",
+                                              number(world_.contact_max_correcting_vel, 0)}});
                          }}});
   }
 

@@ -40,7 +40,8 @@ Vector3d ignition_rpy(Quaterniond q) {
   constexpr double tolerance = 1e-15;
   for (const double sign : {1.0, -1.0}) {
     if (std::abs(sin_pitch - sign) < tolerance) {
-      return {elementary::atan2(sign * 2 * (q.x() * q.y() - q.z() * q.w()), w2 - x2 + y2 - z2), pitch, 0};
+      return {elementary::atan2(sign * 2 * (q.x() * q.y() - q.z() * q.w()), w2 - x2 + y2 - z2),
+              pitch, 0};
     }
   }
   return {elementary::atan2(2 * (q.y() * q.z() + q.w() * q.x()), w2 - x2 - y2 + z2), pitch,
@@ -70,7 +71,8 @@ Vector3d urdf_rpy(const Quaterniond& q) {
   if (sin_pitch <= -0.99999) return {0, -M_PI_2, 2 * elementary::atan2(q.x(), -q.y())};
   if (sin_pitch >= 0.99999) return {0, M_PI_2, 2 * elementary::atan2(-q.x(), q.y())};
   const double w2 = q.w() * q.w(), x2 = q.x() * q.x(), y2 = q.y() * q.y(), z2 = q.z() * q.z();
-  return {elementary::atan2(2 * (q.y() * q.z() + q.w() * q.x()), w2 - x2 - y2 + z2), elementary::asin(sin_pitch),
+  return {elementary::atan2(2 * (q.y() * q.z() + q.w() * q.x()), w2 - x2 - y2 + z2),
+          elementary::asin(sin_pitch),
           elementary::atan2(2 * (q.x() * q.y() + q.w() * q.z()), w2 + x2 - y2 - z2)};
 }
 
