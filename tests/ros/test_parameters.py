@@ -46,19 +46,15 @@ def flown(steps=300, **parameters):
     return list(simulation.state.linear_velocity)
 
 
-def forget_parameters():
-    """The node's private ones, which the test before may have left."""
-    if rospy.has_param("quadcore"):
-        rospy.delete_param("quadcore")
-
-
 def refusal(*arguments, urdf=None):
     """The line of a node that refuses to start."""
     rospy.set_param("robot_description", urdf or description())
-    forget_parameters()
+    if rospy.has_param("quadcore"):
+        rospy.delete_param("quadcore")
     with Process("quadcore_node", *arguments) as node:
         status, error = node.result()
-    forget_parameters()
+    if rospy.has_param("quadcore"):
+        rospy.delete_param("quadcore")
     assert status == 2 and len(error.splitlines()) == 1, error
     return error
 
