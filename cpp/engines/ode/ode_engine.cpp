@@ -74,7 +74,7 @@ void OdeEngine::choose_method(const World& world) {
   std::ostringstream method;
   const bool quick = world.solver_type == "quick";
   if (recipe_.like_gazebo && quick) {
-    const double remaining = remaining_error();
+    const double remaining = remaining_error(world.max_step_size);
     iterate_ = remaining > converged;
     method.precision(2);
     method << "in flight ";
@@ -102,7 +102,7 @@ void OdeEngine::choose_method(const World& world) {
 }
 
 /// The largest in some attitudes.
-double OdeEngine::remaining_error() {
+double OdeEngine::remaining_error(double dt) {
   double largest = 0;
   for (std::uint64_t seed = 0; seed < tried_attitudes; ++seed) {
     double count = 0;
@@ -112,7 +112,7 @@ double OdeEngine::remaining_error() {
     state.rotor_velocity = state.rotor_angle = VectorXd::Zero(n);
     for (Eigen::Index i = 0; i < n; ++i) state.rotor_angle[i] = random_normal(seed, count);
     set_state(state);
-    largest = std::max(largest, gazebo_step_->remaining_error(World{}.max_step_size, seed));
+    largest = std::max(largest, gazebo_step_->remaining_error(dt, seed));
   }
   return largest;
 }

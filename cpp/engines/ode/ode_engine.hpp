@@ -52,7 +52,7 @@ class OdeEngine final : public Engine {
   void create_bodies();
   std::vector<Hinge> create_hinges();
   void choose_method(const World& world);
-  double remaining_error();
+  double remaining_error(double dt);
   void place(std::size_t link, const Eigen::Isometry3d& X_WL, const Vector3d& v_WL_W,
              const Vector3d& w_WL_W);
   void take_threading();
