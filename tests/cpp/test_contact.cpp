@@ -49,19 +49,20 @@ const char* const engines_with_contact[] = {"gazebo11", "ode"};
 /// Points that span a shape of 0.2 x 0.3 x 0.5, or of radius 0.2 and length 0.5, or of radius 0.2.
 std::vector<Vector3d> hull(ShapeKind kind) {
   std::vector<Vector3d> points;
-  for (int i = 0; i < 4000; ++i) {
-    const double a = 2 * M_PI * i / 4000;
+  constexpr int n = 200;
+  for (int i = 0; i < n; ++i) {
+    const double a = 2 * M_PI * i / n, c = std::cos(a), s = std::sin(a);
     switch (kind) {
       case ShapeKind::box:
         points.push_back({i & 1 ? 0.1 : -0.1, i & 2 ? 0.15 : -0.15, i & 4 ? 0.25 : -0.25});
         break;
       case ShapeKind::cylinder:
-        points.push_back({0.2 * std::cos(a), 0.2 * std::sin(a), i & 1 ? 0.25 : -0.25});
+        for (const double z : {-0.25, 0.25}) points.push_back({0.2 * c, 0.2 * s, z});
         break;
       default:
-        for (int j = 0; j < 100; ++j) {
-          const double z = std::cos(M_PI * j / 99), ring = std::sin(M_PI * j / 99);
-          points.push_back({0.2 * ring * std::cos(a), 0.2 * ring * std::sin(a), 0.2 * z});
+        for (int j = 0; j <= n; ++j) {
+          const double z = std::cos(M_PI * j / n), ring = std::sin(M_PI * j / n);
+          points.push_back(0.2 * Vector3d(ring * c, ring * s, z));
         }
     }
   }

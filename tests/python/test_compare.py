@@ -89,8 +89,8 @@ def test_any_other_change_is_told_as_well(capsys, old, new, row):
 
 
 def test_a_removed_plugin_is_one_line(capsys):
-    odometry = faults.MODEL[faults.MODEL.index('    <plugin name="odometry"') :]
-    edited("b.urdf", odometry, "</gazebo></robot>")
+    start = faults.MODEL.index('    <plugin name="odometry"')
+    edited("b.urdf", faults.MODEL[start : faults.MODEL.index("  </gazebo>", start)], "")
     status, found = told(capsys, "toy.urdf", "b.urdf")
     assert status == 0
     assert found[0] == [
