@@ -10,11 +10,6 @@ namespace {
 
 constexpr double dt = 1e-3, g = 9.8, mass = 2, radius = 0.1, moment = 0.01;
 
-class NoForces final : public ForceField {
- public:
-  void evaluate(const Kinematics&, Loads&) const override {}
-};
-
 World ground() {
   World world;
   world.ground_plane = true;

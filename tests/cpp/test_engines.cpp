@@ -9,12 +9,6 @@ using namespace quadcore::test;
 
 namespace {
 
-/// Neither force nor torque.
-class NoForces final : public ForceField {
- public:
-  void evaluate(const Kinematics&, Loads&) const override {}
-};
-
 Vector3d random_vector(std::uint64_t seed, double& count) {
   return {random_normal(seed, count), random_normal(seed, count), random_normal(seed, count)};
 }

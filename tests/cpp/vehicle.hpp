@@ -47,6 +47,12 @@ inline Model hexarotor() {
   return read_model(Document::read(TEST_DATA "/gazebo11/cases/B1_hexa_hover/model.urdf"));
 }
 
+/// Neither force nor torque.
+class NoForces final : public ForceField {
+ public:
+  void evaluate(const Kinematics&, Loads&) const override {}
+};
+
 /// Message of the InputError that `call` throws.
 template <typename Call>
 std::string refusal(const Call& call) {

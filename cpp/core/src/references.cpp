@@ -93,16 +93,14 @@ class Body {
     }
   }
 
-  /// Gazebo gives tags to shapes by the names that it has made for them.
+  /// Gazebo gives tags to shapes by the names that it has made for them (before the number that it
+  /// adds to all but the first, which makes no difference).
   void set_surfaces(std::vector<std::string>& warnings) {
     const std::string lumped = "_fixed_joint_lump__", suffix = "_collision";
     const std::string& base = parts_.front().link->name;
-    std::size_t count = 0;
     for (const Part& part : parts_) {
       for (Collision& shape : part.link->collisions) {
         std::string name = (shape.name.empty() ? part.link->name : shape.name) + suffix;
-        if (count > 0) name += "_" + std::to_string(count);
-        ++count;
         if (name.compare(0, base.size(), base) != 0) name = base + lumped + name;
         for (const GazeboReference* reference : all_) {
           const bool own = reference->name == base;

@@ -1,0 +1,38 @@
+#include "shapes.hpp"
+
+using namespace quadcore;
+using namespace quadcore::test;
+
+namespace {
+
+/// A rotor about z whose centre of mass is so far off the axis [m], with such moments about x.
+Model with_rotor(const std::string& offset, const std::string& ixx) {
+  return model(link("frame", 1, skew_body) +
+               link("rotor", 0.01,
+                    "ixx=\"" + ixx + "\" iyy=\"1e-5\" izz=\"2e-5\" ixy=\"0\" ixz=\"0\" iyz=\"0\"",
+                    "xyz=\"" + offset + " 0 0.02\"") +
+               joint("turn", "continuous", "frame", "rotor", "xyz=\"0.1 0.2 0\""));
+}
+
+}  // namespace
+
+TEST_CASE("eigen takes a rotor within a nanometre of its axis, and as round as floats can tell") {
+  const auto refused = [](const std::string& offset, const std::string& ixx) {
+    return refusal([&] { make_engine("eigen", with_rotor(offset, ixx), World{}); });
+  };
+  make_engine("eigen", with_rotor("9e-10", "1e-5"), World{});
+  CHECK(contains(refused("1.1e-9", "1e-5"), "the centre of mass of 'rotor' lies off the axis"));
+  // Of the norm of the inertia, 2.45e-5; the deviation is split between x and y.
+  make_engine("eigen", with_rotor("0", "1.0000033e-5"), World{});
+  CHECK(contains(refused("0", "1.0000037e-5"), "is not symmetric about the axis"));
+}
+
+TEST_CASE("eigen minds a collision mesh only where there is ground to touch") {
+  const Model m =
+      model(shaped("frame", shape("<mesh filename=\"hull.stl\"/>"), inertial("1", skew_body)) +
+            turning_rotor);
+  make_engine("eigen", m, World{});
+  World world;
+  world.ground_plane = true;
+  CHECK(contains(refusal([&] { make_engine("eigen", m, world); }), "a collision mesh"));
+}
