@@ -9,6 +9,7 @@ namespace quadcore {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t rows_per_contact = 3;  // normal, and friction in two directions
 
 }  // namespace
 
@@ -17,8 +18,15 @@ ConstraintRows::ConstraintRows(const std::vector<dBodyID>& bodies, std::vector<H
     : bodies_(bodies),
       hinges_(std::move(hinges)),
       newest_first_(order.rbegin(), order.rend()),
-      options_(options) {
+      options_(options),
+      body_tagged_(bodies.size()),
+      hinge_tagged_(hinges_.size()) {
   stack_.reserve(bodies_.size());
+  reserve(0);
+}
+
+void ConstraintRows::reserve(std::size_t contacts) {
+  rows_.reserve(rows_per_hinge * hinges_.size() + rows_per_contact * contacts);
 }
 
 const std::vector<ConstraintRow>& ConstraintRows::build(const std::vector<Contact>& contacts,

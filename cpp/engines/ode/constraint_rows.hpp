@@ -67,6 +67,10 @@ class ConstraintRows {
   ConstraintRows(const std::vector<dBodyID>& bodies, std::vector<Hinge> hinges,
                  const std::vector<std::size_t>& order, const Options& options);
 
+  /// Makes room for so many contacts, so that build() need not.
+  void reserve(std::size_t contacts);
+  std::size_t most_rows() const { return rows_.capacity(); }
+
   const std::vector<ConstraintRow>& build(const std::vector<Contact>& contacts, double dt);
   const std::vector<Hinge>& hinges() const { return hinges_; }
 

@@ -25,6 +25,12 @@ GazeboStep::GazeboStep(const std::vector<dBodyID>& bodies, std::vector<Hinge> hi
       options_(options),
       bodies_(bodies.size()) {}
 
+void GazeboStep::reserve(std::size_t contacts) {
+  constraints_.reserve(contacts);
+  sweeps_.reserve(constraints_.most_rows());
+  order_.reserve(constraints_.most_rows());
+}
+
 void GazeboStep::step(const std::vector<Contact>& contacts, double dt) {
   read_bodies();
   rows_ = &constraints_.build(contacts, dt);

@@ -37,6 +37,9 @@ class GazeboStep {
   GazeboStep(const std::vector<dBodyID>& bodies, std::vector<Hinge> hinges,
              const std::vector<std::size_t>& order, const Options& options);
 
+  /// Makes room for so many contacts, so that step() need not.
+  void reserve(std::size_t contacts);
+
   /// Advances the bodies by dt under the forces that have been added to them.
   void step(const std::vector<Contact>& contacts, double dt);
 

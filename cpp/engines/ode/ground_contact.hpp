@@ -19,6 +19,9 @@ class GroundContact {
   /// Throws InputError on a shape that cannot collide (a mesh).
   GroundContact(const Model& model, const std::vector<dBodyID>& bodies, double max_correction);
 
+  /// As many contacts as there can be.
+  std::size_t most() const { return contacts_.capacity(); }
+
   /// The contacts of the present poses, at most ten for each shape.
   const std::vector<Contact>& find();
 

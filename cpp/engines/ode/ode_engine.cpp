@@ -55,6 +55,7 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
                           {world.erp, world.cfm, recipe.like_gazebo ? max_correction : infinity}});
   if (world.ground_plane) {
     ground_ = std::make_unique<GroundContact>(model_, bodies_, max_correction);
+    gazebo_step_->reserve(ground_->most());
     feedback_.resize(hinges_.size());
     for (std::size_t i = 0; i < hinges_.size(); ++i) {
       dJointSetFeedback(hinges_[i], &feedback_[i]);

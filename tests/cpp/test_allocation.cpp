@@ -1,0 +1,60 @@
+#include <cstdlib>
+#include <new>
+
+#include "shapes.hpp"
+
+using namespace quadcore;
+using namespace quadcore::test;
+
+namespace {
+
+long allocations = 0;
+
+}  // namespace
+
+// The library's own go through here as well: by new, and Eigen's by malloc.
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* const memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+#ifndef __SANITIZE_ADDRESS__
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* malloc(std::size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+}
+#endif
+
+TEST_CASE("steps allocate nothing, in the air or on the ground") {
+  const Model m = model(shaped("frame", shape("<box size=\"0.3 0.2 0.1\"/>"),
+                               inertial("1", skew_body, "xyz=\"0.01 -0.02 0.03\"")) +
+                        turning_rotor);
+  for (const EngineInfo& info : engines()) {
+    for (const bool grounded : {false, true}) {
+      if (grounded && info.name == "eigen") continue;
+      CAPTURE(info.name);
+      CAPTURE(grounded);
+      World world;
+      world.ground_plane = grounded;
+      const auto engine = make_engine(info.name, m, world);
+      VehicleState state;
+      state.position.z() = 0.06;
+      state.angular_velocity = {0.3, -0.2, 0.5};
+      state.rotor_velocity = VectorXd::Constant(1, 40);
+      state.rotor_angle = VectorXd::Constant(1, 0.3);
+      engine->set_state(state);
+      const NoForces none;
+      engine->step(1e-3, none);  // ODE takes its working memory
+      const long before = allocations;
+      for (int i = 0; i < 200; ++i) engine->step(1e-3, none);
+      CHECK(allocations == before);
+      CHECK((engine->kinematics().p_WF.z() < -0.1) == !grounded);
+    }
+  }
+}
