@@ -20,7 +20,7 @@ TEST_CASE("eigen takes a rotor within a nanometre of its axis, and as round as f
   const auto refused = [](const std::string& offset, const std::string& ixx) {
     return refusal([&] { make_engine("eigen", with_rotor(offset, ixx), World{}); });
   };
-  make_engine("eigen", with_rotor("9e-10", "1e-5"), World{});
+  make_engine("eigen", with_rotor("1e-9", "1e-5"), World{});
   CHECK(contains(refused("1.1e-9", "1e-5"), "the centre of mass of 'rotor' lies off the axis"));
   // Of the norm of the inertia, 2.45e-5; the deviation is split between x and y.
   make_engine("eigen", with_rotor("0", "1.0000033e-5"), World{});

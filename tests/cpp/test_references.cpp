@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include "ode/sdf_conversion.hpp"
 #include "shapes.hpp"
 
@@ -135,4 +138,51 @@ TEST_CASE("tags are rounded to six digits, a direction to six decimals") {
   CHECK(surface.mu1 == 0.123457);
   CHECK(surface.kp == 1234570);
   CHECK(surface.fdir1 == Vector3d(0.123457, 0, 1234.57));
+}
+
+TEST_CASE("dry friction takes its torque from a joint, step after step, and holds it in the end") {
+  std::string turning = turning_rotor;
+  turning.insert(turning.find("</joint>"), "<dynamics friction=\"4e-5\"/>");
+  const Model m = model(link("frame", 1, skew_body) + turning);
+  for (const int iterations : {5, 50}) {  // Gazebo's sweeps, and what they converge to
+    World world;
+    world.solver_iterations = iterations;
+    for (const char* name : {"gazebo11", "ode"}) {
+      CAPTURE(name);
+      const auto engine = make_engine(name, m, world);
+      VehicleState state;
+      state.rotor_velocity = VectorXd::Constant(1, 0.021);
+      state.rotor_angle = VectorXd::Constant(1, 0.3);
+      engine->set_state(state);
+      for (int i = 1; i <= 15; ++i) {
+        engine->step(1e-3, NoForces());
+        // 2e-5 kg m^2, and the frame is heavy.
+        const double rate = std::max(0.0, 0.021 - 2e-3 * i);
+        CHECK(std::abs(engine->kinematics().rotors[0].rate - rate) < 2e-4);
+      }
+    }
+  }
+}
+
+TEST_CASE("implicit damping slows a joint wherever it stands") {
+  std::string turning = turning_rotor;
+  turning.insert(turning.find("</joint>"), "<dynamics damping=\"0.002\"/>");
+  const Model m = model(
+      link("frame", 1, skew_body) + turning +
+      "<gazebo reference=\"turn\"><implicitSpringDamper>true</implicitSpringDamper></gazebo>");
+  for (const char* name : {"gazebo11", "ode"}) {
+    CAPTURE(name);
+    const auto engine = make_engine(name, m, World{});
+    VehicleState state;
+    state.rotor_velocity = VectorXd::Zero(1);
+    state.rotor_angle = VectorXd::Constant(1, 1.3);
+    engine->set_state(state);
+    engine->step(1e-3, NoForces());
+    CHECK(std::abs(engine->kinematics().rotors[0].rate) < 1e-9);  // nothing pulls it back
+    state.rotor_velocity[0] = 10;
+    engine->set_state(state);
+    engine->step(1e-3, NoForces());
+    // 0.002 * 1e-3 / 2e-5 = 0.1 of the rate at the end of the step; the frame is heavy.
+    CHECK(engine->kinematics().rotors[0].rate == doctest::Approx(10 / 1.1).epsilon(1e-3));
+  }
 }

@@ -229,7 +229,7 @@ void OdeEngine::damp_bodies() {
   }
 }
 
-/// Where ODE gives up (see start_ode), it leaves the step half done: jobs, memory and forces.
+/// Where ODE gives up (see start_ode), it leaves the step half done: jobs and memory.
 void OdeEngine::solve(double dt) {
   try {
     dWorldStep(world_.get(), dt);
@@ -237,10 +237,6 @@ void OdeEngine::solve(double dt) {
     dWorldCleanupWorkingMemory(world_.get());
     threading_.release();  // ODE does not free a job list that is not empty
     take_threading();
-    for (const dBodyID body : bodies_) {
-      dBodySetForce(body, 0, 0, 0);
-      dBodySetTorque(body, 0, 0, 0);
-    }
     throw;
   }
 }

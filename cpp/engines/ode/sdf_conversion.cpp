@@ -163,13 +163,11 @@ class Conversion {
 }  // namespace
 
 Model converted_to_sdf(const Model& model) {
-  Model converted = lump(Conversion(*model.urdf).convert(model.joints));
-  converted.plugins = model.plugins;
-  converted.warnings = model.warnings;
-  converted.body_of_link = model.body_of_link;
-  converted.pose_of_link.insert(model.pose_of_link.begin(), model.pose_of_link.end());
-  converted.urdf = model.urdf;
-  converted.passed_over = model.passed_over;
+  Model sdf = lump(Conversion(*model.urdf).convert(model.joints));
+  Model converted = model;
+  converted.links = std::move(sdf.links);
+  converted.joints = std::move(sdf.joints);
+  for (const auto& [link, pose] : sdf.pose_of_link) converted.pose_of_link[link] = pose;
   return converted;
 }
 
