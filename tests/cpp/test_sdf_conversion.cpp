@@ -129,6 +129,20 @@ TEST_CASE("a rotor that Gazebo loses is refused by the engine that is Gazebo, wi
   make_engine("gazebo11", vehicle(mass("1.1e-6")), World{});
 }
 
+TEST_CASE("a rotor of no more than 1e-6 kg is lost too, but not what is fixed to a heavier one") {
+  const auto vehicle = [](const std::string& kg, const std::string& fixed_to_it) {
+    return model(link("frame", 1, round_body) + shaped("rotor", "", inertial(kg, round_rotor)) +
+                 joint("turn", "continuous", "frame", "rotor") + fixed_to_it);
+  };
+  const std::string message =
+      refusal([&] { make_engine("gazebo11", vehicle("9e-7", ""), World{}); });
+  CHECK(contains(message, "link 'rotor' has"));
+  CHECK(contains(message, "'turn'"));
+  make_engine("gazebo11",
+              vehicle("0.01", shaped("mark", "") + joint("weld", "fixed", "rotor", "mark")),
+              World{});
+}
+
 TEST_CASE("mounts that carry nothing that turns, or something heavy, may be massless") {
   const std::string heavy_end =
       "<link name=\"arm\"/>\n" + link("end", 0.2, round_rotor) +

@@ -172,7 +172,7 @@ void GazeboStep::relax(std::size_t index, double smoothing) {
   }
   double low = row.low, high = row.high;
   if (row.normal >= 0) {
-    high = row.friction * std::abs(sweeps_[static_cast<std::size_t>(row.normal)].multiplier);
+    high = row.friction * sweeps_[static_cast<std::size_t>(row.normal)].multiplier;
     low = -high;
   }
   const double old = sweep.multiplier;
