@@ -158,7 +158,12 @@ TEST_CASE("dry friction takes its torque from a joint, step after step, and hold
         engine->step(1e-3, NoForces());
         // 2e-5 kg m^2, and the frame is heavy.
         const double rate = std::max(0.0, 0.021 - 2e-3 * i);
-        CHECK(std::abs(engine->kinematics().rotors[0].rate - rate) < 2e-4);
+        const Kinematics& k = engine->kinematics();
+        CHECK(std::abs(k.rotors[0].rate - rate) < 2e-4);
+        // The frame gets what the rotor loses.
+        const double spin =
+            (m.links[0].inertial.inertia * k.w_WF_F).z() + 2e-5 * (k.w_WF_F.z() + k.rotors[0].rate);
+        CHECK(spin == doctest::Approx(2e-5 * 0.021).epsilon(1e-3));
       }
     }
   }

@@ -98,6 +98,8 @@ TEST_CASE("a rotation passes through a quaternion, and at 90 degrees of pitch al
   CHECK(rounded_rpy(3, 2.2, 0.1) == Vector3d(-0.141593, 0.941593, -3.04159));
   CHECK(rounded_rpy(0.3, M_PI_2, 0.1) == Vector3d(0.2, 1.5708, 0));
   CHECK(rounded_rpy(0.3, -M_PI_2, 0.1) == Vector3d(0.4, -1.5708, 0));
+  CHECK(rounded_rpy(0.3, M_PI_2 - 3e-8, 0.1) == Vector3d(0.2, 1.5708, 0));
+  CHECK(rounded_rpy(0.3, M_PI_2 - 5.5e-8, 0.1) == Vector3d(0.3, 1.5708, 0.1));
   CHECK(rounded_rpy(0, 1.5668, 0.5) == Vector3d(0, 1.5668, 0.5));
   // Shapes pass through urdfdom's angles, which are coarse there.
   CHECK(sdf_shape_pose(SdfPose(Pose{{0, 0, 0}, {0, 1.5668, 0.5}})).rpy ==
