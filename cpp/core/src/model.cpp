@@ -5,7 +5,6 @@
 namespace quadcore {
 
 Matrix3d Inertial::inertia_in_link_axes() const {
-  if (pose.rpy.isZero(0)) return inertia;
   const Matrix3d R = pose.rotation().toRotationMatrix();
   return R * inertia * R.transpose();
 }
