@@ -115,6 +115,24 @@ TEST_CASE("each force law is the thesis', in whatever motion, with and without a
   }
 }
 
+TEST_CASE("drag that drives is told where a propeller's axis points down, once") {
+  int told = 0;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    PluginBench bench("aerodynamic", everything, rotor_count);
+    Kinematics motion = any_motion(seed, rotor_count);
+    for (RotorKinematics& rotor : motion.rotors) rotor.rate = 100;
+    bool down = false;
+    for (const std::size_t i : named) {
+      down = down || (motion.R_WF * (motion.R_FR(i) * Vector3d::UnitZ())).z() < 0;
+    }
+    for (int i = 0; i < 3; ++i) bench.update(motion, 0.1 * i, 1e-3);
+    CHECK(bench.warnings.size() == (down ? 1 : 0));
+    told += down;
+  }
+  CHECK(told > 5);
+  CHECK(told < 100);
+}
+
 TEST_CASE("each flapping coefficient alone flaps") {
   const Kinematics motion = any_motion(1, 1);
   for (const char* name : {"flappingA1c", "flappingA1s", "flappingB1", "flappingB2"}) {

@@ -27,6 +27,13 @@ TEST_CASE("eigen takes a rotor within a nanometre of its axis, and as round as f
   CHECK(contains(refused("0", "1.0000037e-5"), "is not symmetric about the axis"));
 }
 
+TEST_CASE("eigen refuses the least friction in a joint") {
+  std::string turning = turning_rotor;
+  turning.insert(turning.find("</joint>"), "<dynamics friction=\"1e-9\"/>");
+  const Model m = model(link("frame", 1, skew_body) + turning);
+  CHECK(contains(refusal([&] { make_engine("eigen", m, World{}); }), "joint 'turn' has friction"));
+}
+
 TEST_CASE("eigen minds a collision mesh only where there is ground to touch") {
   const Model m =
       model(shaped("frame", shape("<mesh filename=\"hull.stl\"/>"), inertial("1", skew_body)) +

@@ -90,6 +90,8 @@ TEST_CASE("a felt tag that names nothing that feels it, or has no such value, is
   };
   CHECK(contains(refused("fram", "<mu1>1</mu1>"), "test.urdf:5: <mu1> acts on a link, but 'fram'"));
   CHECK(contains(refused("fram", "<mu1>1</mu1>"), "did you mean 'frame'?"));
+  CHECK(contains(refused("turn", "<implicitSpringDamper>1</implicitSpringDamper><mu1>1</mu1>"),
+                 "'turn' is no link"));
   CHECK(contains(refused("turn", "<kp>1</kp>"), "'turn' is no link"));
   CHECK(
       contains(refused("frame", "<implicitSpringDamper>1</implicitSpringDamper>"), "is no joint"));
