@@ -75,6 +75,8 @@ TEST_CASE("lumped shapes come by the names of their joints, a link's own first")
 
 TEST_CASE("the names of the links that are lumped stay known, and the exact numbers too") {
   const Model exact = model(odd), sdf = converted_to_sdf(exact);
+  CHECK(exact.name == "test");
+  CHECK(sdf.name == "test");
   CHECK(sdf.body_of_link == exact.body_of_link);
   CHECK(sdf.pose_of_link.size() == exact.links.size() + 3);
   const Pose& foot = exact.pose_of_link.at("a_foot");
