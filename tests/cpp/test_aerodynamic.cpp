@@ -133,6 +133,26 @@ TEST_CASE("drag that drives is told where a propeller's axis points down, once")
   CHECK(told < 100);
 }
 
+TEST_CASE("an axis against the propeller's z is warned of, one across it is not") {
+  std::string rotors;
+  for (const std::string axis : {"0 0 1", "1 0 0", "0 0.6 -0.8", "0 0 -1"}) {
+    std::string turning = joint("turn" + axis, "continuous", "frame", "rotor" + axis);
+    turning.replace(turning.find("0 0 1\"/>"), 5, axis);
+    rotors += link("rotor" + axis, 0.01, round_rotor) + turning;
+  }
+  const Simulation simulation(
+      model(link("frame", 1, skew_body) + rotors +
+            "<gazebo><plugin name=\"it\" filename=\"libaerodynamic_plugin.so\">" + thrust_only +
+            "</plugin></gazebo>\n"),
+      World{}, {});
+  std::string told;
+  for (const std::string& warning : simulation.warnings()) told += warning;
+  CHECK_FALSE(contains(told, "'turn0 0 1'"));
+  CHECK_FALSE(contains(told, "'turn1 0 0'"));
+  CHECK(contains(told, "'turn0 0.6 -0.8'"));
+  CHECK(contains(told, "'turn0 0 -1'"));
+}
+
 TEST_CASE("each flapping coefficient alone flaps") {
   const Kinematics motion = any_motion(1, 1);
   for (const char* name : {"flappingA1c", "flappingA1s", "flappingB1", "flappingB2"}) {

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <thread>
 
 #include "eigen/lowest_point.hpp"
 #include "lopsided.hpp"
@@ -197,6 +198,22 @@ TEST_CASE("a state that is set leaves nothing of a step that ODE gave up") {
       engine->step(1e-3, NoForces());
     }
     CHECK(failed->save() == fresh->save());
+  }
+}
+
+TEST_CASE("an engine may be stepped in another thread than that which made it") {
+  const Model m = read_model(Document::read(TEST_DATA "/gazebo11/cases/C1_drop/model.urdf"));
+  World world;
+  world.ground_plane = true;
+  for (const char* name : {"gazebo11", "ode"}) {
+    CAPTURE(name);
+    const auto here = make_engine(name, m, world), elsewhere = make_engine(name, m, world);
+    const auto land = [](Engine& engine) {
+      for (int i = 0; i < 200; ++i) engine.step(1e-3, NoForces());
+    };
+    land(*here);
+    std::thread(land, std::ref(*elsewhere)).join();
+    CHECK(here->save() == elsewhere->save());
   }
 }
 
