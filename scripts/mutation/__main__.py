@@ -75,7 +75,8 @@ def main() -> int:
     except KeyboardInterrupt:
         status = 130
     table, unexplained = sorted_out(
-        [(*chosen[n], verdict) for n, verdict in verdicts.items() if verdict], explained(REASONS)
+        [(chosen[n][0].name, chosen[n][1], verdict) for n, verdict in verdicts.items() if verdict],
+        explained(REASONS),
     )
     for m in unexplained:
         print(f"\n{m.file}:{m.line} survived\n- {m.before.strip()}\n+ {m.after.strip()}")
