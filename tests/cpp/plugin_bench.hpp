@@ -24,7 +24,7 @@ struct Draw {
 /// A motion in which no two members agree, so that none can be taken for another.
 inline Kinematics any_motion(std::uint64_t seed, std::size_t rotors) {
   Draw draw{seed};
-  Kinematics k(rotors);
+  Kinematics k(rotors, true);
   k.p_WF = 10 * draw.vector();
   k.q_WF = draw.rotation();
   k.R_WF = k.q_WF.toRotationMatrix();
@@ -34,14 +34,17 @@ inline Kinematics any_motion(std::uint64_t seed, std::size_t rotors) {
   k.v_WCcm_F = 5 * draw.vector();
   k.v_WA_F = 3 * draw.vector();
   for (std::size_t i = 0; i < rotors; ++i) {
-    RotorKinematics& rotor = k.rotors[i];
+    RotorKinematics rotor;
     rotor.axis_F = draw.direction();
     rotor.p_FRcm_F = 0.3 * draw.vector();
     rotor.v_WR_F = 5 * draw.vector();
     rotor.v_WRcm_F = 5 * draw.vector();
     rotor.rate = 300 * draw.number();
-    k.set_R_FR_at_zero(i, draw.rotation().toRotationMatrix());
-    k.set_R_FR(i, draw.rotation().toRotationMatrix());
+    k.rotors.set_matrix(MotionRow::R_FR_at_zero, i, draw.rotation().toRotationMatrix());
+    const Matrix3d R_FR = draw.rotation().toRotationMatrix();
+    k.rotors.set_matrix(MotionRow::R_FR, i, R_FR);
+    rotor.normal_F = R_FR.col(2);
+    k.rotors.set(i, rotor);
   }
   return k;
 }

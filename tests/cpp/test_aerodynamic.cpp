@@ -120,7 +120,7 @@ TEST_CASE("drag that drives is told where a propeller's axis points down, once")
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     PluginBench bench("aerodynamic", everything, rotor_count);
     Kinematics motion = any_motion(seed, rotor_count);
-    for (RotorKinematics& rotor : motion.rotors) rotor.rate = 100;
+    for (std::size_t i = 0; i < rotor_count; ++i) motion.rotors.number(MotionRow::rate, i) = 100;
     bool down = false;
     for (const std::size_t i : named) {
       down = down || (motion.R_WF * (motion.R_FR(i) * Vector3d::UnitZ())).z() < 0;
@@ -170,11 +170,12 @@ TEST_CASE("a rotor that turns more than half a turn per step ends the flight, an
   constexpr double dt = 0.004;
   Kinematics motion(rotor_count);
   for (const double sign : {1.0, -1.0}) {
-    for (std::size_t i = 0; i < rotor_count; ++i) motion.rotors[i].rate = sign * 3.1415 / dt;
+    for (std::size_t i = 0; i < rotor_count; ++i)
+      motion.rotors.number(MotionRow::rate, i) = sign * 3.1415 / dt;
     bench.update(motion, 1.5, dt);
-    motion.rotors[1].rate = sign * 3.1417 / dt;  // not one of its rotors
+    motion.rotors.number(MotionRow::rate, 1) = sign * 3.1417 / dt;  // not one of its rotors
     bench.update(motion, 1.5, dt);
-    motion.rotors[2].rate = sign * 3.1417 / dt;
+    motion.rotors.number(MotionRow::rate, 2) = sign * 3.1417 / dt;
     CHECK_THROWS_WITH_AS(bench.update(motion, 1.5, dt),
                          "rotor 'c' turns more than half a turn per step; take a smaller step or a "
                          "slower command",

@@ -319,7 +319,7 @@ TEST_CASE("what is saved is restored bit for bit, in another engine of the kind 
 TEST_CASE("a load counts once in the sum and in its term, about the centre of mass") {
   Kinematics kinematics(1);
   kinematics.p_FCcm_F = {0.1, 0.2, 0.3};
-  kinematics.rotors[0].p_FRcm_F = {1.1, 0.2, 0.3};
+  kinematics.rotors.set_vector(MotionRow::p_FRcm, 0, {1.1, 0.2, 0.3});
   Loads loads(1);
   Wrench terms[2];
   loads.record_terms(terms, 2, &kinematics);

@@ -55,7 +55,9 @@ TEST_CASE("each motor is a PID of its own, with limits, timeout and slow-down") 
       saturated += std::abs(command[0]) > max_velocity;
     }
     Kinematics motion(4);
-    for (RotorKinematics& rotor : motion.rotors) rotor.rate = 200 * draw.number();
+    for (std::size_t i = 0; i < 4; ++i) {
+      motion.rotors.number(MotionRow::rate, i) = 200 * draw.number();
+    }
     motors.update(motion, time, dt);
 
     const bool stale = time - stamp > timeout;
@@ -74,7 +76,7 @@ TEST_CASE("each motor is a PID of its own, with limits, timeout and slow-down") 
     CHECK(loads.frame().torque_F.isZero(0));
     // Between the samples the proportional law goes on, the others are held.
     const double before = loads.joint_torque(2);
-    motion.rotors[2].rate += 3;
+    motion.rotors.number(MotionRow::rate, 2) += 3;
     CHECK(motors.forces(motion).joint_torque(2) - before == doctest::Approx(-kp * 3));
   }
   CHECK(saturated > 0);
@@ -99,14 +101,14 @@ TEST_CASE("motors without limit, timeout, integral or derivative just follow") {
     motors.update(motion, time, dt);
     CHECK(motors.forces(motion).joint_torque(0) == doctest::Approx(kp * 1e5));
     CHECK(motors.forces(motion).joint_torque(1) == doctest::Approx(-kp * 1e5));
-    motion.rotors[0].rate = motion.rotors[1].rate = 0;
+    for (std::size_t i = 0; i < 2; ++i) motion.rotors.number(MotionRow::rate, i) = 0;
   }
 }
 
 TEST_CASE("motors are free until the first command, even one of zeros") {
   Motors motors(gains, 2);
   Kinematics motion(2);
-  motion.rotors[0].rate = motion.rotors[1].rate = 100;
+  for (std::size_t i = 0; i < 2; ++i) motion.rotors.number(MotionRow::rate, i) = 100;
   motors.update(motion, 0, dt);
   CHECK(motors.forces(motion).joint_torque(0) == 0);
   CHECK(motors.memory.isZero(0));
@@ -139,6 +141,8 @@ TEST_CASE("limits of the integral are checked against each other and against its
 TEST_CASE("a vehicle's motors take as many numbers as they have rotors") {
   Motors three(gains + tag("rotorJoints", "a b d"), 4);
   CHECK(three.topics[three.topic].fields == std::vector<std::string>{"w1", "w2", "w3"});
-  CHECK(three.memory.size() % 3 == 0);
   CHECK(three.simulation.command_width() == 3);
+  const Motors eight(gains, 8), nine(gains, 9);  // blocks of the widest lanes
+  CHECK(three.memory.size() == eight.memory.size());
+  CHECK(nine.memory.size() == 2 * eight.memory.size());
 }

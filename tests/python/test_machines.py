@@ -33,12 +33,12 @@ FLY = """
 import hashlib, sys
 import quadcore as qc
 from flights import bits
-for engine in sys.argv[2:]:
+for engine in sys.argv[3:]:
     for drag in ("appendix", "chapter2"):
         simulation = qc.Simulation(
             sys.argv[1],
             engine=engine,
-            parameters={"aerodynamic.dragModel": drag},
+            parameters={sys.argv[2] + ".dragModel": drag},
             spawn=(1, 2, 10, 0.3, -0.2, 1),
             seed=7,
         )
@@ -53,7 +53,8 @@ for engine in sys.argv[2:]:
 
 def fly(model, **environment):
     """Hash of every bit of state and odometry on the way, for each engine and drag model."""
-    command = [sys.executable, "-c", FLY, str(model), *ENGINES]
+    aerodynamic = "drone_plugin" if model == "quadrotor" else "aerodynamic"
+    command = [sys.executable, "-c", FLY, str(model), aerodynamic, *ENGINES]
     environment = {**os.environ, "PYTHONPATH": str(TESTS), **environment}
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     return done.stdout.splitlines()
@@ -66,6 +67,23 @@ def test_flights_and_noise_are_the_same_with_and_without_fused_multiply_adds(tmp
     here = fly(tmp_path / "odd.urdf")
     assert len(here) == 2 * len(ENGINES)
     assert fly(tmp_path / "odd.urdf", GLIBC_TUNABLES=AS_AN_OLD_PROCESSOR) == here
+
+
+@pytest.mark.parametrize("lanes", ["1", "2", "4", "8"])
+@pytest.mark.parametrize("name", ["quadrotor", "odd"])
+def test_rotors_in_lanes_of_every_width_fly_the_same_bytes(name, lanes, tmp_path):
+    model = name
+    if name == "odd":
+        urdf = vehicle(ODD, 1, SKEW, (0.01, -0.02, 0.015), {**AIR, **DRAG, **FLAPPING}, MOTOR)
+        model = tmp_path / "odd.urdf"
+        model.write_text(urdf.replace("</robot>", plugin("odometry", NOISE) + "</robot>"))
+    assert fly(model, QUADCORE_LANES=lanes) == fly(model)
+
+
+def test_a_width_that_no_lanes_have_is_refused():
+    with pytest.raises(subprocess.CalledProcessError) as refused:
+        fly("quadrotor", QUADCORE_LANES="3")
+    assert "QUADCORE_LANES is '3'; write 1, 2, 4 or 8" in refused.value.stderr
 
 
 @pytest.mark.parametrize("library", LIBRARIES, ids=lambda library: library.name)

@@ -4,37 +4,29 @@
 #include <cstdint>
 #include <cstring>
 
+#include "laws/sine_cosine.hpp"
+
 namespace quadcore::elementary {
 namespace {
 
-/// Up to here a whole number of quarter turns has at most 20 bits.
-constexpr double largest_medium = 1e6;
-
-/// pi/2 in pieces of 33 bits, and what each leaves (fdlibm 5.3, e_rem_pio2.c; the method is that of
-/// Cody and Waite).
+/// Takes further pieces of pi/2 as long as digits are lost.
 Reduced reduced_medium(double x) {
-  constexpr double inverse = 6.36619772367581382433e-01;
-  constexpr double first = 1.57079632673412561417e+00, after_first = 6.07710050650619224932e-11;
-  constexpr double second = 6.07710050630396597660e-11, after_second = 2.02226624879595063154e-21;
-  constexpr double third = 2.02226624871116645580e-21, after_third = 8.47842766036889956997e-32;
-  constexpr double to_whole = 6755399441055744.0;  // 1.5 2^52: adding it rounds to a whole number
-  const double n = (x * inverse + to_whole) - to_whole;
-  double rest = x - n * first;
-  double tail = n * after_first;
+  namespace half_pi = laws::half_pi;
+  const auto once = laws::reduced_once(x);
+  const int quadrant = static_cast<int>(once.quadrant & 3);
+  if (!laws::loses_digits(x, once.y)) return {once.y, once.tail, quadrant};
+  const double n = laws::nearest(x * half_pi::inverse).value;
+  const double after_one = x - n * half_pi::first;
+  double rest = after_one - n * half_pi::second;
+  double tail = n * half_pi::after_second - ((after_one - rest) - n * half_pi::second);
   double y = rest - tail;
-  if (std::abs(y) < 1e-5 * std::abs(x)) {  // digits are lost: take the next piece
-    const double before = rest;
-    rest = before - n * second;
-    tail = n * after_second - ((before - rest) - n * second);
+  if (std::abs(y) < 1e-15 * std::abs(x)) {
+    const double after_two = rest;
+    rest = after_two - n * half_pi::third;
+    tail = n * half_pi::after_third - ((after_two - rest) - n * half_pi::third);
     y = rest - tail;
-    if (std::abs(y) < 1e-15 * std::abs(x)) {
-      const double before_third = rest;
-      rest = before_third - n * third;
-      tail = n * after_third - ((before_third - rest) - n * third);
-      y = rest - tail;
-    }
   }
-  return {y, (rest - y) - tail, static_cast<int>(n) & 3};
+  return {y, (rest - y) - tail, quadrant};
 }
 
 /// The binary digits of 2/pi, after 64 zeros.
@@ -128,8 +120,7 @@ Reduced reduced_large(double x) {
 }  // namespace
 
 Reduced reduced(double x) {
-  if (std::abs(x) <= 0.785398163397448278999) return {x, 0, 0};
-  if (std::abs(x) <= largest_medium) return reduced_medium(x);
+  if (std::abs(x) <= laws::largest_medium_angle) return reduced_medium(x);
   if (!std::isfinite(x)) return {x - x, 0, 0};
   return reduced_large(x);
 }

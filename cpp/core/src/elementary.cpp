@@ -6,11 +6,12 @@
 #include <limits>
 
 #include "argument_reduction.hpp"
+#include "laws/sine_cosine.hpp"
 
-// The minimax polynomials are those of fdlibm 5.3 (Sun Microsystems, 1993, k_sin.c, k_cos.c,
-// s_atan.c, e_log.c, e_exp.c at netlib.org/fdlibm), whose files derive them and bound their errors;
-// splitting the argument in two follows W. J. Cody, W. Waite, "Software Manual for the Elementary
-// Functions", 1980.
+// The minimax polynomials are those of fdlibm 5.3 (Sun Microsystems, 1993, s_atan.c, e_log.c,
+// e_exp.c at netlib.org/fdlibm), whose files derive them and bound their errors; splitting the
+// argument in two follows W. J. Cody, W. Waite, "Software Manual for the Elementary Functions",
+// 1980.
 
 namespace quadcore::elementary {
 namespace {
@@ -20,31 +21,6 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 constexpr double ln2_high = 6.93147180369123816490e-01;  // 32 bits: a whole multiple is exact
 constexpr double ln2_low = 1.90821492927058770002e-10;
-
-/// Sine of y + tail, |y| <= pi/4.
-double kernel_sin(double y, double tail) {
-  const double z = y * y;
-  const double cube = z * y;
-  const double r = 8.33333333332248946124e-03 +
-                   z * (-1.98412698298579493134e-04 +
-                        z * (2.75573137070700676789e-06 +
-                             z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)));
-  return y - ((z * (0.5 * tail - cube * r) - tail) + cube * 1.66666666666666324348e-01);
-}
-
-/// Cosine of y + tail, |y| <= pi/4.
-double kernel_cos(double y, double tail) {
-  const double z = y * y;
-  const double r =
-      z * (4.16666666666666019037e-02 +
-           z * (-1.38888888888741095749e-03 +
-                z * (2.48015872894767294178e-05 +
-                     z * (-2.75573143513906633035e-07 +
-                          z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
-  const double half = 0.5 * z;
-  const double rest = 1 - half;
-  return rest + (((1 - rest) - half) + (z * r - y * tail));
-}
 
 /// Arc tangent of x >= 0.
 double atan_of_positive(double x) {
@@ -95,17 +71,8 @@ double power_of_two(int k) {
 
 SineCosine sincos(double x) {
   const Reduced r = reduced(x);
-  const double s = kernel_sin(r.y, r.tail), c = kernel_cos(r.y, r.tail);
-  switch (r.quadrant) {
-    case 0:
-      return {s, c};
-    case 1:
-      return {c, -s};
-    case 2:
-      return {-s, -c};
-    default:
-      return {-c, s};
-  }
+  const auto result = laws::sine_and_cosine_of<double>({r.y, r.tail, r.quadrant});
+  return {result.sin, result.cos};
 }
 
 double atan2(double y, double x) {

@@ -1,29 +1,36 @@
 #include "quadcore/loads.hpp"
 
-#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "quadcore/error.hpp"
 
 namespace quadcore {
 
+Wrench Loads::frame() const {
+  Vector3d reaction_F = Vector3d::Zero();
+  for (std::size_t i = 0; i < rotors_.rotors(); ++i)
+    reaction_F += rotors_.vector(LoadRow::reaction, i);
+  return {frame_.force_F, frame_.torque_F + reaction_F};
+}
+
 void Loads::clear() {
   frame_ = Wrench{};
-  std::fill(rotor_forces_F_.begin(), rotor_forces_F_.end(), Vector3d::Zero());
-  std::fill(joint_torques_.begin(), joint_torques_.end(), 0.0);
+  rotors_.clear();
 }
 
 bool Loads::all_finite() const {
   // A sum is finite if its terms are, and they are far from overflow.
-  Vector3d sum = frame_.force_F + frame_.torque_F;
-  for (const Vector3d& f_F : rotor_forces_F_) sum += f_F;
-  for (const double torque : joint_torques_) sum.x() += torque;
-  return sum.allFinite();
+  double sum = (frame_.force_F + frame_.torque_F).sum();
+  for (std::size_t row = 0; row < LoadRow::count; ++row) {
+    for (std::size_t i = 0; i < rotors_.rotors(); ++i) sum += rotors_.number(row, i);
+  }
+  return std::isfinite(sum);
 }
 
 void Loads::refuse_rotor(std::size_t i) const {
   throw Error("a load on rotor " + std::to_string(i) + ", but rotors count from 0 and there are " +
-              std::to_string(joint_torques_.size()));
+              std::to_string(rotors_.rotors()));
 }
 
 Wrench& Loads::recorded(std::size_t term) {

@@ -26,7 +26,7 @@ std::string seconds(double time) {
 
 bool is_finite(const Kinematics& k) {
   double rates = 0;
-  for (const RotorKinematics& rotor : k.rotors) rates += rotor.rate;
+  for (std::size_t i = 0; i < k.rotors.size(); ++i) rates += k.rotors[i].rate;
   return k.p_WF.allFinite() && k.q_WF.coeffs().allFinite() && k.v_WF_F.allFinite() &&
          k.w_WF_F.allFinite() && std::isfinite(rates);
 }
@@ -198,7 +198,9 @@ void Simulation::check_flight() const {
   bool sane = k.p_WF.squaredNorm() < max_distance * max_distance && k.q_WF.squaredNorm() < 2 &&
               k.v_WF_F.squaredNorm() < max_speed * max_speed &&
               k.w_WF_F.squaredNorm() < max_rate * max_rate;
-  for (const RotorKinematics& rotor : k.rotors) sane = sane && std::abs(rotor.rate) < max_rate;
+  for (std::size_t i = 0; i < k.rotors.size(); ++i) {
+    sane = sane && std::abs(k.rotors[i].rate) < max_rate;
+  }
   if (sane) return;
   throw Error((is_finite(k) ? "the motion diverged" : no_longer_finite) + advice());
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "laws/lane_width.hpp"
 #include "lowest_point.hpp"
 #include "quadcore/error.hpp"
 
@@ -32,120 +33,91 @@ void refuse_tags(const Model& model) {
 EigenEngine::EigenEngine(const Model& model, const World& world)
     : model_(model),
       body_(model),
-      rotor_count_(static_cast<Eigen::Index>(model.joints.size())),
       gravity_W_(world.gravity_W),
       wind_W_(world.wind_W),
-      windy_(!world.wind_W.isZero(0)),
       ground_(world.ground_plane),
-      state_(VectorXd::Zero(kJoints + 2 * rotor_count_)),
+      kinematics_(model.joints.size(), false),
+      loads_(model.joints.size()),
+      state_(GyrostatState::joints +
+             RotorRows::size_of(GyrostatState::joint_rows, model.joints.size())),
       stage_(state_),
       rate_(state_),
-      sum_(state_),
-      kinematics_(model.joints.size()),
-      loads_(model.joints.size()) {
+      sum_(state_) {
   refuse_tags(model_);
   if (ground_) check_collisions(model_);
   kinematics_.p_FCcm_F = body_.p_FCcm_F;
-  for (std::size_t i = 0; i < body_.rotors.size(); ++i) {
-    kinematics_.rotors[i].axis_F = body_.rotors[i].axis_F;
-    kinematics_.rotors[i].p_FRcm_F = body_.rotors[i].p_FRcm_F;
-    kinematics_.set_R_FR_at_zero(i, body_.rotors[i].R_FR);
+  RotorMotions& rotors = kinematics_.rotors;
+  for (std::size_t i = 0; i < rotors.size(); ++i) {
+    const Matrix3d& R_FR = body_.R_FR_at_zero[i];
+    const Vector3d axis_F = body_.rotors.vector(RotorConstant::axis_F, i);
+    rotors.set_vector(MotionRow::axis, i, axis_F);
+    rotors.set_vector(MotionRow::normal, i, R_FR.col(2));
+    rotors.set_vector(MotionRow::p_FRcm, i, body_.rotors.vector(RotorConstant::p_FRcm_F, i));
+    rotors.set_matrix(MotionRow::R_FR_at_zero, i, R_FR);
   }
-  state_[kOrientation + 3] = 1;
-  look(state_);
+  static constexpr laws::ForEachWidth<void(const GyrostatStep&, const double*)> shows{
+      &show_gyrostat<1>, &show_gyrostat<2>, &show_gyrostat<4>, &show_gyrostat<8>};
+  static constexpr laws::ForEachWidth<void(const GyrostatStep&, double)> steps{
+      &step_gyrostat<1>, &step_gyrostat<2>, &step_gyrostat<4>, &step_gyrostat<8>};
+  const int width = laws::lane_width(rotors.size());
+  show_ = shows[width];
+  advance_ = steps[width];
+  step_ = view();
+  state_[GyrostatState::orientation + 3] = 1;
+  show();
+}
+
+GyrostatStep EigenEngine::view() {
+  Kinematics& k = kinematics_;
+  GyrostatStep g;
+  g.rotors = {k.rotors.data(), loads_.rotors().data(), k.rotors.size(), false};
+  g.constants = body_.rotors.data();
+  g.normals_turn = std::any_of(model_.joints.begin(), model_.joints.end(), [](const Joint& joint) {
+    return !joint.axis.cross(Vector3d::UnitZ()).isZero(0);
+  });
+  g.inverse_mass = body_.inverse_mass;
+  const auto copy = [](const auto& from, double* to) {
+    std::copy(from.data(), from.data() + from.size(), to);
+  };
+  copy(body_.p_FCcm_F, g.p_FCcm_F);
+  copy(gravity_W_, g.gravity_W);
+  copy(wind_W_, g.wind_W);
+  copy(body_.I_Ccm_F, g.I_C_F);
+  copy(body_.inverse_reduced_I_F, g.inverse_reduced_I_F);
+  g.state = state_.data();
+  g.stage = stage_.data();
+  g.rate = rate_.data();
+  g.sum = sum_.data();
+  g.p_WF = k.p_WF.data();
+  g.q_WF = k.q_WF.coeffs().data();
+  g.R_WF = k.R_WF.data();
+  g.v_WF_F = k.v_WF_F.data();
+  g.w_WF_F = k.w_WF_F.data();
+  g.v_WCcm_F = k.v_WCcm_F.data();
+  g.v_WA_F = k.v_WA_F.data();
+  g.motion = k.rotors.data();
+  g.frame_force_F = loads_.on_frame().force_F.data();
+  g.frame_torque_F = loads_.on_frame().torque_F.data();
+  g.evaluate = [](void* engine) { static_cast<EigenEngine*>(engine)->evaluate(); };
+  g.refuse = [](void* engine) { static_cast<EigenEngine*>(engine)->refuse(); };
+  g.engine = this;
+  return g;
 }
 
 void EigenEngine::step(double dt, const ForceField& forces) {
-  // Classical Runge-Kutta; kinematics_ shows state_ at the start, as the last step left it.
-  differentiate(state_, forces);
-  sum_ = rate_;
-  stage(dt / 2, 2, forces);
-  stage(dt / 2, 2, forces);
-  stage(dt, 1, forces);
-  for (Eigen::Index i = 0; i < state_.size(); ++i) state_[i] += dt / 6 * sum_[i];
-  state_.segment<4>(kOrientation).normalize();
-  for (Eigen::Index i = joint_angles(); i < state_.size(); ++i) {
-    if (std::abs(state_[i]) > M_PI) state_[i] = std::remainder(state_[i], 2 * M_PI);
-  }
-  look(state_);
+  forces_ = &forces;
+  advance_(step_, dt);
   if (ground_) refuse_ground();
 }
 
-void EigenEngine::stage(double reach, double weight, const ForceField& forces) {
-  for (Eigen::Index i = 0; i < state_.size(); ++i) stage_[i] = state_[i] + reach * rate_[i];
-  look(stage_);
-  differentiate(stage_, forces);
-  for (Eigen::Index i = 0; i < state_.size(); ++i) sum_[i] += weight * rate_[i];
+void EigenEngine::evaluate() {
+  loads_.clear_frame();
+  forces_->evaluate(kinematics_, loads_);
 }
 
-void EigenEngine::look(const VectorXd& state) {
-  Kinematics& k = kinematics_;
-  // Between the stages the quaternion is off unit length, by less than the method's own error.
-  k.q_WF.coeffs() = state.segment<4>(kOrientation);
-  const Matrix3d R_WF = k.q_WF.toRotationMatrix();
-  const Vector3d w_WF_F = state.segment<3>(kRate);
-  const Vector3d v_WCcm_F = R_WF.transpose() * state.segment<3>(kVelocity);
-  const Vector3d v_WF_F = v_WCcm_F - w_WF_F.cross(body_.p_FCcm_F);
-  k.R_WF = R_WF;
-  k.w_WF_F = w_WF_F;
-  k.v_WCcm_F = v_WCcm_F;
-  k.v_WF_F = v_WF_F;
-  k.p_WF = state.segment<3>(kPosition) - R_WF * body_.p_FCcm_F;
-  if (windy_) k.v_WA_F = R_WF.transpose() * wind_W_;
-  const double* rates = state.data() + joint_rates();
-  const double* angles = state.data() + joint_angles();
-  for (std::size_t i = 0; i < body_.rotors.size(); ++i) {
-    const Gyrostat::Rotor& rotor = body_.rotors[i];
-    RotorKinematics& motion = k.rotors[i];
-    const Vector3d v_WRcm_F = v_WF_F + w_WF_F.cross(rotor.p_FRcm_F);
-    motion.v_WRcm_F = v_WRcm_F;
-    motion.v_WR_F = rotor.centered ? v_WRcm_F : v_WF_F + w_WF_F.cross(rotor.p_FR_F);
-    motion.rate = rates[i];
-    k.set_angle(i, angles[i]);
-  }
-}
+void EigenEngine::refuse() { forces_->refuse(kinematics_, loads_); }
 
-void EigenEngine::differentiate(const VectorXd& state, const ForceField& forces) {
-  const Kinematics& k = kinematics_;
-  loads_.clear();
-  forces.evaluate(k, loads_);
-
-  const Vector3d w = k.w_WF_F;
-  Vector3d f_F = loads_.frame().force_F;
-  Vector3d tau_F = loads_.frame().torque_F;  // about F's origin
-  Vector3d h_F = body_.I_Ccm_F * w;          // angular momentum about C
-  double* joint_rate = rate_.data() + joint_rates();
-  double* joint_angle = rate_.data() + joint_angles();
-  std::size_t i = 0;
-  for (const Gyrostat::Rotor& rotor : body_.rotors) {
-    const Vector3d f_R_F = loads_.rotor_force_F(i);
-    const double rate = k.rotors[i].rate;
-    const double joint_torque = loads_.joint_torque(i) - rotor.damping * rate;
-    f_F += f_R_F;
-    tau_F += rotor.p_FRcm_F.cross(f_R_F) - joint_torque * rotor.axis_F;
-    h_F += rate * rotor.moment_axis_F;
-    joint_rate[i] = joint_torque * rotor.inverse_moment;
-    joint_angle[i] = rate;
-    ++i;
-  }
-  tau_F -= body_.p_FCcm_F.cross(f_F) + w.cross(h_F);  // now about C
-  // Every load is in the sum tau_F.
-  if (!std::isfinite(tau_F.sum()) && !loads_.all_finite()) forces.refuse(k, loads_);
-  const Vector3d angular_F = body_.inverse_reduced_I_F * tau_F;
-  const Vector3d linear_W = k.R_WF * f_F * body_.inverse_mass + gravity_W_;
-  for (const Gyrostat::Rotor& rotor : body_.rotors) *joint_rate++ -= rotor.axis_F.dot(angular_F);
-
-  const double* v = state.data() + kVelocity;
-  const double* q = state.data() + kOrientation;
-  double* rate = rate_.data();
-  std::copy_n(v, 3, rate + kPosition);
-  rate[kOrientation + 0] = 0.5 * (q[3] * w.x() + q[1] * w.z() - q[2] * w.y());
-  rate[kOrientation + 1] = 0.5 * (q[3] * w.y() + q[2] * w.x() - q[0] * w.z());
-  rate[kOrientation + 2] = 0.5 * (q[3] * w.z() + q[0] * w.y() - q[1] * w.x());
-  rate[kOrientation + 3] = -0.5 * (q[0] * w.x() + q[1] * w.y() + q[2] * w.z());
-  std::copy_n(linear_W.data(), 3, rate + kVelocity);
-  std::copy_n(angular_F.data(), 3, rate + kRate);
-}
+void EigenEngine::show() { show_(step_, state_.data()); }
 
 void EigenEngine::refuse_ground() const {
   if (lowest_point(model_, kinematics_) > 0) return;
@@ -159,37 +131,48 @@ void EigenEngine::get_state(VehicleState& state) const {
   state.orientation = kinematics_.q_WF;
   state.linear_velocity = kinematics_.R_WF * kinematics_.v_WF_F;
   state.angular_velocity = kinematics_.w_WF_F;
-  state.rotor_velocity = state_.segment(joint_rates(), rotor_count_);
-  state.rotor_angle = state_.segment(joint_angles(), rotor_count_);
+  for (std::size_t i = 0; i < kinematics_.rotors.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    state.rotor_velocity[row] = kinematics_.rotors.number(MotionRow::rate, i);
+    state.rotor_angle[row] = kinematics_.rotors.number(MotionRow::angle, i);
+  }
 }
 
 void EigenEngine::set_state(const VehicleState& state) {
   const Quaterniond q = state.orientation.normalized();
-  state_.segment<3>(kPosition) = state.position + q * body_.p_FCcm_F;
-  state_.segment<4>(kOrientation) = q.coeffs();
-  state_.segment<3>(kVelocity) =
+  const auto put = [&](std::size_t at, const auto& values) {
+    std::copy(values.data(), values.data() + values.size(), state_.data() + at);
+  };
+  const Vector3d p_WCcm = state.position + q * body_.p_FCcm_F;
+  const Vector3d v_WCcm_W =
       state.linear_velocity + q * state.angular_velocity.cross(body_.p_FCcm_F);
-  state_.segment<3>(kRate) = state.angular_velocity;
-  state_.segment(joint_rates(), rotor_count_) = state.rotor_velocity;
-  state_.segment(joint_angles(), rotor_count_) =
-      state.rotor_angle.unaryExpr([](double angle) { return std::remainder(angle, 2 * M_PI); });
-  look(state_);
+  put(GyrostatState::position, p_WCcm);
+  put(GyrostatState::orientation, q.coeffs());
+  put(GyrostatState::velocity, v_WCcm_W);
+  put(GyrostatState::rate, state.angular_velocity);
+  for (std::size_t i = 0; i < kinematics_.rotors.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    double* joint =
+        state_.data() + GyrostatState::joints + rotor_offset(GyrostatState::joint_rows, i);
+    joint[GyrostatState::joint_rate * widest_lanes] = state.rotor_velocity[row];
+    joint[GyrostatState::joint_angle * widest_lanes] =
+        std::remainder(state.rotor_angle[row], 2 * M_PI);
+  }
+  show();
 }
 
 std::string EigenEngine::method() const {
   return "classical Runge-Kutta of fourth order on the reduced equations of motion";
 }
 
-std::vector<double> EigenEngine::save() const {
-  return {state_.data(), state_.data() + state_.size()};
-}
+std::vector<double> EigenEngine::save() const { return {state_.begin(), state_.end()}; }
 
 void EigenEngine::restore(const std::vector<double>& saved) {
-  if (saved.size() != static_cast<std::size_t>(state_.size())) {
+  if (saved.size() != state_.size()) {
     throw InputError("snapshot: was taken from another model or engine; restore one of its own");
   }
-  std::copy(saved.begin(), saved.end(), state_.data());
-  look(state_);
+  std::copy(saved.begin(), saved.end(), state_.begin());
+  show();
 }
 
 }  // namespace quadcore

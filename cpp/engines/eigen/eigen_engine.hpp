@@ -1,8 +1,7 @@
 #pragma once
 
-#include <vector>
-
 #include "gyrostat.hpp"
+#include "gyrostat_step.hpp"
 #include "quadcore/engine.hpp"
 
 namespace quadcore {
@@ -24,28 +23,24 @@ class EigenEngine final : public Engine {
   std::string method() const override;
 
  private:
-  /// The layout of a state, or of its rate: p_WC, quaternion of F in W (x, y, z, w), v_WC_W,
-  /// w_WF_F, then joint rates and joint angles.
-  enum Layout { kPosition = 0, kOrientation = 3, kVelocity = 7, kRate = 10, kJoints = 13 };
-
-  Eigen::Index joint_rates() const { return kJoints; }
-  Eigen::Index joint_angles() const { return kJoints + rotor_count_; }
-  /// Fills kinematics_ from a state.
-  void look(const VectorXd& state);
-  /// Puts the rate of the state, which kinematics_ shows, into rate_.
-  void differentiate(const VectorXd& state, const ForceField& forces);
-  /// One more stage of Runge-Kutta: the rate at state_ + reach rate_, which adds to sum_.
-  void stage(double reach, double weight, const ForceField& forces);
+  /// The step's view of this engine; it points into the members below.
+  GyrostatStep view();
+  void show();
+  void evaluate();
+  void refuse();
   void refuse_ground() const;
 
   Model model_;
   Gyrostat body_;
-  Eigen::Index rotor_count_;
   Vector3d gravity_W_, wind_W_;
-  bool windy_, ground_;
-  VectorXd state_, stage_, rate_, sum_;
+  bool ground_;
   Kinematics kinematics_;
   Loads loads_;
+  LaneNumbers state_, stage_, rate_, sum_;
+  GyrostatStep step_;
+  void (*show_)(const GyrostatStep&, const double*);
+  void (*advance_)(const GyrostatStep&, double);
+  const ForceField* forces_ = nullptr;  ///< of the step that is under way
 };
 
 }  // namespace quadcore

@@ -1,5 +1,6 @@
 #include "gyrostat.hpp"
 
+#include "gyrostat_step.hpp"
 #include "quadcore/error.hpp"
 
 namespace quadcore {
@@ -34,7 +35,7 @@ void check(const Model& model, std::size_t i) {
 
 }  // namespace
 
-Gyrostat::Gyrostat(const Model& model) {
+Gyrostat::Gyrostat(const Model& model) : rotors(RotorConstant::count, model.joints.size()) {
   const MassProperties total = mass_properties(model);
   inverse_mass = 1 / total.mass;
   p_FCcm_F = total.p_FCcm;
@@ -45,18 +46,16 @@ Gyrostat::Gyrostat(const Model& model) {
     check(model, i);
     const Joint& joint = model.joints[i];
     const Inertial& inertial = model.links[i + 1].inertial;
-    Rotor rotor;
-    rotor.R_FR = poses[i + 1].linear();
-    rotor.axis_F = rotor.R_FR * joint.axis;
-    rotor.p_FR_F = poses[i + 1].translation();
-    rotor.p_FRcm_F = poses[i + 1] * inertial.pose.xyz;
-    rotor.moment = moment_about_joint(model, i);
-    rotor.moment_axis_F = rotor.moment * rotor.axis_F;
-    rotor.inverse_moment = 1 / rotor.moment;
-    rotor.centered = inertial.pose.xyz.isZero(0);
-    rotor.damping = joint.damping;
-    reduced -= rotor.moment_axis_F * rotor.axis_F.transpose();
-    rotors.push_back(rotor);
+    R_FR_at_zero.push_back(poses[i + 1].linear());
+    const Vector3d axis_F = R_FR_at_zero.back() * joint.axis;
+    const double moment = moment_about_joint(model, i);
+    rotors.set_vector(RotorConstant::axis_F, i, axis_F);
+    rotors.set_vector(RotorConstant::p_FR_F, i, poses[i + 1].translation());
+    rotors.set_vector(RotorConstant::p_FRcm_F, i, poses[i + 1] * inertial.pose.xyz);
+    rotors.number(RotorConstant::moment, i) = moment;
+    rotors.number(RotorConstant::inverse_moment, i) = 1 / moment;
+    rotors.number(RotorConstant::damping, i) = joint.damping;
+    reduced -= moment * axis_F * axis_F.transpose();
   }
   inverse_reduced_I_F = reduced.inverse();
 }

@@ -36,7 +36,7 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
     : model_(recipe.like_gazebo ? converted_to_sdf(model) : model),
       recipe_(recipe),
       steps_since_contact_(steps_beside_contact),
-      kinematics_(model.joints.size()),
+      kinematics_(model.joints.size(), true),
       loads_(model.joints.size()) {
   start_ode();
   world_.reset(dWorldCreate());
@@ -62,7 +62,8 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
     }
   }
   for (std::size_t i = 0; i < hinges_.size(); ++i) {
-    kinematics_.set_R_FR_at_zero(i, model_.joints[i].pose.rotation().toRotationMatrix());
+    kinematics_.rotors.set_matrix(MotionRow::R_FR_at_zero, i,
+                                  model_.joints[i].pose.rotation().toRotationMatrix());
   }
   mass_ = mass_properties(model_).mass;
   wind_W_ = world.wind_W;
@@ -260,7 +261,7 @@ void OdeEngine::remember_hinge_forces() {
 
 void OdeEngine::apply_loads() {
   const Matrix3d& R_WF = kinematics_.R_WF;
-  const Wrench& frame = loads_.frame();
+  const Wrench frame = loads_.frame();
   const Vector3d f_W = R_WF * frame.force_F;
   const Vector3d tau_Fcm_W =
       R_WF * (frame.torque_F - model_.links[0].inertial.pose.xyz.cross(frame.force_F));
@@ -290,23 +291,26 @@ void OdeEngine::read_kinematics() {
   k.p_FCcm_F = model_.links[0].inertial.mass * p_FFcm_F;
   k.v_WCcm_F = model_.links[0].inertial.mass * v_WFcm_F;
   for (std::size_t i = 0; i < hinges_.size(); ++i) {
-    RotorKinematics& rotor = k.rotors[i];
     const Joint& joint = model_.joints[i];
     const dBodyID body = bodies_[i + 1];
     const Inertial& inertial = model_.links[i + 1].inertial;
     const Matrix3d R_FR = R_FW * rotation(dBodyGetRotation(body));
     const Vector3d w_WR_F = R_FW * vec(dBodyGetAngularVel(body));
-    k.set_R_FR(i, R_FR);
-    rotor.axis_F = R_FR * joint.axis;
-    rotor.rate = rotor.axis_F.dot(w_WR_F - k.w_WF_F);
+    Vector3d w_WP_F = k.w_WF_F;
     if (joint.parent != 0) {  // the carrier turns as well
-      const Vector3d w_WP_F = R_FW * vec(dBodyGetAngularVel(bodies_[joint.parent]));
-      rotor.rate = rotor.axis_F.dot(w_WR_F - w_WP_F);
-      k.set_R_FR_at_zero(i, k.R_FR(joint.parent - 1) * joint.pose.rotation().toRotationMatrix());
+      w_WP_F = R_FW * vec(dBodyGetAngularVel(bodies_[joint.parent]));
+      k.rotors.set_matrix(MotionRow::R_FR_at_zero, i,
+                          k.R_FR(joint.parent - 1) * joint.pose.rotation().toRotationMatrix());
     }
+    RotorKinematics rotor;
+    rotor.axis_F = R_FR * joint.axis;
+    rotor.normal_F = R_FR.col(2);
     rotor.p_FRcm_F = R_FW * (vec(dBodyGetPosition(body)) - k.p_WF);
     rotor.v_WRcm_F = R_FW * vec(dBodyGetLinearVel(body));
     rotor.v_WR_F = rotor.v_WRcm_F - w_WR_F.cross(R_FR * inertial.pose.xyz);
+    rotor.rate = rotor.axis_F.dot(w_WR_F - w_WP_F);
+    k.rotors.set(i, rotor);
+    k.rotors.set_matrix(MotionRow::R_FR, i, R_FR);
     k.p_FCcm_F += inertial.mass * rotor.p_FRcm_F;
     k.v_WCcm_F += inertial.mass * rotor.v_WRcm_F;
   }

@@ -2,11 +2,10 @@
 #include <cmath>
 #include <string>
 
-#include "drag.hpp"
-#include "flapping.hpp"
+#include "laws/lane_width.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
-#include "thrust.hpp"
+#include "rotor_forces.hpp"
 
 namespace quadcore::aerodynamic {
 namespace {
@@ -15,29 +14,38 @@ namespace {
 enum Term { kThrust, kReaction, kInduced, kTranslational, kProfile, kParasitic, kFlapping };
 
 struct Config {
-  double k, b, reaction_sign, sim_slow;
-  double induced, translational, profile, parasitic;
-  double linear_drag;  ///< sum of the three that are linear in the in-plane velocity
-  Flapping flapping;
-  bool flaps;     ///< any flapping coefficient is set
+  double sim_slow, parasitic;
   bool appendix;  ///< dragModel
+  bool flaps;     ///< any flapping coefficient is set
+  laws::Flapping flapping;
   std::vector<std::size_t> rotors;
+  RotorRows coefficients;  ///< CoefficientRow; 0 for the rotors of others
 
-  explicit Config(const Parameters& p)
-      : k(p.number("rotorThrustCoeff")),
-        b(p.number("rotorTorqueCoeff")),
-        reaction_sign(p.choice("reactionTorque") == "thesis" ? 1 : -1),
-        sim_slow(p.number("sim_slow")),
-        induced(p.number("inducedDragCoeff")),
-        translational(p.number("translationalDragCoeff")),
-        profile(p.number("profileDragCoeff")),
+  Config(const Parameters& p, std::size_t rotor_count)
+      : sim_slow(p.number("sim_slow")),
         parasitic(p.number("parasiticDragCoeff")),
-        linear_drag(induced + translational + profile),
+        appendix(p.choice("dragModel") == "appendix"),
         flapping{p.number("flappingA1c"), p.number("flappingA1s"), p.number("flappingB1"),
                  p.number("flappingB2"), p.number("rotorRadius")},
-        flaps(flapping.A1c != 0 || flapping.A1s != 0 || flapping.B1 != 0 || flapping.B2 != 0),
-        appendix(p.choice("dragModel") == "appendix"),
-        rotors(p.joints("rotorJoints")) {}
+        rotors(p.joints("rotorJoints")),
+        coefficients(CoefficientRow::count, rotor_count) {
+    flaps = flapping.A1c != 0 || flapping.A1s != 0 || flapping.B1 != 0 || flapping.B2 != 0;
+    const double reaction_sign = p.choice("reactionTorque") == "thesis" ? 1 : -1;
+    for (const std::size_t i : rotors) {
+      const auto coefficient = [&](std::size_t row) -> double& {
+        return coefficients.number(row, i);
+      };
+      using Row = CoefficientRow;
+      coefficient(Row::k) = p.number("rotorThrustCoeff");
+      coefficient(Row::b) = reaction_sign * p.number("rotorTorqueCoeff");
+      coefficient(Row::induced) = p.number("inducedDragCoeff");
+      coefficient(Row::translational) = p.number("translationalDragCoeff");
+      coefficient(Row::profile) = p.number("profileDragCoeff");
+      coefficient(Row::linear) =
+          coefficient(Row::induced) + coefficient(Row::translational) + coefficient(Row::profile);
+      coefficient(Row::parasitic) = parasitic;
+    }
+  }
 };
 
 /// Drag tags and what the thesis' plugin (A.5) has in their place: compiled in, no tags.
@@ -74,10 +82,17 @@ void warn_of_axes_against_lift(const PluginSetup& setup, const Config& config) {
   }
 }
 
+Vec3<double> components(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+Vector3d vector(const Vec3<double>& v) { return {v.x, v.y, v.z}; }
+
 class AerodynamicPlugin final : public Plugin {
  public:
   explicit AerodynamicPlugin(const PluginSetup& setup)
-      : config_(setup.parameters), joint_names_(setup.model.joint_names()) {
+      : config_(setup.parameters, setup.model.joints.size()),
+        joint_names_(setup.model.joint_names()) {
+    static constexpr laws::ForEachWidth<void(const RotorForces&)> widths{
+        &add_rotor_forces<1>, &add_rotor_forces<2>, &add_rotor_forces<4>, &add_rotor_forces<8>};
+    add_ = widths[laws::lane_width(setup.model.joints.size())];
     warn_without_drag(setup);
     warn_of_axes_against_lift(setup, config_);
   }
@@ -106,50 +121,59 @@ class AerodynamicPlugin final : public Plugin {
 
   void forces(const Kinematics& kinematics, ConstPluginState, Loads& loads) const override {
     const Config& c = config_;
-    Vector3d reaction_F = Vector3d::Zero();
-    for (const std::size_t i : c.rotors) {
-      const RotorDisc disc = c.appendix ? disc_of_appendix(kinematics, i) : disc_of(kinematics, i);
-      const double torque = reaction(disc, c.b, c.reaction_sign);
-      if (c.appendix) {
-        reaction_F.z() += torque;  // A.5 turns the frame about its own z, however the rotor stands
-      } else {
-        reaction_F += torque * disc.axis_F;
-      }
-      if (loads.terms()) {
-        loads.add_rotor_force(kThrust, i, thrust(disc, c.k));
-        loads.add_rotor_force(kInduced, i, rotor_drag(disc, c.induced));
-        loads.add_rotor_force(kTranslational, i, rotor_drag(disc, c.translational));
-        loads.add_rotor_force(kProfile, i, rotor_drag(disc, c.profile));
-      } else {  // only a log tells them apart
-        loads.add_rotor_force(kThrust, i, thrust(disc, c.k) + rotor_drag(disc, c.linear_drag));
-      }
-      if (c.appendix && c.parasitic != 0) {
-        const Vector3d v_WF_W = kinematics.R_WF * kinematics.v_WF_F;
-        loads.add_rotor_force(kParasitic, i,
-                              parasitic_drag_of_appendix(v_WF_W, kinematics.R_FR(i), c.parasitic));
-      }
-      if (c.flaps) {
-        loads.add_rotor_force(kFlapping, i, flapping(disc, kinematics.w_WF_F, c.k, c.flapping));
-      }
+    RotorForces law;
+    law.rotors = {kinematics.rotors.data(), loads.rotors().data(), kinematics.rotors.size(),
+                  kinematics.has_rotations()};
+    law.coefficients = c.coefficients.data();
+    // Chapter 2: the disc stands across the joint's axis and meets the moving air. Appendix A.5: it
+    // stands across the propeller link's z, the air is still everywhere, and the reaction turns the
+    // frame about its own z.
+    law.normal_row = c.appendix ? MotionRow::normal : MotionRow::axis;
+    law.velocity_row = c.appendix ? MotionRow::v_WR : MotionRow::v_WRcm;
+    law.about_frame_z = c.appendix;
+    law.parasitic = c.appendix && c.parasitic != 0;
+    law.flaps = c.flaps;
+    law.sim_slow = c.sim_slow;
+    law.v_WA_F = c.appendix ? Vec3<double>{0, 0, 0} : components(kinematics.v_WA_F);
+    if (law.parasitic) law.v_WF_W = components(kinematics.R_WF * kinematics.v_WF_F);
+    if (law.flaps) {
+      law.flapping = c.flapping;
+      law.w_WF_F = components(kinematics.w_WF_F);
     }
-    loads.add_frame_torque(kReaction, reaction_F);
+    if (loads.terms()) {
+      record(law, loads);
+    } else {
+      add_(law);
+    }
     if (!c.appendix && c.parasitic != 0) {
       const Vector3d v_ACcm_F = kinematics.v_WCcm_F - kinematics.v_WA_F;
-      loads.add_frame_force(kParasitic, parasitic_drag(v_ACcm_F, c.parasitic), kinematics.p_FCcm_F);
+      loads.add_frame_force(
+          kParasitic,
+          vector(laws::parasitic_drag(components(v_ACcm_F), v_ACcm_F.norm(), c.parasitic)),
+          kinematics.p_FCcm_F);
     }
   }
 
  private:
-  /// Chapter 2: the disc stands across the joint's axis and meets the moving air.
-  RotorDisc disc_of(const Kinematics& kinematics, std::size_t i) const {
-    const RotorKinematics& rotor = kinematics.rotors[i];
-    return {rotor.axis_F, rotor.rate * config_.sim_slow, rotor.v_WRcm_F - kinematics.v_WA_F};
-  }
-
-  /// Appendix A.5: the disc stands across the propeller link's z and the air is still everywhere.
-  RotorDisc disc_of_appendix(const Kinematics& kinematics, std::size_t i) const {
-    const RotorKinematics& rotor = kinematics.rotors[i];
-    return {kinematics.R_FR(i).col(2), rotor.rate * config_.sim_slow, rotor.v_WR_F};
+  /// The same loads, rotor by rotor and term by term.
+  void record(const RotorForces& law, Loads& loads) const {
+    using Row = CoefficientRow;
+    for (const std::size_t i : config_.rotors) {
+      const RotorDisc<double> disc = law.disc<double>(i);
+      const auto coefficient = [&](std::size_t row) { return law.coefficient<double>(row, i); };
+      const auto add = [&](Term term, const Vec3<double>& f_F) {
+        loads.add_rotor_force(term, i, vector(f_F));
+      };
+      add(kThrust, laws::thrust(disc, coefficient(Row::k)));
+      add(kInduced, laws::rotor_drag(disc, coefficient(Row::induced)));
+      add(kTranslational, laws::rotor_drag(disc, coefficient(Row::translational)));
+      add(kProfile, laws::rotor_drag(disc, coefficient(Row::profile)));
+      if (law.parasitic) add(kParasitic, law.parasitic_F<double>(i));
+      if (law.flaps) add(kFlapping, law.flapping_F(disc, i));
+      const double torque = law.reaction(disc, i);
+      loads.add_frame_torque(
+          kReaction, law.about_frame_z ? Vector3d(0, 0, torque) : torque * vector(disc.axis_F));
+    }
   }
 
   /// Whether the vertical part of parasitic_drag_of_appendix() points along the motion.
@@ -162,6 +186,7 @@ class AerodynamicPlugin final : public Plugin {
 
   Config config_;
   std::vector<std::string> joint_names_;
+  void (*add_)(const RotorForces&);
 };
 
 PluginDescriptor describe() {

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "laws/lane_width.hpp"
+#include "motor_torques.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
 
@@ -26,16 +28,17 @@ struct Config {
         rotors(p.joints("rotorJoints")) {}
 };
 
-/// What a rotor's controller remembers.
-enum Memory { kActive, kTarget, kErrorSum, kLastError, kSampledTorque, kMemorySize };
-
 /// Joint-velocity PID as Gazebo's JointController runs it for the thesis' appendix A.4, in slowed
 /// units: e = W - W_target, torque = -kp e - I - kd (e - e_previous)/dt with I = ki sum(e dt)
 /// clamped to [iMin, iMax]. The proportional law is continuous, part of the force law; integral and
 /// derivative are sampled once per step. Until the first command the motors are free.
 class MotorPidPlugin final : public Plugin {
  public:
-  explicit MotorPidPlugin(const PluginSetup& setup) : config_(setup.parameters) {
+  explicit MotorPidPlugin(const PluginSetup& setup)
+      : config_(setup.parameters), rotor_count_(setup.model.joints.size()) {
+    static constexpr laws::ForEachWidth<void(const MotorTorques&)> widths{
+        &add_motor_torques<1>, &add_motor_torques<2>, &add_motor_torques<4>, &add_motor_torques<8>};
+    add_ = widths[laws::lane_width(setup.model.joints.size())];
     if (config_.i_min > config_.i_max) throw InputError("<iMin> exceeds <iMax>; swap them");
     if (config_.ki != 0 && config_.i_min == 0 && config_.i_max == 0) {
       setup.warnings.push_back(
@@ -50,40 +53,41 @@ class MotorPidPlugin final : public Plugin {
     topic_ = setup.topics.declare("vel_cmd", fields);
   }
 
-  std::size_t state_size() const override { return config_.rotors.size() * kMemorySize; }
+  std::size_t state_size() const override {
+    return RotorRows::size_of(MemoryRow::count, rotor_count_);
+  }
 
   void update(const Sample& sample, PluginState state) const override {
     const Topic& command = sample.topics[topic_];
     if (command.count == 0) return;
     const bool stale = sample.time - command.stamp > config_.command_timeout;
     for (std::size_t j = 0; j < config_.rotors.size(); ++j) {
-      auto memory = state.segment<kMemorySize>(static_cast<Eigen::Index>(j * kMemorySize));
+      const std::size_t i = config_.rotors[j];
+      double* rows = state.data() + rotor_offset(MemoryRow::count, i);
+      const auto memory = [rows](std::size_t row) -> double& { return rows[row * widest_lanes]; };
       const double wanted = stale ? 0 : command.values[j];
-      memory[kActive] = 1;
-      memory[kTarget] =
+      memory(MemoryRow::active) = 1;
+      memory(MemoryRow::target) =
           std::clamp(wanted, -config_.max_velocity, config_.max_velocity) / config_.sim_slow;
-      const double error = sample.kinematics.rotors[config_.rotors[j]].rate - memory[kTarget];
+      const double error = sample.kinematics.rotors[i].rate - memory(MemoryRow::target);
 
-      memory[kErrorSum] += sample.dt * error;
-      double integral = config_.ki * memory[kErrorSum];
+      memory(MemoryRow::error_sum) += sample.dt * error;
+      double integral = config_.ki * memory(MemoryRow::error_sum);
       if (integral > config_.i_max || integral < config_.i_min) {
         integral = std::clamp(integral, config_.i_min, config_.i_max);
-        memory[kErrorSum] = integral / config_.ki;
+        memory(MemoryRow::error_sum) = integral / config_.ki;
       }
-      const double derivative = config_.kd * (error - memory[kLastError]) / sample.dt;
-      memory[kLastError] = error;
-      memory[kSampledTorque] = -integral - derivative;
+      const double derivative = config_.kd * (error - memory(MemoryRow::last_error)) / sample.dt;
+      memory(MemoryRow::last_error) = error;
+      memory(MemoryRow::sampled_torque) = -integral - derivative;
     }
   }
 
   void forces(const Kinematics& kinematics, ConstPluginState state, Loads& loads) const override {
-    for (std::size_t j = 0; j < config_.rotors.size(); ++j) {
-      const double* memory = state.data() + j * kMemorySize;
-      if (memory[kActive] == 0) continue;
-      const std::size_t i = config_.rotors[j];
-      const double error = kinematics.rotors[i].rate - memory[kTarget];
-      loads.add_joint_torque(i, -config_.kp * error + memory[kSampledTorque]);
-    }
+    add_({{kinematics.rotors.data(), loads.rotors().data(), kinematics.rotors.size(),
+           kinematics.has_rotations()},
+          state.data(),
+          config_.kp});
   }
 
  private:
@@ -101,6 +105,8 @@ class MotorPidPlugin final : public Plugin {
   }
 
   Config config_;
+  std::size_t rotor_count_;  ///< of the model
+  void (*add_)(const MotorTorques&);
   std::size_t topic_;
 };
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
+#include "quadcore/rotor_rows.hpp"
 #include "quadcore/spatial.hpp"
 
 namespace quadcore {
@@ -10,10 +10,34 @@ namespace quadcore {
 /// Motion of one rotor (the child link of a continuous joint), expressed in the frame's axes.
 struct RotorKinematics {
   Vector3d axis_F;    ///< joint axis, unit
+  Vector3d normal_F;  ///< z axis of the rotor's link, unit
   Vector3d p_FRcm_F;  ///< centre of mass from F's origin [m]
   Vector3d v_WR_F;    ///< velocity of the link's origin [m/s]
   Vector3d v_WRcm_F;  ///< velocity of the centre of mass [m/s]
   double rate = 0;    ///< joint rate [rad/s]
+};
+
+/// Motions of all rotors. Laws that take several rotors at once read the rows; others ask for one
+/// rotor: `motions[i].axis_F` reads three numbers.
+class RotorMotions : public RotorRows {
+ public:
+  explicit RotorMotions(std::size_t rotors) : RotorRows(MotionRow::count, rotors) {}
+  std::size_t size() const { return rotors(); }
+  /// A copy, const lest it be mistaken for the row and written to.
+  const RotorKinematics operator[](std::size_t i) const {
+    using Row = MotionRow;
+    return {vector(Row::axis, i), vector(Row::normal, i), vector(Row::p_FRcm, i),
+            vector(Row::v_WR, i), vector(Row::v_WRcm, i), number(Row::rate, i)};
+  }
+  void set(std::size_t i, const RotorKinematics& rotor) {
+    using Row = MotionRow;
+    set_vector(Row::axis, i, rotor.axis_F);
+    set_vector(Row::normal, i, rotor.normal_F);
+    set_vector(Row::p_FRcm, i, rotor.p_FRcm_F);
+    set_vector(Row::v_WR, i, rotor.v_WR_F);
+    set_vector(Row::v_WRcm, i, rotor.v_WRcm_F);
+    number(Row::rate, i) = rotor.rate;
+  }
 };
 
 /// Motion of the whole vehicle at one instant: all that a force law may read. Engines own one,
@@ -28,41 +52,20 @@ class Kinematics {
   Vector3d p_FCcm_F = Vector3d::Zero();        ///< centre of mass of the vehicle [m]
   Vector3d v_WCcm_F = Vector3d::Zero();        ///< its velocity [m/s]
   Vector3d v_WA_F = Vector3d::Zero();          ///< velocity of the air (wind) [m/s]
-  std::vector<RotorKinematics> rotors;
+  RotorMotions rotors;
 
-  explicit Kinematics(std::size_t rotor_count) : rotors(rotor_count), turns_(rotor_count) {}
+  /// \param has_rotations  whether the engine fills the rows of R_FR; if not, it fills the angles'
+  explicit Kinematics(std::size_t rotor_count, bool has_rotations = true)
+      : rotors(rotor_count), has_rotations_(has_rotations) {}
 
+  bool has_rotations() const { return has_rotations_; }
   /// Orientation of rotor i's spinning link in the frame.
-  const Matrix3d& R_FR(std::size_t i) const;
+  Matrix3d R_FR(std::size_t i) const;
   /// Angle of joint i in (-pi, pi] [rad].
   double angle(std::size_t i) const;
 
-  /// \name For engines
-  /// An engine gives the orientation at angle zero once, then the orientation or the angle as it
-  /// has them. Few laws need either and they cost trigonometry, so the other is derived when asked
-  /// for.
-  /// @{
-  void set_R_FR_at_zero(std::size_t i, const Matrix3d& R) { turns_[i].R_FR_at_zero = R; }
-  void set_R_FR(std::size_t i, const Matrix3d& R) {
-    turns_[i].R_FR = R;
-    turns_[i].knows_R = true;
-    turns_[i].knows_angle = false;
-  }
-  void set_angle(std::size_t i, double angle) {
-    turns_[i].angle = angle;
-    turns_[i].knows_R = false;
-    turns_[i].knows_angle = true;
-  }
-  /// @}
-
  private:
-  /// How far a rotor has turned about its joint.
-  struct Turn {
-    Matrix3d R_FR_at_zero, R_FR;
-    double angle = 0;
-    bool knows_R = false, knows_angle = true;
-  };
-  mutable std::vector<Turn> turns_;
+  bool has_rotations_;
 };
 
 }  // namespace quadcore

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
 #include "quadcore/kinematics.hpp"
 #include "quadcore/spatial.hpp"
@@ -20,8 +19,7 @@ struct Wrench {
 /// of a rotor or a term that is not there is an Error.
 class Loads {
  public:
-  explicit Loads(std::size_t rotor_count)
-      : rotor_forces_F_(rotor_count, Vector3d::Zero()), joint_torques_(rotor_count) {}
+  explicit Loads(std::size_t rotor_count) : rotors_(LoadRow::count, rotor_count) {}
 
   /// A force on the frame at the point Q, p_FQ_F from the frame's origin.
   void add_frame_force(std::size_t term, const Vector3d& f_F, const Vector3d& p_FQ_F) {
@@ -37,21 +35,31 @@ class Loads {
   /// A force on rotor i at its centre of mass.
   void add_rotor_force(std::size_t term, std::size_t i, const Vector3d& f_F) {
     check_rotor(i);
-    rotor_forces_F_[i] += f_F;
+    rotors_.add_vector(LoadRow::force, i, f_F);
     if (terms_) record(term, f_F, kinematics_->rotors[i].p_FRcm_F);
   }
   /// A torque of joint i on its rotor about the joint axis; its reaction acts on the parent.
   void add_joint_torque(std::size_t i, double torque) {
     check_rotor(i);
-    joint_torques_[i] += torque;
+    rotors_.number(LoadRow::joint_torque, i) += torque;
   }
 
-  /// Total on the frame; the torque is about the frame's origin.
-  const Wrench& frame() const { return frame_; }
-  const Vector3d& rotor_force_F(std::size_t i) const { return rotor_forces_F_[i]; }
-  double joint_torque(std::size_t i) const { return joint_torques_[i]; }
+  /// What was put on the frame by itself, without the rotors' reactions; the torque is about the
+  /// frame's origin.
+  const Wrench& on_frame() const { return frame_; }
+  /// The same with the rotors' reactions, summed in the rotors' order.
+  Wrench frame() const;
+  Vector3d rotor_force_F(std::size_t i) const { return rotors_.vector(LoadRow::force, i); }
+  double joint_torque(std::size_t i) const { return rotors_.number(LoadRow::joint_torque, i); }
+
+  /// The rotors' loads for laws that take several rotors at once; what they add here belongs to no
+  /// term.
+  RotorRows& rotors() { return rotors_; }
+  const RotorRows& rotors() const { return rotors_; }
 
   void clear();
+  /// Clears what acts on the frame only.
+  void clear_frame() { frame_ = Wrench{}; }
   bool all_finite() const;
   /// While set, each load is also added to terms[term], about the vehicle's centre of mass.
   void record_terms(Wrench* terms, std::size_t count, const Kinematics* kinematics) {
@@ -64,15 +72,14 @@ class Loads {
 
  private:
   void check_rotor(std::size_t i) const {
-    if (i >= joint_torques_.size()) refuse_rotor(i);
+    if (i >= rotors_.rotors()) refuse_rotor(i);
   }
   [[noreturn]] void refuse_rotor(std::size_t i) const;
   Wrench& recorded(std::size_t term);
   void record(std::size_t term, const Vector3d& f_F, const Vector3d& p_FQ_F);
 
   Wrench frame_;
-  std::vector<Vector3d> rotor_forces_F_;
-  std::vector<double> joint_torques_;
+  RotorRows rotors_;
   Wrench* terms_ = nullptr;
   std::size_t term_count_ = 0;
   const Kinematics* kinematics_ = nullptr;

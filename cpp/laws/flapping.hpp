@@ -1,10 +1,8 @@
 #pragma once
 
-#include <cmath>
-
 #include "rotor_disc.hpp"
 
-namespace quadcore::aerodynamic {
+namespace quadcore::laws {
 
 /// Blade flapping coefficients, thesis eqs. (2.26), (2.27).
 struct Flapping {
@@ -23,13 +21,14 @@ struct Flapping {
 /// \param w_WF_F  nu, angular velocity of the frame [rad/s]
 /// \param k       rotorThrustCoeff [N s^2/rad^2]
 /// \return        force on the rotor in F [N]
-inline Vector3d flapping(const RotorDisc& disc, const Vector3d& w_WF_F, double k,
-                         const Flapping& c) {
-  const double s = disc.speed < 0 ? -1 : 1;
-  const Vector3d nu_F = disc.in_plane(w_WF_F);
-  const Vector3d A_V = (-c.A1c * disc.V_F - s * c.A1s * disc.axis_F.cross(disc.V_F)) / c.radius;
-  const Vector3d B_nu = -s * c.B2 * nu_F - c.B1 * disc.axis_F.cross(nu_F);
-  return k * std::abs(disc.speed) * (A_V + B_nu);
+template <class T, class K>
+QUADCORE_LAW Vec3<T> flapping(const RotorDisc<T>& disc, const Vec3<T>& w_WF_F, K k,
+                              const Flapping& c) {
+  const T s = with_sign_of(disc.speed, broadcast<T>(1));
+  const Vec3<T> nu_F = across(disc.axis_F, w_WF_F);
+  const Vec3<T> A_V_r = -c.A1c * disc.V_F - (s * c.A1s) * cross(disc.axis_F, disc.V_F);
+  const Vec3<T> B_nu = (-s * c.B2) * nu_F - c.B1 * cross(disc.axis_F, nu_F);
+  return (k * absolute(disc.speed)) * ((1 / c.radius) * A_V_r + B_nu);
 }
 
-}  // namespace quadcore::aerodynamic
+}  // namespace quadcore::laws

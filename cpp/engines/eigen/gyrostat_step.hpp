@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstddef>
+
+#include "quadcore/rotor_layout.hpp"
+
+namespace quadcore {
+
+/// The layout of a gyrostat's state, or of its rate: p_WC, quaternion of F in W (x, y, z, w),
+/// v_WC_W, w_WF_F, then a table of joint rates and angles.
+struct GyrostatState {
+  enum : std::size_t {
+    position = 0,
+    orientation = 3,
+    velocity = 7,
+    rate = 10,
+    frame_size = 13,
+    joints = 16
+  };
+  enum : std::size_t { joint_rate, joint_angle, joint_rows };
+};
+
+/// Rows of what is constant of each rotor.
+struct RotorConstant {
+  enum : std::size_t {
+    axis_F = 0,
+    p_FR_F = 3,
+    p_FRcm_F = 6,
+    moment = 9,
+    inverse_moment = 10,
+    damping = 11,
+    count = 12
+  };
+};
+
+/// All that a step of the gyrostat reads and writes; matrices by columns. The equations stand in
+/// cpp/laws/gyrostat.hpp.
+struct GyrostatStep {
+  RotorLanes rotors;
+  const double* constants;  ///< table of RotorConstant
+  bool normals_turn;        ///< some rotor's link has its z off the joint's axis
+  double inverse_mass;
+  double p_FCcm_F[3], gravity_W[3], wind_W[3];
+  double I_C_F[9], inverse_reduced_I_F[9];
+
+  double *state, *stage, *rate, *sum;
+
+  /// \name The motion of the frame, which the force laws read
+  /// @{
+  double *p_WF, *q_WF, *R_WF, *v_WF_F, *w_WF_F, *v_WCcm_F, *v_WA_F;
+  double* motion;  ///< table of MotionRow
+  /// @}
+  const double *frame_force_F, *frame_torque_F;  ///< about F's origin
+
+  /// Evaluates the force laws: clears the frame's loads and adds to them and to the rotors'.
+  void (*evaluate)(void* engine);
+  /// Throws, because the loads are not finite.
+  void (*refuse)(void* engine);
+  void* engine;
+};
+
+/// Shows the motion of a state.
+template <int W>
+void show_gyrostat(const GyrostatStep& g, const double* state);
+
+/// One step of dt [s] of the classical fourth-order Runge-Kutta method, W rotors at once. Begins
+/// with the motion of `state` shown, and ends so.
+template <int W>
+void step_gyrostat(const GyrostatStep& g, double dt);
+
+}  // namespace quadcore

@@ -1,0 +1,42 @@
+#include "lane_width.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
+#include "quadcore/error.hpp"
+
+namespace quadcore::laws {
+namespace {
+
+/// Doubles in a vector register of this processor that the system saves.
+int widest() {
+#if defined(__x86_64__)
+  __builtin_cpu_init();
+  if (__builtin_cpu_supports("avx512f")) return 8;
+  if (__builtin_cpu_supports("avx2")) return 4;
+#endif
+  return 2;
+}
+
+/// 0 = not asked for.
+int asked_for() {
+  const char* text = std::getenv("QUADCORE_LANES");
+  if (!text) return 0;
+  for (const int width : {1, 2, 4, 8}) {
+    if (text == std::to_string(width)) return std::min(width, widest());
+  }
+  throw InputError("QUADCORE_LANES is '" + std::string(text) + "'; write 1, 2, 4 or 8");
+}
+
+}  // namespace
+
+int lane_width(std::size_t rotors) {
+  static const int most = widest();
+  if (const int width = asked_for()) return width;
+  int width = 2;
+  while (width < most && static_cast<std::size_t>(width) < rotors) width *= 2;
+  return width;
+}
+
+}  // namespace quadcore::laws

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstdint>
+
+/// \file
+/// Several numbers side by side, on which a law is written once: a pack holds W doubles of W rotors
+/// (or vehicles), and +, -, *, / and sqrt act on each by itself, rounded as IEEE 754 asks. A law
+/// gives the same bytes whatever W is, because nothing here mixes the numbers of a pack.
+///
+/// Files that are compiled for one processor include this and nothing of Eigen or the standard
+/// library that has code in headers: the linker would keep one copy of such code for all files,
+/// perhaps the one that most processors cannot run.
+
+#define QUADCORE_LAW inline __attribute__((always_inline))
+
+namespace quadcore::laws {
+
+template <int W>
+struct PackOf {
+  typedef double Numbers __attribute__((vector_size(8 * W)));
+  typedef std::int64_t Bits __attribute__((vector_size(8 * W)));
+  typedef double InMemory __attribute__((vector_size(8 * W), aligned(8), may_alias));
+};
+template <>
+struct PackOf<1> {
+  using Numbers = double;
+  using Bits = std::int64_t;
+  using InMemory = double;
+};
+/// W doubles; one is a plain double.
+template <int W>
+using Pack = typename PackOf<W>::Numbers;
+
+/// The whole numbers of a pack's size.
+template <class T>
+using BitsOf = typename PackOf<sizeof(T) / sizeof(double)>::Bits;
+
+template <class T>
+using InMemory = typename PackOf<sizeof(T) / sizeof(double)>::InMemory;
+
+template <class T>
+QUADCORE_LAW T load(const double* from) {
+  return *reinterpret_cast<const InMemory<T>*>(from);
+}
+
+template <class T>
+QUADCORE_LAW void store(double* to, T pack) {
+  *reinterpret_cast<InMemory<T>*>(to) = pack;
+}
+
+template <class T>
+QUADCORE_LAW T broadcast(double number) {
+  if constexpr (sizeof(T) == sizeof(double)) {
+    return number;
+  } else {
+    T pack;
+    for (unsigned i = 0; i < sizeof(T) / sizeof(double); ++i) pack[i] = number;
+    return pack;
+  }
+}
+
+template <class T>
+QUADCORE_LAW BitsOf<T> bits(T pack) {
+  if constexpr (sizeof(T) == sizeof(double)) {
+    BitsOf<T> result;
+    __builtin_memcpy(&result, &pack, sizeof result);
+    return result;
+  } else {
+    return reinterpret_cast<BitsOf<T>>(pack);
+  }
+}
+
+template <class T>
+QUADCORE_LAW T from_bits(BitsOf<T> pattern) {
+  if constexpr (sizeof(T) == sizeof(double)) {
+    T result;
+    __builtin_memcpy(&result, &pattern, sizeof result);
+    return result;
+  } else {
+    return reinterpret_cast<T>(pattern);
+  }
+}
+
+template <class T>
+constexpr int lanes_of = sizeof(T) / sizeof(double);
+
+/// Whether a comparison of packs holds in any lane.
+template <class Mask>
+QUADCORE_LAW bool any(const Mask& mask) {
+  if constexpr (sizeof(Mask) <= sizeof(std::int64_t)) {
+    return mask != 0;
+  } else {
+    std::int64_t of_any = 0;
+    for (unsigned i = 0; i < sizeof(Mask) / sizeof(std::int64_t); ++i) of_any |= mask[i];
+    return of_any != 0;
+  }
+}
+
+constexpr std::int64_t sign_bit = INT64_MIN;
+
+template <class T>
+QUADCORE_LAW T absolute(T a) {
+  return from_bits<T>(bits(a) & ~sign_bit);
+}
+
+/// |a| with the sign of b.
+template <class T>
+QUADCORE_LAW T with_sign_of(T b, T a) {
+  return from_bits<T>((bits(a) & ~sign_bit) | (bits(b) & sign_bit));
+}
+
+}  // namespace quadcore::laws

@@ -1,0 +1,94 @@
+#pragma once
+
+#include "laws/drag.hpp"
+#include "laws/flapping.hpp"
+#include "laws/thrust.hpp"
+#include "laws/turn.hpp"
+#include "quadcore/rotor_layout.hpp"
+
+namespace quadcore::aerodynamic {
+
+using laws::RotorDisc;
+using laws::Vec3;
+
+/// Rows of the coefficients, a column for each rotor; 0 for rotors that are somebody else's.
+struct CoefficientRow {
+  enum : std::size_t { k, b, induced, translational, profile, linear, parasitic, count };
+};
+
+/// What the law of one evaluation needs besides the rotors.
+struct RotorForces {
+  RotorLanes rotors;
+  const double* coefficients;
+  std::size_t normal_row;    ///< of the discs' normals
+  std::size_t velocity_row;  ///< of the discs' velocities
+  bool about_frame_z;        ///< reaction torques act so, however the rotors stand
+  bool parasitic;            ///< each rotor takes the appendix' parasitic drag
+  bool flaps;                ///< any flapping coefficient is set
+  laws::Flapping flapping;
+  Vec3<double> v_WF_W;  ///< velocity of the frame's origin [m/s]
+  Vec3<double> v_WA_F;  ///< of the air [m/s]
+  Vec3<double> w_WF_F;  ///< angular velocity of the frame [rad/s]
+  double sim_slow;
+
+  /// \name Rows from rotor i on
+  /// @{
+  template <class T>
+  QUADCORE_LAW T number(std::size_t row, std::size_t i) const {
+    return laws::load<T>(motion(row, i));
+  }
+  template <class T>
+  QUADCORE_LAW Vec3<T> vector(std::size_t row, std::size_t i) const {
+    return laws::load3<T>(motion(row, i));
+  }
+  template <class T>
+  QUADCORE_LAW T coefficient(std::size_t row, std::size_t i) const {
+    return laws::load<T>(coefficients + rotor_offset(CoefficientRow::count, i) +
+                         row * widest_lanes);
+  }
+  /// @}
+
+  template <class T>
+  QUADCORE_LAW RotorDisc<T> disc(std::size_t i) const {
+    const Vec3<T> normal_F = vector<T>(normal_row, i);
+    const Vec3<T> v_AR_F = vector<T>(velocity_row, i) - laws::broadcast<T>(v_WA_F);
+    return {normal_F, number<T>(MotionRow::rate, i) * sim_slow, laws::across(normal_F, v_AR_F)};
+  }
+
+  template <class T>
+  QUADCORE_LAW T reaction(const RotorDisc<T>& disc, std::size_t i) const {
+    return laws::reaction(disc, coefficient<T>(CoefficientRow::b, i));
+  }
+
+  template <class T>
+  QUADCORE_LAW Vec3<T> parasitic_F(std::size_t i) const {
+    const Vec3<T> f_R = laws::parasitic_drag_of_appendix(
+        laws::broadcast<T>(v_WF_W), coefficient<T>(CoefficientRow::parasitic, i));
+    if (rotors.has_rotations) return columns<T>(MotionRow::R_FR, i) * f_R;
+    return laws::turned(vector<T>(MotionRow::axis, i),
+                        laws::sine_and_cosine(number<T>(MotionRow::angle, i)),
+                        columns<T>(MotionRow::R_FR_at_zero, i) * f_R);
+  }
+
+  template <class T>
+  QUADCORE_LAW Vec3<T> flapping_F(const RotorDisc<T>& disc, std::size_t i) const {
+    return laws::flapping(disc, laws::broadcast<T>(w_WF_F), coefficient<T>(CoefficientRow::k, i),
+                          flapping);
+  }
+
+ private:
+  QUADCORE_LAW const double* motion(std::size_t row, std::size_t i) const {
+    return rotors.motion + rotor_offset(MotionRow::count, i) + row * widest_lanes;
+  }
+  template <class T>
+  QUADCORE_LAW laws::Matrix3<T> columns(std::size_t row, std::size_t i) const {
+    const Vec3<T> x = vector<T>(row, i), y = vector<T>(row + 3, i), z = vector<T>(row + 6, i);
+    return {x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z};
+  }
+};
+
+/// Adds forces and reactions of all rotors to their loads, W rotors at once.
+template <int W>
+void add_rotor_forces(const RotorForces& law);
+
+}  // namespace quadcore::aerodynamic
