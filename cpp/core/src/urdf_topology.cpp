@@ -25,7 +25,6 @@ std::map<std::string, std::size_t> index_by_name(const std::vector<Named>& items
 
 void check_topology(UrdfTree& tree) {
   std::map<std::string, const UrdfJoint*> joint_above;
-  tree.root.clear();
   const auto links = index_by_name(tree.links, "link");
   index_by_name(tree.joints, "joint");
   if (tree.links.empty()) {
