@@ -11,7 +11,8 @@
 /// library that has code in headers: the linker would keep one copy of such code for all files,
 /// perhaps the one that most processors cannot run.
 
-#define QUADCORE_LAW inline __attribute__((always_inline))
+#define QUADCORE_INLINED __attribute__((always_inline))
+#define QUADCORE_LAW inline QUADCORE_INLINED
 
 namespace quadcore::laws {
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "pack.hpp"
-#include "quadcore/rotor_layout.hpp"
 
 namespace quadcore::laws {
 
@@ -10,6 +9,17 @@ namespace quadcore::laws {
 template <class T>
 struct Vec3 {
   T x, y, z;
+
+  Vec3() = default;
+  QUADCORE_LAW Vec3(T of_x, T of_y, T of_z) : x(of_x), y(of_y), z(of_z) {}
+  // Written out, because GCC would move a whole of packs through the general registers.
+  QUADCORE_LAW Vec3(const Vec3& a) : x(a.x), y(a.y), z(a.z) {}
+  QUADCORE_LAW Vec3& operator=(const Vec3& a) {
+    x = a.x;
+    y = a.y;
+    z = a.z;
+    return *this;
+  }
 };
 
 template <class T>
@@ -33,22 +43,16 @@ QUADCORE_LAW Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+QUADCORE_LAW Vec3<double> vec(const double* a) { return {a[0], a[1], a[2]}; }
+
 /// One vector for every lane.
 template <class T>
 QUADCORE_LAW Vec3<T> broadcast(const Vec3<double>& a) {
   return {broadcast<T>(a.x), broadcast<T>(a.y), broadcast<T>(a.z)};
 }
-
-/// A vector of each lane from three rows of a table.
 template <class T>
-QUADCORE_LAW Vec3<T> load3(const double* row) {
-  return {load<T>(row), load<T>(row + widest_lanes), load<T>(row + 2 * widest_lanes)};
-}
-template <class T>
-QUADCORE_LAW void store3(double* row, const Vec3<T>& a) {
-  store(row, a.x);
-  store(row + widest_lanes, a.y);
-  store(row + 2 * widest_lanes, a.z);
+QUADCORE_LAW Vec3<T> broadcast(const double* a) {
+  return broadcast<T>(vec(a));
 }
 
 /// A matrix, row by row.
@@ -57,24 +61,15 @@ struct Matrix3 {
   T xx, xy, xz, yx, yy, yz, zx, zy, zz;
 };
 
-/// Of a unit quaternion.
-template <class T>
-QUADCORE_LAW Matrix3<T> rotation(T x, T y, T z, T w) {
-  const T x2 = x + x, y2 = y + y, z2 = z + z;
-  const T xx = x * x2, yy = y * y2, zz = z * z2, xy = x * y2, xz = x * z2, yz = y * z2;
-  const T wx = w * x2, wy = w * y2, wz = w * z2;
-  return {1 - (yy + zz), xy - wz, xz + wy, xy + wz,      1 - (xx + zz),
-          yz - wx,       xz - wy, yz + wx, 1 - (xx + yy)};
+QUADCORE_LAW Matrix3<double> matrix(const double* by_columns) {
+  const double* m = by_columns;
+  return {m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8]};
 }
+
 template <class T>
 QUADCORE_LAW Vec3<T> operator*(const Matrix3<T>& R, const Vec3<T>& a) {
   return {R.xx * a.x + (R.xy * a.y + R.xz * a.z), R.yx * a.x + (R.yy * a.y + R.yz * a.z),
           R.zx * a.x + (R.zy * a.y + R.zz * a.z)};
-}
-template <class T>
-QUADCORE_LAW Vec3<T> transposed_times(const Matrix3<T>& R, const Vec3<T>& a) {
-  return {R.xx * a.x + (R.yx * a.y + R.zx * a.z), R.xy * a.x + (R.yy * a.y + R.zy * a.z),
-          R.xz * a.x + (R.yz * a.y + R.zz * a.z)};
 }
 
 }  // namespace quadcore::laws

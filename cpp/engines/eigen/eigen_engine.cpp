@@ -41,7 +41,6 @@ EigenEngine::EigenEngine(const Model& model, const World& world)
       state_(GyrostatState::joints +
              RotorRows::size_of(GyrostatState::joint_rows, model.joints.size())),
       stage_(state_),
-      rate_(state_),
       sum_(state_) {
   refuse_tags(model_);
   if (ground_) check_collisions(model_);
@@ -75,19 +74,29 @@ GyrostatStep EigenEngine::view() {
   g.normals_turn = std::any_of(model_.joints.begin(), model_.joints.end(), [](const Joint& joint) {
     return !joint.axis.cross(Vector3d::UnitZ()).isZero(0);
   });
+  g.centered = std::all_of(model_.links.begin() + 1, model_.links.end(),
+                           [](const Link& link) { return link.inertial.pose.xyz.isZero(0); });
+  g.windy = !wind_W_.isZero(0);
   g.inverse_mass = body_.inverse_mass;
-  const auto copy = [](const auto& from, double* to) {
-    std::copy(from.data(), from.data() + from.size(), to);
+  const auto copy = [](const Vector3d& from, double (&to)[4]) {
+    std::copy(from.data(), from.data() + 3, to);
+    to[3] = 0;
   };
   copy(body_.p_FCcm_F, g.p_FCcm_F);
   copy(gravity_W_, g.gravity_W);
   copy(wind_W_, g.wind_W);
-  copy(body_.I_Ccm_F, g.I_C_F);
-  copy(body_.inverse_reduced_I_F, g.inverse_reduced_I_F);
+  const auto copy_columns = [](const Matrix3d& from, double (&to)[3][4]) {
+    for (int j = 0; j < 3; ++j) {
+      for (int i = 0; i < 3; ++i) to[j][i] = from(i, j);
+      to[j][3] = 0;
+    }
+  };
+  copy_columns(body_.I_Ccm_F, g.I_C_F);
+  copy_columns(body_.inverse_reduced_I_F, g.inverse_reduced_I_F);
   g.state = state_.data();
   g.stage = stage_.data();
-  g.rate = rate_.data();
   g.sum = sum_.data();
+  g.columns_of_R_WF = columns_of_R_WF_;
   g.p_WF = k.p_WF.data();
   g.q_WF = k.q_WF.coeffs().data();
   g.R_WF = k.R_WF.data();

@@ -36,7 +36,8 @@ class EigenEngine final : public Engine {
   bool ground_;
   Kinematics kinematics_;
   Loads loads_;
-  LaneNumbers state_, stage_, rate_, sum_;
+  LaneNumbers state_, stage_, sum_;
+  alignas(32) double columns_of_R_WF_[3][4];
   GyrostatStep step_;
   void (*show_)(const GyrostatStep&, const double*);
   void (*advance_)(const GyrostatStep&, double);

@@ -7,16 +7,9 @@
 namespace quadcore {
 
 /// The layout of a gyrostat's state, or of its rate: p_WC, quaternion of F in W (x, y, z, w),
-/// v_WC_W, w_WF_F, then a table of joint rates and angles.
+/// v_WC_W, w_WF_F, each in four numbers; then a table of joint rates and angles.
 struct GyrostatState {
-  enum : std::size_t {
-    position = 0,
-    orientation = 3,
-    velocity = 7,
-    rate = 10,
-    frame_size = 13,
-    joints = 16
-  };
+  enum : std::size_t { position = 0, orientation = 4, velocity = 8, rate = 12, joints = 16 };
   enum : std::size_t { joint_rate, joint_angle, joint_rows };
 };
 
@@ -39,11 +32,14 @@ struct GyrostatStep {
   RotorLanes rotors;
   const double* constants;  ///< table of RotorConstant
   bool normals_turn;        ///< some rotor's link has its z off the joint's axis
+  bool centered;            ///< the rotors' centres of mass are their links' origins
+  bool windy;
   double inverse_mass;
-  double p_FCcm_F[3], gravity_W[3], wind_W[3];
-  double I_C_F[9], inverse_reduced_I_F[9];
+  double p_FCcm_F[4], gravity_W[4], wind_W[4];    ///< a 0 behind each
+  double I_C_F[3][4], inverse_reduced_I_F[3][4];  ///< columns, a 0 behind each
 
-  double *state, *stage, *rate, *sum;
+  double *state, *stage, *sum;
+  double (*columns_of_R_WF)[4];  ///< of the state that is shown, a 0 behind each
 
   /// \name The motion of the frame, which the force laws read
   /// @{

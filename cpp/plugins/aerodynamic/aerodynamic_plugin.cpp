@@ -16,7 +16,6 @@ enum Term { kThrust, kReaction, kInduced, kTranslational, kProfile, kParasitic, 
 struct Config {
   double sim_slow, parasitic;
   bool appendix;  ///< dragModel
-  bool flaps;     ///< any flapping coefficient is set
   laws::Flapping flapping;
   std::vector<std::size_t> rotors;
   RotorRows coefficients;  ///< CoefficientRow; 0 for the rotors of others
@@ -29,7 +28,6 @@ struct Config {
                  p.number("flappingB2"), p.number("rotorRadius")},
         rotors(p.joints("rotorJoints")),
         coefficients(CoefficientRow::count, rotor_count) {
-    flaps = flapping.A1c != 0 || flapping.A1s != 0 || flapping.B1 != 0 || flapping.B2 != 0;
     const double reaction_sign = p.choice("reactionTorque") == "thesis" ? 1 : -1;
     for (const std::size_t i : rotors) {
       const auto coefficient = [&](std::size_t row) -> double& {
@@ -45,6 +43,23 @@ struct Config {
           coefficient(Row::induced) + coefficient(Row::translational) + coefficient(Row::profile);
       coefficient(Row::parasitic) = parasitic;
     }
+  }
+
+  /// Chapter 2: the disc stands across the joint's axis and meets the moving air. Appendix A.5: it
+  /// stands across the propeller link's z, the air is still everywhere, and the reaction turns the
+  /// frame about its own z. Points into this.
+  RotorForces law() const {
+    RotorForces law;
+    law.coefficients = coefficients.data();
+    law.normal_row = appendix ? MotionRow::normal : MotionRow::axis;
+    law.velocity_row = appendix ? MotionRow::v_WR : MotionRow::v_WRcm;
+    law.meets_wind = !appendix;
+    law.about_frame_z = appendix;
+    law.parasitic = appendix && parasitic != 0;
+    law.flaps = flapping.A1c != 0 || flapping.A1s != 0 || flapping.B1 != 0 || flapping.B2 != 0;
+    law.flapping = flapping;
+    law.sim_slow = sim_slow;
+    return law;
   }
 };
 
@@ -89,8 +104,9 @@ class AerodynamicPlugin final : public Plugin {
  public:
   explicit AerodynamicPlugin(const PluginSetup& setup)
       : config_(setup.parameters, setup.model.joints.size()),
-        joint_names_(setup.model.joint_names()) {
-    static constexpr laws::ForEachWidth<void(const RotorForces&)> widths{
+        joint_names_(setup.model.joint_names()),
+        law_(config_.law()) {
+    static constexpr laws::ForEachWidth<void(const RotorForcesNow&)> widths{
         &add_rotor_forces<1>, &add_rotor_forces<2>, &add_rotor_forces<4>, &add_rotor_forces<8>};
     add_ = widths[laws::lane_width(setup.model.joints.size())];
     warn_without_drag(setup);
@@ -120,47 +136,34 @@ class AerodynamicPlugin final : public Plugin {
   }
 
   void forces(const Kinematics& kinematics, ConstPluginState, Loads& loads) const override {
-    const Config& c = config_;
-    RotorForces law;
-    law.rotors = {kinematics.rotors.data(), loads.rotors().data(), kinematics.rotors.size(),
-                  kinematics.has_rotations()};
-    law.coefficients = c.coefficients.data();
-    // Chapter 2: the disc stands across the joint's axis and meets the moving air. Appendix A.5: it
-    // stands across the propeller link's z, the air is still everywhere, and the reaction turns the
-    // frame about its own z.
-    law.normal_row = c.appendix ? MotionRow::normal : MotionRow::axis;
-    law.velocity_row = c.appendix ? MotionRow::v_WR : MotionRow::v_WRcm;
-    law.about_frame_z = c.appendix;
-    law.parasitic = c.appendix && c.parasitic != 0;
-    law.flaps = c.flaps;
-    law.sim_slow = c.sim_slow;
-    law.v_WA_F = c.appendix ? Vec3<double>{0, 0, 0} : components(kinematics.v_WA_F);
-    if (law.parasitic) law.v_WF_W = components(kinematics.R_WF * kinematics.v_WF_F);
-    if (law.flaps) {
-      law.flapping = c.flapping;
-      law.w_WF_F = components(kinematics.w_WF_F);
-    }
+    const RotorForcesNow now{law_,
+                             {kinematics.rotors.data(), loads.rotors().data(),
+                              kinematics.rotors.size(), kinematics.has_rotations()},
+                             kinematics.R_WF.data(),
+                             kinematics.v_WF_F.data(),
+                             kinematics.v_WA_F.data(),
+                             kinematics.w_WF_F.data()};
     if (loads.terms()) {
-      record(law, loads);
+      record(now, loads);
     } else {
-      add_(law);
+      add_(now);
     }
-    if (!c.appendix && c.parasitic != 0) {
+    if (!config_.appendix && config_.parasitic != 0) {
       const Vector3d v_ACcm_F = kinematics.v_WCcm_F - kinematics.v_WA_F;
       loads.add_frame_force(
           kParasitic,
-          vector(laws::parasitic_drag(components(v_ACcm_F), v_ACcm_F.norm(), c.parasitic)),
+          vector(laws::parasitic_drag(components(v_ACcm_F), v_ACcm_F.norm(), config_.parasitic)),
           kinematics.p_FCcm_F);
     }
   }
 
  private:
   /// The same loads, rotor by rotor and term by term.
-  void record(const RotorForces& law, Loads& loads) const {
+  void record(const RotorForcesNow& now, Loads& loads) const {
     using Row = CoefficientRow;
     for (const std::size_t i : config_.rotors) {
-      const RotorDisc<double> disc = law.disc<double>(i);
-      const auto coefficient = [&](std::size_t row) { return law.coefficient<double>(row, i); };
+      const RotorDisc<double> disc = now.disc<double>(i);
+      const auto coefficient = [&](std::size_t row) { return now.coefficient<double>(row, i); };
       const auto add = [&](Term term, const Vec3<double>& f_F) {
         loads.add_rotor_force(term, i, vector(f_F));
       };
@@ -168,11 +171,11 @@ class AerodynamicPlugin final : public Plugin {
       add(kInduced, laws::rotor_drag(disc, coefficient(Row::induced)));
       add(kTranslational, laws::rotor_drag(disc, coefficient(Row::translational)));
       add(kProfile, laws::rotor_drag(disc, coefficient(Row::profile)));
-      if (law.parasitic) add(kParasitic, law.parasitic_F<double>(i));
-      if (law.flaps) add(kFlapping, law.flapping_F(disc, i));
-      const double torque = law.reaction(disc, i);
+      if (law_.parasitic) add(kParasitic, now.parasitic_F<double>(i));
+      if (law_.flaps) add(kFlapping, now.flapping_F(disc, i));
+      const double torque = now.reaction(disc, i);
       loads.add_frame_torque(
-          kReaction, law.about_frame_z ? Vector3d(0, 0, torque) : torque * vector(disc.axis_F));
+          kReaction, law_.about_frame_z ? Vector3d(0, 0, torque) : torque * vector(disc.axis_F));
     }
   }
 
@@ -180,13 +183,14 @@ class AerodynamicPlugin final : public Plugin {
   bool drag_drives(const Kinematics& kinematics) const {
     if (!config_.appendix || config_.parasitic == 0) return false;
     return std::any_of(config_.rotors.begin(), config_.rotors.end(), [&](std::size_t i) {
-      return kinematics.R_WF.row(2).dot(kinematics.R_FR(i).col(2)) < 0;
+      return kinematics.R_WF.row(2).dot(kinematics.rotors[i].normal_F) < 0;
     });
   }
 
   Config config_;
   std::vector<std::string> joint_names_;
-  void (*add_)(const RotorForces&);
+  RotorForces law_;
+  void (*add_)(const RotorForcesNow&);
 };
 
 PluginDescriptor describe() {

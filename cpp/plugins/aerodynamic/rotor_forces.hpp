@@ -2,9 +2,9 @@
 
 #include "laws/drag.hpp"
 #include "laws/flapping.hpp"
+#include "laws/rotors.hpp"
 #include "laws/thrust.hpp"
 #include "laws/turn.hpp"
-#include "quadcore/rotor_layout.hpp"
 
 namespace quadcore::aerodynamic {
 
@@ -16,20 +16,24 @@ struct CoefficientRow {
   enum : std::size_t { k, b, induced, translational, profile, linear, parasitic, count };
 };
 
-/// What the law of one evaluation needs besides the rotors.
+/// What of the law a vehicle keeps.
 struct RotorForces {
-  RotorLanes rotors;
   const double* coefficients;
   std::size_t normal_row;    ///< of the discs' normals
   std::size_t velocity_row;  ///< of the discs' velocities
+  bool meets_wind;           ///< whether the discs meet the moving air, or air that stands still
   bool about_frame_z;        ///< reaction torques act so, however the rotors stand
   bool parasitic;            ///< each rotor takes the appendix' parasitic drag
   bool flaps;                ///< any flapping coefficient is set
   laws::Flapping flapping;
-  Vec3<double> v_WF_W;  ///< velocity of the frame's origin [m/s]
-  Vec3<double> v_WA_F;  ///< of the air [m/s]
-  Vec3<double> w_WF_F;  ///< angular velocity of the frame [rad/s]
   double sim_slow;
+};
+
+/// The law in one motion.
+struct RotorForcesNow {
+  const RotorForces& law;
+  RotorLanes rotors;
+  const double *R_WF, *v_WF_F, *v_WA_F, *w_WF_F;  ///< of Kinematics
 
   /// \name Rows from rotor i on
   /// @{
@@ -43,16 +47,17 @@ struct RotorForces {
   }
   template <class T>
   QUADCORE_LAW T coefficient(std::size_t row, std::size_t i) const {
-    return laws::load<T>(coefficients + rotor_offset(CoefficientRow::count, i) +
+    return laws::load<T>(law.coefficients + rotor_offset(CoefficientRow::count, i) +
                          row * widest_lanes);
   }
   /// @}
 
   template <class T>
   QUADCORE_LAW RotorDisc<T> disc(std::size_t i) const {
-    const Vec3<T> normal_F = vector<T>(normal_row, i);
-    const Vec3<T> v_AR_F = vector<T>(velocity_row, i) - laws::broadcast<T>(v_WA_F);
-    return {normal_F, number<T>(MotionRow::rate, i) * sim_slow, laws::across(normal_F, v_AR_F)};
+    const Vec3<T> normal_F = vector<T>(law.normal_row, i);
+    Vec3<T> v_AR_F = vector<T>(law.velocity_row, i);
+    if (law.meets_wind) v_AR_F = v_AR_F - laws::broadcast<T>(laws::vec(v_WA_F));
+    return {normal_F, number<T>(MotionRow::rate, i) * law.sim_slow, laws::across(normal_F, v_AR_F)};
   }
 
   template <class T>
@@ -62,8 +67,9 @@ struct RotorForces {
 
   template <class T>
   QUADCORE_LAW Vec3<T> parasitic_F(std::size_t i) const {
-    const Vec3<T> f_R = laws::parasitic_drag_of_appendix(
-        laws::broadcast<T>(v_WF_W), coefficient<T>(CoefficientRow::parasitic, i));
+    const Vec3<T> f_R =
+        laws::parasitic_drag_of_appendix(laws::broadcast<T>(laws::matrix(R_WF) * laws::vec(v_WF_F)),
+                                         coefficient<T>(CoefficientRow::parasitic, i));
     if (rotors.has_rotations) return columns<T>(MotionRow::R_FR, i) * f_R;
     return laws::turned(vector<T>(MotionRow::axis, i),
                         laws::sine_and_cosine(number<T>(MotionRow::angle, i)),
@@ -72,8 +78,8 @@ struct RotorForces {
 
   template <class T>
   QUADCORE_LAW Vec3<T> flapping_F(const RotorDisc<T>& disc, std::size_t i) const {
-    return laws::flapping(disc, laws::broadcast<T>(w_WF_F), coefficient<T>(CoefficientRow::k, i),
-                          flapping);
+    return laws::flapping(disc, laws::broadcast<T>(laws::vec(w_WF_F)),
+                          coefficient<T>(CoefficientRow::k, i), law.flapping);
   }
 
  private:
@@ -89,6 +95,6 @@ struct RotorForces {
 
 /// Adds forces and reactions of all rotors to their loads, W rotors at once.
 template <int W>
-void add_rotor_forces(const RotorForces& law);
+void add_rotor_forces(const RotorForcesNow& now);
 
 }  // namespace quadcore::aerodynamic

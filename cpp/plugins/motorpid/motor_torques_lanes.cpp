@@ -1,4 +1,4 @@
-#include "laws/pack.hpp"
+#include "laws/rotors.hpp"
 #include "motor_torques.hpp"
 
 namespace quadcore::motorpid {
@@ -6,7 +6,7 @@ namespace quadcore::motorpid {
 template <int W>
 void add_motor_torques(const MotorTorques& law) {
   using T = laws::Pack<W>;
-  for (std::size_t i = 0; i < law.rotors.rotors; i += W) {
+  laws::for_each_pack<W>(law.rotors.rotors, [&](std::size_t i) QUADCORE_INLINED {
     const double* motion = law.rotors.motion + rotor_offset(MotionRow::count, i);
     const double* rows = law.memory + rotor_offset(MemoryRow::count, i);
     const auto memory = [rows](std::size_t row) {
@@ -19,7 +19,7 @@ void add_motor_torques(const MotorTorques& law) {
     laws::store(torque,
                 laws::load<T>(torque) + memory(MemoryRow::active) *
                                             (-law.kp * error + memory(MemoryRow::sampled_torque)));
-  }
+  });
 }
 
 template void add_motor_torques<QUADCORE_LANES>(const MotorTorques&);

@@ -12,6 +12,7 @@ namespace {
 
 struct Config {
   double kp, ki, kd, i_max, i_min, sim_slow;
+  bool samples;            ///< whether integral or derivative act
   double max_velocity;     ///< rad/s; infinite if there is none
   double command_timeout;  ///< s; infinite if there is none
   std::vector<std::size_t> rotors;
@@ -23,6 +24,7 @@ struct Config {
         i_max(p.number("iMax")),
         i_min(p.number("iMin")),
         sim_slow(p.number("sim_slow")),
+        samples(ki != 0 || kd != 0),
         max_velocity(p.has("maxVelocity") ? p.number("maxVelocity") : INFINITY),
         command_timeout(p.has("commandTimeout") ? p.number("commandTimeout") : INFINITY),
         rotors(p.joints("rotorJoints")) {}
@@ -69,8 +71,8 @@ class MotorPidPlugin final : public Plugin {
       memory(MemoryRow::active) = 1;
       memory(MemoryRow::target) =
           std::clamp(wanted, -config_.max_velocity, config_.max_velocity) / config_.sim_slow;
+      if (!config_.samples) continue;
       const double error = sample.kinematics.rotors[i].rate - memory(MemoryRow::target);
-
       memory(MemoryRow::error_sum) += sample.dt * error;
       double integral = config_.ki * memory(MemoryRow::error_sum);
       if (integral > config_.i_max || integral < config_.i_min) {

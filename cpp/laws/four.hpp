@@ -1,0 +1,110 @@
+#pragma once
+
+#include "vec3.hpp"
+
+namespace quadcore::laws {
+
+/// What belongs to the frame side by side: a vector and a 0 behind it, or a quaternion x, y, z, w.
+/// In lanes narrower than four the compiler takes it in pieces; the bytes are the same.
+using Four = Pack<4>;
+
+/// Of three numbers one behind another.
+QUADCORE_LAW Four load_vector(const double* a) { return Four{a[0], a[1], a[2], 0}; }
+/// Four of the eight numbers of a and b.
+template <int i, int j, int k, int l>
+QUADCORE_LAW Four chosen(const Four& a, const Four& b) {
+#ifdef __clang__
+  return __builtin_shufflevector(a, b, i, j, k, l);
+#else
+  return __builtin_shuffle(a, b, BitsOf<Four>{i, j, k, l});
+#endif
+}
+template <int i, int j, int k, int l>
+QUADCORE_LAW Four permuted(const Four& a) {
+  return chosen<i, j, k, l>(a, a);
+}
+
+/// With the signs turned where a 1 stands.
+template <int i, int j, int k, int l>
+QUADCORE_LAW Four negated(const Four& a) {
+  return from_bits<Four>(bits(a) ^
+                         BitsOf<Four>{i * sign_bit, j * sign_bit, k * sign_bit, l * sign_bit});
+}
+
+QUADCORE_LAW Four cross(const Four& a, const Four& b) {
+  return permuted<1, 2, 0, 3>(a * permuted<1, 2, 0, 3>(b) - permuted<1, 2, 0, 3>(a) * b);
+}
+
+QUADCORE_LAW Four first_three(const Four& a) {
+  return from_bits<Four>(bits(a) & BitsOf<Four>{-1, -1, -1, 0});
+}
+
+QUADCORE_LAW void store_vector(double* to, const Four& a) {
+  to[0] = a[0];
+  to[1] = a[1];
+  to[2] = a[2];
+}
+
+/// A matrix, column by column.
+struct Columns {
+  Four x, y, z;
+};
+QUADCORE_LAW Columns load_columns(const double (*m)[4]) {
+  return {load<Four>(m[0]), load<Four>(m[1]), load<Four>(m[2])};
+}
+QUADCORE_LAW Four operator*(const Columns& M, const Four& a) {
+  return M.x * permuted<0, 0, 0, 0>(a) +
+         (M.y * permuted<1, 1, 1, 1>(a) + M.z * permuted<2, 2, 2, 2>(a));
+}
+
+/// A rotation and its inverse.
+struct Rotation {
+  Columns to, from;
+};
+
+/// Of a unit quaternion q = (u, w): (1 - 2 u.u) 1 + 2 u u^T + 2 w [u x], and the inverse with -u.
+QUADCORE_LAW Rotation rotation(const Four& q) {
+  const Four twice = first_three(q + q);
+  const Four by_x = permuted<0, 0, 0, 0>(q) * twice, by_y = permuted<1, 1, 1, 1>(q) * twice;
+  const Four by_z = permuted<2, 2, 2, 2>(q) * twice, by_w = permuted<3, 3, 3, 3>(q) * twice;
+  const Four rest = broadcast<Four>(1 - (by_x[0] + by_y[1] + by_z[2]));
+  const Four even_x = by_x + from_bits<Four>(bits(rest) & BitsOf<Four>{-1, 0, 0, 0});
+  const Four even_y = by_y + from_bits<Four>(bits(rest) & BitsOf<Four>{0, -1, 0, 0});
+  const Four even_z = by_z + from_bits<Four>(bits(rest) & BitsOf<Four>{0, 0, -1, 0});
+  const Four odd_x = negated<0, 0, 1, 0>(permuted<3, 2, 1, 3>(by_w));
+  const Four odd_y = negated<1, 0, 0, 0>(permuted<2, 3, 0, 3>(by_w));
+  const Four odd_z = negated<0, 1, 0, 0>(permuted<1, 0, 3, 3>(by_w));
+  return {{even_x + odd_x, even_y + odd_y, even_z + odd_z},
+          {even_x - odd_x, even_y - odd_y, even_z - odd_z}};
+}
+
+/// sum + the vectors of a pack of rotors, one after another.
+template <class T>
+QUADCORE_LAW void add_in_order(Four& sum, const Vec3<T>& of_rotors) {
+  if constexpr (lanes_of<T> == 8) {
+    const auto half = [&](int h) {
+      double x[8], y[8], z[8];
+      store(x, of_rotors.x);
+      store(y, of_rotors.y);
+      store(z, of_rotors.z);
+      return Vec3<Four>{load<Four>(x + 4 * h), load<Four>(y + 4 * h), load<Four>(z + 4 * h)};
+    };
+    add_in_order(sum, half(0));
+    add_in_order(sum, half(1));
+  } else if constexpr (lanes_of<T> == 4) {
+    const Four &x = of_rotors.x, &y = of_rotors.y, &z = of_rotors.z, none{};
+    const Four xy_02 = chosen<0, 4, 2, 6>(x, y), xy_13 = chosen<1, 5, 3, 7>(x, y);
+    const Four z_02 = chosen<0, 4, 2, 6>(z, none), z_13 = chosen<1, 5, 3, 7>(z, none);
+    sum = sum + chosen<0, 1, 4, 5>(xy_02, z_02);
+    sum = sum + chosen<0, 1, 4, 5>(xy_13, z_13);
+    sum = sum + chosen<2, 3, 6, 7>(xy_02, z_02);
+    sum = sum + chosen<2, 3, 6, 7>(xy_13, z_13);
+  } else if constexpr (lanes_of<T> == 2) {
+    sum = sum + Four{of_rotors.x[0], of_rotors.y[0], of_rotors.z[0], 0};
+    sum = sum + Four{of_rotors.x[1], of_rotors.y[1], of_rotors.z[1], 0};
+  } else {
+    sum = sum + Four{of_rotors.x, of_rotors.y, of_rotors.z, 0};
+  }
+}
+
+}  // namespace quadcore::laws

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "quadcore/rotor_layout.hpp"
+#include "vec3.hpp"
+
+namespace quadcore::laws {
+
+/// Does what is to be done from every W-th rotor on. Most vehicles fit in one pack, for which all
+/// places in the tables are constants.
+template <int W, class Work>
+QUADCORE_LAW void for_each_pack(std::size_t rotors, const Work& work) {
+  if (rotors - 1 < W) {
+    work(std::size_t{0});
+  } else {
+    for (std::size_t i = 0; i < rotors; i += W) work(i);
+  }
+}
+
+/// A vector of each lane from three rows of a table.
+template <class T>
+QUADCORE_LAW Vec3<T> load3(const double* row) {
+  return {load<T>(row), load<T>(row + widest_lanes), load<T>(row + 2 * widest_lanes)};
+}
+template <class T>
+QUADCORE_LAW void store3(double* row, const Vec3<T>& a) {
+  store(row, a.x);
+  store(row + widest_lanes, a.y);
+  store(row + 2 * widest_lanes, a.z);
+}
+
+}  // namespace quadcore::laws
