@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import List, NamedTuple
+from typing import List, NamedTuple, Sequence
 
 
 class Part(NamedTuple):
@@ -21,21 +21,26 @@ def _core(name: str, sources: List[str], tests: List[str]) -> Part:
     return Part(name, "quadcore", "libquadcore.so", sources, tests)
 
 
-def _plugin(name: str, sources: List[str], tests: List[str]) -> Part:
+def _laws(*names: str) -> List[str]:
+    return [f"cpp/laws/{name}.hpp" for name in names]
+
+
+def _plugin(name: str, sources: List[str], tests: List[str], laws: Sequence[str] = ()) -> Part:
     folder = f"cpp/plugins/{name}"
-    files = [f"{folder}/{source}" for source in sources]
+    files = [f"{folder}/{source}" for source in sources] + _laws(*laws)
     return Part(name, f"{name}_plugin", f"lib{name}_plugin.so", files, tests)
 
 
 PARTS = [
     _plugin(
         "aerodynamic",
-        ["aerodynamic_plugin.cpp", "drag.hpp", "flapping.hpp", "rotor_disc.hpp", "thrust.hpp"],
+        ["aerodynamic_plugin.cpp", "rotor_forces.hpp", "rotor_forces_lanes.cpp"],
         ["test_forces.py", "test_warnings.py", "test_simulation.py", "test_bad_models.py"],
+        laws=("drag", "flapping", "rotor_disc", "thrust", "turn"),
     ),
     _plugin(
         "motorpid",
-        ["motorpid_plugin.cpp"],
+        ["motorpid_plugin.cpp", "motor_torques.hpp", "motor_torques_lanes.cpp"],
         ["test_motors.py", "test_warnings.py", "test_bad_models.py", "test_determinism.py"],
     ),
     _plugin(
@@ -45,7 +50,17 @@ PARTS = [
     ),
     _core(
         "eigen",
-        [f"cpp/engines/eigen/{n}.cpp" for n in ("eigen_engine", "gyrostat", "lowest_point")],
+        [
+            f"cpp/engines/eigen/{name}"
+            for name in (
+                "eigen_engine.cpp",
+                "gyrostat.cpp",
+                "gyrostat_step.hpp",
+                "gyrostat_step_lanes.cpp",
+                "lowest_point.cpp",
+            )
+        ]
+        + _laws("gyrostat"),
         ["test_eigen.py", "test_gyroscopics.py", "test_simulation.py", "test_bad_models.py"],
     ),
     _core(
@@ -88,6 +103,12 @@ PARTS = [
             )
         ]
         + [f"cpp/engines/ode/sdf_{n}.cpp" for n in ("conversion", "lumping", "numbers")],
-        ["test_bad_models.py", "test_random_recordings.py", "test_forces.py", "test_eigen.py"],
+        [
+            "test_bad_models.py",
+            "test_random_recordings.py",
+            "test_models_for_gazebo.py",
+            "test_forces.py",
+            "test_eigen.py",
+        ],
     ),
 ]

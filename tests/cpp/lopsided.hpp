@@ -18,7 +18,7 @@ inline std::string text(const Vector3d& v) {
 /// A rotor on a hinge that is neither upright nor through the rotor's origin.
 inline std::string rotor(const std::string& name, const std::string& parent,
                          const std::string& origin, const Vector3d& axis, const Vector3d& center,
-                         const Matrix3d& I, double damping) {
+                         const Matrix3d& I, double damping, double friction) {
   char inertia[200];
   std::snprintf(
       inertia, sizeof inertia,
@@ -27,13 +27,13 @@ inline std::string rotor(const std::string& name, const std::string& parent,
   return link(name, 0.03, inertia, "xyz=\"" + text(center) + "\"") + "<joint name=\"turns_" + name +
          "\" type=\"continuous\"><parent link=\"" + parent + "\"/><child link=\"" + name +
          "\"/><origin " + origin + "/><axis xyz=\"" + text(axis) + "\"/><dynamics damping=\"" +
-         std::to_string(damping) + "\"/></joint>\n";
+         std::to_string(damping) + "\" friction=\"" + std::to_string(friction) + "\"/></joint>\n";
 }
 
 /// Three unlike rotors, tilted, each with its centre of mass on its axis but off its origin, and
 /// with an inertia that is symmetric about the axis. `skew` ones are a blade that is neither, and
 /// the last hangs on the second.
-inline Model lopsided(bool skew) {
+inline Model lopsided(bool skew, double friction = 0) {
   std::string parts = link("frame", 1.2, skew_body, "xyz=\"0.02 -0.03 0.01\" rpy=\"0.3 -0.2 0.5\"");
   const Vector3d axes[] = {{0, 0.6, 0.8}, {0.48, 0.6, -0.64}, {-0.8, 0, 0.6}};
   const char* origins[] = {"xyz=\"0.2 0.03 0.05\" rpy=\"0.2 0.1 -0.4\"",
@@ -47,7 +47,7 @@ inline Model lopsided(bool skew) {
     const Vector3d center = (0.01 + 0.005 * i) * a;
     parts += rotor(std::string(1, static_cast<char>('a' + i)), skew && i == 2 ? "b" : "frame",
                    origins[i], a, skew ? Vector3d(center + Vector3d(0.004, -0.003, 0.002)) : center,
-                   skew ? blade : I, 1e-5 * (i + 1));
+                   skew ? blade : I, 1e-5 * (i + 1), friction);
   }
   return model(parts);
 }
