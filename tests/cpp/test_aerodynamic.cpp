@@ -10,8 +10,8 @@ namespace {
 constexpr double k = 1.2e-5, b = 3e-7, slow = 2.5;
 constexpr double K_I = 0.011, K_T = 0.0023, K_P = 0.0057, K_par = 0.0031;
 constexpr double A1c = 0.12, A1s = 0.031, B1 = 0.0042, B2 = 0.0027, r = 0.09;
-constexpr std::size_t rotor_count = 5;
-const std::vector<std::size_t> named = {3, 0, 2};  // d a c
+constexpr std::size_t rotor_count = 11;                // laws take eight at a time
+const std::vector<std::size_t> named = {3, 0, 10, 2};  // d a k c
 
 const std::string thrust_only = tag("rotorThrustCoeff", "1.2e-5") + tag("rotorTorqueCoeff", "3e-7");
 const std::string everything =
@@ -19,7 +19,7 @@ const std::string everything =
     tag("translationalDragCoeff", "0.0023") + tag("profileDragCoeff", "0.0057") +
     tag("parasiticDragCoeff", "0.0031") + tag("flappingA1c", "0.12") + tag("flappingA1s", "0.031") +
     tag("flappingB1", "0.0042") + tag("flappingB2", "0.0027") + tag("rotorRadius", "0.09") +
-    tag("rotorJoints", "d a c");
+    tag("rotorJoints", "d a k c");
 
 enum Term { thrust, reaction, induced, translational, profile, parasitic, flapping, term_count };
 

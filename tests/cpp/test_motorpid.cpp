@@ -39,8 +39,8 @@ struct Reference {
 
 TEST_CASE("each motor is a PID of its own, with limits, timeout and slow-down") {
   Motors motors(
-      gains + tag("maxVelocity", "700") + tag("commandTimeout", "0.05") + tag("rotorJoints", "c a"),
-      4);
+      gains + tag("maxVelocity", "700") + tag("commandTimeout", "0.05") + tag("rotorJoints", "j a"),
+      11);  // laws take eight at a time
   Draw draw{7};
   Reference c, a;
   int saturated = 0, stale_steps = 0;
@@ -54,8 +54,8 @@ TEST_CASE("each motor is a PID of its own, with limits, timeout and slow-down") 
       motors.command(time, command);
       saturated += std::abs(command[0]) > max_velocity;
     }
-    Kinematics motion(4);
-    for (std::size_t i = 0; i < 4; ++i) {
+    Kinematics motion(11);
+    for (std::size_t i = 0; i < 11; ++i) {
       motion.rotors.number(MotionRow::rate, i) = 200 * draw.number();
     }
     motors.update(motion, time, dt);
@@ -67,17 +67,17 @@ TEST_CASE("each motor is a PID of its own, with limits, timeout and slow-down") 
       return std::min(std::max(wanted, -max_velocity), max_velocity) / slow;
     };
     const Loads loads = motors.forces(motion);
-    CHECK(loads.joint_torque(2) ==
-          doctest::Approx(c.torque(motion.rotors[2].rate, target(command[0]))).epsilon(1e-9));
+    CHECK(loads.joint_torque(9) ==
+          doctest::Approx(c.torque(motion.rotors[9].rate, target(command[0]))).epsilon(1e-9));
     CHECK(loads.joint_torque(0) ==
           doctest::Approx(a.torque(motion.rotors[0].rate, target(command[1]))).epsilon(1e-9));
     CHECK(loads.joint_torque(1) == 0);
     CHECK(loads.joint_torque(3) == 0);
     CHECK(loads.frame().torque_F.isZero(0));
     // Between the samples the proportional law goes on, the others are held.
-    const double before = loads.joint_torque(2);
-    motion.rotors.number(MotionRow::rate, 2) += 3;
-    CHECK(motors.forces(motion).joint_torque(2) - before == doctest::Approx(-kp * 3));
+    const double before = loads.joint_torque(9);
+    motion.rotors.number(MotionRow::rate, 9) += 3;
+    CHECK(motors.forces(motion).joint_torque(9) - before == doctest::Approx(-kp * 3));
   }
   CHECK(saturated > 0);
   CHECK(stale_steps > 100);
