@@ -6,11 +6,11 @@ namespace quadcore::laws {
 
 /// Blade flapping coefficients, thesis eqs. (2.26), (2.27).
 struct Flapping {
-  double A1c = 0;     ///< rad
-  double A1s = 0;     ///< rad
-  double B1 = 0;      ///< s/rad
-  double B2 = 0;      ///< s/rad
-  double radius = 0;  ///< r, rotor radius [m]
+  double A1c;     ///< rad
+  double A1s;     ///< rad
+  double B1;      ///< s/rad
+  double B2;      ///< s/rad
+  double radius;  ///< r, rotor radius [m]
 };
 
 /// Blade flapping, thesis eq. (2.25) as corrected: F = T/|w| (A V_p + B nu) at the rotor's centre
