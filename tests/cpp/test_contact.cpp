@@ -21,12 +21,14 @@ struct Ball {
   std::unique_ptr<Engine> engine;
   VehicleState state;
 
-  Ball(const std::string& name, double depth, const Vector3d& v, const Vector3d& w = {0, 0, 0})
+  Ball(const std::string& name, double depth, const Vector3d& v, const Vector3d& w = {0, 0, 0},
+       const std::string& tags = "")
       : engine(make_engine(name,
                            model("<link name=\"ball\"><inertial><mass value=\"2\"/><inertia "
                                  "ixx=\"0.01\" iyy=\"0.01\" izz=\"0.01\" ixy=\"0\" ixz=\"0\" "
                                  "iyz=\"0\"/></inertial><collision><geometry><sphere "
-                                 "radius=\"0.1\"/></geometry></collision></link>"),
+                                 "radius=\"0.1\"/></geometry></collision></link>" +
+                                 tags),
                            ground())) {
     state.position = {3, -4, radius - depth};
     state.linear_velocity = v;
@@ -131,6 +133,22 @@ TEST_CASE("a slow ball sticks and rolls, a fast one slides with friction 1") {
     Ball spinning(name, 1e-3, {0, 0, -0.3}, {0, 0, 5});
     spinning.step();
     CHECK((spinning.state.angular_velocity - Vector3d(0, 0, 5)).norm() < 1e-9);
+  }
+}
+
+TEST_CASE("a direction of friction that stands upright is none") {
+  for (const char* name : engines_with_contact) {
+    CAPTURE(name);
+    std::vector<VehicleState> after;
+    for (const char* tag : {"", "<fdir1>0 0 3</fdir1>"}) {
+      Ball sliding(name, 1e-3, {0, -8, -0.3}, {0, 0, 0},
+                   std::string("<gazebo reference=\"ball\">") + tag + "</gazebo>");
+      sliding.step();
+      after.push_back(sliding.state);
+    }
+    CHECK(after[1].linear_velocity == after[0].linear_velocity);
+    CHECK(after[1].linear_velocity.y() > -8);
+    CHECK(after[1].angular_velocity == after[0].angular_velocity);
   }
 }
 

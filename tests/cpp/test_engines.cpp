@@ -92,6 +92,7 @@ TEST_CASE("the velocities that a force law sees are the rates of the places it s
       const RotorKinematics& b = after.rotors[i];
       CHECK((rate_F(place(before, a.p_FRcm_F), place(after, b.p_FRcm_F)) - a.v_WRcm_F).norm() <
             tolerance);
+      CHECK((after.rotors.vector(MotionRow::normal, i) - after.R_FR(i).col(2)).norm() < 1e-14);
       const Vector3d& p_RRcm = engine->model().links[i + 1].inertial.pose.xyz;
       const Vector3d p_FR_F = a.p_FRcm_F - before.R_FR(i) * p_RRcm;
       const Vector3d q_FR_F = b.p_FRcm_F - after.R_FR(i) * p_RRcm;
@@ -198,6 +199,45 @@ TEST_CASE("a state that is set leaves nothing of a step that ODE gave up") {
       engine->step(1e-3, NoForces());
     }
     CHECK(failed->save() == fresh->save());
+  }
+}
+
+TEST_CASE("a vehicle stands upright at first, and an orientation need not be of unit length") {
+  for (const EngineInfo& info : engines()) {
+    CAPTURE(info.name);
+    const auto engine = make_engine(info.name, lopsided(false), weightless());
+    CHECK(engine->kinematics().R_WF == Matrix3d::Identity());
+    VehicleState state = random_state(7, 3);
+    const Quaterniond unit = state.orientation;
+    state.orientation.coeffs() *= 3;
+    engine->set_state(state);
+    CHECK((engine->kinematics().q_WF.coeffs() - unit.coeffs()).norm() < 1e-15);
+    engine->get_state(state);
+    CHECK((state.orientation.coeffs() - unit.coeffs()).norm() < 1e-15);
+  }
+}
+
+TEST_CASE("a load that is not finite is refused, whatever component it is") {
+  struct Spoilt final : ForceField {
+    int component = 0;
+    void evaluate(const Kinematics&, Loads& loads) const override {
+      Vector3d v[4] = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
+      v[component / 3][component % 3] = NAN;
+      loads.add_frame_force(0, v[0], {0, 0, 0});
+      loads.add_frame_torque(0, v[1]);
+      loads.add_rotor_force(0, 0, v[2]);
+      loads.add_joint_torque(2, v[3].x());
+    }
+  };
+  for (const EngineInfo& info : engines()) {
+    CAPTURE(info.name);
+    const auto engine = make_engine(info.name, lopsided(false), weightless());
+    engine->set_state(random_state(7, 3));
+    Spoilt spoilt;
+    for (; spoilt.component < 10; ++spoilt.component) {
+      CAPTURE(spoilt.component);
+      CHECK_THROWS_AS(engine->step(1e-3, spoilt), Error);
+    }
   }
 }
 

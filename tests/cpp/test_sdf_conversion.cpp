@@ -96,6 +96,16 @@ TEST_CASE(
   CHECK(sdf_vector({0.0012345, 0.1234565, 0.0000025}) == Vector3d(0.001235, 0.123457, 3e-6));
 }
 
+TEST_CASE("a box that rounding makes flat is refused") {
+  const auto boxed = [](const std::string& size) {
+    return model(shaped("frame", shape("<box size=\"" + size + "\"/>"), inertial("1", round_body)) +
+                 turning_rotor);
+  };
+  converted_to_sdf(boxed("0.1 0.000002 0.1"));
+  CHECK(
+      contains(refusal([&] { converted_to_sdf(boxed("0.1 0.0000004 0.1")); }), "the box is flat"));
+}
+
 TEST_CASE("a rotation passes through a quaternion, and at 90 degrees of pitch all yaw is roll") {
   CHECK(rounded_rpy(3, 2.2, 0.1) == Vector3d(-0.141593, 0.941593, -3.04159));
   CHECK(rounded_rpy(0.3, M_PI_2, 0.1) == Vector3d(0.2, 1.5708, 0));

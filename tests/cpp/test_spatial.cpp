@@ -38,6 +38,17 @@ TEST_CASE("roll, pitch and yaw come back from the orientation they make") {
   }
 }
 
+TEST_CASE("within about 1e-6 rad of a pitch of 90 degrees all of the turn is yaw") {
+  for (const double sign : {1.0, -1.0}) {
+    const Vector3d near(0.3, sign * (M_PI_2 - 1.7e-6), 0.1);
+    CHECK((rpy_from_quaternion(quaternion_from_rpy(near)) - near).norm() < 1e-6);
+    const Vector3d nearer(0.3, sign * (M_PI_2 - 1.2e-6), 0.1);
+    CHECK((rpy_from_quaternion(quaternion_from_rpy(nearer)) -
+           Vector3d(0, nearer.y(), 0.1 - sign * 0.3))
+              .norm() < 1e-5);
+  }
+}
+
 TEST_CASE("at a pitch of 90 degrees the orientation comes back, if not the angles") {
   for (const double pitch : {-M_PI / 2, M_PI / 2}) {
     const Quaterniond q = quaternion_from_rpy({0.4, pitch, -1.1});

@@ -36,8 +36,7 @@ const std::vector<ConstraintRow>& ConstraintRows::build(const std::vector<Contac
   hinge_tagged_.assign(hinges_.size(), 0);
   for (const std::size_t newest : newest_first_) {
     if (body_tagged_[newest]) continue;
-    body_tagged_[newest] = 1;
-    stack_.push_back(newest);
+    stack_.push_back(newest);  // no tag: the hinges' keep the walk from coming back
     while (!stack_.empty()) {
       const std::size_t body = stack_.back();
       stack_.pop_back();

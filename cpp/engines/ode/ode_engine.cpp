@@ -160,7 +160,7 @@ std::vector<Hinge> OdeEngine::create_hinges() {
       dJointSetHingeParam(hinge, dParamHiStop, 0);
       dJointSetHingeParam(hinge, dParamStopERP, 0);
       dJointSetHingeParam(hinge, dParamStopCFM, 1 / implicit_damping);
-    } else if (joint.friction > 0) {
+    } else {
       dJointSetHingeParam(hinge, dParamVel, 0);
       dJointSetHingeParam(hinge, dParamFMax, joint.friction);
     }
