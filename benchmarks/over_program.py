@@ -4,7 +4,8 @@
 
 The program is run as `PROGRAM rk4 bench STEPS`, makes so many steps of the classical Runge-Kutta
 method, and prints its processor time as `cpu_s=SECONDS`. Both fly in turns, and the median of the
-ratios is told: a program written by hand for one vehicle is the floor under an engine that takes any.
+ratios is told: a program written by hand for one vehicle is the floor under an engine that takes
+any.
 """
 
 from __future__ import annotations
