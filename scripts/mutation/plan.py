@@ -60,7 +60,7 @@ PARTS = [
                 "lowest_point.cpp",
             )
         ]
-        + _laws("gyrostat"),
+        + _laws("four", "gyrostat", "rotors", "vec3"),
         ["test_eigen.py", "test_gyroscopics.py", "test_simulation.py", "test_bad_models.py"],
     ),
     _core(

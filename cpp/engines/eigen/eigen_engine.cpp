@@ -39,7 +39,7 @@ EigenEngine::EigenEngine(const Model& model, const World& world)
       kinematics_(model.joints.size(), false),
       loads_(model.joints.size()),
       state_(GyrostatState::joints +
-             RotorRows::size_of(GyrostatState::joint_rows, model.joints.size())),
+             RotorRows<GyrostatState::joint_rows>::size_of(model.joints.size())),
       stage_(state_),
       sum_(state_) {
   refuse_tags(model_);
@@ -97,13 +97,7 @@ GyrostatStep EigenEngine::view() {
   g.stage = stage_.data();
   g.sum = sum_.data();
   g.columns_of_R_WF = columns_of_R_WF_;
-  g.p_WF = k.p_WF.data();
-  g.q_WF = k.q_WF.coeffs().data();
-  g.R_WF = k.R_WF.data();
-  g.v_WF_F = k.v_WF_F.data();
-  g.w_WF_F = k.w_WF_F.data();
-  g.v_WCcm_F = k.v_WCcm_F.data();
-  g.v_WA_F = k.v_WA_F.data();
+  g.frame = k.numbers();
   g.motion = k.rotors.data();
   g.frame_force_F = loads_.on_frame().force_F.data();
   g.frame_torque_F = loads_.on_frame().torque_F.data();

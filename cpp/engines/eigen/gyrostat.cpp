@@ -1,6 +1,5 @@
 #include "gyrostat.hpp"
 
-#include "gyrostat_step.hpp"
 #include "quadcore/error.hpp"
 
 namespace quadcore {
@@ -35,7 +34,7 @@ void check(const Model& model, std::size_t i) {
 
 }  // namespace
 
-Gyrostat::Gyrostat(const Model& model) : rotors(RotorConstant::count, model.joints.size()) {
+Gyrostat::Gyrostat(const Model& model) : rotors(model.joints.size()) {
   const MassProperties total = mass_properties(model);
   inverse_mass = 1 / total.mass;
   p_FCcm_F = total.p_FCcm;

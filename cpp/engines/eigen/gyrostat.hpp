@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gyrostat_step.hpp"
 #include "quadcore/model.hpp"
 #include "quadcore/rotor_rows.hpp"
 
@@ -7,11 +8,11 @@ namespace quadcore {
 
 /// The constants of a gyrostat, whose equations stand in cpp/laws/gyrostat.hpp.
 struct Gyrostat {
-  double inverse_mass;                 ///< 1/kg
-  Vector3d p_FCcm_F;                   ///< m
-  Matrix3d I_Ccm_F;                    ///< whole vehicle [kg m^2]
-  Matrix3d inverse_reduced_I_F;        ///< of I_C - sum J_i a_i a_i^T
-  RotorRows rotors;                    ///< rows of RotorConstant
+  double inverse_mass;           ///< 1/kg
+  Vector3d p_FCcm_F;             ///< m
+  Matrix3d I_Ccm_F;              ///< whole vehicle [kg m^2]
+  Matrix3d inverse_reduced_I_F;  ///< of I_C - sum J_i a_i a_i^T
+  RotorRows<RotorConstant::count> rotors;
   std::vector<Matrix3d> R_FR_at_zero;  ///< orientation of each rotor's link at angle zero
 
   /// Throws InputError on a model that is no gyrostat: why, and which engine to use instead.

@@ -41,11 +41,8 @@ struct GyrostatStep {
   double *state, *stage, *sum;
   double (*columns_of_R_WF)[4];  ///< of the state that is shown, a 0 behind each
 
-  /// \name The motion of the frame, which the force laws read
-  /// @{
-  double *p_WF, *q_WF, *R_WF, *v_WF_F, *w_WF_F, *v_WCcm_F, *v_WA_F;
-  double* motion;  ///< table of MotionRow
-  /// @}
+  double* frame;                                 ///< the motion of the frame, as FrameNumber says
+  double* motion;                                ///< table of MotionRow
   const double *frame_force_F, *frame_torque_F;  ///< about F's origin
 
   /// Evaluates the force laws: clears the frame's loads and adds to them and to the rotors'.

@@ -28,17 +28,20 @@ QUADCORE_LAW void show(const GyrostatStep& g, const double* state) {
   laws::store(g.columns_of_R_WF[0], R.to.x);
   laws::store(g.columns_of_R_WF[1], R.to.y);
   laws::store(g.columns_of_R_WF[2], R.to.z);
-  laws::store(g.q_WF, q);
-  laws::store_vector(g.R_WF, R.to.x);
-  laws::store_vector(g.R_WF + 3, R.to.y);
-  laws::store_vector(g.R_WF + 6, R.to.z);
-  laws::store_vector(g.w_WF_F, w_WF_F);
-  laws::store_vector(g.v_WCcm_F, v_WCcm_F);
-  laws::store_vector(g.v_WF_F, v_WF_F);
-  laws::store_vector(g.p_WF, laws::load<Four>(state + At::position) - R.to * p_FCcm_F);
-  if (g.windy) laws::store_vector(g.v_WA_F, R.from * laws::load<Four>(g.wind_W));
+  laws::store(g.frame + FrameNumber::q_WF, q);
+  laws::store_vector(g.frame + FrameNumber::R_WF, R.to.x);
+  laws::store_vector(g.frame + FrameNumber::R_WF + 3, R.to.y);
+  laws::store_vector(g.frame + FrameNumber::R_WF + 6, R.to.z);
+  laws::store_vector(g.frame + FrameNumber::w_WF_F, w_WF_F);
+  laws::store_vector(g.frame + FrameNumber::v_WCcm_F, v_WCcm_F);
+  laws::store_vector(g.frame + FrameNumber::v_WF_F, v_WF_F);
+  laws::store_vector(g.frame + FrameNumber::p_WF,
+                     laws::load<Four>(state + At::position) - R.to * p_FCcm_F);
+  if (g.windy)
+    laws::store_vector(g.frame + FrameNumber::v_WA_F, R.from * laws::load<Four>(g.wind_W));
 
-  const Vec3<T> v = laws::broadcast<T>(g.v_WF_F), w = laws::broadcast<T>(state + At::rate);
+  const Vec3<T> v = laws::broadcast<T>(g.frame + FrameNumber::v_WF_F),
+                w = laws::broadcast<T>(state + At::rate);
   laws::for_each_pack<W>(g.rotors.rotors, [&](std::size_t i) QUADCORE_INLINED {
     const double* constants = g.constants + rotor_offset(RotorConstant::count, i);
     double* motion = g.motion + rotor_offset(MotionRow::count, i);

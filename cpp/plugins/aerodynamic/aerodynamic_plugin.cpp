@@ -18,7 +18,7 @@ struct Config {
   bool appendix;  ///< dragModel
   laws::Flapping flapping;
   std::vector<std::size_t> rotors;
-  RotorRows coefficients;  ///< CoefficientRow; 0 for the rotors of others
+  RotorRows<CoefficientRow::count> coefficients;  ///< 0 for the rotors of others
 
   Config(const Parameters& p, std::size_t rotor_count)
       : sim_slow(p.number("sim_slow")),
@@ -27,7 +27,7 @@ struct Config {
         flapping{p.number("flappingA1c"), p.number("flappingA1s"), p.number("flappingB1"),
                  p.number("flappingB2"), p.number("rotorRadius")},
         rotors(p.joints("rotorJoints")),
-        coefficients(CoefficientRow::count, rotor_count) {
+        coefficients(rotor_count) {
     const double reaction_sign = p.choice("reactionTorque") == "thesis" ? 1 : -1;
     for (const std::size_t i : rotors) {
       const auto coefficient = [&](std::size_t row) -> double& {
@@ -139,10 +139,7 @@ class AerodynamicPlugin final : public Plugin {
     const RotorForcesNow now{law_,
                              {kinematics.rotors.data(), loads.rotors().data(),
                               kinematics.rotors.size(), kinematics.has_rotations()},
-                             kinematics.R_WF.data(),
-                             kinematics.v_WF_F.data(),
-                             kinematics.v_WA_F.data(),
-                             kinematics.w_WF_F.data()};
+                             kinematics.numbers()};
     if (loads.terms()) {
       record(now, loads);
     } else {

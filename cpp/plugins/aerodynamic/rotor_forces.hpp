@@ -33,8 +33,9 @@ struct RotorForces {
 struct RotorForcesNow {
   const RotorForces& law;
   RotorLanes rotors;
-  const double *R_WF, *v_WF_F, *v_WA_F, *w_WF_F;  ///< of Kinematics
+  const double* frame;  ///< FrameNumber
 
+  QUADCORE_LAW Vec3<double> vector(std::size_t number) const { return laws::vec(frame + number); }
   /// \name Rows from rotor i on
   /// @{
   template <class T>
@@ -56,7 +57,7 @@ struct RotorForcesNow {
   QUADCORE_LAW RotorDisc<T> disc(std::size_t i) const {
     const Vec3<T> normal_F = vector<T>(law.normal_row, i);
     Vec3<T> v_AR_F = vector<T>(law.velocity_row, i);
-    if (law.meets_wind) v_AR_F = v_AR_F - laws::broadcast<T>(laws::vec(v_WA_F));
+    if (law.meets_wind) v_AR_F = v_AR_F - laws::broadcast<T>(vector(FrameNumber::v_WA_F));
     return {normal_F, number<T>(MotionRow::rate, i) * law.sim_slow, laws::across(normal_F, v_AR_F)};
   }
 
@@ -67,9 +68,9 @@ struct RotorForcesNow {
 
   template <class T>
   QUADCORE_LAW Vec3<T> parasitic_F(std::size_t i) const {
-    const Vec3<T> f_R =
-        laws::parasitic_drag_of_appendix(laws::broadcast<T>(laws::matrix(R_WF) * laws::vec(v_WF_F)),
-                                         coefficient<T>(CoefficientRow::parasitic, i));
+    const Vec3<T> f_R = laws::parasitic_drag_of_appendix(
+        laws::broadcast<T>(laws::matrix(frame + FrameNumber::R_WF) * vector(FrameNumber::v_WF_F)),
+        coefficient<T>(CoefficientRow::parasitic, i));
     if (rotors.has_rotations) return columns<T>(MotionRow::R_FR, i) * f_R;
     return laws::turned(vector<T>(MotionRow::axis, i),
                         laws::sine_and_cosine(number<T>(MotionRow::angle, i)),
@@ -78,7 +79,7 @@ struct RotorForcesNow {
 
   template <class T>
   QUADCORE_LAW Vec3<T> flapping_F(const RotorDisc<T>& disc, std::size_t i) const {
-    return laws::flapping(disc, laws::broadcast<T>(laws::vec(w_WF_F)),
+    return laws::flapping(disc, laws::broadcast<T>(vector(FrameNumber::w_WF_F)),
                           coefficient<T>(CoefficientRow::k, i), law.flapping);
   }
 

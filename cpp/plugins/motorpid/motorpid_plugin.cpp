@@ -56,7 +56,7 @@ class MotorPidPlugin final : public Plugin {
   }
 
   std::size_t state_size() const override {
-    return RotorRows::size_of(MemoryRow::count, rotor_count_);
+    return RotorRows<MemoryRow::count>::size_of(rotor_count_);
   }
 
   void update(const Sample& sample, PluginState state) const override {

@@ -19,9 +19,9 @@ struct RotorKinematics {
 
 /// Motions of all rotors. Laws that take several rotors at once read the rows; others ask for one
 /// rotor: `motions[i].axis_F` reads three numbers.
-class RotorMotions : public RotorRows {
+class RotorMotions : public RotorRows<MotionRow::count> {
  public:
-  explicit RotorMotions(std::size_t rotors) : RotorRows(MotionRow::count, rotors) {}
+  explicit RotorMotions(std::size_t rotors) : RotorRows(rotors) {}
   std::size_t size() const { return rotors(); }
   /// A copy, const lest it be mistaken for the row and written to.
   const RotorKinematics operator[](std::size_t i) const {
@@ -40,10 +40,8 @@ class RotorMotions : public RotorRows {
   }
 };
 
-/// Motion of the whole vehicle at one instant: all that a force law may read. Engines own one,
-/// sized once, and refill it for each evaluation.
-class Kinematics {
- public:
+/// Motion of the frame at one instant.
+struct FrameMotion {
   Vector3d p_WF = Vector3d::Zero();            ///< position of the frame's origin [m]
   Quaterniond q_WF = Quaterniond::Identity();  ///< orientation of the frame, unit
   Matrix3d R_WF = Matrix3d::Identity();        ///< the same as a matrix
@@ -52,6 +50,23 @@ class Kinematics {
   Vector3d p_FCcm_F = Vector3d::Zero();        ///< centre of mass of the vehicle [m]
   Vector3d v_WCcm_F = Vector3d::Zero();        ///< its velocity [m/s]
   Vector3d v_WA_F = Vector3d::Zero();          ///< velocity of the air (wind) [m/s]
+
+  /// All of it, laid out as FrameNumber says.
+  double* numbers() { return p_WF.data(); }
+  const double* numbers() const { return p_WF.data(); }
+};
+static_assert(offsetof(FrameMotion, q_WF) == FrameNumber::q_WF * sizeof(double));
+static_assert(offsetof(FrameMotion, R_WF) == FrameNumber::R_WF * sizeof(double));
+static_assert(offsetof(FrameMotion, v_WF_F) == FrameNumber::v_WF_F * sizeof(double));
+static_assert(offsetof(FrameMotion, w_WF_F) == FrameNumber::w_WF_F * sizeof(double));
+static_assert(offsetof(FrameMotion, p_FCcm_F) == FrameNumber::p_FCcm_F * sizeof(double));
+static_assert(offsetof(FrameMotion, v_WCcm_F) == FrameNumber::v_WCcm_F * sizeof(double));
+static_assert(offsetof(FrameMotion, v_WA_F) == FrameNumber::v_WA_F * sizeof(double));
+
+/// Motion of the whole vehicle at one instant: all that a force law may read. Engines own one,
+/// sized once, and refill it for each evaluation.
+class Kinematics : public FrameMotion {
+ public:
   RotorMotions rotors;
 
   /// \param has_rotations  whether the engine fills the rows of R_FR; if not, it fills the angles'

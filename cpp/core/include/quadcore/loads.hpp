@@ -9,8 +9,10 @@ namespace quadcore {
 
 /// Force [N] and torque [N m], both in the frame's axes.
 struct Wrench {
-  Vector3d force_F = Vector3d::Zero();
-  Vector3d torque_F = Vector3d::Zero();
+  // Apart, so that pairs of numbers that are cleared at once are the pairs that are read at once:
+  // others stall.
+  alignas(2 * sizeof(double)) Vector3d force_F = Vector3d::Zero();
+  alignas(2 * sizeof(double)) Vector3d torque_F = Vector3d::Zero();
 };
 
 /// Collects what the force laws exert on the vehicle at one instant. All vectors are in the frame's
@@ -19,7 +21,7 @@ struct Wrench {
 /// of a rotor or a term that is not there is an Error.
 class Loads {
  public:
-  explicit Loads(std::size_t rotor_count) : rotors_(LoadRow::count, rotor_count) {}
+  explicit Loads(std::size_t rotor_count) : rotors_(rotor_count) {}
 
   /// A force on the frame at the point Q, p_FQ_F from the frame's origin.
   void add_frame_force(std::size_t term, const Vector3d& f_F, const Vector3d& p_FQ_F) {
@@ -54,8 +56,8 @@ class Loads {
 
   /// The rotors' loads for laws that take several rotors at once; what they add here belongs to no
   /// term.
-  RotorRows& rotors() { return rotors_; }
-  const RotorRows& rotors() const { return rotors_; }
+  RotorRows<LoadRow::count>& rotors() { return rotors_; }
+  const RotorRows<LoadRow::count>& rotors() const { return rotors_; }
 
   void clear();
   /// Clears what acts on the frame only.
@@ -79,7 +81,7 @@ class Loads {
   void record(std::size_t term, const Vector3d& f_F, const Vector3d& p_FQ_F);
 
   Wrench frame_;
-  RotorRows rotors_;
+  RotorRows<LoadRow::count> rotors_;
   Wrench* terms_ = nullptr;
   std::size_t term_count_ = 0;
   const Kinematics* kinematics_ = nullptr;

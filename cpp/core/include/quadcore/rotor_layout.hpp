@@ -19,6 +19,20 @@ constexpr std::size_t rotor_offset(std::size_t rows, std::size_t i) {
   return i / widest_lanes * rows * widest_lanes + i % widest_lanes;
 }
 
+/// Where the frame's motion lies in FrameMotion, a rotation by columns.
+struct FrameNumber {
+  enum : std::size_t {
+    p_WF = 0,
+    q_WF = 4,  ///< behind a gap
+    R_WF = 8,
+    v_WF_F = 17,
+    w_WF_F = 20,
+    p_FCcm_F = 23,
+    v_WCcm_F = 26,
+    v_WA_F = 29
+  };
+};
+
 /// Rows of the rotors' motion, three for a vector, nine (by columns) for a rotation. Vectors are in
 /// the frame's axes.
 struct MotionRow {

@@ -27,13 +27,13 @@ using LaneNumbers = std::vector<double, LaneAllocator<double>>;
 
 /// A table of numbers of the rotors: a row for each quantity (three for a vector), a column for
 /// each rotor, laid out as rotor_layout.hpp says.
+template <std::size_t rows>
 class RotorRows {
  public:
-  RotorRows(std::size_t rows, std::size_t rotors)
-      : rows_(rows), rotors_(rotors), numbers_(size_of(rows, rotors), 0.0) {}
+  explicit RotorRows(std::size_t rotors) : rotors_(rotors), numbers_(size_of(rotors), 0.0) {}
 
   /// Numbers that such a table takes.
-  static std::size_t size_of(std::size_t rows, std::size_t rotors) {
+  static std::size_t size_of(std::size_t rotors) {
     return (rotors + widest_lanes - 1) / widest_lanes * widest_lanes * rows;
   }
   std::size_t rotors() const { return rotors_; }
@@ -74,10 +74,10 @@ class RotorRows {
 
  private:
   std::size_t offset(std::size_t row, std::size_t i) const {
-    return rotor_offset(rows_, i) + row * widest_lanes;
+    return rotor_offset(rows, i) + row * widest_lanes;
   }
 
-  std::size_t rows_, rotors_;
+  std::size_t rotors_;
   LaneNumbers numbers_;
 };
 
