@@ -138,6 +138,10 @@ TEST_CASE("an inertia that Gazebo's rounding spoils is refused by the engine tha
   make_engine("eigen", m, World{});
 }
 
+TEST_CASE("a robot without links is refused") {
+  CHECK(contains(refusal([] { model(""); }), "test.urdf:1: <robot> has no <link>"));
+}
+
 TEST_CASE("a massless link on a fixed joint is carried along") {
   const Model m = model(link("frame", 1, round_body) + "<link name=\"mast\"/>\n" +
                         link("rotor", 0.1, round_rotor) +

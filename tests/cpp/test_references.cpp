@@ -72,6 +72,11 @@ TEST_CASE("of a body's references Gazebo takes the last for gravity and the firs
   CHECK(m.links[0].tags.damping_factor == 0);
   CHECK(contains(m.warnings.at(0), "the first <gazebo reference>"));
 
+  // What is at its default is not what an engine refuses.
+  m = read(
+      tags("rotor", "<turnGravityOff>true</turnGravityOff>\n<dampingFactor>0</dampingFactor>"));
+  CHECK(contains(refusal([&] { make_engine("eigen", m, World{}); }), "test.urdf:7: link 'rotor'"));
+
   for (const std::string tag :
        {"<turnGravityOff>1</turnGravityOff>", "<dampingFactor>0.01</dampingFactor>"}) {
     const Model felt = read(tags("rotor", tag));
