@@ -108,6 +108,25 @@ TEST_CASE("the velocities that a force law sees are the rates of the places it s
   }
 }
 
+TEST_CASE("the normal of a rotor that turns about another axis turns with it") {
+  std::string turning = joint("turn", "continuous", "frame", "rotor");
+  turning.replace(turning.find("0 0 1\"/>"), 5, "1 0 0");
+  const Model m = model(link("frame", 1, skew_body) +
+                        link("rotor", 0.01,
+                             "ixx=\"2e-5\" iyy=\"1e-5\" izz=\"1e-5\" ixy=\"0\" ixz=\"0\" "
+                             "iyz=\"0\"") +
+                        turning);
+  for (const EngineInfo& info : engines()) {
+    CAPTURE(info.name);
+    const auto engine = make_engine(info.name, m, weightless());
+    VehicleState state = blank(1);
+    state.rotor_angle[0] = 0.7;
+    engine->set_state(state);
+    const Vector3d normal_F = engine->kinematics().rotors.vector(MotionRow::normal, 0);
+    CHECK((normal_F - Vector3d(0, -std::sin(0.7), std::cos(0.7))).norm() < 1e-14);
+  }
+}
+
 TEST_CASE("angles of joints stay between -pi and pi, and go on from there") {
   for (const EngineInfo& info : engines()) {
     CAPTURE(info.name);
@@ -206,7 +225,7 @@ TEST_CASE("a vehicle stands upright at first, and an orientation need not be of 
   for (const EngineInfo& info : engines()) {
     CAPTURE(info.name);
     const auto engine = make_engine(info.name, lopsided(false), weightless());
-    CHECK(engine->kinematics().R_WF == Matrix3d::Identity());
+    CHECK(engine->kinematics().q_WF.coeffs() == Quaterniond::Identity().coeffs());
     VehicleState state = random_state(7, 3);
     const Quaterniond unit = state.orientation;
     state.orientation.coeffs() *= 3;

@@ -14,7 +14,7 @@
 namespace quadcore {
 
 /// Changes whenever a plugin built before must be rebuilt.
-constexpr int plugin_abi = 3;
+constexpr int plugin_abi = 4;
 
 /// A plugin's state: plain numbers that belong to the simulation, so that snapshot, restore and
 /// reset are exact. All zero at the start.
