@@ -153,6 +153,16 @@ TEST_CASE("an axis against the propeller's z is warned of, one across it is not"
   CHECK(contains(told, "'turn0 0 -1'"));
 }
 
+TEST_CASE("loads are finite only if those on every rotor are") {
+  for (std::size_t i = 0; i < rotor_count; ++i) {
+    Loads loads(rotor_count);
+    loads.add_rotor_force(0, i, {0, 1, 0});
+    CHECK(loads.all_finite());
+    loads.add_joint_torque(i, NAN);
+    CHECK_FALSE(loads.all_finite());
+  }
+}
+
 TEST_CASE("each flapping coefficient alone flaps") {
   const Kinematics motion = any_motion(1, 1);
   for (const char* name : {"flappingA1c", "flappingA1s", "flappingB1", "flappingB2"}) {
