@@ -121,7 +121,7 @@ def test_the_cpp_example_flies_as_its_python_twin(tmp_path):
 @pytest.mark.parametrize(
     ("variant", "says"),
     [
-        ("older", "was built for plugin interface 2, this is 3; rebuild it against the installed"),
+        ("older", "was built for plugin interface 3, this is 4; rebuild it against the installed"),
         ("nameless", "cannot describe itself: what am I?"),
         ("undescribed", "has no descriptor; give it one and rebuild it"),
         ("uncreatable", "has no create in its descriptor; give it one and rebuild it"),
