@@ -7,7 +7,6 @@ import json
 import os
 import re
 import signal
-import time
 from pathlib import Path
 
 import faults
@@ -297,15 +296,15 @@ def test_a_process_that_dies_is_a_case_that_failed():
         ("toy.urdf --vary motor.kp=1 --duration 1 --log-every 1001", "the flight has 1000 steps"),
     ],
 )
-def test_bad_input_is_one_line_and_nothing_is_flown(capsys, arguments, reason):
-    started = time.process_time()
+def test_bad_input_is_one_line_and_nothing_is_flown(capsys, monkeypatch, arguments, reason):
+    monkeypatch.setattr(qc.Simulation, "step", lambda *_, **__: pytest.fail("flown"))
+    monkeypatch.setattr(qc.Simulation, "run", lambda *_, **__: pytest.fail("flown"))
     assert main(["compare", *arguments.split()]) == 2
     out, err = capsys.readouterr()
     assert out == ""
     assert err.startswith("error: ")
     assert err.count("\n") == 1
     assert reason in err
-    assert time.process_time() - started < 5
 
 
 def test_from_python_too_much_is_refused():

@@ -1,7 +1,8 @@
-"""XML made to exhaust or fool its reader is refused: one line, within a second, by every reader."""
+"""XML made to exhaust or fool its reader is refused: in one line, soon, by every reader."""
 
 from __future__ import annotations
 
+import contextlib
 import time
 from pathlib import Path
 
@@ -20,11 +21,22 @@ LAUGHS = "".join(
 ANY = '<{root} name="toy">'  # {root} becomes robot or sdf
 
 
-def refused(call, *arguments, **options) -> str:
-    """Message of the InputError, which must come within a second of the processor's time."""
+# Nothing here takes two seconds of the slowest processor; what grows with the square of these
+# inputs, or without bound, would take minutes.
+SOON = 20.0  # s of the processor's time
+
+
+@contextlib.contextmanager
+def soon():
     begin = time.process_time()
-    message = refusal(call, *arguments, **options)
-    assert time.process_time() - begin < 1
+    yield
+    assert time.process_time() - begin < SOON
+
+
+def refused(call, *arguments, **options) -> str:
+    """Message of the InputError, which must come soon."""
+    with soon():
+        message = refusal(call, *arguments, **options)
     assert len(message) <= 1000
     return message
 
@@ -152,10 +164,9 @@ def test_a_chain_of_thousands_of_links_is_read_or_refused_in_time(toy, size):
 
     order = range(abs(size)) if size > 0 else reversed(range(abs(size)))
     chain = [link(i, f"l{i - 1}" if i else "frame") for i in order]
-    begin = time.process_time()
     document = _core.Document("long", MODEL.replace("</robot>", "".join(chain) + "</robot>"))
-    assert len(_core.read_model(document).links) == 2
-    assert time.process_time() - begin < 1
+    with soon():
+        assert len(_core.read_model(document).links) == 2
     chain[0 if size > 0 else -1] = link(0, f"l{abs(size) - 1}")
     Path("toy.urdf").write_text(MODEL.replace("</robot>", "".join(chain) + "</robot>"))
     assert "closes a loop of links" in refused(qc.Simulation, "toy.urdf")
