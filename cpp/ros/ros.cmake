@@ -59,7 +59,7 @@ configure_file(cpp/ros/python_package.py
                ${CATKIN_DEVEL_PREFIX}/${PYTHON_INSTALL_DIR}/quadcore/__init__.py COPYONLY)
 generate_messages(DEPENDENCIES geometry_msgs)
 catkin_package(
-  INCLUDE_DIRS cpp/core/include
+  INCLUDE_DIRS cpp/core/include ${PROJECT_BINARY_DIR}/cpp/core/include
   LIBRARIES quadcore
   CATKIN_DEPENDS diagnostic_msgs geometry_msgs message_runtime nav_msgs roscpp rosgraph_msgs
                  sensor_msgs std_msgs std_srvs tf2_msgs

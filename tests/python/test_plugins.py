@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 import sys
@@ -88,6 +89,17 @@ def test_a_plugin_from_the_environments_folder_pushes_the_vehicle(
     assert_pushed(engine, "libpush.so")
 
 
+def test_plugins_by_others_in_one_vehicle_keep_their_own_descriptors(
+    side_force, faulty, toy, monkeypatch
+):
+    monkeypatch.setenv("QUADCORE_PLUGIN_PATH", f"{side_force}:{faulty}")
+    side = SIDE_FORCE.format("libside_force_plugin.so", 0.5)
+    with_plugin(side + FAULTY.format("faulty", "none", 0))
+    wrenches = qc.Simulation("toy.urdf").run(0.01).wrenches
+    assert {"side_force", "fault"} < set(wrenches)
+    assert (wrenches["side_force"][:, 1] == 0.5).all() and not wrenches["fault"].any()
+
+
 def test_the_tags_of_a_plugin_by_others_are_listed_set_and_checked(side_force, toy, monkeypatch):
     monkeypatch.setenv("QUADCORE_PLUGIN_PATH", str(side_force))
     with_plugin(SIDE_FORCE.format("libside_force_plugin.so", 0.5))
@@ -121,7 +133,6 @@ def test_the_cpp_example_flies_as_its_python_twin(tmp_path):
 @pytest.mark.parametrize(
     ("variant", "says"),
     [
-        ("older", "was built for plugin interface 3, this is 4; rebuild it against the installed"),
         ("nameless", "cannot describe itself: what am I?"),
         ("undescribed", "has no descriptor; give it one and rebuild it"),
         ("uncreatable", "has no create in its descriptor; give it one and rebuild it"),
@@ -136,6 +147,29 @@ def test_a_library_that_does_not_fit_is_refused_by_plugin_and_file(bad, faulty, 
 def test_a_warning_of_a_plugin_that_is_no_text_can_be_shown(bad):
     with pytest.warns(qc.QuadcoreWarning, match=r"no text: \? \?\[31m"):
         bad("warning")
+
+
+def test_a_plugin_built_from_a_changed_header_is_refused_by_name(tmp_path, toy, monkeypatch):
+    changed = tmp_path / "changed"
+    shutil.copytree(ROOT / "cpp", changed / "cpp")
+    shutil.copy(ROOT / "CMakeLists.txt", changed)
+    header = changed / "cpp" / "core" / "include" / "quadcore" / "loads.hpp"
+    text = header.read_text()
+    assert "struct Wrench {\n" in text
+    header.write_text(text.replace("struct Wrench {\n", "struct Wrench {\n  double power = 0;\n"))
+    made = tmp_path / "made"
+    configure = ["cmake", "-S", changed, "-B", made, "-DQUADCORE_WITH_ROS=OFF"]
+    subprocess.run(configure, capture_output=True, check=True)
+    folders = [changed / "cpp" / "core" / "include", made / "cpp" / "core" / "include"]
+    flags = "-DCMAKE_CXX_FLAGS=" + " ".join(f"-I{folder}" for folder in folders)
+    folder = build(ROOT / "examples" / "side_force_plugin", tmp_path / "plugin", flags)
+    monkeypatch.setenv("QUADCORE_PLUGIN_PATH", str(folder))
+    shutil.move(folder / "libside_force_plugin.so", folder / "libchanged.so")  # loaded by no other
+    with_plugin(SIDE_FORCE.format("libchanged.so", 0.5))
+    message = refusal(qc.Simulation, "toy.urdf")
+    named = re.escape(f"toy.urdf:{LINE}: plugin 'push': libchanged.so in {folder} was built for")
+    says = " plugin interface [0-9a-f]{16}, this is [0-9a-f]{16}; rebuild it against the installed "
+    assert re.fullmatch(f"{named}{says}quadcore", message)
 
 
 @pytest.mark.parametrize(

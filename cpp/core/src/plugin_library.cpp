@@ -24,7 +24,7 @@ std::string own_folder() {
 }
 
 std::string who_is(const PluginElement& element) {
-  return element.where + ": plugin '" + element.name + "': " + element.filename + " ";
+  return element.where + ": plugin '" + element.name + "': " + element.filename;
 }
 
 /// The nearest module in the folders, if it differs by a slip only.
@@ -57,6 +57,18 @@ void check_names(const PluginDescriptor& descriptor) {
         throw Error("its descriptor has the name '" + name + "'; use text");
     }
   }
+}
+
+const PluginModule& load(const std::string& path, const std::string& who) {
+  void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!handle) throw InputError(who + " cannot be loaded: " + dlerror() + "; rebuild it");
+  const void* module = dlsym(handle, "quadcore_plugin");
+  if (!module) {
+    throw InputError(who +
+                     " is not a quadcore plugin, or one of long ago; it must use "
+                     "QUADCORE_REGISTER_PLUGIN of the installed quadcore");
+  }
+  return *static_cast<const PluginModule*>(module);
 }
 
 }  // namespace
@@ -102,36 +114,27 @@ std::optional<std::string> find_plugin(const std::string& filename) {
 }
 
 PluginLibrary open_plugin(const PluginElement& element, const std::string& path) {
-  const std::string who = who_is(element);
-  const std::string in = "in " + std::filesystem::path(path).parent_path().string();
-  void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!handle) throw InputError(who + "cannot be loaded: " + dlerror() + "; rebuild it");
-  const auto* abi = static_cast<const int*>(dlsym(handle, "quadcore_plugin_abi"));
-  const auto describe =
-      reinterpret_cast<const PluginDescriptor* (*)()>(dlsym(handle, "quadcore_plugin_descriptor"));
-  if (!abi || !describe) {
-    throw InputError(who + in + " is not a quadcore plugin; it must use QUADCORE_REGISTER_PLUGIN");
-  }
-  if (*abi != plugin_abi) {
-    throw InputError(who + in + " was built for plugin interface " + std::to_string(*abi) +
-                     ", this is " + std::to_string(plugin_abi) +
-                     "; rebuild it against the installed quadcore");
+  const std::string who =
+      who_is(element) + " in " + std::filesystem::path(path).parent_path().string();
+  const PluginModule& module = load(path, who);
+  if (module.interface != std::string(plugin_interface)) {
+    throw InputError(who + " was built for plugin interface " + module.interface + ", this is " +
+                     plugin_interface + "; rebuild it against the installed quadcore");
   }
   const PluginDescriptor* descriptor = nullptr;
   try {
-    descriptor = describe();
+    descriptor = module.descriptor();
   } catch (...) {
-    throw InputError(who + in + " cannot describe itself: " + what_was_thrown());
+    throw InputError(who + " cannot describe itself: " + what_was_thrown());
   }
   if (!descriptor || !descriptor->create) {
-    throw InputError(who + in + " has no " +
-                     (descriptor ? "create in its descriptor" : "descriptor") +
+    throw InputError(who + " has no " + (descriptor ? "create in its descriptor" : "descriptor") +
                      "; give it one and rebuild it");
   }
   try {
     check_names(*descriptor);
   } catch (const Error& error) {
-    throw InputError(who + in + " does not fit: " + error.what());
+    throw InputError(who + " does not fit: " + error.what());
   }
   return {path, descriptor};
 }
@@ -140,10 +143,11 @@ std::string describe_missing(const PluginElement& element) {
   const std::string who = who_is(element);
   const std::string remedy = ignoring(element.filename);
   if (element.filename.find('/') != std::string::npos) {
-    return who + "is a path; write the file name alone and add its folder to QUADCORE_PLUGIN_PATH" +
+    return who +
+           " is a path; write the file name alone and add its folder to QUADCORE_PLUGIN_PATH" +
            remedy;
   }
-  return who + "was not found in " + joined(plugin_folders()) + misspelt(element.filename) +
+  return who + " was not found in " + joined(plugin_folders()) + misspelt(element.filename) +
          "; correct the filename or add its folder to QUADCORE_PLUGIN_PATH" + remedy;
 }
 

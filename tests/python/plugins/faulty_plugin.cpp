@@ -84,15 +84,11 @@ quadcore::PluginDescriptor describe() {
 
 }  // namespace
 
-#if defined(OLDER_INTERFACE) || defined(WITHOUT_DESCRIPTOR)
+#ifdef WITHOUT_DESCRIPTOR
 extern "C" {
-extern const int quadcore_plugin_abi;
-#ifdef OLDER_INTERFACE
-const int quadcore_plugin_abi = quadcore::plugin_abi - 1;
-#else
-const int quadcore_plugin_abi = quadcore::plugin_abi;
-#endif
-const quadcore::PluginDescriptor* quadcore_plugin_descriptor() { return nullptr; }
+extern const quadcore::PluginModule quadcore_plugin;
+const quadcore::PluginModule quadcore_plugin = {
+    quadcore::plugin_interface, []() -> const quadcore::PluginDescriptor* { return nullptr; }};
 }
 #else
 QUADCORE_REGISTER_PLUGIN(describe)

@@ -5,16 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "quadcore/error.hpp"
 #include "quadcore/kinematics.hpp"
 #include "quadcore/loads.hpp"
 #include "quadcore/model.hpp"
+#include "quadcore/plugin_interface.hpp"
 #include "quadcore/tags.hpp"
 #include "quadcore/topics.hpp"
 
 namespace quadcore {
-
-/// Changes whenever a plugin built before must be rebuilt.
-constexpr int plugin_abi = 4;
 
 /// A plugin's state: plain numbers that belong to the simulation, so that snapshot, restore and
 /// reset are exact. All zero at the start.
@@ -68,17 +67,24 @@ struct PluginDescriptor {
   std::unique_ptr<Plugin> (*create)(const PluginSetup&);
 };
 
+/// What a library holds: the first that is read of it, so it stays as it is for ever.
+struct PluginModule {
+  const char* interface;  ///< plugin_interface, as the library was built with it
+  const PluginDescriptor* (*descriptor)();
+};
+
 }  // namespace quadcore
 
 /// Makes a shared library a quadcore plugin. `describe` is a function that returns its
 /// PluginDescriptor. Use once per library, outside any namespace.
-#define QUADCORE_REGISTER_PLUGIN(describe)                                     \
-  extern "C" {                                                                 \
-  __attribute__((visibility("default"))) extern const int quadcore_plugin_abi; \
-  const int quadcore_plugin_abi = quadcore::plugin_abi;                        \
-  __attribute__((visibility("default"))) const quadcore::PluginDescriptor*     \
-  quadcore_plugin_descriptor() {                                               \
-    static const quadcore::PluginDescriptor descriptor = describe();           \
-    return &descriptor;                                                        \
-  }                                                                            \
+#define QUADCORE_REGISTER_PLUGIN(describe)                                                    \
+  /* Not a lambda: what one holds in an extern initialiser is shared by the whole process. */ \
+  static const quadcore::PluginDescriptor* quadcore_descriptor() {                            \
+    static const quadcore::PluginDescriptor descriptor = describe();                          \
+    return &descriptor;                                                                       \
+  }                                                                                           \
+  extern "C" {                                                                                \
+  __attribute__((visibility("default"))) extern const quadcore::PluginModule quadcore_plugin; \
+  const quadcore::PluginModule quadcore_plugin = {quadcore::plugin_interface,                 \
+                                                  quadcore_descriptor};                       \
   }

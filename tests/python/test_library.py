@@ -1,0 +1,55 @@
+"""The installed package's libraries: what plugins are built for."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import quadcore as qc
+
+ROOT = Path(__file__).resolve().parents[2]
+HEADERS = ROOT / "cpp" / "core" / "include"
+
+
+def interface_hash(folder: Path, script: Path) -> str:
+    """Hash of the headers in a folder, by the function that the build calls."""
+    source = ROOT / "cpp" / "core" / "plugin_interface.cmake"
+    script.write_text(
+        f'cmake_minimum_required(VERSION 3.16)\ninclude("{source}")\n'
+        f'hash_plugin_interface(hash headers "{folder}")\nmessage(STATUS ${{hash}})\n'
+    )
+    done = subprocess.run(["cmake", "-P", script], capture_output=True, text=True, check=True)
+    return done.stdout
+
+
+@pytest.fixture
+def headers(tmp_path):
+    """A copy of the public headers that may be changed."""
+    subprocess.run(["cp", "-r", HEADERS, tmp_path / "include"], check=True)
+    return tmp_path / "include"
+
+
+def test_every_header_that_a_plugin_includes_is_in_the_hash_and_no_other(headers, tmp_path):
+    installed = Path(qc.cmake_prefix()) / "include"
+    page = (ROOT / "docs" / "plugins.md").read_text()
+    offered = sorted(set(re.findall(r"core/include/(quadcore/[\w/]+\.hpp)", page)))
+    assert {"quadcore/plugin.hpp", "quadcore/random.hpp"} < set(offered)
+    plugin = tmp_path / "plugin.cpp"
+    plugin.write_text("".join(f"#include <{header}>\n" for header in offered))
+    command = ["g++", "-std=c++17", "-M", "-DEIGEN_MAX_ALIGN_BYTES=16", "-I", installed]
+    command += ["-DEIGEN_MALLOC_ALREADY_ALIGNED=1", "-isystem", "/usr/include/eigen3", plugin]
+    rule = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    included = set(re.findall(r"include/(quadcore/\S+)", rule))
+    included.remove("quadcore/plugin_interface.hpp")  # which the build makes of the others
+    assert {*offered, "quadcore/spatial.hpp", "quadcore/error.hpp"} <= included
+    before = interface_hash(headers, tmp_path / "hash.cmake")
+    for header in sorted(headers.rglob("*.hpp")):
+        text = header.read_text()
+        header.write_text(text + "// changed\n")
+        after = interface_hash(headers, tmp_path / "hash.cmake")
+        name = str(header.relative_to(headers))
+        assert (after != before) == (name in included), name
+        header.write_text(text)
