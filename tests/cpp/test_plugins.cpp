@@ -84,6 +84,13 @@ TEST_CASE("a plugin that throws in flight is named, and the simulation can be ta
   }
 }
 
+TEST_CASE("what a library with hidden symbols throws keeps its type on the way out") {
+  Simulation flown = simulation("throwing", "<hook>input</hook><after>0.5</after>");
+  VehicleState later = flown.state();
+  later.time = 1;
+  CHECK(refusal([&] { flown.set_state(later); }) == "no luck");
+}
+
 TEST_CASE("a torque beyond all bounds ends the flight, and the simulation can be taken up again") {
   const LeaksAllowed allowed;
   const auto fly = [](const std::string& hook, const std::string& engine, bool ground) {

@@ -1,4 +1,4 @@
-"""The installed package's libraries: what plugins are built for."""
+"""The installed package's shared libraries: what they export, what plugins are built for."""
 
 from __future__ import annotations
 
@@ -12,6 +12,34 @@ import quadcore as qc
 
 ROOT = Path(__file__).resolve().parents[2]
 HEADERS = ROOT / "cpp" / "core" / "include"
+CORE = Path(qc.plugin_folders()[-1])
+
+
+def exported(library: Path) -> list[str]:
+    """Demangled names of the symbols that a library offers to others."""
+    command = ["nm", "-D", "-C", "--defined-only", library]
+    lines = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
+    return [line.split(" ", 2)[2] for line in lines]
+
+
+def test_the_core_exports_what_its_public_headers_declare_and_nothing_else():
+    (core,) = CORE.glob("libquadcore.so*")  # one file: a wheel holds no links
+    declared = set()
+    for header in HEADERS.rglob("*.hpp"):
+        declared |= set(re.findall(r"\w+", re.sub(r"//.*", "", header.read_text())))
+    symbols = exported(core)
+    assert any(symbol.startswith("quadcore::read_model(") for symbol in symbols)
+    for symbol in symbols:
+        named = re.match(r"(?:(?:vtable|typeinfo|typeinfo name) for )?quadcore::(\w+)", symbol)
+        assert named and named[1] in declared, symbol
+
+
+def test_plugins_and_bindings_export_their_one_door():
+    plugins = list(CORE.glob("lib*_plugin.so"))
+    assert len(plugins) >= 3
+    for plugin in plugins:
+        assert exported(plugin) == ["quadcore_plugin"]
+    assert exported(Path(qc._core.__file__)) == ["PyInit__core"]
 
 
 def interface_hash(folder: Path, script: Path) -> str:

@@ -2,6 +2,6 @@
 
 /// A plugin built against a core that does not exist yet.
 extern "C" {
-extern const quadcore::PluginModule quadcore_plugin;
+QUADCORE_EXPORT extern const quadcore::PluginModule quadcore_plugin;
 const quadcore::PluginModule quadcore_plugin = {"of tomorrow", nullptr};
 }

@@ -23,6 +23,7 @@ class ThrowingPlugin final : public Plugin {
   }
   void sense(const Sample& sample, PluginState) const override {
     if (hook_ == "sense" && sample.time > after_) throw std::runtime_error("no luck");
+    if (hook_ == "input" && sample.time > after_) throw InputError("no luck");
   }
   void forces(const Kinematics&, ConstPluginState state, Loads& loads) const override {
     if (hook_ == "forces" && state[0] > after_) throw std::runtime_error("no luck");
@@ -38,9 +39,10 @@ class ThrowingPlugin final : public Plugin {
 
 PluginDescriptor describe() {
   return {"throws",
-          {TagSpec::choice("hook",
-                           {"none", "create", "update", "number", "sense", "forces", "nan", "huge"},
-                           "which hook throws"),
+          {TagSpec::choice(
+               "hook",
+               {"none", "create", "update", "number", "sense", "input", "forces", "nan", "huge"},
+               "which hook throws"),
            TagSpec::number("after", "s", "0", "when").at_least(0)},
           {"luck"},
           [](const PluginSetup& setup) -> std::unique_ptr<Plugin> {

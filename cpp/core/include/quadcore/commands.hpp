@@ -3,7 +3,9 @@
 #include <Eigen/Core>
 #include <cstddef>
 
-namespace quadcore {
+#include "quadcore/export.hpp"
+
+namespace quadcore QUADCORE_EXPORT {
 
 /// Open-loop commands: rows of time [s] and n rotor speeds [rad/s], held until the next row.
 class Commands {

@@ -5,7 +5,9 @@
 #include <utility>
 #include <vector>
 
-namespace quadcore {
+#include "quadcore/export.hpp"
+
+namespace quadcore QUADCORE_EXPORT {
 
 /// An XML text and where its lines came from. A document that was expanded (by xacro) carries for
 /// each of its lines the file and line it stems from; otherwise the text is the file itself.

@@ -9,7 +9,10 @@
 ///
 /// Within 1 unit in the last place of the true value (atan2: 2, asin: 3), for every argument.
 
-namespace quadcore::elementary {
+#include "quadcore/export.hpp"
+
+namespace quadcore QUADCORE_EXPORT {
+namespace elementary {
 
 struct SineCosine {
   double sin, cos;
@@ -27,4 +30,5 @@ double asin(double x);
 double log(double x);
 double exp(double x);
 
-}  // namespace quadcore::elementary
+}  // namespace elementary
+}  // namespace quadcore

@@ -4,13 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "quadcore/export.hpp"
 #include "quadcore/kinematics.hpp"
 #include "quadcore/loads.hpp"
 #include "quadcore/model.hpp"
 #include "quadcore/state.hpp"
 #include "quadcore/world.hpp"
 
-namespace quadcore {
+namespace quadcore QUADCORE_EXPORT {
 
 /// The force laws of all plugins: a pure function of the kinematics that an engine may evaluate as
 /// often as its integrator needs.

@@ -3,7 +3,9 @@
 #include <stdexcept>
 #include <string>
 
-namespace quadcore {
+#include "quadcore/export.hpp"
+
+namespace quadcore QUADCORE_EXPORT {
 
 /// Base of every error that quadcore raises. The message is one line of UTF-8, ready to be shown:
 /// control characters are replaced, whatever input it quotes, and the middle of a long one is cut.

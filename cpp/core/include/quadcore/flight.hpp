@@ -5,9 +5,10 @@
 #include <vector>
 
 #include "quadcore/commands.hpp"
+#include "quadcore/export.hpp"
 #include "quadcore/simulation.hpp"
 
-namespace quadcore {
+namespace quadcore QUADCORE_EXPORT {
 
 /// A piece of a log.
 struct LogRows {

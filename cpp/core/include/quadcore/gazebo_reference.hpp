@@ -3,9 +3,10 @@
 #include <string>
 #include <vector>
 
+#include "quadcore/export.hpp"
 #include "quadcore/spatial.hpp"
 
-namespace quadcore {
+namespace quadcore QUADCORE_EXPORT {
 
 /// What a <gazebo reference="LINK or JOINT"> may hold. Parsing, errors and the docs come from here.
 struct GazeboTag {

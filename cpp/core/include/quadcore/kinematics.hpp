@@ -2,10 +2,11 @@
 
 #include <cstddef>
 
+#include "quadcore/export.hpp"
 #include "quadcore/rotor_rows.hpp"
 #include "quadcore/spatial.hpp"
 
-namespace quadcore {
+namespace quadcore QUADCORE_EXPORT {
 
 /// Motion of one rotor (the child link of a continuous joint), expressed in the frame's axes.
 struct RotorKinematics {

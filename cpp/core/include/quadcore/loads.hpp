@@ -2,10 +2,11 @@
 
 #include <cstddef>
 
+#include "quadcore/export.hpp"
 #include "quadcore/kinematics.hpp"
 #include "quadcore/spatial.hpp"
 
-namespace quadcore {
+namespace quadcore QUADCORE_EXPORT {
 
 /// Force [N] and torque [N m], both in the frame's axes.
 struct Wrench {

@@ -4,12 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "quadcore/export.hpp"
 #include "quadcore/state.hpp"
 
 /// \file
 /// What the rows of a log hold, and how they are written.
 
-namespace quadcore {
+namespace quadcore QUADCORE_EXPORT {
 
 /// Names of the log columns for n rotors: t, pose, velocities, rotor speeds.
 std::vector<std::string> log_columns(std::size_t rotor_count);

@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "quadcore/document.hpp"
+#include "quadcore/export.hpp"
 #include "quadcore/passed_over.hpp"
 #include "quadcore/spatial.hpp"
 
-namespace quadcore {
+namespace quadcore QUADCORE_EXPORT {
 
 /// Mass [kg] and inertia [kg m^2] of a link. The inertia is taken about the centre of mass along
 /// the axes of `pose`, which places the centre of mass in the link's frame.

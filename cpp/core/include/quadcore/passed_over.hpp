@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
-namespace quadcore {
+#include "quadcore/export.hpp"
+
+namespace quadcore QUADCORE_EXPORT {
 
 /// What the reader of a model or a world met and did not take in.
 class PassedOver {

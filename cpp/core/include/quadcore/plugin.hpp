@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "quadcore/error.hpp"
+#include "quadcore/export.hpp"
 #include "quadcore/kinematics.hpp"
 #include "quadcore/loads.hpp"
 #include "quadcore/model.hpp"
@@ -13,7 +14,7 @@
 #include "quadcore/tags.hpp"
 #include "quadcore/topics.hpp"
 
-namespace quadcore {
+namespace quadcore QUADCORE_EXPORT {
 
 /// A plugin's state: plain numbers that belong to the simulation, so that snapshot, restore and
 /// reset are exact. All zero at the start.

@@ -4,9 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "quadcore/export.hpp"
 #include "quadcore/plugin.hpp"
 
-namespace quadcore {
+namespace quadcore QUADCORE_EXPORT {
 
 /// A loaded module. Modules stay loaded until the process ends: objects they made may live on.
 struct PluginLibrary {

@@ -5,10 +5,11 @@
 #include <new>
 #include <vector>
 
+#include "quadcore/export.hpp"
 #include "quadcore/rotor_layout.hpp"
 #include "quadcore/spatial.hpp"
 
-namespace quadcore {
+namespace quadcore QUADCORE_EXPORT {
 
 /// Begins numbers where a whole pack can be read at once.
 template <class T>

@@ -3,12 +3,14 @@
 #include <string>
 #include <vector>
 
+#include "quadcore/export.hpp"
+
 /// \file
 /// Models made for Gazebo hold more than flies. What is only seen or sensed is passed over with a
 /// warning, what is felt and cannot be honoured is refused, and what is foreign is refused unless
 /// the user asks to leave it out.
 
-namespace quadcore {
+namespace quadcore QUADCORE_EXPORT {
 
 /// What becomes of something that a reader does not read.
 enum class Verdict {

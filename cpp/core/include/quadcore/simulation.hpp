@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "quadcore/engine.hpp"
+#include "quadcore/export.hpp"
 #include "quadcore/model.hpp"
 #include "quadcore/plugin.hpp"
 #include "quadcore/state.hpp"
 #include "quadcore/world.hpp"
 
-namespace quadcore {
+namespace quadcore QUADCORE_EXPORT {
 
 /// A plugin tag of the model, loaded.
 struct LoadedPlugin {

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "quadcore/export.hpp"
+
 /// \file
 /// Frames and monogram notation (after Drake's), used for every vector in quadcore:
 ///   W    world, z up, inertial
@@ -16,7 +18,7 @@
 ///   R_WF     rotation that takes components in F to components in W
 ///   f_F      force expressed in F's axes [N];  tau_F  torque expressed in F's axes [N m]
 
-namespace quadcore {
+namespace quadcore QUADCORE_EXPORT {
 
 static_assert(
     EIGEN_MAX_ALIGN_BYTES == 16 && (EIGEN_MALLOC_ALREADY_ALIGNED || sizeof(void*) < 8),

@@ -1,8 +1,9 @@
 #pragma once
 
+#include "quadcore/export.hpp"
 #include "quadcore/spatial.hpp"
 
-namespace quadcore {
+namespace quadcore QUADCORE_EXPORT {
 
 /// The state of a vehicle of one frame and n rotors, as logs and bindings show it.
 struct VehicleState {

@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "quadcore/export.hpp"
 #include "quadcore/model.hpp"
 
-namespace quadcore {
+namespace quadcore QUADCORE_EXPORT {
 
 enum class TagKind {
   number,  ///< a finite number within [min, max]

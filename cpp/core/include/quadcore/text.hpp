@@ -4,12 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "quadcore/export.hpp"
 #include "quadcore/spatial.hpp"
 
 /// \file
 /// Reading numbers and names strictly, whatever the locale.
 
-namespace quadcore {
+namespace quadcore QUADCORE_EXPORT {
 
 /// A finite number and nothing else; blanks around it are allowed.
 std::optional<double> parse_number(const std::string& text);

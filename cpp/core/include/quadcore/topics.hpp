@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
-namespace quadcore {
+#include "quadcore/export.hpp"
+
+namespace quadcore QUADCORE_EXPORT {
 
 /// Who writes a topic: the index of a plugin among Simulation::plugins(), or one of these.
 constexpr int nobody = -2;

@@ -5,10 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "quadcore/export.hpp"
 #include "quadcore/gazebo_reference.hpp"
 #include "quadcore/model.hpp"
 
-namespace quadcore {
+namespace quadcore QUADCORE_EXPORT {
 
 /// A link as the URDF writes it.
 struct UrdfLink {

@@ -3,10 +3,11 @@
 #include <string>
 
 #include "quadcore/document.hpp"
+#include "quadcore/export.hpp"
 #include "quadcore/passed_over.hpp"
 #include "quadcore/spatial.hpp"
 
-namespace quadcore {
+namespace quadcore QUADCORE_EXPORT {
 
 /// With steps below this [s] no flight would end.
 constexpr double shortest_step = 1e-9;
