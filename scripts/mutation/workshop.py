@@ -150,8 +150,9 @@ class Workshop:
             import quadcore
 
             shutil.copytree(Path(quadcore.__file__).parent, self.site / "quadcore")
-        for library in (self.build / "lib").glob("*.so"):
-            shutil.copy(library, self.site / "quadcore" / "lib" / library.name)
+        for library in (self.build / "lib").glob("*.so*"):
+            if not library.is_symlink():
+                shutil.copy(library, self.site / "quadcore" / "lib" / library.name)
         return True
 
     def _tests(self, part: Part) -> List[str]:

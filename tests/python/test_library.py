@@ -42,6 +42,13 @@ def test_plugins_and_bindings_export_their_one_door():
     assert exported(Path(qc._core.__file__)) == ["PyInit__core"]
 
 
+def test_the_core_says_which_version_programs_were_linked_with():
+    (core,) = CORE.glob("libquadcore.so*")
+    dynamic = subprocess.run(["readelf", "-d", core], capture_output=True, text=True, check=True)
+    minor = ".".join(qc.__version__.split(".")[:2])
+    assert f"soname: [libquadcore.so.{minor}]" in dynamic.stdout
+
+
 def interface_hash(folder: Path, script: Path) -> str:
     """Hash of the headers in a folder, by the function that the build calls."""
     source = ROOT / "cpp" / "core" / "plugin_interface.cmake"

@@ -19,7 +19,7 @@ from vehicles import AIR, DRAG, FLAPPING, MOTOR, ODD, SKEW, plugin, vehicle
 import quadcore as qc
 
 TESTS = Path(__file__).resolve().parent
-LIBRARIES = sorted((Path(qc.__file__).parent / "lib").glob("lib*.so"))
+LIBRARIES = sorted((Path(qc.__file__).parent / "lib").glob("lib*.so*"))
 AS_AN_OLD_PROCESSOR = "glibc.cpu.hwcaps=-AVX2_Usable,-FMA_Usable,-AVX2,-FMA,-FMA4"
 
 # Rotations and poses with many digits in the file and at the start; noise on all that is sensed.
