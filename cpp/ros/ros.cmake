@@ -41,6 +41,9 @@ if(NOT ros_missing)
     set(ros_missing "the .msg files of geometry_msgs")
   endif()
 endif()
+if(NOT BUILD_SHARED_LIBS)
+  set(ros_missing "a shared core (BUILD_SHARED_LIBS)")
+endif()
 
 if(ros_missing)
   if(QUADCORE_WITH_ROS STREQUAL "ON")
@@ -64,7 +67,7 @@ catkin_package(
   CATKIN_DEPENDS diagnostic_msgs geometry_msgs message_runtime nav_msgs roscpp rosgraph_msgs
                  sensor_msgs std_msgs std_srvs tf2_msgs
   CFG_EXTRAS ${CMAKE_CURRENT_LIST_DIR}/quadcore-target.cmake)
-export(EXPORT quadcore NAMESPACE quadcore::
+export(TARGETS quadcore NAMESPACE quadcore::
        FILE ${CATKIN_DEVEL_PREFIX}/lib/cmake/quadcore/quadcore.cmake)
 
 # In the devel space as in the install space: the core and its plugins side by side in lib.

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <sstream>
 
+#include "built_in_plugins.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/text.hpp"
 
@@ -27,9 +28,12 @@ std::string who_is(const PluginElement& element) {
   return element.where + ": plugin '" + element.name + "': " + element.filename;
 }
 
-/// The nearest module in the folders, if it differs by a slip only.
+/// The nearest module in the folders or built in, if it differs by a slip only.
 std::string misspelt(const std::string& filename) {
   std::vector<std::string> modules;
+  for (const auto& [name, module] : built_in_plugins()) {
+    if (is_slip(filename, name)) modules.push_back(name);
+  }
   for (const std::string& folder : plugin_folders()) {
     std::error_code unreachable;
     for (const auto& file : std::filesystem::directory_iterator(folder, unreachable)) {
@@ -99,7 +103,7 @@ std::vector<std::string> plugin_folders() {
       if (!folder.empty()) folders.push_back(folder);
     }
   }
-  folders.push_back(own_folder());
+  if (built_in_plugins().empty()) folders.push_back(own_folder());
   return folders;
 }
 
@@ -110,13 +114,16 @@ std::optional<std::string> find_plugin(const std::string& filename) {
     std::error_code unreachable;
     if (std::filesystem::exists(path, unreachable)) return path;
   }
+  if (built_in_plugins().count(filename)) return filename;
   return std::nullopt;
 }
 
 PluginLibrary open_plugin(const PluginElement& element, const std::string& path) {
+  const bool built_in = path.find('/') == std::string::npos;
   const std::string who =
-      who_is(element) + " in " + std::filesystem::path(path).parent_path().string();
-  const PluginModule& module = load(path, who);
+      who_is(element) +
+      (built_in ? "" : " in " + std::filesystem::path(path).parent_path().string());
+  const PluginModule& module = built_in ? *built_in_plugins().at(path) : load(path, who);
   if (module.interface != std::string(plugin_interface)) {
     throw InputError(who + " was built for plugin interface " + module.interface + ", this is " +
                      plugin_interface + "; rebuild it against the installed quadcore");
@@ -147,7 +154,9 @@ std::string describe_missing(const PluginElement& element) {
            " is a path; write the file name alone and add its folder to QUADCORE_PLUGIN_PATH" +
            remedy;
   }
-  return who + " was not found in " + joined(plugin_folders()) + misspelt(element.filename) +
+  std::vector<std::string> places = plugin_folders();
+  if (!built_in_plugins().empty()) places.push_back("the program itself");
+  return who + " was not found in " + joined(places) + misspelt(element.filename) +
          "; correct the filename or add its folder to QUADCORE_PLUGIN_PATH" + remedy;
 }
 

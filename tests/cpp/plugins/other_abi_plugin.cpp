@@ -2,6 +2,6 @@
 
 /// A plugin built against a core that does not exist yet.
 extern "C" {
-QUADCORE_EXPORT extern const quadcore::PluginModule quadcore_plugin;
-const quadcore::PluginModule quadcore_plugin = {"of tomorrow", nullptr};
+QUADCORE_PLUGIN_EXPORT extern const quadcore::PluginModule QUADCORE_PLUGIN_SYMBOL;
+const quadcore::PluginModule QUADCORE_PLUGIN_SYMBOL = {"of tomorrow", nullptr};
 }

@@ -76,6 +76,15 @@ struct PluginModule {
 
 }  // namespace quadcore
 
+/// The name of a library's PluginModule, which is exported whatever else is hidden. A static core,
+/// which holds several, gives each a name of its own and exports none.
+#ifdef QUADCORE_PLUGIN_SYMBOL
+#define QUADCORE_PLUGIN_EXPORT
+#else
+#define QUADCORE_PLUGIN_SYMBOL quadcore_plugin
+#define QUADCORE_PLUGIN_EXPORT __attribute__((visibility("default")))
+#endif
+
 /// Makes a shared library a quadcore plugin. `describe` is a function that returns its
 /// PluginDescriptor. Use once per library, outside any namespace.
 #define QUADCORE_REGISTER_PLUGIN(describe)                                                    \
@@ -85,7 +94,7 @@ struct PluginModule {
     return &descriptor;                                                                       \
   }                                                                                           \
   extern "C" {                                                                                \
-  __attribute__((visibility("default"))) extern const quadcore::PluginModule quadcore_plugin; \
-  const quadcore::PluginModule quadcore_plugin = {quadcore::plugin_interface,                 \
-                                                  quadcore_descriptor};                       \
+  QUADCORE_PLUGIN_EXPORT extern const quadcore::PluginModule QUADCORE_PLUGIN_SYMBOL;          \
+  const quadcore::PluginModule QUADCORE_PLUGIN_SYMBOL = {quadcore::plugin_interface,          \
+                                                         quadcore_descriptor};                \
   }

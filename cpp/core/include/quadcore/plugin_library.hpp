@@ -11,7 +11,7 @@ namespace quadcore QUADCORE_EXPORT {
 
 /// A loaded module. Modules stay loaded until the process ends: objects they made may live on.
 struct PluginLibrary {
-  std::string path;
+  std::string path;  ///< of a plugin that a static core has inside: the file name alone
   const PluginDescriptor* descriptor;
 };
 
@@ -19,10 +19,12 @@ struct PluginLibrary {
 void load_plugin_path(const std::string& folder);
 
 /// The folders in the order they are searched: those of load_plugin_path (newest first), those of
-/// QUADCORE_PLUGIN_PATH, the one this library lies in.
+/// QUADCORE_PLUGIN_PATH, and of a shared core the one it lies in. A static core has the shipped
+/// plugins inside, where they are looked for last.
 std::vector<std::string> plugin_folders();
 
-/// The path of a module in the first of the folders that holds it.
+/// The path of a module in the first of the folders that holds it; of one that is built in, its
+/// name alone.
 /// \param filename  of a plugin tag, without folder.
 std::optional<std::string> find_plugin(const std::string& filename);
 
