@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "older_pybind11.hpp"
+
 /// \file
 /// Numbers and texts on their way between Python and the core.
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pybind11/pybind11.h>
+#include "older_pybind11.hpp"
 
 namespace quadcore::bindings {
 

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <pybind11/pybind11.h>
-
 #include <atomic>
 #include <exception>
 #include <memory>
 
+#include "older_pybind11.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/simulation.hpp"
 

@@ -41,6 +41,11 @@ if(NOT ros_missing)
     set(ros_missing "the .msg files of geometry_msgs")
   endif()
 endif()
+if(NOT ros_missing)
+  set(Python_EXECUTABLE ${PYTHON_EXECUTABLE})
+  include(cpp/bindings/python.cmake)
+  set(ros_missing ${python_missing})
+endif()
 if(NOT BUILD_SHARED_LIBS)
   set(ros_missing "a shared core (BUILD_SHARED_LIBS)")
 endif()
@@ -56,10 +61,13 @@ endif()
 
 find_package(catkin REQUIRED COMPONENTS ${ros_packages})
 
+# The Python package, the services in it.
+set(QUADCORE_PYTHONDIR ${PYTHON_INSTALL_DIR}/quadcore)
+add_subdirectory(cpp/bindings)
+set_target_properties(_core PROPERTIES
+  LIBRARY_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${QUADCORE_PYTHONDIR})
+catkin_python_setup()
 add_service_files(FILES Step.srv SetState.srv)
-# Before genpy leaves an empty one.
-configure_file(cpp/ros/python_package.py
-               ${CATKIN_DEVEL_PREFIX}/${PYTHON_INSTALL_DIR}/quadcore/__init__.py COPYONLY)
 generate_messages(DEPENDENCIES geometry_msgs)
 catkin_package(
   INCLUDE_DIRS cpp/core/include ${PROJECT_BINARY_DIR}/cpp/core/include

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from . import _core
+
 _PACKAGE = Path(__file__).resolve().parent
 
 
 def root() -> Path:
     """Folder that holds ``urdf/``, ``worlds/`` and ``config/``.
 
-    Installed, they lie inside the package; in a source checkout, at the top of the repository.
+    Installed by pip, they lie inside the package; by catkin, in ``share/quadcore`` of the same
+    space; in a source checkout, at the top of the repository.
     """
-    return _PACKAGE if (_PACKAGE / "urdf").is_dir() else _PACKAGE.parents[1]
+    folders = (_PACKAGE, *_PACKAGE.parents)
+    places = (place for folder in folders for place in (folder, folder / "share" / "quadcore"))
+    return next((place for place in places if (place / "worlds/empty.world").is_file()), _PACKAGE)
 
 
 def shipped(folder: str) -> dict[str, Path]:
@@ -22,4 +27,5 @@ def shipped(folder: str) -> dict[str, Path]:
 
 def cmake_prefix() -> str:
     """Folder to add to ``CMAKE_PREFIX_PATH`` so that ``find_package(quadcore)`` succeeds."""
-    return str(_PACKAGE)
+    folders = Path(_core.__file__).resolve().parents  # pip's package, or catkin's space
+    return str(next(folder for folder in folders if (folder / "lib/cmake/quadcore").is_dir()))

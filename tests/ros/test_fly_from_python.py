@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """The template for scripts speaks the topics of the node, and hover_node flies it."""
 
+import os
 import unittest
+from pathlib import Path
 
 import harness
 import rosgraph
@@ -9,6 +11,8 @@ from harness import Recording
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 from test_topics import PUBLISHED
+
+import quadcore as qc
 
 
 class TestFlyFromPython(unittest.TestCase):
@@ -28,6 +32,15 @@ class TestFlyFromPython(unittest.TestCase):
             ticks = {m.clock for m in clock.wait_for_count(350)}
         self.assertLessEqual(set(stamps[100:200]), ticks)
         self.assertEqual({stamp.to_nsec() % 1000000 for stamp in stamps}, {0})
+
+    def test_the_package_is_the_workspaces_and_flies_what_it_ships(self):
+        space = os.environ["CMAKE_PREFIX_PATH"].split(":")[0]  # devel or install
+        for file in (qc.__file__, qc._core.__file__, qc.plugin_folders()[-1]):
+            self.assertIn(Path(space), Path(file).parents)
+        self.assertEqual(qc.cmake_prefix(), space)
+        sim = qc.Simulation("quadrotor", world="default")
+        sim.step(10)
+        self.assertEqual(sim.state.time, 0.01)
 
 
 if __name__ == "__main__":
