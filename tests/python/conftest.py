@@ -5,6 +5,10 @@ from __future__ import annotations
 import signal
 
 import pytest
+from hypothesis import settings
+
+settings.register_profile("quadcore", deadline=None)  # a busy machine is no fault
+settings.load_profile("quadcore")
 
 # Ignored, as under nohup, it would be so in every process that a test starts.
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
