@@ -170,11 +170,13 @@ void bind_simulation(py::module_& m) {
             self->restore(*snapshot);
           },
           py::arg("snapshot"))
-      .def("reset",
-           [](const Self& self) {
-             const Lock lock(*self);
-             self->reset();
-           })
+      .def(
+          "reset",
+          [](const Self& self, const std::optional<std::uint64_t>& seed) {
+            const Lock lock(*self);
+            seed ? self->reset(*seed) : self->reset();
+          },
+          py::arg("seed"))
       .def_property_readonly("time", [](const Self& self) { return self->time(); })
       .def_property_readonly("dt", [](const Self& self) { return self->dt(); })
       .def_property_readonly("engine", [](const Self& self) { return self->engine_name(); })

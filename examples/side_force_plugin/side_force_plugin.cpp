@@ -24,9 +24,7 @@ quadcore::PluginDescriptor describe() {
       "a constant force along the frame's y at the centre of mass",
       {TagSpec::number("sideForce", "N", "", "the force, positive along y").must()},
       {"side_force"},
-      [](const quadcore::PluginSetup& setup) -> std::unique_ptr<quadcore::Plugin> {
-        return std::make_unique<SideForcePlugin>(setup);
-      },
+      quadcore::create<SideForcePlugin>,
   };
 }
 

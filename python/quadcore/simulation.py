@@ -98,6 +98,16 @@ class Simulation(_core.Simulation):
         doc="The state now, as live read-only views; `state.copy()` is free.",
     )
 
+    def reset(self, seed: Optional[int] = None) -> None:
+        """Go back to the moment of construction, bit for bit.
+
+        Parameters
+        ----------
+        seed : int, optional
+            As if the simulation had been made with it; None keeps the one it has.
+        """
+        super().reset(None if seed is None else _whole(seed))
+
     def run(
         self,
         duration: float,

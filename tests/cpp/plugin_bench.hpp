@@ -78,7 +78,7 @@ struct PluginBench {
 
   PluginState state() { return {memory.data(), memory.size()}; }
   Sample sample(const Kinematics& kinematics, double time, double dt, bool jumped = false) {
-    return {time, dt, kinematics, topics, warnings, jumped};
+    return {time, dt, kinematics, simulation.world(), topics, warnings, loaded.seed, jumped};
   }
   void update(const Kinematics& kinematics, double time, double dt) {
     topics.write_as(0);

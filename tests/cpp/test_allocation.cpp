@@ -1,6 +1,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "quadcore/plugin_library.hpp"
 #include "shapes.hpp"
 
 using namespace quadcore;
@@ -58,11 +59,38 @@ TEST_CASE("steps allocate nothing, in the air or on the ground") {
       state.rotor_angle = VectorXd::Constant(1, 0.3);
       engine->set_state(state);
       const NoForces none;
-      engine->step(1e-3, none);  // ODE takes its working memory
+      engine->step(0, 1e-3, none);  // ODE takes its working memory
       const long before = allocations;
-      for (int i = 0; i < 200; ++i) engine->step(1e-3, none);
+      for (int i = 0; i < 200; ++i) engine->step(0, 1e-3, none);
       CHECK(allocations == before);
       CHECK((engine->kinematics().p_WF.z() < -0.1) == !grounded);
     }
+  }
+}
+
+TEST_CASE("steps with every hook allocate only where what is carried changes") {
+  load_plugin_path(TEST_PLUGINS);
+  const Model m = model(link("frame", 1, skew_body) + turning_rotor +
+                        "<gazebo><plugin name=\"laden\" filename=\"libladen_plugin.so\">"
+                        "<until>0.0495</until></plugin></gazebo>");
+  for (const EngineInfo& info : engines()) {
+    CAPTURE(info.name);
+    SimulationOptions options;
+    options.engine = info.name;
+    Simulation flown(m, World{}, options);
+    const double laden = mass_properties(flown.model()).mass;
+    const auto allocated_in = [&flown](std::int64_t steps) {
+      const long before = allocations;
+      flown.step(steps);
+      return allocations - before;
+    };
+    flown.step();  // ODE takes its working memory
+    CHECK(allocated_in(48) == 0);
+    CHECK(mass_properties(flown.model()).mass == laden);
+    CHECK(allocated_in(2) > 0);  // it is let go, and ODE takes memory anew
+    CHECK(mass_properties(flown.model()).mass == doctest::Approx(laden - 0.2));
+    CHECK(allocated_in(50) == 0);
+    flown.reset(7);
+    CHECK(mass_properties(flown.model()).mass == laden);
   }
 }

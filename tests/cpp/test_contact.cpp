@@ -36,7 +36,7 @@ struct Ball {
     engine->set_state(state);
   }
   void step() {
-    engine->step(dt, NoForces());
+    engine->step(0, dt, NoForces());
     engine->get_state(state);
   }
 };
@@ -194,15 +194,15 @@ TEST_CASE("each shape touches the ground with its lowest point, wherever it sits
           const auto engine = make_engine(info.name, m, ground());
           state.position.z() = near - lowest;
           engine->set_state(state);
-          engine->step(dt, NoForces());
+          engine->step(0, dt, NoForces());
           CHECK(engine->kinematics().v_WCcm_F.norm() == doctest::Approx(g * dt));
           state.position.z() = -near - lowest;
           engine->set_state(state);
           if (info.name == "eigen") {
-            CHECK_THROWS_AS(engine->step(dt, NoForces()), Error);
+            CHECK_THROWS_AS(engine->step(0, dt, NoForces()), Error);
             continue;
           }
-          engine->step(dt, NoForces());
+          engine->step(0, dt, NoForces());
           CHECK(engine->kinematics().v_WCcm_F.norm() != doctest::Approx(g * dt));
         }
       }

@@ -73,7 +73,7 @@ TEST_CASE("the velocities that a force law sees are the rates of the places it s
     const auto engine = make_engine(info.name, lopsided(info.name != "eigen"), weightless());
     engine->set_state(random_state(5, 3));
     const Kinematics before = engine->kinematics();
-    engine->step(dt, NoForces());
+    engine->step(0, dt, NoForces());
     const Kinematics& after = engine->kinematics();
     const auto rate_F = [&](const Vector3d& p, const Vector3d& q) -> Vector3d {
       return before.R_WF.transpose() * (q - p) / dt;
@@ -135,7 +135,7 @@ TEST_CASE("angles of joints stay between -pi and pi, and go on from there") {
     state.rotor_angle << 3.1, -3.1, 1;
     state.rotor_velocity << 100, -90, 10;
     engine->set_state(state);
-    engine->step(1e-3, NoForces());
+    engine->step(0, 1e-3, NoForces());
     const Vector3d rates(engine->kinematics().rotors[0].rate, engine->kinematics().rotors[1].rate,
                          engine->kinematics().rotors[2].rate);
     engine->get_state(state);
@@ -185,14 +185,14 @@ TEST_CASE("a state that is set leaves nothing of the flight before, on the groun
     VehicleState state = blank(4);
     state.position.z() = 0.02;
     landed->set_state(state);
-    for (int i = 0; i < 200; ++i) landed->step(1e-3, NoForces());
+    for (int i = 0; i < 200; ++i) landed->step(0, 1e-3, NoForces());
     state.position = {0.1, -0.2, 0.0124};
     state.angular_velocity = {0.1, 0.2, -0.3};
     for (Engine* engine : {landed.get(), fresh.get()}) engine->set_state(state);
     CHECK(landed->save() == fresh->save());
     for (int i = 0; i < 10; ++i) {
-      landed->step(1e-3, NoForces());
-      fresh->step(1e-3, NoForces());
+      landed->step(0, 1e-3, NoForces());
+      fresh->step(0, 1e-3, NoForces());
     }
     CHECK(landed->save() == fresh->save());
   }
@@ -200,7 +200,7 @@ TEST_CASE("a state that is set leaves nothing of the flight before, on the groun
 
 TEST_CASE("a state that is set leaves nothing of a step that ODE gave up") {
   struct Beyond final : ForceField {
-    void evaluate(const Kinematics&, Loads& loads) const override {
+    void evaluate(Kinematics&, Loads& loads) const override {
       loads.add_frame_force(0, {3e305, 0, 0}, {0, 1, 0});
       loads.add_frame_torque(0, {1, 2, 3e305});
     }
@@ -210,12 +210,12 @@ TEST_CASE("a state that is set leaves nothing of a step that ODE gave up") {
     const auto failed = make_engine(name, lopsided(true), World{});
     const auto fresh = make_engine(name, lopsided(true), World{});
     const auto fail = [&failed] {
-      for (int i = 0; i < 20; ++i) failed->step(1e-3, Beyond());
+      for (int i = 0; i < 20; ++i) failed->step(0, 1e-3, Beyond());
     };
     CHECK_THROWS_AS(fail(), Error);
     for (Engine* engine : {failed.get(), fresh.get()}) {
       engine->set_state(random_state(5, 3));
-      engine->step(1e-3, NoForces());
+      engine->step(0, 1e-3, NoForces());
     }
     CHECK(failed->save() == fresh->save());
   }
@@ -239,7 +239,7 @@ TEST_CASE("a vehicle stands upright at first, and an orientation need not be of 
 TEST_CASE("a load that is not finite is refused, whatever component it is") {
   struct Spoilt final : ForceField {
     int component = 0;
-    void evaluate(const Kinematics&, Loads& loads) const override {
+    void evaluate(Kinematics&, Loads& loads) const override {
       Vector3d v[4] = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
       v[component / 3][component % 3] = NAN;
       loads.add_frame_force(0, v[0], {0, 0, 0});
@@ -255,7 +255,7 @@ TEST_CASE("a load that is not finite is refused, whatever component it is") {
     Spoilt spoilt;
     for (; spoilt.component < 10; ++spoilt.component) {
       CAPTURE(spoilt.component);
-      CHECK_THROWS_AS(engine->step(1e-3, spoilt), Error);
+      CHECK_THROWS_AS(engine->step(0, 1e-3, spoilt), Error);
     }
   }
 }
@@ -268,7 +268,7 @@ TEST_CASE("an engine may be stepped in another thread than that which made it") 
     CAPTURE(name);
     const auto here = make_engine(name, m, world), elsewhere = make_engine(name, m, world);
     const auto land = [](Engine& engine) {
-      for (int i = 0; i < 200; ++i) engine.step(1e-3, NoForces());
+      for (int i = 0; i < 200; ++i) engine.step(0, 1e-3, NoForces());
     };
     land(*here);
     std::thread(land, std::ref(*elsewhere)).join();
@@ -363,12 +363,12 @@ TEST_CASE("what is saved is restored bit for bit, in another engine of the kind 
     const auto first = make_engine(info.name, hexarotor(), World{});
     const auto second = make_engine(info.name, hexarotor(), World{});
     first->set_state(random_state(8, 6));
-    for (int i = 0; i < 100; ++i) first->step(1e-3, NoForces());
+    for (int i = 0; i < 100; ++i) first->step(0, 1e-3, NoForces());
     second->restore(first->save());
     CHECK(second->save() == first->save());
     for (int i = 0; i < 100; ++i) {
-      first->step(1e-3, NoForces());
-      second->step(1e-3, NoForces());
+      first->step(0, 1e-3, NoForces());
+      second->step(0, 1e-3, NoForces());
     }
     CHECK(second->save() == first->save());
     CHECK(contains(refusal([&] { first->restore({1, 2, 3}); }), "another model or engine"));

@@ -70,7 +70,7 @@ std::vector<double> stepped(double height, const Vector3d& gravity_W, bool with_
   const auto engine = ball(world);
   VehicleState state = above_ground(height);
   engine->set_state(state);
-  engine->step(dt, NoForces());
+  engine->step(0, dt, NoForces());
   engine->get_state(state);
   const Vector3d &v = state.linear_velocity, &w = state.angular_velocity;
   return {v.x(), v.y(), v.z(), w.x(), w.y(), w.z(), state.rotor_velocity[0]};
@@ -110,9 +110,9 @@ TEST_CASE("how long ago a contact was is part of what is saved") {
   VehicleState state = above_ground(-1e-4);
   state.linear_velocity.z() = 5;  // no touch is ahead
   leaving->set_state(state);
-  for (int i = 0; i < 5; ++i) leaving->step(dt, NoForces());
+  for (int i = 0; i < 5; ++i) leaving->step(0, dt, NoForces());
   for (Engine* engine : {other.get(), without.get()}) engine->restore(leaving->save());
-  for (Engine* engine : {leaving.get(), other.get(), without.get()}) engine->step(dt, NoForces());
+  for (Engine* engine : {leaving.get(), other.get(), without.get()}) engine->step(0, dt, NoForces());
   CHECK(other->save() == leaving->save());
   CHECK(without->kinematics().w_WF_F != leaving->kinematics().w_WF_F);  // solved directly
 }

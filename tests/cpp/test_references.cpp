@@ -127,7 +127,7 @@ TEST_CASE("damping takes its part of what is faster than 1 cm/s or 0.01 rad/s, e
         state.linear_velocity = {0, -v, 0};
         state.angular_velocity = {0, 0, w};
         engine->set_state(state);
-        engine->step(1e-3, NoForces());
+        engine->step(0, 1e-3, NoForces());
         engine->get_state(state);
         CHECK(state.linear_velocity.y() == doctest::Approx(v > 0.01 ? -0.75 * v : -v));
         CHECK(state.angular_velocity.z() == doctest::Approx(w > 0.01 ? 0.75 * w : w));
@@ -162,7 +162,7 @@ TEST_CASE("dry friction takes its torque from a joint, step after step, and hold
       state.rotor_angle = VectorXd::Constant(1, 0.3);
       engine->set_state(state);
       for (int i = 1; i <= 15; ++i) {
-        engine->step(1e-3, NoForces());
+        engine->step(0, 1e-3, NoForces());
         // 2e-5 kg m^2, and the frame is heavy.
         const double rate = std::max(0.0, 0.021 - 2e-3 * i);
         const Kinematics& k = engine->kinematics();
@@ -192,11 +192,11 @@ TEST_CASE("implicit damping slows a joint wherever it stands") {
     state.rotor_velocity = VectorXd::Zero(1);
     state.rotor_angle = VectorXd::Constant(1, 1.3);
     engine->set_state(state);
-    engine->step(1e-3, NoForces());
+    engine->step(0, 1e-3, NoForces());
     CHECK(std::abs(engine->kinematics().rotors[0].rate) < 1e-9);  // nothing pulls it back
     state.rotor_velocity[0] = 10;
     engine->set_state(state);
-    engine->step(1e-3, NoForces());
+    engine->step(0, 1e-3, NoForces());
     // 0.002 * 1e-3 / 2e-5 = 0.1 of the rate at the end of the step; the frame is heavy.
     CHECK(engine->kinematics().rotors[0].rate == doctest::Approx(10 / 1.1).epsilon(1e-3));
   }

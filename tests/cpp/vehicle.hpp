@@ -50,7 +50,7 @@ inline Model hexarotor() {
 /// Neither force nor torque.
 class NoForces final : public ForceField {
  public:
-  void evaluate(const Kinematics&, Loads&) const override {}
+  void evaluate(Kinematics&, Loads&) const override {}
 };
 
 /// Message of the InputError that `call` throws.

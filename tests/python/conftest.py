@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -13,7 +14,7 @@ settings.load_profile("quadcore")
 # Ignored, as under nohup, it would be so in every process that a test starts.
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
-pytest.register_assert_rewrite("faults")
+pytest.register_assert_rewrite("faults", "hooked")
 
 
 @pytest.fixture
@@ -33,3 +34,18 @@ def hangar(tmp_path):
     from vehicles import Hangar
 
     return Hangar(tmp_path)
+
+
+@pytest.fixture(scope="session")
+def folders_of_hook_plugins(tmp_path_factory):
+    from builds import build
+
+    root = Path(__file__).resolve().parents[2]
+    sources = (root / "examples" / "hooks", root / "tests" / "python" / "plugins")
+    return [build(source, tmp_path_factory.mktemp(source.name)) for source in sources]
+
+
+@pytest.fixture
+def hook_plugins(folders_of_hook_plugins, monkeypatch):
+    """The examples that have one hook each, and the plugin that tells what it is told."""
+    monkeypatch.setenv("QUADCORE_PLUGIN_PATH", ":".join(map(str, folders_of_hook_plugins)))

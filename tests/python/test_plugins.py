@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from builds import build
 from faults import MODEL, refusal
 from flights import ENGINES
 
@@ -20,16 +21,6 @@ SIDE_FORCE = '<plugin name="push" filename="{}"><sideForce>{}</sideForce></plugi
 FAULTY = '<plugin name="bad" filename="lib{}_plugin.so"><fault>{}</fault><after>{}</after></plugin>'
 LINE = 2 + MODEL[: MODEL.index("<gazebo>")].count("\n")  # where with_plugin() puts it
 AT = f"toy.urdf:{LINE}: plugin 'bad'"
-
-
-def build(source: Path, folder: Path, *options: str) -> Path:
-    """Build a CMake project against the installed package; returns its folder."""
-    prefix = f"-DCMAKE_PREFIX_PATH={qc.cmake_prefix()}"
-    configure = ["cmake", "-S", source, "-B", folder, prefix, *options]
-    for command in (configure, ["cmake", "--build", folder]):
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stdout + done.stderr
-    return folder
 
 
 @pytest.fixture(scope="module")
@@ -193,7 +184,7 @@ def test_a_plugin_that_fails_to_be_made_is_named_and_others_fly_on(bad, faulty, 
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize("hook", ["update", "sense", "forces"])
+@pytest.mark.parametrize("hook", ["update", "sense", "forces", "air", "carried"])
 @pytest.mark.parametrize("thrown", ["", "_number"])
 def test_a_plugin_that_throws_in_flight_is_named_and_the_flight_can_be_taken_up_again(
     bad, faulty, engine, hook, thrown
@@ -223,6 +214,8 @@ def test_a_plugin_that_throws_in_flight_is_named_and_the_flight_can_be_taken_up_
     [
         ("nan", "a force or torque is not a finite number"),
         ("infinity", "a force or torque is not a finite number"),
+        ("air_nan", "the velocity of the air is not a finite number"),
+        ("massless", "it carries a body 'cargo' without mass; give kg, > 0"),
         ("rotor_force", "a load on rotor 99, but rotors count from 0 and there are 1"),
         ("rotor_torque", "a load on rotor 99, but rotors count from 0 and there are 1"),
         ("term_force", "a load for wrench term 5, but terms count from 0 and the descriptor names"),

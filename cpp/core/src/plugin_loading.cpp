@@ -14,12 +14,13 @@ constexpr std::size_t max_plugin_state = 1000000;
 
 /// A plugin tag and the path of its module.
 struct Found {
-  const PluginElement& element;
+  const PluginElement* element;
   std::string path;
 };
 
 /// The plugins to load. A module that is not there is passed over if it only senses; otherwise it
-/// is refused, as are two plugins of one name and one whose tags cannot be read.
+/// is refused, as are two plugins of one name and one whose tags cannot be read. They come by name:
+/// where a document has them must not matter.
 std::vector<Found> find_plugins(const Model& model, PassedOver& passed_over) {
   std::vector<Found> plugins;
   std::map<std::string, const PluginElement*> by_name;
@@ -36,8 +37,10 @@ std::vector<Found> find_plugins(const Model& model, PassedOver& passed_over) {
       throw InputError(element.where + ": a second plugin named '" + element.name + "' (first at " +
                        first->second->where + "); give it another name");
     }
-    plugins.push_back({element, *path});
+    plugins.push_back({&element, *path});
   }
+  std::sort(plugins.begin(), plugins.end(),
+            [](const Found& a, const Found& b) { return a.element->name < b.element->name; });
   return plugins;
 }
 
@@ -45,7 +48,7 @@ std::vector<Found> find_plugins(const Model& model, PassedOver& passed_over) {
 std::map<std::string, std::map<std::string, std::string>> by_plugin(
     const std::map<std::string, std::string>& parameters, const std::vector<Found>& plugins) {
   std::vector<std::string> names;
-  for (const Found& found : plugins) names.push_back(found.element.name);
+  for (const Found& found : plugins) names.push_back(found.element->name);
   std::map<std::string, std::map<std::string, std::string>> result;
   for (const auto& [key, value] : parameters) {
     const auto dot = key.rfind('.');
@@ -105,8 +108,9 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
   const auto overrides = by_plugin(options.parameters, found_plugins);
   const double fastest_decay = engine_info(options.engine).largest_decay_per_step / dt_;
   Eigen::Index state_size = 0;
-  for (const auto& [element, path] : found_plugins) {
-    const PluginLibrary library = open_plugin(element, path);
+  for (const Found& found : found_plugins) {
+    const PluginElement& element = *found.element;
+    const PluginLibrary library = open_plugin(element, found.path);
     const auto given = overrides.find(element.name);
     LoadedPlugin loaded{
         element.name,
@@ -117,6 +121,7 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
                    given == overrides.end() ? std::map<std::string, std::string>{} : given->second),
         nullptr};
     const std::string who = element.where + ": plugin '" + element.name + "'";
+    loaded.who = who;
     for (const std::string& term : library.descriptor->wrenches) {
       if (std::find(wrench_terms_.begin(), wrench_terms_.end(), term) != wrench_terms_.end()) {
         throw InputError(who + " reports the wrench '" + term +
@@ -126,8 +131,8 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
     loaded.state_begin = state_size;
     try {
       std::vector<std::string> warnings;
-      loaded.plugin = library.descriptor->create(
-          {element.name, loaded.parameters, model, topics_, options.seed, warnings, fastest_decay});
+      loaded.plugin = library.descriptor->create.make(
+          {element.name, loaded.parameters, model, world_, topics_, warnings, fastest_decay});
       if (!loaded.plugin) throw Error("its create() returned no plugin");
       const std::size_t numbers = loaded.plugin->state_size();
       if (numbers > max_plugin_state) {

@@ -109,6 +109,13 @@ bool is_slip(const std::string& a, const std::string& b) {
   return edit_distance(a, b) <= std::max(a.size(), b.size()) / 5;
 }
 
+std::string seconds(double time) {
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text << std::fixed << time << " s";
+  return text.str();
+}
+
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;

@@ -34,7 +34,6 @@ EigenEngine::EigenEngine(const Model& model, const World& world)
     : model_(model),
       body_(model),
       gravity_W_(world.gravity_W),
-      wind_W_(world.wind_W),
       ground_(world.ground_plane),
       kinematics_(model.joints.size(), false),
       loads_(model.joints.size()),
@@ -56,7 +55,7 @@ EigenEngine::EigenEngine(const Model& model, const World& world)
   }
   static constexpr laws::ForEachWidth<void(const GyrostatStep&, const double*)> shows{
       &show_gyrostat<1>, &show_gyrostat<2>, &show_gyrostat<4>, &show_gyrostat<8>};
-  static constexpr laws::ForEachWidth<void(const GyrostatStep&, double)> steps{
+  static constexpr laws::ForEachWidth<void(const GyrostatStep&, double, double)> steps{
       &step_gyrostat<1>, &step_gyrostat<2>, &step_gyrostat<4>, &step_gyrostat<8>};
   const int width = laws::lane_width(rotors.size());
   show_ = shows[width];
@@ -76,7 +75,6 @@ GyrostatStep EigenEngine::view() {
   });
   g.centered = std::all_of(model_.links.begin() + 1, model_.links.end(),
                            [](const Link& link) { return link.inertial.pose.xyz.isZero(0); });
-  g.windy = !wind_W_.isZero(0);
   g.inverse_mass = body_.inverse_mass;
   const auto copy = [](const Vector3d& from, double (&to)[4]) {
     std::copy(from.data(), from.data() + 3, to);
@@ -84,7 +82,6 @@ GyrostatStep EigenEngine::view() {
   };
   copy(body_.p_FCcm_F, g.p_FCcm_F);
   copy(gravity_W_, g.gravity_W);
-  copy(wind_W_, g.wind_W);
   const auto copy_columns = [](const Matrix3d& from, double (&to)[3][4]) {
     for (int j = 0; j < 3; ++j) {
       for (int i = 0; i < 3; ++i) to[j][i] = from(i, j);
@@ -107,9 +104,9 @@ GyrostatStep EigenEngine::view() {
   return g;
 }
 
-void EigenEngine::step(double dt, const ForceField& forces) {
+void EigenEngine::step(double time, double dt, const ForceField& forces) {
   forces_ = &forces;
-  advance_(step_, dt);
+  advance_(step_, time, dt);
   if (ground_) refuse_ground();
 }
 

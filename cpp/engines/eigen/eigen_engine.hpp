@@ -14,8 +14,8 @@ class EigenEngine final : public Engine {
   EigenEngine(const Model& model, const World& world);
 
   const Model& model() const override { return model_; }
-  void step(double dt, const ForceField& forces) override;
-  const Kinematics& kinematics() const override { return kinematics_; }
+  void step(double time, double dt, const ForceField& forces) override;
+  Kinematics& kinematics() override { return kinematics_; }
   void get_state(VehicleState& state) const override;
   void set_state(const VehicleState& state) override;
   std::vector<double> save() const override;
@@ -32,7 +32,7 @@ class EigenEngine final : public Engine {
 
   Model model_;
   Gyrostat body_;
-  Vector3d gravity_W_, wind_W_;
+  Vector3d gravity_W_;
   bool ground_;
   Kinematics kinematics_;
   Loads loads_;
@@ -40,7 +40,7 @@ class EigenEngine final : public Engine {
   alignas(32) double columns_of_R_WF_[3][4];
   GyrostatStep step_;
   void (*show_)(const GyrostatStep&, const double*);
-  void (*advance_)(const GyrostatStep&, double);
+  void (*advance_)(const GyrostatStep&, double, double);
   const ForceField* forces_ = nullptr;  ///< of the step that is under way
 };
 

@@ -33,9 +33,8 @@ struct GyrostatStep {
   const double* constants;  ///< table of RotorConstant
   bool normals_turn;        ///< some rotor's link has its z off the joint's axis
   bool centered;            ///< the rotors' centres of mass are their links' origins
-  bool windy;
   double inverse_mass;
-  double p_FCcm_F[4], gravity_W[4], wind_W[4];    ///< a 0 behind each
+  double p_FCcm_F[4], gravity_W[4];               ///< a 0 behind each
   double I_C_F[3][4], inverse_reduced_I_F[3][4];  ///< columns, a 0 behind each
 
   double *state, *stage, *sum;
@@ -56,9 +55,9 @@ struct GyrostatStep {
 template <int W>
 void show_gyrostat(const GyrostatStep& g, const double* state);
 
-/// One step of dt [s] of the classical fourth-order Runge-Kutta method, W rotors at once. Begins
-/// with the motion of `state` shown, and ends so.
+/// One step of dt from a time on [s] of the classical fourth-order Runge-Kutta method, W rotors at
+/// once. Begins with the motion of `state` shown, and ends so.
 template <int W>
-void step_gyrostat(const GyrostatStep& g, double dt);
+void step_gyrostat(const GyrostatStep& g, double time, double dt);
 
 }  // namespace quadcore

@@ -37,8 +37,6 @@ QUADCORE_LAW void show(const GyrostatStep& g, const double* state) {
   laws::store_vector(g.frame + FrameNumber::v_WF_F, v_WF_F);
   laws::store_vector(g.frame + FrameNumber::p_WF,
                      laws::load<Four>(state + At::position) - R.to * p_FCcm_F);
-  if (g.windy)
-    laws::store_vector(g.frame + FrameNumber::v_WA_F, R.from * laws::load<Four>(g.wind_W));
 
   const Vec3<T> v = laws::broadcast<T>(g.frame + FrameNumber::v_WF_F),
                 w = laws::broadcast<T>(state + At::rate);
@@ -172,14 +170,16 @@ void show_gyrostat(const GyrostatStep& g, const double* state) {
 }
 
 template <int W>
-void step_gyrostat(const GyrostatStep& g, double dt) {
+void step_gyrostat(const GyrostatStep& g, double time, double dt) {
   static constexpr double weights[] = {1, 2, 2, 1};
   const double reaches[] = {dt / 2, dt / 2, dt, 0};
   for_all<W>(g, [&](std::size_t at, auto zero) QUADCORE_INLINED { laws::store(g.sum + at, zero); });
   const double* state = g.state;
+  g.frame[FrameNumber::time] = time;
   for (int stage = 0; stage < 4; ++stage) {
     differentiate<W>(g, state, {weights[stage], reaches[stage]});
     if (stage < 3) {
+      g.frame[FrameNumber::time] = time + reaches[stage];
       state = g.stage;
     } else {
       for_all<W>(g, [&](std::size_t at, auto zero) QUADCORE_INLINED {
@@ -194,6 +194,6 @@ void step_gyrostat(const GyrostatStep& g, double dt) {
 }
 
 template void show_gyrostat<QUADCORE_LANES>(const GyrostatStep&, const double*);
-template void step_gyrostat<QUADCORE_LANES>(const GyrostatStep&, double);
+template void step_gyrostat<QUADCORE_LANES>(const GyrostatStep&, double, double);
 
 }  // namespace quadcore

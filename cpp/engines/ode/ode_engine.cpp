@@ -66,7 +66,6 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
                                   model_.joints[i].pose.rotation().toRotationMatrix());
   }
   mass_ = mass_properties(model_).mass;
-  wind_W_ = world.wind_W;
   gravity_z_ = world.gravity_W.z();
   choose_method(world);
 }
@@ -188,8 +187,9 @@ void OdeEngine::place(std::size_t link, const Eigen::Isometry3d& X_WL, const Vec
   dBodySetAngularVel(body, w_WL_W.x(), w_WL_W.y(), w_WL_W.z());
 }
 
-void OdeEngine::step(double dt, const ForceField& forces) {
+void OdeEngine::step(double time, double dt, const ForceField& forces) {
   start_ode();
+  kinematics_.time = time;
   loads_.clear();
   forces.evaluate(kinematics_, loads_);
   if (!loads_.all_finite()) forces.refuse(kinematics_, loads_);  // ODE ends the process for less
@@ -287,7 +287,6 @@ void OdeEngine::read_kinematics() {
   const Vector3d v_WFcm_F = R_FW * vec(dBodyGetLinearVel(bodies_[0]));
   k.v_WF_F = v_WFcm_F - k.w_WF_F.cross(p_FFcm_F);
   k.p_WF = vec(dBodyGetPosition(bodies_[0])) - k.R_WF * p_FFcm_F;
-  k.v_WA_F = R_FW * wind_W_;
   k.p_FCcm_F = model_.links[0].inertial.mass * p_FFcm_F;
   k.v_WCcm_F = model_.links[0].inertial.mass * v_WFcm_F;
   for (std::size_t i = 0; i < hinges_.size(); ++i) {

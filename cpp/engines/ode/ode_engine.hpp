@@ -32,8 +32,8 @@ class OdeEngine final : public Engine {
   OdeEngine(const Model& model, const World& world, const OdeRecipe& recipe);
 
   const Model& model() const override { return model_; }
-  void step(double dt, const ForceField& forces) override;
-  const Kinematics& kinematics() const override { return kinematics_; }
+  void step(double time, double dt, const ForceField& forces) override;
+  Kinematics& kinematics() override { return kinematics_; }
   void get_state(VehicleState& state) const override;
   void set_state(const VehicleState& state) override;
   std::vector<double> save() const override;
@@ -80,7 +80,6 @@ class OdeEngine final : public Engine {
   std::vector<dJointFeedback> feedback_;  ///< one per hinge in a world with ground
   std::unique_ptr<GyroscopicVehicle> gyroscopic_;
   double mass_ = 0;
-  Vector3d wind_W_;
   double gravity_z_ = 0;
   Kinematics kinematics_;
   Loads loads_;

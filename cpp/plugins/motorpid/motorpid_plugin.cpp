@@ -143,9 +143,7 @@ PluginDescriptor describe() {
           T::joints("rotorJoints", "the rotors, in the order of the command's numbers"),
       },
       {},
-      [](const PluginSetup& setup) -> std::unique_ptr<Plugin> {
-        return std::make_unique<MotorPidPlugin>(setup);
-      },
+      create<MotorPidPlugin>,
   };
 }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
@@ -36,7 +37,7 @@ class OdometryPlugin final : public Plugin {
     const bool own_seed = setup.parameters.has("seed");
     const double seed = own_seed ? setup.parameters.number("seed") : 0;
     if (seed != std::floor(seed)) throw InputError("<seed> is not a whole number; write one");
-    seed_ = stream_seed(own_seed ? static_cast<std::uint64_t>(seed) : setup.seed, setup.name);
+    if (own_seed) seed_ = stream_seed(static_cast<std::uint64_t>(seed), setup.name);
     topic_ =
         setup.topics.declare("odom", {"x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx",
                                       "wy", "wz", "position_variance", "orientation_variance",
@@ -50,14 +51,15 @@ class OdometryPlugin final : public Plugin {
     if (due == state[kMessages] && !sample.jumped) return;
     state[kMessages] = due;
 
+    const std::uint64_t seed = seed_.value_or(sample.seed);
     const auto noisy = [&](const Vector3d& v, double deviation) -> Vector3d {
-      return deviation == 0 ? v : v + deviation * normal_vector(state[kDraws]);
+      return deviation == 0 ? v : v + deviation * normal_vector(seed, state[kDraws]);
     };
     const Kinematics& k = sample.kinematics;
     const Vector3d p_WF = noisy(k.p_WF, config_.position_noise);
     Quaterniond q_WF = k.q_WF;
     if (config_.orientation_noise != 0) {
-      const Vector3d turn = config_.orientation_noise * normal_vector(state[kDraws]);
+      const Vector3d turn = config_.orientation_noise * normal_vector(seed, state[kDraws]);
       const double angle = turn.norm();
       if (angle > 0) q_WF = q_WF * quaternion_about(turn / angle, angle);
     }
@@ -88,14 +90,14 @@ class OdometryPlugin final : public Plugin {
   }
 
  private:
-  Vector3d normal_vector(double& draws) const {
+  static Vector3d normal_vector(std::uint64_t seed, double& draws) {
     Vector3d v;
-    for (int i = 0; i < 3; ++i) v[i] = random_normal(seed_, draws);
+    for (int i = 0; i < 3; ++i) v[i] = random_normal(seed, draws);
     return v;
   }
 
   Config config_;
-  std::uint64_t seed_;
+  std::optional<std::uint64_t> seed_;  ///< its own, if it has one
   std::size_t topic_;
 };
 
@@ -127,9 +129,7 @@ PluginDescriptor describe() {
               .or_absent("the simulation's seed"),
       },
       {},
-      [](const PluginSetup& setup) -> std::unique_ptr<Plugin> {
-        return std::make_unique<OdometryPlugin>(setup);
-      },
+      create<OdometryPlugin>,
   };
 }
 

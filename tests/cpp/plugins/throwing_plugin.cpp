@@ -45,9 +45,7 @@ PluginDescriptor describe() {
                "which hook throws"),
            TagSpec::number("after", "s", "0", "when").at_least(0)},
           {"luck"},
-          [](const PluginSetup& setup) -> std::unique_ptr<Plugin> {
-            return std::make_unique<ThrowingPlugin>(setup);
-          }};
+          create<ThrowingPlugin>};
 }
 
 }  // namespace

@@ -28,6 +28,16 @@ class FaultyPlugin final : public quadcore::Plugin {
   void sense(const quadcore::Sample& sample, quadcore::PluginState) const override {
     throw_in("sense", sample.time);
   }
+  void air(const quadcore::Kinematics&, quadcore::ConstPluginState state,
+           Vector3d& v_WA_W) const override {
+    throw_in("air", state[0]);
+    if (fault_ == "air_nan" && state[0] >= after_) v_WA_W.y() = NAN;
+  }
+  void carried(quadcore::ConstPluginState state,
+               std::vector<quadcore::CarriedBody>& bodies) const override {
+    throw_in("carried", state[0]);
+    if (fault_ == "massless" && state[0] >= after_) bodies.push_back({"cargo", {}, {}});
+  }
   void forces(const quadcore::Kinematics&, quadcore::ConstPluginState state,
               quadcore::Loads& loads) const override {
     throw_in("forces", state[0]);
@@ -59,12 +69,14 @@ quadcore::PluginDescriptor describe() {
 #endif
   return {
       "throws",
-      {TagSpec::choice(
-           "fault", {"none",        "create",       "create_number", "warning",     "null",
-                     "tag",         "update",       "update_number", "forces",      "forces_number",
-                     "sense",       "sense_number", "state",         "nan",         "infinity",
-                     "rotor_force", "rotor_torque", "term_force",    "term_torque", "command"},
-           "where"),
+      {TagSpec::choice("fault",
+                       {"none",     "create",      "create_number", "warning",    "null",
+                        "tag",      "update",      "update_number", "forces",     "forces_number",
+                        "air",      "air_number",  "air_nan",       "carried",    "carried_number",
+                        "massless", "sense",       "sense_number",  "state",      "nan",
+                        "infinity", "rotor_force", "rotor_torque",  "term_force", "term_torque",
+                        "command"},
+                       "where"),
        TagSpec::number("after", "s", "0", "not before this time")},
 #ifdef NAMED_TWICE
       {"fault", "fault"},
@@ -72,12 +84,12 @@ quadcore::PluginDescriptor describe() {
       {"fault"},
 #endif
 #ifdef WITHOUT_CREATE
-      nullptr,
+      {nullptr},
 #else
-      [](const quadcore::PluginSetup& setup) -> std::unique_ptr<quadcore::Plugin> {
+      {[](const quadcore::PluginSetup& setup) -> std::unique_ptr<quadcore::Plugin> {
         if (setup.parameters.choice("fault") == "null") return nullptr;
         return std::make_unique<FaultyPlugin>(setup);
-      },
+      }},
 #endif
   };
 }

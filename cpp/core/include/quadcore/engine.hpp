@@ -13,13 +13,14 @@
 
 namespace quadcore QUADCORE_EXPORT {
 
-/// The force laws of all plugins: a pure function of the kinematics that an engine may evaluate as
-/// often as its integrator needs.
+/// The air and the force laws of all plugins: a pure function of time and motion that an engine may
+/// evaluate as often as its integrator needs.
 class ForceField {
  public:
   virtual ~ForceField() = default;
-  /// Adds to `loads`, which the caller has cleared.
-  virtual void evaluate(const Kinematics& kinematics, Loads& loads) const = 0;
+  /// Puts the air's velocity into `kinematics`, whose time and motion the caller has filled, and
+  /// adds to `loads`, which the caller has cleared.
+  virtual void evaluate(Kinematics& kinematics, Loads& loads) const = 0;
   /// Throws because what evaluate() added to `loads` is not finite.
   [[noreturn]] virtual void refuse(const Kinematics& kinematics, Loads& loads) const;
 };
@@ -32,10 +33,10 @@ class Engine {
 
   /// The model as this engine flies it (gazebo11 rounds its numbers).
   virtual const Model& model() const = 0;
-  /// Advances by dt [s]. Allocates nothing.
-  virtual void step(double dt, const ForceField& forces) = 0;
-  /// The motion now.
-  virtual const Kinematics& kinematics() const = 0;
+  /// Advances by dt from a time on [s]. Allocates nothing.
+  virtual void step(double time, double dt, const ForceField& forces) = 0;
+  /// The motion now. Its time and air are the caller's to write.
+  virtual Kinematics& kinematics() = 0;
   /// The state now; `state.time` is left alone.
   virtual void get_state(VehicleState& state) const = 0;
   /// Moves the vehicle to a state; `state.time` is ignored.

@@ -44,6 +44,7 @@ class RotorMotions : public RotorRows<MotionRow::count> {
 /// Motion of the frame at one instant.
 struct FrameMotion {
   Vector3d p_WF = Vector3d::Zero();            ///< position of the frame's origin [m]
+  double time = 0;                             ///< of the instant: of a stage within a step [s]
   Quaterniond q_WF = Quaterniond::Identity();  ///< orientation of the frame, unit
   Matrix3d R_WF = Matrix3d::Identity();        ///< the same as a matrix
   Vector3d v_WF_F = Vector3d::Zero();          ///< velocity of the frame's origin [m/s]
@@ -56,6 +57,7 @@ struct FrameMotion {
   double* numbers() { return p_WF.data(); }
   const double* numbers() const { return p_WF.data(); }
 };
+static_assert(offsetof(FrameMotion, time) == FrameNumber::time * sizeof(double));
 static_assert(offsetof(FrameMotion, q_WF) == FrameNumber::q_WF * sizeof(double));
 static_assert(offsetof(FrameMotion, R_WF) == FrameNumber::R_WF * sizeof(double));
 static_assert(offsetof(FrameMotion, v_WF_F) == FrameNumber::v_WF_F * sizeof(double));
@@ -75,6 +77,10 @@ class Kinematics : public FrameMotion {
       : rotors(rotor_count), has_rotations_(has_rotations) {}
 
   bool has_rotations() const { return has_rotations_; }
+  /// Velocity in the world, in its axes, of the frame's point S, which is p_FS_F from F's origin
+  /// [m/s].
+  Vector3d v_WS_W(const Vector3d& p_FS_F) const { return R_WF * (v_WF_F + w_WF_F.cross(p_FS_F)); }
+
   /// Orientation of rotor i's spinning link in the frame.
   Matrix3d R_FR(std::size_t i) const;
   /// Angle of joint i in (-pi, pi] [rad].

@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
+#include "quadcore/carried_body.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/export.hpp"
 #include "quadcore/kinematics.hpp"
@@ -13,6 +15,8 @@
 #include "quadcore/plugin_interface.hpp"
 #include "quadcore/tags.hpp"
 #include "quadcore/topics.hpp"
+#include "quadcore/vehicle_description.hpp"
+#include "quadcore/world.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 
@@ -26,25 +30,51 @@ struct Sample {
   double time;                   ///< s
   double dt;                     ///< length of the step [s]
   const Kinematics& kinematics;  ///< motion at `time`
+  const World& world;
   Topics& topics;
   std::vector<std::string>& warnings;  ///< what the user must know, each once per flight
-  bool jumped = false;  ///< the motion was set, not flown: sensors answer at once, due or not
+  std::uint64_t seed = 0;  ///< of the plugin's random numbers: the simulation's, and the name's
+  bool jumped = false;     ///< the motion was set, not flown: sensors answer at once, due or not
 };
 
 /// A loaded plugin. It is immutable once created: whatever changes during a flight lives in the
-/// PluginState that each hook is handed. Hooks may throw FlightError to end the flight.
+/// PluginState that each hook is handed. Hooks may throw FlightError to end the flight. Those that
+/// are handed a ConstPluginState are pure functions.
 class Plugin {
  public:
   virtual ~Plugin() = default;
 
   /// Numbers of state this plugin needs.
   virtual std::size_t state_size() const { return 0; }
+  /// Once, when all plugins are made: the last moment at which a plugin may change.
+  virtual void prepare(const VehicleDescription&) {}
   /// Once per step, at its start: commands, sampled control laws.
   virtual void update(const Sample&, PluginState) const {}
   /// At time 0, after a state was set, and at the end of each step: sensors.
   virtual void sense(const Sample&, PluginState) const {}
-  /// The force law: a pure function, evaluated as often as the engine's integrator needs.
+  /// The force law, evaluated as often as the engine's integrator needs.
   virtual void forces(const Kinematics&, ConstPluginState, Loads&) const {}
+  /// Adds to the velocity of the air at the frame's origin, in world axes [m/s], before any force
+  /// law is asked. The velocity that the motion holds is zero still.
+  virtual void air(const Kinematics&, ConstPluginState, Vector3d& /*v_WA_W*/) const {}
+  /// Adds the bodies that ride on the frame, once per step after all updates. Where the answer
+  /// changes, the vehicle goes on as one of another mass, its frame moving as it did.
+  virtual void carried(ConstPluginState, std::vector<CarriedBody>&) const {}
+};
+
+/// Which hooks a class of plugins has of its own; the others are never called.
+struct Hooks {
+  bool prepare = true, update = true, sense = true, forces = true, air = true, carried = true;
+
+  template <class P>
+  static constexpr Hooks of() {
+    return {!std::is_same_v<decltype(&P::prepare), decltype(&Plugin::prepare)>,
+            !std::is_same_v<decltype(&P::update), decltype(&Plugin::update)>,
+            !std::is_same_v<decltype(&P::sense), decltype(&Plugin::sense)>,
+            !std::is_same_v<decltype(&P::forces), decltype(&Plugin::forces)>,
+            !std::is_same_v<decltype(&P::air), decltype(&Plugin::air)>,
+            !std::is_same_v<decltype(&P::carried), decltype(&Plugin::carried)>};
+  }
 };
 
 /// What a plugin is made from.
@@ -52,20 +82,34 @@ struct PluginSetup {
   const std::string& name;  ///< name attribute of the plugin tag
   const Parameters& parameters;
   const Model& model;
+  const World& world;
   Topics& topics;                      ///< declare topics here
-  std::uint64_t seed;                  ///< the simulation's
   std::vector<std::string>& warnings;  ///< what is allowed but was perhaps not meant
   /// Rate at which the engine's step no longer makes an error decay but grow, where the force law
   /// makes it decay faster than this [1/s].
   double fastest_decay;
 };
 
+/// Makes plugins of one class.
+struct PluginMaker {
+  std::unique_ptr<Plugin> (*make)(const PluginSetup&) = nullptr;
+  Hooks hooks = {};
+
+  explicit operator bool() const { return make; }
+};
+
+/// The maker of a class that a PluginSetup constructs.
+template <class P>
+constexpr PluginMaker create{
+    [](const PluginSetup& setup) -> std::unique_ptr<Plugin> { return std::make_unique<P>(setup); },
+    Hooks::of<P>()};
+
 /// What a module says of itself.
 struct PluginDescriptor {
   std::string summary;                ///< one line
   std::vector<TagSpec> tags;          ///< every parameter
   std::vector<std::string> wrenches;  ///< names of the wrench terms that forces() reports
-  std::unique_ptr<Plugin> (*create)(const PluginSetup&);
+  PluginMaker create;                 ///< create<P>, P being the class of the plugin
 };
 
 /// What a library holds: the first that is read of it, so it stays as it is for ever.

@@ -23,7 +23,8 @@ constexpr std::size_t rotor_offset(std::size_t rows, std::size_t i) {
 struct FrameNumber {
   enum : std::size_t {
     p_WF = 0,
-    q_WF = 4,  ///< behind a gap
+    time = 3,
+    q_WF = 4,
     R_WF = 8,
     v_WF_F = 17,
     w_WF_F = 20,

@@ -23,10 +23,12 @@ struct LoadedPlugin {
   std::string path;
   const PluginDescriptor* descriptor;
   Parameters parameters;
-  std::unique_ptr<const Plugin> plugin;
+  std::unique_ptr<Plugin> plugin;  ///< no longer changed once the simulation is made
   Eigen::Index state_begin = 0;
   Eigen::Index state_size = 0;
   std::size_t term_begin = 0;  ///< first of its wrench terms among all
+  std::string who = {};        ///< for errors: FILE:LINE: plugin 'name'
+  std::uint64_t seed = 0;      ///< of its random numbers
 };
 
 /// Everything that the future of a simulation depends on.
@@ -34,6 +36,7 @@ struct Snapshot {
   std::string kind;  ///< of simulation: engine, step, bodies, plugins, topics
   double start_time = 0;
   std::int64_t steps = 0;
+  std::uint64_t seed = 0;
   std::vector<double> engine;
   VectorXd plugin_state;
   Topics topics;
@@ -44,7 +47,7 @@ struct Snapshot {
 struct SimulationOptions {
   std::string engine = "gazebo11";
   std::optional<double> dt = {};  ///< s, from 1e-9; the world's max_step_size if absent
-  std::uint64_t seed = 0;
+  std::uint64_t seed = 0;         ///< of all random numbers
   /// "PLUGIN.TAG" -> value, wins over the URDF.
   std::map<std::string, std::string> parameters = {};
   Pose spawn = {};
@@ -74,6 +77,7 @@ class Simulation : private ForceField {
   /// How the engine takes its steps, in one line for a person.
   std::string method() const { return engine_->method(); }
   const Model& model() const { return engine_->model(); }
+  const World& world() const { return world_; }
   const VehicleState& state() const { return state_; }
   const Topics& topics() const { return topics_; }
   const std::vector<LoadedPlugin>& plugins() const { return plugins_; }
@@ -89,8 +93,9 @@ class Simulation : private ForceField {
   Snapshot snapshot() const;
   /// Throws InputError if the snapshot's simulation had another engine, step, bodies or plugins.
   void restore(const Snapshot& snapshot);
-  /// Back to the moment of construction, bit for bit.
-  void reset() { restore(initial_); }
+  /// Back to the moment of construction, bit for bit, as if it had been made with the seed.
+  void reset(std::uint64_t seed);
+  void reset() { reset(seed_); }
 
   /// Names of all wrench terms, in the order of wrenches().
   const std::vector<std::string>& wrench_terms() const { return wrench_terms_; }
@@ -99,18 +104,33 @@ class Simulation : private ForceField {
   const std::vector<Wrench>& wrenches();
 
  private:
-  void evaluate(const Kinematics& kinematics, Loads& loads) const override;
+  void evaluate(Kinematics& kinematics, Loads& loads) const override;
   /// Blames the first plugin that makes the sum infinite or NaN.
   [[noreturn]] void refuse(const Kinematics& kinematics, Loads& loads) const override;
   void warn(const std::string& warning);  ///< nothing if empty
   std::string describe_idle(const Model& model) const;
   void load_plugins(const Model& model, const SimulationOptions& options);
+  void note_hooks();       ///< who has which
+  void prepare_plugins();  ///< tells those that ask what they fly
+  VehicleDescription describe_vehicle();
+  Wrench probe(Eigen::Index rotor, double rate);
+  void plant_seed(std::uint64_t seed);
+  void place(const VehicleState& state);
+  /// Makes the engine anew if, with this state of the plugins, something else rides on the frame.
+  void take_along(const VectorXd& plugin_state);
+  void begin();  ///< lets the sensors know where the motion begins
   void check_flight() const;
   /// What to do about a motion that got out of hand, or the warning that told it.
   std::string advice() const;
   std::string describe_kind() const;
-  void show_state();  ///< brings state_ up to date
+  void show_state();    ///< brings state_ up to date
+  void show_instant();  ///< writes time and air into the engine's motion
+  void blow(Kinematics& kinematics) const;
+  void push(const Kinematics& kinematics, Loads& loads) const;
   PluginState state_of(const LoadedPlugin& p) {
+    return {plugin_state_.data() + p.state_begin, p.state_size};
+  }
+  ConstPluginState state_of(const LoadedPlugin& p) const {
     return {plugin_state_.data() + p.state_begin, p.state_size};
   }
   /// The hook of a plugin runs next: who to blame, and whose messages those are.
@@ -130,7 +150,10 @@ class Simulation : private ForceField {
   [[noreturn]] void fail(const std::string& what);
 
   std::string engine_name_;
+  const Model model_;  ///< as the URDF has it
+  const World world_;
   double dt_;
+  std::uint64_t seed_ = 0;
   std::string kind_;  ///< of its snapshots
   std::vector<std::string> warnings_;
   std::size_t warnings_at_load_ = 0;  ///< the first of warnings_, which are not of a flight
@@ -138,8 +161,15 @@ class Simulation : private ForceField {
   std::vector<std::string> ignored_;
   Topics topics_;
   std::vector<LoadedPlugin> plugins_;
+  /// Those that have a hook, in the order in which it is called.
+  struct {
+    std::vector<const LoadedPlugin*> update, sense, forces, air, carried;
+  } with_;
+  bool windy_ = false;  ///< whether anything moves the air
   std::vector<std::string> wrench_terms_;
   std::unique_ptr<Engine> engine_;
+  std::vector<CarriedBody> carried_;  ///< by the engine's vehicle
+  std::vector<CarriedBody> asked_;    ///< for, most recently
   int command_topic_ = -1;
 
   double start_time_ = 0;
@@ -148,7 +178,7 @@ class Simulation : private ForceField {
   VehicleState state_;
   std::string failure_;                           ///< why the flight ended; "" while it goes on
   mutable const LoadedPlugin* active_ = nullptr;  ///< whose hook is running, to blame it
-  Snapshot initial_;
+  Snapshot initial_;                              ///< before anything was sensed
 
   Loads wrench_loads_;
   std::vector<Wrench> wrenches_;

@@ -26,6 +26,8 @@ std::size_t character_size(const std::string& text, std::size_t at);
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& candidates);
 /// Whether two names differ in a few letters only.
 bool is_slip(const std::string& a, const std::string& b);
+/// "1.250000 s", which std::to_string would write with a comma in some locales.
+std::string seconds(double time);
 /// "a, b, c"
 std::string joined(const std::vector<std::string>& names);
 

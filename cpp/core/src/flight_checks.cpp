@@ -1,0 +1,57 @@
+#include "flight_checks.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "quadcore/error.hpp"
+#include "quadcore/simulation.hpp"
+
+namespace quadcore {
+namespace {
+
+/// Beyond these no flight is meant; the numbers only say "diverged" before they overflow.
+constexpr double max_rate = Simulation::max_rate;  // rad/s
+constexpr double max_speed = 1e6;                  // m/s
+constexpr double max_distance = 1e9;               // m
+constexpr double max_time = 1e9;  // s; far beyond, a step no longer moves the clock
+
+}  // namespace
+
+bool is_finite(const Kinematics& k) {
+  double rates = 0;
+  for (std::size_t i = 0; i < k.rotors.size(); ++i) rates += k.rotors[i].rate;
+  return k.p_WF.allFinite() && k.q_WF.coeffs().allFinite() && k.v_WF_F.allFinite() &&
+         k.w_WF_F.allFinite() && std::isfinite(rates);
+}
+
+bool is_sane(const Kinematics& k) {
+  // Comparisons are written so that NaN fails them.
+  bool sane = k.p_WF.squaredNorm() < max_distance * max_distance && k.q_WF.squaredNorm() < 2 &&
+              k.v_WF_F.squaredNorm() < max_speed * max_speed &&
+              k.w_WF_F.squaredNorm() < max_rate * max_rate;
+  for (std::size_t i = 0; i < k.rotors.size(); ++i) {
+    sane = sane && std::abs(k.rotors[i].rate) < max_rate;
+  }
+  return sane;
+}
+
+void check_state(const VehicleState& state, Eigen::Index rotors) {
+  if (state.rotor_velocity.size() != rotors || state.rotor_angle.size() != rotors) {
+    throw InputError("state: this vehicle has " + std::to_string(rotors) +
+                     " rotors; give as many velocities and angles");
+  }
+  if (!std::isfinite(state.time) || !state.position.allFinite() ||
+      !state.orientation.coeffs().allFinite() || !state.linear_velocity.allFinite() ||
+      !state.angular_velocity.allFinite() || !state.rotor_velocity.allFinite() ||
+      !state.rotor_angle.allFinite()) {
+    throw InputError("state: a value is not a finite number");
+  }
+  if (std::abs(state.time) > max_time) {
+    throw InputError("state: the time is beyond 1e9 s; give the seconds since the flight began");
+  }
+  if (!(state.orientation.norm() > 1e-6)) {
+    throw InputError("state: the orientation is no quaternion; give a unit (x, y, z, w)");
+  }
+}
+
+}  // namespace quadcore

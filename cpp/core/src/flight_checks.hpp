@@ -1,0 +1,18 @@
+#pragma once
+
+#include "quadcore/kinematics.hpp"
+#include "quadcore/state.hpp"
+
+namespace quadcore {
+
+constexpr const char* no_longer_finite = "the state is no longer finite";
+
+bool is_finite(const Kinematics& kinematics);
+
+/// Whether a motion is one that a flight may mean; NaN is none.
+bool is_sane(const Kinematics& kinematics);
+
+/// Throws InputError on a state that no vehicle of so many rotors can be in.
+void check_state(const VehicleState& state, Eigen::Index rotors);
+
+}  // namespace quadcore

@@ -1,0 +1,135 @@
+#include <algorithm>
+
+#include "flight_checks.hpp"
+#include "quadcore/error.hpp"
+#include "quadcore/simulation.hpp"
+#include "quadcore/text.hpp"
+
+namespace quadcore {
+
+void Simulation::note_hooks() {
+  for (const LoadedPlugin& p : plugins_) {
+    const Hooks& hooks = p.descriptor->create.hooks;
+    if (hooks.update) with_.update.push_back(&p);
+    if (hooks.sense) with_.sense.push_back(&p);
+    if (hooks.forces) with_.forces.push_back(&p);
+    if (hooks.air) with_.air.push_back(&p);
+    if (hooks.carried) with_.carried.push_back(&p);
+  }
+  windy_ = !world_.wind_W.isZero(0) || !with_.air.empty();
+}
+
+void Simulation::show_instant() {
+  Kinematics& kinematics = engine_->kinematics();
+  kinematics.time = time();
+  if (windy_) blow(kinematics);
+}
+
+void Simulation::blow(Kinematics& kinematics) const {
+  Vector3d v_WA_W = world_.wind_W;
+  kinematics.v_WA_F.setZero();
+  for (const LoadedPlugin* const p : with_.air) {
+    active_ = p;
+    p->plugin->air(kinematics, state_of(*p), v_WA_W);
+    if (!v_WA_W.allFinite()) throw Error("the velocity of the air is not a finite number");
+  }
+  active_ = nullptr;
+  kinematics.v_WA_F = kinematics.R_WF.transpose() * v_WA_W;
+}
+
+void Simulation::evaluate(Kinematics& kinematics, Loads& loads) const {
+  if (windy_) blow(kinematics);
+  push(kinematics, loads);
+}
+
+void Simulation::push(const Kinematics& kinematics, Loads& loads) const {
+  Wrench* const terms = loads.terms();
+  for (const LoadedPlugin* const p : with_.forces) {
+    if (terms) {
+      loads.record_terms(terms + p->term_begin, p->descriptor->wrenches.size(), &kinematics);
+    }
+    active_ = p;
+    p->plugin->forces(kinematics, state_of(*p), loads);
+  }
+  active_ = nullptr;
+}
+
+void Simulation::refuse(const Kinematics& kinematics, Loads& loads) const {
+  if (!is_finite(kinematics)) throw Error(no_longer_finite + advice());
+  // Force laws are pure: asked again one by one, the same one spoils the sum.
+  loads.clear();
+  loads.record_terms(nullptr, 0, nullptr);
+  for (const LoadedPlugin* const p : with_.forces) {
+    active_ = p;
+    p->plugin->forces(kinematics, state_of(*p), loads);
+    if (!loads.all_finite()) break;
+  }
+  ForceField::refuse(kinematics, loads);
+}
+
+void Simulation::take_along(const VectorXd& plugin_state) {
+  if (with_.carried.empty()) return;
+  asked_.clear();
+  bool changed = false;
+  for (const LoadedPlugin* const p : with_.carried) {
+    active_ = p;
+    std::size_t i = asked_.size();
+    p->plugin->carried({plugin_state.data() + p->state_begin, p->state_size}, asked_);
+    for (; i < asked_.size(); ++i) {
+      if (i < carried_.size() && asked_[i] == carried_[i]) continue;
+      check_carried(asked_, i, model_);
+      changed = true;
+    }
+  }
+  active_ = nullptr;
+  if (!changed && asked_.size() == carried_.size()) return;
+  std::unique_ptr<Engine> engine = make_engine(engine_name_, with_carried(model_, asked_), world_);
+  engine_->get_state(state_);
+  engine->set_state(state_);
+  engine_ = std::move(engine);
+  carried_ = asked_;
+  show_instant();
+}
+
+const std::vector<Wrench>& Simulation::wrenches() {
+  std::fill(wrenches_.begin(), wrenches_.end(), Wrench{});
+  wrench_loads_.clear();
+  wrench_loads_.record_terms(wrenches_.data(), wrenches_.size(), &engine_->kinematics());
+  try {
+    evaluate(engine_->kinematics(), wrench_loads_);
+  } catch (...) {
+    fail(what_was_thrown());
+  }
+  return wrenches_;
+}
+
+void Simulation::sense(bool jumped) {
+  Sample sample{time(), dt_, engine_->kinematics(), world_, topics_, said_, 0, jumped};
+  for (const LoadedPlugin* const p : with_.sense) {
+    enter(*p);
+    sample.seed = p->seed;
+    p->plugin->sense(sample, state_of(*p));
+    if (!said_.empty()) collect_warnings();
+  }
+  leave();
+}
+
+void Simulation::update() {
+  Sample sample{time(), dt_, engine_->kinematics(), world_, topics_, said_};
+  for (const LoadedPlugin* const p : with_.update) {
+    enter(*p);
+    sample.seed = p->seed;
+    p->plugin->update(sample, state_of(*p));
+    if (!said_.empty()) collect_warnings();
+  }
+  leave();
+}
+
+void Simulation::collect_warnings() {
+  for (const std::string& what : said_) {
+    warnings_.push_back("t = " + seconds(time()) + ": plugin '" + active_->name + "': " + what);
+  }
+  said_.clear();
+}
+
+}  // namespace quadcore

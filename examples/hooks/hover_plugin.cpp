@@ -1,0 +1,46 @@
+#include <algorithm>
+#include <cmath>
+#include <quadcore/error.hpp>
+#include <quadcore/plugin.hpp>
+
+namespace {
+
+/// Commands the speed at which the rotors carry the vehicle, turning to and fro by turns, whatever
+/// the vehicle weighs and whichever plugin exerts their thrust.
+class HoverPlugin final : public quadcore::Plugin {
+ public:
+  explicit HoverPlugin(const quadcore::PluginSetup& setup) {
+    std::vector<std::string> fields;
+    for (const std::string& joint : setup.model.joint_names()) fields.push_back(joint);
+    speeds_.resize(fields.size());
+    topic_ = setup.topics.declare("vel_cmd", fields);
+  }
+
+  void prepare(const quadcore::VehicleDescription& vehicle) override {
+    double lift = 0;  // N s^2/rad^2
+    for (std::size_t i = 0; i < speeds_.size(); ++i) {
+      const quadcore::RotorDescription& rotor = vehicle.rotors[i];
+      lift += (i % 2 == 0 ? rotor.forward : rotor.backward).force_F.z();
+    }
+    if (!(lift > 0)) throw quadcore::InputError("the rotors lift nothing; add their force laws");
+    const double speed = std::sqrt(vehicle.body.mass * vehicle.gravity_W.norm() / lift);
+    for (std::size_t i = 0; i < speeds_.size(); ++i) speeds_[i] = i % 2 == 0 ? speed : -speed;
+  }
+
+  void update(const quadcore::Sample& sample, quadcore::PluginState) const override {
+    std::copy(speeds_.begin(), speeds_.end(), sample.topics.values(topic_).begin());
+    sample.topics.publish(topic_, sample.time);
+  }
+
+ private:
+  std::vector<double> speeds_;  ///< rad/s
+  std::size_t topic_;
+};
+
+quadcore::PluginDescriptor describe() {
+  return {"commands the rotor speeds of a hover", {}, {}, quadcore::create<HoverPlugin>};
+}
+
+}  // namespace
+
+QUADCORE_REGISTER_PLUGIN(describe)
