@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from faults import refusal
 from gyrostat import Gyrostat
-from vehicles import CROSS, MOTOR, ROUND, start, vehicle
+from vehicles import AIR, CROSS, HEIGHT, LIFT, MOTOR, ROUND, Rotor, start, vehicle
 
 import quadcore as qc
 
@@ -109,3 +110,44 @@ def test_the_derivative_is_that_of_the_last_step(hangar, engine):
         error = speed - SPEEDS[0]
         torque = -MOTOR["kp"] * error - kd * (error - error_before) / dt
         speed, error_before = speed + dt * torque / MOMENT, error
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("sim_slow", [1, 10])
+@pytest.mark.parametrize("drag_model", ["appendix", "chapter2"])
+def test_rotors_that_the_air_brakes_coast_to_rest(hangar, engine, sim_slow, drag_model):
+    air = {**AIR, "reactionOn": "rotor", "sim_slow": sim_slow, "dragModel": drag_model}
+    simulation = hangar(vehicle(air=air), engine=engine)
+    log = start(simulation, rotor_velocity=SPEEDS / sim_slow).run(1)
+    brake = LIFT["rotorTorqueCoeff"] * sim_slow * 471 / MOMENT
+    if engine == "eigen":
+        speed = 471 / (1 + brake * log.time)
+    else:  # explicit steps
+        speed = np.full(len(log), 471.0)
+        for i in range(1, len(log)):
+            speed[i] = speed[i - 1] - 1e-3 * brake * speed[i - 1] ** 2 / 471
+    assert np.allclose(log.rotor_velocity, np.outer(speed, WAYS) / sim_slow, rtol=1e-6, atol=0)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_the_frame_feels_through_its_motor_what_brakes_a_rotor(hangar, engine):
+    rotor = Rotor((0, 0, HEIGHT))
+    free, driven = (
+        hangar(vehicle([rotor], air={**AIR, "reactionOn": "rotor"}, motor=motor), engine=engine)
+        for motor in (None, MOTOR)
+    )
+    free = start(free, rotor_velocity=[300]).run(1)
+    assert np.abs(free.angular_velocity).max() < 1e-12  # no motor, nothing felt
+    driven.command([300])
+    log = driven.run(2)
+    momentum = driven.inertia[2, 2] * log.angular_velocity[:, 2] + MOMENT * log.rotor_velocity[:, 0]
+    torque = log.wrenches["reaction"][:, 5]
+    assert np.allclose(torque, -LIFT["rotorTorqueCoeff"] * log.rotor_velocity[:, 0] ** 2)
+    assert momentum[-1] < -0.01
+    assert momentum[-1] == pytest.approx(float(np.sum(torque[1:] + torque[:-1]) * 0.5e-3), rel=1e-3)
+
+
+def test_air_cannot_drive_the_rotor_that_it_brakes(hangar):
+    air = {**AIR, "reactionOn": "rotor", "reactionTorque": "thesis"}
+    message = refusal(hangar, vehicle(air=air))
+    assert message.endswith("cannot be thesis; write opposing, or leave it out")

@@ -16,6 +16,7 @@ enum Term { kThrust, kReaction, kInduced, kTranslational, kProfile, kParasitic, 
 struct Config {
   double sim_slow, parasitic;
   bool appendix;  ///< dragModel
+  bool on_rotor;  ///< reactionOn
   laws::Flapping flapping;
   std::vector<std::size_t> rotors;
   RotorRows<CoefficientRow::count> coefficients;  ///< 0 for the rotors of others
@@ -28,7 +29,14 @@ struct Config {
                  p.number("flappingB2"), p.number("rotorRadius")},
         rotors(p.joints("rotorJoints")),
         coefficients(rotor_count) {
-    const double reaction_sign = p.choice("reactionTorque") == "thesis" ? 1 : -1;
+    on_rotor = p.choice("reactionOn") == "rotor";
+    const bool as_in_thesis = p.choice("reactionTorque") == "thesis";
+    if (on_rotor && as_in_thesis && p.is_set("reactionTorque")) {
+      throw InputError(
+          "<reactionOn> rotor lets the air brake the rotors, so that <reactionTorque> cannot be "
+          "thesis; write opposing, or leave it out");
+    }
+    const double reaction_sign = as_in_thesis && !on_rotor ? 1 : -1;
     for (const std::size_t i : rotors) {
       const auto coefficient = [&](std::size_t row) -> double& {
         return coefficients.number(row, i);
@@ -47,14 +55,16 @@ struct Config {
 
   /// Chapter 2: the disc stands across the joint's axis and meets the moving air. Appendix A.5: it
   /// stands across the propeller link's z, the air is still everywhere, and the reaction turns the
-  /// frame about its own z. Points into this.
+  /// frame about its own z. On a rotor, whose joint hands it to the frame, the reaction takes that
+  /// back, so that the air's torque is on the vehicle once. Points into this.
   RotorForces law() const {
     RotorForces law;
     law.coefficients = coefficients.data();
     law.normal_row = appendix ? MotionRow::normal : MotionRow::axis;
     law.velocity_row = appendix ? MotionRow::v_WR : MotionRow::v_WRcm;
     law.meets_wind = !appendix;
-    law.about_frame_z = appendix;
+    law.about_frame_z = appendix && !on_rotor;
+    law.on_rotor = on_rotor;
     law.parasitic = appendix && parasitic != 0;
     law.flaps = flapping.A1c != 0 || flapping.A1s != 0 || flapping.B1 != 0 || flapping.B2 != 0;
     law.flapping = flapping;
@@ -83,6 +93,16 @@ void warn_without_drag(const PluginSetup& setup) {
       " compiled in: write these tags, or one of them with 0 to fly without drag");
 }
 
+/// What a joint hands on must reach the frame.
+void refuse_rotors_on_rotors(const PluginSetup& setup, const Config& config) {
+  for (const std::size_t i : config.rotors) {
+    const Joint& joint = setup.model.joints[i];
+    if (joint.parent == 0) continue;
+    throw InputError("<reactionOn> rotor: joint '" + joint.name + "' (" + joint.where +
+                     ") hangs on a link that moves; write frame, or hang it on the frame");
+  }
+}
+
 /// The laws take the propeller's z for up.
 void warn_of_axes_against_lift(const PluginSetup& setup, const Config& config) {
   for (const std::size_t i : config.rotors) {
@@ -109,6 +129,7 @@ class AerodynamicPlugin final : public Plugin {
     static constexpr laws::ForEachWidth<void(const RotorForcesNow&)> widths{
         &add_rotor_forces<1>, &add_rotor_forces<2>, &add_rotor_forces<4>, &add_rotor_forces<8>};
     add_ = widths[laws::lane_width(setup.model.joints.size())];
+    if (config_.on_rotor) refuse_rotors_on_rotors(setup, config_);
     warn_without_drag(setup);
     warn_of_axes_against_lift(setup, config_);
   }
@@ -171,8 +192,10 @@ class AerodynamicPlugin final : public Plugin {
       if (law_.parasitic) add(kParasitic, now.parasitic_F<double>(i));
       if (law_.flaps) add(kFlapping, now.flapping_F(disc, i));
       const double torque = now.reaction(disc, i);
-      loads.add_frame_torque(
-          kReaction, law_.about_frame_z ? Vector3d(0, 0, torque) : torque * vector(disc.axis_F));
+      loads.add_frame_torque(kReaction, law_.about_frame_z
+                                            ? Vector3d(0, 0, torque)
+                                            : torque * vector(now.reaction_axis_F(disc, i)));
+      if (law_.on_rotor) loads.add_joint_torque(i, torque);
     }
   }
 
@@ -242,15 +265,18 @@ PluginDescriptor describe() {
               "reactionTorque", {"thesis", "opposing"},
               "sign of the reaction torque: with the rotor's spin as in the thesis, or against")
               .from("(2.11), (2.13)"),
+          T::choice("reactionOn", {"frame", "rotor"},
+                    "what the reaction torque acts on: the frame as in the thesis, or the rotors, "
+                    "which the air brakes and whose motors hand it on; they coast to a stop, and "
+                    "it always opposes the spin")
+              .from("(2.11)"),
           T::link("frameLink", "link that takes the reaction torque; part of the root body"),
           T::joints("rotorJoints", "the rotors"),
           T::number("updateRate", "1/s", "", no_effect).at_least(0).or_absent("no effect"),
           T::flag("publishTf", "false", no_effect),
       },
       {"thrust", "reaction", "induced", "translational", "profile", "parasitic", "flapping"},
-      [](const PluginSetup& setup) -> std::unique_ptr<Plugin> {
-        return std::make_unique<AerodynamicPlugin>(setup);
-      },
+      create<AerodynamicPlugin>,
   };
 }
 

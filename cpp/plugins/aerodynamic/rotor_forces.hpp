@@ -23,6 +23,7 @@ struct RotorForces {
   std::size_t velocity_row;  ///< of the discs' velocities
   bool meets_wind;           ///< whether the discs meet the moving air, or air that stands still
   bool about_frame_z;        ///< reaction torques act so, however the rotors stand
+  bool on_rotor;             ///< reaction torques act about the joints' axes on the rotors
   bool parasitic;            ///< each rotor takes the appendix' parasitic drag
   bool flaps;                ///< any flapping coefficient is set
   laws::Flapping flapping;
@@ -64,6 +65,12 @@ struct RotorForcesNow {
   template <class T>
   QUADCORE_LAW T reaction(const RotorDisc<T>& disc, std::size_t i) const {
     return laws::reaction(disc, coefficient<T>(CoefficientRow::b, i));
+  }
+
+  /// Unit, about which the reaction torque acts on the vehicle, unless it acts about the frame's z.
+  template <class T>
+  QUADCORE_LAW Vec3<T> reaction_axis_F(const RotorDisc<T>& disc, std::size_t i) const {
+    return law.on_rotor ? vector<T>(MotionRow::axis, i) : disc.axis_F;
   }
 
   template <class T>

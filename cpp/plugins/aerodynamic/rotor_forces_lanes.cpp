@@ -19,7 +19,11 @@ void add_rotor_forces(const RotorForcesNow& now) {
       double* z = reaction + 2 * widest_lanes;
       laws::store(z, laws::load<T>(z) + torque);
     } else {
-      add(reaction, torque * disc.axis_F);
+      add(reaction, torque * now.reaction_axis_F(disc, i));
+    }
+    if (now.law.on_rotor) {
+      double* joint = loads + LoadRow::joint_torque * widest_lanes;
+      laws::store(joint, laws::load<T>(joint) + torque);
     }
     if (now.law.flaps) add(force, now.flapping_F<T>(disc, i));
     if (now.law.parasitic) add(force, now.parasitic_F<T>(i));
