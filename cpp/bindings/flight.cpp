@@ -77,6 +77,15 @@ void bind_flight(py::module_& m) {
            "Hands over what was logged since the last call: table (rows, columns) and wrenches "
            "(rows, terms, 6), the latter without rows unless asked for.");
 
+  m.def(
+      "fault_of_commands",
+      [](const Numbers& table) -> std::optional<std::pair<Eigen::Index, std::string>> {
+        const auto fault = Commands::fault(
+            Eigen::Map<const Commands::Table>(table.data(), table.shape(0), table.shape(1)));
+        if (!fault) return std::nullopt;
+        return std::pair{fault->row, fault->what};
+      },
+      py::arg("table"), "Row and reason why a table (rows, 1 + n) is none of commands, or None.");
   m.def("log_columns", &log_columns, py::arg("rotor_count"));
   m.def("log_remark", &log_remark, py::arg("ignored"));
   m.def("csv_rows", &csv_rows, py::arg("table"),

@@ -5,12 +5,45 @@
 
 #include "bindings.hpp"
 #include "quadcore/document.hpp"
+#include "quadcore/error.hpp"
 #include "quadcore/gazebo_reference.hpp"
 #include "quadcore/seen_or_sensed.hpp"
 #include "quadcore/text.hpp"
 #include "quadcore/world.hpp"
 
 namespace quadcore::bindings {
+namespace {
+
+/// Of what a pickled model or world holds.
+constexpr int version = 1;
+
+const Source& source_of(const std::shared_ptr<const Source>& source) {
+  if (!source) {
+    throw InputError("this model is as its engine rounded it; pickle the one that was read");
+  }
+  return *source;
+}
+
+/// Pickles by the document, and reads that again: no path, and nothing that could be torn.
+template <class Read>
+auto by_document(Read (*read)(const Document&, const std::vector<std::string>&)) {
+  return py::pickle(
+      [](const Read& held) {
+        const auto& [document, ignore] = source_of(held.source);
+        return py::make_tuple(version, document.name, document.text, document.lines, ignore);
+      },
+      [read](const py::tuple& state) {
+        if (py::cast<int>(state[0]) != version) {
+          throw InputError(
+              "a model or world was pickled by another version of quadcore; read it anew");
+        }
+        return read({py::cast<std::string>(state[1]), py::cast<std::string>(state[2]),
+                     py::cast<std::vector<std::pair<std::string, int>>>(state[3])},
+                    py::cast<std::vector<std::string>>(state[4]));
+      });
+}
+
+}  // namespace
 
 void bind_model(py::module_& m) {
   py::class_<Document>(m, "Document", "An XML text and where its lines came from.")
@@ -67,7 +100,10 @@ void bind_model(py::module_& m) {
       .def_readonly("links", &Model::links)
       .def_readonly("joints", &Model::joints)
       .def_readonly("warnings", &Model::warnings)
-      .def_readonly("passed_over", &Model::passed_over);
+      .def_readonly("passed_over", &Model::passed_over)
+      .def_property_readonly("document",
+                             [](const Model& model) { return source_of(model.source).document; })
+      .def(by_document(&read_model));
 
   py::class_<World>(m, "World", "What a world file sets.")
       .def_property_readonly("gravity", [](const World& w) -> Vector3d { return w.gravity_W; })
@@ -75,7 +111,10 @@ void bind_model(py::module_& m) {
       .def_readonly("max_step_size", &World::max_step_size)
       .def_readonly("real_time_update_rate", &World::real_time_update_rate)
       .def_readonly("ground_plane", &World::ground_plane)
-      .def_readonly("passed_over", &World::passed_over);
+      .def_readonly("passed_over", &World::passed_over)
+      .def_property_readonly("document",
+                             [](const World& world) { return source_of(world.source).document; })
+      .def(by_document(&read_world));
 
   m.def("parse_number", &parse_number, py::arg("text"),
         "The finite number that a text is, as in a URDF; None otherwise.");

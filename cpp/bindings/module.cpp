@@ -5,6 +5,7 @@ PYBIND11_MODULE(_core, m) {
   quadcore::bindings::bind_errors(m);
   quadcore::bindings::bind_model(m);
   quadcore::bindings::bind_plugins(m);
+  quadcore::bindings::bind_snapshot(m);
   quadcore::bindings::bind_simulation(m);
   quadcore::bindings::bind_flight(m);
 }

@@ -141,9 +141,6 @@ VehicleState to_state(const py::object& object) {
 }  // namespace
 
 void bind_simulation(py::module_& m) {
-  py::class_<Snapshot, std::shared_ptr<Snapshot>>(
-      m, "Snapshot", "Everything that the future of a simulation depends on.");
-
   py::class_<Guarded, std::shared_ptr<Guarded>>(m, "Simulation", py::dynamic_attr())
       .def(py::init(&create), py::arg("model"), py::arg("world"), py::arg("engine"), py::arg("dt"),
            py::arg("seed"), py::arg("parameters"), py::arg("spawn"))
@@ -165,11 +162,12 @@ void bind_simulation(py::module_& m) {
       .def(
           "restore",
           // By its holder, which an object that nothing was built in lacks.
-          [](const Self& self, const std::shared_ptr<Snapshot>& snapshot) {
+          [](const Self& self, const std::shared_ptr<Snapshot>& snapshot,
+             const std::vector<std::string>& allow) {
             const Lock lock(*self);
-            self->restore(*snapshot);
+            self->restore(*snapshot, Allowed::of(allow));
           },
-          py::arg("snapshot"))
+          py::arg("snapshot"), py::kw_only(), py::arg("allow") = std::vector<std::string>{})
       .def(
           "reset",
           [](const Self& self, const std::optional<std::uint64_t>& seed) {

@@ -1,39 +1,17 @@
 #include "command_queue.hpp"
 
-#include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 
+#include "quadcore/commands.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/simulation.hpp"
 
 namespace quadcore::node {
-namespace {
-
-void check(const CommandQueue::Command& speeds, std::size_t width) {
-  if (width == 0) throw InputError("the model takes no commands; add libmotorpid_plugin.so");
-  if (speeds.size() != width) {
-    throw InputError("a command of " + std::to_string(speeds.size()) + " numbers; send " +
-                     std::to_string(width) + " rotor speeds in rad/s");
-  }
-  for (const double speed : speeds) {
-    if (!std::isfinite(speed)) {
-      throw InputError("a command with a number that is not finite; send rad/s");
-    }
-    if (std::abs(speed) > Simulation::max_rate) {
-      char text[100];
-      std::snprintf(text, sizeof text, "a command with a number beyond %g rad/s, where a flight",
-                    Simulation::max_rate);
-      throw InputError(std::string(text) + " counts as diverged; send rad/s");
-    }
-  }
-}
-
-}  // namespace
 
 void CommandQueue::take(const Command& command) {
-  check(command, width_);
+  if (width_ == 0) throw InputError("the model takes no commands; add libmotorpid_plugin.so");
+  check_command(command.data(), command.size(), width_, Simulation::max_rate);
   if (!lockstep_ || (owed_ == 0 && awaited_)) {
     awaited_ = false;
     fly(command);

@@ -53,10 +53,23 @@ TEST_CASE("tables that are none are refused") {
   CHECK(contains(refused(Commands::Table(0, 3), 2), "0 rows"));
   Commands::Table rows = table();
   rows(1, 0) = 0;
-  CHECK(contains(refused(rows, 2), "row 1 is not later than the row before"));
+  CHECK(contains(refused(rows, 2), "row 1: t = 0 does not come after 0"));
   rows(1, 0) = std::numeric_limits<double>::quiet_NaN();
-  CHECK(contains(refused(rows, 2), "not a finite number"));
+  CHECK(contains(refused(rows, 2), "row 1: t is nan; write a finite number"));
   rows = table();
-  rows(2, 2) = std::numeric_limits<double>::infinity();
-  CHECK(contains(refused(rows, 2), "not a finite number"));
+  rows(2, 2) = -std::numeric_limits<double>::infinity();
+  CHECK(contains(refused(rows, 2), "row 2: w2 is -inf; write a finite number"));
+}
+
+TEST_CASE(
+    "a command is as many finite numbers as there are rotors, none too fast if that is asked") {
+  const double speeds[] = {400, -2e6};
+  check_command(speeds, 2, 2);
+  check_command(speeds, 1, 1, 1e6);
+  CHECK(refusal([&] { check_command(speeds, 2, 3); }) == "command holds 2 rotor speeds; give 3");
+  CHECK(refusal([&] { check_command(speeds, 2, 2, 1e6); }) ==
+        "command for rotor 2 is beyond 1e+06 rad/s, where a flight counts as diverged; give rad/s");
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK(refusal([&] { check_command(&nan, 1, 1); }) ==
+        "command for rotor 1 is not a finite number; give rad/s");
 }

@@ -28,14 +28,35 @@ TEST_CASE("a snapshot is restored by a simulation of the same engine and step on
     const Snapshot snapshot = flown.snapshot();
     still(info.name, 1e-3).restore(snapshot);
     Simulation finer = still(info.name, 5e-4);
-    const std::string message = refusal([&] { finer.restore(snapshot); });
-    CHECK(contains(message, "was taken from another engine, step or model"));
+    CHECK(contains(refusal([&] { finer.restore(snapshot); }),
+                   "snapshot: was taken from another step ('0.001' there, '0.0005' here)"));
     for (const EngineInfo& other : engines()) {
       if (other.name == info.name) continue;
       Simulation elsewhere = still(other.name, 1e-3);
-      CHECK(refusal([&] { elsewhere.restore(snapshot); }) == message);
+      CHECK(contains(refusal([&] { elsewhere.restore(snapshot); }),
+                     "another engine ('" + info.name + "' there, '" + other.name + "' here)"));
     }
   }
+}
+
+TEST_CASE("another world is taken on purpose, another model never") {
+  Model model = hexarotor();
+  model.plugins.clear();
+  World world;
+  const Snapshot snapshot = Simulation(model, world, {}).snapshot();
+  world.wind_W.x() = 2.5;
+  Simulation windy(model, world, {});
+  CHECK(refusal([&] { windy.restore(snapshot); }) ==
+        "snapshot: was taken from another world ('wind 0 0 0' there, 'wind 2.5 0 0' here); restore "
+        "one of this simulation, or allow world to differ");
+  windy.restore(snapshot, Allowed::of({"world"}));
+  CHECK(contains(refusal([] { Allowed::of({"model"}); }), "only world, parameters may differ"));
+  model.links[2].inertial.mass *= 1.5;
+  Simulation heavier(model, world, {});
+  const std::string message =
+      refusal([&] { heavier.restore(snapshot, Allowed::of({"world", "parameters"})); });
+  CHECK(contains(message, "another model ('link " + model.links[2].name + " mass "));
+  CHECK(!contains(message, "world"));
 }
 
 TEST_CASE("a flight ends where a speed, a rate or a distance is beyond all that is meant") {

@@ -1,10 +1,41 @@
 #include "quadcore/commands.hpp"
 
-#include <string>
+#include <cmath>
+#include <locale>
+#include <sstream>
 
 #include "quadcore/error.hpp"
 
 namespace quadcore {
+namespace {
+
+/// Whatever the locale and the sign of a NaN.
+std::string text(double number, int digits = 9) {
+  if (std::isnan(number)) return "nan";
+  std::ostringstream stream;
+  stream.imbue(std::locale::classic());
+  stream.precision(digits);
+  stream << number;
+  return stream.str();
+}
+
+}  // namespace
+
+void check_command(const double* speeds, std::size_t count, std::size_t width, double fastest) {
+  if (count != width) {
+    throw InputError("command holds " + std::to_string(count) + " rotor speeds; give " +
+                     std::to_string(width));
+  }
+  const auto refuse = [](std::size_t i, const std::string& why) {
+    throw InputError("command for rotor " + std::to_string(i + 1) + " is " + why + "; give rad/s");
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!std::isfinite(speeds[i])) refuse(i, "not a finite number");
+    if (std::abs(speeds[i]) > fastest) {
+      refuse(i, "beyond " + text(fastest, 6) + " rad/s, where a flight counts as diverged");
+    }
+  }
+}
 
 Commands::Commands(Table table, std::size_t width) : table_(std::move(table)) {
   if (table_.rows() == 0 || table_.cols() != static_cast<Eigen::Index>(width) + 1) {
@@ -12,15 +43,25 @@ Commands::Commands(Table table, std::size_t width) : table_(std::move(table)) {
                      std::to_string(table_.cols()) + " columns; write rows of time and " +
                      std::to_string(width) + " rotor speeds");
   }
-  if (!table_.allFinite()) {
-    throw InputError("commands: a value is not a finite number; write times in s, speeds in rad/s");
+  if (const auto found = fault(table_)) {
+    throw InputError("commands: row " + std::to_string(found->row) + ": " + found->what);
   }
-  for (Eigen::Index i = 1; i < table_.rows(); ++i) {
-    if (table_(i, 0) <= table_(i - 1, 0)) {
-      throw InputError("commands: row " + std::to_string(i) +
-                       " is not later than the row before; sort the rows by time");
+}
+
+std::optional<Commands::Fault> Commands::fault(const Table& table) {
+  for (Eigen::Index row = 0; row < table.rows(); ++row) {
+    for (Eigen::Index column = 0; column < table.cols(); ++column) {
+      if (std::isfinite(table(row, column))) continue;
+      const std::string name = column ? "w" + std::to_string(column) : "t";
+      return Fault{row, name + " is " + text(table(row, column)) + "; write a finite number"};
     }
   }
+  for (Eigen::Index row = 1; row < table.rows(); ++row) {
+    if (table(row, 0) > table(row - 1, 0)) continue;
+    return Fault{row,
+                 "t = " + text(table(row, 0)) + " does not come after " + text(table(row - 1, 0))};
+  }
+  return std::nullopt;
 }
 
 const double* Commands::at(double time) {

@@ -129,6 +129,7 @@ Model read_model(const Document& document, const std::vector<std::string>& ignor
   apply_references(*tree);
   Model model = lump(*tree);
   model.urdf = tree;
+  model.source = std::make_shared<Source>(Source{document, ignore});
   return model;
 }
 

@@ -5,8 +5,8 @@
 #include <sstream>
 
 #include "flight_checks.hpp"
+#include "quadcore/commands.hpp"
 #include "quadcore/error.hpp"
-#include "quadcore/text.hpp"
 
 namespace quadcore {
 namespace {
@@ -38,7 +38,7 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
   for (const std::string& warning : engine_->warnings()) warn(warning);
   warnings_at_load_ = warnings_.size();
   command_topic_ = topics_.find(command_topic_name);
-  kind_ = describe_kind();
+  fingerprint_ = std::make_shared<Fingerprint>(engine_name_, dt_, model_, world_, plugins_, topics_);
 
   const auto n = static_cast<Eigen::Index>(model_.joints.size());
   state_.rotor_velocity = VectorXd::Zero(n);
@@ -71,17 +71,7 @@ std::size_t Simulation::command_width() const {
 }
 
 void Simulation::command(const double* speeds, std::size_t count) {
-  const std::size_t width = command_width();
-  if (count != width) {
-    throw InputError("command holds " + std::to_string(count) + " rotor speeds; give " +
-                     std::to_string(width));
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!std::isfinite(speeds[i])) {
-      throw InputError("command for rotor " + std::to_string(i + 1) +
-                       " is not a finite number; give rad/s");
-    }
-  }
+  check_command(speeds, count, command_width());
   const auto topic = static_cast<std::size_t>(command_topic_);
   topics_.publish(topic, time());
   std::copy(speeds, speeds + count, topics_.values(topic).begin());

@@ -26,6 +26,30 @@ int Topics::find(const std::string& name) const {
   return -1;
 }
 
+std::vector<Message> Topics::messages() const {
+  std::vector<Message> messages;
+  for (const Topic& t : topics_) messages.push_back({t.values, t.stamp, t.count, t.writer});
+  return messages;
+}
+
+void Topics::check(const std::vector<Message>& messages) const {
+  bool fits = messages.size() == topics_.size();
+  for (std::size_t i = 0; fits && i < topics_.size(); ++i) {
+    fits = messages[i].values.size() == topics_[i].values.size() && messages[i].writer >= nobody &&
+           messages[i].writer < static_cast<int>(writers_.size());
+  }
+  if (!fits) throw InputError("snapshot: its messages are of other topics; take it anew");
+}
+
+void Topics::restore(const std::vector<Message>& messages) {
+  for (std::size_t i = 0; i < topics_.size(); ++i) {
+    topics_[i].values = messages[i].values;
+    topics_[i].stamp = messages[i].stamp;
+    topics_[i].count = messages[i].count;
+    topics_[i].writer = messages[i].writer;
+  }
+}
+
 std::string Topics::name_of(int writer) const {
   return writer < 0 ? "the caller" : writers_[static_cast<std::size_t>(writer)];
 }

@@ -234,7 +234,9 @@ class WorldReader {
 }  // namespace
 
 World read_world(const Document& document, const std::vector<std::string>& ignore) {
-  return WorldReader(document, ignore).read();
+  World world = WorldReader(document, ignore).read();
+  world.source = std::make_shared<Source>(Source{document, ignore});
+  return world;
 }
 
 }  // namespace quadcore

@@ -168,6 +168,7 @@ Model converted_to_sdf(const Model& model) {
   converted.links = std::move(sdf.links);
   converted.joints = std::move(sdf.joints);
   for (const auto& [link, pose] : sdf.pose_of_link) converted.pose_of_link[link] = pose;
+  converted.source.reset();  // which would be read without the rounding
   return converted;
 }
 

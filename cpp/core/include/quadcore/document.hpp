@@ -29,4 +29,10 @@ struct Document {
   static Document read(const std::string& path);
 };
 
+/// All that a model or a world was read from, so that it can be read again anywhere.
+struct Source {
+  Document document;
+  std::vector<std::string> ignore;  ///< see PassedOver
+};
+
 }  // namespace quadcore

@@ -113,6 +113,8 @@ struct Model {
   std::map<std::string, Pose> pose_of_link;
   /// What it was read from, for an engine that lumps in another way.
   std::shared_ptr<const UrdfTree> urdf;
+  /// The same as text; null unless read_model() made it.
+  std::shared_ptr<const Source> source;
 
   std::vector<std::string> joint_names() const;
 };

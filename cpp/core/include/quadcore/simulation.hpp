@@ -9,6 +9,7 @@
 
 #include "quadcore/engine.hpp"
 #include "quadcore/export.hpp"
+#include "quadcore/fingerprint.hpp"
 #include "quadcore/model.hpp"
 #include "quadcore/plugin.hpp"
 #include "quadcore/state.hpp"
@@ -31,15 +32,15 @@ struct LoadedPlugin {
   std::uint64_t seed = 0;      ///< of its random numbers
 };
 
-/// Everything that the future of a simulation depends on.
+/// Everything that the future of a simulation depends on, as plain numbers and texts.
 struct Snapshot {
-  std::string kind;  ///< of simulation: engine, step, bodies, plugins, topics
+  std::shared_ptr<const Fingerprint> taken_from;  ///< of the simulation
   double start_time = 0;
   std::int64_t steps = 0;
   std::uint64_t seed = 0;
   std::vector<double> engine;
   VectorXd plugin_state;
-  Topics topics;
+  std::vector<Message> messages;      ///< of each topic
   std::vector<std::string> warnings;  ///< of the flight
   std::string failure;
 };
@@ -78,6 +79,7 @@ class Simulation : private ForceField {
   std::string method() const { return engine_->method(); }
   const Model& model() const { return engine_->model(); }
   const World& world() const { return world_; }
+  const Fingerprint& fingerprint() const { return *fingerprint_; }
   const VehicleState& state() const { return state_; }
   const Topics& topics() const { return topics_; }
   const std::vector<LoadedPlugin>& plugins() const { return plugins_; }
@@ -91,8 +93,9 @@ class Simulation : private ForceField {
   /// Throws InputError on a state that is not finite or whose sizes differ.
   void set_state(const VehicleState& state);
   Snapshot snapshot() const;
-  /// Throws InputError if the snapshot's simulation had another engine, step, bodies or plugins.
-  void restore(const Snapshot& snapshot);
+  /// Throws InputError, nothing changed, if the snapshot's simulation had another fingerprint,
+  /// apart from what is allowed to differ.
+  void restore(const Snapshot& snapshot, const Allowed& allowed = {});
   /// Back to the moment of construction, bit for bit, as if it had been made with the seed.
   void reset(std::uint64_t seed);
   void reset() { reset(seed_); }
@@ -122,7 +125,6 @@ class Simulation : private ForceField {
   void check_flight() const;
   /// What to do about a motion that got out of hand, or the warning that told it.
   std::string advice() const;
-  std::string describe_kind() const;
   void show_state();    ///< brings state_ up to date
   void show_instant();  ///< writes time and air into the engine's motion
   void blow(Kinematics& kinematics) const;
@@ -154,7 +156,7 @@ class Simulation : private ForceField {
   const World world_;
   double dt_;
   std::uint64_t seed_ = 0;
-  std::string kind_;  ///< of its snapshots
+  std::shared_ptr<const Fingerprint> fingerprint_;
   std::vector<std::string> warnings_;
   std::size_t warnings_at_load_ = 0;  ///< the first of warnings_, which are not of a flight
   std::vector<std::string> said_;     ///< by the plugin whose hook is running

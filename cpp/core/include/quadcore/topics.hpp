@@ -23,6 +23,14 @@ struct Topic {
   int writer = nobody;
 };
 
+/// What a topic holds at one moment, as snapshots keep it.
+struct Message {
+  std::vector<double> values;
+  double stamp;
+  double count;
+  int writer;
+};
+
 /// The topics of one simulation.
 class Topics {
  public:
@@ -43,6 +51,13 @@ class Topics {
     topic.count += 1;
   }
   std::size_t size() const { return topics_.size(); }
+
+  /// What each topic holds.
+  std::vector<Message> messages() const;
+  /// Throws InputError unless these are the messages of topics like these.
+  void check(const std::vector<Message>& messages) const;
+  /// Puts messages() back, which have been checked.
+  void restore(const std::vector<Message>& messages);
 
   /// Names the next plugin for errors: "FILE:LINE: plugin 'name'". The simulation's to call.
   void add_writer(const std::string& who) { writers_.push_back(who); }

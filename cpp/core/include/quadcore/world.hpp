@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "quadcore/document.hpp"
@@ -27,6 +28,8 @@ struct World {
   bool ground_plane = false;
   Vector3d wind_W{0, 0, 0};  ///< velocity of the air [m/s]
   PassedOver passed_over;
+  /// What it was read from; null unless read_world() made it.
+  std::shared_ptr<const Source> source;
 };
 
 /// Reads a world file.

@@ -1,0 +1,186 @@
+#include "quadcore/fingerprint.hpp"
+
+#include <algorithm>
+#include <locale>
+#include <sstream>
+#include <utility>
+
+#include "quadcore/error.hpp"
+#include "quadcore/simulation.hpp"
+#include "quadcore/text.hpp"
+
+namespace quadcore {
+namespace {
+
+using Numbers = std::vector<double>;
+
+void add(Facts& facts, std::string what, Numbers numbers) {
+  facts.push_back({std::move(what), std::move(numbers), ""});
+}
+
+Numbers numbers(const Vector3d& v) { return {v.data(), v.data() + 3}; }
+
+Numbers numbers(const Matrix3d& m) { return {m.data(), m.data() + 9}; }
+
+Numbers numbers(const Pose& pose) {
+  const Vector3d &p = pose.xyz, &r = pose.rpy;
+  return {p[0], p[1], p[2], r[0], r[1], r[2]};
+}
+
+void add_shape(Facts& facts, const std::string& who, const Collision& shape) {
+  const Surface& s = shape.surface;
+  add(facts, who + " kind of shape", {static_cast<double>(shape.kind)});
+  add(facts, who + " size", numbers(shape.size));
+  add(facts, who + " place of the shape", numbers(shape.pose));
+  add(facts, who + " mu1, mu2", {s.mu1, s.mu2});
+  add(facts, who + " fdir1", numbers(s.fdir1));
+  add(facts, who + " kp, kd", {s.kp, s.kd});
+  add(facts, who + " minDepth, maxVel, maxContacts",
+      {s.min_depth, s.max_vel, static_cast<double>(s.max_contacts)});
+}
+
+Facts facts_of(const Model& model) {
+  Facts facts = {{"name", {}, model.name}};
+  for (const Link& link : model.links) {
+    const std::string who = "link " + link.name;
+    add(facts, who + " mass", {link.inertial.mass});
+    add(facts, who + " inertia", numbers(link.inertial.inertia));
+    add(facts, who + " centre of mass", numbers(link.inertial.pose));
+    add(facts, who + " gravity", {link.tags.gravity ? 1.0 : 0.0});
+    add(facts, who + " damping factor", {link.tags.damping_factor});
+    for (const Collision& shape : link.collisions) add_shape(facts, who, shape);
+  }
+  for (const Joint& joint : model.joints) {
+    const std::string who = "joint " + joint.name;
+    add(facts, who + " parent", {static_cast<double>(joint.parent)});
+    add(facts, who + " origin", numbers(joint.pose));
+    add(facts, who + " axis", numbers(joint.axis));
+    add(facts, who + " damping", {joint.damping});
+    add(facts, who + " implicit damping", {joint.implicit_damping ? 1.0 : 0.0});
+    add(facts, who + " friction", {joint.friction});
+  }
+  return facts;
+}
+
+Facts facts_of(const World& world) {
+  Facts facts;
+  add(facts, "gravity", numbers(world.gravity_W));
+  add(facts, "wind", numbers(world.wind_W));
+  add(facts, "ground plane", {world.ground_plane ? 1.0 : 0.0});
+  facts.push_back({"solver", {}, world.solver_type});
+  add(facts, "iters", {static_cast<double>(world.solver_iterations)});
+  add(facts, "sor", {world.solver_sor});
+  add(facts, "erp", {world.erp});
+  add(facts, "cfm", {world.cfm});
+  add(facts, "contact_max_correcting_vel", {world.contact_max_correcting_vel});
+  return facts;
+}
+
+Facts facts_of(const std::vector<LoadedPlugin>& plugins, const Topics& topics) {
+  Facts facts;
+  for (const LoadedPlugin& p : plugins) {
+    facts.push_back({"plugin " + p.name, {static_cast<double>(p.state_size)}, p.filename});
+  }
+  for (std::size_t i = 0; i < topics.size(); ++i) {
+    facts.push_back({"topic " + topics[i].name, {}, joined(topics[i].fields)});
+  }
+  return facts;
+}
+
+Facts parameters_of(const std::vector<LoadedPlugin>& plugins) {
+  Facts facts;
+  for (const LoadedPlugin& p : plugins) {
+    for (const Parameter& parameter : p.parameters.all()) {
+      const bool number = parameter.spec.kind == TagKind::number && !parameter.text.empty();
+      facts.push_back({p.name + "." + parameter.spec.name, {}, number ? "" : parameter.text});
+      if (number) facts.back().numbers.push_back(parameter.number);
+    }
+  }
+  return facts;
+}
+
+/// With the fewest digits that read back exactly.
+std::string shortest(double number) {
+  std::string text;
+  for (int digits = 6; digits <= 17; ++digits) {
+    std::ostringstream stream;
+    stream.imbue(std::locale::classic());
+    stream.precision(digits);
+    stream << number;
+    text = stream.str();
+    if (parse_number(text) == number) break;
+  }
+  return text;
+}
+
+/// The i-th of the facts as a person reads it.
+std::string told(const Facts& facts, std::size_t i) {
+  if (i >= facts.size()) return "nothing";
+  std::string text = facts[i].what;
+  for (const double number : facts[i].numbers) text += " " + shortest(number);
+  return "'" + trimmed(text + " " + facts[i].text) + "'";
+}
+
+std::string first_difference(const Facts& there, const Facts& here) {
+  std::size_t i = 0;
+  while (i < there.size() && i < here.size() && there[i] == here[i]) ++i;
+  return told(there, i) + " there, " + told(here, i) + " here";
+}
+
+}  // namespace
+
+const std::vector<FingerprintPart>& fingerprint_parts() {
+  static const std::vector<FingerprintPart> parts = {
+      {"engine", "engine", &Fingerprint::engine, nullptr},
+      {"step", "step", &Fingerprint::step, nullptr},
+      {"model", "model", &Fingerprint::model, nullptr},
+      {"plugins", "set of plugins", &Fingerprint::plugins, nullptr},
+      {"world", "world", &Fingerprint::world, &Allowed::world},
+      {"parameters", "set of parameters", &Fingerprint::parameters, &Allowed::parameters},
+  };
+  return parts;
+}
+
+Fingerprint::Fingerprint(const std::string& engine_name, double dt, const Model& flown,
+                         const World& around, const std::vector<LoadedPlugin>& loaded,
+                         const Topics& topics)
+    : engine{{"", {}, engine_name}},
+      step{{"", {dt}, ""}},
+      model(facts_of(flown)),
+      plugins(facts_of(loaded, topics)),
+      world(facts_of(around)),
+      parameters(parameters_of(loaded)) {}
+
+Allowed Allowed::of(const std::vector<std::string>& names) {
+  Allowed allowed;
+  std::vector<std::string> known;
+  for (const FingerprintPart& part : fingerprint_parts()) {
+    if (!part.allowed) continue;
+    known.push_back(part.name);
+    allowed.*part.allowed = std::find(names.begin(), names.end(), part.name) != names.end();
+  }
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    throw InputError("allow '" + name + "': only " + joined(known) + " may differ on purpose");
+  }
+  return allowed;
+}
+
+void check_same(const Fingerprint& there, const Fingerprint& here, const Allowed& allowed) {
+  std::string differences;
+  std::vector<std::string> to_allow;
+  bool fatal = false;
+  for (const FingerprintPart& part : fingerprint_parts()) {
+    if (there.*part.facts == here.*part.facts) continue;
+    if (part.allowed && allowed.*part.allowed) continue;
+    differences += (differences.empty() ? "" : ", ") + std::string("another ") + part.what + " (" +
+                   first_difference(there.*part.facts, here.*part.facts) + ")";
+    if (part.allowed) to_allow.push_back(part.name);
+    fatal = fatal || !part.allowed;
+  }
+  if (differences.empty()) return;
+  throw InputError("snapshot: was taken from " + differences + "; restore one of this simulation" +
+                   (fatal ? "" : ", or allow " + joined(to_allow) + " to differ"));
+}
+
+}  // namespace quadcore
