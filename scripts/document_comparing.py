@@ -9,8 +9,8 @@ from typing import Any, Iterable, Tuple
 from matplotlib.figure import Figure
 
 import quadcore as qc
-from quadcore.comparison.metrics import differences
 from quadcore.plots import PALETTE, dress, png
+from quadcore.study.metrics import differences
 
 ROOT = Path(__file__).resolve().parents[1]
 COMMANDS = ROOT / "tests" / "data" / "gazebo11" / "commands_S5.csv"

@@ -13,13 +13,18 @@ its faults, driven from Python.
 from ._core import (
     FlightError,
     InputError,
+    Model,
     QuadcoreError,
     Snapshot,
+    World,
     engines,
     load_plugin_path,
     plugin_folders,
 )
 from .comparison import Comparison, compare
+from .controller import Controller, Odometry
+from .description import read_model, read_world
+from .flight_plan import FlightPlan
 from .log import Log
 from .resources import cmake_prefix
 from .simulation import Simulation
@@ -30,17 +35,24 @@ __version__ = "0.1.0"
 
 __all__ = [
     "Comparison",
+    "Controller",
     "FlightError",
+    "FlightPlan",
     "InputError",
     "Log",
+    "Model",
+    "Odometry",
     "QuadcoreError",
     "QuadcoreWarning",
     "Simulation",
     "Snapshot",
     "State",
+    "World",
     "cmake_prefix",
     "compare",
     "engines",
     "load_plugin_path",
     "plugin_folders",
+    "read_model",
+    "read_world",
 ]

@@ -1,14 +1,89 @@
-"""The XML documents of a model or a world, from a file or a shipped name."""
+"""Models and worlds, from a file or a shipped name."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Mapping
+from typing import Mapping, Optional, Sequence, Tuple, Union
 
-from . import resources, xml_source
-from ._core import Document, InputError
+from . import _core, resources, xml_source
+from ._core import Document, InputError, Model, World
 from .files import is_file, shown
 from .forks import LOCK
+
+
+def read_model(
+    model: Union[str, Path] = "quadrotor",
+    xacro_args: Optional[Mapping[str, object]] = None,
+    ignore: Sequence[str] = (),
+) -> Model:
+    """Read a model, to fly it often or to take it elsewhere: it holds its text, no path.
+
+    Parameters
+    ----------
+    model
+        URDF or xacro file, or the name of a shipped model ("quadrotor").
+    xacro_args
+        Arguments of a xacro model.
+    ignore
+        As for `Simulation`; a name that nothing goes by is refused when the model flies.
+
+    Raises
+    ------
+    InputError
+        The model is at fault; the message carries FILE:LINE.
+    """
+    arguments = {name: str(value) for name, value in (xacro_args or {}).items()}
+    return _core.read_model(load_description(str(model), arguments), names_to_ignore(ignore))
+
+
+def read_world(world: Union[str, Path, None] = None, ignore: Sequence[str] = ()) -> World:
+    """Read a world, to fly in it often or to take it elsewhere.
+
+    Parameters
+    ----------
+    world
+        World file, or the name of a shipped one; None is empty.world.
+    ignore
+        As for `read_model`.
+
+    Raises
+    ------
+    InputError
+        The world is at fault; the message carries FILE:LINE.
+    """
+    document = load_world(None if world is None else str(world))
+    return _core.read_world(document, names_to_ignore(ignore))
+
+
+def read_both(
+    model: Union[str, Path, Model],
+    world: Union[str, Path, World, None],
+    xacro_args: Optional[Mapping[str, object]],
+    ignore: Sequence[str],
+) -> Tuple[Model, World]:
+    """Read a model and a world, each unless it is read already.
+
+    Raises
+    ------
+    InputError
+        One of them is at fault, or nothing in them goes by a name to ignore.
+    """
+    names = names_to_ignore(ignore)
+    if not isinstance(model, Model):
+        model = read_model(model, xacro_args, names)
+    elif xacro_args:
+        raise InputError("xacro_args: the model is read already; give them to its reader")
+    if not isinstance(world, World):
+        world = read_world(world, names)
+    _core.check_ignored(names, [model.passed_over, world.passed_over])
+    return model, world
+
+
+def names_to_ignore(ignore: Sequence[str]) -> list[str]:
+    """Check names given as `ignore`."""
+    if isinstance(ignore, str) or not all(isinstance(name, str) for name in ignore):
+        raise InputError(f"ignore is {ignore!r}; give a list of names")
+    return list(ignore)
 
 
 def load_description(model: str, xacro_args: Mapping[str, str]) -> Document:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from numbers import Real
-from typing import TYPE_CHECKING, Callable, Optional
+from typing import TYPE_CHECKING, Callable, Optional, Protocol
 
 import numpy as np
 
@@ -14,13 +14,29 @@ from .commands import CommandsLike, as_commands
 from .log import Log
 
 if TYPE_CHECKING:
+    import numpy.typing as npt
+
     from .simulation import Simulation
 
 Receive = Callable[[np.ndarray, np.ndarray], None]
 Progress = Callable[[int, int], None]
 
 _LONGEST = 1e9  # s
+_ROUNDING = 1e-6  # of a pilot's period
 _PIECE = 0.02  # s, at least; what is flown between two looks at progress and Ctrl-C
+
+
+class Pilot(Protocol):
+    """What commands a flight as it goes."""
+
+    rate: float
+    """How often it is asked, 1/s; at most once a step."""
+
+    def reset(self, simulation: Simulation) -> None:
+        """Begin; the simulation stands at its first step."""
+
+    def speeds(self, simulation: Simulation) -> npt.ArrayLike:
+        """Give the command for the steps until it is asked again, rad/s."""
 
 
 def fly(
@@ -31,6 +47,7 @@ def fly(
     receive: Receive,
     wrenches: bool,
     progress: Optional[Progress] = None,
+    pilot: Optional[Pilot] = None,
 ) -> None:
     """Fly for a while and hand over what is logged, every few hundredths of a second.
 
@@ -44,17 +61,22 @@ def fly(
         raised. An interrupt waits for it.
     wrenches
         Whether to log them; else their array has no rows.
+    pilot
+        Commands in place of a table.
 
     Raises
     ------
     InputError
         An argument is at fault; nothing was flown.
     FlightError
-        The flight failed.
+        The flight failed, or what the pilot gave after the start was no command.
     """
     total = steps_within(duration, simulation.dt)
     table = None if commands is None else as_commands(commands, simulation.command_width)
+    if pilot is not None:
+        pilot.reset(simulation)
     flight = _core.Flight(simulation, table, log_every, wrenches)
+    advance = flight.advance if pilot is None else _Piloted(simulation, flight, pilot).advance
 
     def hand_over() -> None:
         with interrupts.held():
@@ -66,7 +88,7 @@ def fly(
             hand_over()
             steps = min(steps, total - done)
             started = time.perf_counter()
-            flight.advance(steps)
+            advance(steps)
             done += steps
             if time.perf_counter() - started < _PIECE:
                 steps *= 2
@@ -74,6 +96,41 @@ def fly(
                 progress(done, total)
     finally:
         hand_over()
+
+
+class _Piloted:
+    """A flight whose pilot is asked whenever a step begins at which it is due."""
+
+    def __init__(self, simulation: Simulation, flight: _core.Flight, pilot: Pilot) -> None:
+        self._simulation, self._flight, self._pilot = simulation, flight, pilot
+        # By the count of steps: the sum of their times would slip.
+        self._per_step = pilot.rate * simulation.dt
+        self._steps = 0
+        self._due = 0
+
+    def advance(self, steps: int) -> None:
+        end = self._steps + steps
+        while self._steps < end:
+            if self._steps == self._due:
+                self._command()
+                asked = math.floor(self._steps * self._per_step + _ROUNDING)
+                next_time = math.ceil((asked + 1 - _ROUNDING) / self._per_step)
+                self._due = max(next_time, self._steps + 1)
+            piece = min(self._due, end) - self._steps
+            self._flight.advance(piece)
+            self._steps += piece
+
+    def _command(self) -> None:
+        speeds = self._pilot.speeds(self._simulation)
+        try:
+            self._simulation.command(speeds)
+        except _core.InputError as error:
+            if self._steps == 0:
+                raise
+            time = self._simulation.time
+            failure = _core.FlightError(f"the flight failed at t = {time:f} s: {error}")
+            failure.time = time
+            raise failure from error
 
 
 class Rows:

@@ -4,18 +4,23 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Mapping, Sequence, Union
+from typing import TYPE_CHECKING, Mapping, Sequence, Union
 
 import numpy as np
 
-from ._core import InputError, csv_rows, log_columns, log_remark
-from .files import atomic_write, check_writable
+from ._core import InputError, log_columns
+from .files import check_writable
 from .forks import LOCK
+from .formats import format_of
+from .formats.rows import LogFile
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
 
 PathLike = Union[str, "os.PathLike[str]"]
 
 _STATE_SIZE = len(log_columns(0))
-_PIECE = 4096  # rows
+_WRITTEN = "logs are written to"
 
 
 class Log:
@@ -88,26 +93,14 @@ class Log:
 
         What was `ignored`, if anything, stands in a comment below the names of the columns.
         """
-        with atomic_write(_named(path, ".csv")) as stream:
-            stream.write(csv_head(self.columns, self.ignored))
-            for begin in range(0, len(self), _PIECE):
-                stream.write(csv_rows(self.table[begin : begin + _PIECE]))
+        self._write(path, ".csv")
 
     def to_mat(self, path: PathLike) -> None:
         """Write a MATLAB file of each column as a vector and each wrench as ``wrench_NAME``.
 
         What was `ignored`, if anything, is the cell array ``ignored``.
         """
-        with LOCK:
-            import scipy.io
-
-        file = _named(path, ".mat")
-        variables = {name: self.table[:, i] for i, name in enumerate(self.columns)}
-        variables.update((f"wrench_{name}", value) for name, value in self.wrenches.items())
-        if self.ignored:
-            variables["ignored"] = np.array(self.ignored, dtype=object)
-        with atomic_write(file) as stream:
-            scipy.io.savemat(stream, variables, oned_as="column")
+        self._write(path, ".mat")
 
     def to_file(self, path: PathLike) -> None:
         """Write a ``.csv`` or ``.mat`` file, as its name says.
@@ -117,7 +110,10 @@ class Log:
         InputError
             Another suffix, or a file that cannot be written; nothing is left behind then.
         """
-        {".csv": self.to_csv, ".mat": self.to_mat}[log_suffix(Path(path))](path)
+        file = Path(path)
+        format_of(file, _WRITTEN).write_log(
+            file, self.columns, self.table, self.wrenches, self.ignored
+        )
 
     def plot(self, directory: PathLike) -> list[Path]:
         """Draw the flight into PNG files in `directory` (made if missing); returns their paths."""
@@ -126,28 +122,23 @@ class Log:
 
         return draw(self, Path(directory))
 
+    def _write(self, path: PathLike, suffix: str) -> None:
+        if Path(path).suffix.lower() != suffix:
+            raise InputError(f"{path}: name a file that ends in {suffix}, which it would hold")
+        self.to_file(path)
+
 
 def check_log_path(path: PathLike) -> None:
     """Raise `InputError` now if `Log.to_file` could not write `path` later."""
-    log_suffix(Path(path))
+    format_of(Path(path), _WRITTEN)
     check_writable(Path(path))
 
 
-def csv_head(columns: Sequence[str], ignored: Sequence[str]) -> bytes:
-    """First line of a CSV log, and what was ignored."""
-    return (",".join(columns) + log_remark(ignored) + "\n").encode()
-
-
-def log_suffix(path: Path) -> str:
-    """Kind of log that a file's name asks for; raises `InputError` if there is none such."""
-    suffix = path.suffix.lower()
-    if suffix not in (".csv", ".mat"):
-        raise InputError(f"{path}: logs are written to .csv and .mat files")
-    return suffix
-
-
-def _named(path: PathLike, suffix: str) -> Path:
-    path = Path(path)
-    if path.suffix.lower() != suffix:
-        raise InputError(f"{path}: name a file that ends in {suffix}, which it would hold")
-    return path
+def log_file(path: Path, simulation: Simulation) -> LogFile:
+    """Make the recorder that a file's name asks for."""
+    return format_of(path, _WRITTEN).log_file(
+        path,
+        log_columns(simulation.rotor_count),
+        simulation.wrench_terms,
+        simulation.ignored,
+    )

@@ -1,111 +1,20 @@
-"""Where the rows of a flight go while it flies: files, and what is told or drawn afterwards."""
+"""Where the rows of a flight go while it flies: what is told or drawn afterwards, and files."""
 
 from __future__ import annotations
 
-import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable, List, Optional, Protocol, Sequence
+from typing import TYPE_CHECKING, Any, Callable, List, Optional, Sequence
 
 import numpy as np
 
 from . import _core
-from .files import Appended, unwritable
-from .log import Log, csv_head, log_suffix
+from .formats.rows import LogFile, Recorder
+from .log import Log
 
 if TYPE_CHECKING:
     from .simulation import Simulation
 
 _DRAWN = 20_000  # rows, more than a picture can show
-
-
-class Recorder(Protocol):
-    """What takes over the rows of a flight."""
-
-    wrenches: bool
-    """Whether it wants the wrenches."""
-
-    def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
-        """Take over a piece, as `flight.fly` hands it over."""
-
-    def close(self) -> None:
-        """Finish, whether all was flown or not."""
-
-
-class LogFile(Recorder, Protocol):
-    """A file that holds a flight."""
-
-    path: Path
-
-
-def log_file(path: Path, simulation: Simulation) -> LogFile:
-    """Make the recorder that a file's name asks for."""
-    return CsvFile(path, simulation) if log_suffix(path) == ".csv" else MatFile(path, simulation)
-
-
-class CsvFile:
-    """A log that is written as it is flown, and complete up to its last row at any time."""
-
-    wrenches = False
-
-    def __init__(self, path: Path, simulation: Simulation) -> None:
-        self.path = path
-        self._head = csv_head(_core.log_columns(simulation.rotor_count), simulation.ignored)
-        self._file: Optional[Appended] = None
-
-    def receive(self, table: np.ndarray, _: np.ndarray) -> None:
-        """Write a piece."""
-        if self._file is None:  # not sooner: a flight that is refused leaves an older log alone
-            self._file = Appended(self.path)
-            self._file.write(self._head)
-        self._file.write(_core.csv_rows(table))
-
-    def close(self) -> None:
-        """Close the file."""
-        if self._file is not None:
-            self._file.close()
-
-
-class MatFile:
-    """A MATLAB file, whose variables are known at the end only: rows wait in a file without name.
-
-    It lies beside the log, where there must be room for the log as well.
-    """
-
-    wrenches = True
-
-    def __init__(self, path: Path, simulation: Simulation) -> None:
-        self.path = path
-        self._terms, self._ignored = simulation.wrench_terms, simulation.ignored
-        self._columns = len(_core.log_columns(simulation.rotor_count))
-        self._count = 0
-        try:
-            self._rows = tempfile.TemporaryFile(dir=str(path.parent))  # noqa: SIM115
-        except OSError as error:
-            raise unwritable(path, error) from error
-
-    def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
-        """Keep a piece."""
-        rows = np.hstack([table, wrenches.reshape(len(table), -1)])
-        try:
-            self._rows.write(rows.tobytes())
-            self._rows.flush()
-        except OSError as error:
-            raise unwritable(self.path, error) from error
-        self._count += len(table)
-
-    def close(self) -> None:
-        """Write the file."""
-        n = self._columns
-        with self._rows as stream:
-            if self._count == 0:
-                return
-            rows = np.memmap(
-                stream, dtype=float, mode="r", shape=(self._count, n + 6 * len(self._terms))
-            )
-            wrenches = {
-                name: rows[:, n + 6 * i : n + 6 * (i + 1)] for i, name in enumerate(self._terms)
-            }
-            Log(rows[:, :n], wrenches, ignored=self._ignored).to_mat(self.path)
 
 
 class Thinned:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from operator import attrgetter
 from pathlib import Path
-from typing import Mapping, Optional, Sequence, Union
+from typing import Any, Callable, Mapping, Optional, Sequence, Tuple, Union
 from warnings import warn
 
 import numpy as np
 
 from . import _core
-from .description import load_description, load_world
+from .controller import Controller, Guided
+from .description import read_both
 from .flight import Progress, Rows, fly
 from .log import Log
 from .state import LiveState
@@ -69,24 +70,15 @@ class Simulation(_core.Simulation):
         spawn: Sequence[Number] = (0, 0, 10),
         ignore: Sequence[str] = (),
     ) -> None:
-        names = names_to_ignore(ignore)
-        if not isinstance(model, _core.Model):
-            arguments = {name: str(value) for name, value in (xacro_args or {}).items()}
-            model = _core.read_model(load_description(str(model), arguments), names)
-        elif xacro_args:
-            raise _core.InputError("xacro_args: the model is read already; give them to its reader")
-        if not isinstance(world, _core.World):
-            world = _core.read_world(load_world(None if world is None else str(world)), names)
-        _core.check_ignored(names, [model.passed_over, world.passed_over])
-        self.world = world
+        model, self.world = read_both(model, world, xacro_args, ignore)
         super().__init__(
             model=model,
             world=self.world,
             engine=engine,
             dt=dt,
-            seed=_whole(seed),
+            seed=whole(seed),
             parameters={key: text_of(value) for key, value in (parameters or {}).items()},
-            spawn=_pose(spawn),
+            spawn=pose(spawn),
         )
         self._live = LiveState(self)
         for warning in self.warnings:
@@ -115,6 +107,8 @@ class Simulation(_core.Simulation):
         log_every: int = 1,
         progress: Optional[Progress] = None,
         wrenches: bool = True,
+        *,
+        controller: Union[Controller, Callable[..., Any], None] = None,
     ) -> Log:
         """Fly for a while and log it.
 
@@ -131,6 +125,9 @@ class Simulation(_core.Simulation):
             Called as progress(steps_done, steps_total) every few hundredths of a second.
         wrenches : bool
             Whether to log them, which takes most of the memory of a log.
+        controller : object or callable, optional
+            Closed loop, instead of `commands`: called as controller(t, state, reference) at its
+            rate, it returns n rotor speeds in rad/s; see `Controller`. The reference is None.
 
         Returns
         -------
@@ -142,26 +139,24 @@ class Simulation(_core.Simulation):
         InputError
             An argument is at fault; nothing was flown.
         FlightError
-            The flight failed. Its attribute `log` is the log so far, as it is of the
-            KeyboardInterrupt that ends a run, and of the MemoryError when a log has no more room.
+            The flight failed, or the controller gave no command. Its attribute `log` is the log so
+            far, as it is of whatever else ends a run: the KeyboardInterrupt, the MemoryError when a
+            log has no more room, the error that a controller raises.
         """
+        if commands is not None and controller is not None:
+            raise _core.InputError("a flight takes commands or a controller; give one of them")
+        pilot = None if controller is None else Guided(controller, self)
         rows = Rows(self)
         try:
-            fly(self, duration, commands, log_every, rows.receive, wrenches, progress)
-        except (_core.QuadcoreError, KeyboardInterrupt, MemoryError) as error:
+            fly(self, duration, commands, log_every, rows.receive, wrenches, progress, pilot)
+        except (Exception, KeyboardInterrupt) as error:
             error.log = rows.log()  # type: ignore[union-attr]
             raise
         return rows.log()
 
 
-def names_to_ignore(ignore: Sequence[str]) -> list[str]:
-    """Check names given as `ignore`."""
-    if isinstance(ignore, str) or not all(isinstance(name, str) for name in ignore):
-        raise _core.InputError(f"ignore is {ignore!r}; give a list of names")
-    return list(ignore)
-
-
-def _whole(seed: object) -> int:
+def whole(seed: object) -> int:
+    """Check a seed."""
     if not isinstance(seed, (int, np.integer)) or not 0 <= seed < 2**64:
         raise _core.InputError(f"seed is {seed!r}; give a whole number from 0 to 2^64 - 1")
     return int(seed)
@@ -176,14 +171,15 @@ def text_of(value: Union[Value, Path]) -> str:
     return str(value)
 
 
-def _pose(spawn: Sequence[Number]) -> Sequence[float]:
+def pose(spawn: Sequence[Number]) -> Tuple[float, ...]:
+    """Check a start pose: x, y, z, roll, pitch, yaw."""
     try:
-        pose = [_number(value) for value in spawn]
+        given = [_number(value) for value in spawn]
     except (TypeError, ValueError):
-        pose = []
-    if len(pose) not in (3, 6):
+        given = []
+    if len(given) not in (3, 6):
         raise _core.InputError(f"spawn is {spawn!r}; give x, y, z[, roll, pitch, yaw] in m and rad")
-    return pose + [0.0] * (6 - len(pose))
+    return (*given, *[0.0] * (6 - len(given)))
 
 
 def _number(value: Number) -> float:

@@ -14,7 +14,7 @@ import scipy.io
 
 import quadcore as qc
 from quadcore.cli import main, terminal
-from quadcore.log import Log
+from quadcore.formats import mat
 
 FALL = ["run", "quadrotor", "--duration", "0.05"]
 
@@ -178,13 +178,13 @@ def test_an_interrupted_run_keeps_its_log_and_is_status_130(capsys, monkeypatch)
 
 
 def test_an_interrupt_while_the_log_is_written_waits_for_it(monkeypatch):
-    to_mat = Log.to_mat
+    write = mat.write_log
 
-    def interrupted(log, path):
+    def interrupted(*what):
         signal.raise_signal(signal.SIGINT)
-        to_mat(log, path)
+        write(*what)
 
-    monkeypatch.setattr(Log, "to_mat", interrupted)
+    monkeypatch.setattr(mat, "write_log", interrupted)
     assert main([*FALL, "--log", "log.mat"]) == 130
     assert len(scipy.io.loadmat("log.mat")["t"]) == 51
 

@@ -15,10 +15,10 @@ import pytest
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.comparison import metrics
 from quadcore.comparison.compare import Comparison
-from quadcore.parallel import each
 from quadcore.rotation import roll_pitch_yaw
+from quadcore.study import metrics
+from quadcore.study.executor import each
 
 pytestmark = pytest.mark.usefixtures("toy")
 

@@ -8,9 +8,9 @@ from scipy.spatial.transform import Rotation
 
 from quadcore import Log
 from quadcore._core import Document
-from quadcore.comparison import metrics
 from quadcore.comparison.difference import ABSENT, Difference, Fact, differences, facts
 from quadcore.rotation import roll_pitch_yaw
+from quadcore.study import metrics
 
 BEFORE = """<robot name="r">
   <link name="a">

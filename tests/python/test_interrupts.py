@@ -19,7 +19,7 @@ import quadcore as qc
 from quadcore import interrupts
 from quadcore.cli import main
 from quadcore.files import atomic_write
-from quadcore.parallel import contained, each
+from quadcore.study.executor import contained, each
 
 SIGNALS = list(interrupts.SIGNALS)
 QUADCORE = [sys.executable, "-m", "quadcore"]

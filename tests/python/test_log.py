@@ -94,7 +94,7 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(log, tmp_path, monk
 
     old = tmp_path / "log.csv"
     old.write_text("old")
-    monkeypatch.setattr("quadcore.log.csv_rows", fail)
+    monkeypatch.setattr("quadcore.formats.csv.csv_rows", fail)
     with pytest.raises((InputError, KeyboardInterrupt)):
         log.to_csv(old)
     assert list(tmp_path.iterdir()) == [old]

@@ -10,11 +10,11 @@ from typing import Any
 from .. import interrupts
 from .._core import FlightError, InputError
 from ..comparison.compare import Comparison, fly
-from ..comparison.grid import parse_axis
 from ..comparison.output import drawn, listed, number_text, summary, thinned, write
 from ..comparison.plan import Plan
 from ..files import make_folder
 from ..log import Log
+from ..study.axes import parse_axis
 from . import options, terminal
 
 _ROWS = 40  # on the terminal

@@ -1,4 +1,4 @@
-"""Options that several commands share, and the simulation they describe."""
+"""Options that several commands share, and the flight they describe."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 from typing import Any, Callable, Sequence
 
 from .._core import InputError, engines, parse_number
-from ..simulation import Simulation
+from ..flight_plan import FlightPlan
 
 
 def subparser(commands: Any, name: str, summary: str, action: Callable[..., None]) -> Any:
@@ -117,9 +117,15 @@ def flight_arguments(arguments: argparse.Namespace) -> dict[str, Any]:
     return {name: getattr(arguments, name) for name in ("engine", "world", "dt", "seed", "spawn")}
 
 
-def simulation(arguments: argparse.Namespace) -> Simulation:
-    """Build the simulation that `add_model` and `add_flight` asked for."""
-    return Simulation(**model_arguments(arguments), **flight_arguments(arguments))
+def flight_plan(arguments: argparse.Namespace) -> FlightPlan:
+    """Describe the flight that `add_model`, `add_flight` and `add_commands` asked for."""
+    return FlightPlan.of(
+        **model_arguments(arguments),
+        **flight_arguments(arguments),
+        duration=arguments.duration,
+        commands=arguments.commands,
+        log_every=arguments.log_every,
+    )
 
 
 def assignment(pattern: str, form: str) -> Callable[[str], tuple[str, str]]:

@@ -15,8 +15,8 @@ from .. import interrupts
 from .._core import InputError, QuadcoreError
 from ..files import make_folder
 from ..flight import fly, steps_within
-from ..log import check_log_path
-from ..recording import Fastest, Recording, Thinned, log_file
+from ..log import check_log_path, log_file
+from ..recording import Fastest, Recording, Thinned
 from ..rotation import roll_pitch_yaw
 from ..simulation import Simulation
 from . import options, terminal
@@ -44,11 +44,12 @@ def register(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Fly, write what was asked for, and print a summary."""
-    simulation = options.simulation(arguments)
-    steps = steps_within(arguments.duration, simulation.dt)
+    plan = options.flight_plan(arguments)
+    simulation = plan.simulation()
+    steps = steps_within(plan.duration, simulation.dt)
     fastest, drawn = Fastest(), None
     if arguments.out is not None and not arguments.no_plots:
-        drawn = Thinned(1 + steps // arguments.log_every, simulation)
+        drawn = Thinned(1 + steps // plan.log_every, simulation)
     logs = [log_file(file, simulation) for file in _log_files(arguments)]
     recording = Recording(logs, [fastest, drawn] if drawn else [fastest])
     started = time.perf_counter()
@@ -56,9 +57,9 @@ def run(arguments: argparse.Namespace) -> None:
         with terminal.progress(arguments.quiet) as progress:
             fly(
                 simulation,
-                arguments.duration,
-                arguments.commands,
-                arguments.log_every,
+                plan.duration,
+                plan.commands,
+                plan.log_every,
                 recording.receive,
                 recording.wrenches,
                 progress,

@@ -13,7 +13,7 @@ from rich.table import Table
 from .. import interrupts
 from .._core import FlightError, QuadcoreError
 from ..files import check_writable, make_folder
-from ..parallel import contained, each
+from ..study.executor import conducted
 from . import options, terminal
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def run(arguments: argparse.Namespace) -> None:
         motor_lag=arguments.motors == "lag",
         log_every=arguments.log_every,
     )
-    experiment.simulation(Case("eigen"))  # says at once what is wrong or doubtful
+    experiment.flight(Case("eigen")).simulation()  # says at once what is wrong or doubtful
     out = arguments.out
     if out is not None:
         make_folder(out)
@@ -136,16 +136,14 @@ def _draw(study: Study, arguments: argparse.Namespace, failures: List[str]) -> D
 
     try:
         with terminal.progress(arguments.quiet, "drawing") as progress, closing(
-            each(contained(draw), names, arguments.jobs)
+            conducted(draw, names, arguments.jobs, progress=progress)
         ) as outcomes:
-            for done, (index, picture) in enumerate(outcomes, start=1):
+            for index, picture in outcomes:
                 if isinstance(picture, QuadcoreError):
                     failed.append(f"{names[index]}: {picture}")
                 else:
                     write_picture(names[index], picture, arguments.out)
                     drawn[names[index]] = picture
-                if progress is not None:
-                    progress(done, len(names))
     finally:
         in_order = {name: drawn[name] for name in names if name in drawn}
         with interrupts.held():

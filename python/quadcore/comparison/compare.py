@@ -24,10 +24,10 @@ from .. import interrupts
 from .._core import InputError, QuadcoreError
 from ..commands import CommandsLike
 from ..log import Log
-from ..parallel import contained, each
+from ..study.axes import Values
+from ..study.executor import conducted
+from ..study.metrics import metrics, states
 from .difference import Difference
-from .grid import Values
-from .metrics import metrics, states
 from .plan import Plan, Variant
 
 Progress = Callable[[int, int], None]
@@ -139,7 +139,7 @@ def fly(
                 return _kept(row, measured, log, keep)
 
             start = tally.done
-            with closing(each(contained(flown), flights, processes, contained(kept))) as outcomes:
+            with closing(conducted(flown, flights, processes, kept)) as outcomes:
                 for index, outcome in outcomes:
                     tally.note(start + index, outcome)
     except KeyboardInterrupt as stop:
@@ -154,7 +154,7 @@ def _first_flown(
     """Take flights until one succeeds, which all later ones are compared with."""
     for row, variant in flights:
         # In a process too: what crashes there does not end the comparison.
-        ((_, log),) = each(contained(plan.fly), [variant], 1)
+        ((_, log),) = conducted(plan.fly, [variant], 1)
         if isinstance(log, Log):
             tally.reference = row
             with interrupts.held():

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import csv
-import io
-import json
 import math
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional
+from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence
 
 import numpy as np
 
-from ..files import atomic_write, cell, text_bytes
 from ..log import Log
+from ..study.table import csv_bytes, json_bytes, save
 from .compare import Comparison
 from .plan import Plan
 
@@ -52,19 +49,14 @@ def write(
     """
     from ..report import write_page  # not every command should pay for jinja2
 
-    written = []
-
-    def save(name: str, data: bytes) -> None:
-        with atomic_write(folder / name) as stream:
-            stream.write(data)
-        written.append(folder / name)
-
     # What was flown comes first: pictures can fail, and take their time.
-    save("table.csv", text_bytes(_csv(comparison)))
-    save("comparison.json", text_bytes(_json(comparison, plan, flight)))
+    tables = {
+        "table.csv": csv_bytes(_rows(comparison)),
+        "comparison.json": json_bytes(_content(comparison, flight)),
+    }
+    written = save(folder, tables)
     images = _images(comparison, plan) if plots else {}
-    for name, data in images.items():
-        save(f"{name}.png", data)
+    written += save(folder, {f"{name}.png": data for name, data in images.items()})
     page = folder / "report.html"
     write_page(page, "compare.html", **_page(comparison, plan, flight, images))
     return [*written, page]
@@ -93,22 +85,15 @@ def _images(comparison: Comparison, plan: Plan) -> Dict[str, bytes]:
     return {name: png(figure) for name, figure in figures.items()}
 
 
-def _csv(comparison: Comparison) -> str:
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(["number", *(comparison.table.dtype.names or ())])
+def _rows(comparison: Comparison) -> Iterable[Sequence[Any]]:
+    yield ["number", *(comparison.table.dtype.names or ())]
     for number, row in enumerate(comparison.table.tolist(), start=1):
-        writer.writerow([number, *("" if value != value else cell(value) for value in row)])
-    return stream.getvalue()
+        yield [number, *row]
 
 
-def _json(comparison: Comparison, plan: Plan, flight: Mapping[str, str]) -> str:
+def _content(comparison: Comparison, flight: Mapping[str, str]) -> Dict[str, Any]:
     names = comparison.table.dtype.names or ()
-    rows = [
-        {name: None if value != value else value for name, value in zip(names, row)}
-        for row in comparison.table.tolist()
-    ]
-    content = {
+    return {
         "flight": dict(flight),
         "differences": {
             model: [difference._asdict() for difference in found]
@@ -116,9 +101,11 @@ def _json(comparison: Comparison, plan: Plan, flight: Mapping[str, str]) -> str:
         },
         "units": comparison.states,
         "reference": _number(comparison),
-        "rows": [{"number": number, **row} for number, row in enumerate(rows, start=1)],
+        "rows": [
+            {"number": number, **dict(zip(names, row))}
+            for number, row in enumerate(comparison.table.tolist(), start=1)
+        ],
     }
-    return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def _number(comparison: Comparison) -> Optional[int]:

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from ..log import Log
 from ..plots import PALETTE, panels
 from ..rotation import roll_pitch_yaw
-from .metrics import differences
+from ..study.metrics import differences
 
 _LABELS = 6
 

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import difflib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
-from .. import _core
-from .._core import InputError, QuadcoreError, engines
+from .._core import InputError, QuadcoreError, World, check_ignored, engines
 from ..commands import CommandsLike, as_commands
-from ..description import load_description, load_world
+from ..description import names_to_ignore, read_model, read_world
 from ..files import shown
 from ..flight import check_logged
+from ..flight_plan import FlightPlan
 from ..log import Log
-from ..simulation import Simulation, names_to_ignore
+from ..simulation import Simulation
+from ..study.axes import Axis, Values, axes_of, check_size, variants
 from .difference import Difference, differences, facts
-from .grid import Axis, Values, axes_of, check_size, variants
 
 Variant = Tuple[int, Tuple[str, ...]]
 
@@ -55,23 +56,20 @@ class Plan:
         self.axes = axes_of(vary)
         self.count = check_size(len(models), self.axes)
         self.names = [shown(model) for model in models]
-        self._options = dict(options)
-        self._options["parameters"] = dict(options.get("parameters") or {})
-        arguments = self._options.pop("xacro_args", None) or {}
-        arguments = {name: str(value) for name, value in arguments.items()}
-        self._documents = [load_description(name, arguments) for name in map(str, models)]
-        ignore = names_to_ignore(self._options.pop("ignore", ()))
-        self._models = [_core.read_model(document, ignore) for document in self._documents]
-        worlds = self._values("world")
-        self._worlds = {name: _core.read_world(load_world(name), ignore) for name in worlds}
-        world = self._options.get("world")
-        if not isinstance(world, _core.World):
-            document = load_world(None if world is None else str(world))
-            world = self._options["world"] = _core.read_world(document, ignore)
+        own = dict(options)
+        arguments, ignore = own.pop("xacro_args", None), own.pop("ignore", ())
+        self._models = [read_model(name, arguments, ignore) for name in models]
+        self._worlds = {name: read_world(name, ignore) for name in self._values("world")}
+        world = own.pop("world", None)
+        if not isinstance(world, World):
+            world = read_world(world, ignore)
         readings = [model.passed_over for model in self._models]
         readings += [each.passed_over for each in (*self._worlds.values(), world)]
-        _core.check_ignored(ignore, readings)
+        check_ignored(names_to_ignore(ignore), readings)
         self._check_engines()
+        self._base = FlightPlan.of(
+            self._models[0], world, duration=duration, log_every=log_every, **own
+        )
         built = self._built()
         self.dt = built[0].dt if built else 1e-3
         """s, of the first model as it is."""
@@ -81,25 +79,25 @@ class Plan:
         if commands is not None:
             self._check_rotors()
             width = built[0].command_width if built else self.rotor_count
-            commands = as_commands(commands, width)
-        self._run: Dict[str, Any] = {
-            "duration": duration,
-            "commands": commands,
-            "log_every": log_every,
-        }
+            self._base = replace(self._base, commands=as_commands(commands, width))
 
     def __iter__(self) -> Iterator[Variant]:
         return variants(len(self.names), self.axes)
 
-    def fly(self, variant: Variant) -> Log:
-        """Fly a variant; raises what building or flying it raises."""
+    def flight(self, variant: Variant) -> FlightPlan:
+        """Describe the flight of a variant."""
         model, values = variant
-        options = {**self._options, "parameters": dict(self._options["parameters"])}
+        changed: Dict[str, Any] = {"model": self._models[model]}
+        parameters = dict(self._base.parameters)
         for axis, value in zip(self.axes, values):
             if not axis.tags:
-                options[axis.name] = self._worlds[value] if axis.name == "world" else value
-            options["parameters"].update(dict.fromkeys(axis.tags, value))
-        return Simulation(self._models[model], **options).run(**self._run)
+                changed[axis.name] = self._worlds[value] if axis.name == "world" else value
+            parameters.update(dict.fromkeys(axis.tags, value))
+        return replace(self._base, parameters=parameters, **changed)
+
+    def fly(self, variant: Variant) -> Log:
+        """Fly a variant; raises what building or flying it raises."""
+        return self.flight(variant).fly()
 
     def label(self, variant: Variant) -> str:
         """Name of a variant for a person: what sets it apart from the others."""
@@ -112,15 +110,15 @@ class Plan:
 
     def differences(self) -> Dict[str, List[Difference]]:
         """List what sets each model's file apart from the first's, by name of the model."""
-        first = self._documents[0]
+        first = self._models[0].document
         return {
-            name: differences(first, document)
-            for name, document in zip(self.names[1:], self._documents[1:])
+            name: differences(first, model.document)
+            for name, model in zip(self.names[1:], self._models[1:])
         }
 
     def as_written(self, axis: Axis) -> str:
         """Tell what the first model's file gives an axis' tags, and where; "" for none."""
-        written = facts(self._documents[0])
+        written = facts(self._models[0].document)
         found = [written[tag] for tag in axis.tags if tag in written]
         return "; ".join(f"{fact.text} ({fact.at})" for fact in found)
 
@@ -132,7 +130,7 @@ class Plan:
         built = []
         for model in self._models:
             try:
-                built.append(Simulation(model, **self._options))
+                built.append(replace(self._base, model=model).simulation())
             except QuadcoreError:
                 continue
         return built
@@ -156,7 +154,7 @@ class Plan:
                             f"vary {tag}: model {simulation.model.name} has no "
                             f"{_nearest(tag, known)}"
                         )
-                    if tag in self._options["parameters"]:
+                    if tag in self._base.parameters:
                         raise InputError(f"vary {tag}: it is set as well; keep one")
 
     def _check_rotors(self) -> None:

@@ -3,7 +3,7 @@
 from .chain import Chain, Link
 from .damping import Damping
 from .experiment import DRAGS, MODEL, TERMS, Case, Experiment, Flight
-from .states import STATES, Difference, compare, states
+from .states import STATES, compare, states
 from .study import Row, Study, conduct
 
 __all__ = [
@@ -14,7 +14,6 @@ __all__ = [
     "Case",
     "Chain",
     "Damping",
-    "Difference",
     "Experiment",
     "Flight",
     "Link",

@@ -51,7 +51,7 @@ def measure(experiment: Experiment, engines: Sequence[str], sim_slow: float) -> 
 def _falling(experiment: Experiment, case: Case) -> Simulation:
     coefficients = ("rotorThrustCoeff", "rotorTorqueCoeff")
     no_air = {f"{experiment.air}.{coefficient}": 0 for coefficient in coefficients}
-    simulation = experiment.simulation(case, no_air)
+    simulation = experiment.flight(case, no_air).simulation()
     state = simulation.state.copy()
     state.angular_velocity[1] = _RATE
     simulation.set_state(state)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from dataclasses import dataclass, replace
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -12,8 +12,9 @@ from ..chapter2 import GYROSTAT, MathematicalModel, Terms, Vehicle
 from ..chapter2.vehicle import AIR, MOTOR, command_order, parameters_of, the_plugin
 from ..commands import CommandsLike, as_commands
 from ..flight import check_logged
+from ..flight_plan import FlightPlan
 from ..log import Log
-from ..simulation import Simulation, Value
+from ..simulation import Simulation, Value, text_of
 from ..state import State
 from .ascent import ascent
 from .given_speeds import fly_given_speeds, stiff_gain
@@ -65,20 +66,16 @@ class Flight(NamedTuple):
 class Experiment:
     """What all flights share; made by `Experiment.of`."""
 
-    model: str
-    world: Optional[str]
-    parameters: Dict[str, Value]
-    xacro_args: Dict[str, str]
-    ignore: Tuple[str, ...]
-    dt: float
-    duration: float
-    spawn: Tuple[float, ...]
-    commands: np.ndarray = field(repr=False)
+    asked: Dict[str, Any]
+    """Names and numbers as they were given: model, world, parameters, xacro_args, ignore, spawn."""
+    plan: FlightPlan
+    """The plant as it is, its commands at steps."""
     motor_lag: bool
-    log_every: int
     air: str
     """Name of the aerodynamic plugin."""
     motor: str
+    rotors: Tuple[int, ...]
+    """Of each number of a command the rotor."""
 
     @classmethod
     def of(
@@ -102,11 +99,19 @@ class Experiment:
         InputError
             An argument is at fault, or the mathematical model has no equation for the vehicle.
         """
-        parameters, xacro_args = dict(parameters or {}), dict(xacro_args or {})
-        for key in parameters:
+        asked: Dict[str, Any] = {
+            "model": model,
+            "world": world,
+            "parameters": dict(parameters or {}),
+            "xacro_args": dict(xacro_args or {}),
+            "ignore": tuple(ignore),
+            "spawn": tuple(spawn),
+        }
+        for key in asked["parameters"]:
             if key.endswith(".sim_slow"):
                 raise InputError(f"{key}: every flight has its own; give a list of sim_slow")
-        simulation = Simulation(model, "eigen", world, dt, 0, parameters, xacro_args, spawn, ignore)
+        plan = FlightPlan.of(**asked, engine="eigen", dt=dt, duration=duration, log_every=log_every)
+        simulation = plan.simulation()
         check_logged(duration, simulation.dt, log_every)
         vehicle = Vehicle.of(simulation)
         rotors = len(vehicle.arms)
@@ -114,31 +119,25 @@ class Experiment:
         if table[0, 0] > 0:
             raise InputError(f"commands: the first row is for t = {table[0, 0]:g}; begin at t = 0")
         air, motor = (the_plugin(simulation, file).name for file in (AIR, MOTOR))
-        return cls(
-            model,
-            world,
-            parameters,
-            xacro_args,
-            tuple(ignore),
-            simulation.dt,
-            duration,
-            tuple(spawn),
-            at_steps(table, simulation.dt),
-            motor_lag,
-            log_every,
-            air,
-            motor,
-        )
+        table = at_steps(table, simulation.dt)
+        plan = replace(plan, dt=simulation.dt, commands=table)
+        return cls(asked, plan, motor_lag, air, motor, tuple(command_order(simulation)))
 
-    def simulation(self, case: Case, more: Optional[Mapping[str, Value]] = None) -> Simulation:
-        """Make the vehicle of a case, at rest with the rotors at the speeds of the first command.
+    @property
+    def commands(self) -> np.ndarray:
+        """What is flown, (rows, 1 + n)."""
+        assert self.plan.commands is not None
+        return self.plan.commands
+
+    def flight(self, case: Case, more: Optional[Mapping[str, Value]] = None) -> FlightPlan:
+        """Describe the flight of a case, from rest with the rotors as first commanded.
 
         Parameters
         ----------
         more
             PLUGIN.TAG -> value, to change on top.
         """
-        parameters = dict(self.parameters)
+        parameters: Dict[str, Value] = dict(self.plan.parameters)
         for plugin in (self.air, self.motor):
             parameters[f"{plugin}.sim_slow"] = case.sim_slow
         for drag, tags in DRAGS.items():
@@ -147,22 +146,14 @@ class Experiment:
         if case.variant in ("chapter2", "given speeds"):
             parameters[f"{self.air}.dragModel"] = "chapter2"
         parameters.update(more or {})
-        engine = "eigen" if case.plant == MODEL else case.plant
-        simulation = Simulation(
-            self.model,
-            engine,
-            self.world,
-            self.dt,
-            0,
-            parameters,
-            self.xacro_args,
-            self.spawn,
-            self.ignore,
+        speeds = np.zeros(len(self.plan.model.joints))
+        speeds[list(self.rotors)] = self.commands[0, 1:] / case.sim_slow
+        return replace(
+            self.plan,
+            engine="eigen" if case.plant == MODEL else case.plant,
+            parameters={key: text_of(value) for key, value in parameters.items()},
+            rotor_velocity=tuple(speeds.tolist()),
         )
-        state = simulation.state.copy()
-        state.rotor_velocity[command_order(simulation)] = self.commands[0, 1:] / case.sim_slow
-        simulation.set_state(state)
-        return simulation
 
     def fly(self, case: Case) -> Flight:
         """Fly a case; what ends its flight is told, not raised."""
@@ -172,24 +163,31 @@ class Experiment:
             return Flight(case, None, str(error))
 
     def _fly(self, case: Case) -> Log:
-        simulation = self.simulation(case)
+        flight = self.flight(case)
         if case.plant == MODEL:
             terms = TERMS.get(case.variant, Terms(motor_lag=self.motor_lag))
+            simulation = flight.simulation()
             model = MathematicalModel(Vehicle.of(simulation), terms)
-            step = self.log_every * self.dt
-            return model.fly(self.duration, self.commands, _in_order(simulation), step)
+            step = flight.log_every * simulation.dt
+            return model.fly(flight.duration, self.commands, _in_order(simulation), step)
         if case.variant == "given speeds":
-            vehicle = Vehicle.of(simulation)
-            gain = {f"{self.motor}.kp": stiff_gain(vehicle, self.dt)}
-            stiff = self.simulation(case, {**gain, f"{self.motor}.maxVelocity": 1e9})
+            plain = flight.simulation()
+            vehicle = Vehicle.of(plain)
+            gain = {f"{self.motor}.kp": stiff_gain(vehicle, plain.dt)}
+            stiff = self.flight(case, {**gain, f"{self.motor}.maxVelocity": 1e9})
             return fly_given_speeds(
-                stiff, vehicle, self.commands, self.duration, self.log_every, self.motor_lag
+                stiff.simulation(),
+                vehicle,
+                self.commands,
+                flight.duration,
+                flight.log_every,
+                self.motor_lag,
             )
-        return simulation.run(self.duration, self.commands, self.log_every)
+        return flight.fly()
 
     def drags(self) -> List[str]:
         """Cases of drag that differ for this vehicle: none, each that acts alone, all."""
-        values = parameters_of(self.simulation(Case("eigen")), AIR)
+        values = parameters_of(self.flight(Case("eigen")).simulation(), AIR)
         acting = [d for d, tags in DRAGS.items() if any(float(values[tag]) for tag in tags)]
         return ["none", *acting, "all"]
 

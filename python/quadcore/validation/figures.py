@@ -97,7 +97,7 @@ def draw_commands(commands: np.ndarray, duration: float) -> bytes:
 def pictures(study: Study) -> Dict[str, Tuple[Callable[..., bytes], Tuple[Any, ...]]]:
     """Every picture of a study by name, as a function and what to call it with."""
     result: Dict[str, Tuple[Callable[..., bytes], Tuple[Any, ...]]] = {
-        "commands": (draw_commands, (study.experiment.commands, study.experiment.duration)),
+        "commands": (draw_commands, (study.experiment.commands, study.experiment.plan.duration)),
     }
     if study.damping:
         result["damping"] = draw_damping, (study.damping,)

@@ -12,10 +12,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from .. import _core
 from ..chapter2 import Vehicle
 from ..chapter2.vehicle import command_order
-from ..flight import steps_within
+from ..flight import Rows, fly, steps_within
 from ..log import Log
 from ..simulation import Simulation
 
@@ -60,6 +59,43 @@ def speeds(vehicle: Vehicle, commands: np.ndarray, times: np.ndarray, lag: bool)
     return omega
 
 
+class GivenSpeeds:
+    """The pilot (see `flight.fly`) that puts the rotors to the speeds of `vehicle`'s motors.
+
+    Parameters
+    ----------
+    commands, lag
+        As for `speeds`.
+    duration : float
+        Of the flight, s.
+    """
+
+    def __init__(
+        self, vehicle: Vehicle, commands: np.ndarray, lag: bool, duration: float, dt: float
+    ) -> None:
+        self.rate = 1 / dt
+        middles = dt * (np.arange(steps_within(duration, dt)) + 0.5)
+        self._omega = speeds(vehicle, commands, middles, lag)
+        # What a stiff motor must be asked for to hold a speed against friction.
+        self._asked = self._omega * (1 + vehicle.joint_damping / stiff_gain(vehicle, dt))
+
+    def reset(self, simulation: Simulation) -> None:
+        """Begin with the rotors as they turn."""
+        self._order = command_order(simulation)
+        before = np.vstack([simulation.state.rotor_velocity[self._order], self._omega[:-1]])
+        self._steps = zip(self._asked, self._omega - before)
+
+    def speeds(self, simulation: Simulation) -> np.ndarray:
+        """Put the rotors to the speeds of the step's middle, and hold them there."""
+        asked, jump = next(self._steps)
+        if jump.any():
+            state = simulation.state.copy()
+            state.rotor_velocity[self._order] += jump
+            simulation.set_state(state)
+        now: np.ndarray = asked
+        return now
+
+
 def fly_given_speeds(
     simulation: Simulation,
     vehicle: Vehicle,
@@ -75,18 +111,7 @@ def fly_given_speeds(
     simulation : Simulation
         Engine ``eigen``, at rest, its motors of `stiff_gain`, sim_slow 1.
     """
-    dt, order = simulation.dt, command_order(simulation)
-    middles = dt * (np.arange(steps_within(duration, dt)) + 0.5)
-    omega = speeds(vehicle, commands, middles, lag)
-    # What a stiff motor must be asked for to hold a speed against friction.
-    asked = omega * (1 + vehicle.joint_damping / stiff_gain(vehicle, dt))
-    before = np.vstack([simulation.state.rotor_velocity[order], omega[:-1]])
-    flight = _core.Flight(simulation, None, log_every, wrenches=False)
-    for now, jump in zip(asked, omega - before):
-        if jump.any():
-            state = simulation.state.copy()
-            state.rotor_velocity[order] += jump
-            simulation.set_state(state)
-        simulation.command(now)
-        flight.advance(1)
-    return Log(flight.take()[0], {})
+    pilot = GivenSpeeds(vehicle, commands, lag, duration, simulation.dt)
+    rows = Rows(simulation)
+    fly(simulation, duration, None, log_every, rows.receive, wrenches=False, pilot=pilot)
+    return rows.log()

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
-import json
 import re
 from pathlib import Path
 from typing import Any, Dict, Iterable, List, Mapping, Sequence
@@ -12,8 +9,8 @@ from typing import Any, Dict, Iterable, List, Mapping, Sequence
 import numpy as np
 
 from .._core import InputError
-from ..files import atomic_write
 from ..report import write_page
+from ..study.table import csv_bytes, json_bytes, save
 from .chain import Chain
 from .experiment import Case
 from .states import STATES
@@ -22,6 +19,7 @@ from .thesis import KINDS, thesis_figures
 
 PICTURE = re.compile(rf"(commands|damping|(chain|{'|'.join(KINDS)})_[a-z]+)\.png")
 _SIZES = (*STATES, "distance")
+_TOLD = ("largest", "rms")
 
 
 def write_tables(study: Study, directory: Path) -> List[Path]:
@@ -35,10 +33,10 @@ def write_tables(study: Study, directory: Path) -> List[Path]:
         A file cannot be written.
     """
     files = {
-        "commands.csv": _csv(_commands(study)),
-        "errors.csv": _csv(_errors(study.rows)),
-        "chains.csv": _csv(_chains(study.chains)),
-        "validation.json": (json.dumps(as_json(study), indent=1) + "\n").encode(),
+        "commands.csv": csv_bytes(_commands(study)),
+        "errors.csv": csv_bytes(_errors(study.rows)),
+        "chains.csv": csv_bytes(_chains(study.chains)),
+        "validation.json": json_bytes(as_json(study)),
     }
     for old in directory.glob("*.png"):
         if PICTURE.fullmatch(old.name):
@@ -46,10 +44,7 @@ def write_tables(study: Study, directory: Path) -> List[Path]:
                 old.unlink()
             except OSError as error:
                 raise InputError(f"{old}: cannot be removed: {error.strerror}") from error
-    for name, data in files.items():
-        with atomic_write(directory / name) as stream:
-            stream.write(data)
-    return [directory / name for name in files]
+    return save(directory, files)
 
 
 def write_picture(name: str, picture: bytes, directory: Path) -> None:
@@ -60,8 +55,7 @@ def write_picture(name: str, picture: bytes, directory: Path) -> None:
     InputError
         It cannot be written.
     """
-    with atomic_write(directory / f"{name}.png") as stream:
-        stream.write(picture)
+    save(directory, {f"{name}.png": picture})
 
 
 def write_report(study: Study, pictures: Mapping[str, bytes], directory: Path) -> Path:
@@ -81,7 +75,7 @@ def write_report(study: Study, pictures: Mapping[str, bytes], directory: Path) -
     write_page(
         page,
         "validation.html",
-        title=f"{study.experiment.model}: plant against mathematical model",
+        title=f"{study.experiment.asked['model']}: plant against mathematical model",
         study=study,
         rows={row.case: row for row in study.rows},
         Case=Case,
@@ -97,19 +91,17 @@ def write_report(study: Study, pictures: Mapping[str, bytes], directory: Path) -
 def as_json(study: Study) -> Dict[str, Any]:
     """All numbers of a study as plain lists and dictionaries; angles in rad."""
     experiment = study.experiment
-    shared = (
-        "model",
-        "world",
-        "parameters",
-        "xacro_args",
-        "ignore",
-        "dt",
-        "duration",
-        "spawn",
-        "motor_lag",
-    )
+    asked = dict(experiment.asked)
+    spawn = asked.pop("spawn")
+    shared = {
+        **asked,
+        "dt": experiment.plan.dt,
+        "duration": experiment.plan.duration,
+        "spawn": spawn,
+        "motor_lag": experiment.motor_lag,
+    }
     return {
-        "experiment": {name: getattr(experiment, name) for name in shared},
+        "experiment": shared,
         "commands": experiment.commands.tolist(),
         "errors": [_row(row) for row in study.rows],
         "chains": [
@@ -137,7 +129,7 @@ def size(value: float) -> str:
 def _row(row: Row) -> Dict[str, Any]:
     result = {**row.case._asdict(), "steepest": row.steepest, "failure": row.failure}
     if row.difference is not None:
-        result.update(row.difference._asdict())
+        result.update({kind: getattr(row.difference, kind) for kind in _TOLD})
     return result
 
 
@@ -156,7 +148,8 @@ def _errors(rows: Sequence[Row]) -> Iterable[Sequence[Any]]:
     for row in rows:
         sizes: Sequence[Any] = [""] * len(kinds)
         if row.difference is not None:
-            sizes = [part[name] for part in row.difference for name in _SIZES]
+            told = (getattr(row.difference, kind) for kind in _TOLD)
+            sizes = [part[name] for part in told for name in _SIZES]
         yield [*row.case[:3], row.steepest, *sizes, row.failure]
 
 
@@ -166,9 +159,3 @@ def _chains(chains: Sequence[Chain]) -> Iterable[Sequence[Any]]:
         for link in chain.links:
             yield [*chain[:2], link.change, link.share, link.largest, link.rms, ""]
         yield [*chain[:2], "sum", chain.distance, "", "", chain.failure]
-
-
-def _csv(rows: Iterable[Sequence[Any]]) -> bytes:
-    stream = io.StringIO()
-    csv.writer(stream, lineterminator="\n").writerows(rows)
-    return stream.getvalue().encode()

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Dict, NamedTuple
-
 import numpy as np
 
 from ..chapter2.kinematics import euler_rates_to_body
 from ..log import Log
 from ..rotation import roll_pitch_yaw
+from ..study.metrics import Sizes, sizes
 
 # xi, eta and their rates, as chapter 6 plots them: m, rad, m/s, rad/s.
 STATES = ("x", "y", "z", "phi", "theta", "psi", "vx", "vy", "vz", "phidot", "thetadot", "psidot")
@@ -22,24 +21,11 @@ def states(log: Log) -> np.ndarray:
     return np.hstack([log.position, eta, log.linear_velocity, etadot])
 
 
-class Difference(NamedTuple):
-    """Sizes of the difference of two flights over their time."""
-
-    largest: Dict[str, float]
-    """By state, and as "distance" that of the positions, m."""
-    rms: Dict[str, float]
-
-
-def compare(log: Log, reference: Log) -> Difference:
-    """Compare two flights that were logged at the same times."""
+def compare(log: Log, reference: Log) -> Sizes:
+    """Compare two flights that were logged at the same times: by state, and "distance", m."""
     apart = states(log) - states(reference)
     distance = np.linalg.norm(apart[:, :3], axis=1, keepdims=True)
-    sizes = np.abs(np.hstack([apart, distance]))
-    names = (*STATES, "distance")
-    return Difference(
-        dict(zip(names, sizes.max(axis=0).tolist())),
-        dict(zip(names, np.sqrt((sizes**2).mean(axis=0)).tolist())),
-    )
+    return sizes(np.hstack([apart, distance]), (*STATES, "distance"))
 
 
 def steepest(log: Log) -> float:

@@ -6,11 +6,12 @@ from contextlib import closing
 from typing import Callable, Dict, List, NamedTuple, Optional, Sequence
 
 from .._core import InputError, QuadcoreError
-from ..parallel import contained, each
+from ..study.executor import conducted
+from ..study.metrics import Sizes
 from .chain import ORDER, Chain, forge, stages
 from .damping import Damping, measure
 from .experiment import LAG, MODEL, NO_LAG, TERMS, Case, Experiment, Flight
-from .states import Difference, compare, steepest
+from .states import compare, steepest
 from .thesis import SIM_SLOW
 
 
@@ -18,7 +19,7 @@ class Row(NamedTuple):
     """One flight against another."""
 
     case: Case
-    difference: Optional[Difference]
+    difference: Optional[Sizes]
     steepest: float
     """Largest roll or pitch, rad."""
     failure: str
@@ -122,14 +123,12 @@ def _fly(
 ) -> None:
     # The model is slow: it goes first, so that no core waits for it at the end.
     cases = sorted(flights, key=lambda case: case.plant != MODEL)
-    with closing(each(contained(experiment.fly), cases, processes)) as outcomes:
-        for done, (index, flight) in enumerate(outcomes, start=1):
+    with closing(conducted(experiment.fly, cases, processes, progress=progress)) as outcomes:
+        for index, flight in outcomes:
             case = cases[index]
             if isinstance(flight, QuadcoreError):  # its process died
                 flight = Flight(case, None, str(flight))
             flights[case] = flight
-            if progress is not None:
-                progress(done, len(cases))
 
 
 def _row(flight: Flight, reference: Flight) -> Row:

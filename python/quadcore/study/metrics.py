@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Dict
+from typing import Dict, NamedTuple, Sequence
 
 import numpy as np
 
@@ -56,13 +56,28 @@ def differences(reference: Log, log: Log) -> np.ndarray:
     return np.hstack([whole, position, angles, velocity, rates, rotors])
 
 
-def metrics(reference: Log, log: Log) -> np.ndarray:
-    """Find the final and the largest difference of each state; shape (2, 16 + n).
+class Sizes(NamedTuple):
+    """Sizes of the difference of two flights over their time, by state."""
 
-    The final one has its sign; the largest is of magnitudes.
-    """
-    rows = differences(reference, log)
-    return np.stack([rows[-1], np.abs(rows).max(axis=0)])
+    final: Dict[str, float]
+    """With its sign."""
+    largest: Dict[str, float]
+    """Of magnitudes."""
+    rms: Dict[str, float]
+
+
+def sizes(rows: np.ndarray, names: Sequence[str]) -> Sizes:
+    """Measure differences of the states of these names; rows of shape (rows, states)."""
+    magnitudes = np.abs(rows)
+    found = (rows[-1], magnitudes.max(axis=0), np.sqrt((magnitudes**2).mean(axis=0)))
+    return Sizes(*(dict(zip(names, values.tolist())) for values in found))
+
+
+def metrics(reference: Log, log: Log) -> np.ndarray:
+    """Find the final and the largest difference of each state; shape (2, 16 + n)."""
+    names = states(reference.rotor_velocity.shape[1])
+    found = sizes(differences(reference, log), list(names))
+    return np.array([list(found.final.values()), list(found.largest.values())])
 
 
 def _at(time: np.ndarray, log: Log) -> Log:

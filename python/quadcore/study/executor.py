@@ -10,6 +10,7 @@ import multiprocessing
 import os
 import signal
 import traceback
+from contextlib import closing
 from multiprocessing.connection import Connection, wait
 from typing import (
     Any,
@@ -26,8 +27,8 @@ from typing import (
     Union,
 )
 
-from . import interrupts
-from ._core import QuadcoreError
+from .. import interrupts
+from .._core import QuadcoreError
 
 Case = TypeVar("Case")
 Result = TypeVar("Result")
@@ -95,6 +96,28 @@ def each(
         raise
     finally:
         collections.deque(crew.dismiss(), maxlen=0)
+
+
+def conducted(
+    function: Callable[[Case], Result],
+    cases: Iterable[Case],
+    processes: Optional[int] = None,
+    conclude: Callable[[Any], Any] = lambda result: result,
+    progress: Optional[Callable[[int, int], None]] = None,
+) -> Generator[Tuple[int, Union[Any, QuadcoreError]], None, None]:
+    """Do as `each` does, but with any fault its case's alone.
+
+    Parameters
+    ----------
+    progress
+        Called as progress(done, total) after each outcome was taken over; `cases` must have a
+        length then.
+    """
+    with closing(each(contained(function), cases, processes, contained(conclude))) as outcomes:
+        for done, outcome in enumerate(outcomes, start=1):
+            yield outcome
+            if progress is not None:
+                progress(done, len(cases))  # type: ignore[arg-type]
 
 
 def contained(function: Callable[[Case], Result]) -> Callable[[Case], Result]:

@@ -1,0 +1,121 @@
+"""What flies a simulation in closed loop."""
+
+from __future__ import annotations
+
+import math
+from numbers import Real
+from typing import TYPE_CHECKING, Any, Callable, Protocol, Union
+
+import numpy as np
+
+from ._core import InputError
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
+
+DEFAULT_RATE = 500.0  # 1/s
+
+_SENSED = "odom"
+
+
+class Controller(Protocol):
+    """A law. A function ``law(t, state, reference)`` will do; the other members are optional.
+
+    Attributes
+    ----------
+    rate : float
+        Calls per simulated second, at most one per step; 500 without the attribute.
+    """
+
+    def reset(self, simulation: Simulation) -> None:
+        """Begin anew: called before the first step of a run."""
+
+    def __call__(self, t: float, state: Odometry, reference: Any) -> Any:
+        """Give the speeds for the steps until the next call.
+
+        Parameters
+        ----------
+        t : float
+            Time of the simulation, s.
+        state : Odometry
+            What the odometry said last.
+        reference
+            None.
+
+        Returns
+        -------
+        array_like, shape (n,)
+            Rotor speeds, rad/s, signed, as `Simulation.command` takes them.
+        """
+
+
+class Odometry:
+    """What the odometry plugin said, with the noise that its tags ask for.
+
+    Attributes
+    ----------
+    time : float
+        Of the message, s.
+    position : ndarray (3,)
+        Frame origin in the world, m.
+    orientation : ndarray (4,)
+        Of the frame in the world, unit quaternion x, y, z, w.
+    linear_velocity : ndarray (3,)
+        Of the frame origin, m/s; in the axes that the plugin's `twistFrame` names.
+    angular_velocity : ndarray (3,)
+        Of the frame, body axes, rad/s.
+    """
+
+    __slots__ = ("angular_velocity", "linear_velocity", "orientation", "position", "time")
+
+    def __init__(self, simulation: Simulation) -> None:
+        try:
+            message = simulation.topic(_SENSED)
+        except InputError as error:
+            raise InputError(f"controller: {error}; add libodometry_plugin.so") from None
+        self.time = message["stamp"]
+        for name, fields in _FIELDS:
+            setattr(self, name, np.array([message[field] for field in fields]))
+
+
+_FIELDS = (
+    ("position", ("x", "y", "z")),
+    ("orientation", ("qx", "qy", "qz", "qw")),
+    ("linear_velocity", ("vx", "vy", "vz")),
+    ("angular_velocity", ("wx", "wy", "wz")),
+)
+
+
+class Guided:
+    """The pilot (see `flight.fly`) that asks a controller, and tells it what the odometry says.
+
+    Raises
+    ------
+    InputError
+        No controller, a rate that is none, or a model without odometry.
+    """
+
+    def __init__(
+        self, controller: Union[Controller, Callable[..., Any]], simulation: Simulation
+    ) -> None:
+        if not callable(controller):
+            raise InputError(
+                f"controller is {controller!r}; give a function, or an object, that is called as "
+                "controller(t, state, reference)"
+            )
+        rate = getattr(controller, "rate", DEFAULT_RATE)
+        if not (isinstance(rate, Real) and 0 < float(rate) < math.inf):
+            raise InputError(f"controller: its rate is {rate!r}; give calls per second, > 0")
+        self.rate = float(rate)
+        self._controller = controller
+        Odometry(simulation)  # a model without any is refused before it flies
+
+    def reset(self, simulation: Simulation) -> None:
+        """Let the controller begin anew."""
+        reset = getattr(self._controller, "reset", None)
+        if reset is not None:
+            reset(simulation)
+
+    def speeds(self, simulation: Simulation) -> Any:
+        """Ask the controller."""
+        return self._controller(simulation.time, Odometry(simulation), None)

@@ -1,0 +1,149 @@
+"""One flight, described so that it can be flown anywhere."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import dataclass, field, fields, replace
+from pathlib import Path
+from typing import Any, Dict, Mapping, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from . import _core
+from ._core import Model, World
+from .commands import CommandsLike, as_commands
+from .description import read_both
+from .flight import Progress
+from .log import Log
+from .simulation import Number, Simulation, Value, pose, text_of, whole
+
+_VERSION = 1  # of what a fingerprint stands for
+
+
+@dataclass(frozen=True, eq=False)
+class FlightPlan:
+    """One flight: what flies, where, and how it is commanded.
+
+    It holds documents and numbers, no paths, so that it can be pickled and flown in another process
+    or on another machine: the same bytes come out. `FlightPlan.of` makes one from files and names;
+    `dataclasses.replace` makes one that differs in some member.
+
+    Attributes
+    ----------
+    model, world
+        As they were read.
+    engine, dt, seed
+        As for `Simulation`.
+    parameters : mapping of str to str
+        "PLUGIN.TAG" -> value.
+    spawn : tuple of 6 floats
+        x, y, z (m), roll, pitch, yaw (rad) of the frame link in the world.
+    rotor_velocity : tuple of float, optional
+        Of the rotor joints at the start, rad/s; None is at rest.
+    duration : float
+        s
+    commands : ndarray (rows, 1 + n), optional
+        As for `Simulation.run`.
+    log_every, wrenches
+        As for `Simulation.run`.
+    """
+
+    model: Model
+    world: World
+    engine: str = "gazebo11"
+    dt: Optional[float] = None
+    seed: int = 0
+    parameters: Mapping[str, str] = field(default_factory=dict)
+    spawn: Tuple[float, ...] = (0.0, 0.0, 10.0, 0.0, 0.0, 0.0)
+    rotor_velocity: Optional[Tuple[float, ...]] = None
+    duration: float = 10.0
+    commands: Optional[np.ndarray] = field(default=None, repr=False)
+    log_every: int = 1
+    wrenches: bool = True
+
+    @classmethod
+    def of(
+        cls,
+        model: Union[str, Path, Model] = "quadrotor",
+        world: Union[str, Path, World, None] = None,
+        xacro_args: Optional[Mapping[str, object]] = None,
+        ignore: Sequence[str] = (),
+        parameters: Optional[Mapping[str, Value]] = None,
+        spawn: Sequence[Number] = (0, 0, 10),
+        seed: int = 0,
+        commands: Optional[CommandsLike] = None,
+        **others: Any,
+    ) -> FlightPlan:
+        """Read what a flight needs.
+
+        Parameters
+        ----------
+        model, world, xacro_args, ignore, parameters, spawn, seed
+            As for `Simulation`.
+        commands
+            As for `Simulation.run`; a file is read now.
+        **others
+            Members as they stand.
+
+        Raises
+        ------
+        InputError
+            The model, the world, the commands or an argument is at fault.
+        """
+        plan = cls(
+            *read_both(model, world, xacro_args, ignore),
+            parameters={key: text_of(value) for key, value in (parameters or {}).items()},
+            spawn=pose(spawn),
+            seed=whole(seed),
+            **others,
+        )
+        return plan if commands is None else plan.commanded(commands)
+
+    def commanded(self, commands: CommandsLike) -> FlightPlan:
+        """Make the same flight under other commands; a file is read now.
+
+        Raises
+        ------
+        InputError
+            The commands, or what else makes a simulation, are at fault.
+        """
+        vehicle = _core.Simulation(**self._vehicle())
+        return replace(self, commands=as_commands(commands, vehicle.command_width))
+
+    def simulation(self) -> Simulation:
+        """Make the vehicle as it takes off; raises and warns as `Simulation` does."""
+        simulation = Simulation(**self._vehicle())
+        if self.rotor_velocity is not None:
+            state = simulation.state.copy()
+            state.rotor_velocity = np.array(self.rotor_velocity, dtype=float)
+            simulation.set_state(state)
+        return simulation
+
+    def fly(self, progress: Optional[Progress] = None) -> Log:
+        """Fly it; raises and warns as `Simulation` and `Simulation.run` do."""
+        return self.simulation().run(
+            self.duration, self.commands, self.log_every, progress, self.wrenches
+        )
+
+    def fingerprint(self) -> str:
+        """Digest of all that the flight depends on, the same in every process and place.
+
+        Hexadecimal. Documents that differ in a comment only count as different; where they lie and
+        what they are called does not. The modules of the plugins are taken to be the same.
+        """
+        text = json.dumps(self._told(), sort_keys=True, allow_nan=True)
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    def _vehicle(self) -> Dict[str, Any]:
+        names = ("model", "world", "engine", "dt", "seed", "parameters", "spawn")
+        return {name: getattr(self, name) for name in names}
+
+    def _told(self) -> Dict[str, Any]:
+        told = {item.name: getattr(self, item.name) for item in fields(self)}
+        for name in ("model", "world"):
+            told[name] = [told[name].document.text, told[name].passed_over.ignored]
+        told["dt"] = self.dt or self.world.max_step_size
+        if self.commands is not None:
+            told["commands"] = np.asarray(self.commands, dtype=float).tolist()
+        return {"version": _VERSION, **told}

@@ -1,0 +1,144 @@
+"""MATLAB files of version 5, a vector for each column."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from pathlib import Path
+from typing import Any, Mapping, Sequence
+
+import numpy as np
+
+from .._core import InputError, QuadcoreError
+from ..files import atomic_write, check_regular, unwritable
+from ..forks import LOCK
+from .rows import Table
+
+_MOST_VALUES = 10**7  # of a variable; of commands more than three hours at 1 kHz
+
+
+def read_commands(path: Path, names: Sequence[str]) -> Table:
+    """Read vectors of these names.
+
+    Raises
+    ------
+    InputError
+        A variable is missing or no vector of real numbers, or they differ in length.
+    """
+    variables = _variables(path, names)
+    columns = [_vector(path, name, variables[name]) for name in names]
+    for name, column in zip(names, columns):
+        if len(column) != len(columns[0]):
+            raise InputError(f"{path}: {name} has {len(column)} values, t has {len(columns[0])}")
+    return Table(
+        np.column_stack(columns),
+        lambda row: f"{path}: row {1 + row}",
+        " (rows count from 1, as MATLAB's do)",
+    )
+
+
+def _variables(path: Path, names: Sequence[str]) -> Mapping[str, Any]:
+    with LOCK:
+        import scipy.io
+
+    try:
+        check_regular(path)
+        with path.open("rb") as stream:
+            # Sizes first: a few compressed bytes can stand for more than there is memory.
+            held = {name: math.prod(shape) for name, shape, _ in scipy.io.whosmat(stream)}
+            missing = [name for name in names if name not in held]
+            large = [name for name in names if held.get(name, 0) > _MOST_VALUES]
+            if not missing and not large:
+                stream.seek(0)
+                variables: Mapping[str, Any] = scipy.io.loadmat(stream, variable_names=names)
+    except QuadcoreError:
+        raise
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
+    except NotImplementedError as error:
+        raise InputError(f"{path}: a MATLAB 7.3 file; save it with the option -v7") from error
+    except Exception as error:  # scipy has no common base class for what a broken file raises
+        raise InputError(f"{path}: not a MATLAB file: {error}") from error
+    if missing or f"w{len(names)}" in held:
+        found = ", ".join(sorted(held))
+        raise InputError(
+            f"{path}: holds {found or 'no variables'}; this model with {len(names) - 1} rotors "
+            f"takes {', '.join(names)}"
+        )
+    if large:
+        raise InputError(
+            f"{path}: {large[0]} has {held[large[0]]} values; at most {_MOST_VALUES} are read"
+        )
+    return variables
+
+
+def _vector(path: Path, name: str, value: np.ndarray) -> np.ndarray:
+    if value.dtype.kind not in "iuf" or value.size != max(value.shape, default=0):
+        raise InputError(f"{path}: {name} is no vector of real numbers")
+    return value.ravel().astype(float)
+
+
+def write_log(
+    path: Path,
+    columns: Sequence[str],
+    table: np.ndarray,
+    wrenches: Mapping[str, np.ndarray],
+    ignored: Sequence[str],
+) -> None:
+    """Write each column as a vector and each wrench as ``wrench_NAME``.
+
+    What was ignored, if anything, is the cell array ``ignored``.
+    """
+    with LOCK:
+        import scipy.io
+
+    variables = {name: table[:, i] for i, name in enumerate(columns)}
+    variables.update((f"wrench_{name}", value) for name, value in wrenches.items())
+    if ignored:
+        variables["ignored"] = np.array(ignored, dtype=object)
+    with atomic_write(path) as stream:
+        scipy.io.savemat(stream, variables, oned_as="column")
+
+
+class MatFile:
+    """A log whose variables are known at the end only: rows wait in a file without name.
+
+    It lies beside the log, where there must be room for the log as well.
+    """
+
+    wrenches = True
+
+    def __init__(
+        self, path: Path, columns: Sequence[str], terms: Sequence[str], ignored: Sequence[str]
+    ) -> None:
+        self.path = path
+        self._columns, self._terms, self._ignored = columns, terms, ignored
+        self._count = 0
+        try:
+            self._rows = tempfile.TemporaryFile(dir=str(path.parent))  # noqa: SIM115
+        except OSError as error:
+            raise unwritable(path, error) from error
+
+    def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
+        """Keep a piece."""
+        rows = np.hstack([table, wrenches.reshape(len(table), -1)])
+        try:
+            self._rows.write(rows.tobytes())
+            self._rows.flush()
+        except OSError as error:
+            raise unwritable(self.path, error) from error
+        self._count += len(table)
+
+    def close(self) -> None:
+        """Write the file."""
+        n = len(self._columns)
+        with self._rows as stream:
+            if self._count == 0:
+                return
+            rows = np.memmap(
+                stream, dtype=float, mode="r", shape=(self._count, n + 6 * len(self._terms))
+            )
+            wrenches = {
+                name: rows[:, n + 6 * i : n + 6 * (i + 1)] for i, name in enumerate(self._terms)
+            }
+            write_log(self.path, self._columns, rows[:, :n], wrenches, self._ignored)

@@ -1,0 +1,48 @@
+"""What a study leaves behind as numbers: tables and files of them."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from pathlib import Path
+from typing import Any, Iterable, List, Mapping, Sequence
+
+from ..files import atomic_write, cell, text_bytes
+
+
+def csv_bytes(rows: Iterable[Sequence[Any]]) -> bytes:
+    """Write rows as CSV; NaN is an empty cell."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    for row in rows:
+        writer.writerow(["" if value != value else cell(value) for value in row])
+    return text_bytes(stream.getvalue())
+
+
+def json_bytes(content: Any) -> bytes:
+    """Write lists and dictionaries as JSON; NaN is null."""
+    text = json.dumps(_plain(content), indent=1, ensure_ascii=False, allow_nan=False)
+    return text_bytes(text + "\n")
+
+
+def save(folder: Path, files: Mapping[str, bytes]) -> List[Path]:
+    """Write files into a folder, each whole or not at all, and name them.
+
+    Raises
+    ------
+    InputError
+        One cannot be written.
+    """
+    for name, data in files.items():
+        with atomic_write(folder / name) as stream:
+            stream.write(data)
+    return [folder / name for name in files]
+
+
+def _plain(content: Any) -> Any:
+    if isinstance(content, Mapping):
+        return {key: _plain(value) for key, value in content.items()}
+    if isinstance(content, (list, tuple)):
+        return [_plain(value) for value in content]
+    return None if content != content else content

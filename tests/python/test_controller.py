@@ -1,0 +1,175 @@
+"""Flights in closed loop: when a law is asked, what it is told, what becomes of its faults."""
+
+from __future__ import annotations
+
+import inspect
+
+import numpy as np
+import pytest
+from flights import BUSY, ENGINES, HOVER, MANOEUVRE, bits, hold_height, quadrotor
+
+import quadcore as qc
+
+
+class Law:
+    """Holds a height by what it is told, and notes when it was asked."""
+
+    def __init__(self, rate=None):
+        self.asked = []
+        self.begun = 0
+        if rate is not None:
+            self.rate = rate
+
+    def reset(self, simulation):
+        self.begun += 1
+        self.rotors = simulation.rotor_count
+
+    def __call__(self, t, state, reference):
+        assert reference is None
+        self.asked.append(t)
+        climb = 0.05 * (10 - state.position[2]) - 0.02 * state.linear_velocity[2]
+        return HOVER[: self.rotors] * (1 + climb)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_law_flies_the_bytes_that_a_loop_by_hand_flies(engine):
+    by_hand, by_law = (quadrotor(engine, parameters=BUSY) for _ in range(2))
+    hold_height(by_hand, 300)
+    by_law.run(0.3, controller=Law(rate=1000))
+    assert bits(by_law) == bits(by_hand)
+
+
+@pytest.mark.parametrize(
+    ("rate", "dt", "steps"),
+    [
+        (None, 0.001, range(0, 100, 2)),
+        (500, 0.001, range(0, 100, 2)),
+        (1000, 0.001, range(100)),
+        (1e6, 0.001, range(100)),  # at most once a step
+        (300, 0.001, [0, *(-(-10 * k // 3) for k in range(1, 30))]),
+        (7, 0.001, [0]),
+        (250, 0.003, [0, *(-(-4 * k // 3) for k in range(1, 25))]),
+    ],
+)
+def test_a_law_is_asked_at_the_first_step_at_or_after_each_period(rate, dt, steps):
+    law = Law(rate)
+    simulation = quadrotor("eigen", dt=dt)
+    simulation.run(0.1, controller=law)
+    expected = [step for step in steps if step < round(simulation.time / dt)]
+    assert np.round(np.array(law.asked) / dt).astype(int).tolist() == expected
+    assert law.begun == 1
+
+
+def test_logging_and_interruptions_do_not_change_when_a_law_is_asked():
+    laws = [Law(300) for _ in range(2)]
+    fine = quadrotor("eigen").run(1, controller=laws[0])
+    coarse = quadrotor("eigen").run(1, log_every=7, controller=laws[1], progress=lambda *_: None)
+    assert laws[0].asked == laws[1].asked
+    assert np.array_equal(fine.table[::7], coarse.table)
+
+
+def test_a_run_goes_on_from_where_the_last_one_ended():
+    law = Law(rate=100)
+    simulation = quadrotor("eigen")
+    simulation.run(0.015, controller=law)
+    simulation.run(0.015, controller=law)
+    assert np.allclose(law.asked, [0, 0.01, 0.015, 0.025], rtol=0, atol=1e-12)
+    assert law.begun == 2
+
+
+def test_a_law_is_told_what_the_odometry_says():
+    said = []
+
+    def law(t, state, reference):
+        message = simulation.topic("odom")
+        assert state.time == message["stamp"]
+        assert state.position.tolist() == [message[name] for name in ("x", "y", "z")]
+        assert state.orientation.tolist() == [message[f"q{name}"] for name in "xyzw"]
+        assert state.linear_velocity.tolist() == [message[f"v{name}"] for name in "xyz"]
+        assert state.angular_velocity.tolist() == [message[f"w{name}"] for name in "xyz"]
+        said.append(state)
+        return HOVER + np.array([3, -2, 1, 2])
+
+    simulation = quadrotor("eigen", parameters=BUSY)
+    log = simulation.run(0.1, controller=law)
+    assert len(said) == 50
+    assert np.abs(said[-1].position - log.position[-3]).max() > 1e-3  # noise
+
+
+def test_constant_speeds_by_law_and_by_table_are_one_flight():
+    by_law = quadrotor().run(0.2, controller=lambda t, state, reference: HOVER)
+    assert np.array_equal(by_law.table, quadrotor().run(0.2, [[0, *HOVER]]).table)
+
+
+def wrong_after(t0, speeds):
+    return lambda t, state, reference: HOVER if t < t0 else speeds
+
+
+@pytest.mark.parametrize(
+    ("speeds", "says"),
+    [
+        ([471] * 3, "command holds 3 rotor speeds; give 4"),
+        ([471, np.nan, 471, 471], "command for rotor 2 is not a finite number; give rad/s"),
+        (None, "command is not a 1-dimensional array of numbers"),
+    ],
+)
+def test_what_is_no_command_ends_the_flight_and_its_log_stays(speeds, says):
+    simulation = quadrotor("eigen")
+    with pytest.raises(qc.FlightError, match=f"the flight failed at t = 0.1.* s: {says}") as failed:
+        simulation.run(1, controller=wrong_after(0.1, speeds))
+    assert failed.value.time == simulation.time == pytest.approx(0.1)
+    assert len(failed.value.log) == 101
+    before = quadrotor("eigen")
+    with pytest.raises(qc.InputError, match=says):  # nothing was flown
+        before.run(1, controller=wrong_after(-1, speeds))
+    assert before.time == 0
+
+
+def test_what_a_law_raises_comes_out_with_the_log_so_far():
+    def law(t, state, reference):
+        if t > 0.0495:
+            raise ZeroDivisionError("of the law")
+        return HOVER
+
+    simulation = quadrotor("eigen")
+    with pytest.raises(ZeroDivisionError, match="of the law") as raised:
+        simulation.run(1, controller=law)
+    assert len(raised.value.log) == 51
+    assert np.array_equal(raised.value.log.table, quadrotor("eigen").run(0.05, [[0, *HOVER]]).table)
+
+
+class WithoutRate:
+    rate = "often"
+
+    def __call__(self, t, state, reference):
+        return HOVER
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ({"controller": 5}, "controller is 5; give a function, or an object, that is called as"),
+        ({"controller": WithoutRate()}, "its rate is 'often'; give calls per second, > 0"),
+        ({"controller": Law(0)}, "its rate is 0; give"),
+        ({"controller": Law(np.inf)}, "its rate is inf; give"),
+        ({"controller": Law(), "commands": MANOEUVRE}, "commands or a controller; give one"),
+    ],
+)
+def test_what_is_no_controller_is_refused_before_the_flight(arguments, says):
+    simulation = quadrotor("eigen")
+    with pytest.raises(qc.InputError, match=says):
+        simulation.run(1, **arguments)
+    assert simulation.time == 0
+
+
+def test_a_model_without_odometry_has_nothing_to_tell(toy):
+    text = (toy / "toy.urdf").read_text()
+    start = text.index('    <plugin name="odometry"')
+    (toy / "blind.urdf").write_text(text[:start] + text[text.index("  </gazebo>", start) :])
+    with pytest.raises(qc.InputError, match=r"odom.*libodometry_plugin\.so"):
+        qc.Simulation("blind.urdf").run(1, controller=lambda *_: [0])
+
+
+def test_the_controller_that_is_documented_can_be_called_as_it_says():
+    parameters = list(inspect.signature(qc.Controller.__call__).parameters)
+    assert parameters[1:] == ["t", "state", "reference"]
