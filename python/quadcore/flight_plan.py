@@ -143,7 +143,8 @@ class FlightPlan:
         told = {item.name: getattr(self, item.name) for item in fields(self)}
         for name in ("model", "world"):
             told[name] = [told[name].document.text, told[name].passed_over.ignored]
-        told["dt"] = self.dt or self.world.max_step_size
-        if self.commands is not None:
-            told["commands"] = np.asarray(self.commands, dtype=float).tolist()
+        told["dt"] = self.world.max_step_size if self.dt is None else self.dt
+        for name in ("dt", "duration", "spawn", "rotor_velocity", "commands"):
+            if told[name] is not None:  # 10 and 10.0 are the same
+                told[name] = np.asarray(told[name], dtype=float).tolist()
         return {"version": _VERSION, **told}
