@@ -7,6 +7,7 @@
 #include "flight_checks.hpp"
 #include "quadcore/commands.hpp"
 #include "quadcore/error.hpp"
+#include "quadcore/text.hpp"
 
 namespace quadcore {
 namespace {

@@ -17,7 +17,7 @@ Matrix3d gyroscopic_slope(const Matrix3d& I, const Vector3d& u) {
   return skew(I * u) - skew(u) * I;
 }
 
-Vector3d torque(const CarriedBody& b, const Vector3d& w_WC_C) {
+Vector3d torque(const HingedBody& b, const Vector3d& w_WC_C) {
   return gyroscopic(b.I_Bcm_C, w_WC_C + b.rate * b.axis_C);
 }
 
@@ -34,9 +34,9 @@ Vector3d halfway_rate(const GyroscopicVehicle& vehicle, const Vector3d& w_WF_F, 
   for (int n = 0; n < most; ++n) {
     Vector3d tau_F = gyroscopic(vehicle.I_frame_and_masses_F, w_F);
     Matrix3d slope_F = gyroscopic_slope(vehicle.I_frame_and_masses_F, w_F);
-    for (std::size_t i = 0; i < vehicle.carried.size(); ++i) {
+    for (std::size_t i = 0; i < vehicle.hinged.size(); ++i) {
       if (vehicle.bodies[i + 1].parent != 0) continue;
-      const CarriedBody& rotor = vehicle.carried[i];
+      const HingedBody& rotor = vehicle.hinged[i];
       const Matrix3d to_frame = across(rotor.axis_C);
       tau_F += to_frame * torque(rotor, w_F);
       slope_F += to_frame * gyroscopic_slope(rotor.I_Bcm_C, w_F + rotor.rate * rotor.axis_C);
@@ -52,7 +52,7 @@ Vector3d halfway_rate(const GyroscopicVehicle& vehicle, const Vector3d& w_WF_F, 
 
 }  // namespace
 
-CarriedBody::CarriedBody(const GyroscopicBody& b, dBodyID carrier) {
+HingedBody::HingedBody(const GyroscopicBody& b, dBodyID carrier) {
   const Matrix3d R_CW = rotation(dBodyGetRotation(carrier)).transpose();
   const Matrix3d R_CB = R_CW * rotation(dBodyGetRotation(b.body));
   axis_C = R_CB * b.axis_B;
@@ -77,7 +77,7 @@ GyroscopicVehicle::GyroscopicVehicle(const Model& model, const std::vector<dBody
     I_frame_and_masses_F -= R_FB * I * R_FB.transpose();
     reduced_I_F -= moment_about_joint(model, i - 1) * axis_F * axis_F.transpose();
   }
-  carried.reserve(model.joints.size());
+  hinged.reserve(model.joints.size());
   inverse_reduced_I_F = reduced_I_F.inverse();
 }
 
@@ -91,10 +91,10 @@ void add_gyroscopic_per_body(GyroscopicVehicle& vehicle, double) {
 }
 
 void add_gyroscopic_from_carrier(GyroscopicVehicle& vehicle, double dt) {
-  vehicle.carried.clear();
+  vehicle.hinged.clear();
   for (std::size_t i = 1; i < vehicle.bodies.size(); ++i) {
     const GyroscopicBody& b = vehicle.bodies[i];
-    vehicle.carried.emplace_back(b, vehicle.bodies[b.parent].body);
+    vehicle.hinged.emplace_back(b, vehicle.bodies[b.parent].body);
   }
   const GyroscopicBody& frame = vehicle.bodies[0];
   const Matrix3d R_WF = rotation(dBodyGetRotation(frame.body));
@@ -103,7 +103,7 @@ void add_gyroscopic_from_carrier(GyroscopicVehicle& vehicle, double dt) {
   add_torque(frame.body, R_WF * gyroscopic(frame.I_Bcm_B, w_WF_F));
   for (std::size_t i = 1; i < vehicle.bodies.size(); ++i) {
     const GyroscopicBody& b = vehicle.bodies[i];
-    const CarriedBody& rotor = vehicle.carried[i - 1];
+    const HingedBody& rotor = vehicle.hinged[i - 1];
     const dBodyID carrier = vehicle.bodies[b.parent].body;
     const Matrix3d R_WC = rotation(dBodyGetRotation(carrier));
     Vector3d w_WC_C = w_WF_F;

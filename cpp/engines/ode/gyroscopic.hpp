@@ -23,22 +23,22 @@ struct GyroscopicBody {
 
 /// A body on a hinge as it is at the start of a step, along the axes of the body that carries it,
 /// C.
-struct CarriedBody {
+struct HingedBody {
   Vector3d axis_C;
   Matrix3d I_Bcm_C;
   double rate;  ///< of the joint [rad/s]
 
-  CarriedBody(const GyroscopicBody& b, dBodyID carrier);
+  HingedBody(const GyroscopicBody& b, dBodyID carrier);
 };
 
 /// A vehicle's bodies in the order of its model's links: the frame, then one for each joint.
 struct GyroscopicVehicle {
   std::vector<GyroscopicBody> bodies;
-  std::vector<CarriedBody> carried;  ///< all but the frame, filled anew in each step
+  std::vector<HingedBody> hinged;  ///< all but the frame, filled anew in each step
   /// About the vehicle's centre of mass, of the frame and of the masses of the others [kg m^2].
   Matrix3d I_frame_and_masses_F;
   /// Of what withstands a torque on the frame while the joints are free to turn: the whole
-  /// vehicle's inertia less each carried body's moment about its joint [1/(kg m^2)].
+  /// vehicle's inertia less each hinged body's moment about its joint [1/(kg m^2)].
   Matrix3d inverse_reduced_I_F;
 
   GyroscopicVehicle(const Model& model, const std::vector<dBodyID>& bodies);
