@@ -98,7 +98,7 @@ class Simulation(_core.Simulation):
         seed : int, optional
             As if the simulation had been made with it; None keeps the one it has.
         """
-        super().reset(None if seed is None else _whole(seed))
+        super().reset(None if seed is None else whole(seed))
 
     def run(
         self,
