@@ -112,7 +112,8 @@ TEST_CASE("how long ago a contact was is part of what is saved") {
   leaving->set_state(state);
   for (int i = 0; i < 5; ++i) leaving->step(0, dt, NoForces());
   for (Engine* engine : {other.get(), without.get()}) engine->restore(leaving->save());
-  for (Engine* engine : {leaving.get(), other.get(), without.get()}) engine->step(0, dt, NoForces());
+  for (Engine* engine : {leaving.get(), other.get(), without.get()})
+    engine->step(0, dt, NoForces());
   CHECK(other->save() == leaving->save());
   CHECK(without->kinematics().w_WF_F != leaving->kinematics().w_WF_F);  // solved directly
 }

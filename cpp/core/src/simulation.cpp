@@ -39,7 +39,8 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
   for (const std::string& warning : engine_->warnings()) warn(warning);
   warnings_at_load_ = warnings_.size();
   command_topic_ = topics_.find(command_topic_name);
-  fingerprint_ = std::make_shared<Fingerprint>(engine_name_, dt_, model_, world_, plugins_, topics_);
+  fingerprint_ =
+      std::make_shared<Fingerprint>(engine_name_, dt_, model_, world_, plugins_, topics_);
 
   const auto n = static_cast<Eigen::Index>(model_.joints.size());
   state_.rotor_velocity = VectorXd::Zero(n);
