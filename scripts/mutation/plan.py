@@ -67,7 +67,7 @@ PARTS = [
         "ode",
         [
             f"cpp/engines/ode/{name}.cpp"
-            for name in ("body_state", "gyroscopic", "ode_engine", "ode_process")
+            for name in ("body_state", "gyroscopic", "ode_engine", "ode_process", "ode_vehicle")
         ],
         [
             "test_gyroscopics.py",

@@ -8,6 +8,7 @@
 #include "gazebo_step.hpp"
 #include "ground_contact.hpp"
 #include "gyroscopic.hpp"
+#include "ode_vehicle.hpp"
 #include "quadcore/engine.hpp"
 
 namespace quadcore {
@@ -25,8 +26,7 @@ extern const OdeRecipe gazebo11_recipe;
 /// The same world without Gazebo's faults.
 extern const OdeRecipe ode_recipe;
 
-/// Rigid bodies on hinges in upstream ODE: bodies sit at their centres of mass along their link's
-/// axes, hinges are attached as (child, parent).
+/// Rigid bodies on hinges in upstream ODE.
 class OdeEngine final : public Engine {
  public:
   OdeEngine(const Model& model, const World& world, const OdeRecipe& recipe);
@@ -49,20 +49,13 @@ class OdeEngine final : public Engine {
     void operator()(dxWorld* world) const { dWorldDestroy(world); }
   };
 
-  void create_bodies();
-  std::vector<Hinge> create_hinges();
   void choose_method(const World& world);
   double remaining_error(double dt);
-  void place(std::size_t link, const Eigen::Isometry3d& X_WL, const Vector3d& v_WL_W,
-             const Vector3d& w_WL_W);
   void take_threading();
   void solve(double dt);
   bool is_near_contact(double dt, bool touching);
-  void apply_loads();
-  void damp_bodies();
   void remember_hinge_forces();
   std::size_t saved_size() const;
-  void read_kinematics();
 
   Model model_;
   OdeRecipe recipe_;
@@ -72,14 +65,11 @@ class OdeEngine final : public Engine {
   bool iterate_ = false;  ///< every step by sweeps, because they do not converge
   std::string method_;
   std::vector<std::string> warnings_;
-  std::vector<dBodyID> bodies_;
+  std::unique_ptr<OdeVehicle> vehicle_;
   std::unique_ptr<GroundContact> ground_;  ///< null in a world without ground
   int steps_since_contact_;                ///< counted no further than it matters
   std::unique_ptr<GazeboStep> gazebo_step_;
-  std::vector<dJointID> hinges_;
-  std::vector<dJointFeedback> feedback_;  ///< one per hinge in a world with ground
   std::unique_ptr<GyroscopicVehicle> gyroscopic_;
-  double mass_ = 0;
   double gravity_z_ = 0;
   Kinematics kinematics_;
   Loads loads_;

@@ -1,0 +1,194 @@
+#include "ode_vehicle.hpp"
+
+#include "body_state.hpp"
+#include "ode_math.hpp"
+
+namespace quadcore {
+namespace {
+
+double implicit_damping(const Joint& joint) { return joint.implicit_damping ? joint.damping : 0; }
+
+}  // namespace
+
+OdeVehicle::OdeVehicle(const Model& model, dWorldID world)
+    : model_(model), mass_(mass_properties(model).mass) {
+  create_bodies(world);
+  create_hinges(world);
+}
+
+void OdeVehicle::create_bodies(dWorldID world) {
+  const std::vector<Eigen::Isometry3d> poses = link_poses(model_);
+  for (std::size_t i = 0; i < model_.links.size(); ++i) {
+    const Inertial& inertial = model_.links[i].inertial;
+    const Matrix3d I = inertial.inertia_in_link_axes();
+    dMass mass;
+    dMassSetParameters(&mass, inertial.mass, 0, 0, 0, I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2),
+                       I(1, 2));
+    const dBodyID body = dBodyCreate(world);
+    dBodySetMass(body, &mass);
+    dBodySetGyroscopicMode(body, 0);
+    dBodySetGravityMode(body, model_.links[i].tags.gravity ? 1 : 0);
+    bodies_.push_back(body);
+    place(i, poses[i], Vector3d::Zero(), Vector3d::Zero());
+  }
+}
+
+void OdeVehicle::create_hinges(dWorldID world) {
+  const std::vector<Eigen::Isometry3d> poses = link_poses(model_);
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    const Joint& joint = model_.joints[i];
+    const Eigen::Isometry3d& pose = poses[i + 1];
+    const Vector3d anchor = pose.translation();
+    const Vector3d axis = pose.linear() * joint.axis;
+    const dJointID hinge = dJointCreateHinge(world, nullptr);
+    dJointAttach(hinge, bodies_[i + 1], bodies_[joint.parent]);
+    dJointSetHingeAnchor(hinge, anchor.x(), anchor.y(), anchor.z());
+    dJointSetHingeAxis(hinge, axis.x(), axis.y(), axis.z());
+    if (const double damping = implicit_damping(joint);
+        damping > 0) {  // a stop on either side of where the joint is
+      dJointSetHingeParam(hinge, dParamLoStop, 0);
+      dJointSetHingeParam(hinge, dParamHiStop, 0);
+      dJointSetHingeParam(hinge, dParamStopERP, 0);
+      dJointSetHingeParam(hinge, dParamStopCFM, 1 / damping);
+    } else {
+      dJointSetHingeParam(hinge, dParamVel, 0);
+      dJointSetHingeParam(hinge, dParamFMax, joint.friction);
+    }
+    hinges_.push_back(hinge);
+  }
+}
+
+std::vector<Hinge> OdeVehicle::hinge_rows() const {
+  std::vector<Hinge> rows;
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    const Joint& joint = model_.joints[i];
+    const Vector3d& c_C = model_.links[i + 1].inertial.pose.xyz;
+    const Vector3d& c_P = model_.links[joint.parent].inertial.pose.xyz;
+    rows.push_back({i + 1, joint.parent, -c_C, joint.pose.xyz - c_P, joint.axis,
+                    joint.pose.rotation() * joint.axis, joint.friction, implicit_damping(joint)});
+  }
+  return rows;
+}
+
+void OdeVehicle::report_hinge_forces() {
+  feedback_.resize(hinges_.size());
+  for (std::size_t i = 0; i < hinges_.size(); ++i) dJointSetFeedback(hinges_[i], &feedback_[i]);
+}
+
+GazeboStep::Multipliers OdeVehicle::multipliers(std::size_t hinge) const {
+  const Matrix3d R_WC = rotation(dBodyGetRotation(bodies_[hinge + 1]));
+  const Vector3d f_W = vec(feedback_[hinge].f1);
+  const Vector3d anchor_W = R_WC * -model_.links[hinge + 1].inertial.pose.xyz;
+  const Vector3d tau_W = vec(feedback_[hinge].t1) - anchor_W.cross(f_W);
+  const Vector3d axis_W = R_WC * model_.joints[hinge].axis;
+  const auto across_W = plane_space(axis_W);
+  return {f_W.x(),          f_W.y(), f_W.z(), tau_W.dot(across_W[0]), tau_W.dot(across_W[1]),
+          tau_W.dot(axis_W)};
+}
+
+void OdeVehicle::place(std::size_t link, const Eigen::Isometry3d& X_WL, const Vector3d& v_WL_W,
+                       const Vector3d& w_WL_W) {
+  const Vector3d p_LLcm_W = X_WL.linear() * model_.links[link].inertial.pose.xyz;
+  const Vector3d p = X_WL.translation() + p_LLcm_W;
+  const Vector3d v = v_WL_W + w_WL_W.cross(p_LLcm_W);
+  const Quaterniond q(X_WL.linear());
+  const dQuaternion ode_q = {q.w(), q.x(), q.y(), q.z()};
+  const dBodyID body = bodies_[link];
+  forget_forces(body);
+  dBodySetPosition(body, p.x(), p.y(), p.z());
+  dBodySetQuaternion(body, ode_q);
+  dBodySetLinearVel(body, v.x(), v.y(), v.z());
+  dBodySetAngularVel(body, w_WL_W.x(), w_WL_W.y(), w_WL_W.z());
+}
+
+void OdeVehicle::place(const VehicleState& state) {
+  std::vector<Eigen::Isometry3d> X_WL(model_.links.size());
+  std::vector<Vector3d> v_W(model_.links.size()), w_W(model_.links.size());
+  const Quaterniond q = state.orientation.normalized();
+  X_WL[0] = Eigen::Translation3d(state.position) * q;
+  v_W[0] = state.linear_velocity;
+  w_W[0] = q * state.angular_velocity;
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    const Joint& joint = model_.joints[i];
+    const auto row = static_cast<Eigen::Index>(i);
+    const std::size_t parent = joint.parent, child = i + 1;
+    X_WL[child] = X_WL[parent] * Eigen::Translation3d(joint.pose.xyz) * joint.pose.rotation() *
+                  quaternion_about(joint.axis, state.rotor_angle[row]);
+    const Vector3d arm_W = X_WL[child].translation() - X_WL[parent].translation();
+    v_W[child] = v_W[parent] + w_W[parent].cross(arm_W);
+    w_W[child] = w_W[parent] + X_WL[child].linear() * joint.axis * state.rotor_velocity[row];
+  }
+  for (std::size_t i = 0; i < bodies_.size(); ++i) place(i, X_WL[i], v_W[i], w_W[i]);
+}
+
+void OdeVehicle::apply(const Loads& loads, const Kinematics& k) {
+  const Matrix3d& R_WF = k.R_WF;
+  const Wrench frame = loads.frame();
+  const Vector3d f_W = R_WF * frame.force_F;
+  const Vector3d tau_Fcm_W =
+      R_WF * (frame.torque_F - model_.links[0].inertial.pose.xyz.cross(frame.force_F));
+  dBodyAddForce(bodies_[0], f_W.x(), f_W.y(), f_W.z());
+  dBodyAddTorque(bodies_[0], tau_Fcm_W.x(), tau_Fcm_W.y(), tau_Fcm_W.z());
+  for (std::size_t i = 0; i < hinges_.size(); ++i) {
+    const Vector3d f_R_W = R_WF * loads.rotor_force_F(i);
+    dBodyAddForce(bodies_[i + 1], f_R_W.x(), f_R_W.y(), f_R_W.z());
+    const Joint& joint = model_.joints[i];
+    const double damping = joint.implicit_damping ? 0 : -joint.damping * k.rotors[i].rate;
+    dJointAddHingeTorque(hinges_[i], damping + loads.joint_torque(i));
+  }
+}
+
+void OdeVehicle::damp() {
+  constexpr double slow = 0.01;  // m/s, rad/s
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const double factor = model_.links[i].tags.damping_factor;
+    if (factor == 0) continue;
+    const Vector3d v = vec(dBodyGetLinearVel(bodies_[i])), w = vec(dBodyGetAngularVel(bodies_[i]));
+    const double keep_v = v.squaredNorm() > slow * slow ? 1 - factor : 1;
+    const double keep_w = w.squaredNorm() > slow * slow ? 1 - factor : 1;
+    dBodySetLinearVel(bodies_[i], keep_v * v.x(), keep_v * v.y(), keep_v * v.z());
+    dBodySetAngularVel(bodies_[i], keep_w * w.x(), keep_w * w.y(), keep_w * w.z());
+  }
+}
+
+void OdeVehicle::show(Kinematics& k) const {
+  const Vector3d& p_FFcm_F = model_.links[0].inertial.pose.xyz;
+  const dReal* q = dBodyGetQuaternion(bodies_[0]);
+  k.q_WF = Quaterniond(q[0], q[1], q[2], q[3]);
+  k.R_WF = rotation(dBodyGetRotation(bodies_[0]));
+  const Matrix3d R_FW = k.R_WF.transpose();
+  k.w_WF_F = R_FW * vec(dBodyGetAngularVel(bodies_[0]));
+  const Vector3d v_WFcm_F = R_FW * vec(dBodyGetLinearVel(bodies_[0]));
+  k.v_WF_F = v_WFcm_F - k.w_WF_F.cross(p_FFcm_F);
+  k.p_WF = vec(dBodyGetPosition(bodies_[0])) - k.R_WF * p_FFcm_F;
+  k.p_FCcm_F = model_.links[0].inertial.mass * p_FFcm_F;
+  k.v_WCcm_F = model_.links[0].inertial.mass * v_WFcm_F;
+  for (std::size_t i = 0; i < hinges_.size(); ++i) {
+    const Joint& joint = model_.joints[i];
+    const dBodyID body = bodies_[i + 1];
+    const Inertial& inertial = model_.links[i + 1].inertial;
+    const Matrix3d R_FR = R_FW * rotation(dBodyGetRotation(body));
+    const Vector3d w_WR_F = R_FW * vec(dBodyGetAngularVel(body));
+    Vector3d w_WP_F = k.w_WF_F;
+    if (joint.parent != 0) {  // the carrier turns as well
+      w_WP_F = R_FW * vec(dBodyGetAngularVel(bodies_[joint.parent]));
+      k.rotors.set_matrix(MotionRow::R_FR_at_zero, i,
+                          k.R_FR(joint.parent - 1) * joint.pose.rotation().toRotationMatrix());
+    }
+    RotorKinematics rotor;
+    rotor.axis_F = R_FR * joint.axis;
+    rotor.normal_F = R_FR.col(2);
+    rotor.p_FRcm_F = R_FW * (vec(dBodyGetPosition(body)) - k.p_WF);
+    rotor.v_WRcm_F = R_FW * vec(dBodyGetLinearVel(body));
+    rotor.v_WR_F = rotor.v_WRcm_F - w_WR_F.cross(R_FR * inertial.pose.xyz);
+    rotor.rate = rotor.axis_F.dot(w_WR_F - w_WP_F);
+    k.rotors.set(i, rotor);
+    k.rotors.set_matrix(MotionRow::R_FR, i, R_FR);
+    k.p_FCcm_F += inertial.mass * rotor.p_FRcm_F;
+    k.v_WCcm_F += inertial.mass * rotor.v_WRcm_F;
+  }
+  k.p_FCcm_F /= mass_;
+  k.v_WCcm_F /= mass_;
+}
+
+}  // namespace quadcore

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <ode/ode.h>
+
+#include <vector>
+
+#include "constraint_rows.hpp"
+#include "gazebo_step.hpp"
+#include "quadcore/kinematics.hpp"
+#include "quadcore/loads.hpp"
+#include "quadcore/model.hpp"
+#include "quadcore/state.hpp"
+
+namespace quadcore {
+
+/// A model's links and joints as bodies and hinges of an ODE world, which destroys them: bodies sit
+/// at their centres of mass along their link's axes, hinges are attached as (child, parent).
+class OdeVehicle {
+ public:
+  /// The model must outlive it.
+  OdeVehicle(const Model& model, dWorldID world);
+
+  /// One for each link.
+  const std::vector<dBodyID>& bodies() const { return bodies_; }
+  /// One for each joint.
+  std::size_t hinges() const { return hinges_.size(); }
+  /// The hinges as ConstraintRows takes them.
+  std::vector<Hinge> hinge_rows() const;
+
+  void place(const VehicleState& state);
+  /// Adds the loads, and the joints' damping, to the forces on the bodies.
+  void apply(const Loads& loads, const Kinematics& kinematics);
+  /// <dampingFactor>: ODE's damping of bodies, after the poses have moved.
+  void damp();
+  /// Writes how the vehicle moves.
+  void show(Kinematics& kinematics) const;
+
+  /// ODE's direct solver is to report the forces of the hinges.
+  void report_hinge_forces();
+  /// Of the solver's last step, as reported.
+  GazeboStep::Multipliers multipliers(std::size_t hinge) const;
+
+ private:
+  void create_bodies(dWorldID world);
+  void create_hinges(dWorldID world);
+  void place(std::size_t link, const Eigen::Isometry3d& X_WL, const Vector3d& v_WL_W,
+             const Vector3d& w_WL_W);
+
+  const Model& model_;
+  const double mass_;
+  std::vector<dBodyID> bodies_;
+  std::vector<dJointID> hinges_;
+  std::vector<dJointFeedback> feedback_;
+};
+
+}  // namespace quadcore
