@@ -115,7 +115,7 @@ copy_sources
 build
 say "running the ROS tests"
 SECONDS=0
-(run_in devel topics services lockstep playing clock several parameters faults fly_from_python \
+(run_in devel topics services lockstep playing clock several parameters faults masters fly_from_python \
   launch plugin_by_others; [ -z "$failed" ])
 (run_in install launch playing fly_from_python plugin_by_others; [ -z "$failed" ])
 say "the ROS tests passed in $SECONDS s"

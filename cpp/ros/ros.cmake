@@ -118,7 +118,7 @@ install(FILES scripts/ros/recorded_commands.py DESTINATION lib/quadcore)
 if(CATKIN_ENABLE_TESTING)
   find_package(rostest QUIET)
   if(rostest_FOUND)
-    foreach(test topics services lockstep playing clock several parameters faults launch
+    foreach(test topics services lockstep playing clock several parameters faults masters launch
                  fly_from_python)
       add_rostest(tests/ros/${test}.test)
     endforeach()

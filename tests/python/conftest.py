@@ -18,6 +18,11 @@ pytest.register_assert_rewrite("faults", "hooked")
 
 
 @pytest.fixture
+def in_empty_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture
 def toy(tmp_path, monkeypatch):
     """Folder, made the working directory, that holds a good toy.urdf and a good toy.world."""
     import faults
@@ -29,11 +34,46 @@ def toy(tmp_path, monkeypatch):
 
 
 @pytest.fixture
+def flown(toy):
+    """Maker of simulations of the toy with more in its model's end, or its world's."""
+
+    import faults
+
+    import quadcore as qc
+
+    def make(more="", world="", **options):
+        (toy / "toy.urdf").write_text(faults.MODEL.replace("</robot>", f"{more}</robot>"))
+        (toy / "toy.world").write_text(faults.WORLD.replace("  </world>", f"{world}</world>"))
+        return qc.Simulation("toy.urdf", world="toy.world", **options)
+
+    return make
+
+
+@pytest.fixture
 def hangar(tmp_path):
     """Maker of simulations of small vehicles; see vehicles.Hangar."""
     from vehicles import Hangar
 
     return Hangar(tmp_path)
+
+
+@pytest.fixture(scope="session")
+def thesis():
+    """The thesis' quadrotor as its mathematical model needs it."""
+    import quadcore as qc
+    from quadcore.chapter2 import Vehicle
+
+    return Vehicle.of(qc.Simulation("quadrotor", engine="eigen", xacro_args={"sim_slow": 1}))
+
+
+@pytest.fixture(scope="session")
+def study():
+    """The flights of the validation, slowed down by 1 and 8, without drag and with all."""
+    import quadcore as qc
+    from quadcore.validation import Experiment, conduct
+
+    engines = [name for name, _ in qc.engines()]
+    return conduct(Experiment.of(), engines, [1, 8], ["none", "all"])
 
 
 @pytest.fixture(scope="session")

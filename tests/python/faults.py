@@ -133,3 +133,14 @@ def refusal(call, *arguments, **options) -> str:
     message = str(refused.value)
     assert message and "\n" not in message
     return message
+
+
+# A module that there is not, and the warning of what is passed over.
+PUSHER = '<plugin name="pusher" filename="libpusher.so"><force>1<n>2</n></force></plugin>'
+UNFELT = "passed over, since nothing that flies feels it: "
+
+
+def at(name, part):
+    """FILE:LINE of the first line of a written file that holds a part."""
+    text = Path(name).read_text()
+    return f"{name}:{1 + text.count(chr(10), 0, text.index(part))}"

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import os
-import re
 import signal
 from pathlib import Path
 
 import faults
 import numpy as np
 import pytest
+from compared import FLIGHT, commands, line_of, rows  # noqa: F401
 
 import quadcore as qc
 from quadcore.cli import main
@@ -22,14 +21,8 @@ from quadcore.study.executor import each
 
 pytestmark = pytest.mark.usefixtures("toy")
 
-FLIGHT = ["--engine", "eigen", "--duration", "0.1", "--commands", "c.csv"]
 SPIN = {"engine": "eigen", "duration": 0.1, "commands": np.array([[0.0, 400.0]])}
 SLOW = "air.sim_slow,motor.sim_slow"
-
-
-@pytest.fixture(autouse=True)
-def commands(toy):
-    Path("c.csv").write_text("t,w1\n0,400\n0.05,-300\n")
 
 
 def edited(name, old, new):
@@ -39,20 +32,11 @@ def edited(name, old, new):
     return name
 
 
-def line_of(name, text):
-    return 1 + Path(name).read_text().split(text)[0].count("\n")
-
-
 def told(capsys, *models):
     """Differences that the command line tells, cells of each row, and its exit status."""
     status = main(["compare", *models, *FLIGHT])
     lines = capsys.readouterr().out.split("\n\n")[0].splitlines()[2:]
     return status, [[cell.strip() for cell in line.split("  ") if cell.strip()] for line in lines]
-
-
-def rows(name="out/table.csv"):
-    with open(name, newline="") as stream:
-        return list(csv.DictReader(stream))
 
 
 # What differs between the models
@@ -254,94 +238,3 @@ def test_a_process_that_dies_is_a_case_that_failed():
     assert str(results[3]) == "no"
     with pytest.raises(RuntimeError, match="ZeroDivisionError"):
         list(each(lambda number: 1 / number, [1, 0], 2))
-
-
-# What is refused
-
-
-@pytest.mark.parametrize(
-    ("arguments", "reason"),
-    [
-        ("toy.urdf", "nothing varied"),
-        ("toy.urdf nope.urdf", "nope.urdf: no such file"),
-        (
-            "toy.urdf --vary motor.kq=1",
-            "vary motor.kq: model toy has no 'motor.kq'; the nearest is 'motor.kp'",
-        ),
-        ("toy.urdf --vary engin=ode", "the nearest is 'engine'"),
-        (
-            "toy.urdf --vary engine=eigne",
-            "vary engine: there is no 'eigne'; the nearest is 'eigen'",
-        ),
-        ("toy.urdf --vary world=nope", "nope: no such file, and no shipped world"),
-        ("toy.urdf --vary motor.kp=", "motor.kp: holds no values"),
-        ("toy.urdf --vary motor.kp=1:2:0", "the range '1:2:0' is empty"),
-        ("toy.urdf --vary motor.kp=1:x:3", "'1:x:3' is no range"),
-        ("toy.urdf --vary motor.kp=1:2", "'1:2' is no range"),
-        ("toy.urdf --vary motor.kp=log:0:1:3", "is no geometric range"),
-        ("toy.urdf --vary motor.kp=1 --vary motor.kp=2", "motor.kp is given twice"),
-        ("toy.urdf --vary motor.kp=1 --vary motor.kp,motor.ki=2", "motor.kp is varied twice"),
-        ("toy.urdf --vary motor.kp=1 --set motor.kp=2e-4", "motor.kp: it is set as well"),
-        ("toy.urdf --vary motor.kp=0:1:1000000000", "makes 1000000000 flights"),
-        (
-            "toy.urdf --vary motor.kp=0:1:1000 --vary motor.ki=0:1:1000 --vary motor.kd=0:1:1000",
-            "1000 x 1000 x 1000 makes 1000000000 flights; at most 100000",
-        ),
-        ("toy.urdf quadrotor --commands c.csv", "quadrotor: has 4 rotors, toy.urdf has 1"),
-        ("toy.urdf --vary motor.kp=1 --commands nope.csv", "nope.csv: cannot be read"),
-        ("toy.urdf --vary motor.kp=1 --logs", "--logs needs --out"),
-        ("toy.urdf --vary motor.kp=1 --out c.csv", "c.csv: cannot be made"),
-        ("toy.urdf --vary motor.kp=1 --jobs 0", "--jobs: '0' is not a whole number"),
-        ("toy.urdf --vary motor.kp", "is not of the form"),
-        ("toy.urdf --vary motor.kp=1 --duration 1 --log-every 1001", "the flight has 1000 steps"),
-    ],
-)
-def test_bad_input_is_one_line_and_nothing_is_flown(capsys, monkeypatch, arguments, reason):
-    monkeypatch.setattr(qc.Simulation, "step", lambda *_, **__: pytest.fail("flown"))
-    monkeypatch.setattr(qc.Simulation, "run", lambda *_, **__: pytest.fail("flown"))
-    assert main(["compare", *arguments.split()]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    assert err.startswith("error: ")
-    assert err.count("\n") == 1
-    assert reason in err
-
-
-def test_from_python_too_much_is_refused():
-    with pytest.raises(qc.InputError, match="the logs of 50000 flights take"):
-        qc.compare("toy.urdf", {"motor.kp": np.linspace(1e-4, 1e-3, 50_000)})
-    with pytest.raises(qc.InputError, match="holds no values"):
-        qc.compare("toy.urdf", {"motor.kp": []})
-
-
-# What is written
-
-
-def test_the_page_needs_no_other_file():
-    vary = ["--vary", "motor.kp=1e-4,1e-3"]
-    assert main(["compare", "toy.urdf", *FLIGHT, *vary, "--quiet", "--out", "out"]) == 0
-    page = Path("out/report.html").read_text()
-    assert page.count("data:image/png;base64,") == 5
-    assert 'src="http' not in page
-    assert f"5e-4 (toy.urdf:{line_of('toy.urdf', '<kp>')})" in page
-
-
-def test_the_python_of_the_page_runs_as_it_stands(monkeypatch):
-    root = Path(__file__).resolve().parents[2]
-    monkeypatch.chdir(root)
-    page = root / "docs" / "comparing.md"
-    (block,) = re.findall(r"^```python\n(.*?)^```$", page.read_text(), re.DOTALL | re.MULTILINE)
-    names = {}
-    exec(block, names)
-    assert names["result"].reference == 0
-    assert names["result"].table["largest_position"][1:].all()
-
-
-def test_more_flights_than_can_be_held_leave_metrics_only():
-    vary = ["--vary", "motor.kp=1e-4:1e-3:60"]
-    arguments = ["compare", "toy.urdf", *FLIGHT, *vary, "--quiet", "--no-plots"]
-    assert main([*arguments, "--out", "out"]) == 0
-    assert len(rows()) == 60
-    assert not Path("out/logs").exists()
-    assert main([*arguments, "--out", "all", "--logs"]) == 0
-    assert len(list(Path("all/logs").iterdir())) == 60

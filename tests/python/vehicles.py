@@ -43,6 +43,11 @@ DRAG = {
     "profileDragCoeff": 0.005,
     "parasiticDragCoeff": 0.003,
 }
+# A world, and a centre of mass, off every axis.
+GRAVITY = (0, 0, -9.8)
+COM = (0.004, -0.003, 0.005)
+WIND = np.array([2.0, -1.0, 0.5])
+HAND = {"rotorThrustCoeff": 1e-5, "rotorTorqueCoeff": 2e-7}  # for sums by hand
 FLAPPING = {"flappingA1c": 0.1, "flappingA1s": 0.03, "flappingB1": 0.004, "flappingB2": 0.003}
 MOTOR = {"kp": 5e-4}
 
@@ -117,3 +122,10 @@ def start(simulation, **members):
 def wrenches(simulation):
     """What each term exerts now: force, then torque about the centre of mass, frame axes."""
     return {name: rows[0] for name, rows in simulation.run(0).wrenches.items()}
+
+
+def upright(hangar, air, rotors=CROSS, spin=(0, 0, 0, 0), v=(0, 0, 0), w=(0, 0, 0), **options):
+    """Wrenches on a vehicle that stands upright, its rotors at angle zero."""
+    simulation = hangar(vehicle(rotors, air=air), **options)
+    spin = np.resize(np.asarray(spin, dtype=float), len(rotors))
+    return wrenches(start(simulation, rotor_velocity=spin, linear_velocity=v, angular_velocity=w))

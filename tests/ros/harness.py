@@ -188,6 +188,12 @@ def diagnostic(key: str, until: Callable[[float], bool] = lambda _: True) -> flo
         return value(known)
 
 
+def outcome(*arguments, **environment):
+    """Exit status and standard error of a node that refuses to start."""
+    with Process("quadcore_node", *arguments, **environment) as node:
+        return node.result()
+
+
 def wait_until(condition: Callable[[], bool], seconds: float = LONG) -> None:
     """Return once `condition` holds."""
     limit = time.monotonic() + seconds

@@ -1,15 +1,12 @@
 #!/usr/bin/env python3
-"""What goes wrong: masters, commands, subscribers, signals, models."""
+"""What goes wrong: commands, subscribers, signals, models."""
 
-import contextlib
 import os
 import re
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 import xmlrpc.client
 
@@ -18,128 +15,14 @@ import numpy as np
 import rosgraph
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
-from harness import HOVER, Process, Recording, call, commander, description, diagnostic, flight
+from harness import HOVER, Recording, call, commander, description, diagnostic, flight, outcome
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
 
 NAN, INFINITY = float("nan"), float("inf")
 
 
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("localhost", 0))
-        return probe.getsockname()[1]
-
-
-@contextlib.contextmanager
-def master(port):
-    """A ROS master of its own."""
-    command = ["rosmaster", "--core", "-p", str(port)]
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    try:
-        harness.wait_until(lambda: answers(port))
-        yield process
-    finally:
-        process.kill()
-        process.wait()
-
-
-def answers(port):
-    with socket.socket() as probe:
-        return probe.connect_ex(("localhost", port)) == 0
-
-
-def outcome(*arguments, **environment):
-    """Exit status and standard error of a node that refuses to start."""
-    with Process("quadcore_node", *arguments, **environment) as node:
-        return node.result()
-
-
 class TestFaults(unittest.TestCase):
-    def shell(self, port, *command):
-        """Output of a ROS command under another master."""
-        environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}"}
-        return subprocess.run(
-            command,
-            env=environment,
-            stdout=subprocess.PIPE,
-            timeout=harness.LONG,
-            text=True,
-            check=True,
-        ).stdout
-
-    def is_at(self, altitude, port):
-        """Whether a subscriber who comes now sees the vehicle there."""
-        if "/odom" not in self.shell(port, "rostopic", "list"):
-            return False
-        topic = "/odom/pose/pose/position/z"
-        lines = self.shell(port, "rostopic", "echo", "-n1", "-p", topic).splitlines()
-        return abs(float(lines[-1].split(",")[1]) - altitude) < 0.1
-
-    def test_no_master(self):
-        uri = f"http://localhost:{free_port()}"
-        status, error = outcome(ROS_MASTER_URI=uri)
-        self.assertEqual(status, 2)
-        self.assertIn(f"error: no ROS master at {uri}; start roscore", error)
-
-    def test_a_mute_or_wrong_master(self):
-        with socket.socket() as mute:
-            mute.bind(("localhost", 0))
-            mute.listen()
-            uri = f"http://localhost:{mute.getsockname()[1]}"
-            for wrong, message in (
-                (uri, f"no answer within 5 s from a ROS master at {uri}; start roscore"),
-                ("nowhere", "ROS_MASTER_URI: 'nowhere' is no address; write http://HOST:PORT"),
-                ("", "ROS_MASTER_URI: '' is no address"),
-            ):
-                status, error = outcome(ROS_MASTER_URI=wrong)
-                self.assertEqual(status, 2)
-                self.assertEqual(len(error.splitlines()), 1, error)
-                self.assertIn(f"error: {message}", error)
-
-    def test_a_master_that_dies_and_comes_back(self):
-        port = free_port()
-        uri = f"http://localhost:{port}"
-        with tempfile.NamedTemporaryFile("w", suffix=".urdf") as model:
-            model.write(description())
-            model.flush()
-            with contextlib.ExitStack() as stack:
-                with master(port):
-                    start = (f"_model:={model.name}", "_z:=2")
-                    node = Process("quadcore_node", *start, ROS_MASTER_URI=uri)
-                    stack.enter_context(node)
-                    hover = Process("hover_node", "_altitude:=2", ROS_MASTER_URI=uri)
-                    stack.enter_context(hover)
-                    harness.wait_until(lambda: self.is_at(2, port))
-                time.sleep(1.5)
-                self.assertIsNone(node.process.poll())
-                with master(port):
-                    harness.wait_until(
-                        lambda: "/quadcore/step" in self.shell(port, "rosservice", "list")
-                    )
-                    kind = self.shell(port, "rostopic", "type", "/quadrotor/vel_cmd")
-                    self.assertEqual(kind.strip(), "std_msgs/Float64MultiArray")
-                    # Both old connections stand: the vehicle hovers where it was told to.
-                    self.assertTrue(self.is_at(2, port))
-                    self.shell(port, "rosservice", "call", "/gazebo/pause_physics")
-                    self.assertLess(node.end(), 1)
-
-    def test_a_new_master_is_given_the_parameters_of_the_old_one(self):
-        port = free_port()
-        uri = f"http://localhost:{port}"
-        text = description()
-        with contextlib.ExitStack() as stack:
-            with master(port):
-                rosgraph.Master("/test", uri).setParam("/robot_description", text)
-                node = Process("quadcore_node", "_paused:=true", ROS_MASTER_URI=uri)
-                stack.enter_context(node)
-                harness.wait_until(lambda: "/odom" in self.shell(port, "rostopic", "list"))
-            with master(port):
-                again = rosgraph.Master("/test", uri)
-                harness.wait_until(lambda: again.hasParam("/use_sim_time"))
-                self.assertIs(again.getParam("/use_sim_time"), True)
-                self.assertEqual(again.getParam("/robot_description"), text)
-
     def test_wrong_commands_are_refused_and_the_last_good_one_kept(self):
         wrong = [[400.0] * 3, [], [400.0] * 5, [NAN, 1, 1, 1], [1, 1, 1, -INFINITY], [1e300] * 4]
         topic = Recording("/joint_states", JointState)
@@ -255,18 +138,6 @@ class TestFaults(unittest.TestCase):
                 status, error = node.result()
             self.assertEqual(status, 0)
             self.assertNotIn("new ROS master", error)
-
-    def test_signals_end_it_even_if_the_master_hangs(self):
-        port = free_port()
-        with master(port) as hanging, tempfile.NamedTemporaryFile("w", suffix=".urdf") as model:
-            model.write(description())
-            model.flush()
-            uri = f"http://localhost:{port}"
-            with Process("quadcore_node", f"_model:={model.name}", ROS_MASTER_URI=uri) as node:
-                harness.wait_until(lambda: "/odom" in self.shell(port, "rostopic", "list"))
-                hanging.send_signal(signal.SIGSTOP)
-                time.sleep(1.5)
-                self.assertLess(node.end(signal.SIGTERM), 1)
 
     def test_a_bad_model_is_one_line(self):
         good = description()

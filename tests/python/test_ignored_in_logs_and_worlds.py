@@ -1,0 +1,146 @@
+"""What of a world made for Gazebo is passed over, and what logs and commands tell of it."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.io
+from faults import MODEL, PUSHER, UNFELT, at, refusal
+
+import quadcore as qc
+from quadcore.cli import main
+
+SCENERY = (
+    "<gui/>\n<scene><sky/></scene>\n<light name='sun'/>\n<spherical_coordinates/>\n"
+    "<magnetic_field>1 0 0</magnetic_field>\n"
+    "<plugin name='ros' filename='librotors_gazebo_ros_interface_plugin.so'><a><b/></a></plugin>\n"
+)
+
+
+def test_what_nothing_feels_of_a_world_is_named_in_one_warning(flown):
+    with pytest.warns(qc.QuadcoreWarning):
+        (warning,) = flown(world=SCENERY).warnings
+    assert warning.startswith(f"{UNFELT}<gui> ({at('toy.world', '<gui')}), <scene> (toy.world:")
+    for name in ("<light>", "<spherical_coordinates>", "<magnetic_field>", "librotors_gazebo_ros"):
+        assert f", {name}" in warning
+
+
+STORM = '<plugin name="storm" filename="libstorm.so"><force>1</force></plugin>'
+HOUSE = "<include><uri>model://house</uri><pose>1 0 0 0 0 0</pose></include>"
+WALL = (
+    '<model name="wall"><static>1</static><pose>1 0 0 0 0 0</pose><link name="a">'
+    '<collision name="b"><surface/><geometry><box/></geometry></collision></link></model>'
+)
+
+
+@pytest.mark.parametrize(
+    ("foreign", "names"),
+    [(STORM, ["libstorm.so", "storm"]), (HOUSE, ["model://house"]), (WALL, ["wall"])],
+    ids=["plugin", "include", "model"],
+)
+def test_what_is_foreign_in_a_world_is_left_out_on_request(flown, foreign, names):
+    message = refusal(flown, world=foreign)
+    assert message.startswith(at("toy.world", foreign[:9]))
+    assert message.count("--ignore") == 1 and message.endswith(f"--ignore {names[0]}")
+    for name in names:
+        assert flown(world=foreign, ignore=[name]).ignored == [name]
+
+
+def test_what_a_world_makes_felt_is_refused_whatever_is_to_be_ignored(flown):
+    message = refusal(flown, world="<wind/>")
+    assert "a second <wind>" in message and "--ignore" not in message
+
+
+@pytest.fixture
+def log(flown):
+    simulation = flown(f"<gazebo>{PUSHER}</gazebo>", world=STORM, ignore=["libpusher.so", "storm"])
+    return simulation.run(0.01)
+
+
+def test_a_csv_log_tells_below_its_header_what_was_ignored(log, tmp_path):
+    log.to_csv(tmp_path / "log.csv")
+    first, second, *_ = (tmp_path / "log.csv").read_text().splitlines()
+    assert first == ",".join(log.columns)
+    assert second == "# ignored: libpusher.so, storm"
+
+
+def test_the_usual_readers_read_such_a_log(log, tmp_path):
+    log.to_csv(tmp_path / "log.csv")
+    assert np.array_equal(np.loadtxt(tmp_path / "log.csv", delimiter=",", skiprows=1), log.table)
+    named = np.genfromtxt(tmp_path / "log.csv", delimiter=",", names=True)
+    assert list(named.dtype.names) == log.columns
+    assert np.array_equal(named["z"], log.position[:, 2])
+    text = (tmp_path / "log.csv").read_text()
+    rows = csv.DictReader(line for line in io.StringIO(text) if not line.startswith("#"))
+    assert [float(row["z"]) for row in rows] == log.position[:, 2].tolist()
+
+
+def test_pandas_reads_such_a_log_when_told_of_comments(log, tmp_path):
+    pandas = pytest.importorskip("pandas")
+    log.to_csv(tmp_path / "log.csv")
+    table = pandas.read_csv(tmp_path / "log.csv", comment="#", float_precision="round_trip")
+    assert np.array_equal(table.to_numpy(), log.table)
+
+
+def test_a_mat_log_holds_what_was_ignored(log, tmp_path):
+    log.to_mat(tmp_path / "log.mat")
+    names = scipy.io.loadmat(tmp_path / "log.mat")["ignored"]
+    assert [str(name[0]) for name in names.ravel()] == ["libpusher.so", "storm"]
+
+
+def test_a_log_of_a_whole_model_tells_nothing(flown, tmp_path):
+    log = flown().run(0.01)
+    log.to_csv(tmp_path / "log.csv")
+    log.to_mat(tmp_path / "log.mat")
+    assert "#" not in (tmp_path / "log.csv").read_text()
+    assert "ignored" not in scipy.io.loadmat(tmp_path / "log.mat")
+
+
+@pytest.fixture
+def two(toy):
+    """A toy with a foreign module, and one without."""
+    (toy / "plain.urdf").write_text(MODEL)
+    (toy / "toy.urdf").write_text(MODEL.replace("</robot>", f"<gazebo>{PUSHER}</gazebo></robot>"))
+    return toy
+
+
+def test_every_command_takes_names_to_ignore(two, capsys):
+    assert main(["info", "toy.urdf"]) == 2
+    assert "--ignore libpusher.so" in capsys.readouterr().err
+    ignore = ["--ignore", "libpusher.so"]
+    assert main(["info", "toy.urdf", *ignore]) == 0
+    assert "ignored: libpusher.so" in capsys.readouterr().out
+    flight = ["--duration", "0.05", "--quiet", *ignore]
+    assert main(["run", "toy.urdf", *flight, "--log", "log.csv"]) == 0
+    assert "# ignored: libpusher.so" in Path("log.csv").read_text()
+    assert main(["validate", "toy.urdf", *flight]) != 0
+    assert "libpusher" not in capsys.readouterr().err
+    twice = ["--ignore", "pusher", "--ignore", "libpusher.so"]
+    assert main(["info", "toy.urdf", *twice]) == 0
+    assert "ignored: pusher, libpusher.so" in capsys.readouterr().out
+
+
+def test_of_compared_models_one_may_hold_what_is_ignored(two, capsys):
+    command = ["compare", "plain.urdf", "toy.urdf", "--duration", "0.05", "--out", "out"]
+    assert main([*command, "--no-plots", "--ignore", "pusher"]) == 0
+    assert "# ignored" not in Path("out/logs/1.csv").read_text()
+    assert "# ignored: pusher" in Path("out/logs/2.csv").read_text()
+    assert "pusher" in Path("out/comparison.json").read_text()
+    assert main([*command, "--ignore", "pushr"]) == 2
+    assert "did you mean 'pusher'?" in capsys.readouterr().err
+
+
+def test_a_gazebo_file_is_expanded_and_its_lines_are_named(toy):
+    sensor = '<gazebo reference="${part}">\n<sensor name="eye" type="camera"/></gazebo>'
+    (toy / "toy.gazebo").write_text(
+        MODEL.replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" ').replace(
+            "</robot>", f'<xacro:property name="part" value="frame"/>{sensor}</robot>'
+        )
+    )
+    with pytest.warns(qc.QuadcoreWarning):
+        (warning,) = qc.Simulation("toy.gazebo").warnings
+    assert warning == f"{UNFELT}<sensor> ({at('toy.gazebo', '<sensor')})"

@@ -1,0 +1,162 @@
+"""Odd arguments and commands: one clear line and the right exit status."""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.io
+from flights import quadrotor
+from processes import FALL, LONG, ran, refused
+
+import quadcore as qc
+from quadcore.cli import main
+from quadcore.commands import read_commands
+
+pytestmark = pytest.mark.usefixtures("in_empty_folder")
+
+
+def test_commands_that_are_no_real_numbers_are_refused():
+    simulation = quadrotor()
+    masked = np.ma.array([1.0, 2, 3, 4], mask=[0, 1, 0, 0])
+    for speeds in (["1", "2", "3", "4"], masked, [1j, 0, 0, 0], np.array([None, 1, 2, 3])):
+        with pytest.raises(qc.InputError, match="array of numbers"):
+            simulation.command(speeds)
+        with pytest.raises(qc.InputError, match="not a table of real numbers"):
+            row = np.ma.concatenate([[0], speeds]) if speeds is masked else [0, *speeds]
+            simulation.run(0.1, row[None] if speeds is masked else [row])
+    simulation.command([1, 2, 3, np.float32(4)])
+
+
+def test_an_interrupt_inside_an_argument_is_one():
+    class Interrupting:
+        def __array__(self, *_, **__):
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        quadrotor().command(Interrupting())
+
+
+@pytest.mark.parametrize("number", ["1_0e-3", "\u0661", "1e", "0x1p3", "nan", "1,5"])
+def test_numbers_are_those_of_a_urdf_everywhere(number, capsys):
+    Path("c.csv").write_text(f"t,w1,w2,w3,w4\n0,1,1,1,{number}\n", encoding="utf-8")
+    for option in ("--dt", "--duration", "--spawn", "--seed"):
+        value = f"0,0,{number}" if option == "--spawn" else number
+        assert main(["run", "quadrotor", option, value]) == 2
+    assert main(["compare", "quadrotor", "--vary", f"motorpid_plugin.kp=1e-4:{number}:3"]) == 2
+    assert main(["run", "quadrotor", "--commands", "c.csv"]) == 2
+    with pytest.raises(qc.InputError):
+        qc.Simulation("quadrotor", spawn=(0, 0, number))
+    assert capsys.readouterr().err.count("error: ") == 6
+
+
+def test_a_pipe_as_commands_is_refused():
+    for name in ("c.csv", "c.mat"):
+        os.mkfifo(name)
+        assert "is no regular file" in refused(*FALL, "--commands", name)
+
+
+def test_a_mat_file_is_not_unpacked_beyond_what_can_be_meant():
+    names = ["t", "w1", "w2", "w3", "w4"]
+    scipy.io.savemat(
+        "c.mat", {name: np.zeros(10**7 + 1) for name in names[:1]}, do_compression=True
+    )
+    with pytest.raises(qc.InputError, match="takes t, w1"):
+        read_commands("c.mat", 4)
+    scipy.io.savemat("d.mat", {"t": np.zeros(10**7 + 1), "w1": [0.0]}, do_compression=True)
+    with pytest.raises(qc.InputError, match="t has 10000001 values; at most 10000000 are read"):
+        read_commands("d.mat", 1)
+
+
+def test_a_csv_file_has_a_largest_size(monkeypatch):
+    Path("c.csv").write_text("t,w1\n0,1\n")
+    monkeypatch.setattr("quadcore.commands._LARGEST", 8)
+    with pytest.raises(qc.InputError, match="is larger than"):
+        read_commands("c.csv", 1)
+
+
+def test_engine_and_world_are_varied_alone():
+    assert "vary each" in refused("compare", "quadrotor", "--vary", "engine,world=eigen")
+
+
+def test_a_time_at_which_the_clock_would_stand_still_is_refused():
+    simulation = quadrotor()
+    state = simulation.state.copy()
+    state.time = 1e300
+    with pytest.raises(qc.InputError, match="the time is beyond 1e9 s"):
+        simulation.set_state(state)
+
+
+def test_no_negative_zero_is_printed(capsys):
+    commands = "t,w1,w2,w3,w4\n0,-1,1,-1.0001,1\n"
+    Path("c.csv").write_text(commands)
+    for _ in range(2):
+        assert main([*FALL, "--spawn=-0.0,-1e-9,1", "--commands", "c.csv"]) == 0
+    assert "-0.0000" not in capsys.readouterr().out
+
+
+def test_each_log_is_written_once_and_holds_what_its_name_says(capsys):
+    assert main([*FALL, "--quiet", "--log", "a.csv", "--log", "b.csv"]) == 0
+    assert Path("a.csv").read_bytes() == Path("b.csv").read_bytes()
+    assert main([*FALL, "--log", "c.csv", "--log", "./c.csv"]) == 2
+    assert "would be written twice" in capsys.readouterr().err
+    log = quadrotor().run(0.01)
+    for write in (log.to_csv, log.to_mat):
+        with pytest.raises(qc.InputError, match="name a file that ends in"):
+            write("a.npz")
+
+
+def test_a_flight_shorter_than_a_step_is_refused(capsys):
+    assert main(["run", "quadrotor", "--duration", "1e-5"]) == 2
+    assert "nothing would fly" in capsys.readouterr().err
+    assert len(quadrotor().run(0)) == 1
+
+
+def test_a_cell_that_a_spreadsheet_would_run_is_text(toy):
+    Path("=1+1.urdf").write_text(Path("toy.urdf").read_text())
+    assert (
+        ran("compare", "=1+1.urdf", "toy.urdf", "--duration", "0.01", "--out", "out").returncode
+        == 0
+    )
+    assert "1,'=1+1.urdf," in Path("out/table.csv").read_text()
+
+
+def test_tables_are_written_before_pictures(toy, monkeypatch):
+    def fail(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("quadcore.plots.png", fail)
+    vary = ["--vary", "motor.kp=1e-4,2e-4", "--duration", "0.01", "--out", "out"]
+    assert main(["compare", "toy.urdf", *vary]) == 130
+    assert Path("out/table.csv").exists() and Path("out/comparison.json").exists()
+
+
+def test_a_view_read_beside_a_step_is_not_a_copy():
+    """`copy` is of one moment, or refused: positions and velocities belong together."""
+    drags = ("induced", "translational", "profile", "parasitic")
+    still = {f"drone_plugin.{drag}DragCoeff": 0 for drag in drags}
+    simulation = quadrotor("eigen", parameters=still)
+    ending = threading.Event()
+
+    def fly():
+        while not ending.wait(0.001):
+            simulation.step(200)
+
+    thread = threading.Thread(target=fly)
+    thread.start()
+    copies = 0
+    give_up = time.monotonic() + LONG
+    while copies < 20 and time.monotonic() < give_up:
+        try:
+            state = simulation.state.copy()
+        except qc.InputError:
+            continue
+        copies += 1
+        assert state.linear_velocity[2] == pytest.approx(-9.8 * state.time, rel=1e-9)
+        assert state.position[2] == pytest.approx(10 - 4.9 * state.time**2, rel=1e-9)
+    ending.set()
+    thread.join()
