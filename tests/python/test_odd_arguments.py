@@ -74,7 +74,7 @@ def test_a_mat_file_is_not_unpacked_beyond_what_can_be_meant():
 
 def test_a_csv_file_has_a_largest_size(monkeypatch):
     Path("c.csv").write_text("t,w1\n0,1\n")
-    monkeypatch.setattr("quadcore.commands._LARGEST", 8)
+    monkeypatch.setattr("quadcore.formats.csv._LARGEST", 8)
     with pytest.raises(qc.InputError, match="is larger than"):
         read_commands("c.csv", 1)
 
