@@ -5,8 +5,6 @@
 namespace quadcore::node {
 namespace {
 
-constexpr bool kept = true;  ///< the last message, for those who subscribe later
-
 geometry_msgs::TransformStamped same_place(const std::string& parent, const std::string& child) {
   geometry_msgs::TransformStamped same;
   same.header.frame_id = parent;
@@ -17,29 +15,30 @@ geometry_msgs::TransformStamped same_place(const std::string& parent, const std:
 
 }  // namespace
 
-Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation, const ros::Publisher& clock,
+Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
+                     const KeptPublisher<rosgraph_msgs::Clock>& clock,
                      const std::string& frame_prefix, bool rotor_tf)
     : odometry_topic_(simulation), clock_publisher_(clock), path_(nh) {
-  joint_states_publisher_ = nh.advertise<sensor_msgs::JointState>("joint_states", 100, kept);
+  joint_states_publisher_ = {nh, "joint_states", 100};
   const Model& model = simulation.model();
   joint_states_.name = model.joint_names();
   if (!odometry_topic_.exists()) {
     ROS_WARN("the model has no libodometry_plugin.so: odom and tf are not sent");
     return;
   }
-  odometry_publisher_ = nh.advertise<nav_msgs::Odometry>("odom", 1000, kept);
-  truth_publisher_ = nh.advertise<nav_msgs::Odometry>("ground_truth/odometry", 1000, kept);
+  odometry_publisher_ = {nh, "odom", 1000};
+  truth_publisher_ = {nh, "ground_truth/odometry", 1000};
   const std::string vehicle_frame = frame_prefix + "drone";
   odometry_.header.frame_id = truth_.header.frame_id = world_frame;
   odometry_.child_frame_id = truth_.child_frame_id = vehicle_frame;
   if (!odometry_topic_.publishes_tf()) return;
-  tf_publisher_ = nh.advertise<tf2_msgs::TFMessage>("/tf", 100, kept);
+  tf_publisher_ = {nh, "/tf", 100};
   transforms_.transforms.push_back(same_place(world_frame, vehicle_frame));
   if (rotor_tf) add_rotor_frames(model, frame_prefix);
   const std::string root_frame = frame_prefix + model.links.front().name;
   if (root_frame == vehicle_frame) return;
   // robot_state_publisher begins at the URDF's root link, tf at the thesis' "drone".
-  static_tf_publisher_ = nh.advertise<tf2_msgs::TFMessage>("/tf_static", 100, kept);
+  static_tf_publisher_ = {nh, "/tf_static", 100};
   tf2_msgs::TFMessage message;
   message.transforms.push_back(same_place(vehicle_frame, root_frame));
   static_tf_publisher_.publish(message);

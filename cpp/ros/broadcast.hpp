@@ -8,6 +8,7 @@
 
 #include <string>
 
+#include "kept_publisher.hpp"
 #include "odometry_topic.hpp"
 #include "path.hpp"
 #include "quadcore/simulation.hpp"
@@ -25,8 +26,9 @@ class Broadcast {
   /// \param frame_prefix  of the vehicle's frames, "" or such as "uav1/"
   /// \param rotor_tf  whether tf holds the rotors' links, too. What robot_state_publisher says of
   ///                  them is not kept for those who come later.
-  Broadcast(ros::NodeHandle& nh, const Simulation& simulation, const ros::Publisher& clock,
-            const std::string& frame_prefix, bool rotor_tf);
+  Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
+            const KeptPublisher<rosgraph_msgs::Clock>& clock, const std::string& frame_prefix,
+            bool rotor_tf);
 
   /// After a step; `jumped`: after the start, a reset or a new state.
   void send(const Simulation& simulation, bool jumped);
@@ -43,12 +45,12 @@ class Broadcast {
   double sent_ = 0;  ///< count of the odometry message that was sent last
   Thinned joint_states_due_{50};
 
-  ros::Publisher clock_publisher_;
-  ros::Publisher odometry_publisher_;
-  ros::Publisher truth_publisher_;
-  ros::Publisher tf_publisher_;
-  ros::Publisher static_tf_publisher_;
-  ros::Publisher joint_states_publisher_;
+  KeptPublisher<rosgraph_msgs::Clock> clock_publisher_;
+  KeptPublisher<nav_msgs::Odometry> odometry_publisher_;
+  KeptPublisher<nav_msgs::Odometry> truth_publisher_;
+  KeptPublisher<tf2_msgs::TFMessage> tf_publisher_;
+  KeptPublisher<tf2_msgs::TFMessage> static_tf_publisher_;
+  KeptPublisher<sensor_msgs::JointState> joint_states_publisher_;
   PathTopic path_;
 
   // Kept, so that sending them needs no new memory.

@@ -45,9 +45,9 @@ std::string first_publisher(const std::string& topic) {
 
 }  // namespace
 
-ros::Publisher take_part_in_clock(ros::NodeHandle& nh, ClockRole role) {
+KeptPublisher<rosgraph_msgs::Clock> take_part_in_clock(ros::NodeHandle& nh, ClockRole role) {
   if (role == ClockRole::follow) return {};
-  ros::Publisher publisher = nh.advertise<rosgraph_msgs::Clock>("/clock", 1000, true);
+  KeptPublisher<rosgraph_msgs::Clock> publisher(nh, "/clock", 1000);
   const std::string leader = first_publisher("/clock");
   if (leader.empty()) return publisher;
   if (role == ClockRole::lead) {

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "flight_thread.hpp"
+#include "kept_publisher.hpp"
 
 namespace quadcore::node {
 
@@ -25,7 +26,7 @@ enum class ClockRole {
 /// leads.
 /// \return the publisher of /clock; empty if this node follows.
 /// Throws InputError if another node leads though this one is to.
-ros::Publisher take_part_in_clock(ros::NodeHandle& nh, ClockRole role);
+KeptPublisher<rosgraph_msgs::Clock> take_part_in_clock(ros::NodeHandle& nh, ClockRole role);
 
 /// Followers tell the leader up to where they need the clock for their next step, so that it does
 /// not run away from them.

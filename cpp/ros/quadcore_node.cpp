@@ -92,7 +92,7 @@ void run(const EndSignal& end_signal) {
   describe(simulation);
   const std::string topic = command_topic(nh, settings, simulation.model());
 
-  const ros::Publisher clock = take_part_in_clock(nh, settings.clock);
+  const KeptPublisher<rosgraph_msgs::Clock> clock = take_part_in_clock(nh, settings.clock);
   FlightSettings flight_settings = settings.flight;
   flight_settings.follows_clock = !clock;
   flight_settings.real_time_factor =
