@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import math
 from numbers import Real
-from typing import TYPE_CHECKING, Any, Callable, Protocol, Union
+from typing import Any, Callable, Protocol, Union
 
 import numpy as np
 
+from . import _core
 from ._core import InputError
-
-if TYPE_CHECKING:
-    from .simulation import Simulation
 
 DEFAULT_RATE = 500.0  # 1/s
 
@@ -27,8 +25,8 @@ class Controller(Protocol):
         Calls per simulated second, at most one per step; 500 without the attribute.
     """
 
-    def reset(self, simulation: Simulation) -> None:
-        """Begin anew: called before the first step of a run."""
+    def reset(self, simulation: Any) -> None:
+        """Begin anew: called with the `Simulation` before the first step of a run."""
 
     def __call__(self, t: float, state: Odometry, reference: Any) -> Any:
         """Give the speeds for the steps until the next call.
@@ -68,7 +66,7 @@ class Odometry:
 
     __slots__ = ("angular_velocity", "linear_velocity", "orientation", "position", "time")
 
-    def __init__(self, simulation: Simulation) -> None:
+    def __init__(self, simulation: _core.Simulation) -> None:
         try:
             message = simulation.topic(_SENSED)
         except InputError as error:
@@ -96,7 +94,7 @@ class Guided:
     """
 
     def __init__(
-        self, controller: Union[Controller, Callable[..., Any]], simulation: Simulation
+        self, controller: Union[Controller, Callable[..., Any]], simulation: _core.Simulation
     ) -> None:
         if not callable(controller):
             raise InputError(
@@ -110,12 +108,12 @@ class Guided:
         self._controller = controller
         Odometry(simulation)  # a model without any is refused before it flies
 
-    def reset(self, simulation: Simulation) -> None:
+    def reset(self, simulation: _core.Simulation) -> None:
         """Let the controller begin anew."""
         reset = getattr(self._controller, "reset", None)
         if reset is not None:
             reset(simulation)
 
-    def speeds(self, simulation: Simulation) -> Any:
+    def speeds(self, simulation: _core.Simulation) -> Any:
         """Ask the controller."""
         return self._controller(simulation.time, Odometry(simulation), None)

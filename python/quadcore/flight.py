@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from numbers import Real
-from typing import TYPE_CHECKING, Callable, Optional, Protocol
+from typing import TYPE_CHECKING, Any, Callable, Optional, Protocol
 
 import numpy as np
 
@@ -15,8 +15,6 @@ from .log import Log
 
 if TYPE_CHECKING:
     import numpy.typing as npt
-
-    from .simulation import Simulation
 
 Receive = Callable[[np.ndarray, np.ndarray], None]
 Progress = Callable[[int, int], None]
@@ -32,15 +30,15 @@ class Pilot(Protocol):
     rate: float
     """How often it is asked, 1/s; at most once a step."""
 
-    def reset(self, simulation: Simulation) -> None:
-        """Begin; the simulation stands at its first step."""
+    def reset(self, simulation: Any) -> None:
+        """Begin; the `Simulation` stands at its first step."""
 
-    def speeds(self, simulation: Simulation) -> npt.ArrayLike:
+    def speeds(self, simulation: Any) -> npt.ArrayLike:
         """Give the command for the steps until it is asked again, rad/s."""
 
 
 def fly(
-    simulation: Simulation,
+    simulation: _core.Simulation,
     duration: float,
     commands: Optional[CommandsLike],
     log_every: int,
@@ -101,7 +99,7 @@ def fly(
 class _Piloted:
     """A flight whose pilot is asked whenever a step begins at which it is due."""
 
-    def __init__(self, simulation: Simulation, flight: _core.Flight, pilot: Pilot) -> None:
+    def __init__(self, simulation: _core.Simulation, flight: _core.Flight, pilot: Pilot) -> None:
         self._simulation, self._flight, self._pilot = simulation, flight, pilot
         # By the count of steps: the sum of their times would slip.
         self._per_step = pilot.rate * simulation.dt
@@ -136,7 +134,7 @@ class _Piloted:
 class Rows:
     """Collects what `fly` hands over; without memory for more it keeps what it has."""
 
-    def __init__(self, simulation: Simulation) -> None:
+    def __init__(self, simulation: _core.Simulation) -> None:
         self._columns = len(_core.log_columns(simulation.rotor_count))
         self._terms = simulation.wrench_terms
         self._ignored = simulation.ignored

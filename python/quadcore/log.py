@@ -4,89 +4,23 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Mapping, Sequence, Union
+from typing import Union
 
-import numpy as np
-
+from . import _core
 from ._core import InputError, log_columns
 from .files import check_writable
 from .forks import LOCK
 from .formats import format_of
 from .formats.rows import LogFile
-
-if TYPE_CHECKING:
-    from .simulation import Simulation
+from .trajectory import Trajectory
 
 PathLike = Union[str, "os.PathLike[str]"]
 
-_STATE_SIZE = len(log_columns(0))
 _WRITTEN = "logs are written to"
 
 
-class Log:
-    """States of a flight, one row per logged step, and the wrenches that act from each on.
-
-    Parameters
-    ----------
-    table : ndarray, shape (rows, 14 + n)
-        Columns as `columns` names them.
-    wrenches : mapping of str to ndarray, shape (rows, 6)
-        Force (N), then torque (N m), frame axes, about the vehicle's centre of mass.
-    title : str
-        What flew, for the plots.
-    ignored : sequence of str
-        What was left out of model and world at the user's wish.
-    """
-
-    def __init__(
-        self,
-        table: np.ndarray,
-        wrenches: Mapping[str, np.ndarray],
-        title: str = "",
-        ignored: Sequence[str] = (),
-    ) -> None:
-        self.table = table
-        self.wrenches = dict(wrenches)
-        self.title = title
-        self.ignored = list(ignored)
-
-    def __len__(self) -> int:
-        return len(self.table)
-
-    @property
-    def columns(self) -> list[str]:
-        """Names of the table's columns, as they head the CSV file."""
-        return log_columns(self.table.shape[1] - _STATE_SIZE)
-
-    @property
-    def time(self) -> np.ndarray:
-        """Time since the start, s; shape (rows,)."""
-        return self.table[:, 0]
-
-    @property
-    def position(self) -> np.ndarray:
-        """Origin of the frame link in the world, m; shape (rows, 3)."""
-        return self.table[:, 1:4]
-
-    @property
-    def orientation(self) -> np.ndarray:
-        """Orientation of the frame link in the world, unit quaternion x, y, z, w; (rows, 4)."""
-        return self.table[:, 4:8]
-
-    @property
-    def linear_velocity(self) -> np.ndarray:
-        """Velocity of the frame link's origin, world axes, m/s; shape (rows, 3)."""
-        return self.table[:, 8:11]
-
-    @property
-    def angular_velocity(self) -> np.ndarray:
-        """Angular velocity of the frame link, body axes, rad/s; shape (rows, 3)."""
-        return self.table[:, 11:14]
-
-    @property
-    def rotor_velocity(self) -> np.ndarray:
-        """Velocity of the rotor joints, rad/s; shape (rows, n)."""
-        return self.table[:, _STATE_SIZE:]
+class Log(Trajectory):
+    """States of a flight and the wrenches that acted; see `Trajectory`. To be written and drawn."""
 
     def to_csv(self, path: PathLike) -> None:
         """Write `table` as text with 17 significant digits, so that reading restores every bit.
@@ -134,7 +68,7 @@ def check_log_path(path: PathLike) -> None:
     check_writable(Path(path))
 
 
-def log_file(path: Path, simulation: Simulation) -> LogFile:
+def log_file(path: Path, simulation: _core.Simulation) -> LogFile:
     """Make the recorder that a file's name asks for."""
     return format_of(path, _WRITTEN).log_file(
         path,

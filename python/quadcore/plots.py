@@ -23,14 +23,14 @@ finally:
         os.environ["MPLBACKEND"] = _toolkit
 
 if TYPE_CHECKING:
-    from .log import Log
+    from .trajectory import Trajectory
 
 # Okabe and Ito's, told apart by colour-blind readers too; x, y, z keep theirs throughout.
 _XYZ = ("#d55e00", "#009e73", "#0072b2")
 PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#999999")
 
 
-def draw(log: Log, directory: Path) -> list[Path]:
+def draw(log: Trajectory, directory: Path) -> list[Path]:
     """Draw every picture of `log` into `directory`, which is made if missing.
 
     Returns
@@ -44,7 +44,7 @@ def draw(log: Log, directory: Path) -> list[Path]:
         The folder or a file cannot be written.
     """
     make_folder(directory)
-    pictures: dict[str, Callable[[Log], Figure]] = {
+    pictures: dict[str, Callable[[Trajectory], Figure]] = {
         "position": _position,
         "attitude": _attitude,
         "rates": _rates,
@@ -70,20 +70,20 @@ def png(figure: Figure) -> bytes:
     return stream.getvalue()
 
 
-def _position(log: Log) -> Figure:
+def _position(log: Trajectory) -> Figure:
     figure, grid = panels(_title(log, "Position of the frame"), 3)
     _curves(grid[:, 0], log.time, log.position, ("x (m)", "y (m)", "z (m)"))
     return figure
 
 
-def _attitude(log: Log) -> Figure:
+def _attitude(log: Trajectory) -> Figure:
     figure, grid = panels(_title(log, "Attitude of the frame"), 3)
     angles = np.degrees(np.unwrap(roll_pitch_yaw(log.orientation), axis=0))
     _curves(grid[:, 0], log.time, angles, ("roll (deg)", "pitch (deg)", "yaw (deg)"))
     return figure
 
 
-def _rates(log: Log) -> Figure:
+def _rates(log: Trajectory) -> Figure:
     title = _title(log, "Linear (world) and angular (body) velocity of the frame")
     figure, grid = panels(title, 3, 2)
     linear = [f"$v_{axis}$ (m/s)" for axis in "xyz"]
@@ -93,7 +93,7 @@ def _rates(log: Log) -> Figure:
     return figure
 
 
-def _rotors(log: Log) -> Figure:
+def _rotors(log: Trajectory) -> Figure:
     figure, (whole, close) = panels(_title(log, "Velocity of the rotor joints"), 2, height=2.2)
     for i, velocity in enumerate(log.rotor_velocity.T):
         style = {"color": PALETTE[i % len(PALETTE)], "label": f"{i + 1}" if i else "rotor 1"}
@@ -112,7 +112,7 @@ def _rotors(log: Log) -> Figure:
     return figure
 
 
-def _wrenches(log: Log) -> Figure:
+def _wrenches(log: Trajectory) -> Figure:
     acting = {name: wrench for name, wrench in log.wrenches.items() if np.any(wrench)}
     title = _title(log, "Wrenches about the centre of mass, frame axes")
     figure, grid = panels(title, max(1, len(acting)), 2)
@@ -130,7 +130,7 @@ def _wrenches(log: Log) -> Figure:
     return figure
 
 
-def _path(log: Log) -> Figure:
+def _path(log: Trajectory) -> Figure:
     figure = titled(_title(log, "Path of the frame"), 6, 6)
     axes = figure.add_axes((0.0, 0.02, 0.94, 0.94), projection="3d")
     # The same scale along all three axes, with room for flights that hardly move.
@@ -183,7 +183,7 @@ def dress(axes: Any) -> None:
     axes.spines["right"].set_visible(False)
 
 
-def _title(log: Log, what: str) -> str:
+def _title(log: Trajectory, what: str) -> str:
     return f"{what}: {log.title}" if log.title else what
 
 

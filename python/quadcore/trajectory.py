@@ -1,0 +1,77 @@
+"""How a flight went, as rows of numbers."""
+
+from __future__ import annotations
+
+from typing import Mapping, Sequence
+
+import numpy as np
+
+from ._core import log_columns
+
+_STATE_SIZE = len(log_columns(0))
+
+
+class Trajectory:
+    """States of a flight, one row per logged step, and the wrenches that act from each on.
+
+    Parameters
+    ----------
+    table : ndarray, shape (rows, 14 + n)
+        Columns as `columns` names them.
+    wrenches : mapping of str to ndarray, shape (rows, 6)
+        Force (N), then torque (N m), frame axes, about the vehicle's centre of mass.
+    title : str
+        What flew, for the plots.
+    ignored : sequence of str
+        What was left out of model and world at the user's wish.
+    """
+
+    def __init__(
+        self,
+        table: np.ndarray,
+        wrenches: Mapping[str, np.ndarray],
+        title: str = "",
+        ignored: Sequence[str] = (),
+    ) -> None:
+        self.table = table
+        self.wrenches = dict(wrenches)
+        self.title = title
+        self.ignored = list(ignored)
+
+    def __len__(self) -> int:
+        return len(self.table)
+
+    @property
+    def columns(self) -> list[str]:
+        """Names of the table's columns, as they head the CSV file."""
+        return log_columns(self.table.shape[1] - _STATE_SIZE)
+
+    @property
+    def time(self) -> np.ndarray:
+        """Time since the start, s; shape (rows,)."""
+        return self.table[:, 0]
+
+    @property
+    def position(self) -> np.ndarray:
+        """Origin of the frame link in the world, m; shape (rows, 3)."""
+        return self.table[:, 1:4]
+
+    @property
+    def orientation(self) -> np.ndarray:
+        """Orientation of the frame link in the world, unit quaternion x, y, z, w; (rows, 4)."""
+        return self.table[:, 4:8]
+
+    @property
+    def linear_velocity(self) -> np.ndarray:
+        """Velocity of the frame link's origin, world axes, m/s; shape (rows, 3)."""
+        return self.table[:, 8:11]
+
+    @property
+    def angular_velocity(self) -> np.ndarray:
+        """Angular velocity of the frame link, body axes, rad/s; shape (rows, 3)."""
+        return self.table[:, 11:14]
+
+    @property
+    def rotor_velocity(self) -> np.ndarray:
+        """Velocity of the rotor joints, rad/s; shape (rows, n)."""
+        return self.table[:, _STATE_SIZE:]
