@@ -16,6 +16,8 @@ using Wall = std::chrono::steady_clock;
 
 /// Followers tell how far they are at least so often.
 constexpr auto longest_silence = std::chrono::seconds(1);
+/// By then a connection to the leader has been made, or has failed.
+constexpr auto time_to_connect = std::chrono::seconds(5);
 /// They tell it after each such piece of time [s of simulation].
 constexpr double telling_period = longest_lead / 4;
 
@@ -88,15 +90,20 @@ void ClockLeader::hold() {
 }
 
 ClockFollower::ClockFollower(ros::NodeHandle& nh, double dt)
-    : dt_(dt), publisher_(nh.advertise<std_msgs::Header>(followers_topic, 1000)) {}
+    : nh_(nh), dt_(dt), publisher_(nh.advertise<std_msgs::Header>(followers_topic, 1000)) {}
 
-void ClockFollower::follow(ros::NodeHandle& nh, FlightThread& flight) {
-  subscriber_ = nh.subscribe<rosgraph_msgs::Clock>(
+void ClockFollower::follow(FlightThread& flight) {
+  flight_ = &flight;
+  subscribe();
+}
+
+void ClockFollower::subscribe() {
+  subscriber_.shutdown();
+  subscriber_ = nh_.subscribe<rosgraph_msgs::Clock>(
       "/clock", 1000,
-      [&flight](const rosgraph_msgs::Clock::ConstPtr& clock) {
-        flight.clock(clock->clock.toSec());
-      },
+      [this](const rosgraph_msgs::Clock::ConstPtr& clock) { flight_->clock(clock->clock.toSec()); },
       {}, ros::TransportHints().tcpNoDelay());
+  subscribed_ = Wall::now();
 }
 
 void ClockFollower::reached(double time) {
@@ -106,7 +113,11 @@ void ClockFollower::reached(double time) {
 }
 
 void ClockFollower::tell(const FlightReport& report) {
-  if (report.waits_for_clock) return;
+  if (report.waits_for_clock) {
+    // A leader keeps its clock for those who come; roscpp does not try a connection twice.
+    if (Wall::now() - subscribed_ > time_to_connect) subscribe();
+    return;
+  }
   if (report.paused || !report.failure.empty()) {
     tell(std::numeric_limits<double>::infinity());
   } else {

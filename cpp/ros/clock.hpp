@@ -60,7 +60,7 @@ class ClockFollower {
  public:
   /// \param dt  length of the flight's steps [s]
   ClockFollower(ros::NodeHandle& nh, double dt);
-  void follow(ros::NodeHandle& nh, FlightThread& flight);
+  void follow(FlightThread& flight);
   /// A step has ended. From the flight's thread.
   void reached(double time);
   /// To be called now and then, or the leader takes this node for gone.
@@ -68,9 +68,13 @@ class ClockFollower {
 
  private:
   void tell(double time);
+  void subscribe();
 
+  ros::NodeHandle& nh_;
   const double dt_;
+  FlightThread* flight_ = nullptr;
   double told_ = -1;
+  std::chrono::steady_clock::time_point subscribed_;
   ros::Publisher publisher_;
   ros::Subscriber subscriber_;
 };

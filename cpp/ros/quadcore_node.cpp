@@ -106,7 +106,7 @@ void run(const EndSignal& end_signal) {
   FlightThread flight(simulation, flight_settings, listener);
   std::optional<ClockLeader> leader;
   if (clock) leader.emplace(nh, flight);
-  if (follower) follower->follow(nh, flight);
+  if (follower) follower->follow(flight);
   const CommandSubscriber commands(nh, topic, flight_settings.lockstep, flight);
   // In a namespace the clock is not this vehicle's alone.
   const Services services(nh, flight, clock && prefix.empty());
