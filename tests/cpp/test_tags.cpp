@@ -16,6 +16,10 @@ const std::vector<TagSpec> specs = {
     TagSpec::choice("model", {"plain", "fancy"}, "a choice"),
     TagSpec::link("link", "a link"),
     TagSpec::joints("rotors", "rotors"),
+    TagSpec::text("label", "none given", "a text"),
+    TagSpec::numbers("gains", "N", "1 2 3", "three gains").of(3).at_least(0),
+    TagSpec::numbers("row", "", "", "numbers").or_absent("empty"),
+    TagSpec::file("table", "a file"),
 };
 
 const Model& vehicle() {
@@ -47,6 +51,12 @@ TEST_CASE("what is not written has its default") {
   CHECK(p.choice("model") == "plain");
   CHECK(p.choice("link") == "frame");
   CHECK(p.joints("rotors") == std::vector<std::size_t>{0, 1});
+  CHECK(p.text("label") == "none given");
+  CHECK(p.numbers("gains") == std::vector<double>{1, 2, 3});
+  CHECK_FALSE(p.has("row"));
+  CHECK(p.numbers("row").empty());
+  CHECK_FALSE(p.has("table"));
+  CHECK(p.file("table").empty());
   CHECK(p.all()[0].origin == "test.urdf:10");
   CHECK(p.all()[1].origin == "default");
 }
@@ -82,9 +92,17 @@ TEST_CASE("the ends of a range belong to it unless they are excluded") {
 }
 
 TEST_CASE("a range reads as a person would write it") {
-  const char* ranges[] = {
-      ">= 0",          "> 0, <= 100",         "any finite number",         "true | false",
-      "plain | fancy", "a link of the model", "names of continuous joints"};
+  const char* ranges[] = {">= 0",
+                          "> 0, <= 100",
+                          "any finite number",
+                          "true | false",
+                          "plain | fancy",
+                          "a link of the model",
+                          "names of continuous joints",
+                          "any text",
+                          "3 numbers, each >= 0",
+                          "finite numbers",
+                          "a file, relative to the document"};
   for (std::size_t i = 0; i < specs.size(); ++i) CHECK(specs[i].range() == ranges[i]);
 }
 
@@ -100,4 +118,48 @@ TEST_CASE("a refusal names place, plugin and tag") {
 
 TEST_CASE("an override does not excuse a tag that is wrong in the file") {
   CHECK_THROWS_AS(read({gain, gain}, {{"gain", "1"}}), InputError);
+}
+
+TEST_CASE("a row of numbers has the length, the numbers and the range of its table") {
+  const auto row = [](const char* name, const char* text) -> PluginTag {
+    return {name, text, "test.urdf:11"};
+  };
+  CHECK(read({gain, row("gains", " 0\n 1e-3\t 7 ")}).numbers("gains") ==
+        std::vector<double>{0, 1e-3, 7});
+  CHECK(read({gain, row("row", "-1")}).numbers("row") == std::vector<double>{-1});
+  CHECK(read({gain}, {{"row", "4 -5"}}).numbers("row") == std::vector<double>{4, -5});
+  CHECK(refused({gain, row("gains", "1 2")}) ==
+        "test.urdf:11: plugin 'p': <gains> '1 2' is a row of 2; write 3 numbers, each >= 0, in N, "
+        "blanks between them");
+  CHECK(contains(refused({gain, row("gains", "1 -2 3")}), "holds -2, out of range; write 3"));
+  CHECK(contains(refused({gain, row("gains", "1 2,5 3")}), "holds '2,5', which is not a finite"));
+  CHECK(contains(refused({gain, row("row", "nan")}), "holds 'nan', which is not a finite number"));
+  CHECK(contains(refused({gain, row("row", "")}), "is a row of 0; write finite numbers, blanks"));
+  CHECK(refused({gain}, {{"gains", "1"}}).rfind("set p.gains: plugin 'p': <gains> '1'", 0) == 0);
+}
+
+TEST_CASE("a text is anything but nothing") {
+  CHECK(read({gain, {"label", " two words\n", "test.urdf:11"}}).text("label") == "two words");
+  CHECK(contains(refused({gain, {"label", " ", "test.urdf:11"}}), "<label> '' is empty; write"));
+}
+
+TEST_CASE("a file counts from its document, one that is set from where the program runs") {
+  const std::string at = TEST_DATA "/thesis/there.urdf:7";  // needs no document for a path from /
+  const std::string folder = TEST_DATA "/gazebo11/cases/A1_ki/";
+  const std::string table = folder + "commands.csv", document = folder + "model.urdf:7";
+  const auto given = [](const std::string& path, const std::string& where) -> PluginTag {
+    return {"table", path, where};
+  };
+  CHECK(read({gain, given("commands.csv", document)}).file("table") == table);
+  CHECK(read({gain, given("../A1_ki/commands.csv", document)}).file("table") == table);
+  CHECK(read({gain, given(table, at)}).file("table") == table);
+  CHECK(read({gain}, {{"table", table}}).file("table") == table);
+  CHECK(refused({gain, given("command.csv", document)}) ==
+        document + ": plugin 'p': <table> 'command.csv' cannot be read: " + folder +
+            "command.csv; give the path of an existing file, relative to the document that holds "
+            "the tag");
+  CHECK(contains(refused({gain, given("..", document)}), "<table> '..' is a folder; name a file"));
+  CHECK(contains(refused({gain, given("commands.csv", "robot_description:7")}),
+                 "is relative, but the model comes from no file; write a path from / on"));
+  CHECK(contains(refused({gain}, {{"table", "commands.csv"}}), "set p.table: plugin 'p': <table>"));
 }

@@ -75,7 +75,7 @@ void check_shared_tags(const std::vector<LoadedPlugin>& plugins) {
       const auto [known, added] =
           first.emplace(parameter.spec.name, std::pair{&plugin, &parameter});
       const Parameter& other = *known->second.second;
-      if (added || other.number == parameter.number) continue;
+      if (added || parameter.agrees_with(other)) continue;
       const auto describe = [](const LoadedPlugin& p, const Parameter& value) {
         return value.text + " in '" + p.name + "' (" + value.origin + ")";
       };

@@ -12,12 +12,18 @@
 namespace quadcore QUADCORE_EXPORT {
 
 enum class TagKind {
-  number,  ///< a finite number within [min, max]
-  flag,    ///< true | false
-  choice,  ///< one of `choices`
-  link,    ///< the name of a link of the model; empty = the root
-  joints,  ///< names of continuous joints, separated by blanks; empty = all, in file order
+  number,   ///< a finite number within [min, max]
+  numbers,  ///< `count` such numbers, separated by blanks
+  flag,     ///< true | false
+  choice,   ///< one of `choices`
+  text,     ///< anything but nothing
+  file,     ///< the path of a file that can be read, relative to the document that holds the tag
+  link,     ///< the name of a link of the model; empty = the root
+  joints,   ///< names of continuous joints, separated by blanks; empty = all, in file order
 };
+
+/// Of a row of numbers: at least one.
+constexpr std::size_t any_count = 0;
 
 /// One parameter of a plugin. Parsing, errors, `quadcore info` and the docs all come from here.
 struct TagSpec {
@@ -29,25 +35,33 @@ struct TagSpec {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
   bool exclusive_min = false;        ///< min itself is out of range
+  std::size_t count = any_count;     ///< of numbers: how many
   std::vector<std::string> choices;  ///< of a choice
   std::string meaning;               ///< one line
   std::string equation;              ///< equation of the thesis or paper, "" = none
   std::string alias;                 ///< another accepted name, "" = none
   bool shared = false;  ///< must have the same value in every plugin of the model that has it
-  std::string absent;   ///< of an optional number without default: what its absence means ("off")
+  std::string absent;   ///< of an optional tag without default: what its absence means ("off")
 
   /// The range as a person reads it: ">= 0", "true | false", ...
   std::string range() const;
+  /// Its bounds alone; "" for none.
+  std::string interval() const;
 
   /// \name Builders, so that a table reads like one
   /// @{
   static TagSpec number(std::string name, std::string unit, std::string fallback,
                         std::string meaning);
+  static TagSpec numbers(std::string name, std::string unit, std::string fallback,
+                         std::string meaning);
   static TagSpec flag(std::string name, std::string fallback, std::string meaning);
   static TagSpec choice(std::string name, std::vector<std::string> choices, std::string meaning);
+  static TagSpec text(std::string name, std::string fallback, std::string meaning);
+  static TagSpec file(std::string name, std::string meaning);
   static TagSpec link(std::string name, std::string meaning);
   static TagSpec joints(std::string name, std::string meaning);
   TagSpec must() const;                          ///< required
+  TagSpec of(std::size_t numbers) const;         ///< count
   TagSpec at_least(double value) const;          ///< min
   TagSpec above(double value) const;             ///< exclusive min
   TagSpec at_most(double value) const;           ///< max
@@ -64,7 +78,12 @@ struct Parameter {
   std::string text;    ///< as written, or the default; empty = absent
   std::string origin;  ///< "FILE:LINE", "set" or "default"
   double number = 0;
-  std::vector<std::size_t> joints;
+  std::vector<double> numbers = {};
+  std::string file = {};  ///< the path to open
+  std::vector<std::size_t> joints = {};
+
+  /// Whether both mean the same.
+  bool agrees_with(const Parameter& other) const;
 };
 
 /// The effective parameters of one plugin, checked against its table.
@@ -81,6 +100,10 @@ class Parameters {
   bool is_set(const std::string& tag) const { return at(tag).origin != "default"; }
   bool flag(const std::string& tag) const { return at(tag).text == "true"; }
   const std::string& choice(const std::string& tag) const { return at(tag).text; }
+  const std::string& text(const std::string& tag) const { return at(tag).text; }
+  const std::vector<double>& numbers(const std::string& tag) const { return at(tag).numbers; }
+  /// The path to open; "" if absent.
+  const std::string& file(const std::string& tag) const { return at(tag).file; }
   const std::vector<std::size_t>& joints(const std::string& tag) const { return at(tag).joints; }
   const std::vector<Parameter>& all() const { return parameters_; }
 

@@ -1,0 +1,248 @@
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <system_error>
+
+#include "quadcore/error.hpp"
+#include "quadcore/tags.hpp"
+#include "quadcore/text.hpp"
+
+namespace quadcore {
+namespace {
+
+[[noreturn]] void fail(const std::string& where, const std::string& plugin,
+                       const std::string& what) {
+  throw InputError(where + ": plugin '" + plugin + "': " + what);
+}
+
+/// A value to be checked: the tag's own, where it stands, and for whom.
+struct Given {
+  Parameter& parameter;
+  const std::string& where;
+  const std::string& plugin;
+  const TagSpec& spec = parameter.spec;
+
+  [[noreturn]] void refuse(const std::string& what) const {
+    fail(where, plugin, "<" + spec.name + "> '" + parameter.text + "' " + what);
+  }
+};
+
+bool is_within(const TagSpec& spec, double value) {
+  return (spec.exclusive_min ? value > spec.min : value >= spec.min) && value <= spec.max;
+}
+
+void interpret_number(const Given& given) {
+  const TagSpec& spec = given.spec;
+  const auto value = parse_number(given.parameter.text);
+  if (!value) {
+    given.refuse("is not a finite number; write " +
+                 (spec.unit.empty() ? "a plain number" : "a plain number in " + spec.unit) + ", " +
+                 spec.range());
+  }
+  if (!is_within(spec, *value)) {
+    given.refuse("is out of range; write a number " + spec.range());
+  }
+  given.parameter.number = *value;
+}
+
+void interpret_numbers(const Given& given) {
+  const TagSpec& spec = given.spec;
+  const std::vector<std::string> words = split(given.parameter.text);
+  const std::string instead = "; write " + spec.range() +
+                              (spec.unit.empty() ? "" : ", in " + spec.unit) +
+                              ", blanks between them";
+  if (words.empty() || (spec.count != any_count && words.size() != spec.count)) {
+    given.refuse("is a row of " + std::to_string(words.size()) + instead);
+  }
+  for (const std::string& word : words) {
+    const auto value = parse_number(word);
+    if (!value) given.refuse("holds '" + word + "', which is not a finite number" + instead);
+    if (!is_within(spec, *value)) given.refuse("holds " + word + ", out of range" + instead);
+    given.parameter.numbers.push_back(*value);
+  }
+}
+
+void interpret_choice(const Given& given) {
+  const std::vector<std::string>& choices = given.spec.choices;
+  if (std::find(choices.begin(), choices.end(), given.parameter.text) == choices.end()) {
+    given.refuse("is not a choice; write " + given.spec.range());
+  }
+}
+
+void interpret_text(const Given& given) {
+  if (given.parameter.text.empty()) given.refuse("is empty; write something or leave it out");
+}
+
+/// A path counts from the folder of the document that the tag stands in; one that is set from
+/// outside counts from where the program runs.
+void interpret_file(const Given& given) {
+  namespace fs = std::filesystem;
+  Parameter& parameter = given.parameter;
+  interpret_text(given);
+  fs::path path = parameter.text;
+  if (path.is_relative() && parameter.origin != "set") {
+    const fs::path document = given.where.substr(0, given.where.rfind(':'));
+    std::error_code ignored;
+    if (!fs::exists(document, ignored)) {
+      given.refuse("is relative, but the model comes from no file; write a path from / on");
+    }
+    path = document.parent_path() / path;
+  }
+  parameter.file = path.lexically_normal().string();
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) given.refuse("is a folder; name a file in it");
+  if (!std::ifstream(path)) {
+    given.refuse(
+        "cannot be read: " + parameter.file + "; give the path of an existing file" +
+        (path == fs::path(parameter.text) ? "" : ", relative to the document that holds the tag"));
+  }
+}
+
+void interpret_link(const Given& given, const Model& model) {
+  const auto body = model.body_of_link.find(given.parameter.text);
+  if (body == model.body_of_link.end()) {
+    std::vector<std::string> names;
+    for (const auto& entry : model.body_of_link) names.push_back(entry.first);
+    given.refuse("is not a link of the model" + did_you_mean(given.parameter.text, names) +
+                 "; its links are " + joined(names));
+  }
+  if (body->second != 0) {
+    given.refuse("is not part of the frame; name the root link '" + model.links[0].name +
+                 "' or one that is fixed to it");
+  }
+}
+
+void interpret_joints(const Given& given, const Model& model) {
+  Parameter& parameter = given.parameter;
+  if (parameter.text.empty()) {
+    given.refuse("names no joint; name at least one or leave the tag out");
+  }
+  const std::string tag = "<" + given.spec.name + "> names '";
+  const std::vector<std::string> names = model.joint_names();
+  for (const std::string& name : split(parameter.text)) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) {
+      fail(given.where, given.plugin,
+           tag + name + "', which is not a continuous joint" + did_you_mean(name, names) +
+               "; the model has " + joined(names));
+    }
+    const auto index = static_cast<std::size_t>(found - names.begin());
+    if (std::find(parameter.joints.begin(), parameter.joints.end(), index) !=
+        parameter.joints.end()) {
+      fail(given.where, given.plugin, tag + name + "' twice; name it once");
+    }
+    parameter.joints.push_back(index);
+  }
+}
+
+/// Checks a value against its spec and fills in what it means.
+void interpret(const Given& given, const Model& model) {
+  switch (given.spec.kind) {
+    case TagKind::number:
+      return interpret_number(given);
+    case TagKind::numbers:
+      return interpret_numbers(given);
+    case TagKind::flag:
+    case TagKind::choice:
+      return interpret_choice(given);
+    case TagKind::text:
+      return interpret_text(given);
+    case TagKind::file:
+      return interpret_file(given);
+    case TagKind::link:
+      return interpret_link(given, model);
+    case TagKind::joints:
+      return interpret_joints(given, model);
+  }
+}
+
+/// What an absent optional tag stands for.
+void complete(Parameter& parameter, const Model& model) {
+  if (parameter.spec.kind == TagKind::link) parameter.text = model.links[0].name;
+  if (parameter.spec.kind != TagKind::joints) return;
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    parameter.joints.push_back(i);
+    parameter.text += (i ? " " : "") + model.joints[i].name;
+  }
+}
+
+}  // namespace
+
+Parameters::Parameters(const std::vector<TagSpec>& table, const PluginElement& element,
+                       const Model& model, const std::map<std::string, std::string>& overrides) {
+  std::vector<std::string> names;
+  for (const TagSpec& spec : table) {
+    names.push_back(spec.name);
+    if (!spec.alias.empty()) names.push_back(spec.alias);
+    parameters_.push_back({spec, "", ""});
+  }
+  const auto find = [&](const std::string& tag, const std::string& where) -> Parameter& {
+    for (Parameter& parameter : parameters_) {
+      if (parameter.spec.name == tag ||
+          (!parameter.spec.alias.empty() && parameter.spec.alias == tag)) {
+        return parameter;
+      }
+    }
+    fail(where, element.name,
+         "unknown tag <" + tag + ">" + did_you_mean(tag, names) + "; it knows " + joined(names));
+  };
+
+  for (const PluginTag& tag : element.tags) {
+    Parameter& parameter = find(tag.name, tag.where);
+    if (!parameter.origin.empty()) {
+      fail(tag.where, element.name,
+           "<" + tag.name + "> is given a second time (first at " + parameter.origin +
+               "); keep one of them");
+    }
+    parameter.text = trimmed(tag.text);
+    parameter.origin = tag.where;
+  }
+  for (const auto& [tag, text] : overrides) {
+    Parameter& parameter = find(tag, "set " + element.name + "." + tag);
+    parameter.text = trimmed(text);
+    parameter.origin = "set";
+  }
+  for (Parameter& parameter : parameters_) {
+    const TagSpec& spec = parameter.spec;
+    if (!parameter.origin.empty()) {
+      const bool set = parameter.origin == "set";
+      const std::string where = set ? "set " + element.name + "." + spec.name : parameter.origin;
+      interpret({parameter, where, element.name}, model);
+    } else if (spec.required) {
+      fail(element.where, element.name,
+           "required tag <" + spec.name + "> is missing (" + spec.meaning + "); add <" + spec.name +
+               ">...</" + spec.name + ">" + (spec.unit.empty() ? "" : " in " + spec.unit));
+    } else {
+      parameter.origin = "default";
+      parameter.text = spec.fallback;
+      if (spec.fallback.empty()) {
+        complete(parameter, model);
+      } else {
+        interpret({parameter, element.where, element.name}, model);
+      }
+    }
+  }
+}
+
+bool Parameter::agrees_with(const Parameter& other) const {
+  switch (spec.kind) {
+    case TagKind::number:
+      return number == other.number;
+    case TagKind::numbers:
+      return numbers == other.numbers;
+    case TagKind::file:
+      return file == other.file;
+    default:
+      return text == other.text;
+  }
+}
+
+const Parameter& Parameters::at(const std::string& tag) const {
+  for (const Parameter& parameter : parameters_) {
+    if (parameter.spec.name == tag) return parameter;
+  }
+  throw std::logic_error("the plugin's table has no tag '" + tag + "'");
+}
+
+}  // namespace quadcore
