@@ -224,3 +224,8 @@ def test_a_reader_that_stops_early_is_no_error():
     shown = subprocess.run(command, shell=True, capture_output=True, text=True)
     assert shown.stdout == "model quadrotor\n"
     assert shown.stderr == ""
+
+
+def test_a_mat_log_may_skip_steps():
+    assert main([*FALL, "--log", "log.mat", "--log-every", "20", "--quiet"]) == 0
+    assert np.array_equal(scipy.io.loadmat("log.mat")["t"].ravel(), [0, 0.02, 0.04])

@@ -121,7 +121,7 @@ class MatFile:
 
     def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
         """Keep a piece."""
-        rows = np.hstack([table, wrenches.reshape(len(table), -1)])
+        rows = np.hstack([table, wrenches.reshape(len(table), 6 * len(self._terms))])
         try:
             self._rows.write(rows.tobytes())
             self._rows.flush()
