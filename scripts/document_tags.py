@@ -93,8 +93,8 @@ LOG = {
 }
 
 TOPICS = {
-    "vel_cmd": "in: rotor speeds, rad/s, signed, before the division by `sim_slow`",
-    "odom": "out: `libodometry_plugin.so`; units as in the log, variances in their squares",
+    "vel_cmd": "rotor speeds, rad/s, signed, before the division by `sim_slow`",
+    "odom": "units as in the log, variances in their squares",
 }
 
 
@@ -248,7 +248,10 @@ def log_section(simulation: qc.Simulation) -> str:
         "CSV with 17 significant digits, which restore every bit; `.mat` holds vectors of the\n"
         "same names.\n\n"
         + table(("columns", "unit", "meaning"), ((f"`{k}`", *v) for k, v in LOG.items()))
-        + "\nWrenches (`log.wrenches` in Python, `wrench_NAME` in `.mat`): force (N), then torque\n"
+        + "\nTopics that were asked for follow (`--log-topics`, `sim.run(topics=...)`;\n"
+        "`log.topics` in Python): `TOPIC.stamp` and `TOPIC.FIELD`, in `.mat` the fields of a\n"
+        "struct `topic_TOPIC`; the last message at that time, NaN before the first.\n"
+        "\nWrenches (`log.wrenches` in Python, `wrench_NAME` in `.mat`): force (N), then torque\n"
         "(N m) about the vehicle's centre of mass, frame axes, as they act from the logged state\n"
         f"on. Those of the shipped plugins:\n{terms}.\n"
     )
@@ -256,14 +259,19 @@ def log_section(simulation: qc.Simulation) -> str:
 
 def topic_section(simulation: qc.Simulation) -> str:
     """Tabulate the topics inside the core."""
+    files = {plugin.name: f"`{plugin.filename}`" for plugin in simulation.plugins}
+    if set(TOPICS) != set(simulation.topics):
+        sys.exit(f"topics: described are {list(TOPICS)}")
     rows = []
-    for name, meaning in TOPICS.items():
-        fields = [field for field in simulation.topic(name) if field not in ("stamp", "count")]
-        rows.append((f"`{name}`", " ".join(f"`{field}`" for field in fields), meaning))
+    for name, topic in simulation.topics.items():
+        plugins = [f"published by {files[topic.writer]}"] if topic.writer else []
+        plugins += [f"taken by {files[reader]}" for reader in topic.readers]
+        fields = " ".join(f"`{field}`" for field in topic.fields)
+        rows.append((f"`{name}`", f"`{topic.kind}`", fields, ", ".join(plugins), TOPICS[name]))
     return (
-        "\n## Topics\n\nMessages between plugins, and between them and Python "
-        "(`sim.topic(name)`); these two are the ROS node's, too.\n\n"
-        + table(("topic", "fields", "direction"), rows)
+        "\n## Topics\n\nMessages between plugins, and between them and Python or ROS; "
+        "see [plugins.md](plugins.md#topics).\nThose of the shipped quadrotor:\n\n"
+        + table(("topic", "kind", "fields", "plugins", "meaning"), rows)
     )
 
 

@@ -63,12 +63,16 @@ build() {
   cp -rp tests/ros $workspace/install/share/quadcore/tests
 }
 
-# A plugin by others, which finds quadcore in the space it is built in.
-build_plugin() {
-  local folder=$workspace/$1-plugin
-  { cmake -S examples/side_force_plugin -B $folder && cmake --build $folder; } >$folder.log 2>&1 ||
-    { cat $folder.log; say "the example plugin does not build in the $1 space"; exit 1; }
-  export QUADCORE_PLUGIN_PATH="$PWD/$folder"
+# Plugins by others, which find quadcore in the space they are built in.
+build_plugins() {
+  local source folder
+  export QUADCORE_PLUGIN_PATH=""
+  for source in examples/side_force_plugin tests/plugins/relay; do
+    folder=$workspace/$1-$(basename $source)
+    { cmake -S $source -B $folder && cmake --build $folder; } >$folder.log 2>&1 ||
+      { cat $folder.log; say "$source does not build in the $1 space"; exit 1; }
+    QUADCORE_PLUGIN_PATH="$PWD/$folder:$QUADCORE_PLUGIN_PATH"
+  done
 }
 
 # run_in SPACE TEST...: the tests, with the environment of that space.
@@ -78,7 +82,7 @@ run_in() {
   set +u
   . $workspace/$space/setup.bash
   set -u
-  build_plugin $space
+  build_plugins $space
   # Debian's packages lie where no setup.bash looks, and xacro is not among them.
   [ -d /opt/ros/noetic ] || export ROS_PACKAGE_PATH="$ROS_PACKAGE_PATH:/usr/share" \
     PYTHONPATH="$PYTHONPATH:$PWD/$workspace/xacro"
@@ -116,6 +120,6 @@ build
 say "running the ROS tests"
 SECONDS=0
 (run_in devel topics services lockstep playing clock several parameters faults masters fly_from_python \
-  launch plugin_by_others; [ -z "$failed" ])
+  launch plugin_by_others plugin_topics; [ -z "$failed" ])
 (run_in install launch playing fly_from_python plugin_by_others; [ -z "$failed" ])
 say "the ROS tests passed in $SECONDS s"

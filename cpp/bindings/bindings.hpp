@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "older_pybind11.hpp"
 
 namespace quadcore::bindings {
@@ -12,5 +14,9 @@ void bind_plugins(py::module_& m);
 void bind_snapshot(py::module_& m);
 void bind_simulation(py::module_& m);
 void bind_flight(py::module_& m);
+
+struct Guarded;
+/// Adds to the class of simulations.
+void bind_topics(py::module_& m, py::class_<Guarded, std::shared_ptr<Guarded>>& simulation);
 
 }  // namespace quadcore::bindings

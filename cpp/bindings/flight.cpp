@@ -14,10 +14,22 @@ namespace {
 struct BoundFlight {
   std::shared_ptr<Guarded> guarded;
   Flight flight;
+  py::ssize_t columns;
 };
 
+/// Names of the columns of a flight that logs these topics.
+std::vector<std::string> columns(const Self& self, const std::vector<std::string>& topics) {
+  std::vector<std::string> names = log_columns(self->model().joints.size());
+  for (const std::size_t topic : self->topics().at(topics)) {
+    const std::vector<std::string> of_topic = log_columns(self->topics()[topic]);
+    names.insert(names.end(), of_topic.begin(), of_topic.end());
+  }
+  return names;
+}
+
 std::unique_ptr<BoundFlight> create(const Self& self, const py::object& commands,
-                                    std::int64_t log_every, bool wrenches) {
+                                    std::int64_t log_every, bool wrenches,
+                                    const std::vector<std::string>& topics) {
   std::optional<Commands> table;
   if (!commands.is_none()) {
     const Numbers rows = numbers(commands, 2, "commands");
@@ -25,8 +37,9 @@ std::unique_ptr<BoundFlight> create(const Self& self, const py::object& commands
                   self->command_width());
   }
   const Lock lock(*self);
-  return std::make_unique<BoundFlight>(
-      BoundFlight{self.guarded, Flight(*self.operator->(), std::move(table), log_every, wrenches)});
+  return std::make_unique<BoundFlight>(BoundFlight{
+      self.guarded, Flight(*self.operator->(), std::move(table), log_every, wrenches, topics),
+      static_cast<py::ssize_t>(columns(self, topics).size())});
 }
 
 void advance(BoundFlight& bound, std::int64_t n) {
@@ -46,11 +59,9 @@ py::tuple take(BoundFlight& bound) {
   const Lock lock(*bound.guarded);
   const Simulation& simulation = bound.guarded->simulation;
   LogRows rows = bound.flight.take();
-  const auto columns = static_cast<py::ssize_t>(
-      log_columns(static_cast<std::size_t>(simulation.state().rotor_velocity.size())).size());
   const auto terms = static_cast<py::ssize_t>(simulation.wrench_terms().size());
   const py::ssize_t with_wrenches = rows.wrenches.empty() ? 0 : rows.count;
-  return py::make_tuple(array_of(std::move(rows.table), {rows.count, columns}),
+  return py::make_tuple(array_of(std::move(rows.table), {rows.count, bound.columns}),
                         array_of(std::move(rows.wrenches), {with_wrenches, terms, 6}));
 }
 
@@ -71,7 +82,7 @@ py::bytes csv_rows(const Numbers& table) {
 void bind_flight(py::module_& m) {
   py::class_<BoundFlight>(m, "Flight", "One logged run, advanced piece by piece.")
       .def(py::init(&create), py::arg("simulation"), py::arg("commands"), py::arg("log_every"),
-           py::arg("wrenches") = true)
+           py::arg("wrenches") = true, py::arg("topics") = std::vector<std::string>{})
       .def("advance", &advance, py::arg("n"))
       .def("take", &take,
            "Hands over what was logged since the last call: table (rows, columns) and wrenches "
@@ -86,7 +97,15 @@ void bind_flight(py::module_& m) {
         return std::pair{fault->row, fault->what};
       },
       py::arg("table"), "Row and reason why a table (rows, 1 + n) is none of commands, or None.");
-  m.def("log_columns", &log_columns, py::arg("rotor_count"));
+  m.def("log_columns", py::overload_cast<std::size_t>(&log_columns), py::arg("rotor_count"));
+  m.def(
+      "flight_columns",
+      [](const Self& self, const std::vector<std::string>& topics) {
+        const Lock lock(*self);
+        return columns(self, topics);
+      },
+      py::arg("simulation"), py::arg("topics"),
+      "Names of the columns of a flight that logs these topics.");
   m.def("log_remark", &log_remark, py::arg("ignored"));
   m.def("csv_rows", &csv_rows, py::arg("table"),
         "Rows of a table as CSV with 17 significant digits.");

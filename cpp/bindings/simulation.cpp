@@ -99,21 +99,6 @@ py::dict views(const Self& self) {
   return result;
 }
 
-py::dict topic(const Self& self, const std::string& name) {
-  const Lock lock(*self);
-  const Topics& topics = self->topics();
-  const int index = topics.find(name);
-  if (index < 0) throw InputError("topic '" + name + "' is not declared by any plugin");
-  const Topic& topic = topics[static_cast<std::size_t>(index)];
-  py::dict message;
-  message["stamp"] = topic.stamp;
-  message["count"] = static_cast<std::int64_t>(topic.count);
-  for (std::size_t i = 0; i < topic.fields.size(); ++i) {
-    message[text(topic.fields[i])] = topic.values[i];
-  }
-  return message;
-}
-
 VehicleState to_state(const py::object& object) {
   const auto vector = [&object](const char* name) -> VectorXd {
     const Numbers array = numbers(object.attr(name), 1, (std::string("state.") + name).c_str());
@@ -141,7 +126,8 @@ VehicleState to_state(const py::object& object) {
 }  // namespace
 
 void bind_simulation(py::module_& m) {
-  py::class_<Guarded, std::shared_ptr<Guarded>>(m, "Simulation", py::dynamic_attr())
+  py::class_<Guarded, std::shared_ptr<Guarded>> simulation(m, "Simulation", py::dynamic_attr());
+  simulation
       .def(py::init(&create), py::arg("model"), py::arg("world"), py::arg("engine"), py::arg("dt"),
            py::arg("seed"), py::arg("parameters"), py::arg("spawn"))
       .def("command", &command, py::arg("speeds"))
@@ -199,8 +185,8 @@ void bind_simulation(py::module_& m) {
       .def_property_readonly(
           "inertia", [](const Self& self) { return mass_properties(self->model()).inertia_Ccm_F; })
       .def_property_readonly("wrench_terms", [](const Self& self) { return self->wrench_terms(); })
-      .def("topic", &topic, py::arg("name"))
       .def("_views", &views);
+  bind_topics(m, simulation);
 
   m.def("engines", [] {
     std::vector<std::pair<std::string, std::string>> list;

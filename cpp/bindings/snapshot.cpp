@@ -38,8 +38,7 @@ py::dict saved(const std::shared_ptr<Snapshot>& held) {
   const Snapshot& snapshot = *held;
   py::list messages;
   for (const Message& m : snapshot.messages) {
-    messages.append(
-        py::make_tuple(row(m.values.data(), m.values.size()), m.stamp, m.count, m.writer));
+    messages.append(py::make_tuple(row(m.values.data(), m.values.size()), m.stamp, m.count));
   }
   py::dict state;
   state["version"] = version;
@@ -80,8 +79,8 @@ std::shared_ptr<Snapshot> restored(const py::dict& state) {
       Eigen::Map<const VectorXd>(plugins.data(), static_cast<Eigen::Index>(plugins.size()));
   for (const py::handle& held : state["messages"]) {
     const auto message = py::cast<py::tuple>(held);
-    snapshot->messages.push_back({numbers_of(message[0]), py::cast<double>(message[1]),
-                                  py::cast<double>(message[2]), py::cast<int>(message[3])});
+    snapshot->messages.push_back(
+        {numbers_of(message[0]), py::cast<double>(message[1]), py::cast<double>(message[2])});
   }
   snapshot->warnings = py::cast<std::vector<std::string>>(state["warnings"]);
   snapshot->failure = py::cast<std::string>(state["failure"]);

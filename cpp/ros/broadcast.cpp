@@ -5,6 +5,9 @@
 namespace quadcore::node {
 namespace {
 
+/// The thesis' name of the vehicle's frame.
+constexpr const char* vehicle_name = "drone";
+
 geometry_msgs::TransformStamped same_place(const std::string& parent, const std::string& child) {
   geometry_msgs::TransformStamped same;
   same.header.frame_id = parent;
@@ -22,15 +25,22 @@ Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
   joint_states_publisher_ = {nh, "joint_states", 100};
   const Model& model = simulation.model();
   joint_states_.name = model.joint_names();
-  if (!odometry_topic_.exists()) {
-    ROS_WARN("the model has no libodometry_plugin.so: odom and tf are not sent");
-    return;
+  if (odometry_topic_.exists()) {
+    advertise_odometry(nh, frame_prefix, model, rotor_tf);
+  } else {
+    ROS_WARN("no plugin of the model publishes odometry on topic odom: odom and tf are not sent");
   }
-  odometry_publisher_ = {nh, "odom", 1000};
+  // Last, so that none takes the name of one of these.
+  others_.emplace(nh, simulation, frame_prefix + vehicle_name, OdometryTopic::name);
+}
+
+void Broadcast::advertise_odometry(ros::NodeHandle& nh, const std::string& frame_prefix,
+                                   const Model& model, bool rotor_tf) {
+  odometry_publisher_ = {nh, OdometryTopic::name, 1000};
   truth_publisher_ = {nh, "ground_truth/odometry", 1000};
-  const std::string vehicle_frame = frame_prefix + "drone";
-  odometry_.header.frame_id = truth_.header.frame_id = world_frame;
-  odometry_.child_frame_id = truth_.child_frame_id = vehicle_frame;
+  const std::string vehicle_frame = frame_prefix + vehicle_name;
+  set_frames(odometry_, vehicle_frame);
+  set_frames(truth_, vehicle_frame);
   if (!odometry_topic_.publishes_tf()) return;
   tf_publisher_ = {nh, "/tf", 100};
   transforms_.transforms.push_back(same_place(world_frame, vehicle_frame));
@@ -47,6 +57,7 @@ Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
 void Broadcast::send(const Simulation& simulation, bool jumped) {
   clock_.clock = to_ros(simulation.time());
   if (clock_publisher_) clock_publisher_.publish(clock_);
+  others_->send(simulation, clock_.clock, jumped);
   if (odometry_topic_.exists()) {
     const Topic& topic = odometry_topic_.in(simulation);
     if (topic.count > 0 && (topic.count != sent_ || jumped)) send_odometry(simulation, topic);
@@ -65,9 +76,9 @@ void Broadcast::show(const Simulation& simulation) {
 void Broadcast::send_odometry(const Simulation& simulation, const Topic& topic) {
   sent_ = topic.count;
   odometry_.header.stamp = truth_.header.stamp = clock_.clock;
-  odometry_topic_.to_message(topic, odometry_);
+  to_ros(messages::read<messages::Odometry>(topic.values.data()), odometry_);
   odometry_publisher_.publish(odometry_);
-  odometry_topic_.truth_to_message(simulation.state(), truth_);
+  to_ros(odometry_topic_.truth(simulation.state()), truth_);
   truth_publisher_.publish(truth_);
   if (tf_publisher_) send_transforms(simulation);
 }

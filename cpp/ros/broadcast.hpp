@@ -6,6 +6,7 @@
 #include <sensor_msgs/JointState.h>
 #include <tf2_msgs/TFMessage.h>
 
+#include <optional>
 #include <string>
 
 #include "kept_publisher.hpp"
@@ -13,11 +14,13 @@
 #include "path.hpp"
 #include "quadcore/simulation.hpp"
 #include "thinned.hpp"
+#include "topic_broadcast.hpp"
 
 namespace quadcore::node {
 
 /// Sends what the original package sends: /clock each step, then odom and tf world->drone with each
-/// message of the odometry plugin; besides, ground_truth/odometry, joint_states, and path for rviz.
+/// message of the odometry plugin; besides, ground_truth/odometry, joint_states, path for rviz, and
+/// every other topic of the plugins, ahead of the odometry that somebody may answer.
 /// Stamps are simulation time, those of odom among the values of /clock. The last message of all is
 /// kept for those who subscribe later, so that a paused flight is seen, too.
 class Broadcast {
@@ -36,6 +39,8 @@ class Broadcast {
   void show(const Simulation& simulation);
 
  private:
+  void advertise_odometry(ros::NodeHandle& nh, const std::string& frame_prefix, const Model& model,
+                          bool rotor_tf);
   void send_odometry(const Simulation& simulation, const Topic& topic);
   void add_rotor_frames(const Model& model, const std::string& frame_prefix);
   void send_transforms(const Simulation& simulation);
@@ -52,6 +57,7 @@ class Broadcast {
   KeptPublisher<tf2_msgs::TFMessage> static_tf_publisher_;
   KeptPublisher<sensor_msgs::JointState> joint_states_publisher_;
   PathTopic path_;
+  std::optional<TopicBroadcast> others_;
 
   // Kept, so that sending them needs no new memory.
   rosgraph_msgs::Clock clock_;

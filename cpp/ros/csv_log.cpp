@@ -8,20 +8,26 @@
 
 namespace quadcore::node {
 
-CsvLog::CsvLog(const std::string& path, const Simulation& simulation)
-    : path_(path), file_(std::fopen(path.c_str(), "w")) {
+CsvLog::CsvLog(const std::string& path, const Simulation& simulation,
+               const std::vector<std::string>& topics)
+    : path_(path), topics_(simulation.topics().at(topics)), file_(std::fopen(path.c_str(), "w")) {
   if (!file_) throw InputError(path + ": cannot be written: " + std::strerror(errno));
   std::string header;
   for (const std::string& column : log_columns(simulation.model().joints.size())) {
     header += (header.empty() ? "" : ",") + column;
   }
+  for (const std::size_t topic : topics_) {
+    for (const std::string& column : log_columns(simulation.topics()[topic]))
+      header += "," + column;
+  }
   header += log_remark(simulation.ignored());
   std::fprintf(file_.get(), "%s\n", header.c_str());
 }
 
-void CsvLog::add(const VehicleState& state) {
+void CsvLog::add(const Simulation& simulation) {
   row_.clear();
-  append_log_row(state, row_);
+  append_log_row(simulation.state(), row_);
+  for (const std::size_t topic : topics_) append_log_row(simulation.topics()[topic], row_);
   line_.clear();
   append_csv(row_.data(), row_.size(), line_);
   std::fwrite(line_.data(), 1, line_.size(), file_.get());

@@ -13,9 +13,11 @@ namespace quadcore::node {
 /// it flies: that does not end the flight, but is told.
 class CsvLog {
  public:
-  /// Throws InputError if the file cannot be written.
-  CsvLog(const std::string& path, const Simulation& simulation);
-  void add(const VehicleState& state);
+  /// \param topics  names of those to log, too
+  /// Throws InputError if the file cannot be written or a topic is not declared.
+  CsvLog(const std::string& path, const Simulation& simulation,
+         const std::vector<std::string>& topics);
+  void add(const Simulation& simulation);
   /// Writes what is left.
   void close();
   /// What went wrong in writing; "" = nothing.
@@ -28,6 +30,7 @@ class CsvLog {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
   const std::string path_;
+  const std::vector<std::size_t> topics_;
   std::string error_;
   std::vector<double> row_;
   std::string line_;

@@ -21,10 +21,6 @@ constexpr auto time_to_begin = std::chrono::seconds(10);
 /// Part of a step by which two clocks may differ in rounding.
 constexpr double rounding = 1e-3;
 
-double odometry_count(const Simulation& simulation, int topic) {
-  return topic < 0 ? 0 : simulation.topics()[static_cast<std::size_t>(topic)].count;
-}
-
 /// In a catch block: why what was to be observed was not.
 std::string cannot_be_sent(const Simulation& simulation) {
   char text[100];
@@ -219,13 +215,14 @@ std::string FlightThread::try_step() {
   } catch (const InputError& error) {  // a plugin commands: it goes on
     listener_.warn(error.what());
   }
-  const double odometry_before = odometry_count(simulation_, odometry_topic_);
+  const double odometry_before = odometry_topic_.count(simulation_);
   try {
+    listener_.feed(simulation_);
     simulation_.step();
   } catch (...) {
     return what_was_thrown();
   }
-  if (odometry_count(simulation_, odometry_topic_) != odometry_before) {
+  if (odometry_topic_.count(simulation_) != odometry_before) {
     const Lock lock(mutex_);
     commands_.message_sent();  // before it goes out: its answer may come at once
   }

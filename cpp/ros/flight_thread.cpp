@@ -7,7 +7,7 @@ namespace {
 
 /// Numbers of a command; 0 = the model takes none.
 std::size_t command_width(const Simulation& simulation) {
-  return simulation.topics().find("vel_cmd") < 0 ? 0 : simulation.command_width();
+  return simulation.topics().find(Simulation::command_topic) < 0 ? 0 : simulation.command_width();
 }
 
 }  // namespace
@@ -17,15 +17,15 @@ FlightThread::FlightThread(Simulation& simulation, const FlightSettings& setting
     : simulation_(simulation),
       settings_(settings),
       listener_(listener),
-      odometry_topic_(simulation.topics().find("odom")),
+      odometry_topic_(simulation),
       paused_(settings.paused),
       commands_(command_width(simulation), settings.lockstep),
       real_time_factor_(settings.real_time_factor),
       pacer_(simulation.dt(), settings.follows_clock ? 0 : settings.real_time_factor) {
-  if (settings.lockstep && (command_width(simulation) == 0 || odometry_topic_ < 0)) {
+  if (settings.lockstep && !(simulation.takes_commands() && odometry_topic_.exists())) {
     throw InputError(
-        "lockstep needs a model that takes commands and sends odometry; add "
-        "libmotorpid_plugin.so and libodometry_plugin.so, or leave lockstep off");
+        "lockstep needs a model that takes commands on topic vel_cmd and sends odometry on topic "
+        "odom; add libmotorpid_plugin.so and libodometry_plugin.so, or leave lockstep off");
   }
   report_.time = simulation.time();
   thread_ = std::thread(&FlightThread::fly, this);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "command_queue.hpp"
+#include "odometry_topic.hpp"
 #include "pacer.hpp"
 #include "quadcore/simulation.hpp"
 
@@ -30,6 +31,8 @@ struct FlightSettings {
 class FlightListener {
  public:
   virtual ~FlightListener() = default;
+  /// A step is about to begin: what has come for the plugins may be published.
+  virtual void feed(Simulation& simulation) = 0;
   /// The simulation has made a step or, `jumped`, was reset or given a state.
   virtual void observe(const Simulation& simulation, bool jumped) = 0;
   /// The simulation waits at its start or at a jump for someone who can answer; it will be observed
@@ -116,7 +119,7 @@ class FlightThread {
   Simulation& simulation_;
   const FlightSettings settings_;
   FlightListener& listener_;
-  const int odometry_topic_;
+  const OdometryTopic odometry_topic_;
 
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;

@@ -3,21 +3,22 @@
 #include <ros/topic_manager.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace quadcore::node {
 
-Listener::Listener(Broadcast& broadcast, const Simulation& simulation,
-                   const std::string& command_topic, const std::string& log,
+Listener::Listener(Broadcast& broadcast, TopicInlets& inlets, const Simulation& simulation,
+                   const std::string& command_topic, std::unique_ptr<CsvLog> log,
                    ClockFollower* follower)
     : broadcast_(broadcast),
+      inlets_(inlets),
       command_topic_(command_topic),
+      log_(std::move(log)),
       follower_(follower),
-      warnings_told_(simulation.warnings().size()) {
-  if (!log.empty()) log_.emplace(log, simulation);
-}
+      warnings_told_(simulation.warnings().size()) {}
 
 void Listener::observe(const Simulation& simulation, bool jumped) {
-  if (log_) log_->add(simulation.state());
+  if (log_) log_->add(simulation);
   if (log_ && !log_->error().empty()) ROS_ERROR_ONCE("%s", log_->error().c_str());
   broadcast_.send(simulation, jumped);
   if (follower_) follower_->reached(simulation.time());

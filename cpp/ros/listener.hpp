@@ -1,6 +1,6 @@
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <string>
 
 #include "broadcast.hpp"
@@ -8,17 +8,19 @@
 #include "csv_log.hpp"
 #include "flight_thread.hpp"
 #include "sayer.hpp"
+#include "topic_inlets.hpp"
 
 namespace quadcore::node {
 
 /// What the node does with a flight: sends it, logs it if asked to, and passes on what is wrong.
 class Listener final : public FlightListener {
  public:
-  /// \param log       path of a CSV log; "" = none
+  /// \param log       CSV log to write; null = none
   /// \param follower  to be told of each step; null = this node leads the clock
-  Listener(Broadcast& broadcast, const Simulation& simulation, const std::string& command_topic,
-           const std::string& log, ClockFollower* follower);
+  Listener(Broadcast& broadcast, TopicInlets& inlets, const Simulation& simulation,
+           const std::string& command_topic, std::unique_ptr<CsvLog> log, ClockFollower* follower);
 
+  void feed(Simulation& simulation) override { inlets_.take(simulation); }
   void observe(const Simulation& simulation, bool jumped) override;
   void show(const Simulation& simulation) override { broadcast_.show(simulation); }
   void repeat(const Simulation& simulation) override { broadcast_.send(simulation, true); }
@@ -29,8 +31,9 @@ class Listener final : public FlightListener {
 
  private:
   Broadcast& broadcast_;
+  TopicInlets& inlets_;
   const std::string command_topic_;
-  std::optional<CsvLog> log_;
+  const std::unique_ptr<CsvLog> log_;
   ClockFollower* const follower_;
   std::size_t warnings_told_;  ///< of the simulation
   Sayer sayer_;

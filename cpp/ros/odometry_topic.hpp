@@ -1,18 +1,14 @@
 #pragma once
 
-#include <nav_msgs/Odometry.h>
-
-#include <array>
-#include <string>
-
 #include "quadcore/simulation.hpp"
 
 namespace quadcore::node {
 
-/// The simulation's topic `odom` and the plugin that writes it.
+/// The simulation's topic `odom` and what the plugin that writes it asks for.
 class OdometryTopic {
  public:
-  /// Throws InputError if the topic lacks a field that nav_msgs/Odometry has.
+  static constexpr const char* name = "odom";
+
   explicit OdometryTopic(const Simulation& simulation);
 
   /// Whether the simulation has the topic; nothing else may be asked where it has not.
@@ -20,19 +16,17 @@ class OdometryTopic {
   const Topic& in(const Simulation& simulation) const {
     return simulation.topics()[static_cast<std::size_t>(index_)];
   }
+  /// Messages so far.
+  double count(const Simulation& simulation) const { return exists() ? in(simulation).count : 0; }
   /// Whether its plugin asks for tf.
   bool publishes_tf() const { return publishes_tf_; }
-
-  /// Fills pose, twist and their covariances with what the topic says.
-  void to_message(const Topic& topic, nav_msgs::Odometry& message) const;
-  /// The same with what is true, in the same axes.
-  void truth_to_message(const VehicleState& state, nav_msgs::Odometry& message) const;
+  /// What is true, in the same axes.
+  messages::Odometry truth(const VehicleState& state) const;
 
  private:
-  int index_;
+  int index_ = -1;
   bool publishes_tf_ = false;
   bool twist_in_body_ = false;
-  std::array<std::size_t, 17> columns_{};  ///< of the topic, where each number of a message stands
 };
 
 }  // namespace quadcore::node

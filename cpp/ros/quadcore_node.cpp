@@ -40,7 +40,7 @@ std::string command_topic(const ros::NodeHandle& nh, const Settings& settings, c
   if (!ros::names::validate(name, why)) {
     throw InputError("model name '" + name + "' cannot name a topic (" + why + "); set ~name");
   }
-  return nh.resolveName(name + "/vel_cmd");
+  return nh.resolveName(name + "/" + Simulation::command_topic);
 }
 
 /// The world that was asked for. gazebo_ros' empty world has a ground plane, too.
@@ -102,7 +102,13 @@ void run(const EndSignal& end_signal) {
   std::optional<ClockFollower> follower;
   if (!clock) follower.emplace(nh, simulation.dt());
   Broadcast broadcast(nh, simulation, clock, prefix, settings.rotor_tf);
-  Listener listener(broadcast, simulation, topic, settings.log, follower ? &*follower : nullptr);
+  TopicInlets inlets(nh, simulation, Simulation::command_topic, flight_settings.lockstep);
+  std::unique_ptr<CsvLog> log;
+  if (!settings.log.empty()) {
+    log = std::make_unique<CsvLog>(settings.log, simulation, settings.log_topics);
+  }
+  Listener listener(broadcast, inlets, simulation, topic, std::move(log),
+                    follower ? &*follower : nullptr);
   FlightThread flight(simulation, flight_settings, listener);
   std::optional<ClockLeader> leader;
   if (clock) leader.emplace(nh, flight);

@@ -101,8 +101,8 @@ add_ros_node(quadcore_node
   cpp/ros/csv_log.cpp cpp/ros/diagnostics.cpp cpp/ros/drag_choice.cpp cpp/ros/flight_loop.cpp
   cpp/ros/flight_thread.cpp cpp/ros/listener.cpp cpp/ros/master_api.cpp cpp/ros/master_check.cpp
   cpp/ros/master_watch.cpp cpp/ros/odometry_topic.cpp cpp/ros/parameter_watch.cpp cpp/ros/path.cpp
-  cpp/ros/private_parameters.cpp cpp/ros/quadcore_node.cpp cpp/ros/services.cpp
-  cpp/ros/settings.cpp)
+  cpp/ros/private_parameters.cpp cpp/ros/quadcore_node.cpp cpp/ros/ros_types.cpp
+  cpp/ros/services.cpp cpp/ros/settings.cpp cpp/ros/topic_broadcast.cpp cpp/ros/topic_inlets.cpp)
 target_link_libraries(quadcore_node PRIVATE quadcore)
 add_ros_node(hover_node cpp/ros/hover_node.cpp)
 if(QUADCORE_BUILD_BENCHMARKS)

@@ -81,6 +81,10 @@ Settings read_settings(const ros::NodeHandle& nh) {
   s.world = world_path(p.text("world", ""), shipped_worlds, folder);
   s.name = p.text("name", "");
   s.log = path_from(folder, p.text("log", ""));
+  s.log_topics = p.words("log_topics");
+  if (s.log.empty() && !s.log_topics.empty()) {
+    throw InputError("parameter ~log_topics: names topics, but there is no log; set ~log");
+  }
   s.verbose = p.flag("verbose", false);
   s.rotor_tf = p.flag("rotor_tf", false);
   s.ignore = p.words("ignore");

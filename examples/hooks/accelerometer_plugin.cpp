@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <quadcore/plugin.hpp>
 
@@ -8,6 +7,7 @@ using quadcore::Matrix3d;
 using quadcore::Pose;
 using quadcore::TagSpec;
 using quadcore::Vector3d;
+namespace messages = quadcore::messages;
 
 /// What the sensor remembers of its last sample: the sample's number plus one, its time, the
 /// velocity it had then.
@@ -21,7 +21,7 @@ class AccelerometerPlugin final : public quadcore::Plugin {
       : rate_(setup.parameters.number("rate")),
         X_FS_(setup.model.pose_of_link.at(setup.parameters.choice("link"))),
         R_FS_(X_FS_.rotation()),
-        topic_(setup.topics.declare("specific_force", {"x", "y", "z"})) {}
+        topic_(setup.topics.publishes("specific_force", messages::kind_of<messages::Vector>())) {}
 
   std::size_t state_size() const override { return kMemorySize; }
 
@@ -33,9 +33,8 @@ class AccelerometerPlugin final : public quadcore::Plugin {
     if (!sample.jumped) {
       const Vector3d delta_v_W = v_WS_W - state.segment<3>(kVelocity);
       const Vector3d f_W = delta_v_W / (sample.time - state[kTime]) - sample.world.gravity_W;
-      const Vector3d f_S = (k.R_WF * R_FS_).transpose() * f_W;
-      std::copy_n(f_S.data(), 3, sample.topics.values(topic_).begin());
-      sample.topics.publish(topic_, sample.time);
+      const messages::Vector f_S{(k.R_WF * R_FS_).transpose() * f_W};
+      sample.topics.publish(topic_, sample.time, f_S);
     }
     state[kSamples] = due;
     state[kTime] = sample.time;

@@ -10,10 +10,8 @@ namespace {
 class HoverPlugin final : public quadcore::Plugin {
  public:
   explicit HoverPlugin(const quadcore::PluginSetup& setup) {
-    std::vector<std::string> fields;
-    for (const std::string& joint : setup.model.joint_names()) fields.push_back(joint);
-    speeds_.resize(fields.size());
-    topic_ = setup.topics.declare("vel_cmd", fields);
+    speeds_.resize(setup.model.joints.size());
+    topic_ = setup.topics.publishes("vel_cmd", quadcore::messages::speeds(speeds_.size()));
   }
 
   void prepare(const quadcore::VehicleDescription& vehicle) override {
@@ -28,8 +26,7 @@ class HoverPlugin final : public quadcore::Plugin {
   }
 
   void update(const quadcore::Sample& sample, quadcore::PluginState) const override {
-    std::copy(speeds_.begin(), speeds_.end(), sample.topics.values(topic_).begin());
-    sample.topics.publish(topic_, sample.time);
+    std::copy(speeds_.begin(), speeds_.end(), sample.topics.publish(topic_, sample.time));
   }
 
  private:

@@ -9,7 +9,7 @@ from typing import Any, Callable, Protocol, Union
 import numpy as np
 
 from . import _core
-from ._core import InputError
+from ._core import InputError, odometry_parts
 
 DEFAULT_RATE = 500.0  # 1/s
 
@@ -67,21 +67,13 @@ class Odometry:
     __slots__ = ("angular_velocity", "linear_velocity", "orientation", "position", "time")
 
     def __init__(self, simulation: _core.Simulation) -> None:
-        try:
-            message = simulation.topic(_SENSED)
-        except InputError as error:
-            raise InputError(f"controller: {error}; add libodometry_plugin.so") from None
+        message = simulation.topic(_SENSED)
         self.time = message["stamp"]
-        for name, fields in _FIELDS:
-            setattr(self, name, np.array([message[field] for field in fields]))
+        for part, fields in _PARTS:
+            setattr(self, part, np.array([message[field] for field in fields]))
 
 
-_FIELDS = (
-    ("position", ("x", "y", "z")),
-    ("orientation", ("qx", "qy", "qz", "qw")),
-    ("linear_velocity", ("vx", "vy", "vz")),
-    ("angular_velocity", ("wx", "wy", "wz")),
-)
+_PARTS = [entry for entry in odometry_parts() if entry[0] in Odometry.__slots__]
 
 
 class Guided:
@@ -106,7 +98,12 @@ class Guided:
             raise InputError(f"controller: its rate is {rate!r}; give calls per second, > 0")
         self.rate = float(rate)
         self._controller = controller
-        Odometry(simulation)  # a model without any is refused before it flies
+        sensed = simulation.topics.get(_SENSED)
+        if sensed is None or sensed.kind != "odometry":
+            raise InputError(
+                f"controller: no plugin publishes odometry on topic '{_SENSED}'; "
+                "add libodometry_plugin.so"
+            )
 
     def reset(self, simulation: _core.Simulation) -> None:
         """Let the controller begin anew."""

@@ -33,7 +33,9 @@ def read_model(
         The model is at fault; the message carries FILE:LINE.
     """
     arguments = {name: str(value) for name, value in (xacro_args or {}).items()}
-    return _core.read_model(load_description(str(model), arguments), names_to_ignore(ignore))
+    return _core.read_model(
+        load_description(str(model), arguments), list_of_names("ignore", ignore)
+    )
 
 
 def read_world(world: Union[str, Path, None] = None, ignore: Sequence[str] = ()) -> World:
@@ -52,7 +54,7 @@ def read_world(world: Union[str, Path, None] = None, ignore: Sequence[str] = ())
         The world is at fault; the message carries FILE:LINE.
     """
     document = load_world(None if world is None else str(world))
-    return _core.read_world(document, names_to_ignore(ignore))
+    return _core.read_world(document, list_of_names("ignore", ignore))
 
 
 def read_both(
@@ -68,7 +70,7 @@ def read_both(
     InputError
         One of them is at fault, or nothing in them goes by a name to ignore.
     """
-    names = names_to_ignore(ignore)
+    names = list_of_names("ignore", ignore)
     if not isinstance(model, Model):
         model = read_model(model, xacro_args, names)
     elif xacro_args:
@@ -79,11 +81,11 @@ def read_both(
     return model, world
 
 
-def names_to_ignore(ignore: Sequence[str]) -> list[str]:
-    """Check names given as `ignore`."""
-    if isinstance(ignore, str) or not all(isinstance(name, str) for name in ignore):
-        raise InputError(f"ignore is {ignore!r}; give a list of names")
-    return list(ignore)
+def list_of_names(argument: str, names: Sequence[str]) -> list[str]:
+    """Check names given as an argument."""
+    if isinstance(names, str) or not all(isinstance(name, str) for name in names):
+        raise InputError(f"{argument} is {names!r}; give a list of names")
+    return list(names)
 
 
 def load_description(model: str, xacro_args: Mapping[str, str]) -> Document:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from numbers import Real
-from typing import TYPE_CHECKING, Any, Callable, Optional, Protocol
+from typing import TYPE_CHECKING, Any, Callable, Optional, Protocol, Sequence
 
 import numpy as np
 
@@ -46,6 +46,7 @@ def fly(
     wrenches: bool,
     progress: Optional[Progress] = None,
     pilot: Optional[Pilot] = None,
+    topics: Sequence[str] = (),
 ) -> None:
     """Fly for a while and hand over what is logged, every few hundredths of a second.
 
@@ -54,13 +55,15 @@ def fly(
     duration, commands, log_every, progress
         As for `Simulation.run`.
     receive
-        Called as receive(table, wrenches) with new arrays of shape (rows, 14 + n) and
-        (rows, terms, 6), first with the present state, and with the last rows before anything is
-        raised. An interrupt waits for it.
+        Called as receive(table, wrenches) with new arrays of shape (rows, 14 + n + those of the
+        topics) and (rows, terms, 6), first with the present state, and with the last rows before
+        anything is raised. An interrupt waits for it.
     wrenches
         Whether to log them; else their array has no rows.
     pilot
         Commands in place of a table.
+    topics
+        Names of topics to log, too: columns that follow those of the state.
 
     Raises
     ------
@@ -73,7 +76,7 @@ def fly(
     table = None if commands is None else as_commands(commands, simulation.command_width)
     if pilot is not None:
         pilot.reset(simulation)
-    flight = _core.Flight(simulation, table, log_every, wrenches)
+    flight = _core.Flight(simulation, table, log_every, wrenches, topics)
     advance = flight.advance if pilot is None else _Piloted(simulation, flight, pilot).advance
 
     def hand_over() -> None:
@@ -134,12 +137,12 @@ class _Piloted:
 class Rows:
     """Collects what `fly` hands over; without memory for more it keeps what it has."""
 
-    def __init__(self, simulation: _core.Simulation) -> None:
-        self._columns = len(_core.log_columns(simulation.rotor_count))
+    def __init__(self, simulation: _core.Simulation, topics: Sequence[str] = ()) -> None:
+        self._columns = _core.flight_columns(simulation, topics)
         self._terms = simulation.wrench_terms
         self._ignored = simulation.ignored
         self._count = 0
-        self._table = np.empty((0, self._columns))
+        self._table = np.empty((0, len(self._columns)))
         self._wrenches = np.empty((0, len(self._terms), 6))
         self._with_wrenches = False
 
@@ -158,8 +161,12 @@ class Rows:
         """Give what came so far."""
         wrenches = self._wrenches[: self._count]
         named = {name: wrenches[:, i] for i, name in enumerate(self._terms)}
-        table = self._table[: self._count]
-        return Log(table, named if self._with_wrenches else {}, ignored=self._ignored)
+        return Log.of_rows(
+            self._table[: self._count],
+            self._columns,
+            named if self._with_wrenches else {},
+            self._ignored,
+        )
 
 
 def _grow(array: np.ndarray, rows: int) -> None:

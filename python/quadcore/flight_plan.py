@@ -45,7 +45,7 @@ class FlightPlan:
         s
     commands : ndarray (rows, 1 + n), optional
         As for `Simulation.run`.
-    log_every, wrenches
+    log_every, wrenches, topics
         As for `Simulation.run`.
     """
 
@@ -61,6 +61,7 @@ class FlightPlan:
     commands: Optional[np.ndarray] = field(default=None, repr=False)
     log_every: int = 1
     wrenches: bool = True
+    topics: Tuple[str, ...] = ()
 
     @classmethod
     def of(
@@ -123,7 +124,7 @@ class FlightPlan:
     def fly(self, progress: Optional[Progress] = None) -> Log:
         """Fly it; raises and warns as `Simulation` and `Simulation.run` do."""
         return self.simulation().run(
-            self.duration, self.commands, self.log_every, progress, self.wrenches
+            self.duration, self.commands, self.log_every, progress, self.wrenches, self.topics
         )
 
     def fingerprint(self) -> str:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Union
+from typing import Mapping, Sequence, Union
+
+import numpy as np
 
 from . import _core
-from ._core import InputError, log_columns
+from ._core import InputError, flight_columns
 from .files import check_writable
 from .forks import LOCK
 from .formats import format_of
-from .formats.rows import LogFile
+from .formats.rows import LogFile, split_columns
 from .trajectory import Trajectory
 
 PathLike = Union[str, "os.PathLike[str]"]
@@ -22,9 +24,23 @@ _WRITTEN = "logs are written to"
 class Log(Trajectory):
     """States of a flight and the wrenches that acted; see `Trajectory`. To be written and drawn."""
 
+    @classmethod
+    def of_rows(
+        cls,
+        rows: np.ndarray,
+        columns: Sequence[str],
+        wrenches: Mapping[str, np.ndarray],
+        ignored: Sequence[str] = (),
+        title: str = "",
+    ) -> Log:
+        """Make a log of rows whose columns are those of the state, then TOPIC.FIELD."""
+        of_state, topics = split_columns(columns, rows)
+        return cls(rows[:, : len(of_state)], wrenches, title, ignored, topics)
+
     def to_csv(self, path: PathLike) -> None:
         """Write `table` as text with 17 significant digits, so that reading restores every bit.
 
+        Columns of topics follow, named ``TOPIC.FIELD``.
         What was `ignored`, if anything, stands in a comment below the names of the columns.
         """
         self._write(path, ".csv")
@@ -32,6 +48,7 @@ class Log(Trajectory):
     def to_mat(self, path: PathLike) -> None:
         """Write a MATLAB file of each column as a vector and each wrench as ``wrench_NAME``.
 
+        Each topic is a struct ``topic_NAME`` of a vector for each field.
         What was `ignored`, if anything, is the cell array ``ignored``.
         """
         self._write(path, ".mat")
@@ -45,9 +62,11 @@ class Log(Trajectory):
             Another suffix, or a file that cannot be written; nothing is left behind then.
         """
         file = Path(path)
-        format_of(file, _WRITTEN).write_log(
-            file, self.columns, self.table, self.wrenches, self.ignored
-        )
+        columns, table = list(self.columns), self.table
+        for topic, fields in self.topics.items():
+            columns += [f"{topic}.{field}" for field in fields]
+            table = np.column_stack([table, *fields.values()])
+        format_of(file, _WRITTEN).write_log(file, columns, table, self.wrenches, self.ignored)
 
     def plot(self, directory: PathLike) -> list[Path]:
         """Draw the flight into PNG files in `directory` (made if missing); returns their paths."""
@@ -68,11 +87,11 @@ def check_log_path(path: PathLike) -> None:
     check_writable(Path(path))
 
 
-def log_file(path: Path, simulation: _core.Simulation) -> LogFile:
-    """Make the recorder that a file's name asks for."""
+def log_file(path: Path, simulation: _core.Simulation, topics: Sequence[str] = ()) -> LogFile:
+    """Make the recorder that a file's name asks for, of a flight that logs these topics."""
     return format_of(path, _WRITTEN).log_file(
         path,
-        log_columns(simulation.rotor_count),
+        flight_columns(simulation, topics),
         simulation.wrench_terms,
         simulation.ignored,
     )

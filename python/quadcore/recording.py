@@ -25,6 +25,7 @@ class Thinned:
     def __init__(self, rows: int, simulation: Simulation) -> None:
         self.every = -(-rows // _DRAWN)
         self._terms = simulation.wrench_terms
+        self._columns = len(_core.log_columns(simulation.rotor_count))
         self._seen = 0
         self._pieces: List[List[np.ndarray]] = [[], []]
         self._last: List[np.ndarray] = []
@@ -33,6 +34,7 @@ class Thinned:
         """Pick from a piece."""
         if len(table) == 0:
             return
+        table = table[:, : self._columns]
         picked = slice(-self._seen % self.every, None, self.every)
         self._seen += len(table)
         is_picked = (self._seen - 1) % self.every == 0
@@ -58,14 +60,16 @@ class Fastest:
 
     wrenches = False
 
-    def __init__(self) -> None:
+    def __init__(self, simulation: Simulation) -> None:
+        of_state = len(_core.log_columns(0))
+        self._rotors = slice(of_state, of_state + simulation.rotor_count)
         self.speed = 0.0
         self.time = 0.0
 
     def receive(self, table: np.ndarray, _: np.ndarray) -> None:
         """Look at a piece."""
         if len(table):
-            self.speed = max(self.speed, np.abs(table[:, 14:]).max(initial=0.0))
+            self.speed = max(self.speed, np.abs(table[:, self._rotors]).max(initial=0.0))
             self.time = table[-1, 0]
 
     def close(self) -> None:

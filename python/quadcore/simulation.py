@@ -4,21 +4,24 @@ from __future__ import annotations
 
 from operator import attrgetter
 from pathlib import Path
-from typing import Any, Callable, Mapping, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Callable, Mapping, Optional, Sequence, Tuple, Union
 from warnings import warn
 
 import numpy as np
 
 from . import _core
 from .controller import Controller, Guided
-from .description import read_both
+from .description import list_of_names, read_both
 from .flight import Progress, Rows, fly
 from .log import Log
 from .state import LiveState
 from .warning import QuadcoreWarning
 
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
 Number = Union[float, str]
-Value = Union[float, str, bool, Sequence[str]]
+Value = Union[float, str, bool, Path, Sequence[str], Sequence[float], np.ndarray]
 
 
 class Simulation(_core.Simulation):
@@ -37,7 +40,7 @@ class Simulation(_core.Simulation):
         Step in s; None takes the world's max_step_size.
     seed : int
         Of all noise. The same seed gives the same bytes.
-    parameters : mapping of str to number, str or bool, optional
+    parameters : mapping of str to number, str, bool, path or sequence of those, optional
         "PLUGIN.TAG" -> value; wins over the URDF.
     xacro_args : mapping of str to value, optional
         Arguments of a xacro model.
@@ -100,6 +103,27 @@ class Simulation(_core.Simulation):
         """
         super().reset(None if seed is None else whole(seed))
 
+    def publish(self, topic: str, values: Union[Mapping[str, float], npt.ArrayLike]) -> None:
+        """Publish a message on a topic that no plugin writes, for the plugins that take it.
+
+        Parameters
+        ----------
+        topic : str
+            One of `topics`.
+        values : mapping of str to number, or sequence of numbers
+            A number for each field of the topic, by name or in their order.
+
+        Raises
+        ------
+        InputError
+            No such topic, a plugin that writes it, other fields than the topic's, or a number that
+            is not finite; nothing was changed.
+        """
+        if isinstance(values, Mapping):
+            known = self.topics.get(topic)
+            values = _in_order(topic, values, known.fields) if known else []
+        super().publish(topic, values)
+
     def run(
         self,
         duration: float,
@@ -107,6 +131,7 @@ class Simulation(_core.Simulation):
         log_every: int = 1,
         progress: Optional[Progress] = None,
         wrenches: bool = True,
+        topics: Sequence[str] = (),
         *,
         controller: Union[Controller, Callable[..., Any], None] = None,
     ) -> Log:
@@ -125,6 +150,8 @@ class Simulation(_core.Simulation):
             Called as progress(steps_done, steps_total) every few hundredths of a second.
         wrenches : bool
             Whether to log them, which takes most of the memory of a log.
+        topics : sequence of str
+            Names of topics to log, too: `Log.topics`.
         controller : object or callable, optional
             Closed loop, instead of `commands`: called as controller(t, state, reference) at its
             rate, it returns n rotor speeds in rad/s; see `Controller`. The reference is None.
@@ -145,14 +172,24 @@ class Simulation(_core.Simulation):
         """
         if commands is not None and controller is not None:
             raise _core.InputError("a flight takes commands or a controller; give one of them")
+        names = list_of_names("topics", topics)
         pilot = None if controller is None else Guided(controller, self)
-        rows = Rows(self)
+        rows = Rows(self, names)
         try:
-            fly(self, duration, commands, log_every, rows.receive, wrenches, progress, pilot)
+            fly(self, duration, commands, log_every, rows.receive, wrenches, progress, pilot, names)
         except (Exception, KeyboardInterrupt) as error:
             error.log = rows.log()  # type: ignore[union-attr]
             raise
         return rows.log()
+
+
+def _in_order(topic: str, values: Mapping[str, float], fields: Sequence[str]) -> list[float]:
+    if set(values) != set(fields):
+        raise _core.InputError(
+            f"publish: topic '{topic}': fields {', '.join(map(str, values)) or 'none'}; "
+            f"give {', '.join(fields)}"
+        )
+    return [values[field] for field in fields]
 
 
 def whole(seed: object) -> int:
@@ -162,12 +199,12 @@ def whole(seed: object) -> int:
     return int(seed)
 
 
-def text_of(value: Union[Value, Path]) -> str:
+def text_of(value: Value) -> str:
     """Write a parameter's value as a URDF would."""
     if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
-    if isinstance(value, (list, tuple)):
-        return " ".join(value)
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return " ".join(text_of(part) for part in value)
     return str(value)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Mapping, Sequence
+from typing import Mapping, Optional, Sequence
 
 import numpy as np
 
@@ -24,6 +24,9 @@ class Trajectory:
         What flew, for the plots.
     ignored : sequence of str
         What was left out of model and world at the user's wish.
+    topics : mapping of str to mapping of str to ndarray, shape (rows,)
+        Of each topic that was logged, by field, the message that is the last at that time, and its
+        ``stamp`` (s); NaN before the first.
     """
 
     def __init__(
@@ -32,11 +35,13 @@ class Trajectory:
         wrenches: Mapping[str, np.ndarray],
         title: str = "",
         ignored: Sequence[str] = (),
+        topics: Optional[Mapping[str, Mapping[str, np.ndarray]]] = None,
     ) -> None:
         self.table = table
         self.wrenches = dict(wrenches)
         self.title = title
         self.ignored = list(ignored)
+        self.topics = {name: dict(fields) for name, fields in (topics or {}).items()}
 
     def __len__(self) -> int:
         return len(self.table)

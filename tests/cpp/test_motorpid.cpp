@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "plugin_bench.hpp"
@@ -17,8 +18,7 @@ struct Motors : PluginBench {
 
   Motors(const std::string& tags, std::size_t rotors) : PluginBench("motorpid", tags, rotors) {}
   void command(double time, const std::vector<double>& speeds) {
-    topics.values(topic) = speeds;
-    topics.publish(topic, time);
+    std::copy(speeds.begin(), speeds.end(), topics.publish(topic, time));
   }
 };
 
@@ -140,7 +140,7 @@ TEST_CASE("limits of the integral are checked against each other and against its
 
 TEST_CASE("a vehicle's motors take as many numbers as they have rotors") {
   Motors three(gains + tag("rotorJoints", "a b d"), 4);
-  CHECK(three.topics[three.topic].fields == std::vector<std::string>{"w1", "w2", "w3"});
+  CHECK(three.topics[three.topic].kind.fields == std::vector<std::string>{"w1", "w2", "w3"});
   CHECK(three.simulation.command_width() == 3);
   const Motors eight(gains, 8), nine(gains, 9);  // blocks of the widest lanes
   CHECK(three.memory.size() == eight.memory.size());

@@ -116,32 +116,6 @@ TEST_CASE("a torque beyond all bounds ends the flight, and the simulation can be
   }
 }
 
-TEST_CASE("plugins that disagree about a topic are refused") {
-  Topics topics;
-  const std::size_t first = topics.declare("wind", {"x", "y"});
-  CHECK(topics.declare("wind", {"east", "north"}) == first);
-  CHECK(topics.find("wind") == static_cast<int>(first));
-  CHECK(topics.find("rain") == -1);
-  CHECK(contains(refusal([&] { topics.declare("wind", {"x"}); }), "topic 'wind'"));
-}
-
-TEST_CASE("a topic has one writer") {
-  Topics topics;
-  topics.add_writer("a.urdf:1: plugin 'one'");
-  topics.add_writer("a.urdf:2: plugin 'two'");
-  const std::size_t wind = topics.declare("wind", {"x"});
-  topics.write_as(1);
-  topics.publish(wind, 0);
-  topics.publish(wind, 1);
-  topics.write_as(0);
-  CHECK(refusal([&] { topics.publish(wind, 2); }) ==
-        "a.urdf:1: plugin 'one' writes topic 'wind', which a.urdf:2: plugin 'two' writes already; "
-        "keep one of the two");
-  topics.write_as(the_caller);
-  CHECK(contains(refusal([&] { topics.publish(wind, 2); }), "the caller writes topic 'wind'"));
-  CHECK(topics[wind].count == 2);
-}
-
 TEST_CASE("folders are searched newest first, then the environment's, then the core's own") {
   setenv("QUADCORE_PLUGIN_PATH", "/nowhere::/elsewhere", 1);
   load_plugin_path(TEST_DATA);

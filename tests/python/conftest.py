@@ -14,7 +14,7 @@ settings.load_profile("quadcore")
 # Ignored, as under nohup, it would be so in every process that a test starts.
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
-pytest.register_assert_rewrite("faults", "hooked")
+pytest.register_assert_rewrite("faults", "hooked", "relays")
 
 
 @pytest.fixture
@@ -89,3 +89,20 @@ def folders_of_hook_plugins(tmp_path_factory):
 def hook_plugins(folders_of_hook_plugins, monkeypatch):
     """The examples that have one hook each, and the plugin that tells what it is told."""
     monkeypatch.setenv("QUADCORE_PLUGIN_PATH", ":".join(map(str, folders_of_hook_plugins)))
+
+
+@pytest.fixture(scope="session")
+def folder_of_relay(tmp_path_factory):
+    from builds import build
+
+    root = Path(__file__).resolve().parents[2]
+    return build(root / "tests" / "plugins" / "relay", tmp_path_factory.mktemp("relay"))
+
+
+@pytest.fixture
+def relays(toy, folder_of_relay, monkeypatch):
+    """Maker of the toy with relays and other plugins; see relays.toy_with."""
+    from relays import toy_with
+
+    monkeypatch.setenv("QUADCORE_PLUGIN_PATH", str(folder_of_relay))
+    return toy_with

@@ -99,6 +99,17 @@ def test_what_is_quoted_is_so(page):
         assert quoted in (ROOT / path).read_text(), path
 
 
+def test_the_page_on_ros_has_the_kinds_that_the_node_carries_and_their_types():
+    """The node's own table is in C++ and needs ROS to be asked."""
+    source = (ROOT / "cpp/ros/ros_types.cpp").read_text()
+    carried = re.findall(r"carriage<messages::(\w+), (\w+)::(\w+)>\(\)", source)
+    assert len(carried) > 3
+    table = dict(
+        re.findall(r"^\| `(\w+)` \| `([\w/]+)` \|", (ROOT / "docs/ros.md").read_text(), re.M)
+    )
+    assert table == {kind.lower(): f"{package}/{name}" for kind, package, name in carried}
+
+
 def test_the_reference_is_what_the_generator_writes():
     generated = subprocess.run(
         [sys.executable, ROOT / "scripts" / "document_tags.py", "--print"],

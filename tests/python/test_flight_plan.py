@@ -38,6 +38,7 @@ def test_a_plan_flies_what_simulation_and_run_fly():
     assert log.table.tobytes() == expected.table.tobytes()
     assert log.wrenches.keys() == expected.wrenches.keys()
     assert a_plan(wrenches=False).fly().wrenches == {}
+    assert list(a_plan(topics=("odom",)).fly().topics) == ["odom"]
 
 
 def test_a_plan_begins_with_its_rotors_turning():
@@ -80,6 +81,7 @@ def test_the_fingerprint_is_of_what_flies_not_of_where_it_lies(toy, tmp_path):
         fingerprint(duration=9),
         fingerprint(log_every=2),
         fingerprint(wrenches=False),
+        fingerprint(topics=("vel_cmd",)),
     ]
     assert len({fingerprint(), *others}) == 1 + len(others)
 

@@ -258,12 +258,19 @@ def test_two_plugins_that_write_one_topic_are_refused_by_name(toy):
 
 def test_a_plugin_that_commands_and_a_caller_who_commands_are_told_of_each_other(bad):
     simulation = bad("command")
+    says = f"command() writes topic 'vel_cmd', which {AT} writes already; keep one of the two"
+    assert refusal(simulation.command, [300]) == says  # also before the plugin has written
     simulation.step()
-    assert refusal(simulation.command, [300]) == (
-        f"the caller writes topic 'vel_cmd', which {AT} writes already; keep one of the two"
-    )
+    assert refusal(simulation.command, [300]) == says
+    assert simulation.topic("vel_cmd")["count"] == 1
     simulation.step()  # nothing was changed
-    simulation.reset()
-    simulation.command([300])
-    with pytest.raises(qc.QuadcoreError, match="plugin 'bad' writes topic 'vel_cmd', which the"):
-        simulation.step()
+    with pytest.raises(qc.InputError, match=r"command\(\) writes topic 'vel_cmd'") as refused:
+        simulation.run(0.1, commands=[[0, 300]])
+    assert AT in str(refused.value)
+
+
+def test_a_plugin_that_writes_a_topic_it_did_not_declare_ends_the_flight_by_name(bad):
+    with pytest.raises(
+        qc.FlightError, match="plugin 'bad' writes topic 'vel_cmd', which it did no"
+    ):
+        bad("undeclared").step()

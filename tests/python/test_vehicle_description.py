@@ -42,7 +42,7 @@ def test_a_plugin_is_told_what_it_flies(engine, drag_model, reaction, hangar):
             assert np.allclose(
                 [told[name + x + str(i)] for x in "xyz"], expected, rtol=0, atol=1e-5
             )
-        for sense, sign in (("+", 1), ("-", -1)):
+        for sense, sign in (("p", 1), ("n", -1)):
             force = k * axis
             about = np.array([0, 0, 1]) if drag_model == "appendix" else axis
             torque = np.cross(np.array(rotor.xyz) - c, force)

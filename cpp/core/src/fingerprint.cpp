@@ -81,8 +81,9 @@ Facts facts_of(const std::vector<LoadedPlugin>& plugins, const Topics& topics) {
   for (const LoadedPlugin& p : plugins) {
     facts.push_back({"plugin " + p.name, {static_cast<double>(p.state_size)}, p.filename});
   }
-  for (std::size_t i = 0; i < topics.size(); ++i) {
-    facts.push_back({"topic " + topics[i].name, {}, joined(topics[i].fields)});
+  for (const std::string& name : topics.names()) {
+    const MessageKind& kind = topics[topics.at(name)].kind;
+    facts.push_back({"topic " + name, {}, kind.name + ": " + joined(kind.fields)});
   }
   return facts;
 }
@@ -91,9 +92,8 @@ Facts parameters_of(const std::vector<LoadedPlugin>& plugins) {
   Facts facts;
   for (const LoadedPlugin& p : plugins) {
     for (const Parameter& parameter : p.parameters.all()) {
-      const bool number = parameter.spec.kind == TagKind::number && !parameter.text.empty();
-      facts.push_back({p.name + "." + parameter.spec.name, {}, number ? "" : parameter.text});
-      if (number) facts.back().numbers.push_back(parameter.number);
+      facts.push_back({p.name + "." + parameter.spec.name, parameter.numbers,
+                       parameter.numbers.empty() ? parameter.text : ""});
     }
   }
   return facts;

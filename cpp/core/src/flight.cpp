@@ -8,11 +8,12 @@
 namespace quadcore {
 
 Flight::Flight(Simulation& simulation, std::optional<Commands> commands, std::int64_t log_every,
-               bool wrenches)
+               bool wrenches, const std::vector<std::string>& topics)
     : simulation_(simulation),
       commands_(std::move(commands)),
       log_every_(log_every),
-      log_wrenches_(wrenches) {
+      log_wrenches_(wrenches),
+      topics_(simulation.topics().at(topics)) {
   if (log_every < 1) {
     throw InputError("log_every is " + std::to_string(log_every) + "; give a whole number >= 1");
   }
@@ -33,7 +34,7 @@ void Flight::advance(std::int64_t n) {
 LogRows Flight::take() { return std::exchange(rows_, LogRows()); }
 
 void Flight::log() {
-  const std::size_t before = rows_.wrenches.size();
+  const std::size_t before = rows_.wrenches.size(), row = rows_.table.size();
   if (log_wrenches_) {
     for (const Wrench& wrench : simulation_.wrenches()) {
       for (const Vector3d& part : {wrench.force_F, wrench.torque_F}) {
@@ -43,8 +44,11 @@ void Flight::log() {
   }
   try {
     append_log_row(simulation_.state(), rows_.table);
+    for (const std::size_t topic : topics_)
+      append_log_row(simulation_.topics()[topic], rows_.table);
   } catch (...) {
     rows_.wrenches.resize(before);  // no half a row
+    rows_.table.resize(row);
     throw;
   }
   ++rows_.count;

@@ -3,6 +3,7 @@
 #include <locale.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "quadcore/text.hpp"
@@ -37,6 +38,12 @@ std::vector<std::string> log_columns(std::size_t rotor_count) {
   return columns;
 }
 
+std::vector<std::string> log_columns(const Topic& topic) {
+  std::vector<std::string> columns = {topic.name + ".stamp"};
+  for (const std::string& field : topic.kind.fields) columns.push_back(topic.name + "." + field);
+  return columns;
+}
+
 std::string log_remark(const std::vector<std::string>& ignored) {
   if (ignored.empty()) return "";
   std::string names = joined(ignored);
@@ -57,6 +64,15 @@ void append_log_row(const VehicleState& state, std::vector<double>& table) {
   append(state.linear_velocity);
   append(state.angular_velocity);
   append(state.rotor_velocity);
+}
+
+void append_log_row(const Topic& topic, std::vector<double>& table) {
+  if (topic.count == 0) {
+    table.insert(table.end(), 1 + topic.values.size(), std::nan(""));
+    return;
+  }
+  table.push_back(topic.stamp);
+  table.insert(table.end(), topic.values.begin(), topic.values.end());
 }
 
 void append_csv(const double* row, std::size_t columns, std::string& text) {

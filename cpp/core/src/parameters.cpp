@@ -43,7 +43,7 @@ void interpret_number(const Given& given) {
   if (!is_within(spec, *value)) {
     given.refuse("is out of range; write a number " + spec.range());
   }
-  given.parameter.number = *value;
+  given.parameter.numbers = {*value};
 }
 
 void interpret_numbers(const Given& given) {
@@ -226,16 +226,8 @@ Parameters::Parameters(const std::vector<TagSpec>& table, const PluginElement& e
 }
 
 bool Parameter::agrees_with(const Parameter& other) const {
-  switch (spec.kind) {
-    case TagKind::number:
-      return number == other.number;
-    case TagKind::numbers:
-      return numbers == other.numbers;
-    case TagKind::file:
-      return file == other.file;
-    default:
-      return text == other.text;
-  }
+  if (spec.kind == TagKind::file) return file == other.file;
+  return numbers == other.numbers && (!numbers.empty() || text == other.text);
 }
 
 const Parameter& Parameters::at(const std::string& tag) const {

@@ -129,6 +129,7 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
       }
     }
     loaded.state_begin = state_size;
+    topics_.add_plugin(element.name, who);
     try {
       std::vector<std::string> warnings;
       loaded.plugin = library.descriptor->create.make(
@@ -146,7 +147,6 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
     } catch (...) {
       throw InputError(who + " (" + library.path + "): " + what_was_thrown());
     }
-    topics_.add_writer(who);
     state_size += loaded.state_size;
     loaded.term_begin = wrench_terms_.size();
     wrench_terms_.insert(wrench_terms_.end(), library.descriptor->wrenches.begin(),

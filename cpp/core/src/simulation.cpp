@@ -5,16 +5,10 @@
 #include <sstream>
 
 #include "flight_checks.hpp"
-#include "quadcore/commands.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/text.hpp"
 
 namespace quadcore {
-namespace {
-
-constexpr const char* command_topic_name = "vel_cmd";
-
-}  // namespace
 
 Simulation::Simulation(Model model, const World& world, const SimulationOptions& options)
     : engine_name_(options.engine),
@@ -38,7 +32,7 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
   engine_ = make_engine(options.engine, model_, world);
   for (const std::string& warning : engine_->warnings()) warn(warning);
   warnings_at_load_ = warnings_.size();
-  command_topic_ = topics_.find(command_topic_name);
+  command_topic_ = topics_.find(command_topic);
   fingerprint_ =
       std::make_shared<Fingerprint>(engine_name_, dt_, model_, world_, plugins_, topics_);
 
@@ -62,21 +56,6 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
 
 void Simulation::warn(const std::string& warning) {
   if (!warning.empty()) warnings_.push_back(warning);
-}
-
-std::size_t Simulation::command_width() const {
-  if (command_topic_ < 0) {
-    throw InputError("no plugin of model '" + model().name +
-                     "' listens to commands; add libmotorpid_plugin.so");
-  }
-  return topics_[static_cast<std::size_t>(command_topic_)].values.size();
-}
-
-void Simulation::command(const double* speeds, std::size_t count) {
-  check_command(speeds, count, command_width());
-  const auto topic = static_cast<std::size_t>(command_topic_);
-  topics_.publish(topic, time());
-  std::copy(speeds, speeds + count, topics_.values(topic).begin());
 }
 
 void Simulation::step(std::int64_t n) {
@@ -144,7 +123,7 @@ void Simulation::begin() {
   try {
     show_instant();
     sense(true);
-  } catch (const InputError&) {  // two writers of one topic
+  } catch (const InputError&) {  // what was set is refused, no flight has failed
     leave();
     throw;
   } catch (...) {

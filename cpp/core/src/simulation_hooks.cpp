@@ -8,10 +8,14 @@
 namespace quadcore {
 
 void Simulation::note_hooks() {
-  for (const LoadedPlugin& p : plugins_) {
+  for (const std::size_t i : topics_.settle()) {
+    const LoadedPlugin& p = plugins_[i];
     const Hooks& hooks = p.descriptor->create.hooks;
     if (hooks.update) with_.update.push_back(&p);
     if (hooks.sense) with_.sense.push_back(&p);
+  }
+  for (const LoadedPlugin& p : plugins_) {
+    const Hooks& hooks = p.descriptor->create.hooks;
     if (hooks.forces) with_.forces.push_back(&p);
     if (hooks.air) with_.air.push_back(&p);
     if (hooks.carried) with_.carried.push_back(&p);
@@ -105,6 +109,7 @@ const std::vector<Wrench>& Simulation::wrenches() {
 
 void Simulation::sense(bool jumped) {
   Sample sample{time(), dt_, engine_->kinematics(), world_, topics_, said_, 0, jumped};
+  topics_.begin_sample();
   for (const LoadedPlugin* const p : with_.sense) {
     enter(*p);
     sample.seed = p->seed;
@@ -116,6 +121,7 @@ void Simulation::sense(bool jumped) {
 
 void Simulation::update() {
   Sample sample{time(), dt_, engine_->kinematics(), world_, topics_, said_};
+  topics_.begin_sample();
   for (const LoadedPlugin* const p : with_.update) {
     enter(*p);
     sample.seed = p->seed;

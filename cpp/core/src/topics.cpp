@@ -1,44 +1,126 @@
 #include "quadcore/topics.hpp"
 
+#include <algorithm>
+#include <cctype>
+
 #include "quadcore/error.hpp"
+#include "quadcore/text.hpp"
 
 namespace quadcore {
+namespace {
 
-std::size_t Topics::declare(const std::string& name, const std::vector<std::string>& fields) {
+/// Names head columns of logs, and are variables in MATLAB and topics in ROS.
+void check_word(const std::string& what, const std::string& name) {
+  const auto is_plain = [](unsigned char c) { return c < 0x80 && (std::isalnum(c) || c == '_'); };
+  if (!name.empty() && std::isalpha(static_cast<unsigned char>(name.front())) &&
+      std::all_of(name.begin(), name.end(), is_plain)) {
+    return;
+  }
+  throw InputError(what + " '" + name +
+                   "' is no plain word; write letters, digits and _, a letter first");
+}
+
+}  // namespace
+
+std::size_t Topics::publishes(const std::string& name, const MessageKind& kind) {
+  return declare(name, kind, true, false);
+}
+
+std::size_t Topics::takes(const std::string& name, const MessageKind& kind, bool late) {
+  const std::size_t original = declare(name, kind, false, late);
+  if (!late) return original;
+  for (const LateCopy& known : late_) {
+    if (known.original == original) return known.copy;
+  }
+  late_.push_back({topics_.size(), original});
+  topics_.push_back({name, kind, topics_[original].values});
+  return topics_.size() - 1;
+}
+
+std::size_t Topics::declare(const std::string& name, const MessageKind& kind, bool writes,
+                            bool late) {
+  check_word("topic", name);
+  for (const std::string& field : kind.fields) check_word("topic '" + name + "': field", field);
   const int known = find(name);
-  if (known < 0) {
-    topics_.push_back({name, fields, std::vector<double>(fields.size(), 0.0)});
-    return topics_.size() - 1;
-  }
-  const auto index = static_cast<std::size_t>(known);
-  if (topics_[index].fields.size() != fields.size()) {
-    throw InputError("topic '" + name + "' has " + std::to_string(topics_[index].fields.size()) +
-                     " fields in one plugin and " + std::to_string(fields.size()) +
-                     " in another; make them agree");
-  }
+  const std::size_t index = known < 0 ? topics_.size() : static_cast<std::size_t>(known);
+  if (known < 0) topics_.push_back({name, kind, std::vector<double>(kind.fields.size(), 0.0)});
+  declarations_.push_back({static_cast<int>(plugins_.size()) - 1, index, kind, writes, late});
   return index;
+}
+
+bool Topics::is_copy(std::size_t index) const {
+  return std::any_of(late_.begin(), late_.end(),
+                     [index](const LateCopy& late) { return late.copy == index; });
 }
 
 int Topics::find(const std::string& name) const {
   for (std::size_t i = 0; i < topics_.size(); ++i) {
-    if (topics_[i].name == name) return static_cast<int>(i);
+    if (topics_[i].name == name && !is_copy(i)) return static_cast<int>(i);
   }
   return -1;
 }
 
+std::size_t Topics::at(const std::string& name) const {
+  const int index = find(name);
+  if (index >= 0) return static_cast<std::size_t>(index);
+  const std::vector<std::string> known = names();
+  throw InputError("topic '" + name + "' is not declared by any plugin" +
+                   did_you_mean(name, known) + "; " +
+                   (known.empty() ? "none is" : "declared are " + joined(known)));
+}
+
+std::vector<std::size_t> Topics::at(const std::vector<std::string>& names) const {
+  std::vector<std::size_t> indices;
+  for (const std::string& name : names) {
+    const std::size_t index = at(name);
+    if (std::find(indices.begin(), indices.end(), index) != indices.end()) {
+      throw InputError("topic '" + name + "' is named twice; name it once");
+    }
+    indices.push_back(index);
+  }
+  return indices;
+}
+
+std::vector<std::string> Topics::names() const {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < topics_.size(); ++i) {
+    if (!is_copy(i)) names.push_back(topics_[i].name);
+  }
+  return names;
+}
+
+std::string Topics::name_of(int writer) const {
+  return writer == the_caller ? "the caller" : plugins_[static_cast<std::size_t>(writer)].who;
+}
+
+void Topics::refuse_writer(const Topic& topic) const {
+  if (topic.writer == the_caller) {
+    throw InputError(name_of(writer_) + " writes topic '" + topic.name +
+                     "', which it did not declare; call topics.publishes() in its constructor");
+  }
+  throw InputError(name_of(writer_) + " writes topic '" + topic.name + "', which " +
+                   name_of(topic.writer) + " writes already; keep one of the two");
+}
+
+void Topics::copy_message(const Topic& from, Topic& to) {
+  std::copy(from.values.begin(), from.values.end(), to.values.begin());
+  to.stamp = from.stamp;
+  to.count = from.count;
+}
+
 std::vector<Message> Topics::messages() const {
   std::vector<Message> messages;
-  for (const Topic& t : topics_) messages.push_back({t.values, t.stamp, t.count, t.writer});
+  for (const Topic& topic : topics_) messages.push_back({topic.values, topic.stamp, topic.count});
   return messages;
 }
 
 void Topics::check(const std::vector<Message>& messages) const {
-  bool fits = messages.size() == topics_.size();
-  for (std::size_t i = 0; fits && i < topics_.size(); ++i) {
-    fits = messages[i].values.size() == topics_[i].values.size() && messages[i].writer >= nobody &&
-           messages[i].writer < static_cast<int>(writers_.size());
+  const auto fits = [](const Message& message, const Topic& topic) {
+    return message.values.size() == topic.values.size();
+  };
+  if (!std::equal(messages.begin(), messages.end(), topics_.begin(), topics_.end(), fits)) {
+    throw InputError("snapshot: its messages are of other topics; take it anew");
   }
-  if (!fits) throw InputError("snapshot: its messages are of other topics; take it anew");
 }
 
 void Topics::restore(const std::vector<Message>& messages) {
@@ -46,20 +128,7 @@ void Topics::restore(const std::vector<Message>& messages) {
     topics_[i].values = messages[i].values;
     topics_[i].stamp = messages[i].stamp;
     topics_[i].count = messages[i].count;
-    topics_[i].writer = messages[i].writer;
   }
-}
-
-std::string Topics::name_of(int writer) const {
-  return writer < 0 ? "the caller" : writers_[static_cast<std::size_t>(writer)];
-}
-
-void Topics::claim(Topic& topic) const {
-  if (topic.writer != nobody) {
-    throw InputError(name_of(writer_) + " writes topic '" + topic.name + "', which " +
-                     name_of(topic.writer) + " writes already; keep one of the two");
-  }
-  topic.writer = writer_;
 }
 
 }  // namespace quadcore

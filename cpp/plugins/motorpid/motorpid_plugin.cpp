@@ -48,11 +48,7 @@ class MotorPidPlugin final : public Plugin {
           "largest and smallest integral torque in N m");
     }
     for (const std::size_t i : config_.rotors) warn_if_stiff(setup, i);
-    std::vector<std::string> fields;
-    for (std::size_t j = 0; j < config_.rotors.size(); ++j) {
-      fields.push_back("w" + std::to_string(j + 1));
-    }
-    topic_ = setup.topics.declare("vel_cmd", fields);
+    topic_ = setup.topics.takes("vel_cmd", messages::speeds(config_.rotors.size()));
   }
 
   std::size_t state_size() const override {

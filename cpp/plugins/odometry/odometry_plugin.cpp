@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -38,10 +37,12 @@ class OdometryPlugin final : public Plugin {
     const double seed = own_seed ? setup.parameters.number("seed") : 0;
     if (seed != std::floor(seed)) throw InputError("<seed> is not a whole number; write one");
     if (own_seed) seed_ = stream_seed(static_cast<std::uint64_t>(seed), setup.name);
-    topic_ =
-        setup.topics.declare("odom", {"x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx",
-                                      "wy", "wz", "position_variance", "orientation_variance",
-                                      "linear_velocity_variance", "angular_velocity_variance"});
+    topic_ = setup.topics.publishes(setup.parameters.text("topic"),
+                                    messages::kind_of<messages::Odometry>());
+    variances_.position_variance = square(config_.position_noise);
+    variances_.orientation_variance = square(config_.orientation_noise);
+    variances_.linear_velocity_variance = square(config_.linear_velocity_noise);
+    variances_.angular_velocity_variance = square(config_.angular_velocity_noise);
   }
 
   std::size_t state_size() const override { return kMemorySize; }
@@ -56,37 +57,18 @@ class OdometryPlugin final : public Plugin {
       return deviation == 0 ? v : v + deviation * normal_vector(seed, state[kDraws]);
     };
     const Kinematics& k = sample.kinematics;
-    const Vector3d p_WF = noisy(k.p_WF, config_.position_noise);
-    Quaterniond q_WF = k.q_WF;
+    messages::Odometry message = variances_;
+    message.position = noisy(k.p_WF, config_.position_noise);
+    message.orientation = k.q_WF;
     if (config_.orientation_noise != 0) {
       const Vector3d turn = config_.orientation_noise * normal_vector(seed, state[kDraws]);
       const double angle = turn.norm();
-      if (angle > 0) q_WF = q_WF * quaternion_about(turn / angle, angle);
+      if (angle > 0) message.orientation = k.q_WF * quaternion_about(turn / angle, angle);
     }
-    const Vector3d linear =
+    message.linear_velocity =
         noisy(config_.twist_in_body ? k.v_WF_F : k.R_WF * k.v_WF_F, config_.linear_velocity_noise);
-    const Vector3d angular = noisy(k.w_WF_F, config_.angular_velocity_noise);
-
-    const auto square = [](double x) { return x * x; };
-    const double message[] = {p_WF.x(),
-                              p_WF.y(),
-                              p_WF.z(),
-                              q_WF.x(),
-                              q_WF.y(),
-                              q_WF.z(),
-                              q_WF.w(),
-                              linear.x(),
-                              linear.y(),
-                              linear.z(),
-                              angular.x(),
-                              angular.y(),
-                              angular.z(),
-                              square(config_.position_noise),
-                              square(config_.orientation_noise),
-                              square(config_.linear_velocity_noise),
-                              square(config_.angular_velocity_noise)};
-    std::copy(std::begin(message), std::end(message), sample.topics.values(topic_).begin());
-    sample.topics.publish(topic_, sample.time);
+    message.angular_velocity = noisy(k.w_WF_F, config_.angular_velocity_noise);
+    sample.topics.publish(topic_, sample.time, message);
   }
 
  private:
@@ -96,7 +78,10 @@ class OdometryPlugin final : public Plugin {
     return v;
   }
 
+  static double square(double x) { return x * x; }
+
   Config config_;
+  messages::Odometry variances_;       ///< a message but for what moves
   std::optional<std::uint64_t> seed_;  ///< its own, if it has one
   std::size_t topic_;
 };
@@ -109,13 +94,15 @@ PluginDescriptor describe() {
         .from("A.6");
   };
   return {
-      "pose and velocity of the frame on topic odom, with noise (thesis appendix A.6)",
+      "pose and velocity of the frame, with noise (thesis appendix A.6)",
       {
           T::number("rate", "1/s", "1000", "messages per second; at most one per step")
               .above(0)
               .also_called("updateRate")
               .from("A.6"),
-          T::flag("publishTf", "true", "whether a ROS node sends tf world->drone").from("A.6"),
+          T::text("topic", "odom", "where the messages are published").from("A.6"),
+          T::flag("publishTf", "true", "whether a ROS node sends tf world->drone with topic odom")
+              .from("A.6"),
           deviation("positionNoise", "m", "each position component"),
           deviation("orientationNoise", "rad", "the rotation about each body axis"),
           deviation("linearVelocityNoise", "m/s", "each linear velocity component"),

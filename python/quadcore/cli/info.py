@@ -36,6 +36,11 @@ def info(arguments: argparse.Namespace) -> None:
     for plugin in simulation.plugins:
         console.print(f"plugin {plugin.name}: {plugin.summary}")
         console.print(f"  {plugin.filename}, loaded from {plugin.path}")
+        for name, topic in simulation.topics.items():
+            if topic.writer == plugin.name:
+                console.print(f"  publishes topic {name}, {topic.kind}")
+            if plugin.name in topic.readers:
+                console.print(f"  takes topic {name}, {topic.kind}")
         # Lines that are searched stand alone; on a terminal the heading is in sight.
         prefix = "" if console.is_terminal else f"{plugin.name}."
         console.print(_parameters(plugin, prefix, console.width >= _WIDE), "")

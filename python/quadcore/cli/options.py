@@ -125,6 +125,7 @@ def flight_plan(arguments: argparse.Namespace) -> FlightPlan:
         duration=arguments.duration,
         commands=arguments.commands,
         log_every=arguments.log_every,
+        topics=tuple(arguments.log_topics),
     )
 
 
@@ -162,6 +163,11 @@ def several(names: Sequence[str]) -> Callable[[str], list[str]]:
         return list(dict.fromkeys(text.split(",")))
 
     return parse
+
+
+def names(text: str) -> list[str]:
+    """Read names with commas between."""
+    return text.split(",")
 
 
 def positive_numbers(text: str) -> list[float]:

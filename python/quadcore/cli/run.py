@@ -39,6 +39,13 @@ def register(commands: Any) -> None:
         default=[],
         help="write the log here, .csv or .mat; repeatable",
     )
+    parser.add_argument(
+        "--log-topics",
+        metavar="NAME,NAME",
+        type=options.names,
+        default=[],
+        help="topics of plugins to log, too: columns NAME.FIELD",
+    )
     parser.add_argument("--no-plots", action="store_true", help="no plots in --out")
 
 
@@ -47,10 +54,10 @@ def run(arguments: argparse.Namespace) -> None:
     plan = options.flight_plan(arguments)
     simulation = plan.simulation()
     steps = steps_within(plan.duration, simulation.dt)
-    fastest, drawn = Fastest(), None
+    fastest, drawn = Fastest(simulation), None
     if arguments.out is not None and not arguments.no_plots:
         drawn = Thinned(1 + steps // plan.log_every, simulation)
-    logs = [log_file(file, simulation) for file in _log_files(arguments)]
+    logs = [log_file(file, simulation, plan.topics) for file in _log_files(arguments)]
     recording = Recording(logs, [fastest, drawn] if drawn else [fastest])
     started = time.perf_counter()
     try:
@@ -63,6 +70,7 @@ def run(arguments: argparse.Namespace) -> None:
                 recording.receive,
                 recording.wrenches,
                 progress,
+                topics=plan.topics,
             )
     except (QuadcoreError, KeyboardInterrupt, MemoryError):
         with interrupts.held():

@@ -9,7 +9,7 @@ from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from .._core import InputError, QuadcoreError, World, check_ignored, engines
 from ..commands import CommandsLike, as_commands
-from ..description import names_to_ignore, read_model, read_world
+from ..description import list_of_names, read_model, read_world
 from ..files import shown
 from ..flight import check_logged
 from ..flight_plan import FlightPlan
@@ -65,7 +65,7 @@ class Plan:
             world = read_world(world, ignore)
         readings = [model.passed_over for model in self._models]
         readings += [each.passed_over for each in (*self._worlds.values(), world)]
-        check_ignored(names_to_ignore(ignore), readings)
+        check_ignored(list_of_names("ignore", ignore), readings)
         self._check_engines()
         self._base = FlightPlan.of(
             self._models[0], world, duration=duration, log_every=log_every, **own

@@ -20,7 +20,8 @@ class Format(NamedTuple):
     read_commands: Callable[[Path, Sequence[str]], Table]
     """read_commands(path, names): the columns of these names, as they stand."""
     write_log: Callable[[Path, Sequence[str], np.ndarray, _Wrenches, Sequence[str]], None]
-    """write_log(path, columns, table, wrenches, ignored): whole or not at all."""
+    """write_log(path, columns, table, wrenches, ignored): whole or not at all. Columns named
+    TOPIC.FIELD follow those of the state."""
     log_file: Callable[[Path, Sequence[str], Sequence[str], Sequence[str]], LogFile]
     """log_file(path, columns, wrench_terms, ignored): a log that is written while it is flown."""
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 import tempfile
 from pathlib import Path
-from typing import Any, Mapping, Sequence
+from typing import Any, Dict, Mapping, Sequence
 
 import numpy as np
 
 from .._core import InputError, QuadcoreError
 from ..files import atomic_write, check_regular, unwritable
 from ..forks import LOCK
-from .rows import Table
+from .rows import Table, split_columns
 
 _MOST_VALUES = 10**7  # of a variable; of commands more than three hours at 1 kHz
 
@@ -87,17 +87,20 @@ def write_log(
 ) -> None:
     """Write each column as a vector and each wrench as ``wrench_NAME``.
 
+    Each topic is a struct ``topic_NAME`` of a vector for each field.
     What was ignored, if anything, is the cell array ``ignored``.
     """
     with LOCK:
         import scipy.io
 
-    variables = {name: table[:, i] for i, name in enumerate(columns)}
+    of_state, topics = split_columns(columns, table)
+    variables: Dict[str, Any] = {name: table[:, i] for i, name in enumerate(of_state)}
     variables.update((f"wrench_{name}", value) for name, value in wrenches.items())
+    variables.update((f"topic_{name}", fields) for name, fields in topics.items())
     if ignored:
         variables["ignored"] = np.array(ignored, dtype=object)
     with atomic_write(path) as stream:
-        scipy.io.savemat(stream, variables, oned_as="column")
+        scipy.io.savemat(stream, variables, oned_as="column", long_field_names=True)
 
 
 class MatFile:

@@ -16,14 +16,19 @@ class FaultyPlugin final : public quadcore::Plugin {
     throw_in("create", 0);
     if (fault_ == "warning") setup.warnings.push_back("no text: \xff \x1b[31m");
     if (fault_ == "tag") setup.parameters.number("speed");
-    if (fault_ == "command") topic_ = setup.topics.declare("vel_cmd", {"w1"});
+    if (fault_ == "undeclared") {
+      topic_ = setup.topics.takes("vel_cmd", quadcore::messages::speeds(1));
+    }
+    if (fault_ == "command") {
+      topic_ = setup.topics.publishes("vel_cmd", quadcore::messages::speeds(1));
+    }
   }
 
   std::size_t state_size() const override { return fault_ == "state" ? std::size_t(1) << 60 : 1; }
   void update(const quadcore::Sample& sample, quadcore::PluginState state) const override {
     state[0] = sample.time;
     throw_in("update", sample.time);
-    if (fault_ == "command") sample.topics.publish(topic_, sample.time);
+    if (fault_ == "command" || fault_ == "undeclared") sample.topics.publish(topic_, sample.time);
   }
   void sense(const quadcore::Sample& sample, quadcore::PluginState) const override {
     throw_in("sense", sample.time);
@@ -75,7 +80,7 @@ quadcore::PluginDescriptor describe() {
                         "air",      "air_number",  "air_nan",       "carried",    "carried_number",
                         "massless", "sense",       "sense_number",  "state",      "nan",
                         "infinity", "rotor_force", "rotor_torque",  "term_force", "term_torque",
-                        "command"},
+                        "command",  "undeclared"},
                        "where"),
        TagSpec::number("after", "s", "0", "not before this time")},
 #ifdef NAMED_TWICE

@@ -6,6 +6,7 @@ namespace {
 
 using quadcore::TagSpec;
 using quadcore::Vector3d;
+namespace messages = quadcore::messages;
 
 /// Tells what plugins are told, and pushes with the cube of the time.
 class ProbePlugin final : public quadcore::Plugin {
@@ -13,21 +14,21 @@ class ProbePlugin final : public quadcore::Plugin {
   explicit ProbePlugin(const quadcore::PluginSetup& setup)
       : cube_(setup.parameters.number("cube")),
         gravity_W_(setup.world.gravity_W),
-        air_(setup.topics.declare("air", {"x", "y", "z"})),
-        seen_(setup.topics.declare("seen", {"time", "late", "g", "bits"})) {
+        air_(setup.topics.publishes("air", messages::kind_of<messages::Vector>())),
+        seen_(setup.topics.publishes("seen", {"seen", {"time", "late", "g", "bits"}})) {
     std::vector<std::string> fields = {"mass", "cx", "cy", "cz", "g"};
     for (std::size_t i = 0; i < setup.model.joints.size(); ++i) {
       const std::string n = std::to_string(i + 1);
       for (const char* name : {"m", "px", "py", "pz", "ax", "ay", "az", "ox", "oy", "oz"}) {
         fields.push_back(name + n);
       }
-      for (const char* sense : {"+", "-"}) {
+      for (const char* sense : {"p", "n"}) {  // positive, negative
         for (const char* name : {"fx", "fy", "fz", "tx", "ty", "tz"}) {
           fields.push_back(name + (sense + n));
         }
       }
     }
-    vehicle_ = setup.topics.declare("vehicle", fields);
+    vehicle_ = setup.topics.publishes("vehicle", {"vehicle", fields});
   }
 
   void prepare(const quadcore::VehicleDescription& vehicle) override {
@@ -50,14 +51,12 @@ class ProbePlugin final : public quadcore::Plugin {
 
   void sense(const quadcore::Sample& sample, quadcore::PluginState) const override {
     const quadcore::Kinematics& k = sample.kinematics;
-    std::copy_n(k.v_WA_F.data(), 3, sample.topics.values(air_).begin());
-    sample.topics.publish(air_, sample.time);
-    std::vector<double>& seen = sample.topics.values(seen_);
-    seen = {k.time, k.time - sample.time, gravity_W_.z() - sample.world.gravity_W.z(),
-            static_cast<double>(quadcore::random_bits(sample.seed, 0) >> 11)};
-    sample.topics.publish(seen_, sample.time);
-    std::copy(numbers_.begin(), numbers_.end(), sample.topics.values(vehicle_).begin());
-    sample.topics.publish(vehicle_, sample.time);
+    sample.topics.publish(air_, sample.time, messages::Vector{k.v_WA_F});
+    const double seen[] = {k.time, k.time - sample.time,
+                           gravity_W_.z() - sample.world.gravity_W.z(),
+                           static_cast<double>(quadcore::random_bits(sample.seed, 0) >> 11)};
+    std::copy(std::begin(seen), std::end(seen), sample.topics.publish(seen_, sample.time));
+    std::copy(numbers_.begin(), numbers_.end(), sample.topics.publish(vehicle_, sample.time));
   }
 
   void forces(const quadcore::Kinematics& k, quadcore::ConstPluginState,

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "quadcore/commands.hpp"
@@ -13,7 +14,8 @@ namespace quadcore QUADCORE_EXPORT {
 /// A piece of a log.
 struct LogRows {
   std::int64_t count = 0;
-  /// (count, columns) in row-major order, columns as log_columns() names them.
+  /// (count, columns) in row-major order, columns as log_columns() names them: of the state, then
+  /// of each topic asked for.
   std::vector<double> table;
   /// (count, terms, 6) in row-major order, terms as Simulation::wrench_terms() names them: force
   /// then torque, frame axes, about the vehicle's centre of mass, as they act from the logged state
@@ -26,9 +28,10 @@ struct LogRows {
 class Flight {
  public:
   /// Logs the present state at once, then after every `log_every` steps.
-  /// Throws InputError if log_every < 1.
+  /// \param topics  names of those to log, too
+  /// Throws InputError if log_every < 1, or if a topic is not declared or named twice.
   Flight(Simulation& simulation, std::optional<Commands> commands, std::int64_t log_every,
-         bool wrenches);
+         bool wrenches, const std::vector<std::string>& topics = {});
 
   /// Flies n steps, each with the command that is due at its start. Throws what step() throws;
   /// what was logged stays.
@@ -44,6 +47,7 @@ class Flight {
   std::optional<Commands> commands_;
   std::int64_t log_every_;
   bool log_wrenches_;
+  std::vector<std::size_t> topics_;
   std::int64_t steps_ = 0;
   LogRows rows_;
 };

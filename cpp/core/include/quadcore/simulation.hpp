@@ -59,6 +59,8 @@ class Simulation : private ForceField {
  public:
   /// Anything that turns faster [rad/s] counts as diverged.
   static constexpr double max_rate = 1e6;
+  /// Of command().
+  static constexpr const char* command_topic = "vel_cmd";
 
   Simulation(Model model, const World& world, const SimulationOptions& options);
 
@@ -66,9 +68,15 @@ class Simulation : private ForceField {
   /// Throws InputError, nothing changed, on a wrong count, a number that is not finite, or if a
   /// plugin writes the topic.
   void command(const double* speeds, std::size_t count);
+  /// Publishes a message on a topic that no plugin writes, for those that take it.
+  /// Throws InputError, nothing changed, on a topic that is not declared or that a plugin writes, a
+  /// wrong count, or a number that is not finite.
+  void publish(const std::string& topic, const double* values, std::size_t count);
   /// Advances by n steps. Throws FlightError if the flight fails; then only restore, reset and
   /// set_state make the simulation usable again.
   void step(std::int64_t n = 1);
+  /// Whether command() reaches a plugin.
+  bool takes_commands() const;
   /// Numbers that a command carries. Throws InputError if no plugin listens.
   std::size_t command_width() const;
 
@@ -113,7 +121,7 @@ class Simulation : private ForceField {
   void warn(const std::string& warning);  ///< nothing if empty
   std::string describe_idle(const Model& model) const;
   void load_plugins(const Model& model, const SimulationOptions& options);
-  void note_hooks();       ///< who has which
+  void note_hooks();       ///< who has which, and in which order they are called
   void prepare_plugins();  ///< tells those that ask what they fly
   VehicleDescription describe_vehicle();
   Wrench probe(Eigen::Index rotor, double rate);
@@ -144,6 +152,7 @@ class Simulation : private ForceField {
     active_ = nullptr;
     topics_.write_as(the_caller);
   }
+  void publish(const char* call, std::size_t topic, const double* values);
   void update();
   void sense(bool jumped);
   /// Adds to warnings() what the active plugin has said in a hook.
@@ -163,7 +172,8 @@ class Simulation : private ForceField {
   std::vector<std::string> ignored_;
   Topics topics_;
   std::vector<LoadedPlugin> plugins_;
-  /// Those that have a hook, in the order in which it is called.
+  /// Those that have a hook, in the order in which it is called: of update and sense that of
+  /// topics, else by name.
   struct {
     std::vector<const LoadedPlugin*> update, sense, forces, air, carried;
   } with_;

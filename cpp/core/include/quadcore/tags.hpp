@@ -75,11 +75,10 @@ struct TagSpec {
 /// A tag with its effective value.
 struct Parameter {
   TagSpec spec;
-  std::string text;    ///< as written, or the default; empty = absent
-  std::string origin;  ///< "FILE:LINE", "set" or "default"
-  double number = 0;
-  std::vector<double> numbers = {};
-  std::string file = {};  ///< the path to open
+  std::string text;                  ///< as written, or the default; empty = absent
+  std::string origin;                ///< "FILE:LINE", "set" or "default"
+  std::vector<double> numbers = {};  ///< of a number: it
+  std::string file = {};             ///< the path to open
   std::vector<std::size_t> joints = {};
 
   /// Whether both mean the same.
@@ -94,7 +93,8 @@ class Parameters {
   Parameters(const std::vector<TagSpec>& table, const PluginElement& element, const Model& model,
              const std::map<std::string, std::string>& overrides);
 
-  double number(const std::string& tag) const { return at(tag).number; }
+  /// 0 if absent.
+  double number(const std::string& tag) const { return number_of(at(tag)); }
   bool has(const std::string& tag) const { return !at(tag).text.empty(); }
   /// Whether the URDF or an override gives it, rather than its default.
   bool is_set(const std::string& tag) const { return at(tag).origin != "default"; }
@@ -109,6 +109,7 @@ class Parameters {
 
  private:
   const Parameter& at(const std::string& tag) const;
+  static double number_of(const Parameter& p) { return p.numbers.empty() ? 0 : p.numbers.front(); }
   std::vector<Parameter> parameters_;
 };
 

@@ -5,22 +5,23 @@
 #include <vector>
 
 #include "quadcore/export.hpp"
+#include "quadcore/messages.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 
-/// Who writes a topic: the index of a plugin among Simulation::plugins(), or one of these.
-constexpr int nobody = -2;
-constexpr int the_caller = -1;  ///< of Simulation::command()
+/// Who writes a topic: the index of a plugin among Simulation::plugins(), or this one, where none
+/// does.
+constexpr int the_caller = -1;  ///< of Simulation::publish()
 
-/// A named message inside the simulation: a fixed row of numbers. Values belong to the simulation,
-/// so snapshots hold them. The ROS node carries `vel_cmd` and `odom`, no others.
+/// A named message inside the simulation: a row of numbers of one kind.
 struct Topic {
   std::string name;
-  std::vector<std::string> fields;
+  MessageKind kind;
   std::vector<double> values;
   double stamp = 0;  ///< time of the last message [s]
   double count = 0;  ///< messages so far; 0 = none yet
-  int writer = nobody;
+  int writer = the_caller;
+  std::vector<int> readers = {};  ///< plugins
 };
 
 /// What a topic holds at one moment, as snapshots keep it.
@@ -28,49 +29,105 @@ struct Message {
   std::vector<double> values;
   double stamp;
   double count;
-  int writer;
 };
 
-/// The topics of one simulation.
+/// The topics of one simulation. A plugin declares in its constructor what it publishes and what it
+/// takes; the simulation checks that the declarations agree once all plugins are made.
 class Topics {
  public:
-  /// Declares a topic, or joins one that is declared already with as many fields.
-  /// Returns its index. Throws InputError if the widths differ.
-  std::size_t declare(const std::string& name, const std::vector<std::string>& fields);
-  /// Index of a declared topic, or -1.
-  int find(const std::string& name) const;
+  /// \name For the constructors of plugins
+  /// Both return the topic's index. Throw InputError on a name or a field that is no plain word.
+  /// @{
+  /// Declares that the plugin writes the topic, which nobody else may then.
+  std::size_t publishes(const std::string& name, const MessageKind& kind);
+  /// Declares that the plugin reads the topic. It runs after the plugin that writes it, and so has
+  /// the value of the same sample; or, `late`, whenever that runs, the value from before this
+  /// sample began.
+  std::size_t takes(const std::string& name, const MessageKind& kind, bool late = false);
+  /// @}
 
+  /// \name For hooks
+  /// @{
   const Topic& operator[](std::size_t index) const { return topics_[index]; }
-  /// Where a publisher writes its values; publish() afterwards.
-  std::vector<double>& values(std::size_t index) { return topics_[index].values; }
-  /// Throws InputError if the topic has another writer already.
-  void publish(std::size_t index, double time) {
+  /// The last message.
+  template <class M>
+  M read(std::size_t index) const {
+    return messages::read<M>(topics_[index].values.data());
+  }
+  /// Publishes a message, whose numbers are to be written at once where this points.
+  /// Throws InputError if the topic is not the writer's.
+  double* publish(std::size_t index, double time) {
     Topic& topic = topics_[index];
-    if (topic.writer != writer_) claim(topic);
+    if (topic.writer != writer_) refuse_writer(topic);
     topic.stamp = time;
     topic.count += 1;
+    return topic.values.data();
   }
-  std::size_t size() const { return topics_.size(); }
+  template <class M>
+  void publish(std::size_t index, double time, const M& message) {
+    messages::write(message, publish(index, time));
+  }
+  /// @}
 
-  /// What each topic holds.
+  /// How errors call a writer.
+  std::string name_of(int writer) const;
+  /// Index of a declared topic, or -1.
+  int find(const std::string& name) const;
+  /// Index of a declared topic. Throws InputError with the names of those there are.
+  std::size_t at(const std::string& name) const;
+  /// The same of several; they must differ.
+  std::vector<std::size_t> at(const std::vector<std::string>& names) const;
+  /// Of every declared topic, in the order of declaration.
+  std::vector<std::string> names() const;
+
+  /// \name For the simulation
+  /// @{
+  /// Whose declarations follow: a plugin as errors call it, "FILE:LINE: plugin 'name'".
+  void add_plugin(const std::string& name, const std::string& who);
+  /// Checks that all declarations agree and returns the order in which plugins run: writers before
+  /// readers, otherwise by name. Throws InputError naming the plugins at fault.
+  std::vector<std::size_t> settle();
+  /// Whose publish() calls follow.
+  void write_as(int writer) { writer_ = writer; }
+  /// A round of hooks begins: late readers see what is there now.
+  void begin_sample() {
+    for (const auto& [copy, original] : late_) copy_message(topics_[original], topics_[copy]);
+  }
+  /// What each topic holds, and each late reader has of it.
   std::vector<Message> messages() const;
   /// Throws InputError unless these are the messages of topics like these.
   void check(const std::vector<Message>& messages) const;
   /// Puts messages() back, which have been checked.
   void restore(const std::vector<Message>& messages);
-
-  /// Names the next plugin for errors: "FILE:LINE: plugin 'name'". The simulation's to call.
-  void add_writer(const std::string& who) { writers_.push_back(who); }
-  /// Whose publish() calls follow. The simulation's to call.
-  void write_as(int writer) { writer_ = writer; }
-  /// How errors call a writer.
-  std::string name_of(int writer) const;
+  /// @}
 
  private:
-  void claim(Topic& topic) const;
+  struct Participant {
+    std::string name, who;
+  };
+  struct Declaration {
+    int plugin;
+    std::size_t topic;
+    MessageKind kind;
+    bool writes, late;
+  };
+  struct LateCopy {
+    std::size_t copy, original;
+  };
+
+  std::size_t declare(const std::string& name, const MessageKind& kind, bool writes, bool late);
+  bool is_copy(std::size_t index) const;
+  [[noreturn]] void refuse_writer(const Topic& topic) const;
+  [[noreturn]] void refuse_loop(const std::vector<bool>& placed) const;
+  const Declaration& authority(std::size_t topic) const;
+  std::vector<std::size_t> order() const;
+  const Declaration* awaited(std::size_t plugin, const std::vector<bool>& placed) const;
+  static void copy_message(const Topic& from, Topic& to);
 
   std::vector<Topic> topics_;
-  std::vector<std::string> writers_;
+  std::vector<LateCopy> late_;
+  std::vector<Participant> plugins_;
+  std::vector<Declaration> declarations_;
   int writer_ = the_caller;
 };
 

@@ -1,0 +1,74 @@
+#include "quadcore/topics.hpp"
+
+#include <pybind11/stl.h>
+
+#include "arguments.hpp"
+#include "bindings.hpp"
+#include "guarded.hpp"
+
+namespace quadcore::bindings {
+namespace {
+
+/// What plugins have declared of a topic.
+struct TopicInfo {
+  std::string name, kind;
+  std::vector<std::string> fields;
+  std::optional<std::string> writer;  ///< nothing for the caller
+  std::vector<std::string> readers;
+};
+
+TopicInfo describe(const Simulation& simulation, const Topic& topic) {
+  const auto name_of = [&](int plugin) {
+    return simulation.plugins()[static_cast<std::size_t>(plugin)].name;
+  };
+  TopicInfo info{topic.name, topic.kind.name, topic.kind.fields, std::nullopt, {}};
+  if (topic.writer != the_caller) info.writer = name_of(topic.writer);
+  for (const int reader : topic.readers) info.readers.push_back(name_of(reader));
+  return info;
+}
+
+py::dict topics(const Self& self) {
+  const Lock lock(*self);
+  py::dict infos;
+  for (const std::string& name : self->topics().names()) {
+    infos[text(name)] = describe(*self.operator->(), self->topics()[self->topics().at(name)]);
+  }
+  return infos;
+}
+
+py::dict topic(const Self& self, const std::string& name) {
+  const Lock lock(*self);
+  const Topic& topic = self->topics()[self->topics().at(name)];
+  py::dict message;
+  message["stamp"] = topic.stamp;
+  message["count"] = static_cast<std::int64_t>(topic.count);
+  for (std::size_t i = 0; i < topic.values.size(); ++i) {
+    message[text(topic.kind.fields[i])] = topic.values[i];
+  }
+  return message;
+}
+
+void publish(const Self& self, const std::string& name, const py::object& values) {
+  const Numbers array = numbers(values, 1, ("publish: topic '" + name + "'").c_str());
+  const Lock lock(*self);
+  self->publish(name, array.data(), static_cast<std::size_t>(array.size()));
+}
+
+}  // namespace
+
+void bind_topics(py::module_& m, py::class_<Guarded, std::shared_ptr<Guarded>>& simulation) {
+  py::class_<TopicInfo>(m, "TopicInfo", "What plugins have declared of a topic.")
+      .def_readonly("name", &TopicInfo::name)
+      .def_property_readonly("kind", [](const TopicInfo& t) { return text(t.kind); })
+      .def_readonly("fields", &TopicInfo::fields)
+      .def_readonly("writer", &TopicInfo::writer)
+      .def_readonly("readers", &TopicInfo::readers);
+  m.def("odometry_parts", &messages::parts_of<messages::Odometry>,
+        "Quantities of an odometry message and the fields that each is.");
+  simulation.attr("command_topic") = Simulation::command_topic;
+  simulation.def("topic", &topic, py::arg("name"))
+      .def("publish", &publish, py::arg("topic"), py::arg("values"))
+      .def_property_readonly("topics", &topics);
+}
+
+}  // namespace quadcore::bindings

@@ -1,0 +1,180 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <initializer_list>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "quadcore/export.hpp"
+#include "quadcore/spatial.hpp"
+
+/// \file
+/// The kinds of message that topics carry. Each is a type with one list of its fields: plugins,
+/// logs, Python and the ROS node all go by that list.
+
+namespace quadcore QUADCORE_EXPORT {
+
+/// What the row of numbers of a topic means. A plugin may make a kind of its own.
+struct MessageKind {
+  std::string name;
+  std::vector<std::string> fields;  ///< names of the numbers, in order
+
+  bool operator==(const MessageKind& other) const {
+    return name == other.name && fields == other.fields;
+  }
+};
+
+namespace messages {
+
+/// Names of numbers that lie side by side.
+using Names = std::initializer_list<const char*>;
+
+/// Visits a member that is one field and has its name.
+template <class Visit, class Number>
+void visit_number(const Visit& visit, const char* name, Number& number) {
+  visit(name, {name}, &number);
+}
+
+/// Pose of the frame in the world and its velocity, with the variance of the noise on each.
+struct Odometry {
+  static constexpr const char* kind = "odometry";
+  Vector3d position = Vector3d::Zero();               ///< world axes [m]
+  Quaterniond orientation = Quaterniond::Identity();  ///< of the frame in the world, unit
+  Vector3d linear_velocity =
+      Vector3d::Zero();  ///< of the frame's origin, axes as the publisher says [m/s]
+  Vector3d angular_velocity = Vector3d::Zero();  ///< frame axes [rad/s]
+  double position_variance = 0;                  ///< of each component [m^2]
+  double orientation_variance = 0;               ///< about each axis [rad^2]
+  double linear_velocity_variance = 0;           ///< of each component [m^2/s^2]
+  double angular_velocity_variance = 0;          ///< of each component [rad^2/s^2]
+
+  template <class M, class Visit>
+  static void for_each_field(M& m, const Visit& visit) {
+    visit("position", {"x", "y", "z"}, m.position.data());
+    visit("orientation", {"qx", "qy", "qz", "qw"}, m.orientation.coeffs().data());
+    visit("linear_velocity", {"vx", "vy", "vz"}, m.linear_velocity.data());
+    visit("angular_velocity", {"wx", "wy", "wz"}, m.angular_velocity.data());
+    visit_number(visit, "position_variance", m.position_variance);
+    visit_number(visit, "orientation_variance", m.orientation_variance);
+    visit_number(visit, "linear_velocity_variance", m.linear_velocity_variance);
+    visit_number(visit, "angular_velocity_variance", m.angular_velocity_variance);
+  }
+};
+
+/// What an inertial measurement unit feels, in its own axes.
+struct Imu {
+  static constexpr const char* kind = "imu";
+  Vector3d angular_velocity = Vector3d::Zero();  ///< [rad/s]
+  Vector3d specific_force = Vector3d::Zero();    ///< acceleration less gravity [m/s^2]
+  double angular_velocity_variance = 0;          ///< of each component [rad^2/s^2]
+  double specific_force_variance = 0;            ///< of each component [m^2/s^4]
+
+  template <class M, class Visit>
+  static void for_each_field(M& m, const Visit& visit) {
+    visit("angular_velocity", {"wx", "wy", "wz"}, m.angular_velocity.data());
+    visit("specific_force", {"ax", "ay", "az"}, m.specific_force.data());
+    visit_number(visit, "angular_velocity_variance", m.angular_velocity_variance);
+    visit_number(visit, "specific_force_variance", m.specific_force_variance);
+  }
+};
+
+/// Where a vehicle is to be, with the derivatives of a flat output, world axes.
+struct Reference {
+  static constexpr const char* kind = "reference";
+  Vector3d position = Vector3d::Zero();      ///< of the frame's origin [m]
+  Vector3d velocity = Vector3d::Zero();      ///< [m/s]
+  Vector3d acceleration = Vector3d::Zero();  ///< [m/s^2]
+  Vector3d jerk = Vector3d::Zero();          ///< [m/s^3]
+  Vector3d snap = Vector3d::Zero();          ///< [m/s^4]
+  double yaw = 0;                            ///< [rad]
+  double yaw_rate = 0;                       ///< [rad/s]
+  double yaw_acceleration = 0;               ///< [rad/s^2]
+
+  template <class M, class Visit>
+  static void for_each_field(M& m, const Visit& visit) {
+    visit("position", {"x", "y", "z"}, m.position.data());
+    visit("velocity", {"vx", "vy", "vz"}, m.velocity.data());
+    visit("acceleration", {"ax", "ay", "az"}, m.acceleration.data());
+    visit("jerk", {"jx", "jy", "jz"}, m.jerk.data());
+    visit("snap", {"sx", "sy", "sz"}, m.snap.data());
+    visit_number(visit, "yaw", m.yaw);
+    visit_number(visit, "yaw_rate", m.yaw_rate);
+    visit_number(visit, "yaw_acceleration", m.yaw_acceleration);
+  }
+};
+
+/// A force and a torque on the frame at its origin, frame axes.
+struct Wrench {
+  static constexpr const char* kind = "wrench";
+  Vector3d force = Vector3d::Zero();   ///< [N]
+  Vector3d torque = Vector3d::Zero();  ///< about the frame's origin [N m]
+
+  template <class M, class Visit>
+  static void for_each_field(M& m, const Visit& visit) {
+    visit("force", {"fx", "fy", "fz"}, m.force.data());
+    visit("torque", {"tx", "ty", "tz"}, m.torque.data());
+  }
+};
+
+/// A vector of space; axes and unit are the publisher's.
+struct Vector {
+  static constexpr const char* kind = "vector";
+  Vector3d value = Vector3d::Zero();
+
+  template <class M, class Visit>
+  static void for_each_field(M& m, const Visit& visit) {
+    visit("value", {"x", "y", "z"}, m.value.data());
+  }
+};
+
+/// Speeds of as many rotors as there are, signed [rad/s], before any division by sim_slow.
+inline MessageKind speeds(std::size_t rotors) {
+  MessageKind kind{"speeds", {}};
+  for (std::size_t i = 0; i < rotors; ++i) kind.fields.push_back("w" + std::to_string(i + 1));
+  return kind;
+}
+
+/// The members of a type of message, and the fields that each is.
+template <class M>
+std::vector<std::pair<std::string, std::vector<std::string>>> parts_of() {
+  std::vector<std::pair<std::string, std::vector<std::string>>> parts;
+  M any;
+  M::for_each_field(any, [&parts](const char* part, Names fields, const double*) {
+    parts.emplace_back(part, std::vector<std::string>(fields.begin(), fields.end()));
+  });
+  return parts;
+}
+
+/// The kind that a type of message is.
+template <class M>
+MessageKind kind_of() {
+  MessageKind kind{M::kind, {}};
+  for (const auto& [part, fields] : parts_of<M>()) {
+    kind.fields.insert(kind.fields.end(), fields.begin(), fields.end());
+  }
+  return kind;
+}
+
+/// Writes a message as a row of numbers.
+template <class M>
+void write(const M& message, double* row) {
+  M::for_each_field(message, [&row](const char*, Names fields, const double* values) {
+    row = std::copy_n(values, fields.size(), row);
+  });
+}
+
+/// The message that a row of numbers is.
+template <class M>
+M read(const double* row) {
+  M message;
+  M::for_each_field(message, [&row](const char*, Names fields, double* values) {
+    std::copy_n(row, fields.size(), values);
+    row += fields.size();
+  });
+  return message;
+}
+
+}  // namespace messages
+}  // namespace quadcore

@@ -1,0 +1,110 @@
+#include <algorithm>
+
+#include "quadcore/error.hpp"
+#include "quadcore/text.hpp"
+#include "quadcore/topics.hpp"
+
+/// \file
+/// Whether what plugins declare of topics agrees, and the order in which they run then.
+
+namespace quadcore {
+namespace {
+
+std::string describe(const MessageKind& kind) {
+  return "'" + kind.name + "' (" + joined(kind.fields) + ")";
+}
+
+}  // namespace
+
+void Topics::add_plugin(const std::string& name, const std::string& who) {
+  plugins_.push_back({name, who});
+}
+
+std::vector<std::size_t> Topics::settle() {
+  for (const Declaration& declared : declarations_) {
+    Topic& topic = topics_[declared.topic];
+    if (!declared.writes) {
+      topic.readers.push_back(declared.plugin);
+      continue;
+    }
+    if (topic.writer != the_caller) {
+      throw InputError(name_of(declared.plugin) + " writes topic '" + topic.name + "', which " +
+                       name_of(topic.writer) + " writes already; keep one of the two");
+    }
+    topic.writer = declared.plugin;
+  }
+  for (const Declaration& declared : declarations_) {
+    const Declaration& other = authority(declared.topic);
+    if (other.kind == declared.kind) continue;
+    throw InputError(name_of(declared.plugin) + " has topic '" + topics_[declared.topic].name +
+                     "' as " + describe(declared.kind) + ", but " + name_of(other.plugin) +
+                     " has it as " + describe(other.kind) + "; make them agree");
+  }
+  return order();
+}
+
+/// Who says what kind a topic is: its writer, or else the first who takes it.
+const Topics::Declaration& Topics::authority(std::size_t topic) const {
+  const Declaration* first = nullptr;
+  for (const Declaration& declared : declarations_) {
+    if (declared.topic != topic) continue;
+    if (declared.writes) return declared;
+    if (!first) first = &declared;
+  }
+  return *first;
+}
+
+/// Of the plugins that wait for nobody any more, the first by name comes next.
+std::vector<std::size_t> Topics::order() const {
+  std::vector<std::size_t> order;
+  std::vector<bool> placed(plugins_.size(), false);
+  while (order.size() < plugins_.size()) {
+    int next = -1;
+    for (std::size_t i = 0; i < plugins_.size(); ++i) {
+      if (placed[i] || awaited(i, placed)) continue;
+      if (next < 0 || plugins_[i].name < plugins_[static_cast<std::size_t>(next)].name) {
+        next = static_cast<int>(i);
+      }
+    }
+    if (next < 0) refuse_loop(placed);
+    order.push_back(static_cast<std::size_t>(next));
+    placed[order.back()] = true;
+  }
+  return order;
+}
+
+/// What a plugin takes from one that is not placed yet; null for nothing.
+const Topics::Declaration* Topics::awaited(std::size_t plugin,
+                                           const std::vector<bool>& placed) const {
+  for (const Declaration& declared : declarations_) {
+    const int writer = topics_[declared.topic].writer;
+    if (declared.plugin == static_cast<int>(plugin) && !declared.writes && !declared.late &&
+        writer != the_caller && writer != declared.plugin &&
+        !placed[static_cast<std::size_t>(writer)]) {
+      return &declared;
+    }
+  }
+  return nullptr;
+}
+
+/// All that are not placed wait for one another: whoever is followed for long enough is in a loop.
+void Topics::refuse_loop(const std::vector<bool>& placed) const {
+  const auto unplaced = std::find(placed.begin(), placed.end(), false) - placed.begin();
+  auto plugin = static_cast<std::size_t>(unplaced);
+  const auto writer = [&](std::size_t reader) {
+    return static_cast<std::size_t>(topics_[awaited(reader, placed)->topic].writer);
+  };
+  for (std::size_t i = 0; i < plugins_.size(); ++i) plugin = writer(plugin);
+  std::string loop;
+  std::size_t next = plugin;
+  do {
+    loop += (loop.empty() ? "" : ", and ") + plugins_[next].who + " takes topic '" +
+            topics_[awaited(next, placed)->topic].name + "' from '" + plugins_[writer(next)].name +
+            "'";
+    next = writer(next);
+  } while (next != plugin);
+  throw InputError(loop + ": each waits for the other's value of the same sample; remove one, or " +
+                   "let it take its topic a sample late");
+}
+
+}  // namespace quadcore

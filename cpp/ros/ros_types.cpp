@@ -1,0 +1,219 @@
+#include "ros_types.hpp"
+
+#include <geometry_msgs/Vector3Stamped.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <sensor_msgs/Imu.h>
+#include <std_msgs/Float64MultiArray.h>
+
+#include <algorithm>
+
+#include "kept_publisher.hpp"
+#include "messages.hpp"
+#include "quadcore/error.hpp"
+#include "quadcore/text.hpp"
+
+namespace quadcore::node {
+namespace {
+
+using node::set_frames;
+using node::to_ros;
+
+constexpr std::uint32_t queue = 1000;
+
+/// A variance of zero stands for "unknown" to some filters and is singular to others. Without
+/// noise this is sent: a deviation of 1e-6.
+constexpr double least_variance = 1e-12;
+
+/// A diagonal covariance, equal numbers for each three.
+template <class Matrix>
+void set_covariance(Matrix& matrix, std::initializer_list<double> variances) {
+  const std::size_t side = 3 * variances.size();
+  for (std::size_t i = 0; i < side; ++i) {
+    matrix[(side + 1) * i] = std::max(variances.begin()[i / 3], least_variance);
+  }
+}
+
+template <class Vector>
+Vector3d vector_of(const Vector& v) {
+  return {v.x, v.y, v.z};
+}
+
+messages::Odometry from_ros(const nav_msgs::Odometry& message) {
+  messages::Odometry odometry;
+  const geometry_msgs::Quaternion& q = message.pose.pose.orientation;
+  odometry.position = vector_of(message.pose.pose.position);
+  odometry.orientation = Quaterniond(q.w, q.x, q.y, q.z);
+  odometry.linear_velocity = vector_of(message.twist.twist.linear);
+  odometry.angular_velocity = vector_of(message.twist.twist.angular);
+  odometry.position_variance = message.pose.covariance.front();
+  odometry.orientation_variance = message.pose.covariance.back();
+  odometry.linear_velocity_variance = message.twist.covariance.front();
+  odometry.angular_velocity_variance = message.twist.covariance.back();
+  return odometry;
+}
+
+void set_frames(sensor_msgs::Imu& message, const std::string& vehicle_frame) {
+  message.header.frame_id = vehicle_frame;
+  message.orientation_covariance[0] = -1;  // none is given
+}
+void to_ros(const messages::Imu& imu, sensor_msgs::Imu& message) {
+  set_vector(message.angular_velocity, imu.angular_velocity.data());
+  set_vector(message.linear_acceleration, imu.specific_force.data());
+  set_covariance(message.angular_velocity_covariance, {imu.angular_velocity_variance});
+  set_covariance(message.linear_acceleration_covariance, {imu.specific_force_variance});
+}
+messages::Imu from_ros(const sensor_msgs::Imu& message) {
+  messages::Imu imu;
+  imu.angular_velocity = vector_of(message.angular_velocity);
+  imu.specific_force = vector_of(message.linear_acceleration);
+  imu.angular_velocity_variance = message.angular_velocity_covariance[0];
+  imu.specific_force_variance = message.linear_acceleration_covariance[0];
+  return imu;
+}
+
+void set_frames(geometry_msgs::WrenchStamped& message, const std::string& vehicle_frame) {
+  message.header.frame_id = vehicle_frame;
+}
+void to_ros(const messages::Wrench& wrench, geometry_msgs::WrenchStamped& message) {
+  set_vector(message.wrench.force, wrench.force.data());
+  set_vector(message.wrench.torque, wrench.torque.data());
+}
+messages::Wrench from_ros(const geometry_msgs::WrenchStamped& message) {
+  return {vector_of(message.wrench.force), vector_of(message.wrench.torque)};
+}
+
+void set_frames(geometry_msgs::Vector3Stamped&, const std::string&) {}  // the publisher's own
+void to_ros(const messages::Vector& vector, geometry_msgs::Vector3Stamped& message) {
+  set_vector(message.vector, vector.value.data());
+}
+messages::Vector from_ros(const geometry_msgs::Vector3Stamped& message) {
+  return {vector_of(message.vector)};
+}
+
+template <class Message, class Ros>
+class TypedOutlet final : public Outlet {
+ public:
+  TypedOutlet(ros::NodeHandle& nh, const std::string& name, const std::string& vehicle_frame)
+      : publisher_(nh, name, queue) {
+    set_frames(message_, vehicle_frame);
+  }
+  void send(const Topic& topic, const ros::Time& stamp) override {
+    message_.header.stamp = stamp;
+    to_ros(messages::read<Message>(topic.values.data()), message_);
+    publisher_.publish(message_);
+  }
+
+ private:
+  KeptPublisher<Ros> publisher_;
+  Ros message_;  // kept, so that sending it needs no new memory
+};
+
+/// Of a kind that has no type of its own: the numbers, with their names as the label.
+class ArrayOutlet final : public Outlet {
+ public:
+  ArrayOutlet(ros::NodeHandle& nh, const Topic& topic) : publisher_(nh, topic.name, queue) {
+    std_msgs::MultiArrayDimension fields;
+    fields.label = joined(topic.kind.fields);
+    fields.size = fields.stride = static_cast<std::uint32_t>(topic.kind.fields.size());
+    message_.layout.dim.push_back(fields);
+  }
+  void send(const Topic& topic, const ros::Time&) override {
+    message_.data = topic.values;
+    publisher_.publish(message_);
+  }
+
+ private:
+  KeptPublisher<std_msgs::Float64MultiArray> publisher_;
+  std_msgs::Float64MultiArray message_;
+};
+
+template <class Ros, class Act>
+ros::Subscriber subscribe(ros::NodeHandle& nh, const std::string& name, const Act& act) {
+  const boost::function<void(const boost::shared_ptr<const Ros>&)> callback =
+      [act](const boost::shared_ptr<const Ros>& message) { act(*message); };
+  return nh.subscribe<Ros>(name, queue, callback, ros::VoidConstPtr(),
+                           ros::TransportHints().tcpNoDelay());
+}
+
+/// A kind of message and how it travels.
+struct Carriage {
+  MessageKind kind;
+  std::unique_ptr<Outlet> (*outlet)(ros::NodeHandle&, const std::string&, const std::string&);
+  ros::Subscriber (*inlet)(ros::NodeHandle&, const std::string&, const Take&);
+};
+
+template <class Message, class Ros>
+Carriage carriage() {
+  return {messages::kind_of<Message>(),
+          [](ros::NodeHandle& nh, const std::string& name,
+             const std::string& vehicle_frame) -> std::unique_ptr<Outlet> {
+            return std::make_unique<TypedOutlet<Message, Ros>>(nh, name, vehicle_frame);
+          },
+          [](ros::NodeHandle& nh, const std::string& name, const Take& take) {
+            return subscribe<Ros>(nh, name, [take](const Ros& message) {
+              std::vector<double> row(messages::kind_of<Message>().fields.size());
+              messages::write(from_ros(message), row.data());
+              take(row);
+            });
+          }};
+}
+
+/// How a kind of message travels; null for an array of numbers.
+const Carriage* carriage_of(const MessageKind& kind) {
+  static const std::vector<Carriage> table = {
+      carriage<messages::Odometry, nav_msgs::Odometry>(),
+      carriage<messages::Imu, sensor_msgs::Imu>(),
+      carriage<messages::Wrench, geometry_msgs::WrenchStamped>(),
+      carriage<messages::Vector, geometry_msgs::Vector3Stamped>(),
+  };
+  const auto found = std::find_if(table.begin(), table.end(),
+                                  [&](const Carriage& entry) { return entry.kind == kind; });
+  return found == table.end() ? nullptr : &*found;
+}
+
+void check_free(ros::NodeHandle& nh, const std::string& name) {
+  std::vector<std::string> published, subscribed;
+  ros::this_node::getAdvertisedTopics(published);
+  ros::this_node::getSubscribedTopics(subscribed);
+  for (const auto& taken : {published, subscribed}) {
+    if (std::find(taken.begin(), taken.end(), nh.resolveName(name)) == taken.end()) continue;
+    throw InputError("topic '" + name + "' of a plugin has the name of one of the node's own; " +
+                     "give it another");
+  }
+}
+
+}  // namespace
+
+void set_frames(nav_msgs::Odometry& message, const std::string& vehicle_frame) {
+  message.header.frame_id = world_frame;
+  message.child_frame_id = vehicle_frame;
+}
+
+void to_ros(const messages::Odometry& odometry, nav_msgs::Odometry& message) {
+  set_vector(message.pose.pose.position, odometry.position.data());
+  set_quaternion(message.pose.pose.orientation, odometry.orientation.coeffs().data());
+  set_vector(message.twist.twist.linear, odometry.linear_velocity.data());
+  set_vector(message.twist.twist.angular, odometry.angular_velocity.data());
+  set_covariance(message.pose.covariance,
+                 {odometry.position_variance, odometry.orientation_variance});
+  set_covariance(message.twist.covariance,
+                 {odometry.linear_velocity_variance, odometry.angular_velocity_variance});
+}
+
+std::unique_ptr<Outlet> make_outlet(ros::NodeHandle& nh, const Topic& topic,
+                                    const std::string& vehicle_frame) {
+  check_free(nh, topic.name);
+  const Carriage* const carriage = carriage_of(topic.kind);
+  if (carriage) return carriage->outlet(nh, topic.name, vehicle_frame);
+  return std::make_unique<ArrayOutlet>(nh, topic);
+}
+
+ros::Subscriber make_inlet(ros::NodeHandle& nh, const Topic& topic, const Take& take) {
+  check_free(nh, topic.name);
+  const Carriage* const carriage = carriage_of(topic.kind);
+  if (carriage) return carriage->inlet(nh, topic.name, take);
+  return subscribe<std_msgs::Float64MultiArray>(
+      nh, topic.name, [take](const std_msgs::Float64MultiArray& message) { take(message.data); });
+}
+
+}  // namespace quadcore::node

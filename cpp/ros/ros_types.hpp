@@ -1,0 +1,42 @@
+#pragma once
+
+#include <nav_msgs/Odometry.h>
+#include <ros/ros.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "quadcore/topics.hpp"
+
+/// \file
+/// Topics of the simulation as topics of ROS: which type carries which kind of message.
+
+namespace quadcore::node {
+
+/// A topic of the simulation on its way out.
+class Outlet {
+ public:
+  virtual ~Outlet() = default;
+  virtual void send(const Topic& topic, const ros::Time& stamp) = 0;
+};
+
+/// What is done with the numbers that come in.
+using Take = std::function<void(const std::vector<double>&)>;
+
+/// Advertises a topic under its own name.
+/// \param vehicle_frame  tf's name of the vehicle
+/// Throws InputError if the node has a topic of that name already.
+std::unique_ptr<Outlet> make_outlet(ros::NodeHandle& nh, const Topic& topic,
+                                    const std::string& vehicle_frame);
+/// Subscribes to a topic under its own name; `take` runs where the callbacks of `nh` do.
+/// Throws InputError if the node has a topic of that name already.
+ros::Subscriber make_inlet(ros::NodeHandle& nh, const Topic& topic, const Take& take);
+
+/// Names the frames of an odometry message.
+void set_frames(nav_msgs::Odometry& message, const std::string& vehicle_frame);
+/// Fills pose, twist and their covariances. A variance of 0 becomes the least that filters bear.
+void to_ros(const messages::Odometry& odometry, nav_msgs::Odometry& message);
+
+}  // namespace quadcore::node

@@ -1,0 +1,55 @@
+#include "topic_inlets.hpp"
+
+#include <ros/poll_manager.h>
+
+#include <chrono>
+
+#include "quadcore/error.hpp"
+
+namespace quadcore::node {
+
+TopicInlets::TopicInlets(ros::NodeHandle nh, const Simulation& simulation, const std::string& but,
+                         bool lockstep)
+    : lockstep_(lockstep) {
+  nh.setCallbackQueue(&queue_);
+  const Topics& topics = simulation.topics();
+  for (const std::string& name : topics.names()) {
+    const Topic& topic = topics[topics.at(name)];
+    if (name == but || topic.writer != the_caller) continue;
+    subscribers_.push_back(make_inlet(nh, topic, [this, name](const std::vector<double>& values) {
+      try {
+        simulation_->publish(name, values.data(), values.size());
+      } catch (const InputError& error) {
+        sayer_.warn(error.what());
+      }
+    }));
+  }
+  if (subscribers_.empty() || !lockstep_) return;
+  poll_ = ros::PollManager::instance()->addPollThreadListener([this] {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++turns_;
+    turned_.notify_all();
+  });
+}
+
+TopicInlets::~TopicInlets() { ros::PollManager::instance()->removePollThreadListener(poll_); }
+
+void TopicInlets::take(Simulation& simulation) {
+  if (subscribers_.empty()) return;
+  if (lockstep_) wait_for_sockets();
+  simulation_ = &simulation;
+  queue_.callAvailable();
+}
+
+/// roscpp looks at its sockets in turns and may have read a command before something that was sent
+/// sooner on another socket. It has read that, too, by the end of a turn that begins now.
+void TopicInlets::wait_for_sockets() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  const std::int64_t next = turns_ + 1;
+  while (turns_ <= next && ros::ok()) {
+    ros::PollManager::instance()->getPollSet().signal();
+    turned_.wait_for(lock, std::chrono::milliseconds(20));
+  }
+}
+
+}  // namespace quadcore::node
