@@ -38,6 +38,8 @@ void bind_plugins(py::module_& m) {
       .def_property_readonly("path", [](const LoadedPlugin& p) { return file_name(p.path); })
       .def_property_readonly("summary",
                              [](const LoadedPlugin& p) { return text(p.descriptor->summary); })
+      .def_property_readonly("wrenches",
+                             [](const LoadedPlugin& p) { return p.descriptor->wrenches; })
       .def_property_readonly("parameters",
                              [](const LoadedPlugin& p) { return p.parameters.all(); });
 

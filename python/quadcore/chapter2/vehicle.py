@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Dict, List
+from typing import Dict, List, Sequence
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -12,9 +12,6 @@ from scipy.spatial.transform import Rotation
 from .._core import InputError, PluginInfo
 from ..simulation import Simulation
 from .kinematics import skew
-
-AIR = "libaerodynamic_plugin.so"
-MOTOR = "libmotorpid_plugin.so"
 
 
 @dataclass(frozen=True)
@@ -81,7 +78,7 @@ class Vehicle:
         InputError
             A vehicle that chapter 2 has no equation for.
         """
-        air, motor = parameters_of(simulation, AIR), parameters_of(simulation, MOTOR)
+        air, motor = parameters_of(air_of(simulation)), parameters_of(motor_of(simulation))
         integral = float(motor["ki"]) * (float(motor["iMax"]) - float(motor["iMin"]))
         if integral != 0 or float(motor["kd"]) != 0:
             raise InputError("the mathematical model has proportional motors; set <ki>, <kd> to 0")
@@ -151,20 +148,46 @@ class Vehicle:
         return any((self.A_1c, self.A_1s, self.B_1, self.B_2))
 
 
-def the_plugin(simulation: Simulation, filename: str) -> PluginInfo:
-    """Find the one plugin of that file."""
-    found = [plugin for plugin in simulation.plugins if plugin.filename == filename]
+def air_of(simulation: Simulation) -> PluginInfo:
+    """Find the one plugin whose force laws those of chapter 2 are: it reports the thrust."""
+    found = [plugin for plugin in simulation.plugins if "thrust" in plugin.wrenches]
+    return _the_one(found, "libaerodynamic_plugin.so")
+
+
+def motor_of(simulation: Simulation) -> PluginInfo:
+    """Find the one plugin that turns the rotors: it takes the commands."""
+    commands = simulation.topics.get(simulation.command_topic)
+    readers = commands.readers if commands else []
+    found = [plugin for plugin in simulation.plugins if plugin.name in readers]
+    return _the_one(found, "libmotorpid_plugin.so")
+
+
+def _the_one(found: Sequence[PluginInfo], such_as: str) -> PluginInfo:
     if len(found) != 1:
-        raise InputError(f"the mathematical model needs one plugin {filename}; got {len(found)}")
+        raise InputError(f"the mathematical model needs one plugin {such_as}; got {len(found)}")
     return found[0]
 
 
-def parameters_of(simulation: Simulation, filename: str) -> Dict[str, str]:
-    """Read the effective parameters of the one plugin of that file, by name."""
-    return {entry.name: entry.value for entry in the_plugin(simulation, filename).parameters}
+def parameters_of(plugin: PluginInfo) -> Dict[str, str]:
+    """Read the effective parameters of a plugin, by name."""
+    return _Tags(plugin)
+
+
+class _Tags(Dict[str, str]):
+    """What the tags of a plugin say; one that it does not have is told."""
+
+    def __init__(self, plugin: PluginInfo) -> None:
+        super().__init__((entry.name, entry.value) for entry in plugin.parameters)
+        self._plugin = plugin.name
+
+    def __missing__(self, tag: str) -> str:
+        raise InputError(
+            f"plugin '{self._plugin}' has no tag <{tag}>, which the mathematical model needs; fly "
+            "the shipped plugins"
+        )
 
 
 def command_order(simulation: Simulation) -> List[int]:
     """Joints in the order of a command's numbers: `rotor_velocity[command_order(s)]`."""
-    driven = parameters_of(simulation, MOTOR)["rotorJoints"].split()
+    driven = parameters_of(motor_of(simulation))["rotorJoints"].split()
     return [simulation.rotor_names.index(name) for name in driven]

@@ -9,7 +9,7 @@ import numpy as np
 
 from .._core import InputError, QuadcoreError
 from ..chapter2 import GYROSTAT, MathematicalModel, Terms, Vehicle
-from ..chapter2.vehicle import AIR, MOTOR, command_order, parameters_of, the_plugin
+from ..chapter2.vehicle import air_of, command_order, motor_of, parameters_of
 from ..commands import CommandsLike, as_commands
 from ..flight import check_logged
 from ..flight_plan import FlightPlan
@@ -118,7 +118,7 @@ class Experiment:
         table = ascent(vehicle) if commands is None else as_commands(commands, rotors)
         if table[0, 0] > 0:
             raise InputError(f"commands: the first row is for t = {table[0, 0]:g}; begin at t = 0")
-        air, motor = (the_plugin(simulation, file).name for file in (AIR, MOTOR))
+        air, motor = air_of(simulation).name, motor_of(simulation).name
         table = at_steps(table, simulation.dt)
         plan = replace(plan, dt=simulation.dt, commands=table)
         return cls(asked, plan, motor_lag, air, motor, tuple(command_order(simulation)))
@@ -187,7 +187,7 @@ class Experiment:
 
     def drags(self) -> List[str]:
         """Cases of drag that differ for this vehicle: none, each that acts alone, all."""
-        values = parameters_of(self.flight(Case("eigen")).simulation(), AIR)
+        values = parameters_of(air_of(self.flight(Case("eigen")).simulation()))
         acting = [d for d, tags in DRAGS.items() if any(float(values[tag]) for tag in tags)]
         return ["none", *acting, "all"]
 
