@@ -4,6 +4,7 @@
 #include <exception>
 #include <memory>
 
+#include "built.hpp"
 #include "older_pybind11.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/simulation.hpp"
@@ -77,8 +78,7 @@ void raising_warnings(const Guarded& guarded, const Call& call) {
   if (simulation.warnings().size() > before) raise();
 }
 
-/// The simulation that a bound function is called on. A Python object whose __init__ was not called
-/// has none; pybind11 would give memory that nothing was built in.
+/// The simulation that a bound function is called on.
 struct Self {
   std::shared_ptr<Guarded> guarded;
 
@@ -95,16 +95,9 @@ struct type_caster<quadcore::bindings::Self> {
   PYBIND11_TYPE_CASTER(quadcore::bindings::Self, const_name("quadcore._core.Simulation"));
 
   bool load(handle source, bool convert) {
-    using quadcore::bindings::Guarded;
-    if (!isinstance<Guarded>(source)) return false;
-    auto* const instance = reinterpret_cast<pybind11::detail::instance*>(source.ptr());
-    if (!instance->get_value_and_holder().holder_constructed()) {
-      throw quadcore::InputError("this simulation is not made yet; call super().__init__() first");
-    }
-    make_caster<std::shared_ptr<Guarded>> held;
-    if (!held.load(source, convert)) return false;
-    value.guarded = cast_op<std::shared_ptr<Guarded>&>(held);
-    return true;
+    return quadcore::bindings::load_built(
+        source, convert, value.guarded,
+        "this simulation is not made yet; call super().__init__() first");
   }
 };
 

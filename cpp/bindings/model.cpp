@@ -4,12 +4,14 @@
 #include <pybind11/stl.h>
 
 #include "bindings.hpp"
+#include "built.hpp"
 #include "quadcore/document.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/gazebo_reference.hpp"
 #include "quadcore/seen_or_sensed.hpp"
 #include "quadcore/text.hpp"
 #include "quadcore/world.hpp"
+#include "unpickled.hpp"
 
 namespace quadcore::bindings {
 namespace {
@@ -28,18 +30,18 @@ const Source& source_of(const std::shared_ptr<const Source>& source) {
 template <class Read>
 auto by_document(Read (*read)(const Document&, const std::vector<std::string>&)) {
   return py::pickle(
-      [](const Read& held) {
-        const auto& [document, ignore] = source_of(held.source);
+      [](const Built<Read>& held) {
+        const auto& [document, ignore] = source_of(held->source);
         return py::make_tuple(version, document.name, document.text, document.lines, ignore);
       },
-      [read](const py::tuple& state) {
-        if (py::cast<int>(state[0]) != version) {
-          throw InputError(
-              "a model or world was pickled by another version of quadcore; read it anew");
-        }
-        return read({py::cast<std::string>(state[1]), py::cast<std::string>(state[2]),
-                     py::cast<std::vector<std::pair<std::string, int>>>(state[3])},
-                    py::cast<std::vector<std::string>>(state[4]));
+      [read](const py::object& state) {
+        return unpickled("a model or world", "read", [&] {
+          if (py::cast<int>(state[py::int_(0)]) != version) throw OtherVersion();
+          return std::make_shared<Read>(read(
+              {py::cast<std::string>(state[py::int_(1)]), py::cast<std::string>(state[py::int_(2)]),
+               py::cast<std::vector<std::pair<std::string, int>>>(state[py::int_(3)])},
+              py::cast<std::vector<std::string>>(state[py::int_(4)])));
+        });
       });
 }
 
@@ -95,25 +97,32 @@ void bind_model(py::module_& m) {
       .def_property_readonly("xyz", [](const Joint& joint) -> Vector3d { return joint.pose.xyz; })
       .def_property_readonly("rpy", [](const Joint& joint) -> Vector3d { return joint.pose.rpy; });
 
-  py::class_<Model>(m, "Model", "A vehicle: bodies, joints, plugins.")
-      .def_readonly("name", &Model::name)
-      .def_readonly("links", &Model::links)
-      .def_readonly("joints", &Model::joints)
-      .def_readonly("warnings", &Model::warnings)
-      .def_readonly("passed_over", &Model::passed_over)
-      .def_property_readonly("document",
-                             [](const Model& model) { return source_of(model.source).document; })
+  py::class_<Model, std::shared_ptr<Model>>(m, "Model", "A vehicle: bodies, joints, plugins.")
+      .def_property_readonly("name", [](const Built<Model>& held) { return held->name; })
+      .def_property_readonly("links", [](const Built<Model>& held) { return held->links; })
+      .def_property_readonly("joints", [](const Built<Model>& held) { return held->joints; })
+      .def_property_readonly("warnings", [](const Built<Model>& held) { return held->warnings; })
+      .def_property_readonly("passed_over",
+                             [](const Built<Model>& held) { return held->passed_over; })
+      .def_property_readonly(
+          "document", [](const Built<Model>& held) { return source_of(held->source).document; })
       .def(by_document(&read_model));
 
-  py::class_<World>(m, "World", "What a world file sets.")
-      .def_property_readonly("gravity", [](const World& w) -> Vector3d { return w.gravity_W; })
-      .def_property_readonly("wind", [](const World& w) -> Vector3d { return w.wind_W; })
-      .def_readonly("max_step_size", &World::max_step_size)
-      .def_readonly("real_time_update_rate", &World::real_time_update_rate)
-      .def_readonly("ground_plane", &World::ground_plane)
-      .def_readonly("passed_over", &World::passed_over)
-      .def_property_readonly("document",
-                             [](const World& world) { return source_of(world.source).document; })
+  py::class_<World, std::shared_ptr<World>>(m, "World", "What a world file sets.")
+      .def_property_readonly("gravity",
+                             [](const Built<World>& held) -> Vector3d { return held->gravity_W; })
+      .def_property_readonly("wind",
+                             [](const Built<World>& held) -> Vector3d { return held->wind_W; })
+      .def_property_readonly("max_step_size",
+                             [](const Built<World>& held) { return held->max_step_size; })
+      .def_property_readonly("real_time_update_rate",
+                             [](const Built<World>& held) { return held->real_time_update_rate; })
+      .def_property_readonly("ground_plane",
+                             [](const Built<World>& held) { return held->ground_plane; })
+      .def_property_readonly("passed_over",
+                             [](const Built<World>& held) { return held->passed_over; })
+      .def_property_readonly(
+          "document", [](const Built<World>& held) { return source_of(held->source).document; })
       .def(by_document(&read_world));
 
   m.def("parse_number", &parse_number, py::arg("text"),

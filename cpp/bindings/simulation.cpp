@@ -18,14 +18,14 @@ namespace {
 /// Signals are looked at about this often during a long step().
 constexpr std::chrono::milliseconds between_signals(20);
 
-std::shared_ptr<Guarded> create(const Model& model, const World& world, std::string engine,
-                                std::optional<double> dt, std::uint64_t seed,
+std::shared_ptr<Guarded> create(const Built<Model>& model, const Built<World>& world,
+                                std::string engine, std::optional<double> dt, std::uint64_t seed,
                                 std::map<std::string, std::string> parameters,
                                 const std::array<double, 6>& spawn) {
   SimulationOptions options{std::move(engine), dt, seed, std::move(parameters), {}};
   options.spawn.xyz = {spawn[0], spawn[1], spawn[2]};
   options.spawn.rpy = {spawn[3], spawn[4], spawn[5]};
-  return std::make_shared<Guarded>(model, world, options);
+  return std::make_shared<Guarded>(*model, *world, options);
 }
 
 void command(const Self& self, const py::object& speeds) {
@@ -53,6 +53,15 @@ void step(const Self& self, std::int64_t n) {
     });
     if (n > 0 && PyErr_CheckSignals() != 0) throw py::error_already_set();
   } while (n > 0);
+}
+
+/// A getter of what a step may change.
+template <class Get>
+auto locked(const Get& get) {
+  return [get](const Self& self) {
+    const Lock lock(*self);
+    return get(self.guarded->simulation);
+  };
 }
 
 py::array_t<double> copied(const double* data, Eigen::Index size) {
@@ -147,13 +156,12 @@ void bind_simulation(py::module_& m) {
            })
       .def(
           "restore",
-          // By its holder, which an object that nothing was built in lacks.
-          [](const Self& self, const std::shared_ptr<Snapshot>& snapshot,
+          [](const Self& self, const Built<Snapshot>& snapshot,
              const std::vector<std::string>& allow) {
             const Lock lock(*self);
             self->restore(*snapshot, Allowed::of(allow));
           },
-          py::arg("snapshot"), py::kw_only(), py::arg("allow") = std::vector<std::string>{})
+          py::arg("snapshot"), py::arg("allow"))
       .def(
           "reset",
           [](const Self& self, const std::optional<std::uint64_t>& seed) {
@@ -164,26 +172,25 @@ void bind_simulation(py::module_& m) {
       .def_property_readonly("time", [](const Self& self) { return self->time(); })
       .def_property_readonly("dt", [](const Self& self) { return self->dt(); })
       .def_property_readonly("engine", [](const Self& self) { return self->engine_name(); })
-      .def_property_readonly("method", [](const Self& self) { return self->method(); })
-      .def_property_readonly("model", [](const Self& self) { return self->model(); })
+      .def_property_readonly("method", locked([](const Simulation& s) { return s.method(); }))
+      .def_property_readonly("model", locked([](const Simulation& s) { return s.model(); }))
       .def_property_readonly("warnings", [](const Self& self) { return self->warnings(); })
       .def_property_readonly("ignored", [](const Self& self) { return self->ignored(); })
       .def_property_readonly(
           "plugins", [](const Self& self) { return &self->plugins(); },
           py::return_value_policy::reference_internal)
-      .def_property_readonly("rotor_count",
-                             [](const Self& self) { return self->model().joints.size(); })
-      .def_property_readonly("rotor_names",
-                             [](const Self& self) { return self->model().joint_names(); })
+      .def_property_readonly("rotor_count", [](const Self& self) { return self->rotor_count(); })
+      .def_property_readonly("rotor_names", [](const Self& self) { return self->rotor_names(); })
       .def_property_readonly("command_width",
                              [](const Self& self) { return self->command_width(); })
-      .def_property_readonly("mass",
-                             [](const Self& self) { return mass_properties(self->model()).mass; })
       .def_property_readonly(
-          "center_of_mass",
-          [](const Self& self) -> Vector3d { return mass_properties(self->model()).p_FCcm; })
-      .def_property_readonly(
-          "inertia", [](const Self& self) { return mass_properties(self->model()).inertia_Ccm_F; })
+          "mass", locked([](const Simulation& s) { return mass_properties(s.model()).mass; }))
+      .def_property_readonly("center_of_mass", locked([](const Simulation& s) -> Vector3d {
+                               return mass_properties(s.model()).p_FCcm;
+                             }))
+      .def_property_readonly("inertia", locked([](const Simulation& s) {
+                               return mass_properties(s.model()).inertia_Ccm_F;
+                             }))
       .def_property_readonly("wrench_terms", [](const Self& self) { return self->wrench_terms(); })
       .def("_views", &views);
   bind_topics(m, simulation);

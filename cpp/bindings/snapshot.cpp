@@ -3,8 +3,10 @@
 #include <pybind11/stl.h>
 
 #include "bindings.hpp"
+#include "built.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/simulation.hpp"
+#include "unpickled.hpp"
 
 namespace quadcore::bindings {
 namespace {
@@ -33,8 +35,7 @@ py::dict fingerprint_of(const Fingerprint& fingerprint) {
   return parts;
 }
 
-/// By its holder, which an object that nothing was built in lacks.
-py::dict saved(const std::shared_ptr<Snapshot>& held) {
+py::dict saved(const Built<Snapshot>& held) {
   const Snapshot& snapshot = *held;
   py::list messages;
   for (const Message& m : snapshot.messages) {
@@ -55,10 +56,8 @@ py::dict saved(const std::shared_ptr<Snapshot>& held) {
   return state;
 }
 
-std::shared_ptr<Snapshot> restored(const py::dict& state) {
-  if (py::cast<int>(state["version"]) != version) {
-    throw InputError("snapshot: was pickled by another version of quadcore; take it anew");
-  }
+std::shared_ptr<Snapshot> read(const py::object& state) {
+  if (py::cast<int>(state["version"]) != version) throw OtherVersion();
   auto fingerprint = std::make_shared<Fingerprint>();
   for (const FingerprintPart& part : fingerprint_parts()) {
     Facts& facts = (*fingerprint).*part.facts;
@@ -85,6 +84,10 @@ std::shared_ptr<Snapshot> restored(const py::dict& state) {
   snapshot->warnings = py::cast<std::vector<std::string>>(state["warnings"]);
   snapshot->failure = py::cast<std::string>(state["failure"]);
   return snapshot;
+}
+
+std::shared_ptr<Snapshot> restored(const py::object& state) {
+  return unpickled("a snapshot", "take", [&state] { return read(state); });
 }
 
 }  // namespace

@@ -7,6 +7,7 @@ namespace {
 
 /// The thesis' name of the vehicle's frame.
 constexpr const char* vehicle_name = "drone";
+constexpr bool kept = true;  ///< the last message, for those who subscribe later
 
 geometry_msgs::TransformStamped same_place(const std::string& parent, const std::string& child) {
   geometry_msgs::TransformStamped same;
@@ -22,7 +23,7 @@ Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
                      const KeptPublisher<rosgraph_msgs::Clock>& clock,
                      const std::string& frame_prefix, bool rotor_tf)
     : odometry_topic_(simulation), clock_publisher_(clock), path_(nh) {
-  joint_states_publisher_ = {nh, "joint_states", 100};
+  joint_states_publisher_ = nh.advertise<sensor_msgs::JointState>("joint_states", 100, kept);
   const Model& model = simulation.model();
   joint_states_.name = model.joint_names();
   if (odometry_topic_.exists()) {
@@ -36,19 +37,19 @@ Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
 
 void Broadcast::advertise_odometry(ros::NodeHandle& nh, const std::string& frame_prefix,
                                    const Model& model, bool rotor_tf) {
-  odometry_publisher_ = {nh, OdometryTopic::name, 1000};
-  truth_publisher_ = {nh, "ground_truth/odometry", 1000};
+  odometry_publisher_ = nh.advertise<nav_msgs::Odometry>(OdometryTopic::name, 1000, kept);
+  truth_publisher_ = nh.advertise<nav_msgs::Odometry>("ground_truth/odometry", 1000, kept);
   const std::string vehicle_frame = frame_prefix + vehicle_name;
   set_frames(odometry_, vehicle_frame);
   set_frames(truth_, vehicle_frame);
   if (!odometry_topic_.publishes_tf()) return;
-  tf_publisher_ = {nh, "/tf", 100};
+  tf_publisher_ = nh.advertise<tf2_msgs::TFMessage>("/tf", 100, kept);
   transforms_.transforms.push_back(same_place(world_frame, vehicle_frame));
   if (rotor_tf) add_rotor_frames(model, frame_prefix);
   const std::string root_frame = frame_prefix + model.links.front().name;
   if (root_frame == vehicle_frame) return;
   // robot_state_publisher begins at the URDF's root link, tf at the thesis' "drone".
-  static_tf_publisher_ = {nh, "/tf_static", 100};
+  static_tf_publisher_ = nh.advertise<tf2_msgs::TFMessage>("/tf_static", 100, kept);
   tf2_msgs::TFMessage message;
   message.transforms.push_back(same_place(vehicle_frame, root_frame));
   static_tf_publisher_.publish(message);

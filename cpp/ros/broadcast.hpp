@@ -51,11 +51,11 @@ class Broadcast {
   Thinned joint_states_due_{50};
 
   KeptPublisher<rosgraph_msgs::Clock> clock_publisher_;
-  KeptPublisher<nav_msgs::Odometry> odometry_publisher_;
-  KeptPublisher<nav_msgs::Odometry> truth_publisher_;
-  KeptPublisher<tf2_msgs::TFMessage> tf_publisher_;
-  KeptPublisher<tf2_msgs::TFMessage> static_tf_publisher_;
-  KeptPublisher<sensor_msgs::JointState> joint_states_publisher_;
+  ros::Publisher odometry_publisher_;
+  ros::Publisher truth_publisher_;
+  ros::Publisher tf_publisher_;
+  ros::Publisher static_tf_publisher_;
+  ros::Publisher joint_states_publisher_;
   PathTopic path_;
   std::optional<TopicBroadcast> others_;
 

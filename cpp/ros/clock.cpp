@@ -17,7 +17,7 @@ using Wall = std::chrono::steady_clock;
 /// Followers tell how far they are at least so often.
 constexpr auto longest_silence = std::chrono::seconds(1);
 /// By then a connection to the leader has been made, or has failed.
-constexpr auto time_to_connect = std::chrono::seconds(5);
+constexpr auto longest_connecting = std::chrono::seconds(5);
 /// They tell it after each such piece of time [s of simulation].
 constexpr double telling_period = longest_lead / 4;
 
@@ -115,7 +115,7 @@ void ClockFollower::reached(double time) {
 void ClockFollower::tell(const FlightReport& report) {
   if (report.waits_for_clock) {
     // A leader keeps its clock for those who come; roscpp does not try a connection twice.
-    if (Wall::now() - subscribed_ > time_to_connect) subscribe();
+    if (Wall::now() - subscribed_ > longest_connecting) subscribe();
     return;
   }
   if (report.paused || !report.failure.empty()) {

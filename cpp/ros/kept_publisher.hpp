@@ -9,10 +9,10 @@
 
 namespace quadcore::node {
 
-/// Publishes a topic and keeps the last message for those who subscribe later, so that a paused
-/// flight is seen, too. roscpp's own latch sends that one beside what is being published, and may
-/// do so after a later message: a clock would step back. Copies share the topic; an empty one has
-/// none.
+/// Publishes a topic and keeps the last message for those who subscribe later. roscpp's own latch
+/// sends that one beside what is being published, and may do so after a later message: a clock
+/// would step back. This one may send a message twice, which only a clock bears. Copies share the
+/// topic; an empty one has none.
 template <class Message>
 class KeptPublisher {
  public:

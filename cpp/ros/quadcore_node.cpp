@@ -109,6 +109,9 @@ void run(const EndSignal& end_signal) {
   }
   Listener listener(broadcast, inlets, simulation, topic, std::move(log),
                     follower ? &*follower : nullptr);
+  ROS_INFO("flying %s with engine %s, commands on %s%s", simulation.model().name.c_str(),
+           simulation.engine_name().c_str(), topic.c_str(),
+           flight_settings.lockstep ? ", one for each odometry message" : "");
   FlightThread flight(simulation, flight_settings, listener);
   std::optional<ClockLeader> leader;
   if (clock) leader.emplace(nh, flight);
@@ -122,9 +125,6 @@ void run(const EndSignal& end_signal) {
   Diagnostics diagnostics(nh, flight.report(), topic);
   ros::AsyncSpinner spinner(1);
   spinner.start();
-  ROS_INFO("flying %s with engine %s, commands on %s%s", simulation.model().name.c_str(),
-           simulation.engine_name().c_str(), topic.c_str(),
-           flight_settings.lockstep ? ", one for each odometry message" : "");
 
   Wall::time_point due = Wall::now() + std::chrono::seconds(1);
   while (ros::ok() && !end_signal.has_come()) {

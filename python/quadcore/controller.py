@@ -12,6 +12,7 @@ from . import _core
 from ._core import InputError, odometry_parts
 
 DEFAULT_RATE = 500.0  # 1/s
+_LOWEST_RATE = 1e-6  # 1/s
 
 _SENSED = "odom"
 
@@ -94,8 +95,9 @@ class Guided:
                 "controller(t, state, reference)"
             )
         rate = getattr(controller, "rate", DEFAULT_RATE)
-        if not (isinstance(rate, Real) and 0 < float(rate) < math.inf):
-            raise InputError(f"controller: its rate is {rate!r}; give calls per second, > 0")
+        if not (isinstance(rate, Real) and _LOWEST_RATE <= float(rate) < math.inf):
+            least = f"{_LOWEST_RATE:g}"
+            raise InputError(f"controller: its rate is {rate!r}; give calls per second, >= {least}")
         self.rate = float(rate)
         self._controller = controller
         sensed = simulation.topics.get(_SENSED)

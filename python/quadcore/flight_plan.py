@@ -63,6 +63,22 @@ class FlightPlan:
     wrenches: bool = True
     topics: Tuple[str, ...] = ()
 
+    def __post_init__(self) -> None:
+        """Bring what was given into the form in which it is kept and compared."""
+        kept = {
+            "dt": None if self.dt is None else float(self.dt),
+            "seed": whole(self.seed),
+            "parameters": {key: text_of(value) for key, value in self.parameters.items()},
+            "spawn": pose(self.spawn),
+            "duration": float(self.duration),
+            "log_every": int(self.log_every),
+            "wrenches": bool(self.wrenches),
+        }
+        if self.rotor_velocity is not None:
+            kept["rotor_velocity"] = tuple(float(rate) for rate in self.rotor_velocity)
+        for name, value in kept.items():
+            object.__setattr__(self, name, value)
+
     @classmethod
     def of(
         cls,
@@ -94,9 +110,9 @@ class FlightPlan:
         """
         plan = cls(
             *read_both(model, world, xacro_args, ignore),
-            parameters={key: text_of(value) for key, value in (parameters or {}).items()},
-            spawn=pose(spawn),
-            seed=whole(seed),
+            parameters=parameters or {},  # type: ignore[arg-type]
+            spawn=tuple(spawn),
+            seed=seed,
             **others,
         )
         return plan if commands is None else plan.commanded(commands)

@@ -93,6 +93,24 @@ class Simulation(_core.Simulation):
         doc="The state now, as live read-only views; `state.copy()` is free.",
     )
 
+    def restore(self, snapshot: _core.Snapshot, *, allow: Sequence[str] = ()) -> None:
+        """Go back to a snapshot, bit for bit, its seed included.
+
+        Parameters
+        ----------
+        snapshot : Snapshot
+            Of this simulation, or of one that is alike, in whatever process.
+        allow : sequence of str
+            What may differ on purpose: "world", "parameters". This simulation's hold.
+
+        Raises
+        ------
+        InputError
+            It was taken from another simulation, with what differs, or is damaged; nothing has
+            changed then.
+        """
+        super().restore(snapshot, list(allow))
+
     def reset(self, seed: Optional[int] = None) -> None:
         """Go back to the moment of construction, bit for bit.
 

@@ -149,7 +149,7 @@ class WithoutRate:
     ("arguments", "says"),
     [
         ({"controller": 5}, "controller is 5; give a function, or an object, that is called as"),
-        ({"controller": WithoutRate()}, "its rate is 'often'; give calls per second, > 0"),
+        ({"controller": WithoutRate()}, "its rate is 'often'; give calls per second, >= 1e-06"),
         ({"controller": Law(0)}, "its rate is 0; give"),
         ({"controller": Law(np.inf)}, "its rate is inf; give"),
         ({"controller": Law(), "commands": MANOEUVRE}, "commands or a controller; give one"),

@@ -59,11 +59,16 @@ Facts facts_of(const Model& model) {
     add(facts, who + " implicit damping", {joint.implicit_damping ? 1.0 : 0.0});
     add(facts, who + " friction", {joint.friction});
   }
+  for (const auto& [link, body] : model.body_of_link) {
+    add(facts, "link " + link + " body", {static_cast<double>(body)});
+    add(facts, "link " + link + " place in its body", numbers(model.pose_of_link.at(link)));
+  }
   return facts;
 }
 
 Facts facts_of(const World& world) {
   Facts facts;
+  add(facts, "max_step_size", {world.max_step_size});
   add(facts, "gravity", numbers(world.gravity_W));
   add(facts, "wind", numbers(world.wind_W));
   add(facts, "ground plane", {world.ground_plane ? 1.0 : 0.0});

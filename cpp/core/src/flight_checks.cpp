@@ -1,6 +1,8 @@
 #include "flight_checks.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include "quadcore/error.hpp"
@@ -33,6 +35,18 @@ bool is_sane(const Kinematics& k) {
     sane = sane && std::abs(k.rotors[i].rate) < max_rate;
   }
   return sane;
+}
+
+void check_snapshot(const Snapshot& snapshot, Eigen::Index plugin_state) {
+  constexpr std::int64_t most_steps = std::int64_t{1} << 53;  // all of which a double tells apart
+  const auto is_finite = [](double number) { return std::isfinite(number); };
+  const std::vector<double>& engine = snapshot.engine;
+  const bool flies = snapshot.failure.empty();  // a motion that failed may hold anything
+  const bool good = snapshot.taken_from && snapshot.plugin_state.size() == plugin_state &&
+                    std::abs(snapshot.start_time) <= max_time && snapshot.steps >= 0 &&
+                    snapshot.steps <= most_steps &&
+                    (!flies || std::all_of(engine.begin(), engine.end(), is_finite));
+  if (!good) throw InputError("snapshot: is damaged; take it anew");
 }
 
 void check_state(const VehicleState& state, Eigen::Index rotors) {

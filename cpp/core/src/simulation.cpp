@@ -43,11 +43,10 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
   start.position = options.spawn.xyz;
   start.orientation = options.spawn.rotation();
   try {
-    take_along(plugin_state_);
+    take_along();
     prepare_plugins();
   } catch (...) {
-    throw InputError((active_ ? active_->who + " (" + active_->path + "): " : "") +
-                     what_was_thrown());
+    throw InputError(blamed());
   }
   place(start);
   initial_ = snapshot();
@@ -66,7 +65,7 @@ void Simulation::step(std::int64_t n) {
   try {
     for (; n > 0; --n) {
       update();
-      take_along(plugin_state_);
+      take_along();
       engine_->step(time(), dt_, *this);
       ++steps_;
       check_flight();
@@ -77,6 +76,10 @@ void Simulation::step(std::int64_t n) {
   } catch (...) {
     fail(what_was_thrown());
   }
+}
+
+std::string Simulation::blamed() const {
+  return (active_ ? active_->who + " (" + active_->path + "): " : "") + what_was_thrown();
 }
 
 void Simulation::fail(const std::string& what) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "flight_checks.hpp"
+#include "laden_model.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/simulation.hpp"
 #include "quadcore/text.hpp"
@@ -71,8 +72,8 @@ void Simulation::refuse(const Kinematics& kinematics, Loads& loads) const {
   ForceField::refuse(kinematics, loads);
 }
 
-void Simulation::take_along(const VectorXd& plugin_state) {
-  if (with_.carried.empty()) return;
+std::unique_ptr<Engine> Simulation::another_engine(const VectorXd& plugin_state) {
+  if (with_.carried.empty()) return nullptr;
   asked_.clear();
   bool changed = false;
   for (const LoadedPlugin* const p : with_.carried) {
@@ -86,12 +87,21 @@ void Simulation::take_along(const VectorXd& plugin_state) {
     }
   }
   active_ = nullptr;
-  if (!changed && asked_.size() == carried_.size()) return;
-  std::unique_ptr<Engine> engine = make_engine(engine_name_, with_carried(model_, asked_), world_);
-  engine_->get_state(state_);
-  engine->set_state(state_);
+  if (!changed && asked_.size() == carried_.size()) return nullptr;
+  return make_engine(engine_name_, with_carried(model_, asked_), world_);
+}
+
+void Simulation::change_to(std::unique_ptr<Engine> engine) {
   engine_ = std::move(engine);
   carried_ = asked_;
+}
+
+void Simulation::take_along() {
+  std::unique_ptr<Engine> engine = another_engine(plugin_state_);
+  if (!engine) return;
+  engine_->get_state(state_);
+  engine->set_state(state_);
+  change_to(std::move(engine));
   show_instant();
 }
 

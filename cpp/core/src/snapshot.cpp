@@ -1,3 +1,4 @@
+#include "flight_checks.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/random.hpp"
 #include "quadcore/simulation.hpp"
@@ -19,18 +20,20 @@ Snapshot Simulation::snapshot() const {
 
 void Simulation::restore(const Snapshot& snapshot, const Allowed& allowed) {
   if (snapshot.taken_from != fingerprint_) {
+    check_snapshot(snapshot, plugin_state_.size());
     check_same(*snapshot.taken_from, *fingerprint_, allowed);
-    if (snapshot.plugin_state.size() != plugin_state_.size()) {
-      throw InputError("snapshot: is damaged; take it anew");
-    }
   }
   topics_.check(snapshot.messages);
+  std::unique_ptr<Engine> engine;
   try {
-    take_along(snapshot.plugin_state);
+    engine = another_engine(snapshot.plugin_state);
   } catch (...) {
-    fail(what_was_thrown());
+    const std::string why = blamed();
+    leave();
+    throw InputError(why);
   }
-  engine_->restore(snapshot.engine);
+  (engine ? *engine : *engine_).restore(snapshot.engine);
+  if (engine) change_to(std::move(engine));
   start_time_ = snapshot.start_time;
   steps_ = snapshot.steps;
   plant_seed(snapshot.seed);
@@ -39,8 +42,12 @@ void Simulation::restore(const Snapshot& snapshot, const Allowed& allowed) {
   warnings_.resize(warnings_at_load_);
   warnings_.insert(warnings_.end(), snapshot.warnings.begin(), snapshot.warnings.end());
   failure_ = snapshot.failure;
-  show_instant();
-  show_state();
+  try {
+    show_instant();
+    show_state();
+  } catch (...) {
+    fail(what_was_thrown());
+  }
 }
 
 void Simulation::reset(std::uint64_t seed) {

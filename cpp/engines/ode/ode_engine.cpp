@@ -227,7 +227,8 @@ void OdeEngine::restore(const std::vector<double>& saved) {
     std::copy_n(from + rows_per_hinge, rows_per_hinge, start.velocity.begin());
     from += 2 * rows_per_hinge;
   }
-  steps_since_contact_ = static_cast<int>(*from);
+  steps_since_contact_ =
+      *from >= 0 && *from < steps_beside_contact ? static_cast<int>(*from) : steps_beside_contact;
   vehicle_->show(kinematics_);
 }
 

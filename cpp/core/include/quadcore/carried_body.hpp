@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string_view>
-#include <vector>
 
 #include "quadcore/model.hpp"
 
@@ -13,15 +12,5 @@ struct CarriedBody {
   Pose pose;              ///< of the body in the frame
   Inertial inertial;      ///< in the body's own axes
 };
-
-bool operator==(const CarriedBody& a, const CarriedBody& b);
-
-/// Throws Error on a body that no link could be, or that has the name of a link or of a body before
-/// it in the list.
-void check_carried(const std::vector<CarriedBody>& bodies, std::size_t i, const Model& model);
-
-/// The model with a link on a fixed joint, both of the body's name, for each of the bodies, the
-/// last of its URDF. Every engine lumps them as it does those that the URDF itself has there.
-Model with_carried(const Model& model, const std::vector<CarriedBody>& bodies);
 
 }  // namespace quadcore

@@ -31,7 +31,7 @@ struct Fingerprint {
   Facts step;        ///< [s]
   Facts model;       ///< links and joints, without plugins
   Facts plugins;     ///< names, modules, sizes of state, topics
-  Facts world;       ///< as it is felt; without its step
+  Facts world;       ///< as it is felt
   Facts parameters;  ///< every effective one, as PLUGIN.TAG
 
   Fingerprint() = default;

@@ -85,7 +85,10 @@ class Simulation : private ForceField {
   const std::string& engine_name() const { return engine_name_; }
   /// How the engine takes its steps, in one line for a person.
   std::string method() const { return engine_->method(); }
+  /// As the engine flies it, with what rides on its frame now.
   const Model& model() const { return engine_->model(); }
+  std::size_t rotor_count() const { return model_.joints.size(); }
+  std::vector<std::string> rotor_names() const { return model_.joint_names(); }
   const World& world() const { return world_; }
   const Fingerprint& fingerprint() const { return *fingerprint_; }
   const VehicleState& state() const { return state_; }
@@ -127,8 +130,14 @@ class Simulation : private ForceField {
   Wrench probe(Eigen::Index rotor, double rate);
   void plant_seed(std::uint64_t seed);
   void place(const VehicleState& state);
-  /// Makes the engine anew if, with this state of the plugins, something else rides on the frame.
-  void take_along(const VectorXd& plugin_state);
+  /// The engine for what rides on the frame with this state of the plugins; null if that is the
+  /// present one.
+  std::unique_ptr<Engine> another_engine(const VectorXd& plugin_state);
+  void change_to(std::unique_ptr<Engine> engine);
+  /// Lets another engine, if there must be one, go on as the frame moves.
+  void take_along();
+  /// Who is to blame, and why.
+  std::string blamed() const;
   void begin();  ///< lets the sensors know where the motion begins
   void check_flight() const;
   /// What to do about a motion that got out of hand, or the warning that told it.

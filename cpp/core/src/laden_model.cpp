@@ -1,4 +1,4 @@
-#include "quadcore/carried_body.hpp"
+#include "laden_model.hpp"
 
 #include <cmath>
 #include <string>
