@@ -111,7 +111,7 @@ class FlightPlan:
         plan = cls(
             *read_both(model, world, xacro_args, ignore),
             parameters=parameters or {},  # type: ignore[arg-type]
-            spawn=tuple(spawn),
+            spawn=pose(spawn),
             seed=seed,
             **others,
         )

@@ -93,7 +93,9 @@ class Simulation(_core.Simulation):
         doc="The state now, as live read-only views; `state.copy()` is free.",
     )
 
-    def restore(self, snapshot: _core.Snapshot, *, allow: Sequence[str] = ()) -> None:
+    def restore(  # type: ignore[override]  # pybind11 2.4 has no keyword-only arguments
+        self, snapshot: _core.Snapshot, *, allow: Sequence[str] = ()
+    ) -> None:
         """Go back to a snapshot, bit for bit, its seed included.
 
         Parameters

@@ -102,7 +102,7 @@ def test_a_plan_is_the_same_however_its_numbers_are_written():
         plan,
         spawn=(0, 0, 5.0, 0, 0, 0),
         seed=np.int64(3),
-        parameters={name: 1 for name in slow},
+        parameters=dict.fromkeys(slow, 1),
         log_every=np.int64(2),
     )
     assert one.fingerprint() == other.fingerprint() != plan.fingerprint()
