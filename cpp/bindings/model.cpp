@@ -30,7 +30,7 @@ const Source& source_of(const std::shared_ptr<const Source>& source) {
 template <class Read>
 auto by_document(Read (*read)(const Document&, const std::vector<std::string>&)) {
   return py::pickle(
-      [](const Built<Read>& held) {
+      [](const Built<Read>& held) -> py::object {
         const auto& [document, ignore] = source_of(held->source);
         return py::make_tuple(version, document.name, document.text, document.lines, ignore);
       },

@@ -35,7 +35,7 @@ py::dict fingerprint_of(const Fingerprint& fingerprint) {
   return parts;
 }
 
-py::dict saved(const Built<Snapshot>& held) {
+py::object saved(const Built<Snapshot>& held) {
   const Snapshot& snapshot = *held;
   py::list messages;
   for (const Message& m : snapshot.messages) {
