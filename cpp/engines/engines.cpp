@@ -52,6 +52,11 @@ const EngineEntry& entry(const std::string& name) {
 
 }  // namespace
 
+const ForceLaws& ForceField::laws() const {
+  static const ForceLaws none;
+  return none;
+}
+
 void ForceField::refuse(const Kinematics&, Loads&) const {
   throw Error("a force or torque is not a finite number");
 }

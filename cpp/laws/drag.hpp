@@ -19,8 +19,8 @@ QUADCORE_LAW Vec3<T> rotor_drag(const RotorDisc<T>& disc, K coefficient) {
 /// \param K    parasiticDragCoeff [N s^2/m^2]
 /// \param speed  |V| [m/s]
 /// \return     force on the frame in F [N]
-template <class T, class C>
-QUADCORE_LAW Vec3<T> parasitic_drag(const Vec3<T>& V_F, T speed, C K) {
+template <class Vector>
+QUADCORE_LAW Vector parasitic_drag(const Vector& V_F, double speed, double K) {
   return (-K * speed) * V_F;
 }
 

@@ -1,17 +1,9 @@
 #pragma once
 
+#include "quadcore/lane_laws.hpp"
 #include "rotor_disc.hpp"
 
 namespace quadcore::laws {
-
-/// Blade flapping coefficients, thesis eqs. (2.26), (2.27).
-struct Flapping {
-  double A1c;     ///< rad
-  double A1s;     ///< rad
-  double B1;      ///< s/rad
-  double B2;      ///< s/rad
-  double radius;  ///< r, rotor radius [m]
-};
 
 /// Blade flapping, thesis eq. (2.25) as corrected: F = T/|w| (A V_p + B nu) at the rotor's centre
 /// of mass, in the body's non-spinning axes, with T/|w| = k |w|, s = sign(w) and

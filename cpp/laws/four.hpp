@@ -45,6 +45,16 @@ QUADCORE_LAW void store_vector(double* to, const Four& a) {
   to[2] = a[2];
 }
 
+/// The vector for every lane.
+template <class T>
+QUADCORE_LAW Vec3<T> broadcast(const Four& a) {
+  if constexpr (lanes_of<T> == 4) {
+    return {permuted<0, 0, 0, 0>(a), permuted<1, 1, 1, 1>(a), permuted<2, 2, 2, 2>(a)};
+  } else {
+    return {broadcast<T>(a[0]), broadcast<T>(a[1]), broadcast<T>(a[2])};
+  }
+}
+
 /// A matrix, column by column.
 struct Columns {
   Four x, y, z;
@@ -62,20 +72,23 @@ struct Rotation {
   Columns to, from;
 };
 
-/// Of a unit quaternion q = (u, w): (1 - 2 u.u) 1 + 2 u u^T + 2 w [u x], and the inverse with -u.
+/// The matrix with a diagonal d, and s and r off it: (d0, s1, r2), (r0, d1, s2), (s0, r1, d2).
+QUADCORE_LAW Columns columns(const Four& d, const Four& s, const Four& r) {
+  return {chosen<0, 1, 6, 3>(chosen<0, 5, 2, 3>(d, s), r),
+          chosen<4, 1, 2, 3>(chosen<0, 1, 6, 3>(d, s), r),
+          chosen<0, 5, 2, 3>(chosen<4, 1, 2, 3>(d, s), r)};
+}
+
+/// Of a unit quaternion q = (u, w): 1 - 2 (u.u 1 - u u^T) + 2 w [u x], and the inverse with -w.
 QUADCORE_LAW Rotation rotation(const Four& q) {
-  const Four twice = first_three(q + q);
-  const Four by_x = permuted<0, 0, 0, 0>(q) * twice, by_y = permuted<1, 1, 1, 1>(q) * twice;
-  const Four by_z = permuted<2, 2, 2, 2>(q) * twice, by_w = permuted<3, 3, 3, 3>(q) * twice;
-  const Four rest = broadcast<Four>(1 - (by_x[0] + by_y[1] + by_z[2]));
-  const Four even_x = by_x + from_bits<Four>(bits(rest) & BitsOf<Four>{-1, 0, 0, 0});
-  const Four even_y = by_y + from_bits<Four>(bits(rest) & BitsOf<Four>{0, -1, 0, 0});
-  const Four even_z = by_z + from_bits<Four>(bits(rest) & BitsOf<Four>{0, 0, -1, 0});
-  const Four odd_x = negated<0, 0, 1, 0>(permuted<3, 2, 1, 3>(by_w));
-  const Four odd_y = negated<1, 0, 0, 0>(permuted<2, 3, 0, 3>(by_w));
-  const Four odd_z = negated<0, 1, 0, 0>(permuted<1, 0, 3, 3>(by_w));
-  return {{even_x + odd_x, even_y + odd_y, even_z + odd_z},
-          {even_x - odd_x, even_y - odd_y, even_z - odd_z}};
+  const Four next = permuted<1, 2, 0, 3>(q), after = permuted<2, 0, 1, 3>(q);
+  const Four twice = q + q, next_twice = next + next, after_twice = after + after;
+  const Four w = permuted<3, 3, 3, 3>(q);
+  const Four by_next = twice * next, w_after = w * after_twice;
+  const Four by_after = twice * after, w_next = w * next_twice;
+  const Four diagonal = first_three(1 - (next_twice * next + after_twice * after));
+  return {columns(diagonal, by_after + w_next, by_next - w_after),
+          columns(diagonal, by_after - w_next, by_next + w_after)};
 }
 
 /// sum + the vectors of a pack of rotors, one after another.

@@ -16,21 +16,17 @@ namespace quadcore::laws {
 /// Eliminating dW_i/dt leaves (I_C - sum J_i a_i a_i^T) dw/dt = tau - w x H - sum q_i a_i.
 /// \file
 
-/// What a rotor contributes to the equations of the frame.
-template <class T>
-struct RotorShare {
-  Vec3<T> f_F;    ///< force [N]
-  Vec3<T> tau_F;  ///< torque about F's origin, less q_i a_i and w x J_i W_i a_i [N m]
-};
-
+/// What a rotor contributes to the torque about C, less q_i a_i and w x J_i W_i a_i [N m].
+/// \param p_CRcm_F    from C to the rotor's centre of mass [m]
+/// \param f_F         force on it there [N]
 /// \param reaction_F  torque of the rotor on the frame [N m]
 /// \param q           torque of the joint [N m]
 template <class T>
-QUADCORE_LAW RotorShare<T> rotor_share(const Vec3<T>& w_WF_F, const Vec3<T>& axis_F,
-                                       const Vec3<T>& p_FRcm_F, T moment, T rate,
-                                       const Vec3<T>& f_F, const Vec3<T>& reaction_F, T q) {
-  return {f_F,
-          cross(p_FRcm_F, f_F) + reaction_F - q * axis_F - (moment * rate) * cross(w_WF_F, axis_F)};
+QUADCORE_LAW Vec3<T> rotor_torque(const Vec3<T>& w_WF_F, const Vec3<T>& axis_F,
+                                  const Vec3<T>& p_CRcm_F, T moment, T rate, const Vec3<T>& f_F,
+                                  const Vec3<T>& reaction_F, T q) {
+  return (reaction_F - (q * axis_F + (moment * rate) * cross(w_WF_F, axis_F))) +
+         cross(p_CRcm_F, f_F);
 }
 
 /// dw/dt of the frame, in F [rad/s^2].

@@ -21,7 +21,7 @@ constexpr double max_time = 1e9;  // s; far beyond, a step no longer moves the c
 
 bool is_finite(const Kinematics& k) {
   double rates = 0;
-  for (std::size_t i = 0; i < k.rotors.size(); ++i) rates += k.rotors[i].rate;
+  for (std::size_t i = 0; i < k.rotors.size(); ++i) rates += k.rotors.number(MotionRow::rate, i);
   return k.p_WF.allFinite() && k.q_WF.coeffs().allFinite() && k.v_WF_F.allFinite() &&
          k.w_WF_F.allFinite() && std::isfinite(rates);
 }
@@ -32,7 +32,7 @@ bool is_sane(const Kinematics& k) {
               k.v_WF_F.squaredNorm() < max_speed * max_speed &&
               k.w_WF_F.squaredNorm() < max_rate * max_rate;
   for (std::size_t i = 0; i < k.rotors.size(); ++i) {
-    sane = sane && std::abs(k.rotors[i].rate) < max_rate;
+    sane = sane && std::abs(k.rotors.number(MotionRow::rate, i)) < max_rate;
   }
   return sane;
 }

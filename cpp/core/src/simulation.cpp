@@ -45,6 +45,7 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
   try {
     take_along();
     prepare_plugins();
+    gather_laws();
   } catch (...) {
     throw InputError(blamed());
   }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <utility>
 
 #include "flight_checks.hpp"
 #include "laden_model.hpp"
@@ -18,10 +19,22 @@ void Simulation::note_hooks() {
   for (const LoadedPlugin& p : plugins_) {
     const Hooks& hooks = p.descriptor->create.hooks;
     if (hooks.forces) with_.forces.push_back(&p);
+    if (hooks.forces && !hooks.laws) with_.forces_without_laws.push_back(&p);
     if (hooks.air) with_.air.push_back(&p);
     if (hooks.carried) with_.carried.push_back(&p);
   }
   windy_ = !world_.wind_W.isZero(0) || !with_.air.empty();
+}
+
+void Simulation::gather_laws() {
+  laws_.clear();
+  for (const LoadedPlugin* const p : with_.forces) {
+    if (!p->descriptor->create.hooks.laws) continue;
+    active_ = p;
+    p->plugin->laws(std::as_const(*this).state_of(*p), laws_);
+  }
+  active_ = nullptr;
+  laws_.complete = !windy_ && with_.forces_without_laws.empty();
 }
 
 void Simulation::show_instant() {
@@ -44,12 +57,18 @@ void Simulation::blow(Kinematics& kinematics) const {
 
 void Simulation::evaluate(Kinematics& kinematics, Loads& loads) const {
   if (windy_) blow(kinematics);
-  push(kinematics, loads);
+  push(with_.forces, kinematics, loads);
 }
 
-void Simulation::push(const Kinematics& kinematics, Loads& loads) const {
+void Simulation::evaluate_rest(Kinematics& kinematics, Loads& loads) const {
+  if (windy_) blow(kinematics);
+  push(with_.forces_without_laws, kinematics, loads);
+}
+
+void Simulation::push(const std::vector<const LoadedPlugin*>& plugins, const Kinematics& kinematics,
+                      Loads& loads) const {
   Wrench* const terms = loads.terms();
-  for (const LoadedPlugin* const p : with_.forces) {
+  for (const LoadedPlugin* const p : plugins) {
     if (terms) {
       loads.record_terms(terms + p->term_begin, p->descriptor->wrenches.size(), &kinematics);
     }

@@ -54,7 +54,7 @@ Wrench Simulation::probe(Eigen::Index rotor, double rate) {
   Kinematics& k = engine_->kinematics();
   k.v_WA_F.setZero();
   Loads loads(k.rotors.size());
-  push(k, loads);
+  push(with_.forces, k, loads);
   Wrench sum = loads.frame();
   for (std::size_t i = 0; i < k.rotors.size(); ++i) {
     const Vector3d f_F = loads.rotor_force_F(i);

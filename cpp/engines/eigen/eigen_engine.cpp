@@ -40,7 +40,8 @@ EigenEngine::EigenEngine(const Model& model, const World& world)
       state_(GyrostatState::joints +
              RotorRows<GyrostatState::joint_rows>::size_of(model.joints.size())),
       stage_(state_),
-      sum_(state_) {
+      sum_(state_),
+      joint_torques_(RotorRows<1>::size_of(model.joints.size())) {
   refuse_tags(model_);
   if (ground_) check_collisions(model_);
   kinematics_.p_FCcm_F = body_.p_FCcm_F;
@@ -50,7 +51,7 @@ EigenEngine::EigenEngine(const Model& model, const World& world)
     const Vector3d axis_F = body_.rotors.vector(RotorConstant::axis_F, i);
     rotors.set_vector(MotionRow::axis, i, axis_F);
     rotors.set_vector(MotionRow::normal, i, R_FR.col(2));
-    rotors.set_vector(MotionRow::p_FRcm, i, body_.rotors.vector(RotorConstant::p_FRcm_F, i));
+    rotors.set_vector(MotionRow::p_FRcm, i, body_.p_FRcm_F[i]);
     rotors.set_matrix(MotionRow::R_FR_at_zero, i, R_FR);
   }
   static constexpr laws::ForEachWidth<void(const GyrostatStep&, const double*)> shows{
@@ -68,13 +69,11 @@ EigenEngine::EigenEngine(const Model& model, const World& world)
 GyrostatStep EigenEngine::view() {
   Kinematics& k = kinematics_;
   GyrostatStep g;
-  g.rotors = {k.rotors.data(), loads_.rotors().data(), k.rotors.size(), false};
+  g.rotors = k.rotors.size();
   g.constants = body_.rotors.data();
   g.normals_turn = std::any_of(model_.joints.begin(), model_.joints.end(), [](const Joint& joint) {
     return !joint.axis.cross(Vector3d::UnitZ()).isZero(0);
   });
-  g.centered = std::all_of(model_.links.begin() + 1, model_.links.end(),
-                           [](const Link& link) { return link.inertial.pose.xyz.isZero(0); });
   g.inverse_mass = body_.inverse_mass;
   const auto copy = [](const Vector3d& from, double (&to)[4]) {
     std::copy(from.data(), from.data() + 3, to);
@@ -93,12 +92,16 @@ GyrostatStep EigenEngine::view() {
   g.state = state_.data();
   g.stage = stage_.data();
   g.sum = sum_.data();
-  g.columns_of_R_WF = columns_of_R_WF_;
+  g.joint_torques = joint_torques_.data();
   g.frame = k.numbers();
   g.motion = k.rotors.data();
+  g.loads = loads_.rotors().data();
   g.frame_force_F = loads_.on_frame().force_F.data();
   g.frame_torque_F = loads_.on_frame().torque_F.data();
-  g.evaluate = [](void* engine) { static_cast<EigenEngine*>(engine)->evaluate(); };
+  g.rotor_forces = {};
+  g.frame_drags = {};
+  g.motor_torques = {};
+  g.evaluate_rest = nullptr;
   g.refuse = [](void* engine) { static_cast<EigenEngine*>(engine)->refuse(); };
   g.engine = this;
   return g;
@@ -106,13 +109,22 @@ GyrostatStep EigenEngine::view() {
 
 void EigenEngine::step(double time, double dt, const ForceField& forces) {
   forces_ = &forces;
+  const auto put = [](const auto& from, auto& to) { to = {from.data(), from.size()}; };
+  const ForceLaws& laws = forces.laws();
+  put(laws.rotor_forces, step_.rotor_forces);
+  put(laws.frame_drags, step_.frame_drags);
+  put(laws.motor_torques, step_.motor_torques);
+  step_.evaluate_rest = nullptr;
+  if (!laws.complete) {
+    step_.evaluate_rest = [](void* engine) { static_cast<EigenEngine*>(engine)->evaluate_rest(); };
+  }
   advance_(step_, time, dt);
   if (ground_) refuse_ground();
 }
 
-void EigenEngine::evaluate() {
+void EigenEngine::evaluate_rest() {
   loads_.clear_frame();
-  forces_->evaluate(kinematics_, loads_);
+  forces_->evaluate_rest(kinematics_, loads_);
 }
 
 void EigenEngine::refuse() { forces_->refuse(kinematics_, loads_); }

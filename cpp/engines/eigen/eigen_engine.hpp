@@ -26,7 +26,7 @@ class EigenEngine final : public Engine {
   /// The step's view of this engine; it points into the members below.
   GyrostatStep view();
   void show();
-  void evaluate();
+  void evaluate_rest();
   void refuse();
   void refuse_ground() const;
 
@@ -37,7 +37,7 @@ class EigenEngine final : public Engine {
   Kinematics kinematics_;
   Loads loads_;
   LaneNumbers state_, stage_, sum_;
-  alignas(32) double columns_of_R_WF_[3][4];
+  LaneNumbers joint_torques_;
   GyrostatStep step_;
   void (*show_)(const GyrostatStep&, const double*);
   void (*advance_)(const GyrostatStep&, double, double);

@@ -45,12 +45,13 @@ Gyrostat::Gyrostat(const Model& model) : rotors(model.joints.size()) {
     check(model, i);
     const Joint& joint = model.joints[i];
     const Inertial& inertial = model.links[i + 1].inertial;
+    p_FRcm_F.push_back(poses[i + 1] * inertial.pose.xyz);
     R_FR_at_zero.push_back(poses[i + 1].linear());
     const Vector3d axis_F = R_FR_at_zero.back() * joint.axis;
     const double moment = moment_about_joint(model, i);
     rotors.set_vector(RotorConstant::axis_F, i, axis_F);
-    rotors.set_vector(RotorConstant::p_FR_F, i, poses[i + 1].translation());
-    rotors.set_vector(RotorConstant::p_FRcm_F, i, poses[i + 1] * inertial.pose.xyz);
+    rotors.set_vector(RotorConstant::p_CR_F, i, poses[i + 1].translation() - p_FCcm_F);
+    rotors.set_vector(RotorConstant::p_CRcm_F, i, p_FRcm_F.back() - p_FCcm_F);
     rotors.number(RotorConstant::moment, i) = moment;
     rotors.number(RotorConstant::inverse_moment, i) = 1 / moment;
     rotors.number(RotorConstant::damping, i) = joint.damping;

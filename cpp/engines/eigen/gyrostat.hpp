@@ -13,6 +13,7 @@ struct Gyrostat {
   Matrix3d I_Ccm_F;              ///< whole vehicle [kg m^2]
   Matrix3d inverse_reduced_I_F;  ///< of I_C - sum J_i a_i a_i^T
   RotorRows<RotorConstant::count> rotors;
+  std::vector<Vector3d> p_FRcm_F;      ///< centre of mass of each rotor [m]
   std::vector<Matrix3d> R_FR_at_zero;  ///< orientation of each rotor's link at angle zero
 
   /// Throws InputError on a model that is no gyrostat: why, and which engine to use instead.

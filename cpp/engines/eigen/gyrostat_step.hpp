@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "laws/pack.hpp"
+#include "quadcore/lane_laws.hpp"
 #include "quadcore/rotor_layout.hpp"
 
 namespace quadcore {
@@ -17,8 +19,8 @@ struct GyrostatState {
 struct RotorConstant {
   enum : std::size_t {
     axis_F = 0,
-    p_FR_F = 3,
-    p_FRcm_F = 6,
+    p_CR_F = 3,    ///< the link's origin from the vehicle's centre of mass
+    p_CRcm_F = 6,  ///< the rotor's centre of mass from there
     moment = 9,
     inverse_moment = 10,
     damping = 11,
@@ -26,27 +28,41 @@ struct RotorConstant {
   };
 };
 
+/// Some laws of one kind.
+template <class Law>
+struct Laws {
+  const Law* first;
+  std::size_t count;
+
+  QUADCORE_LAW const Law* begin() const { return first; }
+  QUADCORE_LAW const Law* end() const { return first + count; }
+};
+
 /// All that a step of the gyrostat reads and writes; matrices by columns. The equations stand in
 /// cpp/laws/gyrostat.hpp.
 struct GyrostatStep {
-  RotorLanes rotors;
+  std::size_t rotors;
   const double* constants;  ///< table of RotorConstant
   bool normals_turn;        ///< some rotor's link has its z off the joint's axis
-  bool centered;            ///< the rotors' centres of mass are their links' origins
   double inverse_mass;
   double p_FCcm_F[4], gravity_W[4];               ///< a 0 behind each
   double I_C_F[3][4], inverse_reduced_I_F[3][4];  ///< columns, a 0 behind each
 
   double *state, *stage, *sum;
-  double (*columns_of_R_WF)[4];  ///< of the state that is shown, a 0 behind each
+  double* joint_torques;  ///< of each rotor, on it
 
   double* frame;                                 ///< the motion of the frame, as FrameNumber says
   double* motion;                                ///< table of MotionRow
+  double* loads;                                 ///< table of LoadRow
   const double *frame_force_F, *frame_torque_F;  ///< about F's origin
 
-  /// Evaluates the force laws: clears the frame's loads and adds to them and to the rotors'.
-  void (*evaluate)(void* engine);
-  /// Throws, because the loads are not finite.
+  Laws<RotorForces> rotor_forces;
+  Laws<FrameDrag> frame_drags;
+  Laws<MotorTorques> motor_torques;
+  /// Evaluates all else in the motion that is shown: clears the frame's loads and adds to them and
+  /// to the rotors'. Null if there is nothing else, and the air stands still.
+  void (*evaluate_rest)(void* engine);
+  /// Throws, because the loads are not finite in the motion that is shown.
   void (*refuse)(void* engine);
   void* engine;
 };
@@ -56,7 +72,7 @@ template <int W>
 void show_gyrostat(const GyrostatStep& g, const double* state);
 
 /// One step of dt from a time on [s] of the classical fourth-order Runge-Kutta method, W rotors at
-/// once. Begins with the motion of `state` shown, and ends so.
+/// once. Ends with the motion of `state` shown.
 template <int W>
 void step_gyrostat(const GyrostatStep& g, double time, double dt);
 

@@ -5,7 +5,7 @@
 #include "laws/lane_width.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
-#include "rotor_forces.hpp"
+#include "shown_motion.hpp"
 
 namespace quadcore::aerodynamic {
 namespace {
@@ -17,7 +17,7 @@ struct Config {
   double sim_slow, parasitic;
   bool appendix;  ///< dragModel
   bool on_rotor;  ///< reactionOn
-  laws::Flapping flapping;
+  Flapping flapping;
   std::vector<std::size_t> rotors;
   RotorRows<CoefficientRow::count> coefficients;  ///< 0 for the rotors of others
 
@@ -60,8 +60,8 @@ struct Config {
   RotorForces law() const {
     RotorForces law;
     law.coefficients = coefficients.data();
-    law.normal_row = appendix ? MotionRow::normal : MotionRow::axis;
-    law.velocity_row = appendix ? MotionRow::v_WR : MotionRow::v_WRcm;
+    law.across_link_z = appendix;
+    law.at_origins = appendix;
     law.meets_wind = !appendix;
     law.about_frame_z = appendix && !on_rotor;
     law.on_rotor = on_rotor;
@@ -126,7 +126,7 @@ class AerodynamicPlugin final : public Plugin {
       : config_(setup.parameters, setup.model.joints.size()),
         joint_names_(setup.model.joint_names()),
         law_(config_.law()) {
-    static constexpr laws::ForEachWidth<void(const RotorForcesNow&)> widths{
+    static constexpr laws::ForEachWidth<void(const RotorForces&, const ShownMotion&)> widths{
         &add_rotor_forces<1>, &add_rotor_forces<2>, &add_rotor_forces<4>, &add_rotor_forces<8>};
     add_ = widths[laws::lane_width(setup.model.joints.size())];
     if (config_.on_rotor) refuse_rotors_on_rotors(setup, config_);
@@ -140,7 +140,7 @@ class AerodynamicPlugin final : public Plugin {
   /// such a speed ends the flight.
   void update(const Sample& sample, PluginState state) const override {
     for (const std::size_t i : config_.rotors) {
-      if (std::abs(sample.kinematics.rotors[i].rate) * sample.dt > M_PI) {
+      if (std::abs(sample.kinematics.rotors.number(MotionRow::rate, i)) * sample.dt > M_PI) {
         throw FlightError(sample.time, "rotor '" + joint_names_[i] +
                                            "' turns more than half a turn per step; take a smaller "
                                            "step or a slower command");
@@ -157,16 +157,15 @@ class AerodynamicPlugin final : public Plugin {
   }
 
   void forces(const Kinematics& kinematics, ConstPluginState, Loads& loads) const override {
-    const RotorForcesNow now{law_,
-                             {kinematics.rotors.data(), loads.rotors().data(),
-                              kinematics.rotors.size(), kinematics.has_rotations()},
-                             kinematics.numbers()};
+    const ShownMotion shown{{kinematics.rotors.data(), loads.rotors().data(),
+                             kinematics.rotors.size(), kinematics.has_rotations()},
+                            kinematics.numbers()};
     if (loads.terms()) {
-      record(now, loads);
+      record(shown, loads);
     } else {
-      add_(now);
+      add_(law_, shown);
     }
-    if (!config_.appendix && config_.parasitic != 0) {
+    if (drags_frame()) {
       const Vector3d v_ACcm_F = kinematics.v_WCcm_F - kinematics.v_WA_F;
       loads.add_frame_force(
           kParasitic,
@@ -175,13 +174,24 @@ class AerodynamicPlugin final : public Plugin {
     }
   }
 
+  void laws(ConstPluginState, ForceLaws& laws) const override {
+    laws.rotor_forces.push_back(law_);
+    if (drags_frame()) laws.frame_drags.push_back({config_.parasitic});
+  }
+
  private:
+  /// Whether the parasitic drag is that of chapter 2, which acts on the airframe.
+  bool drags_frame() const { return !config_.appendix && config_.parasitic != 0; }
+
   /// The same loads, rotor by rotor and term by term.
-  void record(const RotorForcesNow& now, Loads& loads) const {
+  void record(const ShownMotion& shown, Loads& loads) const {
     using Row = CoefficientRow;
     for (const std::size_t i : config_.rotors) {
-      const RotorDisc<double> disc = now.disc<double>(i);
-      const auto coefficient = [&](std::size_t row) { return now.coefficient<double>(row, i); };
+      const ShownPack<double> motion{shown, i};
+      const laws::RotorDisc<double> disc = laws::disc_of<double>(law_, motion);
+      const auto coefficient = [&](std::size_t row) {
+        return laws::coefficient<double>(law_, row, i);
+      };
       const auto add = [&](Term term, const Vec3<double>& f_F) {
         loads.add_rotor_force(term, i, vector(f_F));
       };
@@ -189,12 +199,12 @@ class AerodynamicPlugin final : public Plugin {
       add(kInduced, laws::rotor_drag(disc, coefficient(Row::induced)));
       add(kTranslational, laws::rotor_drag(disc, coefficient(Row::translational)));
       add(kProfile, laws::rotor_drag(disc, coefficient(Row::profile)));
-      if (law_.parasitic) add(kParasitic, now.parasitic_F<double>(i));
-      if (law_.flaps) add(kFlapping, now.flapping_F(disc, i));
-      const double torque = now.reaction(disc, i);
-      loads.add_frame_torque(kReaction, law_.about_frame_z
-                                            ? Vector3d(0, 0, torque)
-                                            : torque * vector(now.reaction_axis_F(disc, i)));
+      if (law_.parasitic) add(kParasitic, laws::parasitic_F<double>(law_, motion, i));
+      if (law_.flaps) add(kFlapping, laws::flapping_F<double>(law_, disc, motion, i));
+      const double torque = laws::reaction_of(law_, disc, i);
+      loads.add_frame_torque(kReaction, law_.about_frame_z ? Vector3d(0, 0, torque)
+                                                           : torque * vector(laws::reaction_axis_F(
+                                                                          law_, disc, motion)));
       if (law_.on_rotor) loads.add_joint_torque(i, torque);
     }
   }
@@ -203,14 +213,14 @@ class AerodynamicPlugin final : public Plugin {
   bool drag_drives(const Kinematics& kinematics) const {
     if (!config_.appendix || config_.parasitic == 0) return false;
     return std::any_of(config_.rotors.begin(), config_.rotors.end(), [&](std::size_t i) {
-      return kinematics.R_WF.row(2).dot(kinematics.rotors[i].normal_F) < 0;
+      return kinematics.R_WF.row(2).dot(kinematics.rotors.vector(MotionRow::normal, i)) < 0;
     });
   }
 
   Config config_;
   std::vector<std::string> joint_names_;
   RotorForces law_;
-  void (*add_)(const RotorForcesNow&);
+  void (*add_)(const RotorForces&, const ShownMotion&);
 };
 
 PluginDescriptor describe() {

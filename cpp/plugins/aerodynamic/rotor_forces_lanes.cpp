@@ -1,35 +1,24 @@
-#include "rotor_forces.hpp"
+#include "shown_motion.hpp"
 
 namespace quadcore::aerodynamic {
 
 template <int W>
-void add_rotor_forces(const RotorForcesNow& now) {
+void add_rotor_forces(const RotorForces& law, const ShownMotion& shown) {
   using T = laws::Pack<W>;
-  laws::for_each_pack<W>(now.rotors.rotors, [&](std::size_t i) QUADCORE_INLINED {
-    double* loads = now.rotors.loads + rotor_offset(LoadRow::count, i);
-    double* force = loads + LoadRow::force * widest_lanes;
-    double* reaction = loads + LoadRow::reaction * widest_lanes;
-    const auto add = [](double* row, const Vec3<T>& a)
-                         QUADCORE_INLINED { laws::store3(row, laws::load3<T>(row) + a); };
-    const RotorDisc<T> disc = now.disc<T>(i);
-    add(force, laws::thrust(disc, now.coefficient<T>(CoefficientRow::k, i)) +
-                   laws::rotor_drag(disc, now.coefficient<T>(CoefficientRow::linear, i)));
-    const T torque = now.reaction(disc, i);
-    if (now.law.about_frame_z) {
-      double* z = reaction + 2 * widest_lanes;
-      laws::store(z, laws::load<T>(z) + torque);
-    } else {
-      add(reaction, torque * now.reaction_axis_F(disc, i));
-    }
-    if (now.law.on_rotor) {
-      double* joint = loads + LoadRow::joint_torque * widest_lanes;
-      laws::store(joint, laws::load<T>(joint) + torque);
-    }
-    if (now.law.flaps) add(force, now.flapping_F<T>(disc, i));
-    if (now.law.parasitic) add(force, now.parasitic_F<T>(i));
+  laws::for_each_pack<W>(shown.rotors.rotors, [&](std::size_t i) QUADCORE_INLINED {
+    double* rows = shown.rotors.loads + rotor_offset(LoadRow::count, i);
+    double* force = rows + LoadRow::force * widest_lanes;
+    double* reaction = rows + LoadRow::reaction * widest_lanes;
+    double* joint_torque = rows + LoadRow::joint_torque * widest_lanes;
+    laws::RotorLoads<T> loads{laws::load3<T>(force), laws::load3<T>(reaction),
+                              laws::load<T>(joint_torque)};
+    laws::add_rotor_forces<T>(law, ShownPack<T>{shown, i}, i, loads);
+    laws::store3(force, loads.f_F);
+    laws::store3(reaction, loads.reaction_F);
+    laws::store(joint_torque, loads.joint_torque);
   });
 }
 
-template void add_rotor_forces<QUADCORE_LANES>(const RotorForcesNow&);
+template void add_rotor_forces<QUADCORE_LANES>(const RotorForces&, const ShownMotion&);
 
 }  // namespace quadcore::aerodynamic

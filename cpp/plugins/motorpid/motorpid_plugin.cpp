@@ -38,7 +38,7 @@ class MotorPidPlugin final : public Plugin {
  public:
   explicit MotorPidPlugin(const PluginSetup& setup)
       : config_(setup.parameters), rotor_count_(setup.model.joints.size()) {
-    static constexpr laws::ForEachWidth<void(const MotorTorques&)> widths{
+    static constexpr laws::ForEachWidth<void(const MotorTorques&, const RotorLanes&)> widths{
         &add_motor_torques<1>, &add_motor_torques<2>, &add_motor_torques<4>, &add_motor_torques<8>};
     add_ = widths[laws::lane_width(setup.model.joints.size())];
     if (config_.i_min > config_.i_max) throw InputError("<iMin> exceeds <iMax>; swap them");
@@ -68,7 +68,8 @@ class MotorPidPlugin final : public Plugin {
       memory(MemoryRow::target) =
           std::clamp(wanted, -config_.max_velocity, config_.max_velocity) / config_.sim_slow;
       if (!config_.samples) continue;
-      const double error = sample.kinematics.rotors[i].rate - memory(MemoryRow::target);
+      const double error =
+          sample.kinematics.rotors.number(MotionRow::rate, i) - memory(MemoryRow::target);
       memory(MemoryRow::error_sum) += sample.dt * error;
       double integral = config_.ki * memory(MemoryRow::error_sum);
       if (integral > config_.i_max || integral < config_.i_min) {
@@ -82,13 +83,17 @@ class MotorPidPlugin final : public Plugin {
   }
 
   void forces(const Kinematics& kinematics, ConstPluginState state, Loads& loads) const override {
-    add_({{kinematics.rotors.data(), loads.rotors().data(), kinematics.rotors.size(),
-           kinematics.has_rotations()},
-          state.data(),
-          config_.kp});
+    add_(law(state), {kinematics.rotors.data(), loads.rotors().data(), kinematics.rotors.size(),
+                      kinematics.has_rotations()});
+  }
+
+  void laws(ConstPluginState state, ForceLaws& laws) const override {
+    laws.motor_torques.push_back(law(state));
   }
 
  private:
+  MotorTorques law(ConstPluginState state) const { return {state.data(), config_.kp}; }
+
   void warn_if_stiff(const PluginSetup& setup, std::size_t i) const {
     const Joint& joint = setup.model.joints[i];
     const double moment = moment_about_joint(setup.model, i);
@@ -104,7 +109,7 @@ class MotorPidPlugin final : public Plugin {
 
   Config config_;
   std::size_t rotor_count_;  ///< of the model
-  void (*add_)(const MotorTorques&);
+  void (*add_)(const MotorTorques&, const RotorLanes&);
   std::size_t topic_;
 };
 

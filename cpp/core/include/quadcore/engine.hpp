@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "quadcore/export.hpp"
+#include "quadcore/force_laws.hpp"
 #include "quadcore/kinematics.hpp"
 #include "quadcore/loads.hpp"
 #include "quadcore/model.hpp"
@@ -21,6 +22,12 @@ class ForceField {
   /// Puts the air's velocity into `kinematics`, whose time and motion the caller has filled, and
   /// adds to `loads`, which the caller has cleared.
   virtual void evaluate(Kinematics& kinematics, Loads& loads) const = 0;
+  /// Part of evaluate() that an engine may evaluate itself, at each stage of a step.
+  virtual const ForceLaws& laws() const;
+  /// The rest of evaluate(), unless laws() are complete.
+  virtual void evaluate_rest(Kinematics& kinematics, Loads& loads) const {
+    evaluate(kinematics, loads);
+  }
   /// Throws because what evaluate() added to `loads` is not finite.
   [[noreturn]] virtual void refuse(const Kinematics& kinematics, Loads& loads) const;
 };

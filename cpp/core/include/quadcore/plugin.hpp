@@ -9,6 +9,7 @@
 #include "quadcore/carried_body.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/export.hpp"
+#include "quadcore/force_laws.hpp"
 #include "quadcore/kinematics.hpp"
 #include "quadcore/loads.hpp"
 #include "quadcore/model.hpp"
@@ -54,6 +55,10 @@ class Plugin {
   virtual void sense(const Sample&, PluginState) const {}
   /// The force law, evaluated as often as the engine's integrator needs.
   virtual void forces(const Kinematics&, ConstPluginState, Loads&) const {}
+  /// Hands out the laws that make up forces(), all of them, once when all plugins are made. An
+  /// engine may evaluate them itself, several rotors at once, and not call forces(). Tables that
+  /// they point to lie in the plugin or in this state.
+  virtual void laws(ConstPluginState, ForceLaws&) const {}
   /// Adds to the velocity of the air at the frame's origin, in world axes [m/s], before any force
   /// law is asked. The velocity that the motion holds is zero still.
   virtual void air(const Kinematics&, ConstPluginState, Vector3d& /*v_WA_W*/) const {}
@@ -64,7 +69,8 @@ class Plugin {
 
 /// Which hooks a class of plugins has of its own; the others are never called.
 struct Hooks {
-  bool prepare = true, update = true, sense = true, forces = true, air = true, carried = true;
+  bool prepare = true, update = true, sense = true, forces = true, laws = true, air = true,
+       carried = true;
 
   template <class P>
   static constexpr Hooks of() {
@@ -72,6 +78,7 @@ struct Hooks {
             !std::is_same_v<decltype(&P::update), decltype(&Plugin::update)>,
             !std::is_same_v<decltype(&P::sense), decltype(&Plugin::sense)>,
             !std::is_same_v<decltype(&P::forces), decltype(&Plugin::forces)>,
+            !std::is_same_v<decltype(&P::laws), decltype(&Plugin::laws)>,
             !std::is_same_v<decltype(&P::air), decltype(&Plugin::air)>,
             !std::is_same_v<decltype(&P::carried), decltype(&Plugin::carried)>};
   }

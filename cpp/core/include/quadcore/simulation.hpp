@@ -119,12 +119,15 @@ class Simulation : private ForceField {
 
  private:
   void evaluate(Kinematics& kinematics, Loads& loads) const override;
+  const ForceLaws& laws() const override { return laws_; }
+  void evaluate_rest(Kinematics& kinematics, Loads& loads) const override;
   /// Blames the first plugin that makes the sum infinite or NaN.
   [[noreturn]] void refuse(const Kinematics& kinematics, Loads& loads) const override;
   void warn(const std::string& warning);  ///< nothing if empty
   std::string describe_idle(const Model& model) const;
   void load_plugins(const Model& model, const SimulationOptions& options);
-  void note_hooks();       ///< who has which, and in which order they are called
+  void note_hooks();  ///< who has which, and in which order they are called
+  void gather_laws();
   void prepare_plugins();  ///< tells those that ask what they fly
   VehicleDescription describe_vehicle();
   Wrench probe(Eigen::Index rotor, double rate);
@@ -145,7 +148,8 @@ class Simulation : private ForceField {
   void show_state();    ///< brings state_ up to date
   void show_instant();  ///< writes time and air into the engine's motion
   void blow(Kinematics& kinematics) const;
-  void push(const Kinematics& kinematics, Loads& loads) const;
+  void push(const std::vector<const LoadedPlugin*>& plugins, const Kinematics& kinematics,
+            Loads& loads) const;
   PluginState state_of(const LoadedPlugin& p) {
     return {plugin_state_.data() + p.state_begin, p.state_size};
   }
@@ -184,8 +188,9 @@ class Simulation : private ForceField {
   /// Those that have a hook, in the order in which it is called: of update and sense that of
   /// topics, else by name.
   struct {
-    std::vector<const LoadedPlugin*> update, sense, forces, air, carried;
+    std::vector<const LoadedPlugin*> update, sense, forces, forces_without_laws, air, carried;
   } with_;
+  ForceLaws laws_;
   bool windy_ = false;  ///< whether anything moves the air
   std::vector<std::string> wrench_terms_;
   std::unique_ptr<Engine> engine_;

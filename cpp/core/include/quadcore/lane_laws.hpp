@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+
+/// \file
+/// Force laws as numbers and tables of numbers, a column for each rotor, laid out as
+/// rotor_layout.hpp says. Whoever has one may evaluate it for several rotors at once; the formulas
+/// stand in cpp/laws. Free of Eigen and of code, so that files compiled for one processor may
+/// include it.
+
+namespace quadcore {
+
+/// Blade flapping coefficients, thesis eqs. (2.26), (2.27).
+struct Flapping {
+  double A1c;     ///< rad
+  double A1s;     ///< rad
+  double B1;      ///< s/rad
+  double B2;      ///< s/rad
+  double radius;  ///< r, rotor radius [m]
+};
+
+/// Rows of the rotors' coefficients; all 0 for rotors that are somebody else's.
+struct CoefficientRow {
+  enum : std::size_t { k, b, induced, translational, profile, linear, parasitic, count };
+};
+
+/// Thrust, reaction torque, drag and flapping of the rotors.
+struct RotorForces {
+  const double* coefficients;  ///< table of CoefficientRow
+  bool across_link_z;          ///< discs stand across their links' z, or across the joints' axes
+  bool at_origins;             ///< discs move as their links' origins, or as the centres of mass
+  bool meets_wind;             ///< whether the discs meet the moving air, or air that stands still
+  bool about_frame_z;          ///< reaction torques act so, however the rotors stand
+  bool on_rotor;               ///< reaction torques act about the joints' axes on the rotors
+  bool parasitic;              ///< each rotor takes the appendix' parasitic drag
+  bool flaps;                  ///< any flapping coefficient is set
+  Flapping flapping;
+  double sim_slow;
+};
+
+/// Parasitic drag of the airframe at the vehicle's centre of mass.
+struct FrameDrag {
+  double coefficient;  ///< N s^2/m^2
+};
+
+/// Rows of what the rotors' controllers remember; all 0 for rotors that are somebody else's and
+/// before the first command.
+struct MemoryRow {
+  enum : std::size_t { active, target, error_sum, last_error, sampled_torque, count };
+};
+
+/// The part of the motors' law that is continuous: -kp (W - W_target) and the torque sampled at the
+/// start of the step (thesis appendix A.4), in slowed units [N m].
+struct MotorTorques {
+  const double* memory;  ///< table of MemoryRow
+  double kp;
+};
+
+}  // namespace quadcore

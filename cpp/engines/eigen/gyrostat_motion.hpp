@@ -1,0 +1,111 @@
+#pragma once
+
+#include "gyrostat_step.hpp"
+#include "laws/four.hpp"
+#include "laws/rotors.hpp"
+#include "laws/turn.hpp"
+
+namespace quadcore {
+
+using laws::Four;
+using laws::Vec3;
+
+/// Where a row of rotor i's table in a state lies.
+QUADCORE_LAW std::size_t joint(std::size_t row, std::size_t i) {
+  return GyrostatState::joints + rotor_offset(GyrostatState::joint_rows, i) + row * widest_lanes;
+}
+
+/// The motion of the frame in a state.
+struct FrameOfState {
+  Four q_WF, v_WCcm_W, w_WF_F;
+  laws::Rotation R_WF;
+  Four v_WCcm_F;
+
+  // Between the stages the quaternion is off unit length, by less than the method's own error.
+  QUADCORE_LAW explicit FrameOfState(const double* state)
+      : q_WF(laws::load<Four>(state + GyrostatState::orientation)),
+        v_WCcm_W(laws::load<Four>(state + GyrostatState::velocity)),
+        w_WF_F(laws::load<Four>(state + GyrostatState::rate)),
+        R_WF(laws::rotation(q_WF)),
+        v_WCcm_F(R_WF.from * v_WCcm_W) {}
+
+  QUADCORE_LAW Four v_WF_F(const GyrostatStep& g) const {
+    return v_WCcm_F - laws::cross(w_WF_F, laws::load<Four>(g.p_FCcm_F));
+  }
+};
+
+/// The motion of a pack of rotors in a state, from rotor i on: see laws/rotor_forces.hpp.
+template <class T>
+struct RotorsOfState {
+  const GyrostatStep& g;
+  const FrameOfState& frame;
+  const double* state;
+  std::size_t i;
+
+  QUADCORE_LAW T constant(std::size_t row) const { return laws::load<T>(constants(row)); }
+  QUADCORE_LAW Vec3<T> vector(std::size_t row) const { return laws::load3<T>(constants(row)); }
+
+  QUADCORE_LAW T rate() const { return laws::load<T>(state + joint(GyrostatState::joint_rate, i)); }
+  QUADCORE_LAW T angle() const {
+    return laws::load<T>(state + joint(GyrostatState::joint_angle, i));
+  }
+  QUADCORE_LAW Vec3<T> axis_F() const { return vector(RotorConstant::axis_F); }
+  QUADCORE_LAW Vec3<T> normal_F() const {
+    if (!g.normals_turn) return laws::load3<T>(shown(MotionRow::normal));
+    return turned(laws::load3<T>(shown(MotionRow::R_FR_at_zero + 6)));
+  }
+  QUADCORE_LAW Vec3<T> velocity_F(bool of_origins) const {
+    const std::size_t place = of_origins ? RotorConstant::p_CR_F : RotorConstant::p_CRcm_F;
+    return laws::broadcast<T>(frame.v_WCcm_F) + laws::cross(w_WF_F(), vector(place));
+  }
+  QUADCORE_LAW Vec3<T> in_frame(const Vec3<T>& f_R) const {
+    const Vec3<T> x = laws::load3<T>(shown(MotionRow::R_FR_at_zero)),
+                  y = laws::load3<T>(shown(MotionRow::R_FR_at_zero + 3)),
+                  z = laws::load3<T>(shown(MotionRow::R_FR_at_zero + 6));
+    return turned(laws::Matrix3<T>{x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z} * f_R);
+  }
+  QUADCORE_LAW bool windy() const { return g.evaluate_rest; }
+  QUADCORE_LAW Vec3<T> v_WA_F() const { return laws::broadcast<T>(g.frame + FrameNumber::v_WA_F); }
+  QUADCORE_LAW Vec3<T> w_WF_F() const { return laws::broadcast<T>(frame.w_WF_F); }
+  QUADCORE_LAW Vec3<T> v_WF_W() const {
+    return laws::broadcast<T>(frame.R_WF.to * frame.v_WF_F(g));
+  }
+
+ private:
+  QUADCORE_LAW Vec3<T> turned(const Vec3<T>& at_zero_F) const {
+    return laws::turned(axis_F(), laws::sine_and_cosine(angle()), at_zero_F);
+  }
+  QUADCORE_LAW const double* constants(std::size_t row) const {
+    return g.constants + rotor_offset(RotorConstant::count, i) + row * widest_lanes;
+  }
+  QUADCORE_LAW const double* shown(std::size_t row) const {
+    return g.motion + rotor_offset(MotionRow::count, i) + row * widest_lanes;
+  }
+};
+
+/// Writes the motion of a state where plugins read it.
+template <int W>
+QUADCORE_LAW void show(const GyrostatStep& g, const FrameOfState& frame, const double* state) {
+  using T = laws::Pack<W>;
+  laws::store(g.frame + FrameNumber::q_WF, frame.q_WF);
+  laws::store_vector(g.frame + FrameNumber::R_WF, frame.R_WF.to.x);
+  laws::store_vector(g.frame + FrameNumber::R_WF + 3, frame.R_WF.to.y);
+  laws::store_vector(g.frame + FrameNumber::R_WF + 6, frame.R_WF.to.z);
+  laws::store_vector(g.frame + FrameNumber::w_WF_F, frame.w_WF_F);
+  laws::store_vector(g.frame + FrameNumber::v_WCcm_F, frame.v_WCcm_F);
+  laws::store_vector(g.frame + FrameNumber::v_WF_F, frame.v_WF_F(g));
+  laws::store_vector(g.frame + FrameNumber::p_WF,
+                     laws::load<Four>(state + GyrostatState::position) -
+                         frame.R_WF.to * laws::load<Four>(g.p_FCcm_F));
+  laws::for_each_pack<W>(g.rotors, [&](std::size_t i) QUADCORE_INLINED {
+    const RotorsOfState<T> rotors{g, frame, state, i};
+    double* motion = g.motion + rotor_offset(MotionRow::count, i);
+    laws::store3(motion + MotionRow::v_WR * widest_lanes, rotors.velocity_F(true));
+    laws::store3(motion + MotionRow::v_WRcm * widest_lanes, rotors.velocity_F(false));
+    laws::store(motion + MotionRow::rate * widest_lanes, rotors.rate());
+    laws::store(motion + MotionRow::angle * widest_lanes, rotors.angle());
+    if (g.normals_turn) laws::store3(motion + MotionRow::normal * widest_lanes, rotors.normal_F());
+  });
+}
+
+}  // namespace quadcore
