@@ -41,7 +41,8 @@ EigenEngine::EigenEngine(const Model& model, const World& world)
              RotorRows<GyrostatState::joint_rows>::size_of(model.joints.size())),
       stage_(state_),
       sum_(state_),
-      joint_torques_(RotorRows<1>::size_of(model.joints.size())) {
+      joint_torques_(RotorRows<1>::size_of(model.joints.size())),
+      turns_(RotorRows<TurnRow::count>::size_of(model.joints.size())) {
   refuse_tags(model_);
   if (ground_) check_collisions(model_);
   kinematics_.p_FCcm_F = body_.p_FCcm_F;
@@ -93,11 +94,13 @@ GyrostatStep EigenEngine::view() {
   g.stage = stage_.data();
   g.sum = sum_.data();
   g.joint_torques = joint_torques_.data();
+  g.turns = turns_.data();
   g.frame = k.numbers();
   g.motion = k.rotors.data();
   g.loads = loads_.rotors().data();
   g.frame_force_F = loads_.on_frame().force_F.data();
   g.frame_torque_F = loads_.on_frame().torque_F.data();
+  g.laws_turn = false;
   g.rotor_forces = {};
   g.frame_drags = {};
   g.motor_torques = {};
@@ -112,6 +115,8 @@ void EigenEngine::step(double time, double dt, const ForceField& forces) {
   const auto put = [](const auto& from, auto& to) { to = {from.data(), from.size()}; };
   const ForceLaws& laws = forces.laws();
   put(laws.rotor_forces, step_.rotor_forces);
+  step_.laws_turn = step_.normals_turn;
+  for (const RotorForces& law : laws.rotor_forces) step_.laws_turn |= law.parasitic;
   put(laws.frame_drags, step_.frame_drags);
   put(laws.motor_torques, step_.motor_torques);
   step_.evaluate_rest = nullptr;

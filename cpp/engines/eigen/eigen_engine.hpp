@@ -37,7 +37,7 @@ class EigenEngine final : public Engine {
   Kinematics kinematics_;
   Loads loads_;
   LaneNumbers state_, stage_, sum_;
-  LaneNumbers joint_torques_;
+  LaneNumbers joint_torques_, turns_;
   GyrostatStep step_;
   void (*show_)(const GyrostatStep&, const double*);
   void (*advance_)(const GyrostatStep&, double, double);

@@ -73,7 +73,11 @@ struct RotorsOfState {
 
  private:
   QUADCORE_LAW Vec3<T> turned(const Vec3<T>& at_zero_F) const {
-    return laws::turned(axis_F(), laws::sine_and_cosine(angle()), at_zero_F);
+    const double* rows = g.turns + rotor_offset(TurnRow::count, i);
+    return laws::turned(axis_F(),
+                        laws::SineCosine<T>{laws::load<T>(rows + TurnRow::sine * widest_lanes),
+                                            laws::load<T>(rows + TurnRow::cosine * widest_lanes)},
+                        at_zero_F);
   }
   QUADCORE_LAW const double* constants(std::size_t row) const {
     return g.constants + rotor_offset(RotorConstant::count, i) + row * widest_lanes;
@@ -83,10 +87,26 @@ struct RotorsOfState {
   }
 };
 
+/// Fills the table of turns, before all else: it calls where digits are lost, and nothing then has
+/// to be kept in memory.
+template <int W>
+QUADCORE_LAW void turn(const GyrostatStep& g, const double* state) {
+  using T = laws::Pack<W>;
+  laws::for_each_pack<W>(g.rotors, [&](std::size_t i) QUADCORE_INLINED {
+    const auto turn =
+        laws::sine_and_cosine(laws::load<T>(state + joint(GyrostatState::joint_angle, i)));
+    double* rows = g.turns + rotor_offset(TurnRow::count, i);
+    laws::store(rows + TurnRow::sine * widest_lanes, turn.sin);
+    laws::store(rows + TurnRow::cosine * widest_lanes, turn.cos);
+  });
+}
+
 /// Writes the motion of a state where plugins read it.
 template <int W>
-QUADCORE_LAW void show(const GyrostatStep& g, const FrameOfState& frame, const double* state) {
+QUADCORE_LAW void show(const GyrostatStep& g, const double* state) {
   using T = laws::Pack<W>;
+  if (g.normals_turn) turn<W>(g, state);
+  const FrameOfState frame(state);
   laws::store(g.frame + FrameNumber::q_WF, frame.q_WF);
   laws::store_vector(g.frame + FrameNumber::R_WF, frame.R_WF.to.x);
   laws::store_vector(g.frame + FrameNumber::R_WF + 3, frame.R_WF.to.y);

@@ -15,6 +15,11 @@ struct GyrostatState {
   enum : std::size_t { joint_rate, joint_angle, joint_rows };
 };
 
+/// Rows of the turns of the rotors' links from where they are at joint angle zero.
+struct TurnRow {
+  enum : std::size_t { sine, cosine, count };
+};
+
 /// Rows of what is constant of each rotor.
 struct RotorConstant {
   enum : std::size_t {
@@ -50,12 +55,14 @@ struct GyrostatStep {
 
   double *state, *stage, *sum;
   double* joint_torques;  ///< of each rotor, on it
+  double* turns;          ///< table of TurnRow
 
   double* frame;                                 ///< the motion of the frame, as FrameNumber says
   double* motion;                                ///< table of MotionRow
   double* loads;                                 ///< table of LoadRow
   const double *frame_force_F, *frame_torque_F;  ///< about F's origin
 
+  bool laws_turn;  ///< some law or normal needs the turns
   Laws<RotorForces> rotor_forces;
   Laws<FrameDrag> frame_drags;
   Laws<MotorTorques> motor_torques;

@@ -32,15 +32,9 @@ QUADCORE_LAW void share_out(const GyrostatStep& g, const Share& share, std::size
   }
 }
 
-/// What acts on the frame beside the rotors: a force, and the torque about the centre of mass.
-struct OnFrame {
-  Four f_F, tau_C_F;
-};
-
 /// Asks for what the laws do not tell.
 template <int W>
-QUADCORE_LAW OnFrame evaluate_rest(const GyrostatStep& g, const FrameOfState& frame,
-                                   const double* state) {
+__attribute__((noinline)) void evaluate_rest(const GyrostatStep& g, const double* state) {
   using T = laws::Pack<W>;
   laws::for_each_pack<W>(g.rotors, [&](std::size_t i) QUADCORE_INLINED {
     double* loads = g.loads + rotor_offset(LoadRow::count, i);
@@ -48,11 +42,14 @@ QUADCORE_LAW OnFrame evaluate_rest(const GyrostatStep& g, const FrameOfState& fr
       laws::store(loads + row * widest_lanes, T{});
     }
   });
-  show<W>(g, frame, state);
+  show<W>(g, state);
   g.evaluate_rest(g.engine);
-  const Four f_F = laws::load_vector(g.frame_force_F);
-  return {f_F,
-          laws::load_vector(g.frame_torque_F) - laws::cross(laws::load<Four>(g.p_FCcm_F), f_F)};
+}
+
+template <int W>
+__attribute__((noinline, cold)) void refuse(const GyrostatStep& g, const double* state) {
+  show<W>(g, state);
+  g.refuse(g.engine);
 }
 
 /// The loads of a pack of rotors.
@@ -92,9 +89,9 @@ QUADCORE_LAW Four drag_of_frame(const GyrostatStep& g, const FrameOfState& frame
 template <int W, Stage stage>
 QUADCORE_LAW void differentiate(const GyrostatStep& g, const double* state, const Share& share) {
   using T = laws::Pack<W>;
+  if (g.evaluate_rest) evaluate_rest<W>(g, state);
+  if (g.laws_turn) turn<W>(g, state);
   const FrameOfState frame(state);
-  OnFrame rest{};
-  if (g.evaluate_rest) rest = evaluate_rest<W>(g, frame, state);
 
   Four f_F{};
   Four tau_F = -laws::cross(frame.w_WF_F, laws::load_columns(g.I_C_F) * frame.w_WF_F);
@@ -111,14 +108,15 @@ QUADCORE_LAW void differentiate(const GyrostatStep& g, const double* state, cons
   });
   f_F = f_F + drag_of_frame(g, frame);
   if (g.evaluate_rest) {
-    f_F = f_F + rest.f_F;
-    tau_F = tau_F + rest.tau_C_F;
+    const Four rest_F = laws::load_vector(g.frame_force_F);
+    f_F = f_F + rest_F;
+    tau_F = tau_F + (laws::load_vector(g.frame_torque_F) -
+                     laws::cross(laws::load<Four>(g.p_FCcm_F), rest_F));
   }
   // Every load is in one of the two sums.
   const Four all = f_F + tau_F;
   if (!(laws::absolute(all[0] + all[1] + all[2]) <= 1.7976931348623157e308)) {
-    show<W>(g, frame, state);
-    g.refuse(g.engine);
+    refuse<W>(g, state);
   }
 
   const Four angular_F = laws::load_columns(g.inverse_reduced_I_F) * tau_F;
@@ -159,7 +157,7 @@ QUADCORE_LAW void normalise(const GyrostatStep& g) {
 
 template <int W>
 void show_gyrostat(const GyrostatStep& g, const double* state) {
-  show<W>(g, FrameOfState(state), state);
+  show<W>(g, state);
 }
 
 template <int W>
@@ -173,7 +171,7 @@ void step_gyrostat(const GyrostatStep& g, double time, double dt) {
   shown_time = time + dt;
   differentiate<W, Stage::last>(g, g.stage, {1, dt / 6});
   normalise<W>(g);
-  show_gyrostat<W>(g, g.state);
+  show<W>(g, g.state);
 }
 
 template void show_gyrostat<QUADCORE_LANES>(const GyrostatStep&, const double*);

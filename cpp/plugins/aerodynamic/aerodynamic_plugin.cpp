@@ -139,8 +139,9 @@ class AerodynamicPlugin final : public Plugin {
   /// The thesis' plugin falls silent for a rotor that turns more than half a turn per step; here
   /// such a speed ends the flight.
   void update(const Sample& sample, PluginState state) const override {
+    const RotorMotions& rotors = sample.kinematics.rotors;
     for (const std::size_t i : config_.rotors) {
-      if (std::abs(sample.kinematics.rotors.number(MotionRow::rate, i)) * sample.dt > M_PI) {
+      if (std::abs(rotors.number(MotionRow::rate, i)) * sample.dt > M_PI) {
         throw FlightError(sample.time, "rotor '" + joint_names_[i] +
                                            "' turns more than half a turn per step; take a smaller "
                                            "step or a slower command");
@@ -212,8 +213,9 @@ class AerodynamicPlugin final : public Plugin {
   /// Whether the vertical part of parasitic_drag_of_appendix() points along the motion.
   bool drag_drives(const Kinematics& kinematics) const {
     if (!config_.appendix || config_.parasitic == 0) return false;
+    const Vector3d up_F = kinematics.R_WF.row(2);
     return std::any_of(config_.rotors.begin(), config_.rotors.end(), [&](std::size_t i) {
-      return kinematics.R_WF.row(2).dot(kinematics.rotors.vector(MotionRow::normal, i)) < 0;
+      return up_F.dot(kinematics.rotors.vector(MotionRow::normal, i)) < 0;
     });
   }
 
