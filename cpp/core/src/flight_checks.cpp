@@ -28,13 +28,9 @@ bool is_finite(const Kinematics& k) {
 
 bool is_sane(const Kinematics& k) {
   // Comparisons are written so that NaN fails them.
-  bool sane = k.p_WF.squaredNorm() < max_distance * max_distance && k.q_WF.squaredNorm() < 2 &&
-              k.v_WF_F.squaredNorm() < max_speed * max_speed &&
-              k.w_WF_F.squaredNorm() < max_rate * max_rate;
-  for (std::size_t i = 0; i < k.rotors.size(); ++i) {
-    sane = sane && std::abs(k.rotors.number(MotionRow::rate, i)) < max_rate;
-  }
-  return sane;
+  return k.p_WF.squaredNorm() < max_distance * max_distance && k.q_WF.squaredNorm() < 2 &&
+         k.v_WF_F.squaredNorm() < max_speed * max_speed &&
+         k.w_WF_F.squaredNorm() < max_rate * max_rate && k.rotors.slower_than(max_rate);
 }
 
 void check_snapshot(const Snapshot& snapshot, Eigen::Index plugin_state) {

@@ -39,8 +39,15 @@ struct Laws {
   const Law* first;
   std::size_t count;
 
-  QUADCORE_LAW const Law* begin() const { return first; }
-  QUADCORE_LAW const Law* end() const { return first + count; }
+  /// Does work with each. One is what most vehicles have, and no loop lets it stay in registers.
+  template <class Work>
+  QUADCORE_LAW void for_each(const Work& work) const {
+    if (count == 1) {
+      work(*first);
+    } else {
+      for (std::size_t i = 0; i < count; ++i) work(first[i]);
+    }
+  }
 };
 
 /// All that a step of the gyrostat reads and writes; matrices by columns. The equations stand in

@@ -62,12 +62,12 @@ QUADCORE_LAW laws::RotorLoads<T> loads_of(const GyrostatStep& g, const RotorsOfS
     loads.reaction_F = laws::load3<T>(rest + LoadRow::reaction * widest_lanes);
     loads.joint_torque = laws::load<T>(rest + LoadRow::joint_torque * widest_lanes);
   }
-  for (const RotorForces& law : g.rotor_forces) {
+  g.rotor_forces.for_each([&](const RotorForces& law) QUADCORE_INLINED {
     laws::add_rotor_forces<T>(law, rotors, rotors.i, loads);
-  }
-  for (const MotorTorques& law : g.motor_torques) {
+  });
+  g.motor_torques.for_each([&](const MotorTorques& law) QUADCORE_INLINED {
     loads.joint_torque = loads.joint_torque + laws::motor_torque<T>(law, rotors.i, rotors.rate());
-  }
+  });
   loads.joint_torque = loads.joint_torque - rotors.constant(RotorConstant::damping) * rotors.rate();
   return loads;
 }
@@ -79,9 +79,9 @@ QUADCORE_LAW Four drag_of_frame(const GyrostatStep& g, const FrameOfState& frame
   if (g.evaluate_rest) v_ACcm_F = v_ACcm_F - laws::load_vector(g.frame + FrameNumber::v_WA_F);
   const Four squares = v_ACcm_F * v_ACcm_F;
   const double speed = __builtin_sqrt(squares[0] + (squares[1] + squares[2]));
-  for (const FrameDrag& law : g.frame_drags) {
+  g.frame_drags.for_each([&](const FrameDrag& law) QUADCORE_INLINED {
     sum = sum + laws::parasitic_drag(v_ACcm_F, speed, law.coefficient);
-  }
+  });
   return sum;
 }
 

@@ -139,14 +139,7 @@ class AerodynamicPlugin final : public Plugin {
   /// The thesis' plugin falls silent for a rotor that turns more than half a turn per step; here
   /// such a speed ends the flight.
   void update(const Sample& sample, PluginState state) const override {
-    const RotorMotions& rotors = sample.kinematics.rotors;
-    for (const std::size_t i : config_.rotors) {
-      if (std::abs(rotors.number(MotionRow::rate, i)) * sample.dt > M_PI) {
-        throw FlightError(sample.time, "rotor '" + joint_names_[i] +
-                                           "' turns more than half a turn per step; take a smaller "
-                                           "step or a slower command");
-      }
-    }
+    if (!sample.kinematics.rotors.slower_than(3 / sample.dt)) refuse_half_turns(sample);
     double& has_warned = state[0];
     if (has_warned == 0 && drag_drives(sample.kinematics)) {
       has_warned = 1;
@@ -207,6 +200,16 @@ class AerodynamicPlugin final : public Plugin {
                                                            : torque * vector(laws::reaction_axis_F(
                                                                           law_, disc, motion)));
       if (law_.on_rotor) loads.add_joint_torque(i, torque);
+    }
+  }
+
+  void refuse_half_turns(const Sample& sample) const {
+    for (const std::size_t i : config_.rotors) {
+      if (std::abs(sample.kinematics.rotors.number(MotionRow::rate, i)) * sample.dt > M_PI) {
+        throw FlightError(sample.time, "rotor '" + joint_names_[i] +
+                                           "' turns more than half a turn per step; take a smaller "
+                                           "step or a slower command");
+      }
     }
   }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 
 #include "quadcore/export.hpp"
@@ -29,6 +30,16 @@ class RotorMotions : public RotorRows<MotionRow::count> {
     using Row = MotionRow;
     return {vector(Row::axis, i), vector(Row::normal, i), vector(Row::p_FRcm, i),
             vector(Row::v_WR, i), vector(Row::v_WRcm, i), number(Row::rate, i)};
+  }
+  /// Whether every rotor turns slower than this [rad/s]; NaN does not.
+  bool slower_than(double rate) const {
+    bool all = true;
+    for (std::size_t i = 0; i < size(); i += widest_lanes) {
+      const double* rates =
+          data() + rotor_offset(MotionRow::count, i) + MotionRow::rate * widest_lanes;
+      for (std::size_t j = 0; j < widest_lanes; ++j) all &= std::abs(rates[j]) < rate;
+    }
+    return all;
   }
   void set(std::size_t i, const RotorKinematics& rotor) {
     using Row = MotionRow;
