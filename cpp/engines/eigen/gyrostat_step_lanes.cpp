@@ -47,9 +47,11 @@ __attribute__((noinline)) void evaluate_rest(const GyrostatStep& g, const double
 }
 
 template <int W>
-__attribute__((noinline, cold)) void refuse(const GyrostatStep& g, const double* state) {
+[[noreturn]] __attribute__((noinline, cold)) void refuse(const GyrostatStep& g,
+                                                         const double* state) {
   show<W>(g, state);
   g.refuse(g.engine);
+  __builtin_unreachable();
 }
 
 /// The loads of a pack of rotors.
@@ -93,7 +95,7 @@ QUADCORE_LAW void differentiate(const GyrostatStep& g, const double* state, cons
   if (g.laws_turn) turn<W>(g, state);
   const FrameOfState frame(state);
 
-  Four f_F{};
+  Four f_F = drag_of_frame(g, frame);
   Four tau_F = -laws::cross(frame.w_WF_F, laws::load_columns(g.I_C_F) * frame.w_WF_F);
   laws::for_each_pack<W>(g.rotors, [&](std::size_t i) QUADCORE_INLINED {
     const RotorsOfState<T> rotors{g, frame, state, i};
@@ -106,7 +108,6 @@ QUADCORE_LAW void differentiate(const GyrostatStep& g, const double* state, cons
                            rotors.constant(RotorConstant::moment), rotors.rate(), loads.f_F,
                            loads.reaction_F, loads.joint_torque));
   });
-  f_F = f_F + drag_of_frame(g, frame);
   if (g.evaluate_rest) {
     const Four rest_F = laws::load_vector(g.frame_force_F);
     f_F = f_F + rest_F;
