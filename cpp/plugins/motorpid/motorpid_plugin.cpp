@@ -52,22 +52,20 @@ class MotorPidPlugin final : public Plugin {
   }
 
   std::size_t state_size() const override {
-    return RotorRows<MemoryRow::count>::size_of(rotor_count_) + 1;
+    return RotorRows<MemoryRow::count>::size_of(rotor_count_);
   }
 
   void update(const Sample& sample, PluginState state) const override {
     const Topic& command = sample.topics[topic_];
     if (command.count == 0) return;
     const bool stale = sample.time - command.stamp > config_.command_timeout;
-    // Which command is followed: its number, 0 before the first one, -1 once it is stale.
-    double& followed = state[state.size() - 1];
-    const double wanted_command = stale ? -1 : command.count;
-    if (followed == wanted_command && !config_.samples) return;
-    followed = wanted_command;
+    const double number = stale ? -1 : command.count;
     for (std::size_t j = 0; j < config_.rotors.size(); ++j) {
       const std::size_t i = config_.rotors[j];
       double* rows = state.data() + rotor_offset(MemoryRow::count, i);
       const auto memory = [rows](std::size_t row) -> double& { return rows[row * widest_lanes]; };
+      if (memory(MemoryRow::followed) == number && !config_.samples) continue;
+      memory(MemoryRow::followed) = number;
       const double wanted = stale ? 0 : command.values[j];
       memory(MemoryRow::active) = 1;
       memory(MemoryRow::target) =

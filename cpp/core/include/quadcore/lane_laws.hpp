@@ -44,9 +44,10 @@ struct FrameDrag {
 };
 
 /// Rows of what the rotors' controllers remember; all 0 for rotors that are somebody else's and
-/// before the first command.
+/// before the first command. Followed is the number of the command that gave the target, -1 if none
+/// came in time.
 struct MemoryRow {
-  enum : std::size_t { active, target, error_sum, last_error, sampled_torque, count };
+  enum : std::size_t { active, target, error_sum, last_error, sampled_torque, followed, count };
 };
 
 /// The part of the motors' law that is continuous: -kp (W - W_target) and the torque sampled at the
