@@ -36,12 +36,13 @@ PARTS = [
         "aerodynamic",
         ["aerodynamic_plugin.cpp", "shown_motion.hpp", "rotor_forces_lanes.cpp"],
         ["test_forces.py", "test_warnings.py", "test_simulation.py", "test_bad_models.py"],
-        laws=("drag", "flapping", "rotor_disc", "thrust", "turn"),
+        laws=("drag", "flapping", "rotor_disc", "rotor_forces", "thrust", "turn"),
     ),
     _plugin(
         "motorpid",
         ["motorpid_plugin.cpp", "motor_torques.hpp", "motor_torques_lanes.cpp"],
         ["test_motors.py", "test_warnings.py", "test_bad_models.py", "test_determinism.py"],
+        laws=("motor_torque",),
     ),
     _plugin(
         "odometry",
@@ -55,6 +56,7 @@ PARTS = [
             for name in (
                 "eigen_engine.cpp",
                 "gyrostat.cpp",
+                "gyrostat_motion.hpp",
                 "gyrostat_step.hpp",
                 "gyrostat_step_lanes.cpp",
                 "lowest_point.cpp",
