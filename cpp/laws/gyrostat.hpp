@@ -1,6 +1,6 @@
 #pragma once
 
-#include "four.hpp"
+#include "lanes/four.hpp"
 
 namespace quadcore::laws {
 

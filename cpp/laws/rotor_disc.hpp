@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vec3.hpp"
+#include "lanes/vec3.hpp"
 
 namespace quadcore::laws {
 

@@ -21,13 +21,13 @@ def _core(name: str, sources: List[str], tests: List[str]) -> Part:
     return Part(name, "quadcore", "libquadcore.so", sources, tests)
 
 
-def _laws(*names: str) -> List[str]:
-    return [f"cpp/laws/{name}.hpp" for name in names]
+def _headers(*names: str) -> List[str]:
+    return [f"cpp/{name}.hpp" for name in names]
 
 
 def _plugin(name: str, sources: List[str], tests: List[str], laws: Sequence[str] = ()) -> Part:
     folder = f"cpp/plugins/{name}"
-    files = [f"{folder}/{source}" for source in sources] + _laws(*laws)
+    files = [f"{folder}/{source}" for source in sources] + _headers(*laws)
     return Part(name, f"{name}_plugin", f"lib{name}_plugin.so", files, tests)
 
 
@@ -36,13 +36,20 @@ PARTS = [
         "aerodynamic",
         ["aerodynamic_plugin.cpp", "shown_motion.hpp", "rotor_forces_lanes.cpp"],
         ["test_forces.py", "test_warnings.py", "test_simulation.py", "test_bad_models.py"],
-        laws=("drag", "flapping", "rotor_disc", "rotor_forces", "thrust", "turn"),
+        laws=(
+            "laws/drag",
+            "laws/flapping",
+            "laws/rotor_disc",
+            "laws/rotor_forces",
+            "laws/thrust",
+            "lanes/turn",
+        ),
     ),
     _plugin(
         "motorpid",
         ["motorpid_plugin.cpp", "motor_torques.hpp", "motor_torques_lanes.cpp"],
         ["test_motors.py", "test_warnings.py", "test_bad_models.py", "test_determinism.py"],
-        laws=("motor_torque",),
+        laws=("laws/motor_torque",),
     ),
     _plugin(
         "odometry",
@@ -62,7 +69,7 @@ PARTS = [
                 "lowest_point.cpp",
             )
         ]
-        + _laws("four", "gyrostat", "rotors", "vec3"),
+        + _headers("lanes/four", "laws/gyrostat", "laws/rotors", "lanes/vec3"),
         ["test_eigen.py", "test_gyroscopics.py", "test_simulation.py", "test_bad_models.py"],
     ),
     _core(

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "laws/sine_cosine.hpp"
+#include "lanes/sine_cosine.hpp"
 
 namespace quadcore::elementary {
 namespace {

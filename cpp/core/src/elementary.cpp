@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "argument_reduction.hpp"
-#include "laws/sine_cosine.hpp"
+#include "lanes/sine_cosine.hpp"
 
 // The minimax polynomials are those of fdlibm 5.3 (Sun Microsystems, 1993, s_atan.c, e_log.c,
 // e_exp.c at netlib.org/fdlibm), whose files derive them and bound their errors; splitting the

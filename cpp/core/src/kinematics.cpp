@@ -1,6 +1,6 @@
 #include "quadcore/kinematics.hpp"
 
-#include "laws/turn.hpp"
+#include "lanes/turn.hpp"
 #include "quadcore/elementary.hpp"
 
 namespace quadcore {
@@ -12,7 +12,8 @@ laws::Vec3<double> lanes(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 Matrix3d Kinematics::R_FR(std::size_t i) const {
   if (has_rotations_) return rotors.matrix(MotionRow::R_FR, i);
-  const auto angle = laws::sine_and_cosine(rotors.number(MotionRow::angle, i));
+  const auto [sin, cos] = elementary::sincos(rotors.number(MotionRow::angle, i));
+  const laws::SineCosine<double> angle{sin, cos};
   const laws::Vec3<double> axis_F = lanes(rotors.vector(MotionRow::axis, i));
   Matrix3d R_FR;
   for (int column = 0; column < 3; ++column) {

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "laws/lane_width.hpp"
+#include "lanes/for_each_width.hpp"
 #include "lowest_point.hpp"
 #include "quadcore/error.hpp"
+#include "quadcore/lane_width.hpp"
 
 namespace quadcore {
 namespace {
@@ -59,7 +60,7 @@ EigenEngine::EigenEngine(const Model& model, const World& world)
       &show_gyrostat<1>, &show_gyrostat<2>, &show_gyrostat<4>, &show_gyrostat<8>};
   static constexpr laws::ForEachWidth<void(const GyrostatStep&, double, double)> steps{
       &step_gyrostat<1>, &step_gyrostat<2>, &step_gyrostat<4>, &step_gyrostat<8>};
-  const int width = laws::lane_width(rotors.size());
+  const int width = lane_width(rotors.size());
   show_ = shows[width];
   advance_ = steps[width];
   step_ = view();

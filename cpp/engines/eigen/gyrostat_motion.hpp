@@ -1,9 +1,10 @@
 #pragma once
 
 #include "gyrostat_step.hpp"
-#include "laws/four.hpp"
+#include "lanes/four.hpp"
+#include "lanes/turn.hpp"
+#include "laws/angles.hpp"
 #include "laws/rotors.hpp"
-#include "laws/turn.hpp"
 
 namespace quadcore {
 

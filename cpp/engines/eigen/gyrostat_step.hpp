@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "laws/pack.hpp"
+#include "lanes/pack.hpp"
 #include "quadcore/lane_laws.hpp"
 #include "quadcore/rotor_layout.hpp"
 

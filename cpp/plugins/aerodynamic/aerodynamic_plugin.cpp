@@ -2,8 +2,9 @@
 #include <cmath>
 #include <string>
 
-#include "laws/lane_width.hpp"
+#include "lanes/for_each_width.hpp"
 #include "quadcore/error.hpp"
+#include "quadcore/lane_width.hpp"
 #include "quadcore/plugin.hpp"
 #include "shown_motion.hpp"
 
@@ -128,7 +129,7 @@ class AerodynamicPlugin final : public Plugin {
         law_(config_.law()) {
     static constexpr laws::ForEachWidth<void(const RotorForces&, const ShownMotion&)> widths{
         &add_rotor_forces<1>, &add_rotor_forces<2>, &add_rotor_forces<4>, &add_rotor_forces<8>};
-    add_ = widths[laws::lane_width(setup.model.joints.size())];
+    add_ = widths[lane_width(setup.model.joints.size())];
     if (config_.on_rotor) refuse_rotors_on_rotors(setup, config_);
     warn_without_drag(setup);
     warn_of_axes_against_lift(setup, config_);

@@ -1,7 +1,8 @@
 #pragma once
 
+#include "lanes/turn.hpp"
+#include "laws/angles.hpp"
 #include "laws/rotor_forces.hpp"
-#include "laws/turn.hpp"
 
 namespace quadcore::aerodynamic {
 

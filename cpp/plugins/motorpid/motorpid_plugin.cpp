@@ -2,9 +2,10 @@
 #include <cmath>
 #include <sstream>
 
-#include "laws/lane_width.hpp"
+#include "lanes/for_each_width.hpp"
 #include "motor_torques.hpp"
 #include "quadcore/error.hpp"
+#include "quadcore/lane_width.hpp"
 #include "quadcore/plugin.hpp"
 
 namespace quadcore::motorpid {
@@ -40,7 +41,7 @@ class MotorPidPlugin final : public Plugin {
       : config_(setup.parameters), rotor_count_(setup.model.joints.size()) {
     static constexpr laws::ForEachWidth<void(const MotorTorques&, const RotorLanes&)> widths{
         &add_motor_torques<1>, &add_motor_torques<2>, &add_motor_torques<4>, &add_motor_torques<8>};
-    add_ = widths[laws::lane_width(setup.model.joints.size())];
+    add_ = widths[lane_width(setup.model.joints.size())];
     if (config_.i_min > config_.i_max) throw InputError("<iMin> exceeds <iMax>; swap them");
     if (config_.ki != 0 && config_.i_min == 0 && config_.i_max == 0) {
       setup.warnings.push_back(

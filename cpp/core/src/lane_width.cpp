@@ -1,4 +1,4 @@
-#include "lane_width.hpp"
+#include "quadcore/lane_width.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -6,7 +6,7 @@
 
 #include "quadcore/error.hpp"
 
-namespace quadcore::laws {
+namespace quadcore {
 namespace {
 
 /// Doubles in a vector register of this processor that the system saves.
@@ -39,4 +39,4 @@ int lane_width(std::size_t rotors) {
   return width;
 }
 
-}  // namespace quadcore::laws
+}  // namespace quadcore

@@ -1,10 +1,9 @@
 # quadcore_compile_lanes(TARGET SOURCE): adds SOURCE to TARGET once for each width of lanes, each time
 # with that QUADCORE_LANES defined and the instructions of the processors that have registers of that
-# width; with them comes what chooses the width. SOURCE includes only what may be compiled so: see
-# cpp/laws/pack.hpp.
+# width; lane_width.hpp chooses one. SOURCE includes only what may be compiled so: see
+# cpp/lanes/pack.hpp.
 function(quadcore_compile_lanes target source)
   get_filename_component(name ${source} NAME_WE)
-  target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/cpp/laws/lane_width.cpp)
   foreach(lanes 1 2 4 8)
     set(object ${target}_${name}${lanes})
     add_library(${object} OBJECT ${source})
