@@ -11,6 +11,8 @@ import sys
 from pathlib import Path
 from typing import Iterable, Iterator, Sequence
 
+from world_elements import WORLD
+
 import quadcore as qc
 from quadcore import _core
 
@@ -30,58 +32,6 @@ number or lies outside its range is an error that names file, line, plugin, tag 
 known tag. `--set PLUGIN.TAG=VALUE` (Python: `parameters={"PLUGIN.TAG": value}`) overrides the URDF;
 PLUGIN is the `name` attribute of the plugin tag.
 """
-
-# Every element a world may hold: unit, default, meaning. Which there are, and the range of each, is
-# asked of the reader itself; one that is missing here or there fails the generator.
-WORLD = {
-    "gravity": ("m/s^2", "`0 0 -9.8`", "gravity in world axes"),
-    "wind/linear_velocity": (
-        "m/s",
-        "`0 0 0`",
-        "velocity of the air in world axes; `chapter2` only",
-    ),
-    "include/uri": (
-        "",
-        "",
-        "`model://ground_plane`: solid ground at z = 0; `model://sun`: ignored; another is foreign",
-    ),
-    "plugin": ("", "", "a module that only senses or publishes, see below; another is foreign"),
-    "model": ("", "", "a ground plane in line: static, one link; another is foreign"),
-    "model/static": ("", "", "must be `true`"),
-    "model/link/collision/geometry/plane/normal": ("", "`0 0 1`", "must be `0 0 1`"),
-    "model/link/collision/geometry/plane/size": ("m", "", "ignored: the ground has no edge"),
-    "model/link/visual": ("", "", "ignored"),
-    "physics": ("", "", "attribute `type`, if given, must be `ode`; also written `physics:ode`"),
-    "physics/gravity": ("m/s^2", "`0 0 -9.8`", "the same as `gravity`; only one of them"),
-    "physics/max_step_size": ("s", "0.001", "the step, unless `--dt` or `dt=` is given"),
-    "physics/real_time_update_rate": (
-        "1/s",
-        "1000",
-        "steps per second of wall clock, 0 = as fast as possible; for nodes that pace",
-    ),
-    "physics/updateRate": ("1/s", "1000", "the thesis' name of `real_time_update_rate`"),
-    "physics/real_time_factor": (
-        "",
-        "1",
-        "without effect, as in Gazebo; `real_time_update_rate` sets the pace",
-    ),
-    "physics/ode/solver/type": (
-        "",
-        "`quick`",
-        "`quick` or `world`; in flight both give the same answer, see [gazebo.md](gazebo.md)",
-    ),
-    "physics/ode/solver/iters": ("", "50", "sweeps of the quick solver"),
-    "physics/ode/solver/sor": ("", "1.3", "its over-relaxation"),
-    "physics/ode/solver/use_dynamic_moi_rescaling": ("", "0", "must be `0`"),
-    "physics/ode/constraints/erp": ("", "0.2", "part of a hinge's error that a step removes"),
-    "physics/ode/constraints/cfm": ("", "0", "softness of the hinges"),
-    "physics/ode/constraints/contact_max_correcting_vel": (
-        "m/s",
-        "100",
-        "caps what a correction leaves of velocity: a contact's `maxVel`, in `gazebo11` also a "
-        "hinge's, see [gazebo.md](gazebo.md#random-vehicles)",
-    ),
-}
 
 LOG = {
     "t": ("s", "time; the row at t is the state after the step that ends at t"),
