@@ -29,14 +29,6 @@ QUADCORE_LAW Vec3<T> rotor_torque(const Vec3<T>& w_WF_F, const Vec3<T>& axis_F,
          cross(p_CRcm_F, f_F);
 }
 
-/// dw/dt of the frame, in F [rad/s^2].
-/// \param tau_C_F    torque about C, less what the rotors' shares say [N m]
-/// \param inverse_reduced_I_F  of I_C - sum J_i a_i a_i^T
-QUADCORE_LAW Four angular_acceleration(const Four& w_WF_F, const Four& tau_C_F,
-                                       const Columns& I_C_F, const Columns& inverse_reduced_I_F) {
-  return inverse_reduced_I_F * (tau_C_F - cross(w_WF_F, I_C_F * w_WF_F));
-}
-
 /// Rate of the quaternion of a frame that turns at w_F, in its own axes [rad/s]: half of the
 /// quaternion times (w_F, 0).
 QUADCORE_LAW Four quaternion_rate(const Four& q, const Four& w_F) {

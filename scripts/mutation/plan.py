@@ -34,7 +34,12 @@ def _plugin(name: str, sources: List[str], tests: List[str], laws: Sequence[str]
 PARTS = [
     _plugin(
         "aerodynamic",
-        ["aerodynamic_plugin.cpp", "shown_motion.hpp", "rotor_forces_lanes.cpp"],
+        [
+            "aerodynamic_plugin.cpp",
+            "configuration.hpp",
+            "shown_motion.hpp",
+            "rotor_forces_lanes.cpp",
+        ],
         ["test_forces.py", "test_warnings.py", "test_simulation.py", "test_bad_models.py"],
         laws=(
             "laws/drag",

@@ -67,9 +67,10 @@ class Plugin {
   virtual void carried(ConstPluginState, std::vector<CarriedBody>&) const {}
 };
 
-/// Which hooks a class of plugins has of its own; the others are never called.
+/// Which hooks a class of plugins has of its own; the others are never called. Of a class that is
+/// not known all may be, but laws(), which would stand for forces().
 struct Hooks {
-  bool prepare = true, update = true, sense = true, forces = true, laws = true, air = true,
+  bool prepare = true, update = true, sense = true, forces = true, laws = false, air = true,
        carried = true;
 
   template <class P>
