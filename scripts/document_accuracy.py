@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measure how far the engines are from exact: ``scripts/document`` runs it.
 
-It writes the tables of docs/physics.md and docs/gazebo.md that stand between marks.
+It writes the tables of docs/engines.md and docs/gazebo.md that stand between marks.
 """
 
 from __future__ import annotations
@@ -153,9 +153,9 @@ def main() -> None:
     """Measure, and write the tables."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        put("physics.md", "exact", ("step", "`ode`", "`eigen`"), exactness(folder))
+        put("engines.md", "exact", ("step", "`ode`", "`eigen`"), exactness(folder))
         heading = ("rate (rad/s)", "2 ms", "1 ms", "0.5 ms")
-        put("physics.md", "order", heading, fourth_order())
+        put("engines.md", "order", heading, fourth_order())
         heading = ("sweeps", "real Gazebo", "`gazebo11`")
         put("gazebo.md", "sweeps", heading, sweeps(folder))
     engines = [f"`{engine}`" for engine, _ in qc.engines()]

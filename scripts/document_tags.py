@@ -182,7 +182,7 @@ def engine_section() -> str:
     return (
         "\n## Engines\n\n"
         "Chosen by `--engine` (Python: `engine=`); the first is the default. How they work:\n"
-        "[physics.md](physics.md#engines).\n\n" + table(("engine", "what it is"), rows)
+        "[engines.md](engines.md).\n\n" + table(("engine", "what it is"), rows)
     )
 
 
