@@ -161,7 +161,6 @@ class FlightPlan:
         for name in ("model", "world"):
             told[name] = [told[name].document.text, told[name].passed_over.ignored]
         told["dt"] = self.world.max_step_size if self.dt is None else self.dt
-        for name in ("dt", "duration", "spawn", "rotor_velocity", "commands"):
-            if told[name] is not None:  # 10 and 10.0 are the same
-                told[name] = np.asarray(told[name], dtype=float).tolist()
+        if self.commands is not None:  # 10 and 10.0 are the same
+            told["commands"] = np.asarray(self.commands, dtype=float).tolist()
         return {"version": _VERSION, **told}

@@ -63,9 +63,10 @@ class Log(Trajectory):
         """
         file = Path(path)
         columns, table = list(self.columns), self.table
-        for topic, fields in self.topics.items():
-            columns += [f"{topic}.{field}" for field in fields]
-            table = np.column_stack([table, *fields.values()])
+        if self.topics:
+            columns += [f"{topic}.{field}" for topic in self.topics for field in self.topics[topic]]
+            of_topics = [column for fields in self.topics.values() for column in fields.values()]
+            table = np.column_stack([table, *of_topics])
         format_of(file, _WRITTEN).write_log(file, columns, table, self.wrenches, self.ignored)
 
     def plot(self, directory: PathLike) -> list[Path]:

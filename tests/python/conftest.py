@@ -69,11 +69,11 @@ def thesis():
 @pytest.fixture(scope="session")
 def study():
     """The flights of the validation, slowed down by 1 and 8, without drag and with all."""
-    import quadcore as qc
+    from flights import ENGINES
+
     from quadcore.validation import Experiment, conduct
 
-    engines = [name for name, _ in qc.engines()]
-    return conduct(Experiment.of(), engines, [1, 8], ["none", "all"])
+    return conduct(Experiment.of(), ENGINES, [1, 8], ["none", "all"])
 
 
 @pytest.fixture(scope="session")

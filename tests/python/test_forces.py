@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from flights import ENGINES
 from scipy.spatial.transform import Rotation
 from vehicles import (
     AIR,
@@ -20,9 +21,6 @@ from vehicles import (
     wrenches,
 )
 
-import quadcore as qc
-
-ENGINES = [name for name, _ in qc.engines()]
 DRAGS = ("induced", "translational", "profile", "parasitic")
 EVERYTHING = {**AIR, **DRAG, **FLAPPING}
 CHAPTER2 = {**EVERYTHING, "dragModel": "chapter2"}

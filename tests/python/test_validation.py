@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from flights import ENGINES
 from vehicles import AIR, CROSS, DRAG, MOTOR, vehicle
 
 import quadcore as qc
@@ -15,7 +16,6 @@ from quadcore.validation.ascent import ascent
 from quadcore.validation.experiment import at_steps
 from quadcore.validation.given_speeds import speeds
 
-ENGINES = [name for name, _ in qc.engines()]
 ROOT = Path(__file__).resolve().parents[2]
 HEXAROTOR = ROOT / "tests/data/gazebo11/cases/B1_hexa_hover/model.urdf"
 FAST = ["--drag", "none", "--sim-slow", "1", "--engine", "eigen", "--duration", "0.5", "--quiet"]

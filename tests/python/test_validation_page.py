@@ -10,6 +10,7 @@ import signal
 from pathlib import Path
 
 import pytest
+from flights import ENGINES
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from test_docs import COMMANDS
 
@@ -21,7 +22,6 @@ from quadcore.validation.figures import pictures
 from quadcore.validation.output import size
 from quadcore.validation.thesis import KINDS, SIM_SLOW, thesis_figures
 
-ENGINES = [name for name, _ in qc.engines()]
 ROOT = Path(__file__).resolve().parents[2]
 HEXAROTOR = ROOT / "tests/data/gazebo11/cases/B1_hexa_hover/model.urdf"
 FAST = ["--drag", "none", "--sim-slow", "1", "--engine", "eigen", "--duration", "0.5", "--quiet"]

@@ -44,11 +44,7 @@ void Simulation::publish(const std::string& name, const double* values, std::siz
 }
 
 void Simulation::publish(const char* call, std::size_t index, const double* values) {
-  const int writer = topics_[index].writer;
-  if (writer != the_caller) {
-    throw InputError(call + (" writes topic '" + topics_[index].name) + "', which " +
-                     topics_.name_of(writer) + " writes already; keep one of the two");
-  }
+  if (topics_[index].writer != the_caller) topics_.refuse_second(call, topics_[index]);
   std::copy_n(values, topics_[index].values.size(), topics_.publish(index, time()));
 }
 

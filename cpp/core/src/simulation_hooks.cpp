@@ -27,7 +27,6 @@ void Simulation::note_hooks() {
 }
 
 void Simulation::gather_laws() {
-  laws_.clear();
   for (const LoadedPlugin* const p : with_.forces) {
     if (!p->descriptor->create.hooks.laws) continue;
     active_ = p;
@@ -136,29 +135,22 @@ const std::vector<Wrench>& Simulation::wrenches() {
   return wrenches_;
 }
 
-void Simulation::sense(bool jumped) {
+template <auto hook>
+void Simulation::sample(const std::vector<const LoadedPlugin*>& plugins, bool jumped) {
   Sample sample{time(), dt_, engine_->kinematics(), world_, topics_, said_, 0, jumped};
   topics_.begin_sample();
-  for (const LoadedPlugin* const p : with_.sense) {
+  for (const LoadedPlugin* const p : plugins) {
     enter(*p);
     sample.seed = p->seed;
-    p->plugin->sense(sample, state_of(*p));
+    ((*p->plugin).*hook)(sample, state_of(*p));
     if (!said_.empty()) collect_warnings();
   }
   leave();
 }
 
-void Simulation::update() {
-  Sample sample{time(), dt_, engine_->kinematics(), world_, topics_, said_};
-  topics_.begin_sample();
-  for (const LoadedPlugin* const p : with_.update) {
-    enter(*p);
-    sample.seed = p->seed;
-    p->plugin->update(sample, state_of(*p));
-    if (!said_.empty()) collect_warnings();
-  }
-  leave();
-}
+void Simulation::sense(bool jumped) { sample<&Plugin::sense>(with_.sense, jumped); }
+
+void Simulation::update() { sample<&Plugin::update>(with_.update, false); }
 
 void Simulation::collect_warnings() {
   for (const std::string& what : said_) {

@@ -27,10 +27,7 @@ std::vector<std::size_t> Topics::settle() {
       topic.readers.push_back(declared.plugin);
       continue;
     }
-    if (topic.writer != the_caller) {
-      throw InputError(name_of(declared.plugin) + " writes topic '" + topic.name + "', which " +
-                       name_of(topic.writer) + " writes already; keep one of the two");
-    }
+    if (topic.writer != the_caller) refuse_second(name_of(declared.plugin), topic);
     topic.writer = declared.plugin;
   }
   for (const Declaration& declared : declarations_) {

@@ -32,9 +32,8 @@ std::size_t Topics::takes(const std::string& name, const MessageKind& kind, bool
   for (const LateCopy& known : late_) {
     if (known.original == original) return known.copy;
   }
-  late_.push_back({topics_.size(), original});
-  topics_.push_back({name, kind, topics_[original].values});
-  return topics_.size() - 1;
+  late_.push_back({add(name, kind), original});
+  return late_.back().copy;
 }
 
 std::size_t Topics::declare(const std::string& name, const MessageKind& kind, bool writes,
@@ -42,10 +41,18 @@ std::size_t Topics::declare(const std::string& name, const MessageKind& kind, bo
   check_word("topic", name);
   for (const std::string& field : kind.fields) check_word("topic '" + name + "': field", field);
   const int known = find(name);
-  const std::size_t index = known < 0 ? topics_.size() : static_cast<std::size_t>(known);
-  if (known < 0) topics_.push_back({name, kind, std::vector<double>(kind.fields.size(), 0.0)});
+  const std::size_t index = known < 0 ? add(name, kind) : static_cast<std::size_t>(known);
   declarations_.push_back({static_cast<int>(plugins_.size()) - 1, index, kind, writes, late});
   return index;
+}
+
+std::size_t Topics::add(const std::string& name, const MessageKind& kind) {
+  Topic topic;
+  topic.name = name;
+  topic.kind = kind;
+  topic.values.assign(kind.fields.size(), 0.0);
+  topics_.push_back(topic);
+  return topics_.size() - 1;
 }
 
 bool Topics::is_copy(std::size_t index) const {
@@ -98,21 +105,15 @@ void Topics::refuse_writer(const Topic& topic) const {
     throw InputError(name_of(writer_) + " writes topic '" + topic.name +
                      "', which it did not declare; call topics.publishes() in its constructor");
   }
-  throw InputError(name_of(writer_) + " writes topic '" + topic.name + "', which " +
-                   name_of(topic.writer) + " writes already; keep one of the two");
+  refuse_second(name_of(writer_), topic);
 }
 
-void Topics::copy_message(const Topic& from, Topic& to) {
-  std::copy(from.values.begin(), from.values.end(), to.values.begin());
-  to.stamp = from.stamp;
-  to.count = from.count;
+void Topics::refuse_second(const std::string& who, const Topic& topic) const {
+  throw InputError(who + " writes topic '" + topic.name + "', which " + name_of(topic.writer) +
+                   " writes already; keep one of the two");
 }
 
-std::vector<Message> Topics::messages() const {
-  std::vector<Message> messages;
-  for (const Topic& topic : topics_) messages.push_back({topic.values, topic.stamp, topic.count});
-  return messages;
-}
+std::vector<Message> Topics::messages() const { return {topics_.begin(), topics_.end()}; }
 
 void Topics::check(const std::vector<Message>& messages) const {
   const auto fits = [](const Message& message, const Topic& topic) {
@@ -125,9 +126,7 @@ void Topics::check(const std::vector<Message>& messages) const {
 
 void Topics::restore(const std::vector<Message>& messages) {
   for (std::size_t i = 0; i < topics_.size(); ++i) {
-    topics_[i].values = messages[i].values;
-    topics_[i].stamp = messages[i].stamp;
-    topics_[i].count = messages[i].count;
+    static_cast<Message&>(topics_[i]) = messages[i];
   }
 }
 

@@ -33,24 +33,25 @@ VehicleDescription Simulation::describe_vehicle() {
   const Model& flown = engine_->model();
   VehicleDescription vehicle{mass_properties(flown), world_.gravity_W, {}};
   const std::vector<Eigen::Isometry3d> poses = link_poses(flown);
+  const Wrench still = probe(state_);
   for (std::size_t i = 0; i < flown.joints.size(); ++i) {
     const Eigen::Isometry3d& pose = poses[i + 1];
-    const auto rotor = static_cast<Eigen::Index>(i);
-    const Wrench still = probe(rotor, 0);
-    vehicle.rotors.push_back(
-        {flown.joints[i].name, pose.translation(), pose * flown.links[i + 1].inertial.pose.xyz,
-         pose.linear() * flown.joints[i].axis, moment_about_joint(flown, i),
-         probe(rotor, probed_rate) - still, probe(rotor, -probed_rate) - still});
+    const auto turning = [&](double rate) {
+      VehicleState rest = state_;
+      rest.rotor_velocity[static_cast<Eigen::Index>(i)] = rate;
+      return probe(rest) - still;
+    };
+    vehicle.rotors.push_back({flown.joints[i].name, pose.translation(),
+                              pose * flown.links[i + 1].inertial.pose.xyz,
+                              pose.linear() * flown.joints[i].axis, moment_about_joint(flown, i),
+                              turning(probed_rate), turning(-probed_rate)});
   }
   return vehicle;
 }
 
-/// Force and torque about the vehicle's centre of mass while it stands still in still air but for
-/// one rotor.
-Wrench Simulation::probe(Eigen::Index rotor, double rate) {
-  VehicleState rest = state_;
-  rest.rotor_velocity[rotor] = rate;
-  engine_->set_state(rest);
+/// Force and torque about the vehicle's centre of mass in a state in still air.
+Wrench Simulation::probe(const VehicleState& state) {
+  engine_->set_state(state);
   Kinematics& k = engine_->kinematics();
   k.v_WA_F.setZero();
   Loads loads(k.rotors.size());

@@ -14,12 +14,6 @@ struct ForceLaws {
   std::vector<FrameDrag> frame_drags;
   std::vector<MotorTorques> motor_torques;
   bool complete = false;  ///< nothing else acts on the vehicle, and the air stands still
-
-  void clear() {
-    rotor_forces.clear();
-    frame_drags.clear();
-    motor_torques.clear();
-  }
 };
 
 }  // namespace quadcore

@@ -130,7 +130,7 @@ class Simulation : private ForceField {
   void gather_laws();
   void prepare_plugins();  ///< tells those that ask what they fly
   VehicleDescription describe_vehicle();
-  Wrench probe(Eigen::Index rotor, double rate);
+  Wrench probe(const VehicleState& state);
   void plant_seed(std::uint64_t seed);
   void place(const VehicleState& state);
   /// The engine for what rides on the frame with this state of the plugins; null if that is the
@@ -166,6 +166,9 @@ class Simulation : private ForceField {
     topics_.write_as(the_caller);
   }
   void publish(const char* call, std::size_t topic, const double* values);
+  /// Calls a hook of those that have it.
+  template <auto hook>
+  void sample(const std::vector<const LoadedPlugin*>& plugins, bool jumped);
   void update();
   void sense(bool jumped);
   /// Adds to warnings() what the active plugin has said in a hook.

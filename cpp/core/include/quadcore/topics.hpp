@@ -13,22 +13,19 @@ namespace quadcore QUADCORE_EXPORT {
 /// does.
 constexpr int the_caller = -1;  ///< of Simulation::publish()
 
-/// A named message inside the simulation: a row of numbers of one kind.
-struct Topic {
-  std::string name;
-  MessageKind kind;
-  std::vector<double> values;
-  double stamp = 0;  ///< time of the last message [s]
-  double count = 0;  ///< messages so far; 0 = none yet
-  int writer = the_caller;
-  std::vector<int> readers = {};  ///< plugins
-};
-
 /// What a topic holds at one moment, as snapshots keep it.
 struct Message {
   std::vector<double> values;
-  double stamp;
-  double count;
+  double stamp = 0;  ///< time of the last message [s]
+  double count = 0;  ///< messages so far; 0 = none yet
+};
+
+/// A named message inside the simulation: a row of numbers of one kind.
+struct Topic : Message {
+  std::string name;
+  MessageKind kind;
+  int writer = the_caller;
+  std::vector<int> readers = {};  ///< plugins
 };
 
 /// The topics of one simulation. A plugin declares in its constructor what it publishes and what it
@@ -71,6 +68,8 @@ class Topics {
 
   /// How errors call a writer.
   std::string name_of(int writer) const;
+  /// Throws InputError: `who` is a second writer.
+  [[noreturn]] void refuse_second(const std::string& who, const Topic& topic) const;
   /// Index of a declared topic, or -1.
   int find(const std::string& name) const;
   /// Index of a declared topic. Throws InputError with the names of those there are.
@@ -91,7 +90,9 @@ class Topics {
   void write_as(int writer) { writer_ = writer; }
   /// A round of hooks begins: late readers see what is there now.
   void begin_sample() {
-    for (const auto& [copy, original] : late_) copy_message(topics_[original], topics_[copy]);
+    for (const auto& [copy, original] : late_) {
+      static_cast<Message&>(topics_[copy]) = topics_[original];
+    }
   }
   /// What each topic holds, and each late reader has of it.
   std::vector<Message> messages() const;
@@ -116,13 +117,13 @@ class Topics {
   };
 
   std::size_t declare(const std::string& name, const MessageKind& kind, bool writes, bool late);
+  std::size_t add(const std::string& name, const MessageKind& kind);
   bool is_copy(std::size_t index) const;
   [[noreturn]] void refuse_writer(const Topic& topic) const;
   [[noreturn]] void refuse_loop(const std::vector<bool>& placed) const;
   const Declaration& authority(std::size_t topic) const;
   std::vector<std::size_t> order() const;
   const Declaration* awaited(std::size_t plugin, const std::vector<bool>& placed) const;
-  static void copy_message(const Topic& from, Topic& to);
 
   std::vector<Topic> topics_;
   std::vector<LateCopy> late_;
