@@ -5,6 +5,8 @@ from __future__ import annotations
 import subprocess
 import sys
 
+from quadcore.study import executor
+
 QUADCORE = [sys.executable, "-m", "quadcore"]
 FALL = ["run", "quadrotor", "--engine", "eigen", "--duration", "0.05"]
 LONG = 120.0  # s; generous, because waiting costs nothing when things work
@@ -42,3 +44,10 @@ def refused(*arguments, **options):
     assert done.returncode == 2, done.stderr
     assert done.stderr.startswith("error: ") and done.stderr.count("\n") == 1
     return done.stderr
+
+
+def outcomes(function, cases, processes):
+    """What became of cases in parallel, by index."""
+    found = {}
+    executor.each(function, cases, found.__setitem__, processes)
+    return found

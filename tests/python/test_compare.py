@@ -11,13 +11,13 @@ import faults
 import numpy as np
 import pytest
 from compared import FLIGHT, commands, line_of, rows  # noqa: F401
+from processes import outcomes
 
 import quadcore as qc
 from quadcore.cli import main
 from quadcore.comparison.compare import Comparison
 from quadcore.rotation import roll_pitch_yaw
 from quadcore.study import metrics
-from quadcore.study.executor import each
 
 pytestmark = pytest.mark.usefixtures("toy")
 
@@ -232,9 +232,9 @@ def test_a_process_that_dies_is_a_case_that_failed():
             raise qc.QuadcoreError("no")
         return number * number
 
-    results = dict(each(maybe_die, range(6), 2))
+    results = outcomes(maybe_die, range(6), 2)
     assert [results[i] for i in (0, 1, 4, 5)] == [0, 1, 16, 25]
     assert str(results[2]) == "its process was ended by SIGKILL"
     assert str(results[3]) == "no"
     with pytest.raises(RuntimeError, match="ZeroDivisionError"):
-        list(each(lambda number: 1 / number, [1, 0], 2))
+        outcomes(lambda number: 1 / number, [1, 0], 2)

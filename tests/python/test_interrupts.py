@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from processes import outcomes
 
 import quadcore as qc
 from quadcore import interrupts
@@ -260,13 +261,32 @@ def test_a_process_ended_by_a_signal_without_a_name_is_a_case_that_failed():
             os.kill(os.getpid(), 40)
         return number
 
-    results = dict(each(die, range(3), 2))
+    results = outcomes(die, range(3), 2)
     assert (results[0], results[2]) == (0, 2)
     assert str(results[1]) == "its process was ended by signal 40"
 
 
+def test_an_interrupt_while_an_outcome_is_taken_loses_none_of_the_others(tmp_path):
+    taken = []
+
+    def written(number):
+        (tmp_path / str(number)).touch()
+        return number
+
+    def take(index, outcome):
+        if not taken:
+            until(lambda: len(files(tmp_path)) > 1)  # one more waits to be taken
+            os.kill(os.getpid(), signal.SIGTERM)
+        taken.append((index, outcome))
+
+    with pytest.raises(interrupts.Interrupted), interrupts.heard():
+        each(lambda number: number, range(1000), take, 2, written)
+    assert sorted(str(number) for number, _ in taken) == files(tmp_path)
+    assert all(outcome == index for index, outcome in taken) and 1 < len(taken) < 1000
+
+
 def test_a_foreign_exception_in_a_case_is_that_case_alone():
-    results = dict(each(contained(lambda number: 1 / number), [1, 0, 2], 2))
+    results = outcomes(contained(lambda number: 1 / number), [1, 0, 2], 2)
     assert (results[0], results[2]) == (1, 0.5)
     assert isinstance(results[1], qc.QuadcoreError)
     assert str(results[1]).startswith("ZeroDivisionError: division by zero (")
@@ -280,6 +300,6 @@ def test_fewer_processes_than_asked_for_do_all_cases():
     open_now = max(int(name) for name in os.listdir("/proc/self/fd"))
     resource.setrlimit(resource.RLIMIT_NOFILE, (open_now + 9, hard))
     try:
-        assert dict(each(lambda number: -number, range(20), 16)) == {i: -i for i in range(20)}
+        assert outcomes(lambda number: -number, range(20), 16) == {i: -i for i in range(20)}
     finally:
         resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import argparse
 import sys
-from contextlib import closing
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Dict, List
+from typing import TYPE_CHECKING, Any, Dict, List, Union
 
 from rich.table import Table
 
@@ -135,15 +134,19 @@ def _draw(study: Study, arguments: argparse.Namespace, failures: List[str]) -> D
         return function(*what)
 
     try:
-        with terminal.progress(arguments.quiet, "drawing") as progress, closing(
-            conducted(draw, names, arguments.jobs, progress=progress)
-        ) as outcomes:
-            for index, picture in outcomes:
+        with terminal.progress(arguments.quiet, "drawing") as progress:
+
+            def take(index: int, picture: Union[bytes, QuadcoreError]) -> None:
+                name = names[index]
                 if isinstance(picture, QuadcoreError):
-                    failed.append(f"{names[index]}: {picture}")
+                    failed.append(f"{name}: {picture}")
                 else:
-                    write_picture(names[index], picture, arguments.out)
-                    drawn[names[index]] = picture
+                    write_picture(name, picture, arguments.out)
+                    drawn[name] = picture
+                if progress is not None:
+                    progress(len(drawn) + len(failed), len(names))
+
+            conducted(draw, names, take, arguments.jobs)
     finally:
         in_order = {name: drawn[name] for name in names if name in drawn}
         with interrupts.held():

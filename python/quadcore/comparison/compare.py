@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import closing
 from pathlib import Path
 from typing import (
     Any,
@@ -139,9 +138,9 @@ def fly(
                 return _kept(row, measured, log, keep)
 
             start = tally.done
-            with closing(conducted(flown, flights, processes, kept)) as outcomes:
-                for index, outcome in outcomes:
-                    tally.note(start + index, outcome)
+            conducted(
+                flown, flights, lambda i, outcome: tally.note(start + i, outcome), processes, kept
+            )
     except KeyboardInterrupt as stop:
         stop.comparison = tally.result()  # type: ignore[attr-defined]
         raise
@@ -152,9 +151,11 @@ def _first_flown(
     plan: Plan, flights: Iterator[Tuple[int, Variant]], tally: _Tally
 ) -> Optional[Log]:
     """Take flights until one succeeds, which all later ones are compared with."""
+    outcomes: List[Union[Log, QuadcoreError]] = []
     for row, variant in flights:
         # In a process too: what crashes there does not end the comparison.
-        ((_, log),) = conducted(plan.fly, [variant], 1)
+        conducted(plan.fly, [variant], lambda _, outcome: outcomes.append(outcome), 1)
+        log = outcomes.pop()
         if isinstance(log, Log):
             tally.reference = row
             with interrupts.held():

@@ -10,14 +10,11 @@ import multiprocessing
 import os
 import signal
 import traceback
-from contextlib import closing
 from multiprocessing.connection import Connection, wait
 from typing import (
     Any,
     Callable,
-    Deque,
     Dict,
-    Generator,
     Iterable,
     Iterator,
     List,
@@ -32,6 +29,7 @@ from .._core import QuadcoreError
 
 Case = TypeVar("Case")
 Result = TypeVar("Result")
+Take = Callable[[int, Union[Any, QuadcoreError]], Any]
 Task = Tuple[Callable[[Any], Any], Callable[[Any], Any]]
 
 # Forked, so that the caller's data need not be copied and its script need not be importable.
@@ -44,9 +42,10 @@ _PR_SET_PDEATHSIG = 1  # of linux/prctl.h
 def each(
     function: Callable[[Case], Result],
     cases: Iterable[Case],
+    take: Take,
     processes: Optional[int] = None,
     conclude: Callable[[Result], Any] = lambda result: result,
-) -> Generator[Tuple[int, Union[Result, QuadcoreError]], None, None]:
+) -> None:
     """Call `function` on every case, in parallel.
 
     Parameters
@@ -56,43 +55,39 @@ def each(
         reaches it as `interrupts.Interrupted`, so that it can leave nothing half done.
     cases
         Taken one by one as processes fall idle, so that they may come from a generator.
+    take
+        Called as take(index, result) for each case, in the order in which they end. A QuadcoreError
+        that `function` raised, and one made for a process that died, come in place of the result:
+        the other cases go on. An interrupt waits for it.
     processes
         How many; None takes one per core that this process may use. Fewer if the system gives no
         more.
     conclude
         Called on the result, in the same process, for what stands in its place. An interrupt waits
-        until that is done and the outcome is on its way: a file that `conclude` writes is there if
-        and only if the outcome is.
-
-    Yields
-    ------
-    (index, result)
-        Of each case, in the order in which they end. A QuadcoreError that `function` raised, and
-        one made for a process that died, come in place of the result: the other cases go on.
+        until that is done and the outcome was taken: a file that `conclude` writes is there if and
+        only if the outcome is.
 
     Raises
     ------
     KeyboardInterrupt
         After the results that were there already. No process is left, as none is left when this
-        process dies or the generator is closed.
+        process dies or `take` raises.
     QuadcoreError
         The system gives not even one process.
     RuntimeError
         Anything else that `function` raised, with its traceback; see `contained`.
     """
     crew = _Crew(function, conclude, cases)
-    done: Deque[Tuple[int, Any]] = collections.deque()
     try:
         crew.hire(processes or len(os.sched_getaffinity(0)))
         while crew.busy:
-            ready = wait(list(crew.busy))
-            with interrupts.held():
-                done.extend(crew.take(connection) for connection in ready)
-            while done:
-                yield done.popleft()
+            for connection in wait(list(crew.busy)):
+                with interrupts.held():
+                    take(*crew.take(connection))
     except KeyboardInterrupt:
-        yield from done
-        yield from crew.dismiss()
+        with interrupts.held():
+            for outcome in crew.dismiss():
+                take(*outcome)
         raise
     finally:
         collections.deque(crew.dismiss(), maxlen=0)
@@ -101,23 +96,12 @@ def each(
 def conducted(
     function: Callable[[Case], Result],
     cases: Iterable[Case],
+    take: Take,
     processes: Optional[int] = None,
     conclude: Callable[[Any], Any] = lambda result: result,
-    progress: Optional[Callable[[int, int], None]] = None,
-) -> Generator[Tuple[int, Union[Any, QuadcoreError]], None, None]:
-    """Do as `each` does, but with any fault its case's alone.
-
-    Parameters
-    ----------
-    progress
-        Called as progress(done, total) after each outcome was taken over; `cases` must have a
-        length then.
-    """
-    with closing(each(contained(function), cases, processes, contained(conclude))) as outcomes:
-        for done, outcome in enumerate(outcomes, start=1):
-            yield outcome
-            if progress is not None:
-                progress(done, len(cases))  # type: ignore[arg-type]
+) -> None:
+    """Do as `each` does, but with any fault its case's alone."""
+    each(contained(function), cases, take, processes, contained(conclude))
 
 
 def contained(function: Callable[[Case], Result]) -> Callable[[Case], Result]:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import closing
-from typing import Callable, Dict, List, NamedTuple, Optional, Sequence
+from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Union
 
 from .._core import InputError, QuadcoreError
 from ..study.executor import conducted
@@ -123,12 +122,19 @@ def _fly(
 ) -> None:
     # The model is slow: it goes first, so that no core waits for it at the end.
     cases = sorted(flights, key=lambda case: case.plant != MODEL)
-    with closing(conducted(experiment.fly, cases, processes, progress=progress)) as outcomes:
-        for index, flight in outcomes:
-            case = cases[index]
-            if isinstance(flight, QuadcoreError):  # its process died
-                flight = Flight(case, None, str(flight))
-            flights[case] = flight
+    done = 0
+
+    def take(index: int, flight: Union[Flight, QuadcoreError]) -> None:
+        nonlocal done
+        case = cases[index]
+        if isinstance(flight, QuadcoreError):  # its process died
+            flight = Flight(case, None, str(flight))
+        flights[case] = flight
+        done += 1
+        if progress is not None:
+            progress(done, len(cases))
+
+    conducted(experiment.fly, cases, take, processes)
 
 
 def _row(flight: Flight, reference: Flight) -> Row:
