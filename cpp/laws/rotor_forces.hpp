@@ -63,7 +63,7 @@ struct RotorLoads {
 template <class T, class Motion>
 QUADCORE_LAW void add_rotor_forces(const RotorForces& law, const Motion& motion, std::size_t i,
                                    RotorLoads<T>& loads) {
-  const RotorDisc<T> disc = disc_of<T>(law, motion);
+  RotorDisc<T> disc = disc_of<T>(law, motion);
   // The drag last, because it waits for the velocity.
   loads.f_F = loads.f_F + thrust(disc, coefficient<T>(law, CoefficientRow::k, i));
   loads.f_F = loads.f_F + rotor_drag(disc, coefficient<T>(law, CoefficientRow::linear, i));

@@ -9,7 +9,7 @@ namespace quadcore::laws {
 /// places in the tables are constants.
 template <int W, class Work>
 QUADCORE_LAW void for_each_pack(std::size_t rotors, const Work& work) {
-  if (rotors - 1 < W) {
+  if (__builtin_expect(rotors - 1 < W, 1)) {
     work(std::size_t{0});
   } else {
     for (std::size_t i = 0; i < rotors; i += W) work(i);

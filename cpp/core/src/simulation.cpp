@@ -66,7 +66,7 @@ void Simulation::step(std::int64_t n) {
   try {
     for (; n > 0; --n) {
       update();
-      take_along();
+      if (!with_.carried.empty()) take_along();
       engine_->step(time(), dt_, *this);
       ++steps_;
       check_flight();

@@ -88,14 +88,12 @@ struct RotorsOfState {
   }
 };
 
-/// Fills the table of turns, before all else: it calls where digits are lost, and nothing then has
-/// to be kept in memory.
+/// Fills the table of turns of a state.
 template <int W>
 QUADCORE_LAW void turn(const GyrostatStep& g, const double* state) {
   using T = laws::Pack<W>;
   laws::for_each_pack<W>(g.rotors, [&](std::size_t i) QUADCORE_INLINED {
-    const auto turn =
-        laws::sine_and_cosine(laws::load<T>(state + joint(GyrostatState::joint_angle, i)));
+    auto turn = laws::sine_and_cosine(laws::load<T>(state + joint(GyrostatState::joint_angle, i)));
     double* rows = g.turns + rotor_offset(TurnRow::count, i);
     laws::store(rows + TurnRow::sine * widest_lanes, turn.sin);
     laws::store(rows + TurnRow::cosine * widest_lanes, turn.cos);
@@ -107,7 +105,7 @@ template <int W>
 QUADCORE_LAW void show(const GyrostatStep& g, const double* state) {
   using T = laws::Pack<W>;
   if (g.normals_turn) turn<W>(g, state);
-  const FrameOfState frame(state);
+  FrameOfState frame(state);
   laws::store(g.frame + FrameNumber::q_WF, frame.q_WF);
   laws::store_vector(g.frame + FrameNumber::R_WF, frame.R_WF.to.x);
   laws::store_vector(g.frame + FrameNumber::R_WF + 3, frame.R_WF.to.y);

@@ -42,7 +42,7 @@ struct Laws {
   /// Does work with each. One is what most vehicles have, and no loop lets it stay in registers.
   template <class Work>
   QUADCORE_LAW void for_each(const Work& work) const {
-    if (count == 1) {
+    if (__builtin_expect(count == 1, 1)) {
       work(*first);
     } else {
       for (std::size_t i = 0; i < count; ++i) work(first[i]);

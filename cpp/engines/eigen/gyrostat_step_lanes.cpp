@@ -55,14 +55,15 @@ template <int W>
 }
 
 /// The loads of a pack of rotors.
-template <class T>
+// Not const, here and below: GCC leaves constant aggregates in memory.
+template <class T, bool rest>
 QUADCORE_LAW laws::RotorLoads<T> loads_of(const GyrostatStep& g, const RotorsOfState<T>& rotors) {
   laws::RotorLoads<T> loads{laws::broadcast<T>(Four{}), laws::broadcast<T>(Four{}), T{}};
-  if (g.evaluate_rest) {
-    const double* rest = g.loads + rotor_offset(LoadRow::count, rotors.i);
-    loads.f_F = laws::load3<T>(rest + LoadRow::force * widest_lanes);
-    loads.reaction_F = laws::load3<T>(rest + LoadRow::reaction * widest_lanes);
-    loads.joint_torque = laws::load<T>(rest + LoadRow::joint_torque * widest_lanes);
+  if constexpr (rest) {
+    const double* told = g.loads + rotor_offset(LoadRow::count, rotors.i);
+    loads.f_F = laws::load3<T>(told + LoadRow::force * widest_lanes);
+    loads.reaction_F = laws::load3<T>(told + LoadRow::reaction * widest_lanes);
+    loads.joint_torque = laws::load<T>(told + LoadRow::joint_torque * widest_lanes);
   }
   g.rotor_forces.for_each([&](const RotorForces& law) QUADCORE_INLINED {
     laws::add_rotor_forces<T>(law, rotors, rotors.i, loads);
@@ -74,11 +75,12 @@ QUADCORE_LAW laws::RotorLoads<T> loads_of(const GyrostatStep& g, const RotorsOfS
   return loads;
 }
 
+template <bool rest>
 QUADCORE_LAW Four drag_of_frame(const GyrostatStep& g, const FrameOfState& frame) {
   Four sum{};
   if (g.frame_drags.count == 0) return sum;
   Four v_ACcm_F = frame.v_WCcm_F;
-  if (g.evaluate_rest) v_ACcm_F = v_ACcm_F - laws::load_vector(g.frame + FrameNumber::v_WA_F);
+  if constexpr (rest) v_ACcm_F = v_ACcm_F - laws::load_vector(g.frame + FrameNumber::v_WA_F);
   const Four squares = v_ACcm_F * v_ACcm_F;
   const double speed = __builtin_sqrt(squares[0] + (squares[1] + squares[2]));
   g.frame_drags.for_each([&](const FrameDrag& law) QUADCORE_INLINED {
@@ -87,19 +89,19 @@ QUADCORE_LAW Four drag_of_frame(const GyrostatStep& g, const FrameOfState& frame
   return sum;
 }
 
-/// Shares out the rate of a state.
-template <int W, Stage stage>
+/// Shares out the rate of a state, whose turns the table holds, and fills that for the next stage.
+/// `rest` says whether there is anything but laws.
+template <int W, Stage stage, bool rest>
 QUADCORE_LAW void differentiate(const GyrostatStep& g, const double* state, const Share& share) {
   using T = laws::Pack<W>;
-  if (g.evaluate_rest) evaluate_rest<W>(g, state);
-  if (g.laws_turn) turn<W>(g, state);
-  const FrameOfState frame(state);
+  if constexpr (rest) evaluate_rest<W>(g, state);
+  FrameOfState frame(state);
 
-  Four f_F = drag_of_frame(g, frame);
+  Four f_F = drag_of_frame<rest>(g, frame);
   Four tau_F = -laws::cross(frame.w_WF_F, laws::load_columns(g.I_C_F) * frame.w_WF_F);
   laws::for_each_pack<W>(g.rotors, [&](std::size_t i) QUADCORE_INLINED {
     const RotorsOfState<T> rotors{g, frame, state, i};
-    const laws::RotorLoads<T> loads = loads_of<T>(g, rotors);
+    laws::RotorLoads<T> loads = loads_of<T, rest>(g, rotors);
     laws::store(g.joint_torques + i, loads.joint_torque);
     laws::add_in_order(f_F, loads.f_F);
     laws::add_in_order(
@@ -108,7 +110,7 @@ QUADCORE_LAW void differentiate(const GyrostatStep& g, const double* state, cons
                            rotors.constant(RotorConstant::moment), rotors.rate(), loads.f_F,
                            loads.reaction_F, loads.joint_torque));
   });
-  if (g.evaluate_rest) {
+  if constexpr (rest) {
     const Four rest_F = laws::load_vector(g.frame_force_F);
     f_F = f_F + rest_F;
     tau_F = tau_F + (laws::load_vector(g.frame_torque_F) -
@@ -120,16 +122,21 @@ QUADCORE_LAW void differentiate(const GyrostatStep& g, const double* state, cons
     refuse<W>(g, state);
   }
 
-  const Four angular_F = laws::load_columns(g.inverse_reduced_I_F) * tau_F;
-  const Vec3<T> angular = laws::broadcast<T>(angular_F);
+  // The next stage's angles do not wait for the sums, nor do their sines.
   laws::for_each_pack<W>(g.rotors, [&](std::size_t i) QUADCORE_INLINED {
     const RotorsOfState<T> rotors{g, frame, state, i};
-    const T rate = rotors.rate();
+    share_out<stage>(g, share, joint(At::joint_angle, i), rotors.rate());
+  });
+  if (stage != Stage::last && g.laws_turn) turn<W>(g, g.stage);
+
+  const Four angular_F = laws::load_columns(g.inverse_reduced_I_F) * tau_F;
+  Vec3<T> angular = laws::broadcast<T>(angular_F);
+  laws::for_each_pack<W>(g.rotors, [&](std::size_t i) QUADCORE_INLINED {
+    const RotorsOfState<T> rotors{g, frame, state, i};
     share_out<stage>(
         g, share, joint(At::joint_rate, i),
         laws::load<T>(g.joint_torques + i) * rotors.constant(RotorConstant::inverse_moment) -
             laws::dot(rotors.axis_F(), angular));
-    share_out<stage>(g, share, joint(At::joint_angle, i), rate);
   });
   share_out<stage>(g, share, At::position, frame.v_WCcm_W);
   share_out<stage>(g, share, At::orientation, laws::quaternion_rate(frame.q_WF, frame.w_WF_F));
@@ -161,18 +168,29 @@ void show_gyrostat(const GyrostatStep& g, const double* state) {
   show<W>(g, state);
 }
 
-template <int W>
-void step_gyrostat(const GyrostatStep& g, double time, double dt) {
+/// Compiled for both cases: what few vehicles have would cost all of them registers.
+template <int W, bool rest>
+QUADCORE_LAW void step(const GyrostatStep& g, double time, double dt) {
   double& shown_time = g.frame[FrameNumber::time];
   shown_time = time;
-  differentiate<W, Stage::first>(g, g.state, {1, dt / 2});
+  if (g.laws_turn) turn<W>(g, g.state);
+  differentiate<W, Stage::first, rest>(g, g.state, {1, dt / 2});
   shown_time = time + dt / 2;
   const double reaches[] = {dt / 2, dt};
-  for (const double reach : reaches) differentiate<W, Stage::between>(g, g.stage, {2, reach});
+  for (const double reach : reaches) differentiate<W, Stage::between, rest>(g, g.stage, {2, reach});
   shown_time = time + dt;
-  differentiate<W, Stage::last>(g, g.stage, {1, dt / 6});
+  differentiate<W, Stage::last, rest>(g, g.stage, {1, dt / 6});
   normalise<W>(g);
   show<W>(g, g.state);
+}
+
+template <int W>
+void step_gyrostat(const GyrostatStep& g, double time, double dt) {
+  if (g.evaluate_rest) {
+    step<W, true>(g, time, dt);
+  } else {
+    step<W, false>(g, time, dt);
+  }
 }
 
 template void show_gyrostat<QUADCORE_LANES>(const GyrostatStep&, const double*);

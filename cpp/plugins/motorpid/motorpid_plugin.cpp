@@ -65,7 +65,7 @@ class MotorPidPlugin final : public Plugin {
       const std::size_t i = config_.rotors[j];
       double* rows = state.data() + rotor_offset(MemoryRow::count, i);
       const auto memory = [rows](std::size_t row) -> double& { return rows[row * widest_lanes]; };
-      if (memory(MemoryRow::followed) == number && !config_.samples) continue;
+      if (memory(MemoryRow::followed) == number && !config_.samples) return;  // so do all rotors
       memory(MemoryRow::followed) = number;
       const double wanted = stale ? 0 : command.values[j];
       memory(MemoryRow::active) = 1;

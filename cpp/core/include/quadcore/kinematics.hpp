@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -37,7 +38,8 @@ class RotorMotions : public RotorRows<MotionRow::count> {
     for (std::size_t i = 0; i < size(); i += widest_lanes) {
       const double* rates =
           data() + rotor_offset(MotionRow::count, i) + MotionRow::rate * widest_lanes;
-      for (std::size_t j = 0; j < widest_lanes; ++j) all &= std::abs(rates[j]) < rate;
+      const std::size_t lanes = std::min(size() - i, widest_lanes);
+      for (std::size_t j = 0; j < lanes; ++j) all &= std::abs(rates[j]) < rate;
     }
     return all;
   }
