@@ -48,12 +48,25 @@ class MotorPidPlugin final : public Plugin {
           "<ki> has no effect while <iMax> and <iMin> are 0, as in the thesis; set them to the "
           "largest and smallest integral torque in N m");
     }
-    for (const std::size_t i : config_.rotors) warn_if_stiff(setup, i);
+    for (const std::size_t i : config_.rotors) {
+      warn_if_stiff(setup, i);
+      dampings_.push_back(setup.model.joints[i].damping);
+    }
     topic_ = setup.topics.takes("vel_cmd", messages::speeds(config_.rotors.size()));
   }
 
   std::size_t state_size() const override {
     return RotorRows<MemoryRow::count>::size_of(rotor_count_);
+  }
+
+  void describe_rotors(std::vector<RotorDescription>& rotors) const override {
+    for (std::size_t j = 0; j < config_.rotors.size(); ++j) {
+      RotorDescription& rotor = rotors[config_.rotors[j]];
+      const double stiffness = config_.kp + dampings_[j];
+      rotor.rate_per_command = stiffness > 0 ? config_.kp / stiffness / config_.sim_slow : 0;
+      rotor.lag = stiffness > 0 ? rotor.moment / stiffness : 0;
+      rotor.fastest = config_.max_velocity;
+    }
   }
 
   void update(const Sample& sample, PluginState state) const override {
@@ -112,7 +125,8 @@ class MotorPidPlugin final : public Plugin {
   }
 
   Config config_;
-  std::size_t rotor_count_;  ///< of the model
+  std::size_t rotor_count_;       ///< of the model
+  std::vector<double> dampings_;  ///< of the joints of config_.rotors [N m s/rad]
   void (*add_)(const MotorTorques&, const RotorLanes&);
   std::size_t topic_;
 };
