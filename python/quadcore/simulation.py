@@ -14,6 +14,7 @@ from .controller import Controller, Guided
 from .description import list_of_names, read_both
 from .flight import Progress, Rows, fly
 from .log import Log
+from .references import ReferenceLike
 from .state import LiveState
 from .warning import QuadcoreWarning
 
@@ -153,7 +154,8 @@ class Simulation(_core.Simulation):
         wrenches: bool = True,
         topics: Sequence[str] = (),
         *,
-        controller: Union[Controller, Callable[..., Any], None] = None,
+        controller: Union[Controller, Callable[..., Any], str, None] = None,
+        reference: Union[ReferenceLike, str, None] = None,
     ) -> Log:
         """Fly for a while and log it.
 
@@ -172,9 +174,14 @@ class Simulation(_core.Simulation):
             Whether to log them, which takes most of the memory of a log.
         topics : sequence of str
             Names of topics to log, too: `Log.topics`.
-        controller : object or callable, optional
-            Closed loop, instead of `commands`: called as controller(t, state, reference) at its
-            rate, it returns n rotor speeds in rad/s; see `Controller`. The reference is None.
+        controller : name, object or callable, optional
+            Closed loop, instead of `commands`: a law of `quadcore.laws`, or what is called as
+            controller(t, state, reference) at its rate and returns n rotor speeds in rad/s; see
+            `Controller`.
+        reference : name or callable, optional
+            Where the controller is to fly: one of `quadcore.references`, or what is called as
+            reference(t), t being the time of the simulation in s. The flight begins in the present
+            state; `quadcore.references.start` gives that of a vehicle already on the reference.
 
         Returns
         -------
@@ -192,8 +199,10 @@ class Simulation(_core.Simulation):
         """
         if commands is not None and controller is not None:
             raise _core.InputError("a flight takes commands or a controller; give one of them")
+        if reference is not None and controller is None:
+            raise _core.InputError("a reference needs a controller that follows it; give one")
         names = list_of_names("topics", topics)
-        pilot = None if controller is None else Guided(controller, self)
+        pilot = None if controller is None else Guided(controller, self, reference)
         rows = Rows(self, names)
         try:
             fly(self, duration, commands, log_every, rows.receive, wrenches, progress, pilot, names)
