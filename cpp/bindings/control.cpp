@@ -3,9 +3,11 @@
 
 #include "arguments.hpp"
 #include "bindings.hpp"
-#include "control/controller.hpp"
-#include "control/start.hpp"
 #include "guarded.hpp"
+#include "quadcore/control/controller.hpp"
+#include "quadcore/control/gains_file.hpp"
+#include "quadcore/control/rows_file.hpp"
+#include "quadcore/control/start.hpp"
 
 namespace quadcore::bindings {
 namespace {
@@ -111,6 +113,14 @@ void bind_control(py::module_& m) {
 
   m.def("start_on", &start, py::arg("simulation"), py::arg("reference"), py::arg("spins"),
         "Members of the state of a vehicle that follows a reference exactly.");
+  m.def(
+      "read_gains",
+      [](const std::string& path) {
+        const control::Gains gains = control::read_gains(path);
+        return py::make_tuple(gains.law, gains.vehicle, gains.rate, gains.delay, gains.values);
+      },
+      py::arg("path"), "Law, vehicle, rate, delay and parameters of a gains file.");
+  m.def("read_rows", &control::read_rows, py::arg("path"), "Rows of a .csv or .yaml file.");
   m.def(
       "laws",
       [] {

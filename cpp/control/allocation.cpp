@@ -1,4 +1,4 @@
-#include "control/allocation.hpp"
+#include "quadcore/control/allocation.hpp"
 
 #include <Eigen/SVD>
 #include <algorithm>

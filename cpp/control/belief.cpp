@@ -1,4 +1,4 @@
-#include "control/belief.hpp"
+#include "quadcore/control/belief.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "control/euler_rates.hpp"
-#include "control/flat_state.hpp"
+#include "quadcore/control/flat_state.hpp"
 
 namespace quadcore::control {
 namespace {

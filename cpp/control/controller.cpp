@@ -1,4 +1,4 @@
-#include "control/controller.hpp"
+#include "quadcore/control/controller.hpp"
 
 #include <algorithm>
 #include <cmath>

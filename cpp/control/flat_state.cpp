@@ -1,4 +1,4 @@
-#include "control/flat_state.hpp"
+#include "quadcore/control/flat_state.hpp"
 
 #include "control/jet.hpp"
 #include "quadcore/elementary.hpp"

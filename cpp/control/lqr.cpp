@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "control/flat_state.hpp"
 #include "control/riccati.hpp"
+#include "quadcore/control/flat_state.hpp"
 
 namespace quadcore::control {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "control/law.hpp"
+#include "quadcore/control/law.hpp"
 
 namespace quadcore::control {
 

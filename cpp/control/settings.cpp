@@ -1,4 +1,4 @@
-#include "control/settings.hpp"
+#include "quadcore/control/settings.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "control/start.hpp"
+#include "quadcore/control/start.hpp"
 
 #include <cmath>
 
-#include "control/allocation.hpp"
-#include "control/flat_state.hpp"
+#include "quadcore/control/allocation.hpp"
+#include "quadcore/control/flat_state.hpp"
 
 namespace quadcore::control {
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "control/settings.hpp"
+#include "quadcore/control/settings.hpp"
 
 /// \file
 /// The tables of several laws or shapes as the tags of one plugin.

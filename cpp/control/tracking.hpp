@@ -1,7 +1,7 @@
 #pragma once
 
-#include "control/flat_state.hpp"
-#include "control/law.hpp"
+#include "quadcore/control/flat_state.hpp"
+#include "quadcore/control/law.hpp"
 
 namespace quadcore::control {
 

@@ -16,6 +16,7 @@ from .commands import CommandsLike, as_commands
 from .description import read_both
 from .flight import Progress
 from .log import Log
+from .overrides import check_names, with_links, without_xacro
 from .simulation import Number, Simulation, Value, pose, text_of, whole
 
 _VERSION = 1  # of what a fingerprint stands for
@@ -36,7 +37,8 @@ class FlightPlan:
     engine, dt, seed
         As for `Simulation`.
     parameters : mapping of str to str
-        "PLUGIN.TAG" -> value.
+        "PLUGIN.TAG" -> value. "LINK.mass" and the like may be given, too, and become part of the
+        model.
     spawn : tuple of 6 floats
         x, y, z (m), roll, pitch, yaw (rad) of the frame link in the world.
     rotor_velocity : tuple of float, optional
@@ -76,6 +78,7 @@ class FlightPlan:
         }
         if self.rotor_velocity is not None:
             kept["rotor_velocity"] = tuple(float(rate) for rate in self.rotor_velocity)
+        kept["model"], kept["parameters"] = with_links(self.model, kept["parameters"])
         for name, value in kept.items():
             object.__setattr__(self, name, value)
 
@@ -108,9 +111,12 @@ class FlightPlan:
         InputError
             The model, the world, the commands or an argument is at fault.
         """
+        arguments, others = without_xacro(parameters or {}, xacro_args)
+        readings = read_both(model, world, arguments, ignore)
+        check_names(readings[0], parameters or {})
         plan = cls(
-            *read_both(model, world, xacro_args, ignore),
-            parameters=parameters or {},  # type: ignore[arg-type]
+            *readings,
+            parameters=others,
             spawn=pose(spawn),
             seed=seed,
             **others,

@@ -10,10 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, List, Optional, Protocol, Sequence, Union
 
 import numpy as np
-import yaml
 
 from . import _core
-from .files import read_text
 from .formats import format_of
 from .parameters import docstring, values
 from .state import State
@@ -95,33 +93,23 @@ def start(simulation: Any, reference: ReferenceLike, spins: Sequence[float] = ()
     return state
 
 
-_COLUMNS = ["t", "x", "y", "z"]
-
-
 def read_rows(path: Path) -> npt.ArrayLike:
     """Read rows of time and place.
 
     Parameters
     ----------
     path
-        A .csv or .mat file with columns t, x, y, z, or a .yaml file with `columns`, these and
-        perhaps yaw, and `rows`.
+        A .csv file with columns t, x, y, z and perhaps yaw, a .yaml file with `columns`, these, and
+        `rows`, or a .mat file with t, x, y, z.
 
     Raises
     ------
     InputError
         A missing file, or one that holds something else.
     """
-    if path.suffix.lower() not in (".yaml", ".yml"):
-        return format_of(path, "paths are read from").read_commands(path, _COLUMNS)[0]
-    try:
-        read = yaml.safe_load(read_text(path))
-    except yaml.YAMLError as error:
-        raise _core.InputError(f"{path}: not YAML: {error}".replace("\n", " ")) from None
-    columns = read.get("columns") if isinstance(read, dict) else None
-    if columns not in (_COLUMNS, [*_COLUMNS, "yaw"]) or set(read) != {"columns", "rows"}:
-        raise _core.InputError(f"{path}: write `columns: [t, x, y, z]`, or yaw besides, and `rows`")
-    return read["rows"]  # type: ignore[no-any-return]
+    if path.suffix.lower() in (".csv", ".yaml", ".yml"):
+        return _core.read_rows(str(path))
+    return format_of(path, "paths are read from").read_commands(path, ["t", "x", "y", "z"])[0]
 
 
 def _function(

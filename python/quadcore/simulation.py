@@ -14,6 +14,7 @@ from .controller import Controller, Guided
 from .description import list_of_names, read_both
 from .flight import Progress, Rows, fly
 from .log import Log
+from .overrides import check_names, with_links, without_xacro
 from .references import ReferenceLike
 from .state import LiveState
 from .warning import QuadcoreWarning
@@ -42,7 +43,8 @@ class Simulation(_core.Simulation):
     seed : int
         Of all noise. The same seed gives the same bytes.
     parameters : mapping of str to number, str, bool, path or sequence of those, optional
-        "PLUGIN.TAG" -> value; wins over the URDF.
+        "PLUGIN.TAG" -> value; wins over the URDF. So do "LINK.mass", "LINK.ixx" ... "LINK.izz" and
+        "xacro.ARG", an argument of a xacro model.
     xacro_args : mapping of str to value, optional
         Arguments of a xacro model.
     spawn : sequence of 3 or 6 numbers
@@ -74,14 +76,18 @@ class Simulation(_core.Simulation):
         spawn: Sequence[Number] = (0, 0, 10),
         ignore: Sequence[str] = (),
     ) -> None:
-        model, self.world = read_both(model, world, xacro_args, ignore)
+        given = parameters or {}
+        arguments, others = without_xacro(given, xacro_args)
+        model, self.world = read_both(model, world, arguments, ignore)
+        check_names(model, given)
+        model, tags = with_links(model, {key: text_of(value) for key, value in others.items()})
         super().__init__(
             model=model,
             world=self.world,
             engine=engine,
             dt=dt,
             seed=whole(seed),
-            parameters={key: text_of(value) for key, value in (parameters or {}).items()},
+            parameters=tags,
             spawn=pose(spawn),
         )
         self._live = LiveState(self)

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "control/reference.hpp"
+#include "quadcore/control/reference.hpp"
 
 namespace quadcore::control {
 

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "control/controller.hpp"
 #include "control/tags.hpp"
+#include "quadcore/control/controller.hpp"
+#include "quadcore/control/gains_file.hpp"
+#include "quadcore/control/second_vehicle.hpp"
 #include "quadcore/plugin.hpp"
 
 namespace quadcore::controller {
@@ -23,35 +25,55 @@ const std::vector<TagSpec>& law_tags() {
   return tags;
 }
 
+/// What the tags ask for; what they leave open is that of the gains file.
+control::Gains chosen(const Parameters& tags) {
+  control::Gains gains;
+  if (tags.has("gains")) {
+    gains = control::read_gains(tags.file("gains"));
+    if (tags.has("law") && tags.choice("law") != gains.law) {
+      throw InputError("<law> is " + tags.choice("law") + ", but the gains of " +
+                       tags.text("gains") + " are those of " + gains.law + "; leave <law> out");
+    }
+  } else if (tags.has("law")) {
+    gains.law = tags.choice("law");
+  } else {
+    throw InputError("no law is named; write <law> or <gains>");
+  }
+  if (tags.has("rate")) gains.rate = tags.number("rate");
+  if (tags.has("delay")) gains.delay = tags.number("delay");
+  gains.values = control::completed(control::values_of(tags, law_tags()), gains.values);
+  return gains;
+}
+
 /// Flies a law at a rate of its own: reads odometry and reference, commands the rotors.
 class ControllerPlugin final : public Plugin {
  public:
   explicit ControllerPlugin(const PluginSetup& setup)
-      : law_(setup.parameters.choice("law")),
-        values_(control::values_of(setup.parameters, law_tags())),
+      : gains_(chosen(setup.parameters)),
         spins_(setup.parameters.numbers("spins")),
-        rate_(setup.parameters.number("rate")),
-        delay_(setup.parameters.number("delay")),
+        believed_(setup.parameters.file("belief")),
         in_body_(setup.parameters.choice("twistFrame") == "body"),
         rotors_(setup.model.joints.size()) {
     const Parameters& p = setup.parameters;
     odometry_ = setup.topics.takes(p.text("odometry"), messages::kind_of<messages::Odometry>());
     reference_ = setup.topics.takes(p.text("reference"), messages::kind_of<messages::Reference>());
     command_ = setup.topics.publishes(p.text("command"), messages::speeds(rotors_));
-    places_ = static_cast<std::size_t>(std::ceil(delay_ * rate_)) + 2;
+    places_ = static_cast<std::size_t>(std::ceil(gains_.delay * gains_.rate)) + 2;
   }
 
   std::size_t state_size() const override {
-    return kUnderWay + places_ * place_size() + Controller::state_size(law_, rotors_);
+    return kUnderWay + places_ * place_size() + Controller::state_size(gains_.law, rotors_);
   }
 
   void prepare(const VehicleDescription& vehicle) override {
-    controller_ = std::make_unique<Controller>(law_, vehicle, values_, spins_);
+    const VehicleDescription believed =
+        believed_.empty() ? vehicle : control::second_vehicle(believed_, vehicle);
+    controller_ = std::make_unique<Controller>(gains_.law, believed, gains_.values, spins_);
   }
 
   void update(const Sample& sample, PluginState state) const override {
     if (sample.topics[odometry_].count == 0 || sample.topics[reference_].count == 0) return;
-    const double per_step = rate_ * sample.dt;
+    const double per_step = gains_.rate * sample.dt;
     // By the count of steps: the sum of their times would slip.
     const double due = std::floor(state[kSteps] * per_step + rounding) + 1;
     if (due > state[kAsked]) {
@@ -78,9 +100,9 @@ class ControllerPlugin final : public Plugin {
     if (in_body_) now.linear_velocity = now.orientation * now.linear_velocity;
     double* const order = place(state, state[kSent]);
     // The first command acts at once, for nothing precedes it.
-    const double delay = state[kSteps] > 0 ? std::ceil(delay_ / sample.dt - rounding) : 0;
+    const double delay = state[kSteps] > 0 ? std::ceil(gains_.delay / sample.dt - rounding) : 0;
     order[0] = state[kSteps] + std::max(delay, 0.0);
-    controller_->command(1 / rate_, now, sample.topics.read<messages::Reference>(reference_),
+    controller_->command(1 / gains_.rate, now, sample.topics.read<messages::Reference>(reference_),
                          state.data() + kUnderWay + places_ * place_size(), order + 1);
     state[kSent] += 1;
   }
@@ -94,10 +116,9 @@ class ControllerPlugin final : public Plugin {
     }
   }
 
-  std::string law_;
-  control::Values values_;
+  control::Gains gains_;
   std::vector<double> spins_;
-  double rate_, delay_;
+  std::string believed_;  ///< path of the vehicle that is believed to fly; "": what flies
   bool in_body_;
   std::size_t rotors_, places_;
   std::size_t odometry_, reference_, command_;
@@ -109,11 +130,20 @@ PluginDescriptor describe() {
   std::vector<std::string> names;
   for (const control::LawInfo& law : control::laws()) names.push_back(law.name);
   std::vector<TagSpec> tags = {
-      T::choice("law", names, "the law that is flown"),
-      T::number("rate", "1/s", "500", "calls per second; at most one per step").above(0),
-      T::number("delay", "s", "0", "from a call to the first step that it commands")
+      T::choice("law", names, "the law that is flown").or_absent("that of the gains"),
+      T::file("gains", "a gains file; what other tags set wins")
+          .or_absent("every parameter at its default"),
+      T::number("rate", "1/s", "", "calls per second; at most one per step")
+          .above(0)
+          .or_absent("that of the gains, or 500"),
+      T::number("delay", "s", "", "from a call to the first step that it commands")
           .at_least(0)
-          .at_most(10),
+          .at_most(control::longest_delay)
+          .or_absent("that of the gains, or 0"),
+      T::file("belief",
+              "URDF of the vehicle that the law believes to fly; of its plugins only "
+              "what exerts forces is asked")
+          .or_absent("what flies"),
       T::numbers("spins", "", "", "1 or -1: the sense in which each rotor turns about its axis")
           .or_absent("neighbours around the vehicle turn against each other"),
       T::choice("twistFrame", {"world", "body"}, "axes of the odometry's linear velocity").agreed(),

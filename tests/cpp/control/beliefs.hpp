@@ -1,7 +1,7 @@
 #pragma once
 
 #include "../vehicle.hpp"
-#include "control/belief.hpp"
+#include "quadcore/control/belief.hpp"
 
 /// \file
 /// Vehicles that controllers believe in, none with a symmetry that would hide a slip.

@@ -3,7 +3,7 @@
 
 #include "../plugin_bench.hpp"
 #include "beliefs.hpp"
-#include "control/allocation.hpp"
+#include "quadcore/control/allocation.hpp"
 
 using namespace quadcore;
 using namespace quadcore::control;

@@ -1,8 +1,8 @@
 #include <cmath>
 
 #include "../plugin_bench.hpp"
-#include "control/belief.hpp"
-#include "control/start.hpp"
+#include "quadcore/control/belief.hpp"
+#include "quadcore/control/start.hpp"
 
 using namespace quadcore;
 using namespace quadcore::control;

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "beliefs.hpp"
-#include "control/flat_state.hpp"
+#include "quadcore/control/flat_state.hpp"
 
 using namespace quadcore;
 using namespace quadcore::control;

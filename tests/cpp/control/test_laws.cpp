@@ -1,9 +1,9 @@
 #include <cmath>
 
 #include "beliefs.hpp"
-#include "control/controller.hpp"
 #include "control/euler_rates.hpp"
 #include "control/riccati.hpp"
+#include "quadcore/control/controller.hpp"
 
 using namespace quadcore;
 using namespace quadcore::control;

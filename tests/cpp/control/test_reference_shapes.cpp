@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "../vehicle.hpp"
-#include "control/reference.hpp"
+#include "quadcore/control/reference.hpp"
 
 using namespace quadcore;
 using namespace quadcore::control;

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "control/settings.hpp"
+#include "quadcore/control/settings.hpp"
 #include "quadcore/vehicle_description.hpp"
 
 namespace quadcore QUADCORE_EXPORT {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "control/reference.hpp"
+#include "quadcore/control/reference.hpp"
 #include "quadcore/state.hpp"
 #include "quadcore/vehicle_description.hpp"
 

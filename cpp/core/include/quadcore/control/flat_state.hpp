@@ -1,7 +1,7 @@
 #pragma once
 
-#include "control/belief.hpp"
-#include "control/reference.hpp"
+#include "quadcore/control/belief.hpp"
+#include "quadcore/control/reference.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 namespace control {

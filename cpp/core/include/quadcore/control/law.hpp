@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "control/allocation.hpp"
-#include "control/belief.hpp"
-#include "control/reference.hpp"
+#include "quadcore/control/allocation.hpp"
+#include "quadcore/control/belief.hpp"
+#include "quadcore/control/reference.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 namespace control {

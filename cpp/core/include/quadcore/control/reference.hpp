@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "control/settings.hpp"
+#include "quadcore/control/settings.hpp"
 #include "quadcore/messages.hpp"
 
 namespace quadcore QUADCORE_EXPORT {

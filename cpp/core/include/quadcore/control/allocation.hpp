@@ -1,6 +1,6 @@
 #pragma once
 
-#include "control/belief.hpp"
+#include "quadcore/control/belief.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 namespace control {
