@@ -50,8 +50,8 @@ const Settings<Lqr::Gains>& Lqr::settings() {
       {weight("q_yaw", "1/rad^2", "9", "error of yaw"), &G::q_yaw},
       {weight("q_yaw_rate", "s^2/rad^2", "3", "error of its rate"), &G::q_yaw_rate},
       {weight("r_yaw", "s^4/rad^2", "1", "angular acceleration about z"), &G::r_yaw},
-      {T::number("integral_limit", "m s", "0.5", "largest integral along an axis").at_least(0),
-       &G::integral_limit},
+      {T::number("sum_limit", "m s", "0.5", "largest integral along an axis").at_least(0),
+       &G::sum_limit},
       {T::flag("integral", "true", "of the error of position"), &G::integral},
       {T::flag("feed_forward", "true", "angular acceleration that the reference asks for"),
        &G::feed_forward},
@@ -85,7 +85,7 @@ Demand Lqr::demand(const Instant& instant, double* memory) const {
   for (int i = 0; i < 3; ++i) {
     const double sum = integral[i] + instant.period * error_W[i];
     const bool grows = std::abs(sum) > std::abs(integral[i]);
-    const bool fits = std::abs(sum) <= gains_.integral_limit && !instant.saturated;
+    const bool fits = std::abs(sum) <= gains_.sum_limit && !instant.saturated;
     if (!grows || fits) integral[i] = sum;
   }
   // In the axes D of the flat state, around which the vehicle is linear.

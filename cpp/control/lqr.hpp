@@ -14,7 +14,7 @@ class Lqr final : public Law {
     double q_integral, q_position, q_velocity, q_tilt, q_rate, r_tilt;
     double q_height_integral, q_height, q_climb, r_thrust;
     double q_yaw, q_yaw_rate, r_yaw;
-    double integral_limit;
+    double sum_limit;
     bool integral, feed_forward, drag, gyroscopic;
   };
   static const Settings<Gains>& settings();

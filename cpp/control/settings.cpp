@@ -10,12 +10,18 @@
 namespace quadcore::control {
 namespace {
 
+/// In as few digits as read back exactly.
 std::string written(double value) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text.precision(17);
-  text << value;
-  return text.str();
+  std::string shortest;
+  for (int digits = 1; digits <= 17; ++digits) {
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text.precision(digits);
+    text << value;
+    shortest = text.str();
+    if (parse_number(shortest) == value) break;
+  }
+  return shortest;
 }
 
 bool is_in_range(const TagSpec& spec, double value) {

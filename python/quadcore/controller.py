@@ -8,7 +8,7 @@ from typing import Any, Callable, Protocol, Union
 
 import numpy as np
 
-from . import _core, laws, references
+from . import _core, gains, references
 from ._core import InputError, odometry_parts
 
 DEFAULT_RATE = 500.0  # 1/s
@@ -97,7 +97,7 @@ class Guided:
         reference: Union[references.ReferenceLike, str, None] = None,
     ) -> None:
         if isinstance(controller, str):
-            controller = laws.Law(controller)
+            controller = gains.law_for(controller, simulation.model.name)
         if isinstance(reference, str):
             reference = references.Shape(reference)
         if reference is not None and not callable(reference):

@@ -67,10 +67,14 @@ class FlightPlan:
 
     def __post_init__(self) -> None:
         """Bring what was given into the form in which it is kept and compared."""
+        model, parameters = with_links(
+            self.model, {key: text_of(value) for key, value in self.parameters.items()}
+        )
         kept = {
+            "model": model,
             "dt": None if self.dt is None else float(self.dt),
             "seed": whole(self.seed),
-            "parameters": {key: text_of(value) for key, value in self.parameters.items()},
+            "parameters": parameters,
             "spawn": pose(self.spawn),
             "duration": float(self.duration),
             "log_every": int(self.log_every),
@@ -78,7 +82,6 @@ class FlightPlan:
         }
         if self.rotor_velocity is not None:
             kept["rotor_velocity"] = tuple(float(rate) for rate in self.rotor_velocity)
-        kept["model"], kept["parameters"] = with_links(self.model, kept["parameters"])
         for name, value in kept.items():
             object.__setattr__(self, name, value)
 
@@ -111,12 +114,12 @@ class FlightPlan:
         InputError
             The model, the world, the commands or an argument is at fault.
         """
-        arguments, others = without_xacro(parameters or {}, xacro_args)
+        arguments, given = without_xacro(parameters or {}, xacro_args)
         readings = read_both(model, world, arguments, ignore)
         check_names(readings[0], parameters or {})
         plan = cls(
             *readings,
-            parameters=others,
+            parameters=given,
             spawn=pose(spawn),
             seed=seed,
             **others,

@@ -47,7 +47,7 @@ class Gains:
 
     def make(self) -> Law:
         """Make the law."""
-        return Law(self.law, self.rate, self.delay, **self.parameters)
+        return Law(self.law, self.rate, self.delay, (), None, **self.parameters)
 
 
 def read(path: Union[str, Path]) -> Gains:

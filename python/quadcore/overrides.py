@@ -70,7 +70,8 @@ def with_links(model: Model, parameters: Mapping[str, str]) -> Tuple[Model, Dict
         return model, dict(parameters)
     check_names(model, parameters)
     kinds = _kinds(model.document)
-    of_links, left = {}, {}
+    of_links: Dict[str, str] = {}
+    left: Dict[str, str] = {}
     for key, value in parameters.items():
         owner = key.rpartition(".")[0]
         if owner == XACRO:
@@ -109,8 +110,7 @@ def _kinds(document: Document) -> Dict[str, List[str]]:
 
 def _changed(model: Model, values: Mapping[str, str]) -> Model:
     document = model.document
-    text = document.text.encode()
-    places = _attributes(text)
+    places = _attributes(document.text.encode())
     edits = []
     for key, value in values.items():
         if _core.parse_number(value) is None:
@@ -118,8 +118,9 @@ def _changed(model: Model, values: Mapping[str, str]) -> Model:
         if key not in places:
             raise InputError(f"set {key}: the link has no <inertial> that says so; write one")
         edits.append((*places[key], value.encode()))
-    for begin, end, value in sorted(edits, reverse=True):
-        text = text[:begin] + value + text[end:]
+    text = document.text.encode()
+    for begin, end, new in sorted(edits, reverse=True):
+        text = text[:begin] + new + text[end:]
     changed = Document(document.name, text.decode(), document.lines)
     try:
         return _core.read_model(changed, list(model.passed_over.ignored))

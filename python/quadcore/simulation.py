@@ -181,7 +181,8 @@ class Simulation(_core.Simulation):
         topics : sequence of str
             Names of topics to log, too: `Log.topics`.
         controller : name, object or callable, optional
-            Closed loop, instead of `commands`: a law of `quadcore.laws`, or what is called as
+            Closed loop, instead of `commands`: the name of one of `quadcore.laws`, which flies with
+            the gains that are shipped for the vehicle, if any, or what is called as
             controller(t, state, reference) at its rate and returns n rotor speeds in rad/s; see
             `Controller`.
         reference : name or callable, optional

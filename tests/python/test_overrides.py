@@ -30,15 +30,15 @@ def xacro_model(tmp_path):
 
 
 def test_values_of_links_are_those_of_a_file_that_has_them(model, tmp_path):
-    given = {"frame.mass": 1.7, "frame.ixy": -0.0002, "propeller2.izz": "3e-5"}
+    given = {"frame.mass": 1.7, "frame.ixy": -0.0002, "propeller2.izz": "2.7e-5"}
     other = tmp_path / "other.urdf"
     text = model.read_text().replace('mass value="1.3"', 'mass value="1.7"')
     text = text.replace('ixy="0.0004"', 'ixy="-0.0002"')
     second = text.index('"propeller2"')
-    text = text[:second] + text[second:].replace('izz="2.8125e-05"', 'izz="3e-5"', 1)
+    text = text[:second] + text[second:].replace('izz="2.8125e-05"', 'izz="2.7e-5"', 1)
     other.write_text(text)
     one, same = qc.Simulation(model, parameters=given), qc.Simulation(other)
-    assert one.mass == same.mass == 1.7 + 0.04
+    assert one.mass == same.mass == pytest.approx(1.74)
     assert np.array_equal(one.inertia, same.inertia)
     assert np.array_equal(one.model.links[2].inertia, same.model.links[2].inertia)
 
@@ -62,9 +62,6 @@ def test_they_are_varied_like_tags(xacro_model):
     )
     assert list(comparison.table["failure"]) == [""] * 4
     assert list(comparison.table["xacro.heavy"]) == [1, 1, 1.5, 1.5]
-    # Unequal propellers pull the frame's origin along as it falls; where it falls straight,
-    # nothing is to be seen.
-    assert len({log.table.tobytes() for log in comparison.logs}) >= 1
 
 
 def test_flights_of_such_plans_are_the_same_anywhere(model):
@@ -121,7 +118,7 @@ def test_an_argument_comes_once(xacro_model):
 
 def test_a_model_that_is_read_takes_values_of_links_but_no_arguments(model):
     read = qc.read_model(model)
-    assert qc.Simulation(read, parameters={"frame.mass": 2}).mass == 2.04
+    assert qc.Simulation(read, parameters={"frame.mass": 2}).mass == pytest.approx(2.04)
     assert read.links[0].mass == 1.3
     with pytest.raises(qc.InputError, match="the model is read already"):
         qc.Simulation(read, parameters={"xacro.heavy": 2})

@@ -23,7 +23,7 @@ ReferenceInfo through_rows(const char* name, const char* summary, SepticPath::En
 }
 
 struct TakeoffLand : Place {
-  double ground, wait, climb, stay;
+  double ground, wait, rise, stay;
 };
 
 }  // namespace
@@ -47,8 +47,8 @@ ReferenceInfo takeoff_land() {
       {T::number("ground", "m", "0.0125", "height of the frame where it stands"),
        &TakeoffLand::ground},
       {T::number("wait", "s", "1", "on the ground before").above(0), &TakeoffLand::wait},
-      {T::number("climb", "s", "4", "for the way up, and for the way down").above(0),
-       &TakeoffLand::climb},
+      {T::number("rise", "s", "4", "for the way up, and for the way down").above(0),
+       &TakeoffLand::rise},
       {T::number("stay", "s", "10", "in the hover").above(0), &TakeoffLand::stay},
   };
   return {"takeoff_land", "up from the ground, a hover, and down again", false, table_of(settings),
@@ -62,11 +62,11 @@ ReferenceInfo takeoff_land() {
             be_at(s.ground);
             t += s.wait;
             be_at(s.ground);
-            t += s.climb;
+            t += s.rise;
             be_at(s.height);
             t += s.stay;
             be_at(s.height);
-            t += s.climb;
+            t += s.rise;
             be_at(s.ground);
             return std::make_unique<Path>(SepticPath::resting(rows));
           }};
