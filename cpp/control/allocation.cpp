@@ -46,11 +46,13 @@ Allocation::Allocation(const Belief& belief) {
 
 bool Allocation::allocate(const Demand& demand, double* squares) const {
   Eigen::Map<VectorXd> u(squares, inverse_.rows());
-  u.noalias() = inverse_.rightCols<3>() * demand.torque_F;
-  u += demand.thrust * inverse_.col(0);
+  // Columns, not a product with a matrix, whose order of summation would depend on where the
+  // caller's numbers lie in memory.
+  u = demand.torque_F.x() * inverse_.col(1) + demand.torque_F.y() * inverse_.col(2);
+  u += demand.torque_F.z() * inverse_.col(3) + demand.thrust * inverse_.col(0);
   if ((u.array() >= least_.array()).all() && (u.array() <= most_.array()).all()) return true;
 
-  u.noalias() = inverse_.middleCols<2>(1) * demand.torque_F.head<2>();
+  u = demand.torque_F.x() * inverse_.col(1) + demand.torque_F.y() * inverse_.col(2);
   const Share share = fit(u, demand.thrust);
   u = share.roll_pitch * u + share.thrust * inverse_.col(0);
   double yaw = 1;  // share of it
@@ -100,7 +102,8 @@ Allocation::Share Allocation::fit(const Eigen::Ref<const VectorXd>& of_torques,
 }
 
 Demand Allocation::exerted(const double* squares) const {
-  const Eigen::Vector4d sum = effect_ * Eigen::Map<const VectorXd>(squares, effect_.cols());
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+  for (Eigen::Index i = 0; i < effect_.cols(); ++i) sum += squares[i] * effect_.col(i);
   return {sum[0], sum.tail<3>()};
 }
 

@@ -114,6 +114,60 @@ def test_the_geometric_law_recovers_from_upside_down(engine):
     assert log.position[:, 2].min() > 48
 
 
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("law", ["geometric", "indi", "lqr"])
+def test_wind_is_made_up_for(law, engine, tmp_path):
+    windy = tmp_path / "windy.world"
+    windy.write_text(
+        "<sdf><world><wind><linear_velocity>2.2 -2 0.3</linear_velocity></wind></world></sdf>"
+    )
+    hover = references.hover()
+    parameters = at_slow(1, **{"drone_plugin.dragModel": "chapter2"})
+    simulation = quadrotor(engine, parameters=parameters, world=windy)
+    log = simulation.run(22, controller=law, reference=hover, wrenches=False, log_every=10)
+    assert errors(log, hover).max() > 0.01
+    assert largest_at_the_end(log, hover, 2) < 1e-3
+
+
+@pytest.mark.parametrize(("engine", "slow"), [("ode", 1), ("gazebo11", 1), ("gazebo11", 10)])
+def test_the_geometric_law_takes_off_hovers_and_lands(engine, slow):
+    flight = references.takeoff_land(stay=8)
+    simulation = quadrotor(engine, parameters=at_slow(slow), world="default", spawn=(0, 0, 0.0125))
+    log = simulation.run(
+        flight.end + 2, controller="geometric", reference=flight, wrenches=False, log_every=10
+    )
+    off = errors(log, flight)
+    assert off[(log.time > 10) & (log.time < 13)].max() < 1e-3
+    assert off[log.time > flight.end + 1].max() < 5e-3
+
+
+@pytest.mark.parametrize(
+    ("reference", "options", "bar"),
+    [
+        (references.circle(), {}, 20e-3),
+        (references.circle(), {"rate_damping": 0.81}, 4e-3),
+        (references.eight(), {}, 35e-3),
+        (references.waypoints(ROOT / "config" / "waypoints.yaml"), {}, 12e-3),
+    ],
+    ids=lambda value: value.name if isinstance(value, references.Shape) else "",
+)
+def test_the_geometric_law_flies_fast_references_in_gazebo(reference, options, bar):
+    law = laws.geometric(**options)
+    log = on(reference, "gazebo11").run(12, controller=law, reference=reference, log_every=5)
+    assert errors(log, reference).max() < bar
+
+
+@pytest.mark.parametrize(
+    ("engine", "bar"), [("eigen", 0.5e-3), ("ode", 0.5e-3), ("gazebo11", 2e-3)]
+)
+def test_the_compensated_cascade_flies_the_spiral(engine, bar):
+    spiral = references.spiral()
+    log = on(spiral, engine).run(
+        12, controller="pd_compensated", reference=spiral, wrenches=False, log_every=5
+    )
+    assert largest_at_the_end(log, spiral, 6) < bar
+
+
 def test_a_delay_is_that_of_a_law_that_waits_by_itself():
     hover = references.hover(x=0.1)
 

@@ -77,6 +77,78 @@ def test_velocities_in_the_body_are_understood(hangar):
         hangar(guided({"law": "pd"}, odometry={"twistFrame": "body"}), G)
 
 
+def test_a_law_believes_in_the_vehicle_of_a_second_file(tmp_path, hangar):
+    heavier = vehicle(CROSS, mass=1.2, com=(0.01, 0, 0), air={**LIFT, **DRAG}, motor=MOTOR)
+    believed = tmp_path / "believed.urdf"
+    # Its own controller would ask for a third one.
+    believed.write_text(
+        with_plugins(heavier, plugin("controller", {"law": "pd", "belief": believed}))
+    )
+    plugged = hangar(guided({"law": "geometric", "belief": believed}), G, engine="ode")
+    called = hangar(bare(), G, engine="ode")
+    law = laws.geometric(belief=hangar(heavier, G, engine="eigen"))
+    one = plugged.run(0.5, wrenches=False)
+    other = called.run(0.5, controller=law, reference=circle(), wrenches=False)
+    assert one.table.tobytes() == other.table.tobytes()
+    believed.write_text(vehicle(CROSS[:3], air=LIFT, motor=MOTOR))
+    with pytest.raises(qc.InputError, match="has 3 rotors; the vehicle that flies has 4"):
+        hangar(guided({"law": "geometric", "belief": believed}), G)
+
+
+@pytest.mark.parametrize("shape", ["waypoints", "series"])
+@pytest.mark.parametrize("kind", ["csv", "yaml"])
+def test_a_reference_of_rows_is_read_from_a_file(shape, kind, tmp_path, hangar):
+    rows = [[0, 0, 0, 10, 0.1], [0.4, 0.5, 0, 10.2, 0.2], [1, 0.7, -0.3, 10.1, -0.1]]
+    path = tmp_path / f"rows.{kind}"
+    if kind == "csv":
+        lines = ["t, x, y, z, yaw", *(",".join(map(str, row)) for row in rows)]
+    else:
+        lines = ["columns: [t, x, y, z, yaw]", "rows:", *(f"  - {row}" for row in rows)]
+    path.write_text("\n".join(lines))
+    simulation = hangar(guided({"law": "pd"}, {"shape": shape, "rows": path}), G, engine="eigen")
+    wanted = getattr(references, shape)(rows)
+    assert np.array_equal(getattr(references, shape)(path).rows, wanted.rows)
+    for _ in range(20):
+        simulation.step(40)
+        said, meant = simulation.topic("reference"), wanted(simulation.time - simulation.dt)
+        assert [said["ax"], said["ay"], said["az"]] == pytest.approx(list(meant.acceleration))
+        assert said["yaw"] == pytest.approx(meant.yaw)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "says"),
+    [
+        ("rows.csv", "t,x,y\n", "rows.csv:1: the header is 't,x,y'; write t,x,y,z"),
+        ("rows.csv", "t,x,y,z\n0,0,0,1\n1,0,0\n", "rows.csv:3: 3 columns instead of 4"),
+        ("rows.csv", "t,x,y,z\n0,0,nan,1\n", "rows.csv:2: 'nan' is no finite number"),
+        ("rows.yaml", "rows: []\n", r"rows.yaml:1: write `columns: \[t, x, y, z\]`"),
+        ("rows.yaml", "columns: [t, x, y, z]\n", "rows.yaml:1: 'rows' is no list"),
+        ("rows.yaml", "columns: [t, x, y, z]\nrows:\n  - [0, 1]\n", "rows.yaml:3: is no row of 4"),
+        (
+            "rows.yaml",
+            "columns: [t, x, y, z]\nrows:\n  - [0, a, 0, 1]\n",
+            "rows.yaml:3: 'x' is 'a'",
+        ),
+        ("rows.yaml", "columns: [t, x, y, z]\nrow: 1\n", "rows.yaml:2: .* has no 'row'"),
+        ("rows.txt", "t,x,y,z\n", "rows are read from .csv and .yaml files"),
+    ],
+)
+def test_rows_that_cannot_be_read_are_told_with_their_line(name, text, says, tmp_path, hangar):
+    path = tmp_path / name
+    path.write_text(text)
+    with pytest.raises(qc.InputError, match=says):
+        hangar(guided({"law": "pd"}, {"shape": "waypoints", "rows": path}), G)
+
+
+def test_rows_and_shapes_that_need_none_are_told_apart(hangar, tmp_path):
+    with pytest.raises(qc.InputError, match="'waypoints' needs rows"):
+        hangar(guided({"law": "pd"}, {"shape": "waypoints"}), G)
+    rows = tmp_path / "rows.csv"
+    rows.write_text("t,x,y,z\n0,0,0,1\n1,0,0,1\n")
+    with pytest.raises(qc.InputError, match="'hover' takes no rows"):
+        hangar(guided({"law": "pd"}, {"shape": "hover", "rows": rows}), G)
+
+
 def test_the_reference_stands_on_its_topic(hangar):
     simulation = hangar(guided({"law": "pd"}), G, engine="eigen")
     simulation.step(5)

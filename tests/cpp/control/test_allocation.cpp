@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "../plugin_bench.hpp"
 #include "beliefs.hpp"
@@ -104,4 +105,21 @@ TEST_CASE("rotors that cannot turn the vehicle about an axis are refused") {
   belief.effectiveness.row(5).setZero();
   CHECK(test::contains(test::refusal([&] { Allocation{belief}; }), "independently"));
   CHECK(test::contains(test::refusal([] { Allocation{test::odd_belief(3)}; }), "independently"));
+}
+
+TEST_CASE("it does not matter where in memory the numbers lie") {
+  for (const int n : {4, 5, 6, 8}) {
+    const Allocation allocation(test::odd_belief(n, 700));
+    test::Draw draw{11};
+    std::vector<double> here(20), there(20);
+    for (int trial = 0; trial < 200; ++trial) {
+      const Demand demand{13 + 6 * draw.number(), draw.vector()};
+      allocation.allocate(demand, here.data());
+      allocation.allocate(demand, there.data() + 1);
+      CHECK(std::equal(here.begin(), here.begin() + n, there.begin() + 1));
+      const Demand one = allocation.exerted(here.data()), other = allocation.exerted(&there[1]);
+      CHECK(one.thrust == other.thrust);
+      CHECK(one.torque_F == other.torque_F);
+    }
+  }
 }
