@@ -15,6 +15,7 @@ from world_elements import WORLD
 
 import quadcore as qc
 from quadcore import _core
+from quadcore.description import load_description
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "tags.md"
@@ -30,7 +31,9 @@ are in [physics.md](physics.md). Equation numbers and A.4-A.6 are those of the t
 A tag that a plugin does not know, a repeated tag, a missing required tag, a value that is no finite
 number or lies outside its range is an error that names file, line, plugin, tag and the nearest
 known tag. `--set PLUGIN.TAG=VALUE` (Python: `parameters={"PLUGIN.TAG": value}`) overrides the URDF;
-PLUGIN is the `name` attribute of the plugin tag.
+PLUGIN is the `name` attribute of the plugin tag. In the same place `LINK.mass`, `LINK.ixx`, `ixy`,
+`ixz`, `iyy`, `iyz` and `izz` are what the link's `<inertial>` says (kg, kg m^2), and `xacro.ARG` an
+argument of a xacro model; a name that two of these go by is an error.
 """
 
 LOG = {
@@ -45,6 +48,8 @@ LOG = {
 TOPICS = {
     "vel_cmd": "rotor speeds, rad/s, signed, before the division by `sim_slow`",
     "odom": "units as in the log, variances in their squares",
+    "reference": "where the vehicle is to be and derivatives, world axes, m, rad, s",
+    "saturation": "steps so far whose command reached the motors' `maxVelocity`",
 }
 
 
@@ -220,14 +225,25 @@ def topic_section(simulation: qc.Simulation) -> str:
         rows.append((f"`{name}`", f"`{topic.kind}`", fields, ", ".join(plugins), TOPICS[name]))
     return (
         "\n## Topics\n\nMessages between plugins, and between them and Python or ROS; "
-        "see [plugins.md](plugins.md#topics).\nThose of the shipped quadrotor:\n\n"
+        "see [plugins.md](plugins.md#topics).\nThose of the shipped quadrotor with a controller:\n\n"
         + table(("topic", "kind", "fields", "plugins", "meaning"), rows)
     )
 
 
+def guided_quadrotor() -> qc.Simulation:
+    """Make the shipped quadrotor with the plugins that fly it by itself."""
+    document = load_description("quadrotor", {})
+    plugins = "".join(
+        f'<gazebo><plugin name="{name}" filename="lib{name}_plugin.so">{tag}</plugin></gazebo>'
+        for name, tag in (("controller", "<law>geometric</law>"), ("reference", ""))
+    )
+    text = document.text.replace("</robot>", f"{plugins}</robot>")
+    return qc.Simulation(_core.read_model(_core.Document(document.name, text, document.lines), []))
+
+
 def page() -> str:
     """Write out the whole page."""
-    simulation = qc.Simulation("quadrotor")
+    simulation = guided_quadrotor()
     return "".join(
         [
             INTRODUCTION,

@@ -8,4 +8,5 @@ PYBIND11_MODULE(_core, m) {
   quadcore::bindings::bind_snapshot(m);
   quadcore::bindings::bind_simulation(m);
   quadcore::bindings::bind_flight(m);
+  quadcore::bindings::bind_control(m);
 }

@@ -1,5 +1,5 @@
 # The shipped plugins, and which of them have laws in lanes.
-set(QUADCORE_PLUGINS aerodynamic motorpid odometry)
+set(QUADCORE_PLUGINS aerodynamic controller motorpid odometry reference)
 set(aerodynamic_lanes rotor_forces_lanes.cpp)
 set(motorpid_lanes motor_torques_lanes.cpp)
 

@@ -10,11 +10,13 @@ its faults, driven from Python.
 >>> sim.step(1000)
 """
 
+from . import laws, references
 from ._core import (
     FlightError,
     InputError,
     Model,
     QuadcoreError,
+    Reference,
     Snapshot,
     World,
     engines,
@@ -44,6 +46,7 @@ __all__ = [
     "Odometry",
     "QuadcoreError",
     "QuadcoreWarning",
+    "Reference",
     "Simulation",
     "Snapshot",
     "State",
@@ -51,8 +54,10 @@ __all__ = [
     "cmake_prefix",
     "compare",
     "engines",
+    "laws",
     "load_plugin_path",
     "plugin_folders",
     "read_model",
     "read_world",
+    "references",
 ]

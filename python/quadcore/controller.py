@@ -8,7 +8,7 @@ from typing import Any, Callable, Protocol, Union
 
 import numpy as np
 
-from . import _core
+from . import _core, gains, references
 from ._core import InputError, odometry_parts
 
 DEFAULT_RATE = 500.0  # 1/s
@@ -24,6 +24,9 @@ class Controller(Protocol):
     ----------
     rate : float
         Calls per simulated second, at most one per step; 500 without the attribute.
+    delay : float
+        From a call to the first step whose motors know of it, s, rounded up to whole steps; 0
+        without the attribute. The first call of a run acts at once, for nothing precedes it.
     """
 
     def reset(self, simulation: Any) -> None:
@@ -39,7 +42,8 @@ class Controller(Protocol):
         state : Odometry
             What the odometry said last.
         reference
-            None.
+            What the run's reference says at that time, with attributes position, velocity,
+            acceleration, jerk, snap, yaw, yaw_rate, yaw_acceleration; None without one.
 
         Returns
         -------
@@ -83,12 +87,24 @@ class Guided:
     Raises
     ------
     InputError
-        No controller, a rate that is none, or a model without odometry.
+        No controller, a rate that is none, a reference that is none, or a model without odometry.
     """
 
     def __init__(
-        self, controller: Union[Controller, Callable[..., Any]], simulation: _core.Simulation
+        self,
+        controller: Union[Controller, Callable[..., Any], str],
+        simulation: _core.Simulation,
+        reference: Union[references.ReferenceLike, str, None] = None,
     ) -> None:
+        if isinstance(controller, str):
+            controller = gains.law_for(controller, simulation.model.name)
+        if isinstance(reference, str):
+            reference = references.Shape(reference)
+        if reference is not None and not callable(reference):
+            raise InputError(
+                f"reference is {reference!r}; give one of quadcore.references, or a function that "
+                "is called as reference(t)"
+            )
         if not callable(controller):
             raise InputError(
                 f"controller is {controller!r}; give a function, or an object, that is called as "
@@ -98,8 +114,13 @@ class Guided:
         if not (isinstance(rate, Real) and _LOWEST_RATE <= float(rate) < math.inf):
             least = f"{_LOWEST_RATE:g}"
             raise InputError(f"controller: its rate is {rate!r}; give calls per second, >= {least}")
+        delay = getattr(controller, "delay", 0)
+        if not (isinstance(delay, Real) and 0 <= float(delay) < math.inf):
+            raise InputError(f"controller: its delay is {delay!r}; give seconds, >= 0")
         self.rate = float(rate)
+        self.delay = float(delay)
         self._controller = controller
+        self._reference = reference
         sensed = simulation.topics.get(_SENSED)
         if sensed is None or sensed.kind != "odometry":
             raise InputError(
@@ -115,4 +136,5 @@ class Guided:
 
     def speeds(self, simulation: _core.Simulation) -> Any:
         """Ask the controller."""
-        return self._controller(simulation.time, Odometry(simulation), None)
+        wanted = None if self._reference is None else self._reference(simulation.time)
+        return self._controller(simulation.time, Odometry(simulation), wanted)

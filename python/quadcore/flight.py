@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import time
+from collections import deque
 from numbers import Real
-from typing import TYPE_CHECKING, Any, Callable, Optional, Protocol, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Deque, Optional, Protocol, Sequence, Tuple
 
 import numpy as np
 
@@ -29,6 +30,8 @@ class Pilot(Protocol):
 
     rate: float
     """How often it is asked, 1/s; at most once a step."""
+    delay: float
+    """From an answer to the first step that it commands, s; the first one commands at once."""
 
     def reset(self, simulation: Any) -> None:
         """Begin; the `Simulation` stands at its first step."""
@@ -106,6 +109,8 @@ class _Piloted:
         self._simulation, self._flight, self._pilot = simulation, flight, pilot
         # By the count of steps: the sum of their times would slip.
         self._per_step = pilot.rate * simulation.dt
+        self._delay = math.ceil(pilot.delay / simulation.dt - _ROUNDING)
+        self._under_way: Deque[Tuple[int, npt.ArrayLike]] = deque()
         self._steps = 0
         self._due = 0
 
@@ -113,16 +118,20 @@ class _Piloted:
         end = self._steps + steps
         while self._steps < end:
             if self._steps == self._due:
-                self._command()
+                speeds = self._pilot.speeds(self._simulation)
+                arrives = self._steps + (self._delay if self._steps > 0 else 0)
+                self._under_way.append((arrives, speeds))
                 asked = math.floor(self._steps * self._per_step + _ROUNDING)
                 next_time = math.ceil((asked + 1 - _ROUNDING) / self._per_step)
                 self._due = max(next_time, self._steps + 1)
-            piece = min(self._due, end) - self._steps
+            while self._under_way and self._under_way[0][0] <= self._steps:
+                self._command(self._under_way.popleft()[1])
+            arrival = self._under_way[0][0] if self._under_way else end
+            piece = min(self._due, arrival, end) - self._steps
             self._flight.advance(piece)
             self._steps += piece
 
-    def _command(self) -> None:
-        speeds = self._pilot.speeds(self._simulation)
+    def _command(self, speeds: npt.ArrayLike) -> None:
         try:
             self._simulation.command(speeds)
         except _core.InputError as error:

@@ -16,6 +16,7 @@ from .commands import CommandsLike, as_commands
 from .description import read_both
 from .flight import Progress
 from .log import Log
+from .overrides import check_names, with_links, without_xacro
 from .simulation import Number, Simulation, Value, pose, text_of, whole
 
 _VERSION = 1  # of what a fingerprint stands for
@@ -36,7 +37,8 @@ class FlightPlan:
     engine, dt, seed
         As for `Simulation`.
     parameters : mapping of str to str
-        "PLUGIN.TAG" -> value.
+        "PLUGIN.TAG" -> value. "LINK.mass" and the like may be given, too, and become part of the
+        model.
     spawn : tuple of 6 floats
         x, y, z (m), roll, pitch, yaw (rad) of the frame link in the world.
     rotor_velocity : tuple of float, optional
@@ -65,10 +67,14 @@ class FlightPlan:
 
     def __post_init__(self) -> None:
         """Bring what was given into the form in which it is kept and compared."""
+        model, parameters = with_links(
+            self.model, {key: text_of(value) for key, value in self.parameters.items()}
+        )
         kept = {
+            "model": model,
             "dt": None if self.dt is None else float(self.dt),
             "seed": whole(self.seed),
-            "parameters": {key: text_of(value) for key, value in self.parameters.items()},
+            "parameters": parameters,
             "spawn": pose(self.spawn),
             "duration": float(self.duration),
             "log_every": int(self.log_every),
@@ -108,9 +114,12 @@ class FlightPlan:
         InputError
             The model, the world, the commands or an argument is at fault.
         """
+        arguments, given = without_xacro(parameters or {}, xacro_args)
+        readings = read_both(model, world, arguments, ignore)
+        check_names(readings[0], parameters or {})
         plan = cls(
-            *read_both(model, world, xacro_args, ignore),
-            parameters=parameters or {},  # type: ignore[arg-type]
+            *readings,
+            parameters=given,
             spawn=pose(spawn),
             seed=seed,
             **others,

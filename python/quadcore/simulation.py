@@ -14,6 +14,8 @@ from .controller import Controller, Guided
 from .description import list_of_names, read_both
 from .flight import Progress, Rows, fly
 from .log import Log
+from .overrides import check_names, with_links, without_xacro
+from .references import ReferenceLike
 from .state import LiveState
 from .warning import QuadcoreWarning
 
@@ -41,7 +43,8 @@ class Simulation(_core.Simulation):
     seed : int
         Of all noise. The same seed gives the same bytes.
     parameters : mapping of str to number, str, bool, path or sequence of those, optional
-        "PLUGIN.TAG" -> value; wins over the URDF.
+        "PLUGIN.TAG" -> value; wins over the URDF. So do "LINK.mass", "LINK.ixx" ... "LINK.izz" and
+        "xacro.ARG", an argument of a xacro model.
     xacro_args : mapping of str to value, optional
         Arguments of a xacro model.
     spawn : sequence of 3 or 6 numbers
@@ -73,14 +76,18 @@ class Simulation(_core.Simulation):
         spawn: Sequence[Number] = (0, 0, 10),
         ignore: Sequence[str] = (),
     ) -> None:
-        model, self.world = read_both(model, world, xacro_args, ignore)
+        given = parameters or {}
+        arguments, others = without_xacro(given, xacro_args)
+        model, self.world = read_both(model, world, arguments, ignore)
+        check_names(model, given)
+        model, tags = with_links(model, {key: text_of(value) for key, value in others.items()})
         super().__init__(
             model=model,
             world=self.world,
             engine=engine,
             dt=dt,
             seed=whole(seed),
-            parameters={key: text_of(value) for key, value in (parameters or {}).items()},
+            parameters=tags,
             spawn=pose(spawn),
         )
         self._live = LiveState(self)
@@ -153,7 +160,8 @@ class Simulation(_core.Simulation):
         wrenches: bool = True,
         topics: Sequence[str] = (),
         *,
-        controller: Union[Controller, Callable[..., Any], None] = None,
+        controller: Union[Controller, Callable[..., Any], str, None] = None,
+        reference: Union[ReferenceLike, str, None] = None,
     ) -> Log:
         """Fly for a while and log it.
 
@@ -172,9 +180,15 @@ class Simulation(_core.Simulation):
             Whether to log them, which takes most of the memory of a log.
         topics : sequence of str
             Names of topics to log, too: `Log.topics`.
-        controller : object or callable, optional
-            Closed loop, instead of `commands`: called as controller(t, state, reference) at its
-            rate, it returns n rotor speeds in rad/s; see `Controller`. The reference is None.
+        controller : name, object or callable, optional
+            Closed loop, instead of `commands`: the name of one of `quadcore.laws`, which flies with
+            the gains that are shipped for the vehicle, if any, or what is called as
+            controller(t, state, reference) at its rate and returns n rotor speeds in rad/s; see
+            `Controller`.
+        reference : name or callable, optional
+            Where the controller is to fly: one of `quadcore.references`, or what is called as
+            reference(t), t being the time of the simulation in s. The flight begins in the present
+            state; `quadcore.references.start` gives that of a vehicle already on the reference.
 
         Returns
         -------
@@ -192,8 +206,10 @@ class Simulation(_core.Simulation):
         """
         if commands is not None and controller is not None:
             raise _core.InputError("a flight takes commands or a controller; give one of them")
+        if reference is not None and controller is None:
+            raise _core.InputError("a reference needs a controller that follows it; give one")
         names = list_of_names("topics", topics)
-        pilot = None if controller is None else Guided(controller, self)
+        pilot = None if controller is None else Guided(controller, self, reference)
         rows = Rows(self, names)
         try:
             fly(self, duration, commands, log_every, rows.receive, wrenches, progress, pilot, names)

@@ -1,6 +1,7 @@
 #include "quadcore/vehicle_description.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "quadcore/simulation.hpp"
 
@@ -13,6 +14,25 @@ constexpr double probed_rate = 1;
 
 Wrench operator-(const Wrench& a, const Wrench& b) {
   return {a.force_F - b.force_F, a.torque_F - b.torque_F};
+}
+
+/// At the origin, upright, nothing moving.
+VehicleState still(const VehicleState& state) {
+  VehicleState rest;
+  rest.rotor_velocity = VectorXd::Zero(state.rotor_velocity.size());
+  rest.rotor_angle = VectorXd::Zero(state.rotor_angle.size());
+  return rest;
+}
+
+/// Rate of all joints at which their mean thrust, turning either way, carries the vehicle; 0 if
+/// none does [rad/s].
+double hover_rate(const VehicleDescription& vehicle) {
+  Vector3d lift_F = Vector3d::Zero();
+  for (const RotorDescription& rotor : vehicle.rotors) {
+    lift_F += (rotor.forward.force_F + rotor.backward.force_F) / 2;
+  }
+  const double weight = vehicle.body.mass * vehicle.gravity_W.norm();
+  return lift_F.norm() > 0 ? std::sqrt(weight / lift_F.norm()) : 0;
 }
 
 }  // namespace
@@ -30,26 +50,36 @@ void Simulation::prepare_plugins() {
 }
 
 VehicleDescription Simulation::describe_vehicle() {
+  const std::vector<double> as_it_is = engine_->save();
   const Model& flown = engine_->model();
-  VehicleDescription vehicle{mass_properties(flown), world_.gravity_W, {}};
+  VehicleDescription vehicle{mass_properties(flown), world_.gravity_W, {}, {}};
   const std::vector<Eigen::Isometry3d> poses = link_poses(flown);
-  const Wrench still = probe(state_);
+  const VehicleState rest = still(state_);
+  const Wrench resting = probe(rest);
   for (std::size_t i = 0; i < flown.joints.size(); ++i) {
     const Eigen::Isometry3d& pose = poses[i + 1];
     const auto turning = [&](double rate) {
-      VehicleState rest = state_;
-      rest.rotor_velocity[static_cast<Eigen::Index>(i)] = rate;
-      return probe(rest) - still;
+      VehicleState state = rest;
+      state.rotor_velocity[static_cast<Eigen::Index>(i)] = rate;
+      return probe(state) - resting;
     };
-    vehicle.rotors.push_back({flown.joints[i].name, pose.translation(),
-                              pose * flown.links[i + 1].inertial.pose.xyz,
-                              pose.linear() * flown.joints[i].axis, moment_about_joint(flown, i),
-                              turning(probed_rate), turning(-probed_rate)});
+    RotorDescription rotor;
+    rotor.joint = flown.joints[i].name;
+    rotor.p_FR_F = pose.translation();
+    rotor.p_FRcm_F = pose * flown.links[i + 1].inertial.pose.xyz;
+    rotor.axis_F = pose.linear() * flown.joints[i].axis;
+    rotor.moment = moment_about_joint(flown, i);
+    rotor.forward = turning(probed_rate);
+    rotor.backward = turning(-probed_rate);
+    vehicle.rotors.push_back(rotor);
   }
+  for (const LoadedPlugin& p : plugins_) p.plugin->describe_rotors(vehicle.rotors);
+  vehicle.air = probe_air(vehicle);
+  engine_->restore(as_it_is);
   return vehicle;
 }
 
-/// Force and torque about the vehicle's centre of mass in a state in still air.
+/// Force and torque about the vehicle's centre of mass in a state, in still air.
 Wrench Simulation::probe(const VehicleState& state) {
   engine_->set_state(state);
   Kinematics& k = engine_->kinematics();
@@ -64,6 +94,46 @@ Wrench Simulation::probe(const VehicleState& state) {
   }
   sum.torque_F -= k.p_FCcm_F.cross(sum.force_F);
   return sum;
+}
+
+AirResistance Simulation::probe_air(const VehicleDescription& vehicle) {
+  using Vector6d = Eigen::Matrix<double, 6, 1>;
+  VehicleState state = still(state_);
+  const double hover = hover_rate(vehicle);
+  // The part of the wrench that changes its sign with the velocity, the mean over quarter turns and
+  // senses of the rotors.
+  const auto odd = [&](const Vector6d& velocity) {
+    Vector6d sum = Vector6d::Zero();
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      state.rotor_angle.setConstant(std::remainder(quarter * M_PI / 2, 2 * M_PI));
+      for (const double rate : {hover, -hover}) {
+        state.rotor_velocity.setConstant(rate);
+        for (const double sign : {1.0, -1.0}) {
+          state.angular_velocity = sign * velocity.tail<3>();
+          state.linear_velocity =
+              sign * velocity.head<3>() - state.angular_velocity.cross(vehicle.body.p_FCcm);
+          const Wrench wrench = probe(state);
+          sum.head<3>() += sign / 16 * wrench.force_F;
+          sum.tail<3>() += sign / 16 * wrench.torque_F;
+        }
+      }
+    }
+    return sum;
+  };
+  AirResistance air;
+  Vector3d along_axes;  // quadratic + of_components
+  for (int i = 0; i < 6; ++i) {
+    const Vector6d slow = odd(Vector6d::Unit(i)), fast = odd(2 * Vector6d::Unit(i));
+    air.linear.col(i) = -(2 * slow - fast / 2);  // f(v) = -(linear v + squared |v| v)
+    if (i < 3) along_axes[i] = -(fast[i] - 2 * slow[i]) / 2;
+  }
+  Vector6d diagonal;
+  diagonal << 1, 1, 1, 0, 0, 0;
+  const Vector3d across_axes =
+      -(odd(diagonal) + air.linear * diagonal).head<3>();  // sqrt(3) quadratic + of_components
+  air.quadratic = (across_axes - along_axes).mean() / (std::sqrt(3.0) - 1);
+  air.of_components = along_axes - Vector3d::Constant(air.quadratic);
+  return air;
 }
 
 }  // namespace quadcore

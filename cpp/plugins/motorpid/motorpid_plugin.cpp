@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 #include "lanes/for_each_width.hpp"
@@ -48,12 +49,28 @@ class MotorPidPlugin final : public Plugin {
           "<ki> has no effect while <iMax> and <iMin> are 0, as in the thesis; set them to the "
           "largest and smallest integral torque in N m");
     }
-    for (const std::size_t i : config_.rotors) warn_if_stiff(setup, i);
+    for (const std::size_t i : config_.rotors) {
+      warn_if_stiff(setup, i);
+      dampings_.push_back(setup.model.joints[i].damping);
+    }
     topic_ = setup.topics.takes("vel_cmd", messages::speeds(config_.rotors.size()));
+    if (std::isfinite(config_.max_velocity)) {
+      saturation_ = setup.topics.publishes(setup.parameters.text("saturation"), saturated_steps());
+    }
   }
 
   std::size_t state_size() const override {
     return RotorRows<MemoryRow::count>::size_of(rotor_count_);
+  }
+
+  void describe_rotors(std::vector<RotorDescription>& rotors) const override {
+    for (std::size_t j = 0; j < config_.rotors.size(); ++j) {
+      RotorDescription& rotor = rotors[config_.rotors[j]];
+      const double stiffness = config_.kp + dampings_[j];
+      rotor.rate_per_command = stiffness > 0 ? config_.kp / stiffness / config_.sim_slow : 0;
+      rotor.lag = stiffness > 0 ? rotor.moment / stiffness : 0;
+      rotor.fastest = config_.max_velocity;
+    }
   }
 
   void update(const Sample& sample, PluginState state) const override {
@@ -61,6 +78,10 @@ class MotorPidPlugin final : public Plugin {
     if (command.count == 0) return;
     const bool stale = sample.time - command.stamp > config_.command_timeout;
     const double number = stale ? -1 : command.count;
+    if (!stale && is_at_limit(command)) {
+      const double steps = sample.topics[*saturation_].values.front();
+      *sample.topics.publish(*saturation_, sample.time) = steps + 1;
+    }
     for (std::size_t j = 0; j < config_.rotors.size(); ++j) {
       const std::size_t i = config_.rotors[j];
       double* rows = state.data() + rotor_offset(MemoryRow::count, i);
@@ -96,6 +117,13 @@ class MotorPidPlugin final : public Plugin {
   }
 
  private:
+  static MessageKind saturated_steps() { return {"saturation", {"steps"}}; }
+
+  bool is_at_limit(const Topic& command) const {
+    return std::any_of(command.values.begin(), command.values.end(),
+                       [this](double speed) { return std::abs(speed) >= config_.max_velocity; });
+  }
+
   MotorTorques law(ConstPluginState state) const { return {state.data(), config_.kp}; }
 
   void warn_if_stiff(const PluginSetup& setup, std::size_t i) const {
@@ -112,9 +140,11 @@ class MotorPidPlugin final : public Plugin {
   }
 
   Config config_;
-  std::size_t rotor_count_;  ///< of the model
+  std::size_t rotor_count_;       ///< of the model
+  std::vector<double> dampings_;  ///< of the joints of config_.rotors [N m s/rad]
   void (*add_)(const MotorTorques&, const RotorLanes&);
   std::size_t topic_;
+  std::optional<std::size_t> saturation_;  ///< topic; without a limit there is none
 };
 
 PluginDescriptor describe() {
@@ -145,6 +175,8 @@ PluginDescriptor describe() {
           T::number("commandTimeout", "s", "", "a command older than this counts as 0")
               .above(0)
               .or_absent("off"),
+          T::text("saturation", "saturation",
+                  "topic, where there is a maxVelocity: steps so far whose command reached it"),
           T::joints("rotorJoints", "the rotors, in the order of the command's numbers"),
       },
       {},

@@ -109,6 +109,7 @@ PluginDescriptor describe() {
           deviation("angularVelocityNoise", "rad/s", "each angular velocity component"),
           T::choice("twistFrame", {"world", "body"},
                     "axes of the linear velocity: world as in the thesis, body as nav_msgs says")
+              .agreed()
               .from("A.6"),
           T::number("seed", "", "", "seed of the noise, a whole number")
               .at_least(0)

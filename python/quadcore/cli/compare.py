@@ -34,7 +34,8 @@ def register(commands: Any) -> None:
         action="append",
         default=[],
         help="a,b,c or FIRST:LAST:COUNT or log:FIRST:LAST:COUNT; PLUGIN.TAG,PLUGIN.TAG=... gives "
-        "several tags the same value; engine=... and world=... too; repeatable: a grid",
+        "several tags the same value; LINK.mass, LINK.ixx ... LINK.izz, xacro.ARG, engine and "
+        "world too; repeatable: a grid",
     )
     options.add_flight(parser)
     options.add_commands(parser)

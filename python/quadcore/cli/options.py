@@ -33,7 +33,8 @@ def add_model(parser: argparse.ArgumentParser, nargs: str | None = None) -> None
         type=assignment(r"([^=]+\.[^.=]+)=(.+)", "PLUGIN.TAG=VALUE"),
         action="append",
         default=[],
-        help="give a plugin's tag another value; repeatable",
+        help="give a plugin's tag another value, or LINK.mass, LINK.ixx ... LINK.izz, xacro.ARG; "
+        "repeatable",
     )
     parser.add_argument(
         "--xacro",

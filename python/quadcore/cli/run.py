@@ -112,6 +112,13 @@ def _summary(simulation: Simulation, fastest: float, elapsed: float, files: list
         ("final roll, pitch, yaw", f"{_fixed(attitude, 4)} deg"),
         ("fastest rotor", f"{fastest:.3f} rad/s"),
     ]
+    counts = [
+        simulation.topic(name)["steps"]
+        for name, topic in simulation.topics.items()
+        if topic.kind == "saturation"
+    ]
+    if counts:
+        rows.append(("saturated steps", f"{max(counts):.0f}"))
     for i, file in enumerate(files):
         rows.append(("" if i else "written", str(file)))
     for row in rows:

@@ -71,8 +71,9 @@ def compare(
     models
         One or several models: files or names of shipped ones.
     vary
-        Values by ``"PLUGIN.TAG"`` (several, joined by commas, take the same value), ``"engine"`` or
-        ``"world"``. All combinations are flown; the last axis runs fastest.
+        Values by ``"PLUGIN.TAG"``, ``"LINK.mass"`` or the like, or ``"xacro.ARG"`` (several, joined
+        by commas, take the same value), ``"engine"`` or ``"world"``. All
+        combinations are flown; the last axis runs fastest.
     commands, duration, log_every
         As for `Simulation.run`.
     logs

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
@@ -14,11 +15,14 @@ from ..files import shown
 from ..flight import check_logged
 from ..flight_plan import FlightPlan
 from ..log import Log
-from ..simulation import Simulation
+from ..overrides import XACRO, check_names, link_values, without_xacro
+from ..simulation import Simulation, text_of
 from ..study.axes import Axis, Values, axes_of, check_size, variants
 from .difference import Difference, differences, facts
 
 Variant = Tuple[int, Tuple[str, ...]]
+
+_READ = 16  # models that are kept as they were read
 
 
 class Plan:
@@ -57,8 +61,16 @@ class Plan:
         self.count = check_size(len(models), self.axes)
         self.names = [shown(model) for model in models]
         own = dict(options)
-        arguments, ignore = own.pop("xacro_args", None), own.pop("ignore", ())
-        self._models = [read_model(name, arguments, ignore) for name in models]
+        ignore = own.pop("ignore", ())
+        arguments, given = without_xacro(
+            own.pop("parameters", None) or {}, own.pop("xacro_args", None)
+        )
+        self._set = {key: text_of(value) for key, value in given.items()}
+        self._taken = [*self._set, *(f"{XACRO}.{name}" for name in arguments)]
+        self._read = lru_cache(_READ)(
+            lambda i, varied: read_model(models[i], {**arguments, **dict(varied)}, ignore)
+        )
+        self._models = [self._read(i, ()) for i in range(len(models))]
         self._worlds = {name: read_world(name, ignore) for name in self._values("world")}
         world = own.pop("world", None)
         if not isinstance(world, World):
@@ -68,7 +80,12 @@ class Plan:
         check_ignored(list_of_names("ignore", ignore), readings)
         self._check_engines()
         self._base = FlightPlan.of(
-            self._models[0], world, duration=duration, log_every=log_every, **own
+            self._models[0],
+            world,
+            parameters=self._set,
+            duration=duration,
+            log_every=log_every,
+            **own,
         )
         built = self._built()
         self.dt = built[0].dt if built else 1e-3
@@ -86,14 +103,17 @@ class Plan:
 
     def flight(self, variant: Variant) -> FlightPlan:
         """Describe the flight of a variant."""
-        model, values = variant
-        changed: Dict[str, Any] = {"model": self._models[model]}
-        parameters = dict(self._base.parameters)
+        index, values = variant
+        changed: Dict[str, Any] = {}
+        parameters: Dict[str, str] = {}
         for axis, value in zip(self.axes, values):
             if not axis.tags:
                 changed[axis.name] = self._worlds[value] if axis.name == "world" else value
             parameters.update(dict.fromkeys(axis.tags, value))
-        return replace(self._base, parameters=parameters, **changed)
+        varied, tags = without_xacro(parameters, None)
+        model = self._read(index, tuple(varied.items()))
+        check_names(model, parameters)
+        return replace(self._base, model=model, parameters={**self._set, **tags}, **changed)
 
     def fly(self, variant: Variant) -> Log:
         """Fly a variant; raises what building or flying it raises."""
@@ -130,7 +150,7 @@ class Plan:
         built = []
         for model in self._models:
             try:
-                built.append(replace(self._base, model=model).simulation())
+                built.append(replace(self._base, model=model, parameters=self._set).simulation())
             except QuadcoreError:
                 continue
         return built
@@ -147,14 +167,15 @@ class Plan:
             for plugin in simulation.plugins:
                 known += [f"{plugin.name}.{tag.name}" for tag in plugin.parameters]
                 known += [f"{plugin.name}.{tag.alias}" for tag in plugin.parameters if tag.alias]
+            known += link_values(self._models[0].document)
             for axis in self.axes:
                 for tag in axis.tags:
-                    if tag not in known:
+                    if tag not in known and not tag.startswith(f"{XACRO}."):
                         raise InputError(
                             f"vary {tag}: model {simulation.model.name} has no "
                             f"{_nearest(tag, known)}"
                         )
-                    if tag in self._base.parameters:
+                    if tag in self._taken:
                         raise InputError(f"vary {tag}: it is set as well; keep one")
 
     def _check_rotors(self) -> None:

@@ -23,7 +23,8 @@ class Axis(NamedTuple):
     """One thing that is varied."""
 
     name: str
-    """``PLUGIN.TAG``, several of them joined by commas, ``engine`` or ``world``."""
+    """``PLUGIN.TAG``, ``LINK.mass`` or the like, ``xacro.ARG``, several of them joined by commas,
+    ``engine`` or ``world``."""
     values: Sequence[str]
 
     @property

@@ -70,6 +70,8 @@ class GivenSpeeds:
         Of the flight, s.
     """
 
+    delay = 0.0
+
     def __init__(
         self, vehicle: Vehicle, commands: np.ndarray, lag: bool, duration: float, dt: float
     ) -> None:

@@ -111,6 +111,9 @@ class Simulation : private ForceField {
   void reset(std::uint64_t seed);
   void reset() { reset(seed_); }
 
+  /// What flies, as force laws and engine have it now. Takes some milliseconds; nothing changes.
+  VehicleDescription describe_vehicle();
+
   /// Names of all wrench terms, in the order of wrenches().
   const std::vector<std::string>& wrench_terms() const { return wrench_terms_; }
   /// What each term exerts in the present state, in the frame's axes about the vehicle's centre of
@@ -129,8 +132,8 @@ class Simulation : private ForceField {
   void note_hooks();  ///< who has which, and in which order they are called
   void gather_laws();
   void prepare_plugins();  ///< tells those that ask what they fly
-  VehicleDescription describe_vehicle();
   Wrench probe(const VehicleState& state);
+  AirResistance probe_air(const VehicleDescription& vehicle);
   void plant_seed(std::uint64_t seed);
   void place(const VehicleState& state);
   /// The engine for what rides on the frame with this state of the plugins; null if that is the

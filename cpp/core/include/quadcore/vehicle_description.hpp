@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,25 @@ struct RotorDescription {
   /// Force and torque about the vehicle's centre of mass per squared joint rate, turning with a
   /// positive rate and with a negative one [N s^2/rad^2, N m s^2/rad^2].
   Wrench forward, backward;
+  /// \name As the plugin that drives it says, see Plugin::describe_rotors()
+  /// @{
+  double rate_per_command = 1;  ///< joint rate in the long run per commanded speed
+  double lag = 0;  ///< time constant with which the joint follows [s]; 0: at once, or not known
+  double fastest = std::numeric_limits<double>::infinity();  ///< command that is followed [rad/s]
+  /// @}
+};
+
+/// What still air does to the vehicle that moves through it while its rotors turn as in a hover:
+/// the mean over their angles and both senses.
+struct AirResistance {
+  /// Force [N] above torque about the centre of mass [N m], both in F and opposed to the velocity
+  /// of the centre of mass [m/s] above the angular velocity [rad/s], both in F.
+  Eigen::Matrix<double, 6, 6> linear = Eigen::Matrix<double, 6, 6>::Zero();
+  /// Of the force that opposes v with |v| v [N s^2/m^2].
+  double quadratic = 0;
+  /// Of the force in F whose i-th component opposes that of the velocity in W, v_i, with |v_i| v_i,
+  /// as thesis appendix A.5 has it [N s^2/m^2].
+  Vector3d of_components = Vector3d::Zero();
 };
 
 /// The vehicle as its engine flies it, with what it carries at the start: what a control law would
@@ -26,6 +46,7 @@ struct VehicleDescription {
   MassProperties body;  ///< of the whole vehicle
   Vector3d gravity_W;   ///< m/s^2
   std::vector<RotorDescription> rotors;
+  AirResistance air;
 };
 
 }  // namespace quadcore

@@ -1,0 +1,146 @@
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include "arguments.hpp"
+#include "bindings.hpp"
+#include "guarded.hpp"
+#include "quadcore/control/controller.hpp"
+#include "quadcore/control/gains_file.hpp"
+#include "quadcore/control/rows_file.hpp"
+#include "quadcore/control/start.hpp"
+
+namespace quadcore::bindings {
+namespace {
+
+using control::Controller;
+using control::Reference;
+using control::ReferenceShape;
+using control::Values;
+
+/// A controller and its memory.
+struct Flown {
+  Controller controller;
+  std::vector<double> state;
+
+  Flown(const std::string& law, const VehicleDescription& vehicle, const Values& values,
+        const std::vector<double>& spins)
+      : controller(law, vehicle, values, spins),
+        state(Controller::state_size(law, controller.rotors()), 0.0) {}
+};
+
+VehicleDescription describe(const Self& self) {
+  const Lock lock(*self);
+  return self->describe_vehicle();
+}
+
+Vector3d vector(const py::object& object, const char* what) {
+  const Numbers array = numbers(object, 1, what);
+  if (array.size() != 3) throw InputError(std::string(what) + " has not three numbers");
+  return Eigen::Map<const Vector3d>(array.data());
+}
+
+py::array_t<double> command(Flown& flown, double period, const py::object& state,
+                            const Reference& wanted) {
+  messages::Odometry now;
+  now.position = vector(state.attr("position"), "state.position");
+  now.linear_velocity = vector(state.attr("linear_velocity"), "state.linear_velocity");
+  now.angular_velocity = vector(state.attr("angular_velocity"), "state.angular_velocity");
+  const Numbers orientation = numbers(state.attr("orientation"), 1, "state.orientation");
+  if (orientation.size() != 4) throw InputError("state.orientation has not four numbers");
+  std::copy_n(orientation.data(), 4, now.orientation.coeffs().data());
+  py::array_t<double> speeds(static_cast<py::ssize_t>(flown.controller.rotors()));
+  flown.controller.command(period, now, wanted, flown.state.data(), speeds.mutable_data());
+  return speeds;
+}
+
+control::Rows rows_of(const py::object& rows) {
+  if (rows.is_none()) return {};
+  const Numbers table = numbers(rows, 2, "rows");
+  return Eigen::Map<const control::Rows>(table.data(), table.shape(0), table.shape(1));
+}
+
+py::dict start(const Self& self, const Reference& wanted, const std::vector<double>& spins) {
+  const VehicleState state = control::start_on(wanted, describe(self), spins);
+  py::dict members;
+  members["position"] = state.position;
+  members["orientation"] = Eigen::Vector4d(state.orientation.coeffs());
+  members["linear_velocity"] = state.linear_velocity;
+  members["angular_velocity"] = state.angular_velocity;
+  members["rotor_velocity"] = state.rotor_velocity;
+  members["rotor_angle"] = state.rotor_angle;
+  return members;
+}
+
+}  // namespace
+
+void bind_control(py::module_& m) {
+  py::class_<TagSpec>(m, "ParameterSpec", "A parameter of a law or a reference.")
+      .def_readonly("name", &TagSpec::name)
+      .def_readonly("unit", &TagSpec::unit)
+      .def_readonly("default", &TagSpec::fallback)
+      .def_readonly("meaning", &TagSpec::meaning)
+      .def_readonly("equation", &TagSpec::equation)
+      .def_property_readonly("is_flag",
+                             [](const TagSpec& spec) { return spec.kind == TagKind::flag; })
+      .def_property_readonly("range", [](const TagSpec& spec) { return spec.range(); });
+
+  py::class_<Reference>(m, "Reference", "Where a vehicle is to be, with derivatives, world axes.")
+      .def(py::init<>())
+      .def_readwrite("position", &Reference::position)
+      .def_readwrite("velocity", &Reference::velocity)
+      .def_readwrite("acceleration", &Reference::acceleration)
+      .def_readwrite("jerk", &Reference::jerk)
+      .def_readwrite("snap", &Reference::snap)
+      .def_readwrite("yaw", &Reference::yaw)
+      .def_readwrite("yaw_rate", &Reference::yaw_rate)
+      .def_readwrite("yaw_acceleration", &Reference::yaw_acceleration);
+
+  py::class_<ReferenceShape>(m, "ReferenceShape", "A reference at any time.")
+      .def(py::init([](const std::string& name, const Values& values, const py::object& rows) {
+             return control::make_reference(name, values, rows_of(rows));
+           }),
+           py::arg("name"), py::arg("values"), py::arg("rows") = py::none())
+      .def("at", &ReferenceShape::at, py::arg("t"))
+      .def_property_readonly("end", &ReferenceShape::end);
+
+  py::class_<Flown>(m, "Controller", "A law that flies one vehicle.")
+      .def(py::init([](const std::string& law, const Self& simulation, const Values& values,
+                       const std::vector<double>& spins) {
+             return std::make_unique<Flown>(law, describe(simulation), values, spins);
+           }),
+           py::arg("law"), py::arg("simulation"), py::arg("values"), py::arg("spins"))
+      .def("command", &command, py::arg("period"), py::arg("state"), py::arg("reference"));
+
+  m.def("start_on", &start, py::arg("simulation"), py::arg("reference"), py::arg("spins"),
+        "Members of the state of a vehicle that follows a reference exactly.");
+  m.def(
+      "read_gains",
+      [](const std::string& path) {
+        const control::Gains gains = control::read_gains(path);
+        return py::make_tuple(gains.law, gains.vehicle, gains.rate, gains.delay, gains.values);
+      },
+      py::arg("path"), "Law, vehicle, rate, delay and parameters of a gains file.");
+  m.def("read_rows", &control::read_rows, py::arg("path"), "Rows of a .csv or .yaml file.");
+  m.def(
+      "laws",
+      [] {
+        py::list all;
+        for (const control::LawInfo& law : control::laws()) {
+          all.append(py::make_tuple(law.name, law.summary, Controller::table(law.name)));
+        }
+        return all;
+      },
+      "Name, summary and parameters of every law.");
+  m.def(
+      "references",
+      [] {
+        py::list all;
+        for (const control::ReferenceInfo& info : control::references()) {
+          all.append(py::make_tuple(info.name, info.summary, info.table, info.takes_rows));
+        }
+        return all;
+      },
+      "Name, summary, parameters of every reference, and whether it takes rows.");
+}
+
+}  // namespace quadcore::bindings

@@ -1,0 +1,152 @@
+#include "quadcore/control/belief.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "quadcore/elementary.hpp"
+#include "quadcore/error.hpp"
+
+namespace quadcore::control {
+namespace {
+
+using T = TagSpec;
+
+/// What a belief makes of the truth.
+struct Doubts {
+  double mass, inertia, thrust, drag, lag, rate_damping, slowest, fastest;
+};
+
+T factor(const char* name, const char* of) {
+  return T::number(name, "", "1", std::string("believed ") + of + " over that of the plant");
+}
+
+const Settings<Doubts>& settings() {
+  static const Settings<Doubts> all = {
+      {factor("believed_mass", "mass").above(0), &Doubts::mass},
+      {factor("believed_inertia", "inertia").above(0), &Doubts::inertia},
+      {factor("believed_thrust", "thrust and torque of a rotor").above(0), &Doubts::thrust},
+      {factor("believed_drag", "drag").at_least(0), &Doubts::drag},
+      {factor("believed_lag", "time constant of the motors").at_least(0), &Doubts::lag},
+      {T::number("rate_damping", "1/s", "0",
+                 "of roll and pitch that is believed besides, as Gazebo's engine adds it")
+           .at_least(0),
+       &Doubts::rate_damping},
+      {T::number("slowest", "rad/s", "0", "no rotor is commanded to turn slower").at_least(0),
+       &Doubts::slowest},
+      {T::number("fastest", "rad/s", "0",
+                 "no rotor is commanded to turn faster; 0: what its motor follows")
+           .at_least(0),
+       &Doubts::fastest},
+  };
+  return all;
+}
+
+const Wrench& wrench_of(const RotorDescription& rotor, double spin) {
+  return spin > 0 ? rotor.forward : rotor.backward;
+}
+
+/// By turns, in the order in which the rotors stand around the vehicle: of the two ways that in
+/// which they yaw it more, and if both are equal that in which the first is positive.
+std::vector<double> alternating(const VehicleDescription& vehicle) {
+  const std::size_t n = vehicle.rotors.size();
+  if (n % 2 != 0) {
+    throw InputError("which way " + std::to_string(n) +
+                     " rotors turn cannot be told; give their spins, 1 or -1 each");
+  }
+  std::vector<double> angles;
+  for (const RotorDescription& rotor : vehicle.rotors) {
+    const Vector3d p_F = rotor.p_FRcm_F - vehicle.body.p_FCcm;
+    angles.push_back(elementary::atan2(p_F.y(), p_F.x()));
+  }
+  std::vector<std::size_t> around(n);
+  std::iota(around.begin(), around.end(), 0);
+  std::stable_sort(around.begin(), around.end(),
+                   [&](std::size_t i, std::size_t j) { return angles[i] < angles[j]; });
+  std::vector<double> spins(n);
+  for (std::size_t k = 0; k < n; ++k) spins[around[k]] = k % 2 == 0 ? 1 : -1;
+  const auto turned = [&](double sense) {
+    double sum = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      sum += std::abs(wrench_of(vehicle.rotors[i], sense * spins[i]).torque_F.z());
+    }
+    return sum;
+  };
+  if (n == 0) return spins;
+  constexpr double equal = 1 + 1e-6;
+  const double first = spins[0];
+  const double sense = turned(-first) > equal * turned(first) ? -first : first;
+  for (double& spin : spins) spin *= sense;
+  return spins;
+}
+
+void check_spins(const std::vector<double>& spins, std::size_t rotors) {
+  const bool are_signs =
+      std::all_of(spins.begin(), spins.end(), [](double s) { return s == 1 || s == -1; });
+  if (are_signs && spins.size() == rotors) return;
+  throw InputError("the spins are no " + std::to_string(rotors) +
+                   " signs; give 1 or -1 for each rotor, in the order of the commands");
+}
+
+}  // namespace
+
+const std::vector<TagSpec>& Belief::table() {
+  static const std::vector<TagSpec> table = table_of(settings());
+  return table;
+}
+
+Belief Belief::of(const VehicleDescription& vehicle, std::vector<double> spins,
+                  const Values& values) {
+  Doubts doubts{};
+  configure(doubts, settings(), values);
+  const Vector3d& g_W = vehicle.gravity_W;
+  if (!(g_W.z() < 0) || g_W.x() != 0 || g_W.y() != 0) {
+    throw InputError("gravity is not along -z of the world, which these laws need");
+  }
+  if (spins.empty()) spins = alternating(vehicle);
+  check_spins(spins, vehicle.rotors.size());
+
+  Belief belief;
+  belief.mass = doubts.mass * vehicle.body.mass;
+  belief.p_FCcm_F = vehicle.body.p_FCcm;
+  belief.inertia_Ccm_F = doubts.inertia * vehicle.body.inertia_Ccm_F;
+  belief.gravity = -g_W.z();
+  belief.air.linear = doubts.drag * vehicle.air.linear;
+  belief.air.quadratic = doubts.drag * vehicle.air.quadratic;
+  belief.air.of_components = doubts.drag * vehicle.air.of_components;
+  for (int i = 0; i < 2; ++i) {
+    belief.air.linear(3 + i, 3 + i) += doubts.rate_damping * belief.inertia_Ccm_F(i, i);
+  }
+  const std::size_t n = vehicle.rotors.size();
+  belief.effectiveness.resize(6, static_cast<Eigen::Index>(n));
+  for (std::size_t i = 0; i < n; ++i) {
+    const RotorDescription& told = vehicle.rotors[i];
+    const double ratio = told.rate_per_command;
+    const double fastest =
+        doubts.fastest > 0 ? std::min(doubts.fastest, told.fastest) : told.fastest;
+    if (!(doubts.slowest < fastest)) {
+      throw InputError("'slowest' is not below the fastest speed of rotor '" + told.joint + "'");
+    }
+    belief.rotors.push_back({told.axis_F, spins[i], told.moment * ratio, doubts.lag * told.lag,
+                             doubts.slowest, fastest});
+    const Wrench& wrench = wrench_of(told, spins[i]);
+    belief.effectiveness.col(static_cast<Eigen::Index>(i))
+        << doubts.thrust * ratio * ratio * wrench.force_F,
+        doubts.thrust * ratio * ratio * wrench.torque_F;
+  }
+  return belief;
+}
+
+Vector3d Belief::air_force_W(const Matrix3d& R_WF, const Vector3d& v_WC_W) const {
+  const Vector3d f_F = air.linear.topLeftCorner<3, 3>() * (R_WF.transpose() * v_WC_W) +
+                       air.of_components.cwiseProduct(v_WC_W.cwiseAbs()).cwiseProduct(v_WC_W);
+  return -(R_WF * f_F) - air.quadratic * v_WC_W.norm() * v_WC_W;
+}
+
+Vector3d Belief::air_torque_F(const Vector3d& v_WC_F, const Vector3d& w_WF_F) const {
+  return -(air.linear.bottomLeftCorner<3, 3>() * v_WC_F +
+           air.linear.bottomRightCorner<3, 3>() * w_WF_F);
+}
+
+}  // namespace quadcore::control

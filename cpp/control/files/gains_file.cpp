@@ -1,0 +1,69 @@
+#include "quadcore/control/gains_file.hpp"
+
+#include <algorithm>
+
+#include "control/files/yaml_file.hpp"
+#include "quadcore/control/controller.hpp"
+#include "quadcore/error.hpp"
+#include "quadcore/text.hpp"
+
+namespace quadcore::control {
+namespace {
+
+const std::vector<std::string> keys = {"law", "vehicle", "rate", "delay", "parameters", "history"};
+
+}  // namespace
+
+Gains read_gains(const std::string& path) {
+  const YamlFile file(path);
+  const auto entries = file.mapping(file.root(), "a gains file");
+  const auto entry = [&](const std::string& key) {
+    const auto found = std::find_if(entries.begin(), entries.end(),
+                                    [&](const auto& other) { return other.first == key; });
+    return found == entries.end() ? nullptr : &found->second;
+  };
+  for (const auto& [key, node] : entries) {
+    if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
+      file.refuse(node, "a gains file has no '" + key + "'" + did_you_mean(key, keys) +
+                            "; it knows " + joined(keys));
+    }
+  }
+  const auto check = [&](const YAML::Node& node, const std::string& law, const Values& values) {
+    try {
+      check_values("law '" + law + "'", Controller::table(law), values);
+    } catch (const InputError& error) {
+      file.refuse(node, error.what());
+    }
+  };
+
+  Gains gains;
+  const YAML::Node* const law = entry("law");
+  if (!law) file.refuse(file.root(), "names no law; write `law: NAME`");
+  gains.law = file.text(*law, "the law");
+  check(*law, gains.law, {});
+  if (const YAML::Node* node = entry("vehicle")) gains.vehicle = file.text(*node, "the vehicle");
+  if (const YAML::Node* node = entry("rate")) {
+    gains.rate = file.number(*node, "rate");
+    if (!(gains.rate > 0)) file.refuse(*node, "'rate' is not above 0; write calls per second");
+  }
+  if (const YAML::Node* node = entry("delay")) {
+    gains.delay = file.number(*node, "delay");
+    if (!(gains.delay >= 0 && gains.delay <= longest_delay)) {
+      file.refuse(*node, "'delay' is out of range; write seconds, from 0 to 10");
+    }
+  }
+  if (const YAML::Node* node = entry("parameters")) {
+    for (const auto& [name, value] : file.mapping(*node, "'parameters'")) {
+      gains.values[name] = file.number_or_flag(value, name);
+      check(value, gains.law, {{name, gains.values[name]}});
+    }
+  }
+  if (const YAML::Node* node = entry("history")) {
+    if (!node->IsMap() && !node->IsSequence()) {
+      file.refuse(*node, "'history' is neither a mapping nor a list; write one, or leave it out");
+    }
+  }
+  return gains;
+}
+
+}  // namespace quadcore::control

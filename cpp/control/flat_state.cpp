@@ -1,0 +1,65 @@
+#include "quadcore/control/flat_state.hpp"
+
+#include "control/jet.hpp"
+#include "quadcore/elementary.hpp"
+#include "quadcore/error.hpp"
+
+namespace quadcore::control {
+namespace {
+
+/// Across the vertical plane of the yaw.
+Jet across(double yaw, double rate, double acceleration) {
+  const auto [s, c] = elementary::sincos(yaw);
+  const Vector3d y(-s, c, 0), minus_x(-c, -s, 0);
+  return {y, rate * minus_x, acceleration * minus_x - rate * rate * y};
+}
+
+/// Force that the rotors exert but for a part along z of F, in W.
+Jet force(const Reference& wanted, const Belief& belief, bool with_drag) {
+  const Vector3d up(0, 0, belief.gravity);
+  const Jet a{wanted.acceleration + up, wanted.jerk, wanted.snap};
+  if (!with_drag) return belief.mass * a;
+  const Jet v{wanted.velocity, wanted.acceleration, wanted.jerk};
+  const double d = (belief.air.linear(0, 0) + belief.air.linear(1, 1)) / 2;
+  const Jet with_linear = belief.mass * a + d * v;
+  if (belief.air.quadratic == 0 || v.x.isZero(0)) return with_linear;
+  return with_linear + belief.air.quadratic * (norm(v) * v);
+}
+
+}  // namespace
+
+FlatState flat_state(const Reference& wanted, const Belief& belief, bool with_drag) {
+  const Jet f_W = force(wanted, belief, with_drag);
+  const Jet z = unit(f_W);
+  const Jet x = unit(cross(across(wanted.yaw, wanted.yaw_rate, wanted.yaw_acceleration), z));
+  const Jet y = cross(z, x);
+  FlatState flat;
+  flat.R_WF << x.x, y.x, z.x;
+  if (!flat.R_WF.allFinite()) {
+    throw Error("the reference has no attitude: it falls freely, or along its own x");
+  }
+  // R' = R [w x], so that w = (z . y', x . z', y . x').
+  flat.w_WF_F << z.x.dot(y.dx), x.x.dot(z.dx), y.x.dot(x.dx);
+  flat.dw_WF_F << z.dx.dot(y.dx) + z.x.dot(y.ddx), x.dx.dot(z.dx) + x.x.dot(z.ddx),
+      y.dx.dot(x.dx) + y.x.dot(x.ddx);
+  Vector3d exerted_W = belief.mass * (wanted.acceleration + Vector3d(0, 0, belief.gravity));
+  if (with_drag) exerted_W -= belief.air_force_W(flat.R_WF, wanted.velocity);
+  flat.thrust = z.x.dot(exerted_W);
+  return flat;
+}
+
+Matrix3d attitude_of(const Vector3d& z_W, double yaw) {
+  const Vector3d z = z_W.normalized();
+  const Vector3d x = across(yaw, 0, 0).x.cross(z).normalized();
+  Matrix3d R;
+  R << x, z.cross(x), z;
+  return R;
+}
+
+Vector3d torque_for(const Belief& belief, const Vector3d& dw_WF_F, const Vector3d& w_WF_F,
+                    const Vector3d& h_F, const Vector3d& tau_air_F) {
+  const Matrix3d& I = belief.inertia_Ccm_F;
+  return I * dw_WF_F + w_WF_F.cross(I * w_WF_F + h_F) - tau_air_F;
+}
+
+}  // namespace quadcore::control

@@ -1,0 +1,81 @@
+#include "control/references/shapes.hpp"
+#include "quadcore/elementary.hpp"
+
+namespace quadcore::control {
+namespace {
+
+using T = TagSpec;
+
+/// Adds amplitude sin(rate t + phase) along an axis, a phase of a quarter turn making it a cosine.
+void add_wave(Reference& wanted, int axis, double amplitude, double rate, double t, bool cosine) {
+  const auto [s, c] = elementary::sincos(rate * t);
+  const double wave = amplitude * (cosine ? c : s), slope = amplitude * (cosine ? -s : c);
+  wanted.position[axis] += wave;
+  wanted.velocity[axis] += rate * slope;
+  wanted.acceleration[axis] -= rate * rate * wave;
+  wanted.jerk[axis] -= rate * rate * rate * slope;
+  wanted.snap[axis] += rate * rate * rate * rate * wave;
+}
+
+/// x = r cos(rate t), y = r sin(rate t), z = climb t from the centre, thesis eq. (6.1).
+struct Spiral : ReferenceShape, Place {
+  double radius, rate, climb;
+
+  Reference at(double t) const override {
+    Reference wanted;
+    wanted.position = position();
+    add_wave(wanted, 0, radius, rate, t, true);
+    add_wave(wanted, 1, radius, rate, t, false);
+    wanted.position.z() += climb * t;
+    wanted.velocity.z() = climb;
+    turn(t, wanted);
+    return wanted;
+  }
+};
+
+/// x = length sin(rate t), y = width sin(2 rate t) from the centre.
+struct Eight : ReferenceShape, Place {
+  double length, width, rate;
+
+  Reference at(double t) const override {
+    Reference wanted;
+    wanted.position = position();
+    add_wave(wanted, 0, length, rate, t, false);
+    add_wave(wanted, 1, width, 2 * rate, t, false);
+    turn(t, wanted);
+    return wanted;
+  }
+};
+
+Settings<Spiral> spiral_settings() {
+  return with_place<Spiral>({
+      {T::number("radius", "m", "2", "of the circle").at_least(0).from("(6.1)"), &Spiral::radius},
+      {T::number("rate", "rad/s", "0.5", "with which the angle grows; negative: clockwise")
+           .from("(6.1)"),
+       &Spiral::rate},
+      {T::number("climb", "m/s", "1", "vertical velocity").from("(6.1)"), &Spiral::climb},
+  });
+}
+
+}  // namespace
+
+ReferenceInfo spiral() {
+  return shape<Spiral>("spiral", "a rising circle, thesis eq. (6.1)", spiral_settings());
+}
+
+ReferenceInfo circle() {
+  return shape<Spiral>("circle", "a level circle", spiral_settings(),
+                       {{"rate", 1.5}, {"climb", 0}});
+}
+
+ReferenceInfo eight() {
+  return shape<Eight>(
+      "eight", "a level figure eight",
+      with_place<Eight>({
+          {T::number("length", "m", "2", "half of it, along x"), &Eight::length},
+          {T::number("width", "m", "1", "half of it, along y"), &Eight::width},
+          {T::number("rate", "rad/s", "1.2", "of the slow wave, along x"), &Eight::rate},
+      }));
+}
+
+}  // namespace quadcore::control

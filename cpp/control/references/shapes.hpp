@@ -1,0 +1,31 @@
+#pragma once
+
+#include <utility>
+
+#include "control/references/yaw_law.hpp"
+
+namespace quadcore::control {
+
+/// A kind whose class has its settings for members.
+template <class Shape>
+ReferenceInfo shape(const std::string& name, const std::string& summary, Settings<Shape> settings,
+                    const Values& defaults = {}) {
+  return {name, summary, false, with_defaults(table_of(settings), defaults),
+          [settings = std::move(settings), defaults](const Values& values, const Rows&) {
+            auto made = std::make_unique<Shape>();
+            configure(*made, settings, completed(values, defaults));
+            return made;
+          }};
+}
+
+ReferenceInfo hover();
+ReferenceInfo step();
+ReferenceInfo ramp();
+ReferenceInfo spiral();
+ReferenceInfo circle();
+ReferenceInfo eight();
+ReferenceInfo waypoints();
+ReferenceInfo series();
+ReferenceInfo takeoff_land();
+
+}  // namespace quadcore::control

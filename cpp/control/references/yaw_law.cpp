@@ -1,0 +1,26 @@
+#include "control/references/yaw_law.hpp"
+
+#include "quadcore/elementary.hpp"
+
+namespace quadcore::control {
+
+void Place::turn(double t, Reference& wanted) const {
+  wanted.yaw = yaw + yaw_rate * t;
+  wanted.yaw_rate = yaw_rate;
+  wanted.yaw_acceleration = 0;
+  if (!along) return;
+  const auto cross = [](const Vector3d& a, const Vector3d& b) {
+    return a.x() * b.y() - a.y() * b.x();
+  };
+  const Vector3d &v = wanted.velocity, &a = wanted.acceleration, &j = wanted.jerk;
+  const double squared = v.x() * v.x() + v.y() * v.y();
+  if (squared == 0) return;  // nothing to point along
+  // psi = atan2(vy, vx), psi' = (v x a)/v^2, psi'' = (v x j)/v^2 - 2 psi' (v . a)/v^2
+  const double turning = cross(v, a) / squared;
+  wanted.yaw += elementary::atan2(v.y(), v.x());
+  wanted.yaw_rate += turning;
+  wanted.yaw_acceleration +=
+      (cross(v, j) - 2 * turning * (v.x() * a.x() + v.y() * a.y())) / squared;
+}
+
+}  // namespace quadcore::control

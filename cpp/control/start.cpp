@@ -1,0 +1,46 @@
+#include "quadcore/control/start.hpp"
+
+#include <cmath>
+
+#include "quadcore/control/allocation.hpp"
+#include "quadcore/control/flat_state.hpp"
+
+namespace quadcore::control {
+
+VehicleState start_on(const Reference& wanted, const VehicleDescription& vehicle,
+                      const std::vector<double>& spins) {
+  const Belief truth = Belief::of(vehicle, spins, {});
+  const Allocation allocation(truth);
+  const FlatState flat = flat_state(wanted, truth, true);
+  const Vector3d tau_air_F =
+      truth.air_torque_F(flat.R_WF.transpose() * wanted.velocity, flat.w_WF_F);
+  const auto n = static_cast<Eigen::Index>(truth.rotors.size());
+  VectorXd squares(n), speeds = VectorXd::Zero(n);
+  // The torque needs the rotors' momentum, and their speeds need the torque.
+  for (int round = 0; round < 4; ++round) {
+    Vector3d h_F = Vector3d::Zero();
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const BelievedRotor& rotor = truth.rotors[static_cast<std::size_t>(i)];
+      h_F += rotor.momentum * speeds[i] * rotor.axis_F;
+    }
+    allocation.allocate({flat.thrust, torque_for(truth, flat.dw_WF_F, flat.w_WF_F, h_F, tau_air_F)},
+                        squares.data());
+    for (Eigen::Index i = 0; i < n; ++i) {
+      speeds[i] = truth.rotors[static_cast<std::size_t>(i)].spin * std::sqrt(squares[i]);
+    }
+  }
+  VehicleState state;
+  state.position = wanted.position;
+  state.orientation = Quaterniond(flat.R_WF).normalized();
+  state.linear_velocity = wanted.velocity;
+  state.angular_velocity = flat.w_WF_F;
+  state.rotor_angle = VectorXd::Zero(n);
+  state.rotor_velocity.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    state.rotor_velocity[i] =
+        speeds[i] * vehicle.rotors[static_cast<std::size_t>(i)].rate_per_command;
+  }
+  return state;
+}
+
+}  // namespace quadcore::control

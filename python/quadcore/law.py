@@ -1,0 +1,80 @@
+"""A control law of quadcore, as `Simulation.run` flies it."""
+
+from __future__ import annotations
+
+from typing import Any, Optional, Sequence
+
+import numpy as np
+
+from . import _core
+from .parameters import values
+
+
+class Law:
+    """A law of quadcore with its parameters; what it believes of the vehicle it takes from it.
+
+    Attributes
+    ----------
+    name : str
+        Of the law.
+    parameters : dict of str to float
+        That were given.
+    rate : float
+        Calls per simulated second.
+    delay : float
+        Time after which a command reaches the motors, s.
+    spins : list of float
+        1 or -1 for each rotor; empty: neighbours around the vehicle turn against each other.
+    belief : Simulation, optional
+        What is flown, as the law believes; None: what is flown. Parameters named believed_...
+        make it wrong.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        rate: float = 500,
+        delay: float = 0,
+        spins: Sequence[float] = (),
+        belief: Optional[_core.Simulation] = None,
+        **parameters: Any,
+    ) -> None:
+        self.name = name
+        self.rate = rate
+        self.delay = delay
+        self.spins = list(spins)
+        self.belief = belief
+        self.parameters = values(f"law '{name}'", parameters)
+        self._controller: Optional[_core.Controller] = None
+
+    def reset(self, simulation: _core.Simulation) -> None:
+        """Begin on what the simulation flies."""
+        twist = {
+            p.value
+            for plugin in simulation.plugins
+            for p in plugin.parameters
+            if p.name == "twistFrame"
+        }
+        if twist == {"body"}:
+            raise _core.InputError(
+                f"law '{self.name}' needs velocities in the world; set <twistFrame> to world"
+            )
+        believed = simulation if self.belief is None else self.belief
+        if believed.rotor_count != simulation.rotor_count:
+            raise _core.InputError(
+                f"law '{self.name}' believes in {believed.rotor_count} rotors; "
+                f"this vehicle has {simulation.rotor_count}"
+            )
+        self._controller = _core.Controller(self.name, believed, self.parameters, self.spins)
+
+    def __call__(self, t: float, state: Any, reference: Any) -> np.ndarray:
+        """Give the speeds of the rotors, rad/s."""
+        if self._controller is None:
+            raise _core.InputError(f"law '{self.name}' flies nothing yet; call its reset()")
+        if reference is None:
+            raise _core.InputError(f"law '{self.name}' has no reference to follow; give one")
+        return self._controller.command(1 / self.rate, state, reference)
+
+    def __repr__(self) -> str:
+        inside = "".join(f", {name}={value:g}" for name, value in self.parameters.items())
+        return f"quadcore.laws.{self.name}(rate={self.rate:g}{inside})"

@@ -1,0 +1,150 @@
+"""References: where a vehicle is to be, with all derivatives.
+
+Each function makes one, e.g. ``quadcore.references.spiral(radius=3)``; its docstring lists the
+parameters. ``NAMES`` holds them all.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Callable, List, Optional, Protocol, Sequence, Union
+
+import numpy as np
+
+from . import _core
+from .formats import format_of
+from .parameters import docstring, values
+from .state import State
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+Reference = _core.Reference
+
+
+class ReferenceLike(Protocol):
+    """What may guide a flight: a function of time that gives a `Reference`."""
+
+    def __call__(self, t: float) -> Any:
+        """Give position, velocity, acceleration, jerk, snap, yaw, yaw_rate, yaw_acceleration."""
+
+
+class Shape:
+    """A reference of a kind that quadcore has.
+
+    Attributes
+    ----------
+    name : str
+        Of its kind.
+    parameters : dict of str to float
+        That were given.
+    """
+
+    def __init__(self, name: str, rows: Optional[npt.ArrayLike] = None, **parameters: Any) -> None:
+        self.name = name
+        self.parameters = values(f"reference '{name}'", parameters)
+        try:
+            self.rows = None if rows is None else np.array(rows, dtype=float)
+        except (TypeError, ValueError) as error:
+            raise _core.InputError(f"reference '{name}': its rows: {error}") from None
+        self._shape = _core.ReferenceShape(name, self.parameters, self.rows)
+
+    def __call__(self, t: float) -> _core.Reference:
+        """Say where the vehicle is to be at a time [s]."""
+        return self._shape.at(t)
+
+    @property
+    def end(self) -> float:
+        """From when on nothing moves any more, s; infinite if that never comes."""
+        return self._shape.end
+
+    def __reduce__(self) -> Any:
+        return _again, (self.name, self.rows, self.parameters)
+
+    def __repr__(self) -> str:
+        inside = ", ".join(f"{name}={value:g}" for name, value in self.parameters.items())
+        return f"quadcore.references.{self.name}({inside})"
+
+
+def _again(name: str, rows: Optional[np.ndarray], parameters: Any) -> Shape:
+    return Shape(name, rows, **parameters)
+
+
+def start(simulation: Any, reference: ReferenceLike, spins: Sequence[float] = ()) -> State:
+    """Give the state of a vehicle that follows a reference exactly from the simulation's time on.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        Says what flies.
+    reference : callable
+        Of quadcore.references, or a function like one.
+    spins : sequence of float
+        1 or -1 for each rotor; without, neighbours turn against each other.
+
+    Returns
+    -------
+    State
+        Attitude, rates and rotor speeds included; for `Simulation.set_state`.
+    """
+    state: State = simulation.state.copy()
+    for name, value in _core.start_on(simulation, reference(state.time), list(spins)).items():
+        setattr(state, name, value)
+    return state
+
+
+def read_rows(path: Path) -> npt.ArrayLike:
+    """Read rows of time and place.
+
+    Parameters
+    ----------
+    path
+        A .csv file with columns t, x, y, z and perhaps yaw, a .yaml file with `columns`, these, and
+        `rows`, or a .mat file with t, x, y, z.
+
+    Raises
+    ------
+    InputError
+        A missing file, or one that holds something else.
+    """
+    if path.suffix.lower() in (".csv", ".yaml", ".yml"):
+        return _core.read_rows(str(path))
+    return format_of(path, "paths are read from").read_commands(path, ["t", "x", "y", "z"])[0]
+
+
+def _function(
+    name: str, summary: str, table: List[_core.ParameterSpec], takes_rows: bool
+) -> Callable[..., Shape]:
+    if takes_rows:
+
+        def make_of_rows(rows: Union[npt.ArrayLike, str, Path]) -> Shape:
+            return Shape(name, read_rows(Path(rows)) if isinstance(rows, (str, Path)) else rows)
+
+        make: Callable[..., Shape] = make_of_rows
+    else:
+
+        def make_of_parameters(**parameters: float) -> Shape:
+            return Shape(name, **parameters)
+
+        make = make_of_parameters
+    make.__name__ = make.__qualname__ = name
+    rows = (
+        "rows : array_like (n, 4 or 5), or path of a .csv, .mat or .yaml file\n"
+        "    t, x, y, z[, yaw] in s, m, rad."
+    )
+    make.__doc__ = docstring(summary, table, rows if takes_rows else "")
+    return make
+
+
+_MAKERS = {entry[0]: _function(*entry) for entry in _core.references()}
+NAMES = tuple(_MAKERS)
+__all__ = ["NAMES", "Reference", "ReferenceLike", "Shape", "start", *NAMES]
+
+
+def __getattr__(name: str) -> Callable[..., Shape]:
+    try:
+        return _MAKERS[name]
+    except KeyError:
+        raise AttributeError(
+            f"there is no reference '{name}'; there are {', '.join(NAMES)}"
+        ) from None

@@ -1,0 +1,129 @@
+#!/usr/bin/env python3
+"""Fly what docs/control.md tells of the laws, and hold the errors against their bars.
+
+Prints a row per case: the largest error of all its flights [mm], and the bar. Exit status 1 if one
+is missed. Takes some minutes.
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Callable, Dict, List, Mapping, Tuple, Union
+
+import numpy as np
+
+import quadcore as qc
+from quadcore import laws, references
+from quadcore.study.executor import each
+
+WAYPOINTS = Path(__file__).resolve().parents[1] / "config" / "waypoints.yaml"
+THESIS = {"odometry.positionNoise": 0.2106e-3, "odometry.orientationNoise": 0.2e-3}
+NOISY = {**THESIS, "odometry.linearVelocityNoise": 5e-3, "odometry.angularVelocityNoise": 5e-3}
+LOST = 5.0  # m
+
+
+@dataclass
+class Case:
+    """Flights of one kind, one for each seed."""
+
+    name: str
+    engine: str
+    sim_slow: int
+    law: Callable[[], laws.Law]
+    reference: Callable[[], references.Shape]
+    bar: float  # mm; negative: the vehicle is to be lost
+    duration: float = 30.0
+    last: float = 10.0  # s of the flight that count
+    noise: Mapping[str, float] = field(default_factory=dict)
+    seeds: int = 1
+
+
+def cases() -> List[Case]:
+    """List all that is flown."""
+    plants = [("eigen", 1), ("ode", 1), ("gazebo11", 1), ("gazebo11", 10)]
+    spiral, geometric = references.spiral, laws.geometric
+    found = []
+    for plant, bar in zip(plants, (0.05, 0.4, 0.8, 0.4)):
+        found.append(Case("spiral, geometric", *plant, geometric, spiral, bar))
+    for plant, bar in zip(plants, (0.15, 0.5, 0.9, 0.5)):
+        name = "spiral, geometric, the thesis' noise"
+        found.append(Case(name, *plant, geometric, spiral, bar, noise=THESIS, seeds=20))
+    for plant in plants:
+        name = "spiral, geometric, noise of velocities besides"
+        found.append(Case(name, *plant, geometric, spiral, 1, noise=NOISY, seeds=20))
+    for plant, bar in zip(plants, (0.5, 0.5, 2)):
+        found.append(Case("spiral, pd_compensated", *plant, laws.pd_compensated, spiral, bar))
+    shapes = {
+        "circle": references.circle,
+        "eight": references.eight,
+        "waypoints": lambda: references.waypoints(WAYPOINTS),
+    }
+    for plant, bars in (plants[0], (1, 5, 4)), (plants[2], (20, 35, 12)):
+        for (name, shape), bar in zip(shapes.items(), bars):
+            times = (12, 12) if name == "waypoints" else (30, 10)
+            found.append(Case(f"{name}, geometric", *plant, geometric, shape, bar, *times))
+    damped = "circle, geometric, Gazebo's damping believed"
+    found.append(
+        Case(damped, *plants[2], lambda: geometric(rate_damping=0.81), references.circle, 4)
+    )
+    for plant in (*plants, ("ode", 10), ("eigen", 10)):
+        found.append(
+            Case("spiral, pid_thesis", *plant, lambda: laws.pid_thesis(rate=1000), spiral, -1)
+        )
+    return found
+
+
+def fly(flight: Tuple[Case, int]) -> float:
+    """Fly once; returns the largest error [mm]."""
+    case, seed = flight
+    reference = case.reference()
+    parameters = {**case.noise, "xacro.sim_slow": case.sim_slow}
+    simulation = qc.Simulation(engine=case.engine, seed=seed, parameters=parameters)
+    simulation.set_state(references.start(simulation, reference))
+    try:
+        log = simulation.run(
+            case.duration, log_every=5, wrenches=False, controller=case.law(), reference=reference
+        )
+    except qc.FlightError as error:
+        log = error.log  # type: ignore[attr-defined]
+    wanted = np.array([reference(t).position for t in log.time])
+    errors = np.linalg.norm(log.position - wanted, axis=1)
+    if errors.max() > LOST or log.time[-1] < case.duration - 0.1:
+        return float("inf")
+    return 1e3 * float(errors[log.time >= case.duration - case.last].max())
+
+
+def is_met(case: Case, error: float) -> bool:
+    """Whether the largest error [mm] of a case's flights is what it is to be."""
+    return np.isinf(error) if case.bar < 0 else error <= case.bar
+
+
+def main() -> int:
+    """Fly all, print a row as each case is through, and tell whether every bar was met."""
+    flights = [(case, seed) for case in cases() for seed in range(case.seeds)]
+    errors: Dict[str, List[float]] = {}
+    missed = []
+
+    def take(index: int, error: Union[float, qc.QuadcoreError]) -> None:
+        if isinstance(error, qc.QuadcoreError):
+            raise error
+        case = flights[index][0]
+        row = f"{case.name:48} {case.engine:8} {case.sim_slow:4}"
+        flown = errors.setdefault(row, [])
+        flown.append(error)
+        if len(flown) < case.seeds:
+            return
+        bar = "lost" if case.bar < 0 else f"<= {case.bar:g}"
+        met = is_met(case, max(flown))
+        missed.extend([] if met else [row])
+        print(f"{row} {max(flown):9.4f}  {bar:8}{'' if met else ' missed'}", flush=True)
+
+    print(f"{'':48} {'engine':8} slow largest error and bar [mm]")
+    each(fly, flights, take)
+    return int(bool(missed))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,81 @@
+#include <cmath>
+
+#include "beliefs.hpp"
+#include "quadcore/control/flat_state.hpp"
+
+using namespace quadcore;
+using namespace quadcore::control;
+
+namespace {
+
+/// Position, velocity, orientation and rate of a body that is turned and pushed from outside.
+struct Body {
+  Vector3d p, v;
+  Matrix3d R;
+  Vector3d w;
+};
+
+Body operator+(const Body& a, const Body& b) {
+  return {a.p + b.p, a.v + b.v, a.R + b.R, a.w + b.w};
+}
+Body operator*(double s, const Body& a) { return {s * a.p, s * a.v, s * a.R, s * a.w}; }
+
+}  // namespace
+
+TEST_CASE("a body that is turned and lifted as the flat state says flies the reference") {
+  Belief belief = test::odd_belief(4);
+  belief.air.linear.diagonal() << 0.07, 0.07, 0.01, 0, 0, 0;
+  belief.air.quadratic = 0.02;
+  belief.air.of_components = {0, 0, 0.012};
+  for (const char* name : {"eight", "circle", "spiral"}) {
+    CAPTURE(name);
+    for (const bool with_drag : {false, true}) {
+      const auto shape = make_reference(name, {{"rate", 1.9}, {"yaw_rate", 0.7}, {"yaw", 2}});
+      // Newton's law with the air's force written out here, not taken from the belief.
+      const auto derivative = [&](const Body& b, double t) {
+        const FlatState flat = flat_state(shape->at(t), belief, with_drag);
+        Vector3d f_W = flat.thrust * b.R.col(2) + Vector3d(0, 0, -belief.mass * belief.gravity);
+        if (with_drag) {
+          const Vector3d v_F = b.R.transpose() * b.v;
+          f_W -= b.R * Vector3d(0.07 * v_F.x(), 0.07 * v_F.y(), 0.01 * v_F.z());
+          f_W -= 0.02 * b.v.norm() * b.v;
+          f_W -= 0.012 * std::abs(b.v.z()) * b.v.z() * b.R.col(2);
+        }
+        return Body{b.v, f_W / belief.mass, b.R * skew(b.w), flat.dw_WF_F};
+      };
+      const FlatState flat = flat_state(shape->at(0), belief, with_drag);
+      Body body{shape->at(0).position, shape->at(0).velocity, flat.R_WF, flat.w_WF_F};
+      constexpr double h = 1e-3;
+      for (int step = 0; step < 2000; ++step) {
+        const double t = h * step;
+        const Body k1 = derivative(body, t), k2 = derivative(body + h / 2 * k1, t + h / 2),
+                   k3 = derivative(body + h / 2 * k2, t + h / 2),
+                   k4 = derivative(body + h * k3, t + h);
+        body = body + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+      }
+      const Reference wanted = shape->at(2);
+      CHECK((body.p - wanted.position).norm() < 1e-8);
+      CHECK((body.v - wanted.velocity).norm() < 1e-8);
+      const FlatState then = flat_state(wanted, belief, with_drag);
+      CHECK((body.R - then.R_WF).norm() < 1e-8);
+      CHECK((body.w - then.w_WF_F).norm() < 1e-8);
+    }
+  }
+}
+
+TEST_CASE("the yaw of the flat state is that of roll, pitch and yaw") {
+  const Belief belief = test::odd_belief(4);
+  const auto shape = make_reference("eight", {{"yaw", 1.1}, {"yaw_rate", 0.5}});
+  for (const double t : {0.0, 0.4, 1.3}) {
+    const FlatState flat = flat_state(shape->at(t), belief, false);
+    CHECK(rpy_from_quaternion(Quaterniond(flat.R_WF)).z() ==
+          doctest::Approx(1.1 + 0.5 * t).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("a reference that falls freely has no attitude") {
+  Reference falling;
+  falling.acceleration.z() = -9.7;
+  CHECK_THROWS_WITH(flat_state(falling, test::odd_belief(4), false),
+                    doctest::Contains("falls freely"));
+}

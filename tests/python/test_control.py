@@ -1,0 +1,236 @@
+"""Laws and references, flown from Python."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+from flights import ENGINES, quadrotor
+from twin_law import Twin
+
+import quadcore as qc
+from quadcore import laws, references
+
+ROOT = Path(__file__).resolve().parents[2]
+NOISE = {"odometry.positionNoise": 0.2106e-3, "odometry.orientationNoise": 0.2e-3}
+FLYING = [name for name in laws.NAMES if name != "pid_thesis"]
+
+
+def at_slow(slow, **others):
+    return {"drone_plugin.sim_slow": slow, "motorpid_plugin.sim_slow": slow, **others}
+
+
+def on(reference, engine="eigen", slow=1, **options):
+    """A simulation whose vehicle already follows a reference."""
+    parameters = at_slow(slow, **options.pop("parameters", {}))
+    simulation = quadrotor(engine, parameters=parameters, **options)
+    simulation.set_state(references.start(simulation, reference))
+    return simulation
+
+
+def errors(log, reference):
+    wanted = np.array([reference(t).position for t in log.time])
+    return np.linalg.norm(log.position - wanted, axis=1)
+
+
+def largest_at_the_end(log, reference, seconds=10):
+    return errors(log, reference)[log.time > log.time[-1] - seconds].max()
+
+
+@pytest.mark.parametrize(
+    ("engine", "slow", "bar"),
+    [("eigen", 1, 0.05e-3), ("ode", 1, 0.4e-3), ("gazebo11", 1, 0.8e-3), ("gazebo11", 10, 0.4e-3)],
+)
+def test_the_geometric_law_flies_the_spiral_of_the_thesis(engine, slow, bar):
+    spiral = references.spiral()
+    log = on(spiral, engine, slow).run(
+        30, controller="geometric", reference=spiral, wrenches=False, log_every=5
+    )
+    assert largest_at_the_end(log, spiral) < bar
+
+
+@pytest.mark.parametrize(
+    ("reference", "bar"),
+    [
+        (references.circle(), 1e-3),
+        (references.eight(), 5e-3),
+        (references.waypoints(ROOT / "config" / "waypoints.yaml"), 4e-3),
+    ],
+    ids=lambda value: value.name if isinstance(value, references.Shape) else "",
+)
+def test_the_geometric_law_flies_fast_references(reference, bar):
+    log = on(reference).run(12, controller="geometric", reference=reference, wrenches=False)
+    assert errors(log, reference).max() < bar
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("slow", [1, 10])
+def test_the_printed_gains_lose_the_spiral(engine, slow):
+    spiral = references.spiral()
+    simulation = on(spiral, engine, slow)
+    try:
+        log = simulation.run(
+            30, controller=laws.pid_thesis(rate=1000), reference=spiral, log_every=10
+        )
+    except qc.FlightError as error:
+        log = error.log
+    assert errors(log, spiral).max() > 5
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("law", FLYING)
+def test_every_law_settles_at_a_place_through_noise(engine, law):
+    hover = references.hover(x=0.3, y=-0.2, height=10.02, yaw=0.2)
+    simulation = quadrotor(engine, parameters=at_slow(1, **NOISE), seed=3)
+    log = simulation.run(30, controller=law, reference=hover, wrenches=False, log_every=10)
+    assert largest_at_the_end(log, hover, 2) < 0.01
+
+
+def test_the_law_and_its_twin_in_numpy_fly_one_flight():
+    spiral = references.spiral()
+    logs = [
+        on(spiral).run(5, controller=law, reference=spiral, wrenches=False)
+        for law in ("geometric", Twin())
+    ]
+    assert np.abs(logs[0].position - logs[1].position).max() < 1e-9
+
+
+def test_a_thrust_believed_wrong_is_made_up_for():
+    spiral = references.spiral()
+    law = laws.geometric(believed_thrust=1.1)
+    log = on(spiral).run(30, controller=law, reference=spiral, wrenches=False, log_every=10)
+    assert largest_at_the_end(log, spiral) < 0.02
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_the_geometric_law_recovers_from_upside_down(engine):
+    hover = references.hover(height=50)
+    simulation = quadrotor(engine, parameters=at_slow(1), spawn=(0, 0, 50, np.pi, 0, 0))
+    law = laws.geometric(fastest=900)
+    log = simulation.run(6, controller=law, reference=hover, wrenches=False)
+    assert errors(log, hover)[log.time > 3].max() < 0.1
+    assert log.position[:, 2].min() > 48
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("law", ["geometric", "indi", "lqr"])
+def test_wind_is_made_up_for(law, engine, tmp_path):
+    windy = tmp_path / "windy.world"
+    windy.write_text(
+        "<sdf><world><wind><linear_velocity>2.2 -2 0.3</linear_velocity></wind></world></sdf>"
+    )
+    hover = references.hover()
+    parameters = at_slow(1, **{"drone_plugin.dragModel": "chapter2"})
+    simulation = quadrotor(engine, parameters=parameters, world=windy)
+    log = simulation.run(22, controller=law, reference=hover, wrenches=False, log_every=10)
+    assert errors(log, hover).max() > 0.01
+    assert largest_at_the_end(log, hover, 2) < 1e-3
+
+
+@pytest.mark.parametrize(("engine", "slow"), [("ode", 1), ("gazebo11", 1), ("gazebo11", 10)])
+def test_the_geometric_law_takes_off_hovers_and_lands(engine, slow):
+    flight = references.takeoff_land(stay=8)
+    simulation = quadrotor(engine, parameters=at_slow(slow), world="default", spawn=(0, 0, 0.0125))
+    log = simulation.run(
+        flight.end + 2, controller="geometric", reference=flight, wrenches=False, log_every=10
+    )
+    off = errors(log, flight)
+    assert off[(log.time > 10) & (log.time < 13)].max() < 1e-3
+    assert off[log.time > flight.end + 1].max() < 5e-3
+
+
+@pytest.mark.parametrize(
+    ("reference", "options", "bar"),
+    [
+        (references.circle(), {}, 20e-3),
+        (references.circle(), {"rate_damping": 0.81}, 4e-3),
+        (references.eight(), {}, 35e-3),
+        (references.waypoints(ROOT / "config" / "waypoints.yaml"), {}, 12e-3),
+    ],
+    ids=lambda value: value.name if isinstance(value, references.Shape) else "",
+)
+def test_the_geometric_law_flies_fast_references_in_gazebo(reference, options, bar):
+    law = laws.geometric(**options)
+    log = on(reference, "gazebo11").run(12, controller=law, reference=reference, log_every=5)
+    assert errors(log, reference).max() < bar
+
+
+@pytest.mark.parametrize(
+    ("engine", "bar"), [("eigen", 0.5e-3), ("ode", 0.5e-3), ("gazebo11", 2e-3)]
+)
+def test_the_compensated_cascade_flies_the_spiral(engine, bar):
+    spiral = references.spiral()
+    log = on(spiral, engine).run(
+        12, controller="pd_compensated", reference=spiral, wrenches=False, log_every=5
+    )
+    assert largest_at_the_end(log, spiral, 6) < bar
+
+
+def test_a_delay_is_that_of_a_law_that_waits_by_itself():
+    hover = references.hover(x=0.1)
+
+    class Late:
+        rate = 500
+
+        def reset(self, simulation):
+            self.law = laws.geometric()
+            self.law.reset(simulation)
+            self.waiting = []
+
+        def __call__(self, t, state, reference):
+            self.waiting.append(self.law(t, state, reference))
+            return self.waiting.pop(0) if len(self.waiting) > 3 else self.waiting[0]
+
+    one = quadrotor("eigen").run(1, controller=laws.geometric(delay=0.006), reference=hover)
+    other = quadrotor("eigen").run(1, controller=Late(), reference=hover)
+    assert np.array_equal(one.table, other.table)
+
+
+def test_the_start_is_that_of_a_vehicle_on_the_way():
+    circle = references.circle()
+    simulation = on(circle)
+    log = simulation.run(0.2, controller="geometric", reference=circle)
+    assert errors(log, circle).max() < 0.1e-3
+
+
+def test_references_and_laws_can_be_pickled():
+    for reference in (
+        references.eight(width=2),
+        references.waypoints([[0, 0, 0, 1], [2, 1, 0, 1]]),
+    ):
+        copy = pickle.loads(pickle.dumps(reference))
+        assert np.array_equal(copy(0.7).position, reference(0.7).position)
+        assert repr(copy) == repr(reference)
+    assert pickle.loads(pickle.dumps(laws.pd(kp_xy=1))).parameters == {"kp_xy": 1}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ({"reference": "spiral"}, "a reference needs a controller"),
+        ({"controller": "geometric"}, "has no reference to follow"),
+        ({"controller": "geometrik", "reference": "spiral"}, "did you mean 'geometric'"),
+        ({"controller": "pd", "reference": "spirale"}, "did you mean 'spiral'"),
+        ({"controller": "pd", "reference": 5}, "reference is 5; give one of quadcore.references"),
+        ({"controller": laws.pd(delay=-1), "reference": "hover"}, "its delay is -1; give seconds"),
+        ({"controller": laws.pd(kp=1), "reference": "hover"}, "has no parameter 'kp'"),
+        ({"controller": laws.pd(kp_xy=-1), "reference": "hover"}, "'kp_xy' is -1; give"),
+        ({"controller": laws.pd(spins=[1, 1, 1, 1]), "reference": "hover"}, "independently"),
+        ({"controller": laws.pd(spins=[1, -1]), "reference": "hover"}, "spins are no 4 signs"),
+    ],
+)
+def test_what_cannot_be_flown_is_refused_before_the_flight(arguments, says):
+    simulation = quadrotor("eigen")
+    with pytest.raises(qc.InputError, match=says):
+        simulation.run(1, **arguments)
+    assert simulation.time == 0
+
+
+def test_parameters_are_documented_where_they_are_given():
+    assert "kp_xy : float, default 2.4" in laws.pd.__doc__
+    assert "kd_xy : float, default 0.125" in laws.pid_thesis.__doc__
+    assert "rate : float, default 1.5" in references.circle.__doc__
+    with pytest.raises(AttributeError, match="there is no law 'pdd'"):
+        laws.pdd  # noqa: B018

@@ -1,0 +1,122 @@
+"""Gains files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from flights import quadrotor
+from hooked import G
+from test_controller_plugin import guided
+
+import quadcore as qc
+from quadcore import gains, laws, references
+
+SHIPPED = sorted((Path(__file__).resolve().parents[2] / "config" / "gains").glob("*/*.yaml"))
+
+
+def written(tmp_path, text):
+    path = tmp_path / "gains.yaml"
+    path.write_text(text)
+    return path
+
+
+def test_what_is_written_is_read_again(tmp_path):
+    given = gains.Gains("lqr", "odd", 230.5, 0.0131, {"q_tilt": 1e-7, "lead": 0.0})
+    gains.write(given, tmp_path / "a.yaml")
+    assert gains.read(tmp_path / "a.yaml") == given
+    told = gains.Gains("pd", history=[{"cost": 0.1, "accepted": True}])
+    gains.write(told, tmp_path / "b.yaml")
+    assert gains.read(tmp_path / "b.yaml") == gains.Gains("pd")
+    assert "accepted: true" in (tmp_path / "b.yaml").read_text()
+
+
+def test_numbers_are_read_as_people_write_them(tmp_path):
+    path = written(
+        tmp_path, "law: geometric\nparameters:\n  kp_xy: 1e1\n  drag: false\n  ki_z: .5\n"
+    )
+    assert gains.read(path).parameters == {"kp_xy": 10, "drag": 0, "ki_z": 0.5}
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "says"),
+    [
+        ("law: geometrik\n", 1, "did you mean 'geometric'"),
+        ("rate: 500\n", 1, "names no law; write `law: NAME`"),
+        ("law: pd\nrates: 5\n", 2, "a gains file has no 'rates'.*did you mean 'rate'"),
+        ("law: pd\nlaw: pid\n", 2, "'law' stands there twice; leave one"),
+        ("law: pd\nrate: fast\n", 2, "'rate' is 'fast'; write a number"),
+        ("law: pd\nrate: 0\n", 2, "'rate' is not above 0"),
+        ("law: pd\ndelay: -1\n", 2, "'delay' is out of range"),
+        ("law: pd\nparameters:\n  kp_xy: 2\n  kp: 3\n", 4, "law 'pd' has no parameter 'kp'"),
+        ("law: pd\nparameters:\n  kp_xy: -2\n", 3, "'kp_xy' is -2; give a finite number >= 0"),
+        ("law: pd\nparameters:\n  drag: 2\n", 3, "'drag' is 2; give true or false"),
+        ("law: pd\nparameters: [1]\n", 2, "'parameters' is a list; write lines"),
+        ("law: pd\nhistory: long\n", 2, "'history' is neither"),
+        ("law: pd\nrate: [\n", 3, "not YAML"),
+        ("- pd\n", 1, "a gains file is a list"),
+    ],
+)
+def test_a_wrong_file_is_one_line_that_tells_where(text, line, says, tmp_path):
+    path = written(tmp_path, text)
+    with pytest.raises(qc.InputError, match=f"^{path}:{line}: .*{says}") as error:
+        gains.read(path)
+    assert "\n" not in str(error.value)
+
+
+def test_a_file_that_is_not_there_is_told(tmp_path):
+    with pytest.raises(qc.InputError, match=r"no\.yaml: cannot be read"):
+        laws.of_file(tmp_path / "no.yaml")
+
+
+def test_a_law_has_the_gains_that_are_shipped_for_the_vehicle():
+    own = laws.of_file(SHIPPED[0])
+    vehicle, law = SHIPPED[0].parent.name, SHIPPED[0].stem
+    assert gains.law_for(law, vehicle).parameters == own.parameters != {}
+    assert gains.law_for("geometric", "of nobody").parameters == {}
+    assert gains.law_for("geometric", "..").parameters == {}
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: f"{path.parent.name} {path.stem}")
+def test_every_shipped_file_names_its_law_and_vehicle(path):
+    read = gains.read(path)
+    assert (read.vehicle, read.law) == (path.parent.name, path.stem)
+    assert qc.read_model(read.vehicle).name == read.vehicle
+
+
+def test_the_plugin_flies_the_gains_of_a_file_and_what_tags_set_wins(tmp_path, hangar):
+    path = written(
+        tmp_path, "law: geometric\nrate: 250\ndelay: 0.004\nparameters:\n  kp_xy: 7\n  kp_z: 12\n"
+    )
+    tags = {"law": "geometric", "rate": 250, "delay": 0.004, "kp_xy": 7, "kp_z": 9}
+    logs = []
+    for controller in (tags, {"gains": path, "kp_z": 9}):
+        simulation = hangar(guided(controller), G, engine="eigen", spawn=(1, 0, 10))
+        logs.append(simulation.run(0.5, wrenches=False))
+    assert logs[0].table.tobytes() == logs[1].table.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("tags", "says"),
+    [
+        ({}, "no law is named; write <law> or <gains>"),
+        ({"law": "pd", "gains": "gains.yaml"}, "<law> is pd, but the gains of .* of geometric"),
+        ({"gains": "gains.yaml", "scale": 2}, "law 'geometric' has no parameter 'scale'"),
+    ],
+)
+def test_tags_that_contradict_the_file_are_refused(tags, says, tmp_path, hangar):
+    written(tmp_path, "law: geometric\n")
+    with pytest.raises(qc.InputError, match=says):
+        hangar(guided(tags), G)
+
+
+def test_a_law_of_a_file_flies_at_its_rate(tmp_path):
+    path = written(tmp_path, "law: geometric\nrate: 100\nparameters:\n  kp_xy: 7\n")
+    law = laws.of_file(path)
+    assert (law.rate, law.delay) == (100, 0)
+    hover = references.hover(x=0.1)
+    one = quadrotor("eigen").run(0.5, controller=law, reference=hover)
+    other = quadrotor("eigen").run(
+        0.5, controller=laws.geometric(rate=100, kp_xy=7), reference=hover
+    )
+    assert one.table.tobytes() == other.table.tobytes()
