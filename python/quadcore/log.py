@@ -9,7 +9,7 @@ from typing import Mapping, Sequence, Union
 import numpy as np
 
 from . import _core
-from ._core import InputError, flight_columns
+from ._core import InputError
 from .files import check_writable
 from .forks import LOCK
 from .formats import format_of
@@ -88,11 +88,11 @@ def check_log_path(path: PathLike) -> None:
     check_writable(Path(path))
 
 
-def log_file(path: Path, simulation: _core.Simulation, topics: Sequence[str] = ()) -> LogFile:
-    """Make the recorder that a file's name asks for, of a flight that logs these topics."""
+def log_file(path: Path, simulation: _core.Simulation, columns: Sequence[str]) -> LogFile:
+    """Make the recorder that a file's name asks for, of a flight with these columns."""
     return format_of(path, _WRITTEN).log_file(
         path,
-        flight_columns(simulation, topics),
+        columns,
         simulation.wrench_terms,
         simulation.ignored,
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, List, NamedTuple
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -132,6 +132,47 @@ class MathematicalModel:
             stop = min(end, time[-1])
             rows[inside], y = self._integrate(begin, stop, y, row, time[inside])
         return self._log(time, rows)
+
+    def step(self, dt: float, command: np.ndarray, state: State) -> State:
+        """Make one step of the classical Runge-Kutta method of fourth order.
+
+        Parameters
+        ----------
+        dt : float
+            s
+        command : ndarray, shape (n,)
+            Speeds that the motors are to reach over the step, rad/s.
+        state : State
+            At its beginning; as for `fly`. Angles of the rotors are not looked at.
+
+        Returns
+        -------
+        State
+            At its end, without angles of the rotors.
+
+        Raises
+        ------
+        FlightError
+            As for `fly`.
+        """
+        y = self._start(state)
+        if not self.terms.motor_lag:
+            y[12:] = command
+        slopes: List[np.ndarray] = []
+        for part in (0.0, 0.5, 0.5, 1.0):
+            at = y + part * dt * slopes[-1] if slopes else y
+            if _upright(0, at) <= 0:
+                raise _toppled(state.time)
+            slopes.append(self._derivative(at, command))
+        a, b, c, d = slopes
+        after = y + dt / 6 * (a + 2 * b + 2 * c + d)
+        row = self._log(np.array([state.time + dt]), after[None])
+        result = State()
+        result.time = state.time + dt
+        for name in ("position", "orientation", "linear_velocity", "angular_velocity"):
+            setattr(result, name, getattr(row, name)[0])
+        result.rotor_velocity = row.rotor_velocity[0]
+        return result
 
     def _integrate(
         self, begin: float, end: float, y: np.ndarray, command: np.ndarray, wanted: np.ndarray
