@@ -36,7 +36,7 @@ class Plant(Simulation):
 
     def __init__(self, terms: Terms = THESIS, **options: Any) -> None:
         super().__init__(**options, engine="eigen")
-        _check(self)
+        check(self)
         self._move_by(_Motion(MathematicalModel(Vehicle.of(self), terms), command_order(self)))
 
     @property
@@ -76,8 +76,13 @@ class _Motion:
             return after
 
 
-def _check(simulation: Simulation) -> None:
+def check(simulation: Simulation) -> None:
     """Raise `InputError` if something acts on the vehicle that chapter 2 does not know."""
+    if simulation.world.ground_plane:
+        raise InputError(
+            f"engine {LAGRANGE}: the mathematical model has no contact, and the world a ground "
+            "plane; fly in a world without, such as empty"
+        )
     air = air_of(simulation)
     for plugin in simulation.plugins:
         if plugin.wrenches and plugin.name != air.name:
