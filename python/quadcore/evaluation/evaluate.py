@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
@@ -14,6 +16,7 @@ from . import robustness
 from .flights import NAN, Outcome, flown
 from .intervals import cvar, interval
 from .plan import Case, Named, Plan
+from .poles import has_poles, poles
 
 Progress = Callable[[int, int], None]
 
@@ -36,10 +39,14 @@ class Evaluation(NamedTuple):
     controller under the same seeds, with its interval."""
     margins: List[Dict[str, Any]]
     """A row per controller if they were searched, see `robustness`."""
+    poles: List[Dict[str, Any]]
+    """Of the cascaded laws in hover, for each axis, see `poles`; with controller and engines."""
     seconds: List[float]
     """Of the wall clock, per flight; NaN where it did not end."""
     updates: List[int]
     """Of the controller, per flight."""
+    warnings: List[Sequence[str]]
+    """Of the model and the flight, per flight."""
     drawn: Dict[int, Outcome]
     """What is needed to draw flights: the first seed of some combinations, by row of the table."""
 
@@ -138,6 +145,7 @@ def conduct(
     outcomes: List[Outcome] = [missing] * len(cases)
     searches = robustness.searches(plan) if margins else []
     found: List[Any] = [None] * len(searches)
+    in_hover = _poles(plan)
     total, done = len(cases) + len(searches), 0
 
     def note(outcome: Any) -> None:
@@ -163,9 +171,20 @@ def conduct(
         conducted(fly, range(len(cases)), take, processes)
         conducted(lambda search: search.made(plan, time_limit), searches, take_found, processes)
     except KeyboardInterrupt as stop:
-        stop.evaluation = _summed(plan, cases, outcomes, searches, found)  # type: ignore[attr-defined]
+        stop.evaluation = _summed(plan, cases, outcomes, searches, found, in_hover)  # type: ignore[attr-defined]
         raise
-    return _summed(plan, cases, outcomes, searches, found)
+    return _summed(plan, cases, outcomes, searches, found, in_hover)
+
+
+def _poles(plan: Plan) -> List[Dict[str, Any]]:
+    """Find the poles of the laws that have some, on the first model in the first scenario."""
+    rows: List[Dict[str, Any]] = []
+    for label, engines, flight in plan.laws():
+        if has_poles(flight.controller):
+            with suppress(QuadcoreError):  # a vehicle that chapter 2 cannot describe
+                found = poles(flight.controller, replace(flight, on_reference=False).simulation())
+                rows += [{"controller": label, "engine": engines, **row} for row in found]
+    return rows
 
 
 def _to_draw(plan: Plan, cases: Sequence[Case]) -> List[int]:
@@ -181,6 +200,7 @@ def _summed(
     outcomes: Sequence[Outcome],
     searches: Sequence[Any],
     found: Sequence[Any],
+    found_poles: List[Dict[str, Any]],
 ) -> Evaluation:
     table = [
         {**plan.names(case), "failure": outcome.failure, **outcome.measures}
@@ -190,8 +210,10 @@ def _summed(
         table,
         _groups(plan, cases, outcomes),
         robustness.rows(plan, searches, found),
+        found_poles,
         [outcome.seconds for outcome in outcomes],
         [outcome.updates for outcome in outcomes],
+        [outcome.warnings for outcome in outcomes],
         {row: outcome for row, outcome in enumerate(outcomes) if outcome.log is not None},
     )
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from typing import Dict, NamedTuple, Optional
+import warnings
+from typing import Dict, NamedTuple, Optional, Sequence
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from ..controller import faults_told
 from ..flight import Rows, columns_of, fly
 from ..flight_plan import FlightPlan
 from ..log import Log
+from ..warning import QuadcoreWarning
 from .measures import UNITS, drag_power, lost, measure, slow_down
 from .step_response import step_response
 from .time_limit import time_limit
@@ -30,6 +32,8 @@ class Outcome(NamedTuple):
     """Of the wall clock."""
     updates: int
     """Of the controller."""
+    warnings: Sequence[str] = ()
+    """What was perhaps not meant, as `Simulation.warnings`."""
     log: Optional[Log] = None
     """Thinned, if it was asked for."""
     response: Optional[np.ndarray] = None
@@ -60,7 +64,8 @@ def flown(flight: FlightPlan, most: float, keep: bool = False) -> Outcome:
     """
     started = time.perf_counter()
     failure = ""
-    with time_limit(most):
+    with time_limit(most), warnings.catch_warnings():
+        warnings.simplefilter("ignore", QuadcoreWarning)  # they are kept
         simulation = flight.simulation()
         pilot = flight.pilot(simulation)
         assert pilot is not None
@@ -87,11 +92,12 @@ def flown(flight: FlightPlan, most: float, keep: bool = False) -> Outcome:
         share = pilot.saturated / max(1, pilot.updates)
         measures = measure(log, share, drag_power(simulation))
     seconds = time.perf_counter() - started
+    outcome = Outcome(failure, measures, seconds, pilot.updates, list(simulation.warnings))
     if not keep:
-        return Outcome(failure, measures, seconds, pilot.updates)
+        return outcome
     response = None if failure else step_response(log)
     limit = pilot.limit / slow_down(simulation)
-    return Outcome(failure, measures, seconds, pilot.updates, thinned(log), response, limit)
+    return outcome._replace(log=thinned(log), response=response, limit=limit)
 
 
 def thinned(log: Log) -> Log:

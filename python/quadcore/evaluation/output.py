@@ -12,6 +12,7 @@ from .intervals import CONFIDENCE
 from .measures import MEANINGS, UNITS
 from .pictures import draw, label
 from .plan import Plan
+from .poles import text as poles_text
 
 ROWS_OF_PAGE = 200
 
@@ -113,11 +114,22 @@ def _content(evaluation: Evaluation, flight: Mapping[str, str]) -> Dict[str, Any
         "units": UNITS,
         "meanings": MEANINGS,
         "confidence": CONFIDENCE,
-        "flights": evaluation.table,
+        "flights": [
+            {**row, "warnings": list(warned)}
+            for row, warned in zip(evaluation.table, evaluation.warnings)
+        ],
         "combinations": evaluation.groups,
         "margins": [
             {name: value if value != math.inf else "lost" for name, value in row.items()}
             for row in evaluation.margins
+        ],
+        "poles": [
+            {
+                **row,
+                "poles": [[pole.real, pole.imag] for pole in row["poles"]],
+                "zero": None if math.isinf(row["zero"]) else row["zero"],
+            }
+            for row in evaluation.poles
         ],
     }
 
@@ -149,6 +161,14 @@ def _page(
                 for name, value in row.items()
             }
             for row in evaluation.margins
+        ],
+        "poles": [
+            {
+                **row,
+                "poles": poles_text(row),
+                "zero": "" if math.isinf(row["zero"]) else f"{row['zero']:.3g}",
+            }
+            for row in evaluation.poles
         ],
         "pictures": [{"name": name, "data": data} for name, data in images.items()],
     }

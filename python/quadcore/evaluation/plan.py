@@ -8,7 +8,19 @@ import math
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import (
+    Any,
+    Callable,
+    Dict,
+    Iterator,
+    List,
+    Mapping,
+    NamedTuple,
+    Optional,
+    Sequence,
+    Tuple,
+    Union,
+)
 
 from .. import laws, references
 from .._core import InputError, check_ignored, parse_number
@@ -17,7 +29,7 @@ from ..description import list_of_names, read_model, read_world
 from ..files import shown
 from ..flight_plan import FlightPlan
 from ..overrides import check_names, without_xacro
-from ..plants import plants
+from ..plants import LAGRANGE, plants
 from ..simulation import text_of
 from ..study.axes import LARGEST, Values, axes_of
 
@@ -98,6 +110,7 @@ class Plan:
         self._timing = {"rate": controller_rate, "delay": delay}
         things = _labelled("controller", controllers, laws.Law)
         self.controllers = [label for label, _ in things]
+        self._are_own = [_is_own(thing) for _, thing in things]
         self.references, self._shapes = [], []
         for label, thing in _labelled("reference", references_, references.Shape):
             self.references.append(label)
@@ -184,6 +197,21 @@ class Plan:
         check_names(read, parameters)
         return {**changed, "model": read, "parameters": tags}, timing
 
+    def laws(self) -> Iterator[Tuple[str, str, FlightPlan]]:
+        """Name controller and engines, and describe a flight, for each law of quadcore.
+
+        Engines that fly the same plugins are one.
+        """
+        for row, label in enumerate(self.controllers):
+            if self._are_own[row]:
+                continue
+            of_plugins = [name for name in self.engines if name != LAGRANGE]
+            for flown in (of_plugins, [LAGRANGE] if LAGRANGE in self.engines else []):
+                if flown:
+                    engine = self.engines.index(flown[0])
+                    flight = self.flight(Case(row, 0, engine, 0, 0, self.seeds[0]))
+                    yield label, ", ".join(flown), flight
+
     def _sides(self) -> Tuple[Sequence[str], ...]:
         return self.controllers, self.references, self.engines, self.models, self.scenarios
 
@@ -224,11 +252,10 @@ def adjusted(controller: Any, values: Mapping[str, float]) -> Any:
 
 def _maker(thing: Any, vehicle: str) -> Callable[[], Any]:
     """Make what makes a controller for a flight; one of the user's own is brought in then."""
+    if _is_own(thing):
+        return lambda: laws.parse(thing, vehicle)
     if isinstance(thing, str):
-        if thing.partition(":")[0] in laws.NAMES or ":" not in thing:
-            thing = laws.parse(thing, vehicle)
-        else:
-            return lambda: laws.parse(thing, vehicle)
+        thing = laws.parse(thing, vehicle)
     check_callable(thing)
 
     def again() -> Any:
@@ -240,6 +267,11 @@ def _maker(thing: Any, vehicle: str) -> Callable[[], Any]:
             return thing
 
     return again
+
+
+def _is_own(thing: Any) -> bool:
+    """Whether a text names a module of the user's own."""
+    return isinstance(thing, str) and ":" in thing and thing.partition(":")[0] not in laws.NAMES
 
 
 def _number(name: str, text: str) -> float:
