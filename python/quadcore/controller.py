@@ -133,7 +133,7 @@ class Guided(Pilot):
         self.delay = float(delay)
         self.columns = _COLUMNS if reference is not None else ()
         self.updates = self.saturated = 0
-        self._controller = controller
+        self._controller: Any = controller
         self._reference = reference
         self.limit = _fastest(simulation)
         sensed = simulation.topics.get(_SENSED)
