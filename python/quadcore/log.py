@@ -19,6 +19,7 @@ from .trajectory import Trajectory
 PathLike = Union[str, "os.PathLike[str]"]
 
 _WRITTEN = "logs are written to"
+_READ = "logs are read from"
 
 
 class Log(Trajectory):
@@ -36,6 +37,22 @@ class Log(Trajectory):
         """Make a log of rows whose columns are those of the state, then TOPIC.FIELD."""
         of_state, topics = split_columns(columns, rows)
         return cls(rows[:, : len(of_state)], wrenches, title, ignored, topics)
+
+    @classmethod
+    def of_file(cls, path: PathLike) -> Log:
+        """Read a ``.csv`` or ``.mat`` file that `to_file` wrote, every bit restored.
+
+        Wrenches are in MATLAB files only.
+
+        Raises
+        ------
+        InputError
+            Another suffix, a file that cannot be read, or one that holds no log; the message begins
+            with the file and, if it is text, the line.
+        """
+        file = Path(path)
+        read = format_of(file, _READ).read_log(file)
+        return cls.of_rows(read.rows, read.columns, read.wrenches, read.ignored)
 
     def to_csv(self, path: PathLike) -> None:
         """Write `table` as text with 17 significant digits, so that reading restores every bit.

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Callable, Sequence
 
 import numpy as np
 
+from .colours import PALETTE
 from .files import atomic_write, make_folder
 from .rotation import roll_pitch_yaw
 
@@ -25,9 +26,8 @@ finally:
 if TYPE_CHECKING:
     from .trajectory import Trajectory
 
-# Okabe and Ito's, told apart by colour-blind readers too; x, y, z keep theirs throughout.
+# x, y, z keep theirs throughout.
 _XYZ = ("#d55e00", "#009e73", "#0072b2")
-PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#999999")
 
 
 def draw(log: Trajectory, directory: Path) -> list[Path]:
