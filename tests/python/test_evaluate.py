@@ -284,7 +284,13 @@ def test_everything_is_written_and_reproducible():
     timing = rows("out/timing.csv")
     assert all(float(row["seconds"]) > 0 for row in timing)
     page = Path("out/report.html").read_text()
-    for text in ("step:dx=1,time=0.2", "Columns of", "data:image/png;base64,"):
+    for text in (
+        "step:dx=1,time=0.2",
+        "What each law flew with",
+        "Poles of",
+        'class="player"',
+        "data:image/png;base64,",
+    ):
         assert text in page
     assert 'src="http' not in page
 

@@ -248,11 +248,27 @@ def _show(evaluation: Evaluation, files: list[Path]) -> None:
     for line in lines[:_ROWS]:
         table.add_row(*(line[name] for name in shown), line["best"])
     console.print(table)
+    if evaluation.margins:
+        console.print("", _margins(evaluation))
     if len(lines) > _ROWS:
         console.print(f"{len(lines) - _ROWS} more combinations")
     console.print(summary(evaluation))
     for file in files:
         console.print(f"written {file}")
+
+
+def _margins(evaluation: Evaluation) -> Any:
+    table = terminal.table("controller", "gain", "delay (s)", "box, median / worst (m)")
+    for row in evaluation.margins:
+        if row["failure"]:
+            table.add_row(row["controller"], row["failure"])
+            continue
+        gain, box = (
+            " / ".join(f"{row[name]:.3g}" for name in names)
+            for names in (("gain_low", "gain_high"), ("box_median", "box_worst"))
+        )
+        table.add_row(row["controller"], gain, f"{row['delay_margin']:.3g}", box)
+    return table
 
 
 def _report_failures(evaluation: Evaluation) -> None:

@@ -40,6 +40,8 @@ class Outcome(NamedTuple):
     """As `step_response` estimates it, if it was asked for."""
     limit: float = float("inf")
     """Of the rotors, as the log has them, rad/s."""
+    rotors: Optional[np.ndarray] = None
+    """Where they are in the frame, if it was asked for, m; (n, 3)."""
 
 
 NAN = dict.fromkeys(UNITS, float("nan"))
@@ -97,7 +99,8 @@ def flown(flight: FlightPlan, most: float, keep: bool = False) -> Outcome:
         return outcome
     response = None if failure else step_response(log)
     limit = pilot.limit / slow_down(simulation)
-    return outcome._replace(log=thinned(log), response=response, limit=limit)
+    rotors = simulation.model.joint_places
+    return outcome._replace(log=thinned(log), response=response, limit=limit, rotors=rotors)
 
 
 def thinned(log: Log) -> Log:

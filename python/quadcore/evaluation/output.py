@@ -10,11 +10,15 @@ from ..study.table import csv_bytes, json_bytes, save
 from .evaluate import JUDGED, Evaluation
 from .intervals import CONFIDENCE
 from .measures import MEANINGS, UNITS
-from .pictures import draw, label
+from .pictures import by_reference, draw, label
 from .plan import Plan
+from .poles import gains_of
 from .poles import text as poles_text
 
 ROWS_OF_PAGE = 200
+
+_PLAYERS, _PLAYED = 4, 8  # references, flights of each
+_SWITCHES = ("feed_forward", "drag", "gyroscopic", "flat_rates", "integral", "lead")
 
 _NAMES = ("controller", "reference", "engine", "model", "scenario")
 
@@ -47,8 +51,36 @@ def write(
     images = draw(evaluation) if plots else {}
     written += save(folder, {f"{name}.png": data for name, data in images.items()})
     page = folder / "report.html"
-    write_page(page, "evaluate.html", **_page(evaluation, flight, images))
+    players = _players(evaluation) if plots else []
+    values = _page(evaluation, flight, images)
+    write_page(page, "evaluate.html", **values, players=players, known=_known(plan))
     return [*written, page]
+
+
+def _players(evaluation: Evaluation) -> List[Dict[str, Any]]:
+    """Make a player of the flights along each of the first references."""
+    from ..player import PlayerFlight, fragment
+
+    players = []
+    for reference, flights in list(by_reference(evaluation).items())[:_PLAYERS]:
+        shown = [
+            PlayerFlight(named, outcome.log, outcome.rotors)
+            for named, outcome in flights[:_PLAYED]
+            if outcome.log is not None
+        ]
+        players.append({"reference": reference, "player": fragment(shown)})
+    return players
+
+
+def _known(plan: Plan) -> List[Dict[str, str]]:
+    """Tell what each law of quadcore flew with: only alike can be compared."""
+    rows = []
+    for name, engines, flight in plan.laws():
+        gains = gains_of(flight.controller)
+        shown = {part: f"{gains[part]:g}" if part in gains else "" for part in _SWITCHES}
+        timing = {part: f"{getattr(flight.controller, part):g}" for part in ("rate", "delay")}
+        rows.append({"controller": name, "engine": engines, **timing, **shown})
+    return rows
 
 
 def summary(evaluation: Evaluation) -> str:

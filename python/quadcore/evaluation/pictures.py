@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any, Dict, List, Sequence, Tuple
 
 import numpy as np
 
-from ..plots import PALETTE, dress, panels, png, titled
+from ..colours import PALETTE
+from ..plots import dress, panels, png, titled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -23,7 +24,7 @@ _STYLES = ("-", "--", ":", "-.")
 def draw(evaluation: Evaluation) -> Dict[str, bytes]:
     """Draw all pictures: PNG by name, in the order in which they are looked at."""
     figures: Dict[str, Figure] = {}
-    for i, (reference, flights) in enumerate(_by_reference(evaluation).items(), start=1):
+    for i, (reference, flights) in enumerate(by_reference(evaluation).items(), start=1):
         figures[f"tracks_{i}"] = _tracks(reference, flights)
         figures[f"errors_{i}"] = _errors(reference, flights)
         figures[f"rotors_{i}"] = _rotors(reference, flights)
@@ -50,7 +51,8 @@ def label(row: Dict[str, Any], among: Any) -> str:
     return ", ".join(part for part in parts if part)
 
 
-def _by_reference(evaluation: Evaluation) -> Dict[str, Flights]:
+def by_reference(evaluation: Evaluation) -> Dict[str, Flights]:
+    """Name the flights that are drawn, by their reference."""
     found: Dict[str, Flights] = {}
     for row, outcome in evaluation.drawn.items():
         cells = evaluation.table[row]
