@@ -9,7 +9,8 @@ from typing import Any, Iterable, Tuple
 from matplotlib.figure import Figure
 
 import quadcore as qc
-from quadcore.plots import PALETTE, dress, png
+from quadcore.colours import PALETTE
+from quadcore.plots import dress, png
 from quadcore.study.metrics import differences
 
 ROOT = Path(__file__).resolve().parents[1]

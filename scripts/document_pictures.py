@@ -14,7 +14,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import quadcore as qc
-from quadcore.plots import PALETTE, dress, png
+from quadcore.colours import PALETTE
+from quadcore.plots import dress, png
 
 ROOT = Path(__file__).resolve().parents[1]
 DATA = ROOT / "tests" / "data" / "gazebo11"

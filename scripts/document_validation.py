@@ -11,7 +11,8 @@ from typing import Any, Iterator
 import numpy as np
 from measured import DOCS, figures, put
 
-from quadcore.plots import PALETTE, dress, png, titled
+from quadcore.colours import PALETTE
+from quadcore.plots import dress, png, titled
 from quadcore.validation import Case, Experiment, Study, conduct
 from quadcore.validation.experiment import NO_LAG
 from quadcore.validation.figures import pictures

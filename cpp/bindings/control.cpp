@@ -53,6 +53,29 @@ py::array_t<double> command(Flown& flown, double period, const py::object& state
   return speeds;
 }
 
+/// The same from what stands on a topic and from a shape, with no Python object between.
+py::array_t<double> command_at(Flown& flown, double period, const Self& self,
+                               const std::string& sensed, const ReferenceShape& shape) {
+  const Lock lock(*self);
+  const Topics& topics = self->topics();
+  const auto now = topics.read<messages::Odometry>(topics.at(sensed));
+  py::array_t<double> speeds(static_cast<py::ssize_t>(flown.controller.rotors()));
+  flown.controller.command(period, now, shape.at(self->time()), flown.state.data(),
+                           speeds.mutable_data());
+  return speeds;
+}
+
+/// Position and yaw at each of these times, shape (n, 4).
+control::Rows places(const ReferenceShape& shape, const Numbers& times) {
+  if (times.ndim() != 1) throw InputError("times are no row of numbers");
+  control::Rows rows(times.shape(0), 4);
+  for (py::ssize_t i = 0; i < times.shape(0); ++i) {
+    const Reference wanted = shape.at(times.data()[i]);
+    rows.row(i) << wanted.position.transpose(), wanted.yaw;
+  }
+  return rows;
+}
+
 control::Rows rows_of(const py::object& rows) {
   if (rows.is_none()) return {};
   const Numbers table = numbers(rows, 2, "rows");
@@ -101,6 +124,7 @@ void bind_control(py::module_& m) {
            }),
            py::arg("name"), py::arg("values"), py::arg("rows") = py::none())
       .def("at", &ReferenceShape::at, py::arg("t"))
+      .def("places", &places, py::arg("times"))
       .def_property_readonly("end", &ReferenceShape::end);
 
   py::class_<Flown>(m, "Controller", "A law that flies one vehicle.")
@@ -109,7 +133,12 @@ void bind_control(py::module_& m) {
              return std::make_unique<Flown>(law, describe(simulation), values, spins);
            }),
            py::arg("law"), py::arg("simulation"), py::arg("values"), py::arg("spins"))
-      .def("command", &command, py::arg("period"), py::arg("state"), py::arg("reference"));
+      .def("command", &command, py::arg("period"), py::arg("state"), py::arg("reference"))
+      .def("command_at", &command_at, py::arg("period"), py::arg("simulation"), py::arg("sensed"),
+           py::arg("shape"))
+      .def_property_readonly(
+          "saturated", [](const Flown& flown) { return Controller::saturated(flown.state.data()); },
+          "Whether the rotors could not do what was asked of them last.");
 
   m.def("start_on", &start, py::arg("simulation"), py::arg("reference"), py::arg("spins"),
         "Members of the state of a vehicle that follows a reference exactly.");

@@ -26,6 +26,18 @@ const Source& source_of(const std::shared_ptr<const Source>& source) {
   return *source;
 }
 
+using Places = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+/// Row i: origin of the link that joint i carries, from that of the frame, in its axes [m].
+Places joint_places(const Model& model) {
+  const std::vector<Eigen::Isometry3d> poses = link_poses(model);
+  Places places(static_cast<Eigen::Index>(model.joints.size()), 3);
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    places.row(static_cast<Eigen::Index>(i)) = poses[i + 1].translation();
+  }
+  return places;
+}
+
 /// Pickles by the document, and reads that again: no path, and nothing that could be torn.
 template <class Read>
 auto by_document(Read (*read)(const Document&, const std::vector<std::string>&)) {
@@ -101,6 +113,8 @@ void bind_model(py::module_& m) {
       .def_property_readonly("name", [](const Built<Model>& held) { return held->name; })
       .def_property_readonly("links", [](const Built<Model>& held) { return held->links; })
       .def_property_readonly("joints", [](const Built<Model>& held) { return held->joints; })
+      .def_property_readonly("joint_places",
+                             [](const Built<Model>& held) { return joint_places(*held); })
       .def_property_readonly("warnings", [](const Built<Model>& held) { return held->warnings; })
       .def_property_readonly("passed_over",
                              [](const Built<Model>& held) { return held->passed_over; })

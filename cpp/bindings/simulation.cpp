@@ -132,6 +132,24 @@ VehicleState to_state(const py::object& object) {
   return state;
 }
 
+/// Lets Python move the vehicle: motion(dt, command, members) gives the state at a step's end.
+void move_by(const Self& self, const py::function& motion) {
+  const Lock lock(*self);
+  self->move_by([motion](double dt, const VectorXd& command, VehicleState& state) {
+    const py::gil_scoped_acquire gil;
+    py::dict members;
+    members["time"] = state.time;
+    for_each_vector(state, [&](const char* name, const double* data, Eigen::Index size) {
+      members[name] = copied(data, size);
+    });
+    try {
+      state = to_state(motion(dt, command, members));
+    } catch (const py::error_already_set& error) {
+      throw Error(py::cast<std::string>(py::str(error.value())));
+    }
+  });
+}
+
 }  // namespace
 
 void bind_simulation(py::module_& m) {
@@ -192,7 +210,8 @@ void bind_simulation(py::module_& m) {
                                return mass_properties(s.model()).inertia_Ccm_F;
                              }))
       .def_property_readonly("wrench_terms", [](const Self& self) { return self->wrench_terms(); })
-      .def("_views", &views);
+      .def("_views", &views)
+      .def("_move_by", &move_by, py::arg("motion"));
   bind_topics(m, simulation);
 
   m.def("engines", [] {

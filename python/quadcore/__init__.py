@@ -26,6 +26,7 @@ from ._core import (
 from .comparison import Comparison, compare
 from .controller import Controller, Odometry
 from .description import read_model, read_world
+from .evaluation.evaluate import Evaluation, evaluate
 from .flight_plan import FlightPlan
 from .log import Log
 from .resources import cmake_prefix
@@ -38,6 +39,7 @@ __version__ = "0.1.0"
 __all__ = [
     "Comparison",
     "Controller",
+    "Evaluation",
     "FlightError",
     "FlightPlan",
     "InputError",
@@ -54,6 +56,7 @@ __all__ = [
     "cmake_prefix",
     "compare",
     "engines",
+    "evaluate",
     "laws",
     "load_plugin_path",
     "plugin_folders",

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import inspect
 import math
+from contextlib import contextmanager, suppress
 from numbers import Real
-from typing import Any, Callable, Protocol, Union
+from typing import Any, Callable, Iterator, Protocol, Union
 
 import numpy as np
 
-from . import _core, gains, references
-from ._core import InputError, odometry_parts
+from . import _core, laws, references
+from ._core import FlightError, InputError, QuadcoreError, odometry_parts
+from .flight import Pilot
+from .imported import told
 
 DEFAULT_RATE = 500.0  # 1/s
 _LOWEST_RATE = 1e-6  # 1/s
@@ -81,8 +85,20 @@ class Odometry:
 _PARTS = [entry for entry in odometry_parts() if entry[0] in Odometry.__slots__]
 
 
-class Guided:
+class Guided(Pilot):
     """The pilot (see `flight.fly`) that asks a controller, and tells it what the odometry says.
+
+    Attributes
+    ----------
+    columns : sequence of str
+        Names of what a log holds of the reference besides the state.
+    updates : int
+        How often the controller was asked.
+    saturated : int
+        How often the rotors could not do what it wanted: a law of quadcore knows; of another it is
+        counted when a speed reaches the motors' limit.
+    limit : float
+        Of the motors' commands, rad/s; infinite without one.
 
     Raises
     ------
@@ -97,7 +113,7 @@ class Guided:
         reference: Union[references.ReferenceLike, str, None] = None,
     ) -> None:
         if isinstance(controller, str):
-            controller = gains.law_for(controller, simulation.model.name)
+            controller = laws.parse(controller, simulation.model.name)
         if isinstance(reference, str):
             reference = references.Shape(reference)
         if reference is not None and not callable(reference):
@@ -105,11 +121,7 @@ class Guided:
                 f"reference is {reference!r}; give one of quadcore.references, or a function that "
                 "is called as reference(t)"
             )
-        if not callable(controller):
-            raise InputError(
-                f"controller is {controller!r}; give a function, or an object, that is called as "
-                "controller(t, state, reference)"
-            )
+        check_callable(controller)
         rate = getattr(controller, "rate", DEFAULT_RATE)
         if not (isinstance(rate, Real) and _LOWEST_RATE <= float(rate) < math.inf):
             least = f"{_LOWEST_RATE:g}"
@@ -119,8 +131,11 @@ class Guided:
             raise InputError(f"controller: its delay is {delay!r}; give seconds, >= 0")
         self.rate = float(rate)
         self.delay = float(delay)
-        self._controller = controller
+        self.columns = _COLUMNS if reference is not None else ()
+        self.updates = self.saturated = 0
+        self._controller: Any = controller
         self._reference = reference
+        self.limit = _fastest(simulation)
         sensed = simulation.topics.get(_SENSED)
         if sensed is None or sensed.kind != "odometry":
             raise InputError(
@@ -136,5 +151,101 @@ class Guided:
 
     def speeds(self, simulation: _core.Simulation) -> Any:
         """Ask the controller."""
-        wanted = None if self._reference is None else self._reference(simulation.time)
-        return self._controller(simulation.time, Odometry(simulation), wanted)
+        self.updates += 1
+        law, reference = self._controller, self._reference
+        if isinstance(law, laws.Law):
+            if isinstance(reference, references.Shape):
+                speeds = law.at(simulation, _SENSED, reference.shape)
+            else:
+                speeds = law(simulation.time, Odometry(simulation), self._wanted(simulation))
+            self.saturated += law.saturated
+            return speeds
+        speeds = law(simulation.time, Odometry(simulation), self._wanted(simulation))
+        if self.limit < math.inf:
+            with suppress(TypeError, ValueError):  # what is no command is told when it is given
+                self.saturated += bool(np.any(np.abs(np.asarray(speeds, float)) >= self.limit))
+        return speeds
+
+    def beside(self, table: np.ndarray) -> np.ndarray:
+        """Add what `columns` names to rows of the state."""
+        if self._reference is None:
+            return table
+        wanted = references.places(self._reference, table[:, 0])
+        return np.hstack([table, wanted, table[:, 1:4] - wanted[:, :3]])
+
+    def _wanted(self, simulation: _core.Simulation) -> Any:
+        return None if self._reference is None else self._reference(simulation.time)
+
+
+_COLUMNS = (
+    *(f"reference.{name}" for name in ("x", "y", "z", "yaw")),
+    *(f"error.{name}" for name in ("x", "y", "z")),
+)
+
+
+def check_callable(controller: Any) -> None:
+    """Raise `InputError` unless a controller can be called as one."""
+    form = "controller(t, state, reference)"
+    if not callable(controller):
+        raise InputError(
+            f"controller is {controller!r}; give a function, or an object, that is called as {form}"
+        )
+    try:
+        signature = inspect.signature(controller)
+    except (TypeError, ValueError):  # of a compiled one nobody can tell
+        return
+    try:
+        signature.bind(0.0, None, None)
+    except TypeError as error:
+        raise InputError(f"controller: cannot be called as {form}: {error}") from None
+
+
+def give(controller: Any, name: str, value: float) -> None:
+    """Give a controller another `rate` or `delay`, or a law of quadcore another parameter.
+
+    Raises
+    ------
+    InputError
+        It cannot have one.
+    """
+    if name in ("rate", "delay"):
+        try:
+            setattr(controller, name, value)
+        except (AttributeError, TypeError) as error:
+            raise InputError(f"controller: its {name} cannot be set: {error}") from None
+    elif isinstance(controller, laws.Law):
+        controller.parameters[name] = value
+    else:
+        raise InputError(f"controller.{name}: only laws of quadcore have parameters")
+
+
+@contextmanager
+def faults_told(simulation: _core.Simulation) -> Iterator[None]:
+    """Make of what a controller raises a flight that failed, told in one line.
+
+    Raises
+    ------
+    FlightError
+        In the place of anything that is no error of quadcore's.
+    """
+    try:
+        yield
+    except (QuadcoreError, MemoryError):
+        raise
+    except Exception as error:
+        failure = FlightError(
+            f"the flight failed at t = {simulation.time:f} s: controller: {told(error)}"
+        )
+        failure.time = simulation.time
+        raise failure from error
+
+
+def _fastest(simulation: _core.Simulation) -> float:
+    """Speed at which the motors' commands saturate, rad/s; infinite without a limit."""
+    limits = [
+        float(tag.value)
+        for plugin in simulation.plugins
+        for tag in plugin.parameters
+        if tag.name == "maxVelocity" and tag.value != "none"
+    ]
+    return min(limits, default=math.inf)

@@ -6,7 +6,7 @@ import math
 import time
 from collections import deque
 from numbers import Real
-from typing import TYPE_CHECKING, Any, Callable, Deque, Optional, Protocol, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Callable, Deque, List, Optional, Protocol, Sequence, Tuple
 
 import numpy as np
 
@@ -33,11 +33,18 @@ class Pilot(Protocol):
     delay: float
     """From an answer to the first step that it commands, s; the first one commands at once."""
 
+    columns: Sequence[str] = ()
+    """Names of what it tells of its own, beside the state, ``TOPIC.FIELD``."""
+
     def reset(self, simulation: Any) -> None:
         """Begin; the `Simulation` stands at its first step."""
 
     def speeds(self, simulation: Any) -> npt.ArrayLike:
         """Give the command for the steps until it is asked again, rad/s."""
+
+    def beside(self, table: np.ndarray) -> np.ndarray:
+        """Add its columns to rows of a log."""
+        return table
 
 
 def fly(
@@ -59,8 +66,8 @@ def fly(
         As for `Simulation.run`.
     receive
         Called as receive(table, wrenches) with new arrays of shape (rows, 14 + n + those of the
-        topics) and (rows, terms, 6), first with the present state, and with the last rows before
-        anything is raised. An interrupt waits for it.
+        topics and of the pilot) and (rows, terms, 6), first with the present state, and with the
+        last rows before anything is raised. An interrupt waits for it.
     wrenches
         Whether to log them; else their array has no rows.
     pilot
@@ -79,12 +86,14 @@ def fly(
     table = None if commands is None else as_commands(commands, simulation.command_width)
     if pilot is not None:
         pilot.reset(simulation)
+    wrenches = wrenches and len(simulation.wrench_terms) > 0
     flight = _core.Flight(simulation, table, log_every, wrenches, topics)
     advance = flight.advance if pilot is None else _Piloted(simulation, flight, pilot).advance
 
     def hand_over() -> None:
         with interrupts.held():
-            receive(*flight.take())
+            table, wrenches = flight.take()
+            receive(table if pilot is None else pilot.beside(table), wrenches)
 
     done, steps = 0, 1
     try:
@@ -143,11 +152,28 @@ class _Piloted:
             raise failure from error
 
 
+def columns_of(
+    simulation: _core.Simulation, topics: Sequence[str] = (), pilot: Optional[Pilot] = None
+) -> List[str]:
+    """Name the columns of what `fly` hands over.
+
+    Raises
+    ------
+    InputError
+        A topic that is none, or that goes by the name of what the pilot tells.
+    """
+    columns: List[str] = _core.flight_columns(simulation, topics)
+    told = [] if pilot is None else pilot.columns
+    for name in set(topics) & {column.partition(".")[0] for column in told}:
+        raise _core.InputError(f"topic '{name}': the log holds what is flown under this name")
+    return columns + list(told)
+
+
 class Rows:
     """Collects what `fly` hands over; without memory for more it keeps what it has."""
 
-    def __init__(self, simulation: _core.Simulation, topics: Sequence[str] = ()) -> None:
-        self._columns = _core.flight_columns(simulation, topics)
+    def __init__(self, simulation: _core.Simulation, columns: Sequence[str]) -> None:
+        self._columns = list(columns)
         self._terms = simulation.wrench_terms
         self._ignored = simulation.ignored
         self._count = 0

@@ -10,13 +10,16 @@ from typing import Any, Dict, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from . import _core
+from . import _core, laws, references
 from ._core import Model, World
 from .commands import CommandsLike, as_commands
+from .controller import Guided
 from .description import read_both
 from .flight import Progress
 from .log import Log
 from .overrides import check_names, with_links, without_xacro
+from .plants import build
+from .references import ReferenceLike
 from .simulation import Number, Simulation, Value, pose, text_of, whole
 
 _VERSION = 1  # of what a fingerprint stands for
@@ -47,6 +50,10 @@ class FlightPlan:
         s
     commands : ndarray (rows, 1 + n), optional
         As for `Simulation.run`.
+    controller, reference : optional
+        As for `Simulation.run`.
+    on_reference : bool
+        Whether the flight begins in the full flat state of the reference, not at `spawn`.
     log_every, wrenches, topics
         As for `Simulation.run`.
     """
@@ -61,6 +68,9 @@ class FlightPlan:
     rotor_velocity: Optional[Tuple[float, ...]] = None
     duration: float = 10.0
     commands: Optional[np.ndarray] = field(default=None, repr=False)
+    controller: Any = None
+    reference: Optional[ReferenceLike] = None
+    on_reference: bool = False
     log_every: int = 1
     wrenches: bool = True
     topics: Tuple[str, ...] = ()
@@ -134,22 +144,38 @@ class FlightPlan:
         InputError
             The commands, or what else makes a simulation, are at fault.
         """
-        vehicle = _core.Simulation(**self._vehicle())
+        vehicle = build(**self._vehicle())
         return replace(self, commands=as_commands(commands, vehicle.command_width))
 
     def simulation(self) -> Simulation:
         """Make the vehicle as it takes off; raises and warns as `Simulation` does."""
-        simulation = Simulation(**self._vehicle())
+        simulation = build(**self._vehicle())
         if self.rotor_velocity is not None:
             state = simulation.state.copy()
             state.rotor_velocity = np.array(self.rotor_velocity, dtype=float)
             simulation.set_state(state)
+        if self.on_reference and self.reference is not None:
+            spins = self.controller.spins if isinstance(self.controller, laws.Law) else ()
+            simulation.set_state(references.start(simulation, self.reference, spins))
         return simulation
+
+    def pilot(self, simulation: Simulation) -> Optional[Guided]:
+        """Make what asks the controller, if the flight has one; raises as `Simulation.run`."""
+        if self.controller is None:
+            return None
+        return Guided(self.controller, simulation, self.reference)
 
     def fly(self, progress: Optional[Progress] = None) -> Log:
         """Fly it; raises and warns as `Simulation` and `Simulation.run` do."""
         return self.simulation().run(
-            self.duration, self.commands, self.log_every, progress, self.wrenches, self.topics
+            self.duration,
+            self.commands,
+            self.log_every,
+            progress,
+            self.wrenches,
+            self.topics,
+            controller=self.controller,
+            reference=self.reference,
         )
 
     def fingerprint(self) -> str:
@@ -157,6 +183,11 @@ class FlightPlan:
 
         Hexadecimal. Documents that differ in a comment only count as different; where they lie and
         what they are called does not. The modules of the plugins are taken to be the same.
+
+        Raises
+        ------
+        InputError
+            The controller or the reference is one's own, of which nobody can tell what it does.
         """
         text = json.dumps(self._told(), sort_keys=True, allow_nan=True)
         return hashlib.sha256(text.encode()).hexdigest()
@@ -169,6 +200,13 @@ class FlightPlan:
         told = {item.name: getattr(self, item.name) for item in fields(self)}
         for name in ("model", "world"):
             told[name] = [told[name].document.text, told[name].passed_over.ignored]
+        for name, own in (("controller", laws.Law), ("reference", references.Shape)):
+            if told[name] is None:
+                del told[name]  # as plans of before had none
+            elif not isinstance(told[name], own):
+                raise _core.InputError(f"a plan whose {name} is your own has no fingerprint")
+            else:
+                told[name] = told[name].told()
         told["dt"] = self.world.max_step_size if self.dt is None else self.dt
         if self.commands is not None:  # 10 and 10.0 are the same
             told["commands"] = np.asarray(self.commands, dtype=float).tolist()

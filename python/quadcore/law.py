@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Optional, Sequence
+from typing import Any, Dict, Optional, Sequence
 
 import numpy as np
 
@@ -74,6 +74,30 @@ class Law:
         if reference is None:
             raise _core.InputError(f"law '{self.name}' has no reference to follow; give one")
         return self._controller.command(1 / self.rate, state, reference)
+
+    def at(self, simulation: _core.Simulation, sensed: str, shape: _core.ReferenceShape) -> Any:
+        """Give the same for what stands on a topic and a reference now, without a way round."""
+        if self._controller is None:
+            raise _core.InputError(f"law '{self.name}' flies nothing yet; call its reset()")
+        return self._controller.command_at(1 / self.rate, simulation, sensed, shape)
+
+    @property
+    def saturated(self) -> bool:
+        """Whether the rotors could not do what was asked of them last."""
+        return self._controller is not None and bool(self._controller.saturated)
+
+    def copy(self) -> Law:
+        """Make the same law, as it is before it flies."""
+        return Law(self.name, self.rate, self.delay, self.spins, self.belief, **self.parameters)
+
+    def told(self) -> Dict[str, Any]:
+        """Say what it is, in plain values."""
+        if self.belief is not None:
+            raise _core.InputError(f"law '{self.name}' with a belief of its own cannot be told")
+        return {n: v for n, v in self.__dict__.items() if not n.startswith("_")}
+
+    def __getstate__(self) -> Dict[str, Any]:
+        return {**self.__dict__, "_controller": None}  # made anew by reset()
 
     def __repr__(self) -> str:
         inside = "".join(f", {name}={value:g}" for name, value in self.parameters.items())

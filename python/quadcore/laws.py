@@ -6,12 +6,48 @@ parameters. ``NAMES`` holds them all. `of_file` makes one of a gains file.
 
 from __future__ import annotations
 
-from typing import Callable, List, Optional, Sequence
+from typing import Any, Callable, List, Optional, Sequence
 
 from . import _core
-from .gains import of_file
+from .gains import law_for, of_file
+from .imported import imported
 from .law import Law
-from .parameters import docstring
+from .parameters import docstring, read_values
+
+
+def parse(text: str, vehicle: str = "") -> Any:
+    """Make the controller that a command line names.
+
+    Parameters
+    ----------
+    text
+        ``LAW[:KEY=VALUE,...]``, keys being those of the law's parameters, ``rate`` and ``delay``;
+        a file of gains (.yaml); or ``MODULE:CLASS`` of your own.
+    vehicle
+        Name of the robot that is to fly: the parameters of a law that are not given are those that
+        are shipped for it, if there are any.
+
+    Raises
+    ------
+    InputError
+        No such law, parameter, file, module or class, or one that cannot be called as a controller.
+    """
+    if text.lower().endswith((".yaml", ".yml")):
+        return of_file(text)
+    name, _, rest = text.partition(":")
+    if name in NAMES:
+        law = law_for(name, vehicle)
+        given = read_values(f"law '{text}'", rest)
+        law.rate, law.delay = given.pop("rate", law.rate), given.pop("delay", law.delay)
+        law.parameters.update(given)
+        return law
+    if ":" in text:
+        return imported(text)
+    raise _core.InputError(
+        f"there is no law '{text}'; write one of {', '.join(NAMES)}, a file of gains that ends in "
+        ".yaml, or MODULE:CLASS"
+    )
+
 
 _COMMON = """\
 rate, delay : float
@@ -40,7 +76,7 @@ def _function(name: str, summary: str, table: List[_core.ParameterSpec]) -> Call
 
 _MAKERS = {entry[0]: _function(*entry) for entry in _core.laws()}
 NAMES = tuple(_MAKERS)
-__all__ = ["NAMES", "Law", "of_file", *NAMES]
+__all__ = ["NAMES", "Law", "of_file", "parse", *NAMES]
 
 
 def __getattr__(name: str) -> Callable[..., Law]:

@@ -9,7 +9,7 @@ from typing import Mapping, Sequence, Union
 import numpy as np
 
 from . import _core
-from ._core import InputError, flight_columns
+from ._core import InputError
 from .files import check_writable
 from .forks import LOCK
 from .formats import format_of
@@ -19,6 +19,7 @@ from .trajectory import Trajectory
 PathLike = Union[str, "os.PathLike[str]"]
 
 _WRITTEN = "logs are written to"
+_READ = "logs are read from"
 
 
 class Log(Trajectory):
@@ -36,6 +37,22 @@ class Log(Trajectory):
         """Make a log of rows whose columns are those of the state, then TOPIC.FIELD."""
         of_state, topics = split_columns(columns, rows)
         return cls(rows[:, : len(of_state)], wrenches, title, ignored, topics)
+
+    @classmethod
+    def of_file(cls, path: PathLike) -> Log:
+        """Read a ``.csv`` or ``.mat`` file that `to_file` wrote, every bit restored.
+
+        Wrenches are in MATLAB files only.
+
+        Raises
+        ------
+        InputError
+            Another suffix, a file that cannot be read, or one that holds no log; the message begins
+            with the file and, if it is text, the line.
+        """
+        file = Path(path)
+        read = format_of(file, _READ).read_log(file)
+        return cls.of_rows(read.rows, read.columns, read.wrenches, read.ignored)
 
     def to_csv(self, path: PathLike) -> None:
         """Write `table` as text with 17 significant digits, so that reading restores every bit.
@@ -88,11 +105,11 @@ def check_log_path(path: PathLike) -> None:
     check_writable(Path(path))
 
 
-def log_file(path: Path, simulation: _core.Simulation, topics: Sequence[str] = ()) -> LogFile:
-    """Make the recorder that a file's name asks for, of a flight that logs these topics."""
+def log_file(path: Path, simulation: _core.Simulation, columns: Sequence[str]) -> LogFile:
+    """Make the recorder that a file's name asks for, of a flight with these columns."""
     return format_of(path, _WRITTEN).log_file(
         path,
-        flight_columns(simulation, topics),
+        columns,
         simulation.wrench_terms,
         simulation.ignored,
     )

@@ -16,6 +16,29 @@ def values(who: str, given: Mapping[str, Any]) -> Dict[str, float]:
     return {name: float(value) for name, value in given.items()}
 
 
+_FLAGS = {"true": 1.0, "false": 0.0}
+
+
+def read_values(who: str, text: str) -> Dict[str, float]:
+    """Read ``KEY=VALUE,...``, values being numbers or true and false.
+
+    Raises
+    ------
+    InputError
+        Something else, or a key that comes twice.
+    """
+    read: Dict[str, float] = {}
+    for part in filter(None, text.split(",")):
+        key, _, value = part.partition("=")
+        number = _FLAGS.get(value, _core.parse_number(value))
+        if number is None or not key or key in read:
+            raise _core.InputError(
+                f"{who}: '{part}' is not one KEY=NUMBER; write NAME:KEY=NUMBER,..."
+            )
+        read[key] = number
+    return read
+
+
 def docstring(summary: str, table: Iterable[_core.ParameterSpec], more: str = "") -> str:
     """Write what a function with these parameters does."""
     lines = [summary[0].upper() + summary[1:] + ".", "", "Parameters", "----------"]

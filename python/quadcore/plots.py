@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Callable, Sequence
 
 import numpy as np
 
+from .colours import PALETTE
 from .files import atomic_write, make_folder
 from .rotation import roll_pitch_yaw
 
@@ -25,9 +26,8 @@ finally:
 if TYPE_CHECKING:
     from .trajectory import Trajectory
 
-# Okabe and Ito's, told apart by colour-blind readers too; x, y, z keep theirs throughout.
+# x, y, z keep theirs throughout.
 _XYZ = ("#d55e00", "#009e73", "#0072b2")
-PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#999999")
 
 
 def draw(log: Trajectory, directory: Path) -> list[Path]:
@@ -52,6 +52,8 @@ def draw(log: Trajectory, directory: Path) -> list[Path]:
         "wrenches": _wrenches,
         "path": _path,
     }
+    if "error" in log.topics:
+        pictures["error"] = _error
     written = []
     for name, picture in pictures.items():
         file = directory / f"{name}.png"
@@ -73,7 +75,29 @@ def png(figure: Figure) -> bytes:
 def _position(log: Trajectory) -> Figure:
     figure, grid = panels(_title(log, "Position of the frame"), 3)
     _curves(grid[:, 0], log.time, log.position, ("x (m)", "y (m)", "z (m)"))
+    wanted = _wanted(log)
+    if wanted is not None:
+        for axes, curve in zip(grid[:, 0], wanted.T):
+            axes.plot(log.time, curve, "--", color="0.3", linewidth=1, label="reference")
+        _legend(figure, grid[0, 0])
     return figure
+
+
+def _error(log: Trajectory) -> Figure:
+    figure, grid = panels(_title(log, "Error, frame less reference"), 4)
+    error = np.column_stack([log.topics["error"][axis] for axis in "xyz"])
+    _curves(grid[:, 0], log.time, error, ("x (m)", "y (m)", "z (m)"))
+    grid[3, 0].plot(log.time, np.linalg.norm(error, axis=1), color="black")
+    grid[3, 0].set_ylabel("length (m)")
+    return figure
+
+
+def _wanted(log: Trajectory) -> Any:
+    """Position of the reference, (rows, 3), or None without one."""
+    fields = log.topics.get("reference", {})
+    if not {"x", "y", "z"} <= set(fields):
+        return None
+    return np.column_stack([fields[axis] for axis in "xyz"])
 
 
 def _attitude(log: Trajectory) -> Figure:
@@ -143,6 +167,9 @@ def _path(log: Trajectory) -> Figure:
     x, y, z = log.position.T
     axes.plot(x, y, np.full_like(z, corner[2]), color="0.7", linewidth=1, label="seen from above")
     axes.plot(x, y, z, color=_XYZ[2], label="path")
+    wanted = _wanted(log)
+    if wanted is not None:
+        axes.plot(*wanted.T, "--", color="0.3", linewidth=1, label="reference")
     axes.plot(x[:1], y[:1], z[:1], "o", color="black", markersize=5, label="start")
     axes.plot(x[-1:], y[-1:], z[-1:], "s", color="black", markersize=5, label="end")
     axes.legend(loc="upper right", frameon=False)

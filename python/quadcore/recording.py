@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import collections
+import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable, List, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Deque, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -14,6 +16,9 @@ from .log import Log
 if TYPE_CHECKING:
     from .simulation import Simulation
 
+TAIL = 10.0
+"""The last so many seconds of a flight tell whether it holds, s."""
+
 _DRAWN = 20_000  # rows, more than a picture can show
 
 
@@ -22,10 +27,10 @@ class Thinned:
 
     wrenches = True
 
-    def __init__(self, rows: int, simulation: Simulation) -> None:
+    def __init__(self, rows: int, simulation: Simulation, columns: Sequence[str]) -> None:
         self.every = -(-rows // _DRAWN)
         self._terms = simulation.wrench_terms
-        self._columns = len(_core.log_columns(simulation.rotor_count))
+        self._columns = columns
         self._seen = 0
         self._pieces: List[List[np.ndarray]] = [[], []]
         self._last: List[np.ndarray] = []
@@ -34,7 +39,6 @@ class Thinned:
         """Pick from a piece."""
         if len(table) == 0:
             return
-        table = table[:, : self._columns]
         picked = slice(-self._seen % self.every, None, self.every)
         self._seen += len(table)
         is_picked = (self._seen - 1) % self.every == 0
@@ -52,7 +56,10 @@ class Thinned:
             np.concatenate([*pieces, *self._last[i : i + 1]])
             for i, pieces in enumerate(self._pieces)
         )
-        return Log(table, {name: wrenches[:, i] for i, name in enumerate(self._terms)}, title)
+        named = (
+            {name: wrenches[:, i] for i, name in enumerate(self._terms)} if len(wrenches) else {}
+        )
+        return Log.of_rows(table, self._columns, named, title=title)
 
 
 class Fastest:
@@ -74,6 +81,50 @@ class Fastest:
 
     def close(self) -> None:
         """Nothing is open."""
+
+
+class Errors:
+    """How far a guided flight is from its reference; NaN without rows."""
+
+    wrenches = False
+
+    def __init__(self, columns: Sequence[str]) -> None:
+        self._error = [columns.index(f"error.{name}") for name in ("x", "y", "z")]
+        self._count, self._squares, self._largest = 0, 0.0, 0.0
+        self._late: Deque[Tuple[np.ndarray, np.ndarray]] = collections.deque()
+
+    def receive(self, table: np.ndarray, _: np.ndarray) -> None:
+        """Look at a piece."""
+        if len(table) == 0:
+            return
+        lengths = np.linalg.norm(table[:, self._error], axis=1)
+        self._count += len(lengths)
+        self._squares += float(lengths @ lengths)
+        self._largest = max(self._largest, float(lengths.max()))
+        self._late.append((table[:, 0].copy(), lengths))
+        while self._late[0][0][-1] <= table[-1, 0] - TAIL:
+            self._late.popleft()
+
+    def close(self) -> None:
+        """Nothing is open."""
+
+    @property
+    def largest(self) -> float:
+        """Of all rows, m."""
+        return self._largest if self._count else math.nan
+
+    @property
+    def rms(self) -> float:
+        """Root of the mean square, m."""
+        return math.sqrt(self._squares / self._count) if self._count else math.nan
+
+    @property
+    def tail(self) -> float:
+        """Of the last `TAIL` seconds, m."""
+        if not self._count:
+            return math.nan
+        end = self._late[-1][0][-1]
+        return max(float(e[t > end - TAIL].max(initial=0.0)) for t, e in self._late)
 
 
 class Recording:

@@ -7,13 +7,13 @@ parameters. ``NAMES`` holds them all.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable, List, Optional, Protocol, Sequence, Union
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Protocol, Sequence, Union
 
 import numpy as np
 
-from . import _core
+from . import _core, resources
 from .formats import format_of
-from .parameters import docstring, values
+from .parameters import docstring, read_values, values
 from .state import State
 
 if TYPE_CHECKING:
@@ -38,6 +38,8 @@ class Shape:
         Of its kind.
     parameters : dict of str to float
         That were given.
+    shape : _core.ReferenceShape
+        Which says it.
     """
 
     def __init__(self, name: str, rows: Optional[npt.ArrayLike] = None, **parameters: Any) -> None:
@@ -47,16 +49,21 @@ class Shape:
             self.rows = None if rows is None else np.array(rows, dtype=float)
         except (TypeError, ValueError) as error:
             raise _core.InputError(f"reference '{name}': its rows: {error}") from None
-        self._shape = _core.ReferenceShape(name, self.parameters, self.rows)
+        self.shape = _core.ReferenceShape(name, self.parameters, self.rows)
 
     def __call__(self, t: float) -> _core.Reference:
         """Say where the vehicle is to be at a time [s]."""
-        return self._shape.at(t)
+        return self.shape.at(t)
 
     @property
     def end(self) -> float:
         """From when on nothing moves any more, s; infinite if that never comes."""
-        return self._shape.end
+        return self.shape.end
+
+    def told(self) -> Dict[str, Any]:
+        """Say what it is, in plain values."""
+        rows = None if self.rows is None else self.rows.tolist()
+        return {"name": self.name, "parameters": self.parameters, "rows": rows}
 
     def __reduce__(self) -> Any:
         return _again, (self.name, self.rows, self.parameters)
@@ -91,6 +98,54 @@ def start(simulation: Any, reference: ReferenceLike, spins: Sequence[float] = ()
     for name, value in _core.start_on(simulation, reference(state.time), list(spins)).items():
         setattr(state, name, value)
     return state
+
+
+def hover_at(pose: Sequence[float]) -> Shape:
+    """Make the reference that stays at x, y, z [m] and the yaw of roll, pitch, yaw [rad]."""
+    x, y, z, _, _, yaw = pose
+    return Shape("hover", x=x, y=y, height=z, yaw=yaw)
+
+
+def places(reference: ReferenceLike, times: np.ndarray) -> np.ndarray:
+    """Give x, y, z [m] and yaw [rad] of a reference at each of some times [s]; shape (n, 4)."""
+    if isinstance(reference, Shape):
+        return np.asarray(reference.shape.places(times))
+    wanted = map(reference, times.tolist())
+    return np.array([[*at.position, at.yaw] for at in wanted], dtype=float).reshape(-1, 4)
+
+
+_SHIPPED = resources.root() / "config" / "waypoints.yaml"
+_FILES = (".csv", ".mat", ".yaml", ".yml")
+
+
+def parse(text: str) -> Shape:
+    """Make the reference that a command line names.
+
+    Parameters
+    ----------
+    text
+        ``NAME[:KEY=VALUE,...]``, or the path of a .csv, .mat or .yaml file of waypoints, which
+        ``waypoints:FILE`` names too; ``waypoints`` alone are those of config/waypoints.yaml. The
+        rows of ``series:FILE`` neither begin nor end at rest.
+
+    Raises
+    ------
+    InputError
+        No such reference, parameter or file.
+    """
+    if text.lower().endswith(_FILES) and text.partition(":")[0] not in NAMES:
+        return Shape("waypoints", read_rows(Path(text)))
+    name, _, rest = text.partition(":")
+    if name not in NAMES:
+        raise _core.InputError(
+            f"there is no reference '{name}'; write one of {', '.join(NAMES)}, or the name of a "
+            f"file that ends in {', '.join(_FILES)}"
+        )
+    if name in _OF_ROWS:
+        if not rest and name != _SHIPPED.stem:
+            raise _core.InputError(f"reference '{name}' has no rows; write {name}:FILE")
+        return Shape(name, read_rows(Path(rest) if rest else _SHIPPED))
+    return Shape(name, **read_values(f"reference '{text}'", rest))
 
 
 def read_rows(path: Path) -> npt.ArrayLike:
@@ -138,7 +193,8 @@ def _function(
 
 _MAKERS = {entry[0]: _function(*entry) for entry in _core.references()}
 NAMES = tuple(_MAKERS)
-__all__ = ["NAMES", "Reference", "ReferenceLike", "Shape", "start", *NAMES]
+_OF_ROWS = tuple(entry[0] for entry in _core.references() if entry[3])
+__all__ = ["NAMES", "Reference", "ReferenceLike", "Shape", "parse", "start", *NAMES]
 
 
 def __getattr__(name: str) -> Callable[..., Shape]:

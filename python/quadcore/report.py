@@ -11,22 +11,28 @@ from .files import atomic_write, text_bytes
 
 
 def write_page(path: Path, template: str, **values: object) -> None:
-    """Fill in a template and write the page.
-
-    Parameters
-    ----------
-    path
-        The HTML file.
-    template
-        Name of a file in ``templates/``; it extends ``page.html``. The filter ``picture`` shows
-        bytes of a PNG: ``{{ bytes | picture("what it shows") }}``.
-    values
-        What the template uses; texts are escaped.
+    """Fill in a template and write the page; see `rendered`.
 
     Raises
     ------
     InputError
         The file cannot be written.
+    """
+    page = rendered(template, **values)
+    with atomic_write(path) as stream:
+        stream.write(text_bytes(page))
+
+
+def rendered(template: str, **values: object) -> str:
+    """Fill in a template.
+
+    Parameters
+    ----------
+    template
+        Name of a file in ``templates/``; a page extends ``page.html``. The filter ``picture`` shows
+        bytes of a PNG: ``{{ bytes | picture("what it shows") }}``.
+    values
+        What the template uses; texts are escaped.
     """
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(str(Path(__file__).parent / "templates")),
@@ -36,9 +42,7 @@ def write_page(path: Path, template: str, **values: object) -> None:
         lstrip_blocks=True,
     )
     environment.filters["picture"] = _picture
-    page = environment.get_template(template).render(values)
-    with atomic_write(path) as stream:
-        stream.write(text_bytes(page))
+    return environment.get_template(template).render(values)
 
 
 def _picture(data: bytes, meaning: str) -> str:

@@ -12,7 +12,7 @@ import numpy as np
 from . import _core
 from .controller import Controller, Guided
 from .description import list_of_names, read_both
-from .flight import Progress, Rows, fly
+from .flight import Progress, Rows, columns_of, fly
 from .log import Log
 from .overrides import check_names, with_links, without_xacro
 from .references import ReferenceLike
@@ -210,7 +210,7 @@ class Simulation(_core.Simulation):
             raise _core.InputError("a reference needs a controller that follows it; give one")
         names = list_of_names("topics", topics)
         pilot = None if controller is None else Guided(controller, self, reference)
-        rows = Rows(self, names)
+        rows = Rows(self, columns_of(self, names, pilot))
         try:
             fly(self, duration, commands, log_every, rows.receive, wrenches, progress, pilot, names)
         except (Exception, KeyboardInterrupt) as error:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Callable, Dict, List
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping
 
 import numpy as np
 
@@ -108,15 +108,16 @@ class LiveState:
         InputError
             Another thread is stepping the simulation.
         """
-        return _state(self._copy())
+        return state_of(self._copy())
 
     def __reduce__(self) -> Any:
-        return _state, (self._copy(),)
+        return state_of, (self._copy(),)
 
     __repr__ = State.__repr__
 
 
-def _state(members: Dict[str, Any]) -> State:
+def state_of(members: Mapping[str, Any]) -> State:
+    """Make a state of its members by name."""
     state = State()
     for name, value in members.items():
         setattr(state, name, value)

@@ -132,3 +132,20 @@ def test_angles_come_back_from_the_product_of_the_three_turns(angles):
         for angle, axis in zip(angles, np.eye(3))
     )
     assert roll_pitch_yaw(times(yaw, times(pitch, roll))) == pytest.approx(angles, abs=1e-9)
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".mat"])
+def test_a_log_file_is_read_back_bit_for_bit(log, tmp_path, suffix):
+    stamped = {"odom": {"x": np.sqrt(log.time), "y": np.where(log.time < 0.5, np.nan, log.time)}}
+    kept = Log(log.table, log.wrenches, ignored=["libcamera.so", "a b"], topics=stamped)
+    kept.to_file(tmp_path / f"log{suffix}")
+    back = Log.of_file(tmp_path / f"log{suffix}")
+    assert back.columns == log.columns and np.array_equal(back.table, log.table)
+    assert back.ignored == kept.ignored
+    assert list(back.topics) == ["odom"]
+    for field, values in stamped["odom"].items():
+        assert np.array_equal(back.topics["odom"][field], values, equal_nan=True)
+    wrenches = log.wrenches if suffix == ".mat" else {}
+    assert set(back.wrenches) == set(wrenches)
+    for name, wrench in wrenches.items():
+        assert np.array_equal(back.wrenches[name], wrench)

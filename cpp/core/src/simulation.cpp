@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "flight_checks.hpp"
 #include "quadcore/error.hpp"
@@ -67,7 +68,11 @@ void Simulation::step(std::int64_t n) {
     for (; n > 0; --n) {
       update();
       if (!with_.carried.empty()) take_along();
-      engine_->step(time(), dt_, *this);
+      if (motion_) {
+        move();
+      } else {
+        engine_->step(time(), dt_, *this);
+      }
       ++steps_;
       check_flight();
       show_instant();
@@ -77,6 +82,17 @@ void Simulation::step(std::int64_t n) {
   } catch (...) {
     fail(what_was_thrown());
   }
+}
+
+void Simulation::move_by(Motion motion) { motion_ = std::move(motion); }
+
+void Simulation::move() {
+  show_state();
+  const Topic& topic = topics_[topics_.at(command_topic)];
+  const VectorXd command = Eigen::Map<const VectorXd>(
+      topic.values.data(), static_cast<Eigen::Index>(topic.values.size()));
+  motion_(dt_, command, state_);
+  engine_->set_state(state_);
 }
 
 std::string Simulation::blamed() const {

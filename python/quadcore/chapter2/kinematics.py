@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 
 import numpy as np
@@ -22,10 +23,30 @@ def rotation(eta: np.ndarray) -> np.ndarray:
     )
 
 
+def quaternion(eta: np.ndarray) -> np.ndarray:
+    """Orientation of the body in the world as a unit quaternion x, y, z, w."""
+    (sphi, stheta, spsi), (cphi, ctheta, cpsi) = np.sin(eta / 2).tolist(), np.cos(eta / 2).tolist()
+    return np.array(
+        [
+            sphi * ctheta * cpsi - cphi * stheta * spsi,
+            cphi * stheta * cpsi + sphi * ctheta * spsi,
+            cphi * ctheta * spsi - sphi * stheta * cpsi,
+            cphi * ctheta * cpsi + sphi * stheta * spsi,
+        ]
+    )
+
+
 def euler_rates_to_body(eta: np.ndarray) -> np.ndarray:
     """W (2.9): nu = [p, q, r] = W(eta) etadot, the angular velocity in body axes."""
-    (sphi, stheta, _), (cphi, ctheta, _) = np.sin(eta).tolist(), np.cos(eta).tolist()
-    return np.array([[1, 0, -stheta], [0, cphi, ctheta * sphi], [0, -sphi, cphi * ctheta]])
+    return _euler_rates_to_body(*eta.tolist())
+
+
+@lru_cache(maxsize=1)  # all matrices of one instant share it
+def _euler_rates_to_body(phi: float, theta: float, _: float) -> np.ndarray:
+    sphi, cphi, stheta, ctheta = math.sin(phi), math.cos(phi), math.sin(theta), math.cos(theta)
+    W = np.array([[1, 0, -stheta], [0, cphi, ctheta * sphi], [0, -sphi, cphi * ctheta]])
+    W.flags.writeable = False
+    return W
 
 
 def gradient_of_W(eta: np.ndarray) -> np.ndarray:

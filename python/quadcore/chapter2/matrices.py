@@ -121,7 +121,7 @@ def K_zeta(v: Vehicle, q: np.ndarray, spin: np.ndarray) -> np.ndarray:
     Thrust k (2.10) along the rotor's axis and reaction torque b (2.11) about it. Print has rotor
     1's reaction with the sign of its spin; `Vehicle.b` says which way it is meant.
     """
-    wrench = v.k * np.einsum("iaj,ij->ai", v.levers, v.axes)
+    wrench = v.thrust_wrenches.copy()
     wrench[3:] += v.b * spin * v.axes.T
     matrix: np.ndarray = generalise(q[3:]) @ wrench
     return matrix

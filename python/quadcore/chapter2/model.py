@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, List, NamedTuple, Tuple
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -15,7 +15,7 @@ from ..log import Log
 from ..rotation import roll_pitch_yaw
 from ..state import State
 from . import matrices
-from .kinematics import euler_rates_to_body, gradient_of_W
+from .kinematics import euler_rates_to_body, gradient_of_W, quaternion, rotation, skew
 from .vehicle import Vehicle
 
 
@@ -133,6 +133,41 @@ class MathematicalModel:
             rows[inside], y = self._integrate(begin, stop, y, row, time[inside])
         return self._log(time, rows)
 
+    def step(self, dt: float, command: np.ndarray, state: State) -> State:
+        """Make one step of the classical Runge-Kutta method of fourth order.
+
+        Parameters
+        ----------
+        dt : float
+            s
+        command : ndarray, shape (n,)
+            Speeds that the motors are to reach over the step, rad/s.
+        state : State
+            At its beginning; as for `fly`. Angles of the rotors are not looked at.
+
+        Returns
+        -------
+        State
+            At its end, without angles of the rotors.
+
+        Raises
+        ------
+        FlightError
+            As for `fly`.
+        """
+        y = self._start(state)
+        if not self.terms.motor_lag:
+            y[12:] = command
+        slopes: List[np.ndarray] = []
+        for part in (0.0, 0.5, 0.5, 1.0):
+            at = y + part * dt * slopes[-1] if slopes else y
+            if _upright(0, at) <= 0:
+                raise _toppled(state.time)
+            slopes.append(self._derivative(at, command))
+        a, b, c, d = slopes
+        after = y + dt / 6 * (a + 2 * b + 2 * c + d)
+        return self._state(state.time + dt, after)
+
     def _integrate(
         self, begin: float, end: float, y: np.ndarray, command: np.ndarray, wanted: np.ndarray
     ) -> Any:
@@ -166,14 +201,27 @@ class MathematicalModel:
 
     def _start(self, state: State) -> np.ndarray:
         """Generalised coordinates of a state of the frame link."""
-        attitude = Rotation.from_quat(state.orientation)
         eta = roll_pitch_yaw(state.orientation)
-        offset = attitude.apply(self.vehicle.center_of_mass)
-        sweep = np.cross(attitude.apply(state.angular_velocity), offset)
-        etadot, *_ = np.linalg.lstsq(euler_rates_to_body(eta), state.angular_velocity, rcond=None)
+        offset, sweep = self._lever(eta, state.angular_velocity)
+        etadot = np.linalg.solve(euler_rates_to_body(eta), state.angular_velocity)
         xi, xidot = state.position + offset, state.linear_velocity + sweep
         speeds = state.rotor_velocity * self.vehicle.slow
         return np.concatenate([xi, eta, xidot, etadot, speeds])
+
+    def _lever(self, eta: np.ndarray, nu: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+        """From the frame link's origin to the centre of mass, and the velocity of that; world."""
+        R, center = rotation(eta), self.vehicle.center_of_mass
+        return R @ center, R @ (skew(nu) @ center)
+
+    def _state(self, time: float, y: np.ndarray) -> State:
+        """State of the frame link for generalised coordinates."""
+        state, eta = State(), y[3:6]
+        nu = euler_rates_to_body(eta) @ y[9:12]
+        offset, sweep = self._lever(eta, nu)
+        state.time, state.position, state.linear_velocity = time, y[:3] - offset, y[6:9] - sweep
+        state.orientation, state.angular_velocity = quaternion(eta), nu
+        state.rotor_velocity = y[12:] / self.vehicle.slow
+        return state
 
     def _log(self, time: np.ndarray, rows: np.ndarray) -> Log:
         """Log as an engine does: the origin of the frame link, where xi is the centre of mass."""

@@ -128,6 +128,12 @@ class Vehicle:
         return np.array([np.vstack([np.eye(3), skew(arm)]) for arm in self.arms])
 
     @cached_property
+    def thrust_wrenches(self) -> np.ndarray:
+        """What the thrust of a unit of squared speed of each rotor is in the body; (6, n)."""
+        wrenches: np.ndarray = self.k * np.einsum("iaj,ij->ai", self.levers, self.axes)
+        return wrenches
+
+    @cached_property
     def discs(self) -> np.ndarray:
         """1 - a a^T, (n, 3, 3): what a vector is in the plane of rotor i."""
         return np.array([np.eye(3) - np.outer(axis, axis) for axis in self.axes])

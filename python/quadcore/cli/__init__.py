@@ -9,7 +9,7 @@ from typing import NoReturn, Sequence
 from .. import __version__, interrupts
 from .._core import FlightError, InputError, QuadcoreError
 from ..files import shown
-from . import compare, info, run, terminal, validate
+from . import compare, evaluate, info, play, run, terminal, validate
 
 
 class _Parser(argparse.ArgumentParser):
@@ -50,6 +50,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _act(argv: Sequence[str] | None, interrupted: Sequence[BaseException]) -> int:
     try:
         arguments = _parser().parse_args(argv)
+        arguments.words = list(sys.argv[1:] if argv is None else argv)
         with terminal.warnings_as_lines():
             arguments.action(arguments)
         sys.stdout.flush()
@@ -80,6 +81,6 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"quadcore {__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
-    for command in (info, run, validate, compare):
+    for command in (info, run, validate, compare, evaluate, play):
         command.register(commands)
     return parser

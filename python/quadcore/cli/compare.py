@@ -27,16 +27,7 @@ def register(commands: Any) -> None:
         commands, "compare", "Fly the same with several models or parameters.", compare
     )
     options.add_model(parser, nargs="+")
-    parser.add_argument(
-        "--vary",
-        metavar="PLUGIN.TAG=VALUES",
-        type=options.assignment(r"([^=]+)=(.*)", "PLUGIN.TAG=VALUES"),
-        action="append",
-        default=[],
-        help="a,b,c or FIRST:LAST:COUNT or log:FIRST:LAST:COUNT; PLUGIN.TAG,PLUGIN.TAG=... gives "
-        "several tags the same value; LINK.mass, LINK.ixx ... LINK.izz, xacro.ARG, engine and "
-        "world too; repeatable: a grid",
-    )
+    options.add_vary(parser, " and engine")
     options.add_flight(parser)
     options.add_commands(parser)
     options.add_jobs(parser)

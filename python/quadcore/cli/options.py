@@ -4,10 +4,17 @@ from __future__ import annotations
 
 import argparse
 import re
+from dataclasses import replace
 from typing import Any, Callable, Sequence
 
+from .. import laws, references
 from .._core import InputError, engines, parse_number
+from ..controller import give
 from ..flight_plan import FlightPlan
+from ..simulation import pose
+
+SPAWN = (0.0, 0.0, 10.0)
+"""Where a flight begins unless told, m."""
 
 
 def subparser(commands: Any, name: str, summary: str, action: Callable[..., None]) -> Any:
@@ -27,6 +34,11 @@ def add_model(parser: argparse.ArgumentParser, nargs: str | None = None) -> None
         nargs=nargs,
         help="URDF or xacro file, or a shipped model: quadrotor",
     )
+    add_changes(parser)
+
+
+def add_changes(parser: argparse.ArgumentParser) -> None:
+    """Add the options that change a model."""
     parser.add_argument(
         "--set",
         metavar="PLUGIN.TAG=VALUE",
@@ -55,11 +67,15 @@ def add_model(parser: argparse.ArgumentParser, nargs: str | None = None) -> None
 
 
 def add_flight(
-    parser: argparse.ArgumentParser, several_engines: bool = False, log_every: int = 1
+    parser: argparse.ArgumentParser,
+    several_engines: bool = False,
+    log_every: int | None = 1,
+    flown: Sequence[tuple[str, str]] = tuple(engines()),
+    seconds: float = 10.0,
 ) -> None:
     """Add the options of everything that flies; some differ between commands."""
-    names = [name for name, _ in engines()]
-    summaries = "; ".join(f"{name}: {summary}" for name, summary in engines())
+    names = [name for name, _ in flown]
+    summaries = "; ".join(f"{name}: {summary}" for name, summary in flown)
     if several_engines:
         parser.add_argument(
             "--engine", metavar="LIST", type=several(names), default=names, help=summaries
@@ -67,9 +83,13 @@ def add_flight(
     else:
         parser.add_argument("--engine", choices=names, default="gazebo11", help=summaries)
     parser.add_argument("--world", metavar="FILE", help="world file or shipped world (empty)")
-    parser.add_argument("--dt", metavar="S", type=_positive, help="step in s (the world's)")
+    parser.add_argument("--dt", metavar="S", type=positive, help="step in s (the world's)")
     parser.add_argument(
-        "--duration", metavar="S", type=_positive, default=10.0, help="time to fly in s (10)"
+        "--duration",
+        metavar="S",
+        type=positive,
+        default=seconds,
+        help=f"time to fly in s ({seconds:g})",
     )
     parser.add_argument(
         "--seed", metavar="N", type=integer(0, 2**64 - 1), default=0, help="seed of all noise (0)"
@@ -78,7 +98,6 @@ def add_flight(
         "--spawn",
         metavar="X,Y,Z[,ROLL,PITCH,YAW]",
         type=_pose,
-        default=(0.0, 0.0, 10.0),
         help="start pose of the frame in m and rad (0,0,10)",
     )
     parser.add_argument(
@@ -86,7 +105,7 @@ def add_flight(
         metavar="N",
         type=integer(1),
         default=log_every,
-        help=f"log each N-th step ({log_every})",
+        help=f"log each N-th step ({log_every or 'each hundredth of a second'})",
     )
     parser.add_argument("--quiet", action="store_true", help="print warnings and errors only")
 
@@ -95,6 +114,47 @@ def add_commands(parser: argparse.ArgumentParser) -> None:
     """Add the option that names an open-loop flight."""
     parser.add_argument(
         "--commands", metavar="FILE", help="rotor speeds to fly, .csv or .mat: t,w1..wn (rad/s)"
+    )
+
+
+def add_vary(parser: argparse.ArgumentParser, more: str = "") -> None:
+    """Add the option that spans a grid; `more` may be varied."""
+    parser.add_argument(
+        "--vary",
+        metavar="PLUGIN.TAG=VALUES",
+        type=assignment(r"([^=]+)=(.*)", "PLUGIN.TAG=VALUES"),
+        action="append",
+        default=[],
+        help="a,b,c or FIRST:LAST:COUNT or log:FIRST:LAST:COUNT; PLUGIN.TAG,PLUGIN.TAG=... gives "
+        "several tags the same value; LINK.mass, LINK.ixx ... LINK.izz, xacro.ARG and world too"
+        f"{more}; repeatable: a grid",
+    )
+
+
+def add_controller(parser: argparse.ArgumentParser) -> None:
+    """Add the options that name a flight in closed loop."""
+    parser.add_argument(
+        "--controller",
+        metavar="LAW|GAINS.yaml|MODULE:CLASS",
+        help=f"what flies: one of {', '.join(laws.NAMES)}, perhaps with parameters, LAW:KEY=VALUE,"
+        "...; a file of gains; or a class or function of your own",
+    )
+    parser.add_argument(
+        "--reference",
+        metavar="NAME[:KEY=VALUE,...]|FILE",
+        help=f"where to: one of {', '.join(references.NAMES)}, or a file with columns t,x,y,z "
+        "(hover at the spawn); without --spawn the flight begins in the reference's full state",
+    )
+    add_timing(parser)
+
+
+def add_timing(parser: argparse.ArgumentParser) -> None:
+    """Add the options that say when a controller is asked, and heard."""
+    parser.add_argument(
+        "--controller-rate", metavar="HZ", type=positive, help="calls per second (the law's, 500)"
+    )
+    parser.add_argument(
+        "--delay", metavar="S", type=_delay, help="from a call to the motors, s (the law's, 0)"
     )
 
 
@@ -115,12 +175,13 @@ def model_arguments(arguments: argparse.Namespace) -> dict[str, Any]:
 
 def flight_arguments(arguments: argparse.Namespace) -> dict[str, Any]:
     """Arguments of `Simulation` that `add_flight` asked for."""
-    return {name: getattr(arguments, name) for name in ("engine", "world", "dt", "seed", "spawn")}
+    given = {name: getattr(arguments, name) for name in ("engine", "world", "dt", "seed", "spawn")}
+    return {**given, "spawn": arguments.spawn or SPAWN}
 
 
 def flight_plan(arguments: argparse.Namespace) -> FlightPlan:
-    """Describe the flight that `add_model`, `add_flight` and `add_commands` asked for."""
-    return FlightPlan.of(
+    """Describe the flight that the options asked for."""
+    plan = FlightPlan.of(
         **model_arguments(arguments),
         **flight_arguments(arguments),
         duration=arguments.duration,
@@ -128,6 +189,28 @@ def flight_plan(arguments: argparse.Namespace) -> FlightPlan:
         log_every=arguments.log_every,
         topics=tuple(arguments.log_topics),
     )
+    return replace(plan, **_guidance(arguments, plan.model.name))
+
+
+def _guidance(arguments: argparse.Namespace, vehicle: str) -> dict[str, Any]:
+    """Members of a `FlightPlan` that `add_controller` asked for."""
+    if arguments.controller is None:
+        for name in ("reference", "controller_rate", "delay"):
+            if getattr(arguments, name) is not None:
+                raise InputError(f"--{name.replace('_', '-')} needs a --controller; name one")
+        return {}
+    if arguments.commands is not None:
+        raise InputError("a flight takes --commands or a --controller; give one of them")
+    controller = laws.parse(arguments.controller, vehicle)
+    for name, value in (("rate", arguments.controller_rate), ("delay", arguments.delay)):
+        if value is not None:
+            give(controller, name, value)
+    if arguments.reference is None:
+        reference = references.hover_at(pose(arguments.spawn or SPAWN))
+    else:
+        reference = references.parse(arguments.reference)
+    on_reference = arguments.reference is not None and arguments.spawn is None
+    return {"controller": controller, "reference": reference, "on_reference": on_reference}
 
 
 def assignment(pattern: str, form: str) -> Callable[[str], tuple[str, str]]:
@@ -173,13 +256,21 @@ def names(text: str) -> list[str]:
 
 def positive_numbers(text: str) -> list[float]:
     """Read numbers with commas between."""
-    return list(dict.fromkeys(_positive(part) for part in text.split(",")))
+    return list(dict.fromkeys(positive(part) for part in text.split(",")))
 
 
-def _positive(text: str) -> float:
+def positive(text: str) -> float:
+    """Read a number greater than 0."""
     value = _finite(text)
     if value <= 0:
         raise argparse.ArgumentTypeError(f"{text} is not greater than 0")
+    return value
+
+
+def _delay(text: str) -> float:
+    value = _finite(text)
+    if value < 0:
+        raise argparse.ArgumentTypeError(f"{text} is less than 0")
     return value
 
 

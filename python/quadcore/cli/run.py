@@ -9,14 +9,17 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rich.table import Table
 
 from .. import interrupts
 from .._core import InputError, QuadcoreError
+from ..controller import Guided, faults_told
 from ..files import make_folder
-from ..flight import fly, steps_within
+from ..flight import columns_of, fly, steps_within
+from ..flight_plan import FlightPlan
+from ..formats.rows import Recorder
 from ..log import check_log_path, log_file
-from ..recording import Fastest, Recording, Thinned
+from ..plants import plants
+from ..recording import TAIL, Errors, Fastest, Recording, Thinned
 from ..rotation import roll_pitch_yaw
 from ..simulation import Simulation
 from . import options, terminal
@@ -26,8 +29,9 @@ def register(commands: Any) -> None:
     """Add the command to the command line."""
     parser = options.subparser(commands, "run", "Fly once.", run)
     options.add_model(parser)
-    options.add_flight(parser)
+    options.add_flight(parser, flown=plants())
     options.add_commands(parser)
+    options.add_controller(parser)
     parser.add_argument(
         "--out", metavar="DIR", type=Path, help="write log.csv and plots here; made if missing"
     )
@@ -53,15 +57,22 @@ def run(arguments: argparse.Namespace) -> None:
     """Fly, write what was asked for, and print a summary."""
     plan = options.flight_plan(arguments)
     simulation = plan.simulation()
-    steps = steps_within(plan.duration, simulation.dt)
-    fastest, drawn = Fastest(simulation), None
+    pilot = plan.pilot(simulation)
+    columns = columns_of(simulation, plan.topics, pilot)
+    fastest, drawn, errors = Fastest(simulation), None, None
+    others: list[Recorder] = [fastest]
+    if pilot is not None:
+        errors = Errors(columns)
+        others.append(errors)
     if arguments.out is not None and not arguments.no_plots:
-        drawn = Thinned(1 + steps // plan.log_every, simulation)
-    logs = [log_file(file, simulation, plan.topics) for file in _log_files(arguments)]
-    recording = Recording(logs, [fastest, drawn] if drawn else [fastest])
+        steps = steps_within(plan.duration, simulation.dt)
+        drawn = Thinned(1 + steps // plan.log_every, simulation, columns)
+        others.append(drawn)
+    logs = [log_file(file, simulation, columns) for file in _log_files(arguments)]
+    recording = Recording(logs, others)
     started = time.perf_counter()
     try:
-        with terminal.progress(arguments.quiet) as progress:
+        with terminal.progress(arguments.quiet) as progress, faults_told(simulation):
             fly(
                 simulation,
                 plan.duration,
@@ -70,7 +81,8 @@ def run(arguments: argparse.Namespace) -> None:
                 recording.receive,
                 recording.wrenches,
                 progress,
-                topics=plan.topics,
+                pilot,
+                plan.topics,
             )
     except (QuadcoreError, KeyboardInterrupt, MemoryError):
         with interrupts.held():
@@ -83,7 +95,14 @@ def run(arguments: argparse.Namespace) -> None:
     if drawn is not None:
         files += drawn.log().plot(arguments.out)
     if not arguments.quiet:
-        terminal.console().print(_summary(simulation, fastest.speed, elapsed, files))
+        rows = _flown(simulation, fastest.speed, elapsed)
+        if pilot is not None and errors is not None:
+            rows += _guided(arguments, plan, pilot, errors)
+        rows += [("" if i else "written", str(file)) for i, file in enumerate(files)]
+        table = terminal.table("", "", show_header=False)
+        for row in rows:
+            table.add_row(*row)
+        terminal.console().print(table)
     recording.check()
 
 
@@ -100,8 +119,7 @@ def _log_files(arguments: argparse.Namespace) -> list[Path]:
     return files
 
 
-def _summary(simulation: Simulation, fastest: float, elapsed: float, files: list[Path]) -> Table:
-    table = terminal.table("", "", show_header=False)
+def _flown(simulation: Simulation, fastest: float, elapsed: float) -> list[tuple[str, str]]:
     steps = round(simulation.time / simulation.dt)
     attitude = np.degrees(roll_pitch_yaw(simulation.state.orientation))
     rows = [
@@ -119,11 +137,23 @@ def _summary(simulation: Simulation, fastest: float, elapsed: float, files: list
     ]
     if counts:
         rows.append(("saturated steps", f"{max(counts):.0f}"))
-    for i, file in enumerate(files):
-        rows.append(("" if i else "written", str(file)))
-    for row in rows:
-        table.add_row(*row)
-    return table
+    return rows
+
+
+def _guided(
+    arguments: argparse.Namespace, plan: FlightPlan, pilot: Guided, errors: Errors
+) -> list[tuple[str, str]]:
+    """Rows on how well the controller did."""
+    reference = arguments.reference or "hover at the spawn"
+    begins = ", which the flight begins on" if plan.on_reference else ""
+    late = f"the last {TAIL:g} s" if plan.duration > TAIL else "the flight"
+    return [
+        ("controller", f"{arguments.controller}, {pilot.rate:g} Hz, delay {pilot.delay:g} s"),
+        ("reference", f"{reference}{begins}"),
+        ("largest error", f"{errors.largest:.4g} m, of {late} {errors.tail:.4g} m"),
+        ("RMS error", f"{errors.rms:.4g} m"),
+        ("saturated updates", f"{pilot.saturated} of {pilot.updates}"),
+    ]
 
 
 def _fixed(values: np.ndarray, digits: int) -> str:

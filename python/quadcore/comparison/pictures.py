@@ -8,8 +8,9 @@ import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 
+from ..colours import PALETTE
 from ..log import Log
-from ..plots import PALETTE, panels
+from ..plots import panels
 from ..rotation import roll_pitch_yaw
 from ..study.metrics import differences
 

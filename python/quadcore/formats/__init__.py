@@ -9,7 +9,7 @@ import numpy as np
 
 from .._core import InputError
 from . import csv, mat
-from .rows import LogFile, Table
+from .rows import LogFile, LogRows, Table
 
 _Wrenches = Mapping[str, np.ndarray]
 
@@ -22,13 +22,15 @@ class Format(NamedTuple):
     write_log: Callable[[Path, Sequence[str], np.ndarray, _Wrenches, Sequence[str]], None]
     """write_log(path, columns, table, wrenches, ignored): whole or not at all. Columns named
     TOPIC.FIELD follow those of the state."""
+    read_log: Callable[[Path], LogRows]
+    """read_log(path): what write_log wrote."""
     log_file: Callable[[Path, Sequence[str], Sequence[str], Sequence[str]], LogFile]
     """log_file(path, columns, wrench_terms, ignored): a log that is written while it is flown."""
 
 
 FORMATS: Dict[str, Format] = {
-    ".csv": Format(csv.read_commands, csv.write_log, csv.CsvFile),
-    ".mat": Format(mat.read_commands, mat.write_log, mat.MatFile),
+    ".csv": Format(csv.read_commands, csv.write_log, csv.read_log, csv.CsvFile),
+    ".mat": Format(mat.read_commands, mat.write_log, mat.read_log, mat.MatFile),
 }
 
 

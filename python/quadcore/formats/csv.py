@@ -10,10 +10,11 @@ import numpy as np
 
 from .._core import InputError, csv_rows, log_remark
 from ..files import Appended, atomic_write, read_text
-from .rows import Table
+from .rows import LogRows, Table, check_log_columns, check_log_rows
 
 _LARGEST = 10**9  # bytes; of commands more than three hours at 1 kHz
 _PIECE = 4096  # rows
+_REMARK = log_remark(["?"]).strip("\n?")
 
 
 def read_commands(path: Path, names: Sequence[str]) -> Table:
@@ -30,19 +31,44 @@ def read_commands(path: Path, names: Sequence[str]) -> Table:
             f"{path}:1: the header is '{header[:80]}'; this model with {len(names) - 1} rotors "
             f"takes '{','.join(names)}'"
         )
+    rows = _numbers(path, lines, 2, len(names))
+    return Table(rows, lambda row: f"{path}:{2 + row}", "")
+
+
+def read_log(path: Path) -> LogRows:
+    """Read what `write_log` wrote.
+
+    Raises
+    ------
+    InputError
+        Another header, or what is no number; the message begins with ``FILE:LINE:``.
+    """
+    header, *lines = read_text(path, _LARGEST).rstrip().splitlines() or [""]
+    columns = header.split(",")
+    of_state = check_log_columns(f"{path}:1", columns)
+    ignored: Sequence[str] = ()
+    if lines and lines[0].startswith(_REMARK):
+        ignored = lines.pop(0)[len(_REMARK) :].split(", ")
+    first = 3 if ignored else 2
+    rows = _numbers(path, lines, first, len(columns))
+    check_log_rows(lambda row: f"{path}:{first + row}", rows, of_state)
+    return LogRows(columns, rows, {}, ignored)
+
+
+def _numbers(path: Path, lines: Sequence[str], first: int, width: int) -> np.ndarray:
+    """Read rows of numbers; `first` is the number of the first line."""
     values = array.array("d")
-    for number, line in enumerate(lines, start=2):
+    for number, line in enumerate(lines, start=first):
         cells = line.split(",")
-        if len(cells) != len(names):
-            raise InputError(f"{path}:{number}: {len(cells)} columns instead of {len(names)}")
+        if len(cells) != width:
+            raise InputError(f"{path}:{number}: {len(cells)} columns instead of {width}")
         try:
             if "_" in line or not line.isascii():  # 1_000 and other scripts' digits, to Python
                 raise ValueError(f"'{line[:80]}' holds what is no number; write digits 0 to 9")
             values.extend([float(cell) for cell in cells])
         except ValueError as error:
             raise InputError(f"{path}:{number}: {error}") from error
-    rows = np.array(values).reshape(-1, len(names))
-    return Table(rows, lambda row: f"{path}:{2 + row}", "")
+    return np.array(values).reshape(-1, width)
 
 
 def write_log(

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 import tempfile
 from pathlib import Path
-from typing import Any, Dict, Mapping, Sequence
+from typing import Any, Callable, Dict, Mapping, Sequence
 
 import numpy as np
 
-from .._core import InputError, QuadcoreError
+from .._core import InputError, QuadcoreError, log_columns
 from ..files import atomic_write, check_regular, unwritable
 from ..forks import LOCK
-from .rows import Table, split_columns
+from .rows import LogRows, Table, check_log_columns, check_log_rows, split_columns
 
 _MOST_VALUES = 10**7  # of a variable; of commands more than three hours at 1 kHz
 
@@ -37,7 +37,51 @@ def read_commands(path: Path, names: Sequence[str]) -> Table:
     )
 
 
+def read_log(path: Path) -> LogRows:
+    """Read what `write_log` wrote.
+
+    Raises
+    ------
+    InputError
+        No log, or a broken one.
+    """
+    variables = _load(path, lambda held: list(held))
+    columns = [name for name in log_columns(len(variables)) if name in variables]
+    of_state = check_log_columns(f"{path}", columns)
+    parts = [_vector(path, name, variables[name]) for name in columns]
+    wrenches = {}
+    for name, value in variables.items():
+        kind, _, rest = name.partition("_")
+        if kind == "wrench":
+            wrenches[rest] = np.asarray(value, dtype=float)
+        elif kind == "topic":
+            for field in value.dtype.names or ():
+                columns.append(f"{rest}.{field}")
+                parts.append(_vector(path, columns[-1], value[field][0, 0]))
+    for name, part in zip(columns, parts):
+        if len(part) != len(parts[0]):
+            raise InputError(f"{path}: {name} has {len(part)} values, t has {len(parts[0])}")
+    rows = np.column_stack(parts)
+    check_log_rows(lambda row: f"{path}: row {1 + row}", rows, of_state)
+    ignored = [str(name[0]) for name in variables.get("ignored", np.empty((0, 0))).flat]
+    return LogRows(columns, rows, wrenches, ignored)
+
+
 def _variables(path: Path, names: Sequence[str]) -> Mapping[str, Any]:
+    def choose(held: Mapping[str, int]) -> Sequence[str]:
+        if not set(names) <= set(held) or f"w{len(names)}" in held:
+            found = ", ".join(sorted(held))
+            raise InputError(
+                f"{path}: holds {found or 'no variables'}; this model with {len(names) - 1} rotors "
+                f"takes {', '.join(names)}"
+            )
+        return names
+
+    return _load(path, choose)
+
+
+def _load(path: Path, choose: Callable[[Mapping[str, int]], Sequence[str]]) -> Mapping[str, Any]:
+    """Load the variables that `choose` picks, told the name and size of each that is held."""
     with LOCK:
         import scipy.io
 
@@ -46,11 +90,16 @@ def _variables(path: Path, names: Sequence[str]) -> Mapping[str, Any]:
         with path.open("rb") as stream:
             # Sizes first: a few compressed bytes can stand for more than there is memory.
             held = {name: math.prod(shape) for name, shape, _ in scipy.io.whosmat(stream)}
-            missing = [name for name in names if name not in held]
-            large = [name for name in names if held.get(name, 0) > _MOST_VALUES]
-            if not missing and not large:
-                stream.seek(0)
-                variables: Mapping[str, Any] = scipy.io.loadmat(stream, variable_names=names)
+            names = choose(held)
+            large = [name for name in names if held[name] > _MOST_VALUES]
+            if large:
+                raise InputError(
+                    f"{path}: {large[0]} has {held[large[0]]} values; "
+                    f"at most {_MOST_VALUES} are read"
+                )
+            stream.seek(0)
+            loaded = scipy.io.loadmat(stream, variable_names=names)
+            return {name: loaded[name] for name in names}
     except QuadcoreError:
         raise
     except OSError as error:
@@ -59,17 +108,6 @@ def _variables(path: Path, names: Sequence[str]) -> Mapping[str, Any]:
         raise InputError(f"{path}: a MATLAB 7.3 file; save it with the option -v7") from error
     except Exception as error:  # scipy has no common base class for what a broken file raises
         raise InputError(f"{path}: not a MATLAB file: {error}") from error
-    if missing or f"w{len(names)}" in held:
-        found = ", ".join(sorted(held))
-        raise InputError(
-            f"{path}: holds {found or 'no variables'}; this model with {len(names) - 1} rotors "
-            f"takes {', '.join(names)}"
-        )
-    if large:
-        raise InputError(
-            f"{path}: {large[0]} has {held[large[0]]} values; at most {_MOST_VALUES} are read"
-        )
-    return variables
 
 
 def _vector(path: Path, name: str, value: np.ndarray) -> np.ndarray:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Callable, Dict, NamedTuple, Protocol, Sequence, Tuple
+from typing import Callable, Dict, Mapping, NamedTuple, Protocol, Sequence, Tuple
 
 import numpy as np
+
+from .._core import InputError, log_columns
 
 
 class Table(NamedTuple):
@@ -15,6 +17,16 @@ class Table(NamedTuple):
     place: Callable[[int], str]
     counted: str
     """How rows are counted, if that needs to be said."""
+
+
+class LogRows(NamedTuple):
+    """What a file holds of a flight; see `Trajectory`."""
+
+    columns: Sequence[str]
+    """Those of the state, then TOPIC.FIELD."""
+    rows: np.ndarray
+    wrenches: Mapping[str, np.ndarray]
+    ignored: Sequence[str]
 
 
 Topics = Dict[str, Dict[str, np.ndarray]]
@@ -43,6 +55,41 @@ def split_columns(columns: Sequence[str], rows: np.ndarray) -> Tuple[Sequence[st
         if is_topic:
             topics.setdefault(topic, {})[field] = rows[:, i]
     return columns[: len(columns) - sum(map(len, topics.values()))], topics
+
+
+def check_log_columns(place: str, columns: Sequence[str]) -> int:
+    """Count those of the state; raises `InputError` unless these are the columns of a log."""
+    of_state = [column for column in columns if "." not in column]
+    fixed = log_columns(0)
+    expected = log_columns(max(0, len(of_state) - len(fixed)))
+    if list(columns[: len(expected)]) != expected:
+        raise InputError(
+            f"{place}: no log of quadcore: the columns are '{','.join(columns)[:80]}'; "
+            f"a log has '{','.join(fixed)}', a column of each rotor, and those of topics"
+        )
+    return len(expected)
+
+
+def check_log_rows(place: Callable[[int], str], rows: np.ndarray, of_state: int) -> None:
+    """Raise `InputError` unless the rows are those of a flight; `place` is called with a row.
+
+    Parameters
+    ----------
+    place
+        How a row is called.
+    rows
+        Shape (n, columns).
+    of_state
+        How many columns are the state's; those of topics may be NaN.
+    """
+    if len(rows) == 0:
+        raise InputError(f"{place(0)}: no row; a log holds the start at least")
+    wrong = ~np.isfinite(rows[:, :of_state]).all(axis=1)
+    if wrong.any():
+        raise InputError(f"{place(int(wrong.argmax()))}: the state is not finite")
+    late = np.diff(rows[:, 0]) <= 0
+    if late.any():
+        raise InputError(f"{place(1 + int(late.argmax()))}: the time is not later than before")
 
 
 class Recorder(Protocol):

@@ -7,7 +7,8 @@ from typing import Any, Dict, List, Sequence, Tuple
 
 import numpy as np
 
-from ..plots import PALETTE, dress, png, titled
+from ..colours import PALETTE
+from ..plots import dress, png, titled
 from .chain import Chain, Link
 from .damping import Damping
 from .output import size

@@ -6,7 +6,8 @@ from typing import Any, Callable, Dict, List, NamedTuple, Sequence, Tuple
 
 import numpy as np
 
-from ..plots import PALETTE, dress, png, titled
+from ..colours import PALETTE
+from ..plots import dress, png, titled
 from .causes import draw_chains, draw_damping
 from .experiment import MODEL, Case
 from .states import states

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..chapter2 import Vehicle
 from ..chapter2.vehicle import command_order
-from ..flight import Rows, fly, steps_within
+from ..flight import Pilot, Rows, columns_of, fly, steps_within
 from ..log import Log
 from ..simulation import Simulation
 
@@ -59,7 +59,7 @@ def speeds(vehicle: Vehicle, commands: np.ndarray, times: np.ndarray, lag: bool)
     return omega
 
 
-class GivenSpeeds:
+class GivenSpeeds(Pilot):
     """The pilot (see `flight.fly`) that puts the rotors to the speeds of `vehicle`'s motors.
 
     Parameters
@@ -114,6 +114,6 @@ def fly_given_speeds(
         Engine ``eigen``, at rest, its motors of `stiff_gain`, sim_slow 1.
     """
     pilot = GivenSpeeds(vehicle, commands, lag, duration, simulation.dt)
-    rows = Rows(simulation)
+    rows = Rows(simulation, columns_of(simulation))
     fly(simulation, duration, None, log_every, rows.receive, wrenches=False, pilot=pilot)
     return rows.log()

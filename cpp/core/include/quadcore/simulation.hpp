@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -72,6 +73,12 @@ class Simulation : private ForceField {
   /// Throws InputError, nothing changed, on a topic that is not declared or that a plugin writes, a
   /// wrong count, or a number that is not finite.
   void publish(const std::string& topic, const double* values, std::size_t count);
+  /// Moves the vehicle over a step of dt [s] from the state it stands in to that at the end of the
+  /// step, under the command of so many speeds [rad/s] that was published last; zero before.
+  using Motion = std::function<void(double dt, const VectorXd& command, VehicleState& state)>;
+  /// Takes the place of the engine's steps: plugins hear and sense as ever, but none of their
+  /// forces acts, and nothing touches.
+  void move_by(Motion motion);
   /// Advances by n steps. Throws FlightError if the flight fails; then only restore, reset and
   /// set_state make the simulation usable again.
   void step(std::int64_t n = 1);
@@ -148,6 +155,7 @@ class Simulation : private ForceField {
   void check_flight() const;
   /// What to do about a motion that got out of hand, or the warning that told it.
   std::string advice() const;
+  void move();          ///< makes a step by motion_
   void show_state();    ///< brings state_ up to date
   void show_instant();  ///< writes time and air into the engine's motion
   void blow(Kinematics& kinematics) const;
@@ -203,6 +211,7 @@ class Simulation : private ForceField {
   std::vector<CarriedBody> carried_;  ///< by the engine's vehicle
   std::vector<CarriedBody> asked_;    ///< for, most recently
   int command_topic_ = -1;
+  Motion motion_;  ///< in the engine's place, if there is one
 
   double start_time_ = 0;
   std::int64_t steps_ = 0;

@@ -1,0 +1,72 @@
+"""``quadcore play``: a page on which logs can be watched."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any, List, Sequence, Tuple
+
+from .._core import InputError
+from ..description import read_model
+from ..files import atomic_write, check_writable, text_bytes
+from ..log import Log
+from . import options, terminal
+
+
+def register(commands: Any) -> None:
+    """Add the command to the command line."""
+    parser = options.subparser(commands, "play", "Make a page that plays logs.", play)
+    parser.add_argument("logs", metavar="LOG", nargs="+", type=Path, help="log, .csv or .mat")
+    parser.add_argument(
+        "-o", "--out", metavar="PAGE.html", type=Path, required=True, help="the page to write"
+    )
+    parser.add_argument(
+        "--model",
+        metavar="MODEL",
+        help="whose rotors are drawn where they are, as for `quadcore run`; without, a cross",
+    )
+    parser.add_argument(
+        "--names",
+        metavar="NAME,NAME",
+        type=options.names,
+        help="what the flights are called (what their paths differ by)",
+    )
+    parser.add_argument("--quiet", action="store_true", help="print warnings and errors only")
+
+
+def play(arguments: argparse.Namespace) -> None:
+    """Read the logs and write the page."""
+    from ..player import PlayerFlight, page  # not every command should pay for jinja2
+
+    if arguments.out.suffix.lower() not in (".html", ".htm"):
+        raise InputError(f"{arguments.out}: name a file that ends in .html, which it would hold")
+    check_writable(arguments.out)
+    names = arguments.names or _names(arguments.logs)
+    if len(names) != len(arguments.logs):
+        raise InputError(f"--names: {len(names)} for {len(arguments.logs)} logs; name each")
+    rotors = None if arguments.model is None else read_model(arguments.model).joint_places
+    flights = [
+        PlayerFlight(name, Log.of_file(file), rotors) for name, file in zip(names, arguments.logs)
+    ]
+    text = page(flights, ", ".join(names))
+    with atomic_write(arguments.out) as stream:
+        stream.write(text_bytes(text))
+    if not arguments.quiet:
+        terminal.console().print(f"written {arguments.out}")
+
+
+def _names(logs: Sequence[Path]) -> List[str]:
+    """Call each log by what its path differs by: out/ode/log.csv, out/eigen/log.csv: ode, eigen."""
+    if len(logs) == 1:
+        return [logs[0].stem]
+    parts: List[Tuple[str, ...]] = [log.with_suffix("").parts for log in logs]
+    if len(set(logs)) < len(logs):
+        twice = next(log for i, log in enumerate(logs) if log in logs[:i])
+        raise InputError(f"{twice}: is named twice; name each log once")
+    if len(set(parts)) < len(parts):  # a.csv and a.mat
+        return [str(log) for log in logs]
+    while len({path[-1] for path in parts}) == 1 and min(map(len, parts)) > 1:
+        parts = [path[:-1] for path in parts]
+    while len({path[0] for path in parts}) == 1 and min(map(len, parts)) > 1:
+        parts = [path[1:] for path in parts]
+    return ["/".join(path) for path in parts]

@@ -1,0 +1,64 @@
+"""Controllers of the user's own, by the name of their module."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import os
+import sys
+import traceback
+from typing import Any
+
+from ._core import InputError
+
+
+def imported(text: str) -> Any:
+    """Bring in a controller.
+
+    Parameters
+    ----------
+    text
+        ``MODULE:NAME``: a class, which is made without arguments, or what can be called as a
+        controller. The module is looked for in the working folder, too.
+
+    Raises
+    ------
+    InputError
+        No such module or name, or one of them fails.
+    """
+    module, _, name = text.partition(":")
+    here = os.getcwd()
+    sys.path.insert(0, here)
+    try:
+        found = getattr(importlib.import_module(module), name)
+        controller = found() if inspect.isclass(found) else found
+    except ModuleNotFoundError as error:
+        if error.name != module:
+            raise _failed(text, error) from error
+        raise InputError(
+            f"controller '{text}': there is no module '{module}' here or on PYTHONPATH"
+        ) from error
+    except AttributeError as error:
+        if module not in sys.modules or hasattr(sys.modules[module], name):
+            raise _failed(text, error) from error
+        raise InputError(f"controller '{text}': module '{module}' has no '{name}'") from error
+    except Exception as error:
+        raise _failed(text, error) from error
+    finally:
+        sys.path.remove(here)
+    if not callable(controller):
+        raise InputError(
+            f"controller '{text}': it cannot be called as controller(t, state, reference)"
+        )
+    return controller
+
+
+def told(error: BaseException) -> str:
+    """Say in one line what was raised, and where."""
+    place = traceback.extract_tb(error.__traceback__)[-1]
+    reason = " ".join(f"{type(error).__name__}: {error}".split())
+    return f"{reason} ({place.filename}:{place.lineno})"
+
+
+def _failed(text: str, error: Exception) -> InputError:
+    return InputError(f"controller '{text}': {told(error)}")

@@ -1,0 +1,38 @@
+"""Everything that can be flown: the engines, and the mathematical model in the place of one."""
+
+from __future__ import annotations
+
+from typing import Any, List, Tuple
+
+from ._core import engines
+from .simulation import Simulation
+
+LAGRANGE = "lagrange"
+
+
+def plants() -> List[Tuple[str, str]]:
+    """Name each, with a summary."""
+    summary = "the mathematical model of chapter 2: no contact, no forces of plugins"
+    return [*engines(), (LAGRANGE, summary)]
+
+
+def build(engine: str, **options: Any) -> Simulation:
+    """Make what is to be flown.
+
+    Parameters
+    ----------
+    engine : str
+        One of `plants`.
+    **options
+        As for `Simulation`.
+
+    Raises
+    ------
+    InputError
+        As from `Simulation`; or a vehicle that the mathematical model has no equation for.
+    """
+    if engine != LAGRANGE:
+        return Simulation(engine=engine, **options)
+    from .chapter2.plant import Plant  # scipy is slow to import
+
+    return Plant(**options)

@@ -1,0 +1,78 @@
+"""Poles of the cascaded laws, beside the linearised flight and the arithmetic by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import quadcore as qc
+from quadcore import laws
+from quadcore.evaluation.poles import gains_of, has_poles, poles, text
+from quadcore.plants import build
+
+
+def by_axis(law, engine="eigen", slow=1, **parameters):
+    simulation = build(engine, xacro_args={"sim_slow": slow}, parameters=parameters)
+    return {row["axis"]: row for row in poles(law, simulation)}
+
+
+def test_the_zero_of_the_yaw_is_where_air_and_spin_up_cancel():
+    simulation = qc.Simulation(engine="eigen", xacro_args={"sim_slow": 1})
+    hover = np.sqrt(simulation.mass * 9.8 / 4 / 1.1487e-5)
+    zero = 2 * 2.69e-7 * hover / 2.8125e-5
+    for slow in (1, 10):
+        assert by_axis(laws.pid_thesis(), slow=slow)["yaw"]["zero"] == pytest.approx(zero * slow)
+    assert np.isinf(by_axis(laws.pid_thesis(), "lagrange")["yaw"]["zero"])
+    opposing = by_axis(laws.pid_thesis(), **{"drone_plugin.reactionTorque": "opposing"})
+    assert opposing["yaw"]["zero"] == pytest.approx(-zero)
+    assert opposing["yaw"]["stable"]
+
+
+@pytest.mark.parametrize("scale", [0.8, 1])
+def test_the_printed_gains_are_unstable_in_x_and_y_everywhere_and_in_yaw_at_sim_slow_1(scale):
+    law = laws.pid_thesis(scale=scale)
+    for engine, slow in (("eigen", 1), ("gazebo11", 10), ("lagrange", 1)):
+        found = by_axis(law, engine, slow)
+        assert not found["x, y"]["stable"]
+        assert found["z"]["stable"]
+        assert found["roll, pitch"]["stable"]
+        assert found["yaw"]["stable"] == ((engine, slow) != ("eigen", 1))
+    assert all(row["stable"] for row in by_axis(laws.pid()).values())
+    assert text(by_axis(laws.pid_thesis())["x, y"], 1) == "0.27 +- 1.63i"
+
+
+def test_motors_without_lag_leave_the_polynomial_of_routh_and_hurwitz():
+    """Around an ideal inner loop x and y are s^3 + Kd s^2 + Kp s + Ki."""
+    fast = {"kp_rp": 1e5, "kd_rp": 6e2, "ki_rp": 0}
+    found = by_axis(laws.pid_thesis(**fast), **{"motorpid_plugin.kp": 0.07})["x, y"]["poles"]
+    slow = [pole for pole in found if abs(pole) < 10]
+    expected = np.roots([1, 0.125, 2.4, 0.8])
+    for pole in expected:
+        assert min(abs(pole - other) for other in slow) < 1e-2
+
+
+def test_the_yaw_grows_in_flight_as_its_pole_says():
+    law = laws.pid_thesis(rate=1000)
+    simulation = qc.Simulation(engine="eigen", xacro_args={"sim_slow": 1})
+    hover = qc.references.hover()
+    simulation.set_state(qc.references.start(simulation, hover))
+    state = simulation.state.copy()
+    state.angular_velocity[:] = 0, 0, 1e-6
+    simulation.set_state(state)
+    log = simulation.run(0.9, controller=law, reference=hover, wrenches=False)
+    yaw = 2 * log.orientation[:, 2]
+    growing = by_axis(law)["yaw"]["poles"][0]
+    late = log.time > 0.4
+    # e^(a t) (c cos b t + d sin b t) fits what the slower poles leave by then.
+    a, b, t = growing.real, abs(growing.imag), log.time[late]
+    shape = np.exp(a * t)[:, None] * np.column_stack([np.cos(b * t), np.sin(b * t)])
+    found, *_ = np.linalg.lstsq(shape, yaw[late], rcond=None)
+    assert np.abs(shape @ found - yaw[late]).max() < 0.05 * np.abs(yaw[late]).max()
+
+
+def test_only_cascades_have_poles():
+    assert has_poles(laws.pd())
+    assert not has_poles(laws.geometric())
+    assert not has_poles(lambda t, state, reference: None)
+    assert gains_of(laws.pid_thesis(kp_z=3))["kp_z"] == 3
+    assert gains_of(laws.pid_thesis())["kd_xy"] == 0.125
