@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any, Dict, List, Sequence, Tuple
 
 import numpy as np
 
-from ..plots import PALETTE, dress, panels, png, titled
+from ..colours import PALETTE
+from ..plots import dress, panels, png, titled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
