@@ -225,7 +225,8 @@ def topic_section(simulation: qc.Simulation) -> str:
         rows.append((f"`{name}`", f"`{topic.kind}`", fields, ", ".join(plugins), TOPICS[name]))
     return (
         "\n## Topics\n\nMessages between plugins, and between them and Python or ROS; "
-        "see [plugins.md](plugins.md#topics).\nThose of the shipped quadrotor with a controller:\n\n"
+        "see [plugins.md](plugins.md#topics).\n"
+        "Those of the shipped quadrotor with a controller:\n\n"
         + table(("topic", "kind", "fields", "plugins", "meaning"), rows)
     )
 
