@@ -60,7 +60,7 @@ def test_info_puts_every_parameter_on_one_line_with_all_that_is_known_of_it(caps
     ):
         assert text in thrust
     assert " --set " in lines["drone_plugin.inducedDragCoeff"]
-    assert " default " in lines["motorpid_plugin.maxVelocity"]
+    assert " default " in lines["motorpid_plugin.commandTimeout"]
 
 
 def test_run_prints_a_summary_and_writes_nothing_unasked(capsys):
@@ -156,12 +156,20 @@ def test_an_unwritable_log_is_refused_before_the_flight(capsys, monkeypatch):
 
 def test_a_failed_flight_keeps_its_log_and_is_status_3(capsys):
     Path("c.csv").write_text("t,w1,w2,w3,w4\n0,500,-500,500,-500\n0.02,1e300,1e300,1e300,1e300\n")
-    assert main([*FALL, "--commands", "c.csv", "--out", "out"]) == 3
+    unlimited = ["--set", "xacro.max_velocity=1e301"]
+    assert main([*FALL, *unlimited, "--commands", "c.csv", "--out", "out"]) == 3
     kept, error = capsys.readouterr().err.splitlines()
     assert kept.startswith("log until t = 0.0")
     assert error.startswith("error: ")
     assert "t = 0.0" in error
     assert np.isfinite(np.loadtxt("out/log.csv", delimiter=",", skiprows=1)).all()
+
+
+def test_the_summary_counts_the_steps_that_reached_the_speed_limit(capsys):
+    Path("c.csv").write_text("t,w1,w2,w3,w4\n0,500,-500,500,-500\n0.02,700,-500,700,-500\n")
+    limit = ["--set", "motorpid_plugin.maxVelocity=600"]
+    assert main(["run", "quadrotor", "--duration", "0.05", "--commands", "c.csv", *limit]) == 0
+    assert "saturated steps         30" in capsys.readouterr().out
 
 
 def test_an_interrupted_run_keeps_its_log_and_is_status_130(capsys, monkeypatch):

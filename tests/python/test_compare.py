@@ -104,7 +104,7 @@ def test_numbers_written_otherwise_and_order_are_no_difference_but_that_of_joint
     text = Path(model).read_text()
     assert "0.000011487" in text
     Path("same.xacro").write_text(text.replace("0.000011487", "1.1487e-5"))
-    one, two = '<xacro:propeller i="1" material="red"/>', '<xacro:propeller i="2" material="blue"/>'
+    one, two = '<xacro:propeller i="1" mat="red"/>', '<xacro:propeller i="2" mat="blue"/>'
     Path("order.xacro").write_text(text.replace(one, "@").replace(two, one).replace("@", two))
     found = qc.compare(
         [model, "same.xacro", "order.xacro"], engine="eigen", duration=0.01

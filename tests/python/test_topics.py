@@ -22,12 +22,14 @@ ODOM = ["x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz
 
 def test_a_simulation_tells_its_topics():
     topics = quadrotor().topics
-    assert list(topics) == ["vel_cmd", "odom"]
-    odom, commands = topics["odom"], topics["vel_cmd"]
+    assert list(topics) == ["vel_cmd", "saturation", "odom"]
+    odom, commands, saturation = topics["odom"], topics["vel_cmd"], topics["saturation"]
     assert (odom.name, odom.kind, odom.fields) == ("odom", "odometry", ODOM)
     assert (odom.writer, odom.readers) == ("odometry", [])
     assert (commands.kind, commands.fields) == ("speeds", ["w1", "w2", "w3", "w4"])
     assert (commands.writer, commands.readers) == (None, ["motorpid_plugin"])
+    assert (saturation.kind, saturation.fields) == ("saturation", ["steps"])
+    assert (saturation.writer, saturation.readers) == ("motorpid_plugin", [])
 
 
 def test_a_command_is_a_message_on_vel_cmd():
@@ -50,7 +52,7 @@ def test_a_command_is_a_message_on_vel_cmd():
     ("topic", "values", "says"),
     [
         ("vel_cmb", [1], "topic 'vel_cmb' is not declared by any plugin (did you mean 'vel_cmd'?)"),
-        ("rain", {"x": 1}, "topic 'rain' is not declared by any plugin; declared are vel_cmd, odo"),
+        ("rain", {"x": 1}, "topic 'rain' is not declared by any plugin; declared are vel_cmd, sat"),
         ("vel_cmd", [1, 2], "publish: topic 'vel_cmd': 2 numbers; give 4: w1, w2, w3, w4"),
         ("vel_cmd", [1, 2, np.nan, 4], "publish: topic 'vel_cmd': w3 is not a finite number"),
         ("vel_cmd", "fast", "publish: topic 'vel_cmd' is not a 1-dimensional array of numbers"),

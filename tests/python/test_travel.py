@@ -76,10 +76,11 @@ def test_a_snapshot_flies_on_elsewhere_as_here(engine):
 
 
 def test_a_snapshot_of_a_failed_flight_tells_the_failure_elsewhere():
-    simulation = quadrotor("eigen")
+    unlimited = {"motorpid_plugin.maxVelocity": 1e301}
+    simulation = quadrotor("eigen", parameters=unlimited)
     with pytest.raises(qc.FlightError):
         simulation.run(1, [[0, 471, -471, 471, -471], [0.1, *[1e300] * 4]])
-    other = quadrotor("eigen")
+    other = quadrotor("eigen", parameters=unlimited)
     other.restore(pickle.loads(pickle.dumps(simulation.snapshot())))
     with pytest.raises(qc.FlightError, match="reset, restore or set a state to go on"):
         other.step()
