@@ -32,6 +32,7 @@ from .log import Log
 from .resources import cmake_prefix
 from .simulation import Simulation
 from .state import State
+from .tuning import tune
 from .warning import QuadcoreWarning
 
 __version__ = "0.1.0"
@@ -63,4 +64,5 @@ __all__ = [
     "read_model",
     "read_world",
     "references",
+    "tune",
 ]

@@ -121,8 +121,16 @@ def test_the_reference_is_what_the_generator_writes():
     )
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/python.md"])
-def test_the_python_of_a_page_runs_as_it_stands(page, tmp_path):
+@pytest.mark.parametrize(
+    ("page", "written"),
+    [
+        ("README.md", "flight.csv"),
+        ("docs/python.md", "flight.csv"),
+        ("docs/play.md", "climb.html"),
+        ("docs/tune.md", "pd.yaml"),
+    ],
+)
+def test_the_python_of_a_page_runs_as_it_stands(page, written, tmp_path):
     script = "\n".join(blocks(ROOT / page, "python"))
     ran = subprocess.run(
         [sys.executable, "-c", script],
@@ -132,7 +140,7 @@ def test_the_python_of_a_page_runs_as_it_stands(page, tmp_path):
     )
     assert ran.returncode == 0, ran.stdout.decode()
     assert "QuadcoreWarning" not in ran.stdout.decode()
-    assert (tmp_path / "flight.csv").exists()
+    assert (tmp_path / written).exists()
 
 
 def test_the_example_of_the_readme_is_short_and_holds_its_height(tmp_path, monkeypatch):

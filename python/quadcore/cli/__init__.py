@@ -9,7 +9,7 @@ from typing import NoReturn, Sequence
 from .. import __version__, interrupts
 from .._core import FlightError, InputError, QuadcoreError
 from ..files import shown
-from . import compare, evaluate, info, play, run, terminal, validate
+from . import compare, evaluate, info, play, run, terminal, tune, validate
 
 
 class _Parser(argparse.ArgumentParser):
@@ -81,6 +81,6 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"quadcore {__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
-    for command in (info, run, validate, compare, evaluate, play):
+    for command in (info, run, validate, compare, evaluate, play, tune):
         command.register(commands)
     return parser

@@ -1,0 +1,122 @@
+"""``quadcore tune``: gains by search."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from .. import gains, interrupts
+from .._core import InputError
+from ..files import check_writable
+from ..plants import plants
+from . import options, terminal
+from .evaluate import several_calls
+
+
+def register(commands: Any) -> None:
+    """Add the command to the command line."""
+    parser = options.subparser(
+        commands, "tune", "Search for gains of a law, judged on references held out.", tune
+    )
+    parser.add_argument(
+        "law",
+        metavar="LAW",
+        help="as --controller of `quadcore run`: its parameters are where the search begins",
+    )
+    parser.add_argument(
+        "model", metavar="MODEL", nargs="*", default=["quadrotor"], help="what flies (quadrotor)"
+    )
+    parser.add_argument(
+        "-o", "--out", metavar="GAINS.yaml", type=Path, required=True, help="the file to write"
+    )
+    parser.add_argument(
+        "--reference",
+        metavar="A,B",
+        type=several_calls,
+        default=["spiral", "step"],
+        help="what is flown to tune, NAME, NAME:KEY=VALUE,... or files (spiral,step)",
+    )
+    parser.add_argument(
+        "--hold-out",
+        metavar="A,B",
+        type=several_calls,
+        default=["circle", "eight"],
+        help="what is flown to judge (circle,eight)",
+    )
+    parser.add_argument(
+        "--hold-out-model",
+        metavar="A,B",
+        type=options.names,
+        default=[],
+        help="models that fly everything to judge",
+    )
+    parser.add_argument(
+        "--only",
+        metavar="NAME,NAME",
+        type=options.names,
+        help="parameters to tune (all gains that are not zero)",
+    )
+    parser.add_argument(
+        "--budget",
+        metavar="N",
+        type=options.integer(1),
+        default=300,
+        help="gains to try, at least (300)",
+    )
+    options.add_changes(parser)
+    options.add_flight(parser, log_every=None, flown=plants())
+    options.add_jobs(parser)
+    parser.set_defaults(engine="eigen")
+
+
+def tune(arguments: argparse.Namespace) -> None:
+    """Search, print what was found, and write it."""
+    from ..tuning import tune as search
+
+    out = arguments.out
+    if out.suffix.lower() not in (".yaml", ".yml"):
+        raise InputError(f"{out}: name a file that ends in .yaml, which it would hold")
+    check_writable(out)
+    shared = {**options.model_arguments(arguments), **options.flight_arguments(arguments)}
+    shared.update(model=arguments.model, spawn=arguments.spawn)
+    try:
+        with terminal.progress(arguments.quiet, "tuning") as progress:
+            found = search(
+                arguments.law,
+                references=arguments.reference,
+                held_out=arguments.hold_out,
+                held_out_models=arguments.hold_out_model,
+                only=arguments.only,
+                duration=arguments.duration,
+                budget=arguments.budget,
+                processes=arguments.jobs,
+                progress=progress,
+                **shared,
+            )
+    except KeyboardInterrupt as stop:
+        partial = getattr(stop, "tuning", None)
+        if partial is not None:
+            with interrupts.held():
+                gains.write(partial.gains, out)
+            terminal.say(f"the best so far: {out}")
+        raise
+    gains.write(found.gains, out)
+    if not arguments.quiet:
+        _show(found, out)
+
+
+def _show(found: Any, out: Path) -> None:
+    console = terminal.console()
+    begun = found.gains.history["start"]
+    table = terminal.table("gain", "start", "found", numbers=True)
+    for name, value in begun.items():
+        table.add_row(name, f"{value:.4g}", f"{found.gains.parameters[name]:.4g}")
+    console.print(table, "")
+    table = terminal.table("", "RMS error (m)", numbers=True)
+    table.add_row("tuned on, at the start", f"{found.start:.4g}")
+    table.add_row("tuned on", f"{found.error:.4g}")
+    for label, error in found.held_out.items():
+        table.add_row(f"held out: {label}", f"{error:.4g}")
+    console.print(table)
+    console.print(f"{len(found.evaluations)} tried, {found.refused} refused; written {out}")

@@ -1,0 +1,265 @@
+"""The search for gains."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from pathlib import Path
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from .. import laws
+from .._core import FlightError, InputError, QuadcoreError
+from ..evaluation.measures import LOST
+from ..gains import Gains
+from ..study.executor import conducted
+from ..warning import QuadcoreWarning
+from .problem import Case, Flown, Problem
+
+OBJECTIVE = "mean over the cases of the root mean square of the distance to the reference, m"
+
+_SPREAD = 0.8  # of the logarithm of a gain at first: most lie within a factor of 2.2
+_INTERRUPTED = "interrupted"
+
+Progress = Callable[[int, int], None]
+
+
+class Tuning(NamedTuple):
+    """Gains that were found, and how."""
+
+    gains: Gains
+    """For `gains.write`, with the history; no held-out case was lost with them."""
+    error: float
+    """`OBJECTIVE` of these gains."""
+    start: float
+    """The same of those that the search began with."""
+    evaluations: List[float]
+    """The same by evaluation, that of the start first."""
+    held_out: Dict[str, float]
+    """Root mean square of the distance, m, in each held-out case."""
+    refused: int
+    """How many gains were better on what they were tuned on, but lost a held-out case."""
+
+
+def tune(
+    law: Union[str, laws.Law],
+    model: Union[str, Path, Sequence[Union[str, Path]]] = "quadrotor",
+    references: Sequence[Any] = ("spiral", "step"),
+    held_out: Sequence[Any] = ("circle", "eight"),
+    held_out_models: Sequence[Union[str, Path]] = (),
+    only: Optional[Sequence[str]] = None,
+    engine: str = "eigen",
+    duration: float = 10.0,
+    budget: int = 300,
+    seed: int = 0,
+    spawn: Optional[Sequence[float]] = None,
+    processes: Optional[int] = None,
+    progress: Optional[Progress] = None,
+    **options: Any,
+) -> Tuning:
+    """Search for gains of a law.
+
+    By CMA-ES (Hansen 2016, arXiv:1604.00772) on the logarithms of the gains. Gains that are better
+    than all before are flown in the held-out cases, too, and refused if one is lost there. The same
+    seed gives the same result, whatever the number of processes.
+
+    Parameters
+    ----------
+    law
+        Name, ``NAME:KEY=VALUE,...`` or gains file, or one of `quadcore.laws`: its parameters are
+        where the search begins.
+    model
+        What flies, or several; the gains are for the first.
+    references
+        What is flown to tune: names as on the command line, or functions.
+    held_out
+        What is flown, by every model, to judge; others than `references`.
+    held_out_models
+        Fly everything, to judge only.
+    only
+        Parameters to tune; without, all gains that are not zero at the start: those named k._...,
+        q_... and r_....
+    engine, duration
+        Of each flight; s.
+    budget
+        Gains to try, at least.
+    seed
+        Of the search and of all noise.
+    spawn
+        Where flights begin; without, in the full flat state of the reference.
+    processes
+        How many; None takes one per core.
+    progress
+        Called as progress(evaluations, budget).
+    **options
+        As for `Simulation`: world, dt, parameters, xacro_args, ignore.
+
+    Returns
+    -------
+    Tuning
+
+    Raises
+    ------
+    InputError
+        Something is at fault, or the package cma is missing; nothing was flown.
+    FlightError
+        No gains kept every held-out case. Its `evaluations` are those of `Tuning`.
+    KeyboardInterrupt
+        Its attribute `tuning` has the best so far, or None if all were refused.
+    """
+    models = [model] if isinstance(model, (str, Path)) else list(model)
+    options.update(engine=engine, duration=duration, seed=seed)
+    problem = Problem(law, models, held_out_models, references, held_out, only, spawn, options)
+    cma = _cma()
+    search = _Search(problem, budget, seed, processes, progress)
+    try:
+        search.run(cma)
+    except KeyboardInterrupt as stop:
+        stop.tuning = search.result(cma, _INTERRUPTED)  # type: ignore[attr-defined]
+        raise
+    found = search.result(cma, "")
+    if found is None:
+        failure = FlightError(
+            f"no gains found: {search.refusal}; begin elsewhere, or search longer"
+        )
+        failure.evaluations = search.evaluations  # type: ignore[attr-defined]
+        raise failure
+    return found
+
+
+class _Search:
+    """What was tried so far."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        budget: int,
+        seed: int,
+        processes: Optional[int],
+        progress: Optional[Progress],
+    ) -> None:
+        if budget < 1:
+            raise InputError(f"budget is {budget}; give at least 1")
+        self.evaluations: List[float] = []
+        self.refused = 0
+        self.refusal = ""
+        self._problem = problem
+        self._budget = budget
+        self._seed = seed
+        self._processes = processes
+        self._progress = progress
+        self._best: Optional[Tuple[float, Dict[str, float], Dict[str, float]]] = None
+        """Objective, gains, and error by held-out case."""
+        self._least = math.inf
+
+    def run(self, cma: Any) -> None:
+        """Search until the budget is spent."""
+        start = self._problem.start
+        for case in self._problem.training:  # what is wrong with law or vehicle is told at once
+            self._problem.fly(case, start)
+        self._try([start])
+        # Of its own generator: the one that numpy shares belongs to the caller.
+        drawn = np.random.default_rng(self._seed)
+        strategy = cma.CMAEvolutionStrategy(
+            np.zeros(len(start)),
+            _SPREAD,
+            {
+                "verbose": -9,
+                "seed": np.nan,
+                "randn": lambda *shape: drawn.standard_normal(shape),
+                "maxiter": np.inf,
+            },
+        )
+        while len(self.evaluations) < self._budget:
+            points = strategy.ask()
+            strategy.tell(points, self._try([self._gains(point) for point in points]))
+
+    def result(self, cma: Any, ended: str) -> Optional[Tuning]:
+        """Give the best so far."""
+        if self._best is None:
+            return None
+        error, gains, held_out = self._best
+        law = self._problem.with_gains(gains)
+        history = {
+            "start": dict(self._problem.start),
+            "objective": OBJECTIVE,
+            "tuned_on": [case.label for case in self._problem.training],
+            "held_out": {label: float(value) for label, value in held_out.items()},
+            **self._setting(),
+            "optimiser": f"cma {cma.__version__}",
+            "seed": self._seed,
+            "budget": self._budget,
+            "refused": self.refused,
+            "best": error,
+            "evaluations": list(self.evaluations),
+        }
+        if ended:
+            history["ended"] = ended
+        found = Gains(law.name, self._problem.vehicle, law.rate, law.delay, law.parameters, history)
+        start = self.evaluations[0]
+        return Tuning(found, error, start, list(self.evaluations), held_out, self.refused)
+
+    def _setting(self) -> Dict[str, Any]:
+        plan = self._problem.training[0].plan
+        return {"engine": plan.engine, "duration": plan.duration}
+
+    def _gains(self, point: np.ndarray) -> Dict[str, float]:
+        start = self._problem.start
+        return {name: value * math.exp(x) for (name, value), x in zip(start.items(), point)}
+
+    def _try(self, candidates: Sequence[Mapping[str, float]]) -> List[float]:
+        """Fly gains, and judge the best of them if none before was better."""
+        training = self._problem.training
+        flights = self._fly([(case, gains) for gains in candidates for case in training])
+        count = len(training)
+        errors = [
+            float(np.mean([flown.error for flown in flights[i : i + count]]))
+            for i in range(0, len(flights), count)
+        ]
+        self.evaluations += errors
+        best = int(np.argmin(errors))
+        if errors[best] < self._least:
+            self._judge(errors[best], dict(candidates[best]))
+        if self._progress is not None:
+            self._progress(min(len(self.evaluations), self._budget), self._budget)
+        return errors
+
+    def _judge(self, error: float, gains: Dict[str, float]) -> None:
+        cases = self._problem.held_out
+        flights = self._fly([(case, gains) for case in cases])
+        for case, flown in zip(cases, flights):
+            if flown.failure:
+                self.refused += 1
+                self.refusal = f"those that fly best lose {case.label}: {flown.failure}"
+                return
+        self._least = error
+        held_out = {case.label: flown.error for case, flown in zip(cases, flights)}
+        self._best = error, gains, held_out
+
+    def _fly(self, flights: Sequence[Tuple[Case, Mapping[str, float]]]) -> List[Flown]:
+        outcomes: List[Optional[Flown]] = [None] * len(flights)
+
+        def take(index: int, outcome: Union[Flown, QuadcoreError]) -> None:
+            # Gains that the law itself refuses are as bad as can be.
+            failed = isinstance(outcome, QuadcoreError)
+            outcomes[index] = Flown(LOST, str(outcome)) if failed else outcome  # type: ignore
+
+        def fly(index: int) -> Flown:
+            with warnings.catch_warnings():  # what is doubtful with bad gains is no news
+                warnings.simplefilter("ignore", QuadcoreWarning)
+                return self._problem.fly(*flights[index])
+
+        # By their numbers: a reference may be a function, which no process can send to another.
+        conducted(fly, range(len(flights)), take, self._processes)
+        return outcomes  # type: ignore[return-value]
+
+
+def _cma() -> Any:
+    try:
+        import cma
+    except ImportError:
+        raise InputError(
+            "tuning needs the package cma; install it: pip install 'quadcore[tune]'"
+        ) from None
+    return cma

@@ -1,0 +1,167 @@
+"""Gains by search: what is found, judged, refused, kept, and written."""
+
+from __future__ import annotations
+
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+import quadcore as qc
+from quadcore import gains
+from quadcore.cli import main, terminal
+
+pytest.importorskip("cma")
+
+SHORT = {"duration": 4.0, "xacro_args": {"sim_slow": 1}}
+FLIGHT = ["--duration", "4", "--xacro", "sim_slow:=1", "--quiet"]
+
+
+def tenth(name="pd"):
+    """A law whose gains are a tenth of those it has by itself."""
+    (table,) = (specs for law, _, specs in qc._core.laws() if law == name)
+    numbers = {s.name: float(s.default) / 10 for s in table if s.name[:3] in ("kp_", "kd_")}
+    assert len(numbers) == 8
+    return getattr(qc.laws, name)(**numbers)
+
+
+def largest(law, reference):
+    """Largest distance from a reference over 6 s, m."""
+    sim = qc.Simulation("quadrotor", engine="eigen", xacro_args={"sim_slow": 1})
+    sim.set_state(qc.references.start(sim, reference))
+    log = sim.run(6.0, controller=law, reference=reference, log_every=10, wrenches=False)
+    wanted = np.array([reference(t).position for t in log.time])
+    return np.linalg.norm(log.position - wanted, axis=1).max()
+
+
+@pytest.fixture(scope="module")
+def found():
+    return qc.tune(tenth(), budget=40, seed=3, processes=2, **SHORT)
+
+
+def test_gains_ten_times_too_small_become_gains_that_fly_what_was_held_out(found):
+    law = found.gains.make()
+    for reference in (qc.references.circle(), qc.references.eight()):
+        assert largest(law, reference) < 0.5 * largest(tenth(), reference)
+    assert set(found.held_out) == {"circle", "eight"}
+    assert found.error < 0.7 * found.start
+
+
+def test_the_same_seed_gives_the_same_gains_whatever_the_processes(found):
+    np.random.seed(1)  # whose state has no say
+    again = qc.tune(tenth(), budget=40, seed=3, processes=1, **SHORT)
+    assert again == found
+    other = qc.tune(tenth(), budget=10, seed=4, held_out=["hover"], **SHORT)
+    assert other.evaluations[0] == found.evaluations[0]
+    assert other.evaluations[1] != found.evaluations[1]
+
+
+def test_what_was_found_is_written_with_its_history_and_read_back(found, tmp_path):
+    gains.write(found.gains, tmp_path / "pd.yaml")
+    back = gains.read(tmp_path / "pd.yaml")
+    assert back.parameters == found.gains.parameters
+    assert (back.law, back.vehicle, back.rate) == ("pd", "quadrotor", 500)
+    history = yaml.safe_load((tmp_path / "pd.yaml").read_text())["history"]
+    assert history["tuned_on"] == ["spiral", "step"]
+    assert history["held_out"] == found.held_out
+    assert history["evaluations"] == found.evaluations and len(found.evaluations) >= 40
+    assert min(found.evaluations) <= history["best"] == found.error
+    assert (history["seed"], history["budget"], history["start"]["kp_xy"]) == (3, 40, 0.24)
+
+
+def test_gains_that_lose_a_held_out_case_are_refused():
+    far = qc.references.step(dx=40.0, time=0.1)  # lost from the first moment on
+    with pytest.raises(qc.FlightError, match=r"no gains found: .* lose far: lost at") as caught:
+        qc.tune("pd", budget=3, references=["hover"], held_out=[_named("far", far)], **SHORT)
+    assert len(caught.value.evaluations) >= 3
+
+
+def _named(name, shape):
+    def reference(t):
+        return shape(t)
+
+    reference.__name__ = name
+    return reference
+
+
+def test_other_models_judge_too(tmp_path):
+    text = qc.read_model("quadrotor", {"sim_slow": 1}).document.text
+    (tmp_path / "own.urdf").write_text(text)
+    model = tmp_path / "own.urdf"
+    found = qc.tune(
+        "pd", model, references=["hover"], held_out=["ramp"], held_out_models=["quadrotor"],
+        only=["kp_xy", "kd_xy"], budget=1, duration=1.0,
+    )  # fmt: skip
+    assert set(found.held_out) == {
+        f"ramp, {model}", "hover, quadrotor", "ramp, quadrotor"
+    }  # fmt: skip
+    assert set(found.gains.history["start"]) == {"kp_xy", "kd_xy"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"law": "pidd"}, "there is no law 'pidd'"),
+        ({"law": "controllers:Mine"}, "controllers"),
+        ({"only": ["kp_xz"]}, "law 'pd' has no number 'kp_xz'; tune some of scale, kp_xy"),
+        ({"only": ["ki_xy"]}, "ki_xy is 0; begin with more than 0"),
+        ({"only": ["drag"]}, "no number 'drag'"),
+        ({"held_out": ["spiral"]}, "reference 'spiral' is tuned on and held out"),
+        ({"references": ["step", "step"]}, "reference 'step' is named twice"),
+        ({"references": []}, "tuning needs a model, a reference"),
+        ({"references": ["stair"]}, "there is no reference 'stair'"),
+        ({"budget": 0}, "budget is 0; give at least 1"),
+        ({"engine": "odd"}, "odd"),
+    ],
+)
+def test_what_cannot_be_tuned_is_told_before_anything_flies(arguments, message):
+    with pytest.raises(qc.InputError, match=message):
+        qc.tune(**{"law": "pd", "budget": 1, **SHORT, **arguments})
+
+
+def test_without_the_optimiser_it_is_told_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "cma", None)
+    with pytest.raises(qc.InputError, match=r"pip install 'quadcore\[tune\]'"):
+        qc.tune("pd", budget=1, **SHORT)
+
+
+@pytest.mark.usefixtures("in_empty_folder")
+class TestCommand:
+    def test_it_writes_a_gains_file_that_flies(self):
+        assert main(["tune", "pd", "-o", "pd.yaml", "--budget", "1", *FLIGHT]) == 0
+        assert gains.of_file("pd.yaml").parameters["kp_xy"] == 2.4
+        assert main(["tune", "pd.yaml", "-o", "again.yaml", "--budget", "1", *FLIGHT]) == 0
+
+    def test_an_interrupt_keeps_the_best_so_far(self, monkeypatch, capsys):
+        @contextmanager
+        def interrupting(*_):
+            def report(done, _):
+                if done > 1:
+                    raise KeyboardInterrupt
+
+            yield report
+
+        monkeypatch.setattr(terminal, "progress", interrupting)
+        assert main(["tune", "pd", "-o", "pd.yaml", "--budget", "500", *FLIGHT]) == 130
+        assert "the best so far: pd.yaml" in capsys.readouterr().err
+        history = yaml.safe_load(Path("pd.yaml").read_text())["history"]
+        assert history["ended"] == "interrupted" and 1 < len(history["evaluations"]) < 50
+
+    @pytest.mark.parametrize(
+        ("arguments", "message"),
+        [
+            (["pd", "-o", "pd.txt"], "pd.txt: name a file that ends in .yaml"),
+            (["pd", "-o", "no/pd.yaml"], "there is no folder no"),
+            (["nothing", "-o", "pd.yaml"], "there is no law 'nothing'"),
+            (["pd", "no.urdf", "-o", "pd.yaml"], "no.urdf: no such file"),
+            (["pd", "-o", "pd.yaml", "--hold-out", "step"], "tuned on and held out"),
+        ],
+    )
+    def test_what_is_wrong_is_one_line_and_leaves_no_file(self, arguments, message, capsys):
+        assert main(["tune", *arguments, *FLIGHT]) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert message in line and line.startswith("error: ")
+        assert not list(Path().iterdir())
