@@ -188,7 +188,9 @@ class Simulation(_core.Simulation):
         reference : name or callable, optional
             Where the controller is to fly: one of `quadcore.references`, or what is called as
             reference(t), t being the time of the simulation in s. The flight begins in the present
-            state; `quadcore.references.start` gives that of a vehicle already on the reference.
+            state; `quadcore.references.start` gives that of a vehicle already on the reference. The
+            log has it as topic ``reference`` (x, y, z, yaw), and the position less its own as topic
+            ``error`` (x, y, z).
 
         Returns
         -------

@@ -312,6 +312,23 @@ def test_options_come_from_a_file_and_the_command_line_wins(capsys):
     assert {row["seed"] for row in found} == {"0", "1"}
 
 
+def test_the_file_of_the_eight_readings_is_one(capsys):
+    file = Path(__file__).resolve().parents[2] / "config" / "eight_cases.yaml"
+    short = ["--engine", "eigen,gazebo11", "--duration", "0.5", "--quiet"]
+    assert main(["evaluate", str(file), *short, "--out", "out", "--no-plots"]) == 0
+    assert len(rows()) == 8
+    found = json.loads(Path("out/evaluation.json").read_text())["poles"]
+    yaw = [row for row in found if row["axis"] == "yaw"]
+    assert [row["engine"] for row in yaw] == ["eigen, gazebo11"] * 2
+    assert [row["poles"][0][0] for row in yaw] == pytest.approx([7.45, 10.4], abs=0.05)
+
+
+def test_models_with_other_rotors_fly_beside_each_other():
+    found = evaluate("geometric", "hover", models=["hexarotor", "crazyflie"], xacro_args={})
+    assert [row["model"] for row in found.table] == ["hexarotor", "crazyflie"]
+    assert max(row["largest_position"] for row in found.table) < 0.01
+
+
 @pytest.mark.parametrize(
     ("text", "says"),
     [

@@ -91,8 +91,9 @@ void Simulation::move() {
   const Topic& topic = topics_[topics_.at(command_topic)];
   const VectorXd command = Eigen::Map<const VectorXd>(
       topic.values.data(), static_cast<Eigen::Index>(topic.values.size()));
-  motion_(dt_, command, state_);
-  engine_->set_state(state_);
+  VehicleState moved = state_;  // whose numbers are looked at where they lie
+  motion_(dt_, command, moved);
+  engine_->set_state(moved);
 }
 
 std::string Simulation::blamed() const {

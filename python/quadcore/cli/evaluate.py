@@ -258,16 +258,18 @@ def _show(evaluation: Evaluation, files: list[Path]) -> None:
 
 
 def _margins(evaluation: Evaluation) -> Any:
+    from ..evaluation.output import number_text
+
     table = terminal.table("controller", "gain", "delay (s)", "box, median / worst (m)")
     for row in evaluation.margins:
         if row["failure"]:
             table.add_row(row["controller"], row["failure"])
             continue
         gain, box = (
-            " / ".join(f"{row[name]:.3g}" for name in names)
+            " / ".join(number_text(row[name]) or "-" for name in names)
             for names in (("gain_low", "gain_high"), ("box_median", "box_worst"))
         )
-        table.add_row(row["controller"], gain, f"{row['delay_margin']:.3g}", box)
+        table.add_row(row["controller"], gain, number_text(row["delay_margin"]) or "-", box)
     return table
 
 

@@ -123,8 +123,10 @@ def _interval(group: Mapping[str, Any], of: str, digits: int) -> str:
 
 
 def number_text(value: float) -> str:
-    """Four digits, for a table that is read."""
-    return "" if math.isnan(value) else f"{value:.4g}"
+    """Four digits, for a table that is read; an infinite error is that of a lost vehicle."""
+    if math.isnan(value):
+        return ""
+    return "lost" if math.isinf(value) else f"{value:.4g}"
 
 
 def _csv(table: Sequence[Mapping[str, Any]]) -> List[List[Any]]:

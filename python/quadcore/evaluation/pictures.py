@@ -153,9 +153,15 @@ def _boxes(evaluation: Evaluation) -> Figure:
         names.append(
             f"{label(group, groups)}, {group['reference']}" + f", {lost} failed" * (lost > 0)
         )
-    axes.boxplot(values, vert=False, widths=0.6, whis=(0, 100))
-    axes.set_yticklabels(names, fontsize="small")
     axes.set_xscale("log")
+    for place, found in enumerate(values):
+        low, left, middle, right, high = np.quantile(found, [0, 0.25, 0.5, 0.75, 1])
+        axes.plot([low, high], [place, place], color="black", marker="|", linewidth=1)
+        axes.barh(place, right - left, left=left, height=0.6, color="white", edgecolor="black")
+        axes.plot([middle, middle], [place - 0.3, place + 0.3], color=PALETTE[1])
+    axes.set_xlim(min(map(min, values)) / 1.2, max(map(max, values)) * 1.2)
+    axes.set_yticks(range(len(names)))
+    axes.set_yticklabels(names, fontsize="small")
     axes.set_xlabel("distance (m); box: quartiles, whiskers: all seeds")
     return figure
 
