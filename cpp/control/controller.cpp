@@ -71,15 +71,17 @@ void Controller::command(double period, const Odometry& now, const Reference& wa
   const Demand demand = law_->demand(instant, believed + rotors());
   const bool met = allocation_.allocate(demand, speeds);
   for (std::size_t i = 0; i < rotors(); ++i) speeds[i] = std::sqrt(speeds[i]);
-  lead(period, begins, believed, speeds);
+  const bool reached = lead(period, begins, believed, speeds);
   for (std::size_t i = 0; i < rotors(); ++i) speeds[i] *= belief_.rotors[i].spin;
   state[kBegun] = 1;
-  state[kSaturated] = met ? 0 : 1;
+  state[kSaturated] = met && reached ? 0 : 1;
 }
 
 /// Makes commands of wanted speeds and follows what the rotors make of them: speeds that approach a
 /// command with their lag tau, dw/dt = (command - w)/tau, approach the wanted speed with lead_time.
-void Controller::lead(double period, bool begins, double* believed, double* speeds) const {
+/// Says whether the commands can be followed.
+bool Controller::lead(double period, bool begins, double* believed, double* speeds) const {
+  bool all = true;
   for (std::size_t i = 0; i < rotors(); ++i) {
     const BelievedRotor& rotor = belief_.rotors[i];
     if (begins) believed[i] = speeds[i];
@@ -92,9 +94,11 @@ void Controller::lead(double period, bool begins, double* believed, double* spee
       const double wanted_share = 1 - elementary::exp(-period / lead_time_);
       const double ahead = believed[i] + wanted_share / share * (speeds[i] - believed[i]);
       speeds[i] = std::clamp(ahead, rotor.slowest, rotor.fastest);
+      all &= speeds[i] == ahead;
     }
     believed[i] += share * (speeds[i] - believed[i]);
   }
+  return all;
 }
 
 }  // namespace quadcore::control

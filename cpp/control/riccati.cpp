@@ -3,9 +3,9 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <cmath>
-#include <stdexcept>
 
 #include "quadcore/elementary.hpp"
+#include "quadcore/error.hpp"
 
 namespace quadcore::control {
 
@@ -25,7 +25,7 @@ Eigen::RowVectorXd optimal_gain(const Eigen::MatrixXd& A, const Eigen::VectorXd&
     change = (next - Z).norm() / next.norm();
     Z = next;
   }
-  if (!(change <= 1e-9)) throw std::logic_error("no gain stabilises this system");
+  if (!(change <= 1e-9)) throw InputError("law 'lqr': no gain comes of these weights; take others");
   Eigen::MatrixXd left(2 * n, n), right(2 * n, n);
   left << Z.topRightCorner(n, n), Z.bottomRightCorner(n, n) + one;
   right << Z.topLeftCorner(n, n) + one, Z.bottomLeftCorner(n, n);

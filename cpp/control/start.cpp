@@ -4,6 +4,7 @@
 
 #include "quadcore/control/allocation.hpp"
 #include "quadcore/control/flat_state.hpp"
+#include "quadcore/error.hpp"
 
 namespace quadcore::control {
 
@@ -16,6 +17,7 @@ VehicleState start_on(const Reference& wanted, const VehicleDescription& vehicle
       truth.air_torque_F(flat.R_WF.transpose() * wanted.velocity, flat.w_WF_F);
   const auto n = static_cast<Eigen::Index>(truth.rotors.size());
   VectorXd squares(n), speeds = VectorXd::Zero(n);
+  bool met = true;
   // The torque needs the rotors' momentum, and their speeds need the torque.
   for (int round = 0; round < 4; ++round) {
     Vector3d h_F = Vector3d::Zero();
@@ -23,12 +25,14 @@ VehicleState start_on(const Reference& wanted, const VehicleDescription& vehicle
       const BelievedRotor& rotor = truth.rotors[static_cast<std::size_t>(i)];
       h_F += rotor.momentum * speeds[i] * rotor.axis_F;
     }
-    allocation.allocate({flat.thrust, torque_for(truth, flat.dw_WF_F, flat.w_WF_F, h_F, tau_air_F)},
-                        squares.data());
+    met = allocation.allocate(
+        {flat.thrust, torque_for(truth, flat.dw_WF_F, flat.w_WF_F, h_F, tau_air_F)},
+        squares.data());
     for (Eigen::Index i = 0; i < n; ++i) {
       speeds[i] = truth.rotors[static_cast<std::size_t>(i)].spin * std::sqrt(squares[i]);
     }
   }
+  if (!met) throw InputError("the reference begins with more than the rotors can do; take it slower");
   VehicleState state;
   state.position = wanted.position;
   state.orientation = Quaterniond(flat.R_WF).normalized();

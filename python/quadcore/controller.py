@@ -115,7 +115,7 @@ class Guided(Pilot):
         if isinstance(controller, str):
             controller = laws.parse(controller, simulation.model.name)
         if isinstance(reference, str):
-            reference = references.Shape(reference)
+            reference = references.parse(reference)
         if reference is not None and not callable(reference):
             raise InputError(
                 f"reference is {reference!r}; give one of quadcore.references, or a function that "

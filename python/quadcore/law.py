@@ -46,6 +46,7 @@ class Law:
         self.belief = belief
         self.parameters = values(f"law '{name}'", parameters)
         self._controller: Optional[_core.Controller] = None
+        self._period = 1 / self.rate
 
     def reset(self, simulation: _core.Simulation) -> None:
         """Begin on what the simulation flies."""
@@ -66,6 +67,7 @@ class Law:
                 f"this vehicle has {simulation.rotor_count}"
             )
         self._controller = _core.Controller(self.name, believed, self.parameters, self.spins)
+        self._period = max(1 / self.rate, simulation.dt)  # called once a step at most
 
     def __call__(self, t: float, state: Any, reference: Any) -> np.ndarray:
         """Give the speeds of the rotors, rad/s."""
@@ -73,13 +75,13 @@ class Law:
             raise _core.InputError(f"law '{self.name}' flies nothing yet; call its reset()")
         if reference is None:
             raise _core.InputError(f"law '{self.name}' has no reference to follow; give one")
-        return self._controller.command(1 / self.rate, state, reference)
+        return self._controller.command(self._period, state, reference)
 
     def at(self, simulation: _core.Simulation, sensed: str, shape: _core.ReferenceShape) -> Any:
         """Give the same for what stands on a topic and a reference now, without a way round."""
         if self._controller is None:
             raise _core.InputError(f"law '{self.name}' flies nothing yet; call its reset()")
-        return self._controller.command_at(1 / self.rate, simulation, sensed, shape)
+        return self._controller.command_at(self._period, simulation, sensed, shape)
 
     @property
     def saturated(self) -> bool:

@@ -102,7 +102,8 @@ class ControllerPlugin final : public Plugin {
     // The first command acts at once, for nothing precedes it.
     const double delay = state[kSteps] > 0 ? std::ceil(gains_.delay / sample.dt - rounding) : 0;
     order[0] = state[kSteps] + std::max(delay, 0.0);
-    controller_->command(1 / gains_.rate, now, sample.topics.read<messages::Reference>(reference_),
+    const double period = std::max(1 / gains_.rate, sample.dt);  // called once a step at most
+    controller_->command(period, now, sample.topics.read<messages::Reference>(reference_),
                          state.data() + kUnderWay + places_ * place_size(), order + 1);
     state[kSent] += 1;
   }

@@ -40,7 +40,7 @@ class Controller {
   Controller(const LawInfo& law, const VehicleDescription& vehicle, const Values& values,
              const std::vector<double>& spins);
   static Values completed_for(const std::string& law, const Values& values);
-  void lead(double period, bool begins, double* believed, double* speeds) const;
+  bool lead(double period, bool begins, double* believed, double* speeds) const;
 
   Belief belief_;
   Allocation allocation_;
