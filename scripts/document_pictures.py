@@ -7,6 +7,7 @@ Every flight is flown here; the recordings of real Gazebo 11 lie in tests/data/g
 from __future__ import annotations
 
 import shutil
+import sys
 import tempfile
 from pathlib import Path
 
@@ -14,14 +15,16 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import quadcore as qc
-from quadcore.colours import PALETTE
 from quadcore.plots import dress, png
 
 ROOT = Path(__file__).resolve().parents[1]
 DATA = ROOT / "tests" / "data" / "gazebo11"
 IMAGES = ROOT / "docs" / "images"
 
-COLOURS = {"gazebo11": PALETTE[0], "ode": PALETTE[4], "eigen": PALETTE[1]}
+sys.path.insert(0, str(ROOT / "examples"))
+import spiral  # noqa: E402  (an example, no package)
+
+COLOURS = spiral.COLOURS
 WIDTHS = {"gazebo11": 1.6, "ode": 3.5, "eigen": 1.6}  # ode and eigen lie upon each other
 RECORDED = {"color": "black", "label": "real Gazebo 11 (recorded)", "linestyle": "none"}
 
@@ -128,6 +131,7 @@ def draw_contact() -> None:
 
 
 if __name__ == "__main__":
+    save(spiral.picture(spiral.fly()), "spiral")
     draw_flight()
     draw_wrenches()
     draw_contact()

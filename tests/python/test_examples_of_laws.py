@@ -96,3 +96,19 @@ def test_the_learned_policy_says_what_it_cannot_fly(in_folder_of_policy, capsys)
     arguments = ["quadrotor", "--controller", "learned_policy:Policy", "--engine", "eigen"]
     assert main(["run", *arguments, "--duration", "1", "--quiet"]) == 2
     assert "set drone_plugin.reactionTorque" in capsys.readouterr().err
+
+
+def test_the_main_job_flies_what_its_settings_say(tmp_path, monkeypatch):
+    """Three laws in three engines, but for a second: that the picture is drawn and nothing is lost."""
+    monkeypatch.syspath_prepend(str(EXAMPLES))
+    import spiral
+
+    from quadcore.plots import png
+
+    monkeypatch.setitem(spiral.SETTINGS, "duration", 1.0)
+    logs = spiral.fly()
+    assert {law for law, _ in logs} == set(spiral.TOLD) == set(spiral.STYLES)
+    assert {engine for _, engine in logs} == set(ENGINES)
+    for (law, _), log in logs.items():
+        assert 0 < spiral.away(log).max() < (1e-3 if law == "geometric" else 0.1)
+    assert png(spiral.picture(logs)).startswith(b"\x89PNG")
