@@ -91,14 +91,14 @@ def fragment(flights: Sequence[PlayerFlight]) -> str:
 def _told(flight: PlayerFlight) -> Dict[str, Any]:
     log = flight.log
     rows = np.linspace(0, len(log) - 1, min(len(log), _POINTS)).round().astype(int)
-    reference = log.topics.get("reference")
+    reference = log.topics.get("reference", {})
     told = {
         "time": log.time,
         "position": log.position,
         "orientation": log.orientation,
         "rotor_velocity": log.rotor_velocity,
     }
-    if reference is not None:
+    if set("xyz") <= set(reference):  # a plugin may call anything so
         told["reference"] = np.column_stack([reference[axis] for axis in "xyz"])
     return {
         "name": flight.name,

@@ -99,7 +99,7 @@ def test_the_learned_policy_says_what_it_cannot_fly(in_folder_of_policy, capsys)
 
 
 def test_the_main_job_flies_what_its_settings_say(tmp_path, monkeypatch):
-    """Three laws in three engines, but for a second: that the picture is drawn and nothing is lost."""
+    """For a second, in which nothing is lost yet."""
     monkeypatch.syspath_prepend(str(EXAMPLES))
     import spiral
 

@@ -99,6 +99,12 @@ def test_a_long_log_is_thinned_and_keeps_its_ends():
     assert "reference" not in flight["columns"]
 
 
+def test_a_topic_that_is_called_reference_and_is_none_is_left_alone():
+    log = flown(reference=False)
+    log.topics["reference"] = {"volts": log.time}
+    assert page([PlayerFlight("a", log)]) == page([PlayerFlight("a", flown(reference=False))])
+
+
 def test_equal_flights_make_equal_pages():
     assert page([PlayerFlight("a", flown())]) == page([PlayerFlight("a", flown())])
 
@@ -224,6 +230,17 @@ class TestCommand:
         assert (first.pop("name"), second.pop("name")) == ("ode", "eigen")
         assert first == second
         assert text == page([PlayerFlight("ode", log), PlayerFlight("eigen", log)], "ode, eigen")
+
+    def test_a_guided_flight_brings_its_reference(self):
+        flight = ["--engine", "eigen", "--duration", "0.5", "--log-every", "10", "--quiet"]
+        guided = ["--controller", "geometric", "--reference", "circle"]
+        assert main(["run", "quadrotor", *flight, *guided, "--log", "a.csv"]) == 0
+        assert main(["play", "a.csv", "-o", "a.html", "--quiet"]) == 0
+        (told_of,) = content_of(Path("a.html").read_text())["flights"]
+        circle = qc.references.circle()
+        wanted = [circle(t).position for t in qc.Log.of_file("a.csv").time]
+        found = numbers(told_of["columns"]["reference"], 3)
+        assert np.allclose(found, wanted, rtol=1e-6, atol=1e-6)
 
     def test_the_rotors_are_the_models(self):
         flown(rotors=4).to_file("a.csv")

@@ -150,6 +150,12 @@ class TestCommand:
         history = yaml.safe_load(Path("pd.yaml").read_text())["history"]
         assert history["ended"] == "interrupted" and 1 < len(history["evaluations"]) < 50
 
+    def test_without_gains_that_keep_everything_there_is_no_file(self, capsys):
+        far = ["--reference", "hover", "--hold-out", "step:dx=40,time=0.1"]
+        assert main(["tune", "pd", "-o", "pd.yaml", "--budget", "1", *far, *FLIGHT]) == 3
+        assert "error: no gains found: those that fly best lose step" in capsys.readouterr().err
+        assert not list(Path().iterdir())
+
     @pytest.mark.parametrize(
         ("arguments", "message"),
         [
