@@ -63,7 +63,7 @@ def run(arguments: argparse.Namespace) -> None:
         world=arguments.world,
         dt=arguments.dt,
         duration=arguments.duration,
-        spawn=arguments.spawn,
+        spawn=arguments.spawn or options.SPAWN,
         commands=arguments.commands,
         motor_lag=arguments.motors == "lag",
         log_every=arguments.log_every,
