@@ -69,7 +69,7 @@ def columns(file):
     return dict(zip(names, np.array(rows, dtype=float).T))
 
 
-def test_reference_and_error_are_in_the_log_beside_the_state(capsys):
+def test_reference_and_error_are_in_the_log_beside_the_state(capsys, in_empty_folder):
     arguments = ["--controller", "geometric", "--reference", "spiral:radius=1.5", "--duration", "2"]
     printed(capsys, *arguments, "--log", "log.csv", "--log", "log.mat", "--log-every", "10")
     log = columns("log.csv")
