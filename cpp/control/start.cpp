@@ -32,7 +32,8 @@ VehicleState start_on(const Reference& wanted, const VehicleDescription& vehicle
       speeds[i] = truth.rotors[static_cast<std::size_t>(i)].spin * std::sqrt(squares[i]);
     }
   }
-  if (!met) throw InputError("the reference begins with more than the rotors can do; take it slower");
+  if (!met)
+    throw InputError("the reference begins with more than the rotors can do; take it slower");
   VehicleState state;
   state.position = wanted.position;
   state.orientation = Quaterniond(flat.R_WF).normalized();
