@@ -105,7 +105,7 @@ Vector3d Cascade::torque(const Instant& instant, const Vector3d& rpy, const Vect
   error = error.unaryExpr([](double angle) { return wrapped(angle); });
   auto integral = vector(memory + kAngles);
   integral += instant.period * error;
-  Vector3d wanted_rates(0, 0, instant.wanted.yaw_rate), wanted_accelerations = Vector3d::Zero();
+  Vector3d wanted_rates = Vector3d::Zero(), wanted_accelerations = Vector3d::Zero();
   if (gains_.flat_rates) {
     const FlatState flat = flat_state(instant.wanted, belief_, gains_.drag);
     const Vector3d flat_rpy = rpy_from_quaternion(Quaterniond(flat.R_WF));

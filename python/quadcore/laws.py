@@ -12,7 +12,7 @@ from . import _core
 from .gains import law_for, of_file
 from .imported import imported
 from .law import Law
-from .parameters import docstring, read_values
+from .parameters import did_you_mean, docstring, read_values
 
 
 def parse(text: str, vehicle: str = "") -> Any:
@@ -44,7 +44,7 @@ def parse(text: str, vehicle: str = "") -> Any:
     if ":" in text:
         return imported(text)
     raise _core.InputError(
-        f"there is no law '{text}'; write one of {', '.join(NAMES)}, a file of gains that ends in "
+        f"there is no law '{text}'{did_you_mean(text, NAMES)}; write one of {', '.join(NAMES)}, a file of gains that ends in "
         ".yaml, or MODULE:CLASS"
     )
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import difflib
 from numbers import Real
-from typing import Any, Dict, Iterable, Mapping
+from typing import Any, Dict, Iterable, Mapping, Sequence
 
 from . import _core
 
@@ -52,3 +53,9 @@ def docstring(summary: str, table: Iterable[_core.ParameterSpec], more: str = ""
             f"    {spec.meaning}{unit}{source}.",
         ]
     return "\n".join(lines)
+
+
+def did_you_mean(name: str, known: Sequence[str]) -> str:
+    """Name the nearest of those that there are, if one is near."""
+    near = difflib.get_close_matches(name, known, 1)
+    return f" (did you mean '{near[0]}')" if near else ""

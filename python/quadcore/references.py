@@ -13,7 +13,7 @@ import numpy as np
 
 from . import _core, resources
 from .formats import format_of
-from .parameters import docstring, read_values, values
+from .parameters import did_you_mean, docstring, read_values, values
 from .state import State
 
 if TYPE_CHECKING:
@@ -138,7 +138,8 @@ def parse(text: str) -> Shape:
     name, _, rest = text.partition(":")
     if name not in NAMES:
         raise _core.InputError(
-            f"there is no reference '{name}'; write one of {', '.join(NAMES)}, or the name of a "
+            f"there is no reference '{name}'{did_you_mean(name, NAMES)}; write one of "
+            f"{', '.join(NAMES)}, or the name of a "
             f"file that ends in {', '.join(_FILES)}"
         )
     if name in _OF_ROWS:

@@ -146,7 +146,7 @@ def test_pictures_are_drawn_from_rows_evenly_taken_and_the_last(rows, piece):
     simulation = quadrotor()
     table = np.arange(rows)[:, None] * np.ones((1, 18))
     wrenches = np.arange(rows)[:, None, None] * np.ones((1, len(simulation.wrench_terms), 6))
-    thinned = Thinned(rows, simulation)
+    thinned = Thinned(rows, simulation, _core.flight_columns(simulation, []))
     for begin in range(0, rows, piece):
         thinned.receive(table[begin : begin + piece], wrenches[begin : begin + piece])
     log = thinned.log()
