@@ -44,8 +44,8 @@ def parse(text: str, vehicle: str = "") -> Any:
     if ":" in text:
         return imported(text)
     raise _core.InputError(
-        f"there is no law '{text}'{did_you_mean(text, NAMES)}; write one of {', '.join(NAMES)}, a file of gains that ends in "
-        ".yaml, or MODULE:CLASS"
+        f"there is no law '{text}'{did_you_mean(text, NAMES)}; write one of {', '.join(NAMES)}, "
+        "a file of gains that ends in .yaml, or MODULE:CLASS"
     )
 
 
