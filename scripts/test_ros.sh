@@ -75,23 +75,9 @@ build_plugins() {
   done
 }
 
-# run SPACE TEST: one test, which has a master of its own.
-run() {
-  local log=$workspace/$1-$2.log count
-  rostest --text quadcore "$2.test" >$log 2>&1 || true
-  count=$(sed -n 's/^ \* TESTS: //p' $log)
-  if grep -q 'RESULT: SUCCESS' $log && [ "$count" -gt 0 ]; then
-    say "  $1 $2: $count passed"
-  else
-    cat $log
-    say "  $1 $2: FAILED"
-    echo "$1 $2" >>$workspace/failed
-  fi
-}
-
-# run_in SPACE TEST...: the tests, several at a time, with the environment of that space.
+# run_in SPACE TEST...: the tests, with the environment of that space.
 run_in() {
-  local space=$1 name
+  local space=$1 name log count
   shift
   set +u
   . $workspace/$space/setup.bash
@@ -101,14 +87,21 @@ run_in() {
   [ -d /opt/ros/noetic ] || export ROS_PACKAGE_PATH="$ROS_PACKAGE_PATH:/usr/share" \
     PYTHONPATH="$PYTHONPATH:$PWD/$workspace/xacro"
   for name in "$@"; do
-    run $space $name &
-    [ "$(jobs -rp | wc -l)" -lt "$(nproc)" ] || wait -n
+    log=$workspace/$space-$name.log
+    rostest --text quadcore "$name.test" >$log 2>&1 || true
+    count=$(sed -n 's/^ \* TESTS: //p' $log)
+    if grep -q 'RESULT: SUCCESS' $log && [ "$count" -gt 0 ]; then
+      say "  $space $name: $count passed"
+    else
+      cat $log
+      say "  $space $name: FAILED"
+      failed="$failed $space/$name"
+    fi
   done
-  wait
-  [ ! -e $workspace/failed ]
 }
 
 workspace=build/catkin
+failed=""
 mkdir -p $workspace
 install_ros
 # The nodes written in Python run on the system's, with quadcore from the workspace and nothing of
@@ -126,8 +119,7 @@ copy_sources
 build
 say "running the ROS tests"
 SECONDS=0
-rm -f $workspace/failed
 (run_in devel topics services lockstep playing clock several parameters faults masters fly_from_python \
-  launch plugin_by_others plugin_topics)
-(run_in install launch playing fly_from_python plugin_by_others)
+  launch plugin_by_others plugin_topics; [ -z "$failed" ])
+(run_in install launch playing fly_from_python plugin_by_others; [ -z "$failed" ])
 say "the ROS tests passed in $SECONDS s"
