@@ -12,6 +12,7 @@ import rospy
 from geometry_msgs.msg import Vector3Stamped, WrenchStamped
 from harness import Recording, commander, description, flight, step, wait_until
 from nav_msgs.msg import Odometry
+from quadcore.srv import Step
 from sensor_msgs.msg import Imu
 from std_msgs.msg import Float64MultiArray
 
@@ -148,14 +149,18 @@ class TestPluginTopics(unittest.TestCase):
             lockstep = ("_paused:=true", "_lockstep:=true", "_real_time_factor:=0")
             log = (f"_log:={ros_log}", "_log_topics:=echo push vel_cmd odom")
             with flight(*lockstep, "_lockstep_timeout:=30", *log, urdf=urdf):
-                # Without a queue rospy sends in the thread that publishes.
+                # Without a queue rospy sends in the thread that publishes. Between two connections
+                # only an answer tells that the one was read before the other is written to: a
+                # second call of step gets one at once.
                 push = publisher("/push", Float64MultiArray, queue_size=None)
+                answered = rospy.ServiceProxy("/quadcore/step", Step, persistent=True)
                 with commander() as send:
 
                     def answer(message):
                         row = table[round(message.header.stamp.to_sec() * 1000)]
                         if row[4] > 0:  # now and then
                             push.publish(data=row[4:])
+                            answered(0)
                         send(row[:4])
 
                     with Recording("/odom", Odometry, act=answer) as odometry:
