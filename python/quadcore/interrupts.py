@@ -38,14 +38,15 @@ def exit_status(stop: KeyboardInterrupt) -> int:
 
 
 @contextmanager
-def heard() -> Iterator[List[Interrupted]]:
+def heard() -> Iterator[None]:
     """Let each of `SIGNALS` raise `Interrupted` within the block; for the main thread.
 
     SIGTERM and SIGHUP stay ignored if they are (``nohup``); SIGINT is heard all the same, because
     shells start background jobs with it ignored. Once one was raised, no other is, so that work can
     be kept, but a second Ctrl-C of a person who does not want to wait. What comes within half a
-    second is not one: ``timeout`` sends its signal to the process and to its group. What was raised
-    stands in the list, for code by others may have made another error of it.
+    second is not one: ``timeout`` sends its signal to the process and to its group. Whatever error
+    code by others made of it, such as the ImportError of a module whose start it met, leaves the
+    block as what was raised.
     """
     raised: List[Interrupted] = []
     first = 0.0
@@ -64,7 +65,11 @@ def heard() -> Iterator[List[Interrupted]]:
         for number in SIGNALS:
             if number == signal.SIGINT or before[number] != signal.SIG_IGN:
                 signal.signal(number, raise_it)
-        yield raised
+        yield
+    except Exception as error:
+        if raised:
+            raise raised[0] from error
+        raise
     finally:
         for changed, handler in before.items():
             signal.signal(changed, handler)

@@ -71,17 +71,19 @@ class Law:
 
     def __call__(self, t: float, state: Any, reference: Any) -> np.ndarray:
         """Give the speeds of the rotors, rad/s."""
-        if self._controller is None:
-            raise _core.InputError(f"law '{self.name}' flies nothing yet; call its reset()")
+        controller = self._begun()
         if reference is None:
             raise _core.InputError(f"law '{self.name}' has no reference to follow; give one")
-        return self._controller.command(self._period, state, reference)
+        return controller.command(self._period, state, reference)
 
     def at(self, simulation: _core.Simulation, sensed: str, shape: _core.ReferenceShape) -> Any:
         """Give the same for what stands on a topic and a reference now, without a way round."""
+        return self._begun().command_at(self._period, simulation, sensed, shape)
+
+    def _begun(self) -> _core.Controller:
         if self._controller is None:
             raise _core.InputError(f"law '{self.name}' flies nothing yet; call its reset()")
-        return self._controller.command_at(self._period, simulation, sensed, shape)
+        return self._controller
 
     @property
     def saturated(self) -> bool:

@@ -11,6 +11,7 @@ import numpy as np
 from ._core import InputError
 from .colours import PALETTE
 from .report import rendered
+from .study.sampling import evenly
 from .trajectory import Trajectory
 
 _POINTS = 1500  # per flight: 50 in a second of half a minute, between which the page interpolates
@@ -90,7 +91,7 @@ def fragment(flights: Sequence[PlayerFlight]) -> str:
 
 def _told(flight: PlayerFlight) -> Dict[str, Any]:
     log = flight.log
-    rows = np.linspace(0, len(log) - 1, min(len(log), _POINTS)).round().astype(int)
+    rows = evenly(len(log), _POINTS)
     reference = log.topics.get("reference", {})
     told = {
         "time": log.time,

@@ -17,7 +17,7 @@ from test_guided_runs import OWN
 import quadcore as qc
 from quadcore import laws, references
 from quadcore.cli import main
-from quadcore.cli.evaluate import several_calls
+from quadcore.cli.values import several_calls
 from quadcore.evaluation import measures
 from quadcore.evaluation.evaluate import conduct
 from quadcore.evaluation.intervals import cvar, interval

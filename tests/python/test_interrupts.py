@@ -227,6 +227,16 @@ def test_an_interrupt_that_others_take_for_a_fault_is_an_interrupt(capsys, monke
     assert capsys.readouterr().err == "interrupted\n"
 
 
+@pytest.mark.parametrize("number", SIGNALS)
+def test_an_interrupt_that_met_the_start_of_a_module_is_an_interrupt(number):
+    with pytest.raises(interrupts.Interrupted) as stop, interrupts.heard():
+        try:
+            signal.raise_signal(number)
+        except BaseException:
+            raise ImportError("initialization failed") from None  # as matplotlib's ft2font says it
+    assert stop.value.number == number
+
+
 def test_handlers_are_as_before_afterwards():
     before = [signal.getsignal(number) for number in SIGNALS]
     with interrupts.heard(), interrupts.held():

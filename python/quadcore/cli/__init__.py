@@ -39,24 +39,21 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     terminal.prepare()
     try:
-        with interrupts.heard() as interrupted:
-            status = _act(argv, interrupted)
+        status = _act(argv)
     except KeyboardInterrupt as stop:
         terminal.say("interrupted")
         status = interrupts.exit_status(stop)
     return status
 
 
-def _act(argv: Sequence[str] | None, interrupted: Sequence[BaseException]) -> int:
+def _act(argv: Sequence[str] | None) -> int:
     try:
-        arguments = _parser().parse_args(argv)
-        arguments.words = list(sys.argv[1:] if argv is None else argv)
-        with terminal.warnings_as_lines():
+        with interrupts.heard(), terminal.warnings_as_lines():
+            arguments = _parser().parse_args(argv)
+            arguments.words = list(sys.argv[1:] if argv is None else argv)
             arguments.action(arguments)
-        sys.stdout.flush()
+            sys.stdout.flush()
     except QuadcoreError as error:
-        if interrupted:  # and what was called took it for a fault
-            raise interrupted[0] from error
         terminal.say(f"error: {error}")
         return 3 if isinstance(error, FlightError) else 2
     except MemoryError:

@@ -10,11 +10,12 @@ from typing import Any
 from .. import interrupts
 from .._core import FlightError, InputError
 from ..comparison.compare import Comparison, fly
-from ..comparison.output import drawn, listed, number_text, summary, thinned, write
+from ..comparison.output import drawn, listed, summary, write
 from ..comparison.plan import Plan
 from ..files import make_folder
 from ..log import Log
-from ..study.axes import parse_axis
+from ..study.sampling import thinned
+from ..study.table import number_text
 from . import options, terminal
 
 _ROWS = 40  # on the terminal
@@ -68,9 +69,7 @@ def compare(arguments: argparse.Namespace) -> None:
 
 
 def _plan(arguments: argparse.Namespace) -> Plan:
-    axes = [
-        parse_axis(name, text) for name, text in options.unique("--vary", arguments.vary).items()
-    ]
+    axes = options.varied(arguments)
     if len(arguments.model) == 1 and not axes:
         raise InputError("one model and nothing varied; name another model, or use --vary")
     if arguments.logs and arguments.out is None:
@@ -78,7 +77,7 @@ def _plan(arguments: argparse.Namespace) -> Plan:
     model = options.model_arguments(arguments)
     return Plan(
         model.pop("model"),
-        {axis.name: axis.values for axis in axes},
+        axes,
         arguments.commands,
         arguments.duration,
         arguments.log_every,
@@ -117,9 +116,7 @@ def _flight(arguments: argparse.Namespace) -> dict[str, str]:
             for name, value in options.flight_arguments(arguments).items()
             if value not in (None, 0)
         },
-        **{f"set {key}": value for key, value in arguments.set},
-        **{f"xacro {key}": value for key, value in arguments.xacro},
-        **({"ignored": ", ".join(arguments.ignore)} if arguments.ignore else {}),
+        **options.changes_told(arguments),
     }
 
 

@@ -12,8 +12,7 @@ from .. import interrupts, laws, references
 from .._core import FlightError, InputError
 from ..files import check_writable, make_folder, read_text
 from ..plants import plants
-from ..study.axes import parse_axis
-from . import options, terminal
+from . import options, terminal, values
 
 if TYPE_CHECKING:
     from ..evaluation.evaluate import Evaluation
@@ -33,22 +32,22 @@ def register(commands: Any) -> None:
     parser.add_argument(
         "--controller",
         metavar="A,B",
-        type=several_calls,
+        type=values.several_calls,
         help=f"{', '.join(laws.NAMES)}, perhaps with parameters, LAW:KEY=VALUE,...; files of "
         "gains; MODULE:CLASS",
     )
     parser.add_argument(
         "--reference",
         metavar="A,B",
-        type=several_calls,
+        type=values.several_calls,
         help=f"{', '.join(references.NAMES)}, NAME:KEY=VALUE,..., or files",
     )
     parser.add_argument(
-        "--model", metavar="A,B", type=options.names, default=["quadrotor"], help="(quadrotor)"
+        "--model", metavar="A,B", type=values.names, default=["quadrotor"], help="(quadrotor)"
     )
     options.add_changes(parser)
     parser.add_argument(
-        "--seeds", metavar="N", type=options.integer(1), default=1, help="from --seed on (1)"
+        "--seeds", metavar="N", type=values.integer(1), default=1, help="from --seed on (1)"
     )
     options.add_vary(parser, " and controller.KEY, its rate, delay or a parameter of the laws")
     options.add_flight(parser, several_engines=True, log_every=None, flown=plants(), seconds=30.0)
@@ -59,7 +58,7 @@ def register(commands: Any) -> None:
     parser.add_argument(
         "--time-limit",
         metavar="S",
-        type=options.positive,
+        type=values.positive,
         default=300.0,
         help="of the wall clock for one flight, s (300)",
     )
@@ -103,26 +102,12 @@ def evaluate(arguments: argparse.Namespace) -> None:
     _report_failures(evaluation)
 
 
-def several_calls(text: str) -> list[str]:
-    """Read names with commas between, each perhaps ``NAME:KEY=VALUE,KEY=VALUE``."""
-    found: list[str] = []
-    for part in text.split(","):
-        if found and "=" in part and ":" not in part.partition("=")[0]:
-            found[-1] += f",{part}"
-        else:
-            found.append(part)
-    return found
-
-
 def _plan(arguments: argparse.Namespace) -> Plan:
     from ..evaluation.plan import Plan
 
     for name in ("controller", "reference"):
         if getattr(arguments, name) is None:
             raise InputError(f"nothing to fly: name --{name}")
-    axes = [
-        parse_axis(name, text) for name, text in options.unique("--vary", arguments.vary).items()
-    ]
     shared = {**options.model_arguments(arguments), **options.flight_arguments(arguments)}
     for name in ("model", "engine", "spawn"):  # of which there are several, or none
         shared.pop(name)
@@ -132,7 +117,7 @@ def _plan(arguments: argparse.Namespace) -> Plan:
         arguments.engine,
         arguments.model,
         arguments.seeds,
-        {axis.name: axis.values for axis in axes},
+        options.varied(arguments),
         arguments.duration,
         arguments.log_every,
         arguments.spawn,
@@ -218,9 +203,7 @@ def _flight(arguments: argparse.Namespace) -> dict[str, str]:
         "seeds": f"{arguments.seeds}, from {arguments.seed} on",
         "begins": "on the reference" if arguments.spawn is None else str(arguments.spawn),
         **{f"vary {key}": value for key, value in arguments.vary},
-        **{f"set {key}": value for key, value in arguments.set},
-        **{f"xacro {key}": value for key, value in arguments.xacro},
-        **({"ignored": ", ".join(arguments.ignore)} if arguments.ignore else {}),
+        **options.changes_told(arguments),
     }
 
 
@@ -258,7 +241,7 @@ def _show(evaluation: Evaluation, files: list[Path]) -> None:
 
 
 def _margins(evaluation: Evaluation) -> Any:
-    from ..evaluation.output import number_text
+    from ..evaluation.output import error_text
 
     table = terminal.table("controller", "gain", "delay (s)", "box, median / worst (m)")
     for row in evaluation.margins:
@@ -266,10 +249,10 @@ def _margins(evaluation: Evaluation) -> Any:
             table.add_row(row["controller"], row["failure"])
             continue
         gain, box = (
-            " / ".join(number_text(row[name]) or "-" for name in names)
+            " / ".join(error_text(row[name]) or "-" for name in names)
             for names in (("gain_low", "gain_high"), ("box_median", "box_worst"))
         )
-        table.add_row(row["controller"], gain, number_text(row["delay_margin"]) or "-", box)
+        table.add_row(row["controller"], gain, error_text(row["delay_margin"]) or "-", box)
     return table
 
 

@@ -8,10 +8,12 @@ from dataclasses import replace
 from typing import Any, Callable, Sequence
 
 from .. import laws, references
-from .._core import InputError, engines, parse_number
+from .._core import InputError, engines
 from ..controller import give
 from ..flight_plan import FlightPlan
 from ..simulation import pose
+from ..study.axes import parse_axis
+from . import values
 
 SPAWN = (0.0, 0.0, 10.0)
 """Where a flight begins unless told, m."""
@@ -42,7 +44,7 @@ def add_changes(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--set",
         metavar="PLUGIN.TAG=VALUE",
-        type=assignment(r"([^=]+\.[^.=]+)=(.+)", "PLUGIN.TAG=VALUE"),
+        type=values.assignment(r"([^=]+\.[^.=]+)=(.+)", "PLUGIN.TAG=VALUE"),
         action="append",
         default=[],
         help="give a plugin's tag another value, or LINK.mass, LINK.ixx ... LINK.izz, xacro.ARG; "
@@ -51,7 +53,7 @@ def add_changes(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--xacro",
         metavar="ARG:=VALUE",
-        type=assignment(r"([^:=]+):=(.*)", "ARG:=VALUE"),
+        type=values.assignment(r"([^:=]+):=(.*)", "ARG:=VALUE"),
         action="append",
         default=[],
         help="value of an argument of the xacro file; repeatable",
@@ -78,32 +80,36 @@ def add_flight(
     summaries = "; ".join(f"{name}: {summary}" for name, summary in flown)
     if several_engines:
         parser.add_argument(
-            "--engine", metavar="LIST", type=several(names), default=names, help=summaries
+            "--engine", metavar="LIST", type=values.several(names), default=names, help=summaries
         )
     else:
         parser.add_argument("--engine", choices=names, default="gazebo11", help=summaries)
     parser.add_argument("--world", metavar="FILE", help="world file or shipped world (empty)")
-    parser.add_argument("--dt", metavar="S", type=positive, help="step in s (the world's)")
+    parser.add_argument("--dt", metavar="S", type=values.positive, help="step in s (the world's)")
     parser.add_argument(
         "--duration",
         metavar="S",
-        type=positive,
+        type=values.positive,
         default=seconds,
         help=f"time to fly in s ({seconds:g})",
     )
     parser.add_argument(
-        "--seed", metavar="N", type=integer(0, 2**64 - 1), default=0, help="seed of all noise (0)"
+        "--seed",
+        metavar="N",
+        type=values.integer(0, 2**64 - 1),
+        default=0,
+        help="seed of all noise (0)",
     )
     parser.add_argument(
         "--spawn",
         metavar="X,Y,Z[,ROLL,PITCH,YAW]",
-        type=_pose,
+        type=values.pose,
         help="start pose of the frame in m and rad (0,0,10)",
     )
     parser.add_argument(
         "--log-every",
         metavar="N",
-        type=integer(1),
+        type=values.integer(1),
         default=log_every,
         help=f"log each N-th step ({log_every or 'each hundredth of a second'})",
     )
@@ -122,7 +128,7 @@ def add_vary(parser: argparse.ArgumentParser, more: str = "") -> None:
     parser.add_argument(
         "--vary",
         metavar="PLUGIN.TAG=VALUES",
-        type=assignment(r"([^=]+)=(.*)", "PLUGIN.TAG=VALUES"),
+        type=values.assignment(r"([^=]+)=(.*)", "PLUGIN.TAG=VALUES"),
         action="append",
         default=[],
         help="a,b,c or FIRST:LAST:COUNT or log:FIRST:LAST:COUNT; PLUGIN.TAG,PLUGIN.TAG=... gives "
@@ -151,16 +157,24 @@ def add_controller(parser: argparse.ArgumentParser) -> None:
 def add_timing(parser: argparse.ArgumentParser) -> None:
     """Add the options that say when a controller is asked, and heard."""
     parser.add_argument(
-        "--controller-rate", metavar="HZ", type=positive, help="calls per second (the law's, 500)"
+        "--controller-rate",
+        metavar="HZ",
+        type=values.positive,
+        help="calls per second (the law's, 500)",
     )
     parser.add_argument(
-        "--delay", metavar="S", type=_delay, help="from a call to the motors, s (the law's, 0)"
+        "--delay",
+        metavar="S",
+        type=values.not_negative,
+        help="from a call to the motors, s (the law's, 0)",
     )
 
 
 def add_jobs(parser: argparse.ArgumentParser) -> None:
     """Add the option that limits the processes."""
-    parser.add_argument("--jobs", metavar="N", type=integer(1), help="processes (one per core)")
+    parser.add_argument(
+        "--jobs", metavar="N", type=values.integer(1), help="processes (one per core)"
+    )
 
 
 def model_arguments(arguments: argparse.Namespace) -> dict[str, Any]:
@@ -213,89 +227,26 @@ def _guidance(arguments: argparse.Namespace, vehicle: str) -> dict[str, Any]:
     return {"controller": controller, "reference": reference, "on_reference": on_reference}
 
 
-def assignment(pattern: str, form: str) -> Callable[[str], tuple[str, str]]:
-    """Make the type of an option ``KEY=VALUE``; the two groups of `pattern` are key and value."""
+def varied(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Values of each axis that `add_vary` asked for."""
+    given = unique("--vary", arguments.vary)
+    return {axis.name: axis.values for axis in (parse_axis(*pair) for pair in given.items())}
 
-    def parse(text: str) -> tuple[str, str]:
-        match = re.fullmatch(pattern, text, re.DOTALL)
-        if match is None:
-            raise argparse.ArgumentTypeError(f"'{text}' is not of the form {form}")
-        return match.group(1), match.group(2)
 
-    return parse
+def changes_told(arguments: argparse.Namespace) -> dict[str, str]:
+    """Say what `add_changes` asked for, for a report."""
+    return {
+        **{f"set {key}": value for key, value in arguments.set},
+        **{f"xacro {key}": value for key, value in arguments.xacro},
+        **({"ignored": ", ".join(arguments.ignore)} if arguments.ignore else {}),
+    }
 
 
 def unique(option: str, pairs: list[tuple[str, str]]) -> dict[str, str]:
     """Make a dictionary of pairs; raise `InputError` if a key comes twice."""
-    values: dict[str, str] = {}
+    found: dict[str, str] = {}
     for key, value in pairs:
-        if key in values:
+        if key in found:
             raise InputError(f"{option}: {key} is given twice; keep one")
-        values[key] = value
-    return values
-
-
-def several(names: Sequence[str]) -> Callable[[str], list[str]]:
-    """Make the type of an option that takes some of these names, with commas between."""
-
-    def parse(text: str) -> list[str]:
-        for name in text.split(","):
-            if name not in names:
-                raise argparse.ArgumentTypeError(
-                    f"'{name}' is none of {', '.join(names)}; write some of them, as A,B"
-                )
-        return list(dict.fromkeys(text.split(",")))
-
-    return parse
-
-
-def names(text: str) -> list[str]:
-    """Read names with commas between."""
-    return text.split(",")
-
-
-def positive_numbers(text: str) -> list[float]:
-    """Read numbers with commas between."""
-    return list(dict.fromkeys(positive(part) for part in text.split(",")))
-
-
-def positive(text: str) -> float:
-    """Read a number greater than 0."""
-    value = _finite(text)
-    if value <= 0:
-        raise argparse.ArgumentTypeError(f"{text} is not greater than 0")
-    return value
-
-
-def _delay(text: str) -> float:
-    value = _finite(text)
-    if value < 0:
-        raise argparse.ArgumentTypeError(f"{text} is less than 0")
-    return value
-
-
-def _finite(text: str) -> float:
-    value = parse_number(text)
-    if value is None:
-        raise argparse.ArgumentTypeError(f"'{text}' is not a finite number")
-    return value
-
-
-def integer(lowest: int, highest: int = 10**18) -> Callable[[str], int]:
-    """Make the type of an option that takes a whole number."""
-
-    def parse(text: str) -> int:
-        if not re.fullmatch(r"[0-9]+", text) or int(text) < lowest:
-            raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from {lowest} on")
-        if int(text) > highest:
-            raise argparse.ArgumentTypeError(f"{text} exceeds {highest}")
-        return int(text)
-
-    return parse
-
-
-def _pose(text: str) -> tuple[float, ...]:
-    values = tuple(_finite(part) for part in text.split(","))
-    if len(values) not in (3, 6):
-        raise argparse.ArgumentTypeError(f"'{text}' is not of the form x,y,z[,roll,pitch,yaw]")
-    return values
+        found[key] = value
+    return found

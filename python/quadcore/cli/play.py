@@ -10,7 +10,7 @@ from .._core import InputError
 from ..description import read_model
 from ..files import atomic_write, check_writable, text_bytes
 from ..log import Log
-from . import options, terminal
+from . import options, terminal, values
 
 
 def register(commands: Any) -> None:
@@ -28,7 +28,7 @@ def register(commands: Any) -> None:
     parser.add_argument(
         "--names",
         metavar="NAME,NAME",
-        type=options.names,
+        type=values.names,
         help="what the flights are called (what their paths differ by)",
     )
     parser.add_argument("--quiet", action="store_true", help="print warnings and errors only")

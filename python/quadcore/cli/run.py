@@ -22,7 +22,7 @@ from ..plants import plants
 from ..recording import TAIL, Errors, Fastest, Recording, Thinned
 from ..rotation import roll_pitch_yaw
 from ..simulation import Simulation
-from . import options, terminal
+from . import options, terminal, values
 
 
 def register(commands: Any) -> None:
@@ -46,7 +46,7 @@ def register(commands: Any) -> None:
     parser.add_argument(
         "--log-topics",
         metavar="NAME,NAME",
-        type=options.names,
+        type=values.names,
         default=[],
         help="topics of plugins to log, too: columns NAME.FIELD",
     )

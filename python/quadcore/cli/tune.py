@@ -10,8 +10,7 @@ from .. import gains, interrupts
 from .._core import InputError
 from ..files import check_writable
 from ..plants import plants
-from . import options, terminal
-from .evaluate import several_calls
+from . import options, terminal, values
 
 
 def register(commands: Any) -> None:
@@ -33,34 +32,34 @@ def register(commands: Any) -> None:
     parser.add_argument(
         "--reference",
         metavar="A,B",
-        type=several_calls,
+        type=values.several_calls,
         default=["spiral", "step"],
         help="what is flown to tune, NAME, NAME:KEY=VALUE,... or files (spiral,step)",
     )
     parser.add_argument(
         "--hold-out",
         metavar="A,B",
-        type=several_calls,
+        type=values.several_calls,
         default=["circle", "eight"],
         help="what is flown to judge (circle,eight)",
     )
     parser.add_argument(
         "--hold-out-model",
         metavar="A,B",
-        type=options.names,
+        type=values.names,
         default=[],
         help="models that fly everything to judge",
     )
     parser.add_argument(
         "--only",
         metavar="NAME,NAME",
-        type=options.names,
+        type=values.names,
         help="parameters to tune (all gains that are not zero)",
     )
     parser.add_argument(
         "--budget",
         metavar="N",
-        type=options.integer(1),
+        type=values.integer(1),
         default=300,
         help="gains to try, at least (300)",
     )

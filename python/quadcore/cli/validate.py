@@ -13,7 +13,7 @@ from .. import interrupts
 from .._core import FlightError, QuadcoreError
 from ..files import check_writable, make_folder
 from ..study.executor import conducted
-from . import options, terminal
+from . import options, terminal, values
 
 if TYPE_CHECKING:
     from ..validation import Chain, Experiment, Study
@@ -30,7 +30,7 @@ def register(commands: Any) -> None:
     parser.add_argument(
         "--sim-slow",
         metavar="LIST",
-        type=options.positive_numbers,
+        type=values.positive_numbers,
         help="slow-downs of the rotors (those of the thesis: 1,8,10,18)",
     )
     parser.add_argument(
@@ -143,10 +143,8 @@ def _draw(study: Study, arguments: argparse.Namespace, failures: List[str]) -> D
                 else:
                     write_picture(name, picture, arguments.out)
                     drawn[name] = picture
-                if progress is not None:
-                    progress(len(drawn) + len(failed), len(names))
 
-            conducted(draw, names, take, arguments.jobs)
+            conducted(draw, names, take, arguments.jobs, progress=progress)
     finally:
         in_order = {name: drawn[name] for name in names if name in drawn}
         with interrupts.held():

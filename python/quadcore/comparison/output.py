@@ -2,31 +2,21 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence
 
-import numpy as np
-
-from ..log import Log
-from ..study.table import csv_bytes, json_bytes, save
+from ..study.sampling import evenly
+from ..study.table import csv_bytes, flown_and_failed, json_bytes, number_text, save
 from .compare import Comparison
 from .plan import Plan
 
 _ROWS_OF_PAGE = 200
 _DRAWN = 40  # flights in one picture
-_POINTS = 600  # per flight: finer than a picture shows
 
 
 def drawn(count: int) -> List[int]:
     """Which of so many flights to draw: all, or evenly many with the first and the last."""
-    return [round(row) for row in np.linspace(0, count - 1, min(count, _DRAWN))]
-
-
-def thinned(log: Log) -> Log:
-    """Rows enough to draw."""
-    picked = np.linspace(0, len(log) - 1, min(len(log), _POINTS)).round().astype(int)
-    return Log(log.table[picked], {})
+    return evenly(count, _DRAWN)
 
 
 def write(
@@ -64,9 +54,7 @@ def write(
 
 def summary(comparison: Comparison) -> str:
     """How many flew, in one line."""
-    count = len(comparison.table)
-    failed = sum(1 for failure in comparison.table["failure"] if failure)
-    return f"{count} flights: {count - failed} flown, {failed} failed"
+    return flown_and_failed(comparison.table["failure"].tolist())
 
 
 def _images(comparison: Comparison, plan: Plan) -> Dict[str, bytes]:
@@ -143,11 +131,6 @@ def _page(
         "rows": rows,
         "more": max(0, plan.count - _ROWS_OF_PAGE),
     }
-
-
-def number_text(value: float) -> str:
-    """Four digits, for a table that is read."""
-    return "" if math.isnan(value) else f"{value:.4g}"
 
 
 def listed(values: Any) -> str:

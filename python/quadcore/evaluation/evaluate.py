@@ -12,6 +12,7 @@ import numpy as np
 from .._core import QuadcoreError
 from ..study.axes import Values
 from ..study.executor import conducted
+from ..study.sampling import evenly
 from . import robustness
 from .flights import NAN, Outcome, flown
 from .intervals import cvar, interval
@@ -190,8 +191,7 @@ def _poles(plan: Plan) -> List[Dict[str, Any]]:
 def _to_draw(plan: Plan, cases: Sequence[Case]) -> List[int]:
     """Rows of first seeds: all, or evenly many."""
     firsts = list(range(0, len(cases), len(plan.seeds)))
-    picked = np.linspace(0, len(firsts) - 1, min(len(firsts), _DRAWN)).round().astype(int)
-    return [firsts[i] for i in picked]
+    return [firsts[i] for i in evenly(len(firsts), _DRAWN)]
 
 
 def _summed(

@@ -13,12 +13,11 @@ from ..controller import faults_told
 from ..flight import Rows, columns_of, fly
 from ..flight_plan import FlightPlan
 from ..log import Log
+from ..study.sampling import thinned
 from ..warning import QuadcoreWarning
 from .measures import UNITS, drag_power, lost, measure, slow_down
 from .step_response import step_response
 from .time_limit import time_limit
-
-_POINTS = 600  # per flight: finer than a picture shows
 
 
 class Outcome(NamedTuple):
@@ -101,13 +100,3 @@ def flown(flight: FlightPlan, most: float, keep: bool = False) -> Outcome:
     limit = pilot.limit / slow_down(simulation)
     rotors = simulation.model.joint_places
     return outcome._replace(log=thinned(log), response=response, limit=limit, rotors=rotors)
-
-
-def thinned(log: Log) -> Log:
-    """Rows enough to draw."""
-    picked = np.linspace(0, len(log) - 1, min(len(log), _POINTS)).round().astype(int)
-    topics = {
-        name: {field: column[picked] for field, column in fields.items()}
-        for name, fields in log.topics.items()
-    }
-    return Log(log.table[picked], {}, topics=topics)

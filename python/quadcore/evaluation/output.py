@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Sequence
 
-from ..study.table import csv_bytes, json_bytes, save
+from ..study.table import csv_bytes, flown_and_failed, json_bytes, number_text, save
 from .evaluate import JUDGED, Evaluation
 from .intervals import CONFIDENCE
 from .measures import MEANINGS, UNITS
@@ -85,10 +85,7 @@ def _known(plan: Plan) -> List[Dict[str, str]]:
 
 def summary(evaluation: Evaluation) -> str:
     """How many flew, in one line."""
-    failed = sum(1 for row in evaluation.table if row["failure"])
-    return (
-        f"{len(evaluation.table)} flights: {len(evaluation.table) - failed} flown, {failed} failed"
-    )
+    return flown_and_failed([row["failure"] for row in evaluation.table])
 
 
 def rows_to_read(evaluation: Evaluation) -> List[Dict[str, str]]:
@@ -105,10 +102,10 @@ def rows_to_read(evaluation: Evaluation) -> List[Dict[str, str]]:
         line = {name: str(group[name]) for name in _NAMES}
         line["flown"] = f"{group['flights'] - failed} of {group['flights']}"
         for name in JUDGED:
-            line[name] = number_text(group[f"mean_{name}"])
+            line[name] = error_text(group[f"mean_{name}"])
         line["tail_position"] += _interval(group, "", 3)
-        line["cvar"] = number_text(group["cvar_tail_position"])
-        line["difference"] = number_text(group["difference_tail_position"])
+        line["cvar"] = error_text(group["cvar_tail_position"])
+        line["difference"] = error_text(group["difference_tail_position"])
         line["difference"] += _interval(group, "difference_", 2)
         key = tuple(group[name] for name in _NAMES[1:])
         is_best = failed == 0 and group["mean_tail_position"] == best.get(key)
@@ -122,11 +119,9 @@ def _interval(group: Mapping[str, Any], of: str, digits: int) -> str:
     return "" if math.isnan(low) else f" [{low:.{digits}g}, {high:.{digits}g}]"
 
 
-def number_text(value: float) -> str:
-    """Four digits, for a table that is read; an infinite error is that of a lost vehicle."""
-    if math.isnan(value):
-        return ""
-    return "lost" if math.isinf(value) else f"{value:.4g}"
+def error_text(value: float) -> str:
+    """Write a number for a table that is read; an infinite error is that of a lost vehicle."""
+    return "lost" if math.isinf(value) else number_text(value)
 
 
 def _csv(table: Sequence[Mapping[str, Any]]) -> List[List[Any]]:
@@ -191,7 +186,7 @@ def _page(
         "units": UNITS,
         "margins": [
             {
-                name: value if isinstance(value, str) else number_text(value)
+                name: value if isinstance(value, str) else error_text(value)
                 for name, value in row.items()
             }
             for row in evaluation.margins

@@ -30,6 +30,7 @@ from .._core import QuadcoreError
 Case = TypeVar("Case")
 Result = TypeVar("Result")
 Take = Callable[[int, Union[Any, QuadcoreError]], Any]
+Progress = Callable[[int, int], None]
 Task = Tuple[Callable[[Any], Any], Callable[[Any], Any]]
 
 # Forked, so that the caller's data need not be copied and its script need not be importable.
@@ -99,9 +100,25 @@ def conducted(
     take: Take,
     processes: Optional[int] = None,
     conclude: Callable[[Any], Any] = lambda result: result,
+    progress: Optional[Progress] = None,
 ) -> None:
-    """Do as `each` does, but with any fault its case's alone."""
-    each(contained(function), cases, take, processes, contained(conclude))
+    """Do as `each` does, but with any fault its case's alone.
+
+    Parameters
+    ----------
+    progress
+        Called as progress(done, total) after each outcome was taken; `cases` has a length then.
+    """
+    done = 0
+
+    def take_and_tell(index: int, outcome: Any) -> None:
+        nonlocal done
+        take(index, outcome)
+        done += 1
+        if progress is not None:
+            progress(done, len(cases))  # type: ignore[arg-type]
+
+    each(contained(function), cases, take_and_tell, processes, contained(conclude))
 
 
 def contained(function: Callable[[Case], Result]) -> Callable[[Case], Result]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import math
 from pathlib import Path
 from typing import Any, Iterable, List, Mapping, Sequence
 
@@ -24,6 +25,17 @@ def json_bytes(content: Any) -> bytes:
     """Write lists and dictionaries as JSON; NaN is null."""
     text = json.dumps(_plain(content), indent=1, ensure_ascii=False, allow_nan=False)
     return text_bytes(text + "\n")
+
+
+def number_text(value: float) -> str:
+    """Four digits, for a table that is read."""
+    return "" if math.isnan(value) else f"{value:.4g}"
+
+
+def flown_and_failed(failures: Sequence[str]) -> str:
+    """How many flew, in one line, of flights of which those that failed have a reason."""
+    failed = sum(1 for failure in failures if failure)
+    return f"{len(failures)} flights: {len(failures) - failed} flown, {failed} failed"
 
 
 def save(folder: Path, files: Mapping[str, bytes]) -> List[Path]:

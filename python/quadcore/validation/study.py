@@ -122,19 +122,14 @@ def _fly(
 ) -> None:
     # The model is slow: it goes first, so that no core waits for it at the end.
     cases = sorted(flights, key=lambda case: case.plant != MODEL)
-    done = 0
 
     def take(index: int, flight: Union[Flight, QuadcoreError]) -> None:
-        nonlocal done
         case = cases[index]
         if isinstance(flight, QuadcoreError):  # its process died
             flight = Flight(case, None, str(flight))
         flights[case] = flight
-        done += 1
-        if progress is not None:
-            progress(done, len(cases))
 
-    conducted(experiment.fly, cases, take, processes)
+    conducted(experiment.fly, cases, take, processes, progress=progress)
 
 
 def _row(flight: Flight, reference: Flight) -> Row:

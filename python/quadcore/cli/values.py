@@ -1,0 +1,101 @@
+"""Types of options: what reads their values, and says what is wrong with one."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from typing import Callable, Sequence
+
+from .._core import parse_number
+
+
+def assignment(pattern: str, form: str) -> Callable[[str], tuple[str, str]]:
+    """Make the type of an option ``KEY=VALUE``; the two groups of `pattern` are key and value."""
+
+    def parse(text: str) -> tuple[str, str]:
+        match = re.fullmatch(pattern, text, re.DOTALL)
+        if match is None:
+            raise argparse.ArgumentTypeError(f"'{text}' is not of the form {form}")
+        return match.group(1), match.group(2)
+
+    return parse
+
+
+def several(names: Sequence[str]) -> Callable[[str], list[str]]:
+    """Make the type of an option that takes some of these names, with commas between."""
+
+    def parse(text: str) -> list[str]:
+        for name in text.split(","):
+            if name not in names:
+                raise argparse.ArgumentTypeError(
+                    f"'{name}' is none of {', '.join(names)}; write some of them, as A,B"
+                )
+        return list(dict.fromkeys(text.split(",")))
+
+    return parse
+
+
+def names(text: str) -> list[str]:
+    """Read names with commas between."""
+    return text.split(",")
+
+
+def several_calls(text: str) -> list[str]:
+    """Read names with commas between, each perhaps ``NAME:KEY=VALUE,KEY=VALUE``."""
+    found: list[str] = []
+    for part in text.split(","):
+        if found and "=" in part and ":" not in part.partition("=")[0]:
+            found[-1] += f",{part}"
+        else:
+            found.append(part)
+    return found
+
+
+def positive_numbers(text: str) -> list[float]:
+    """Read numbers with commas between."""
+    return list(dict.fromkeys(positive(part) for part in text.split(",")))
+
+
+def positive(text: str) -> float:
+    """Read a number greater than 0."""
+    value = finite(text)
+    if value <= 0:
+        raise argparse.ArgumentTypeError(f"{text} is not greater than 0")
+    return value
+
+
+def not_negative(text: str) -> float:
+    """Read a number that is at least 0."""
+    value = finite(text)
+    if value < 0:
+        raise argparse.ArgumentTypeError(f"{text} is less than 0")
+    return value
+
+
+def finite(text: str) -> float:
+    """Read a finite number."""
+    value = parse_number(text)
+    if value is None:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a finite number")
+    return value
+
+
+def integer(lowest: int, highest: int = 10**18) -> Callable[[str], int]:
+    """Make the type of an option that takes a whole number."""
+
+    def parse(text: str) -> int:
+        if not re.fullmatch(r"[0-9]+", text) or int(text) < lowest:
+            raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from {lowest} on")
+        if int(text) > highest:
+            raise argparse.ArgumentTypeError(f"{text} exceeds {highest}")
+        return int(text)
+
+    return parse
+
+
+def pose(text: str) -> tuple[float, ...]:
+    """Read ``x,y,z[,roll,pitch,yaw]``."""
+    values = tuple(finite(part) for part in text.split(","))
+    if len(values) not in (3, 6):
+        raise argparse.ArgumentTypeError(f"'{text}' is not of the form x,y,z[,roll,pitch,yaw]")
+    return values
