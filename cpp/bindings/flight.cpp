@@ -27,9 +27,9 @@ std::vector<std::string> columns(const Self& self, const std::vector<std::string
   return names;
 }
 
-std::unique_ptr<BoundFlight> create(const Self& self, const py::object& commands,
-                                    std::int64_t log_every, bool wrenches,
-                                    const std::vector<std::string>& topics) {
+std::unique_ptr<BoundFlight> create_flight(const Self& self, const py::object& commands,
+                                           std::int64_t log_every, bool wrenches,
+                                           const std::vector<std::string>& topics) {
   std::optional<Commands> table;
   if (!commands.is_none()) {
     const Numbers rows = numbers(commands, 2, "commands");
@@ -81,8 +81,9 @@ py::bytes csv_rows(const Numbers& table) {
 
 void bind_flight(py::module_& m) {
   py::class_<BoundFlight>(m, "Flight", "One logged run, advanced piece by piece.")
-      .def(py::init(&create), py::arg("simulation"), py::arg("commands"), py::arg("log_every"),
-           py::arg("wrenches") = true, py::arg("topics") = std::vector<std::string>{})
+      .def(py::init(&create_flight), py::arg("simulation"), py::arg("commands"),
+           py::arg("log_every"), py::arg("wrenches") = true,
+           py::arg("topics") = std::vector<std::string>{})
       .def("advance", &advance, py::arg("n"))
       .def("take", &take,
            "Hands over what was logged since the last call: table (rows, columns) and wrenches "

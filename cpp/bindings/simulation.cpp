@@ -18,17 +18,18 @@ namespace {
 /// Signals are looked at about this often during a long step().
 constexpr std::chrono::milliseconds between_signals(20);
 
-std::shared_ptr<Guarded> create(const Built<Model>& model, const Built<World>& world,
-                                std::string engine, std::optional<double> dt, std::uint64_t seed,
-                                std::map<std::string, std::string> parameters,
-                                const std::array<double, 6>& spawn) {
+std::shared_ptr<Guarded> create_simulation(const Built<Model>& model, const Built<World>& world,
+                                           std::string engine, std::optional<double> dt,
+                                           std::uint64_t seed,
+                                           std::map<std::string, std::string> parameters,
+                                           const std::array<double, 6>& spawn) {
   SimulationOptions options{std::move(engine), dt, seed, std::move(parameters), {}};
   options.spawn.xyz = {spawn[0], spawn[1], spawn[2]};
   options.spawn.rpy = {spawn[3], spawn[4], spawn[5]};
   return std::make_shared<Guarded>(*model, *world, options);
 }
 
-void command(const Self& self, const py::object& speeds) {
+void set_command(const Self& self, const py::object& speeds) {
   const Numbers array = numbers(speeds, 1, "command");
   const Lock lock(*self);
   self->command(array.data(), static_cast<std::size_t>(array.size()));
@@ -155,9 +156,9 @@ void move_by(const Self& self, const py::function& motion) {
 void bind_simulation(py::module_& m) {
   py::class_<Guarded, std::shared_ptr<Guarded>> simulation(m, "Simulation", py::dynamic_attr());
   simulation
-      .def(py::init(&create), py::arg("model"), py::arg("world"), py::arg("engine"), py::arg("dt"),
-           py::arg("seed"), py::arg("parameters"), py::arg("spawn"))
-      .def("command", &command, py::arg("speeds"))
+      .def(py::init(&create_simulation), py::arg("model"), py::arg("world"), py::arg("engine"),
+           py::arg("dt"), py::arg("seed"), py::arg("parameters"), py::arg("spawn"))
+      .def("command", &set_command, py::arg("speeds"))
       .def("step", &step, py::arg("n") = 1)
       .def(
           "set_state",

@@ -1,14 +1,12 @@
 #include "constraint_rows.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "ode_math.hpp"
 
 namespace quadcore {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t rows_per_contact = 3;  // normal, and friction in two directions
 
 }  // namespace
@@ -75,8 +73,8 @@ void ConstraintRows::add_hinge(std::size_t index, double dt) {
   row.body[1] = static_cast<int>(hinge.parent);
   row.max_correction = options_.max_hinge_correction;
   row.cfm = options_.cfm / dt;
-  row.low = -infinity;
-  row.high = infinity;
+  row.low = -dInfinity;
+  row.high = dInfinity;
   row.hinge = static_cast<int>(index);
 
   // The anchors coincide.
@@ -127,7 +125,7 @@ void ConstraintRows::add_contact(const Contact& contact, double dt) {
   row.correction = erp / dt * contact.depth;
   row.max_correction = surface.max_correction;
   row.cfm = cfm / dt;
-  row.high = infinity;
+  row.high = dInfinity;
   const int normal = static_cast<int>(rows_.size());
   rows_.push_back(row);
 

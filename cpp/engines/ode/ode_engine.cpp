@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 #include "body_state.hpp"
@@ -18,7 +17,6 @@ const OdeRecipe ode_recipe{false, &add_gyroscopic_from_carrier};
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 /// What the sweeps may leave of an error in a step for the direct solver, which is five times
 /// faster, to take their place. Flights of 10 s are 4e-10 m apart where they leave 7e-11, and 0.4
 /// mm where they leave 1e-5; vehicles whose 50 sweeps do not converge leave more than that.
@@ -52,7 +50,7 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
       GazeboStep::Options{world.solver_iterations,
                           world.solver_sor,
                           world.gravity_W,
-                          {world.erp, world.cfm, recipe.like_gazebo ? max_correction : infinity}});
+                          {world.erp, world.cfm, recipe.like_gazebo ? max_correction : dInfinity}});
   if (world.ground_plane) {
     ground_ = std::make_unique<GroundContact>(model_, bodies, max_correction);
     gazebo_step_->reserve(ground_->most());
