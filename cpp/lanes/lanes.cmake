@@ -1,5 +1,5 @@
-# quadcore_compile_lanes(TARGET SOURCE): adds SOURCE to TARGET once for each width of lanes, each time
-# with that QUADCORE_LANES defined and the instructions of the processors that have registers of that
+# quadcore_compile_lanes(TARGET SOURCE OPTION...): adds SOURCE to TARGET once for each width of lanes,
+# compiled with the options, each time with that QUADCORE_LANES defined and the instructions of the processors that have registers of that
 # width; lane_width.hpp chooses one. SOURCE includes only what may be compiled so: see
 # cpp/lanes/pack.hpp.
 function(quadcore_compile_lanes target source)
@@ -18,7 +18,7 @@ function(quadcore_compile_lanes target source)
                                              -fno-trapping-math
                                              -fno-tree-vectorize
                                              -fno-tree-slp-vectorize
-                                             -fno-tree-loop-distribute-patterns -Wno-psabi)
+                                             -fno-tree-loop-distribute-patterns -Wno-psabi ${ARGN})
     if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
       if(lanes EQUAL 4)
         target_compile_options(${object} PRIVATE -mavx2)

@@ -104,6 +104,12 @@ QUADCORE_LAW T absolute(T a) {
   return from_bits<T>(bits(a) & ~sign_bit);
 }
 
+/// Told by the bits, because the compiler may be told to take every number for finite.
+QUADCORE_LAW bool is_finite(double a) {
+  constexpr std::int64_t exponent = 0x7FF0000000000000;
+  return (bits(a) & exponent) != exponent;
+}
+
 /// |a| with the sign of b.
 template <class T>
 QUADCORE_LAW T with_sign_of(T b, T a) {

@@ -127,6 +127,21 @@ def test_joint_angles_wrap_at_half_a_turn(hangar, engine):
     assert wrapped.all()
 
 
+@pytest.mark.parametrize("drag", ["appendix", "chapter2"])
+def test_upright_rotors_fly_bit_for_bit_as_rotors_at_any_angle_do(hangar, drag):
+    """A breeze that no sum feels has the step compiled for all vehicles taken."""
+    upright = [rotor._replace(rpy=(0, 0, rotor.rpy[2])) for rotor in ODD]
+    tags = {**AIR, **DRAG, **FLAPPING, "dragModel": drag}
+    urdf = vehicle(upright, inertia=SKEW, com=(0.004, -0.003, 0.005), air=tags, motor=MOTOR)
+
+    def fly(wind):
+        simulation = hangar(urdf, gravity=GRAVITY, wind=wind, engine="eigen")
+        start(simulation, linear_velocity=[3, -2, 1], angular_velocity=[1, 2, -3])
+        return simulation.run(1.0, commands=DOUBLET * [1, 1.01, 0.99, 1.02, 1])
+
+    assert fly((0, 0, 0)).table.tobytes() == fly((1e-300, 0, 0)).table.tobytes()
+
+
 def test_a_flight_turns_with_the_world(hangar):
     """Gravity, wind and start turned by any rotation turn the flight."""
     urdf = vehicle(ODD, 1, SKEW, (0.004, -0.003, 0.005), {**CHAPTER2, **FLAPPING}, MOTOR)

@@ -29,6 +29,8 @@ void refuse_tags(const Model& model) {
   }
 }
 
+bool is_along_z(const Vector3d& v) { return v.x() == 0 && v.y() == 0; }
+
 }  // namespace
 
 EigenEngine::EigenEngine(const Model& model, const World& world)
@@ -76,6 +78,12 @@ GyrostatStep EigenEngine::view() {
   g.normals_turn = std::any_of(model_.joints.begin(), model_.joints.end(), [](const Joint& joint) {
     return !joint.axis.cross(Vector3d::UnitZ()).isZero(0);
   });
+  g.upright = true;
+  for (std::size_t i = 0; i < g.rotors; ++i) {
+    g.upright &= is_along_z(body_.rotors.vector(RotorConstant::axis_F, i)) &&
+                 is_along_z(k.rotors.matrix(MotionRow::R_FR_at_zero, i).col(2)) &&
+                 is_along_z(k.rotors.matrix(MotionRow::R_FR_at_zero, i).row(2));
+  }
   g.inverse_mass = body_.inverse_mass;
   const auto copy = [](const Vector3d& from, double (&to)[4]) {
     std::copy(from.data(), from.data() + 3, to);

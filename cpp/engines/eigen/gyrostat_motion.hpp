@@ -35,8 +35,10 @@ struct FrameOfState {
   }
 };
 
-/// The motion of a pack of rotors in a state, from rotor i on: see laws/rotor_forces.hpp.
-template <class T>
+/// The motion of a pack of rotors in a state, from rotor i on: see laws/rotor_forces.hpp. `upright`
+/// ones (GyrostatStep says which) have components that are zero whatever the state, and the
+/// compiler leaves out what these would be multiplied by.
+template <class T, bool upright = false>
 struct RotorsOfState {
   const GyrostatStep& g;
   const FrameOfState& frame;
@@ -50,8 +52,12 @@ struct RotorsOfState {
   QUADCORE_LAW T angle() const {
     return laws::load<T>(state + joint(GyrostatState::joint_angle, i));
   }
-  QUADCORE_LAW Vec3<T> axis_F() const { return vector(RotorConstant::axis_F); }
+  QUADCORE_LAW Vec3<T> axis_F() const {
+    if constexpr (upright) return {T{}, T{}, constant(RotorConstant::axis_F + 2)};
+    return vector(RotorConstant::axis_F);
+  }
   QUADCORE_LAW Vec3<T> normal_F() const {
+    if constexpr (upright) return {T{}, T{}, number(MotionRow::normal + 2)};
     if (!g.normals_turn) return laws::load3<T>(shown(MotionRow::normal));
     return turned(laws::load3<T>(shown(MotionRow::R_FR_at_zero + 6)));
   }
@@ -60,6 +66,13 @@ struct RotorsOfState {
     return laws::broadcast<T>(frame.v_WCcm_F) + laws::cross(w_WF_F(), vector(place));
   }
   QUADCORE_LAW Vec3<T> in_frame(const Vec3<T>& f_R) const {
+    if constexpr (upright) {
+      const std::size_t xx = MotionRow::R_FR_at_zero, yx = xx + 1, xy = xx + 3, yy = xx + 4,
+                        zz = xx + 8;
+      return turned(laws::Matrix3<T>{number(xx), number(xy), T{}, number(yx), number(yy), T{}, T{},
+                                     T{}, number(zz)} *
+                    f_R);
+    }
     const Vec3<T> x = laws::load3<T>(shown(MotionRow::R_FR_at_zero)),
                   y = laws::load3<T>(shown(MotionRow::R_FR_at_zero + 3)),
                   z = laws::load3<T>(shown(MotionRow::R_FR_at_zero + 6));
@@ -83,6 +96,7 @@ struct RotorsOfState {
   QUADCORE_LAW const double* constants(std::size_t row) const {
     return g.constants + rotor_offset(RotorConstant::count, i) + row * widest_lanes;
   }
+  QUADCORE_LAW T number(std::size_t row) const { return laws::load<T>(shown(row)); }
   QUADCORE_LAW const double* shown(std::size_t row) const {
     return g.motion + rotor_offset(MotionRow::count, i) + row * widest_lanes;
   }

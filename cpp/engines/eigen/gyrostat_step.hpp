@@ -56,6 +56,7 @@ struct GyrostatStep {
   std::size_t rotors;
   const double* constants;  ///< table of RotorConstant
   bool normals_turn;        ///< some rotor's link has its z off the joint's axis
+  bool upright;             ///< each rotor's axis and its link's z lie along the frame's z
   double inverse_mass;
   double p_FCcm_F[4], gravity_W[4];               ///< a 0 behind each
   double I_C_F[3][4], inverse_reduced_I_F[3][4];  ///< columns, a 0 behind each

@@ -56,8 +56,8 @@ template <int W>
 
 /// The loads of a pack of rotors.
 // Not const, here and below: GCC leaves constant aggregates in memory.
-template <class T, bool rest>
-QUADCORE_LAW laws::RotorLoads<T> loads_of(const GyrostatStep& g, const RotorsOfState<T>& rotors) {
+template <class T, bool rest, class Rotors>
+QUADCORE_LAW laws::RotorLoads<T> loads_of(const GyrostatStep& g, const Rotors& rotors) {
   laws::RotorLoads<T> loads{laws::broadcast<T>(Four{}), laws::broadcast<T>(Four{}), T{}};
   if constexpr (rest) {
     const double* told = g.loads + rotor_offset(LoadRow::count, rotors.i);
@@ -91,16 +91,17 @@ QUADCORE_LAW Four drag_of_frame(const GyrostatStep& g, const FrameOfState& frame
 
 /// Shares out the rate of a state, whose turns the table holds, and fills that for the next stage.
 /// `rest` says whether there is anything but laws.
-template <int W, Stage stage, bool rest>
+template <int W, Stage stage, bool rest, bool upright>
 QUADCORE_LAW void differentiate(const GyrostatStep& g, const double* state, const Share& share) {
   using T = laws::Pack<W>;
+  using Rotors = RotorsOfState<T, upright>;
   if constexpr (rest) evaluate_rest<W>(g, state);
   FrameOfState frame(state);
 
   Four f_F = drag_of_frame<rest>(g, frame);
   Four tau_F = -laws::cross(frame.w_WF_F, laws::load_columns(g.I_C_F) * frame.w_WF_F);
   laws::for_each_pack<W>(g.rotors, [&](std::size_t i) QUADCORE_INLINED {
-    const RotorsOfState<T> rotors{g, frame, state, i};
+    const Rotors rotors{g, frame, state, i};
     laws::RotorLoads<T> loads = loads_of<T, rest>(g, rotors);
     laws::store(g.joint_torques + i, loads.joint_torque);
     laws::add_in_order(f_F, loads.f_F);
@@ -118,13 +119,11 @@ QUADCORE_LAW void differentiate(const GyrostatStep& g, const double* state, cons
   }
   // Every load is in one of the two sums.
   const Four all = f_F + tau_F;
-  if (!(laws::absolute(all[0] + all[1] + all[2]) <= 1.7976931348623157e308)) {
-    refuse<W>(g, state);
-  }
+  if (!laws::is_finite(all[0] + all[1] + all[2])) refuse<W>(g, state);
 
   // The next stage's angles do not wait for the sums, nor do their sines.
   laws::for_each_pack<W>(g.rotors, [&](std::size_t i) QUADCORE_INLINED {
-    const RotorsOfState<T> rotors{g, frame, state, i};
+    const Rotors rotors{g, frame, state, i};
     share_out<stage>(g, share, joint(At::joint_angle, i), rotors.rate());
   });
   if (stage != Stage::last && g.laws_turn) turn<W>(g, g.stage);
@@ -132,7 +131,7 @@ QUADCORE_LAW void differentiate(const GyrostatStep& g, const double* state, cons
   const Four angular_F = laws::load_columns(g.inverse_reduced_I_F) * tau_F;
   Vec3<T> angular = laws::broadcast<T>(angular_F);
   laws::for_each_pack<W>(g.rotors, [&](std::size_t i) QUADCORE_INLINED {
-    const RotorsOfState<T> rotors{g, frame, state, i};
+    const Rotors rotors{g, frame, state, i};
     share_out<stage>(
         g, share, joint(At::joint_rate, i),
         laws::load<T>(g.joint_torques + i) * rotors.constant(RotorConstant::inverse_moment) -
@@ -168,18 +167,20 @@ void show_gyrostat(const GyrostatStep& g, const double* state) {
   show<W>(g, state);
 }
 
-/// Compiled for both cases: what few vehicles have would cost all of them registers.
-template <int W, bool rest>
+/// Compiled for each case: what few vehicles have would cost all of them registers.
+template <int W, bool rest, bool upright>
 QUADCORE_LAW void step(const GyrostatStep& g, double time, double dt) {
   double& shown_time = g.frame[FrameNumber::time];
   shown_time = time;
   if (g.laws_turn) turn<W>(g, g.state);
-  differentiate<W, Stage::first, rest>(g, g.state, {1, dt / 2});
+  differentiate<W, Stage::first, rest, upright>(g, g.state, {1, dt / 2});
   shown_time = time + dt / 2;
   const double reaches[] = {dt / 2, dt};
-  for (const double reach : reaches) differentiate<W, Stage::between, rest>(g, g.stage, {2, reach});
+  for (const double reach : reaches) {
+    differentiate<W, Stage::between, rest, upright>(g, g.stage, {2, reach});
+  }
   shown_time = time + dt;
-  differentiate<W, Stage::last, rest>(g, g.stage, {1, dt / 6});
+  differentiate<W, Stage::last, rest, upright>(g, g.stage, {1, dt / 6});
   normalise<W>(g);
   show<W>(g, g.state);
 }
@@ -187,9 +188,11 @@ QUADCORE_LAW void step(const GyrostatStep& g, double time, double dt) {
 template <int W>
 void step_gyrostat(const GyrostatStep& g, double time, double dt) {
   if (g.evaluate_rest) {
-    step<W, true>(g, time, dt);
+    step<W, true, false>(g, time, dt);
+  } else if (g.upright) {
+    step<W, false, true>(g, time, dt);
   } else {
-    step<W, false>(g, time, dt);
+    step<W, false, false>(g, time, dt);
   }
 }
 
