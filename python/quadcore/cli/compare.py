@@ -7,7 +7,6 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from .. import interrupts
 from .._core import FlightError, InputError
 from ..comparison.compare import Comparison, fly
 from ..comparison.output import drawn, listed, summary, write
@@ -17,6 +16,7 @@ from ..log import Log
 from ..study.sampling import thinned
 from ..study.table import number_text
 from . import options, terminal
+from .kept import kept
 
 _ROWS = 40  # on the terminal
 _FEW = 20  # logs that --out writes unasked
@@ -50,19 +50,13 @@ def compare(arguments: argparse.Namespace) -> None:
         make_folder(out)
     if not arguments.quiet:
         _show_models(plan)
-    try:
-        with terminal.progress(arguments.quiet) as progress:
-            comparison = fly(plan, _keeper(arguments, plan), arguments.jobs, progress)
-    except KeyboardInterrupt as stop:
-        partial = getattr(stop, "comparison", None)
-        if out is not None and partial is not None:
-            with interrupts.held():
-                write(partial, plan, _flight(arguments), out, plots=False)
-            terminal.say(f"what was flown: {out}")
-        raise
-    files = []
-    if out is not None:
-        files = write(comparison, plan, _flight(arguments), out, not arguments.no_plots)
+
+    def put(flown: Comparison, plots: bool = False) -> list[Path]:
+        return write(flown, plan, _flight(arguments), out, plots) if out is not None else []
+
+    with kept("comparison", out, put), terminal.progress(arguments.quiet) as progress:
+        comparison = fly(plan, _keeper(arguments, plan), arguments.jobs, progress)
+    files = put(comparison, not arguments.no_plots)
     if not arguments.quiet:
         _show_flights(plan, comparison, files)
     _report_failures(plan, comparison)

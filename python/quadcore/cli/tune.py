@@ -6,11 +6,12 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from .. import gains, interrupts
+from .. import gains
 from .._core import InputError
 from ..files import check_writable
 from ..plants import plants
 from . import options, terminal, values
+from .kept import kept
 
 
 def register(commands: Any) -> None:
@@ -79,28 +80,26 @@ def tune(arguments: argparse.Namespace) -> None:
     check_writable(out)
     shared = {**options.model_arguments(arguments), **options.flight_arguments(arguments)}
     shared.update(model=arguments.model, spawn=arguments.spawn)
-    try:
-        with terminal.progress(arguments.quiet, "tuning") as progress:
-            found = search(
-                arguments.law,
-                references=arguments.reference,
-                held_out=arguments.hold_out,
-                held_out_models=arguments.hold_out_model,
-                only=arguments.only,
-                duration=arguments.duration,
-                budget=arguments.budget,
-                processes=arguments.jobs,
-                progress=progress,
-                **shared,
-            )
-    except KeyboardInterrupt as stop:
-        partial = getattr(stop, "tuning", None)
-        if partial is not None:
-            with interrupts.held():
-                gains.write(partial.gains, out)
-            terminal.say(f"the best so far: {out}")
-        raise
-    gains.write(found.gains, out)
+
+    def put(found: Any) -> None:
+        gains.write(found.gains, out)
+
+    with kept("tuning", out, put, "the best so far"), terminal.progress(
+        arguments.quiet, "tuning"
+    ) as progress:
+        found = search(
+            arguments.law,
+            references=arguments.reference,
+            held_out=arguments.hold_out,
+            held_out_models=arguments.hold_out_model,
+            only=arguments.only,
+            duration=arguments.duration,
+            budget=arguments.budget,
+            processes=arguments.jobs,
+            progress=progress,
+            **shared,
+        )
+    put(found)
     if not arguments.quiet:
         _show(found, out)
 

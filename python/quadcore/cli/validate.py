@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Dict, List, Union
 
@@ -14,6 +13,7 @@ from .._core import FlightError, QuadcoreError
 from ..files import check_writable, make_folder
 from ..study.executor import conducted
 from . import options, terminal, values
+from .kept import kept
 
 if TYPE_CHECKING:
     from ..validation import Chain, Experiment, Study
@@ -92,22 +92,18 @@ def _conduct(experiment: Experiment, arguments: argparse.Namespace) -> Study:
     """Fly; what was flown before an interrupt is written."""
     from ..validation import conduct
 
-    try:
-        with terminal.progress(arguments.quiet) as progress:
-            return conduct(
-                experiment,
-                arguments.engine,
-                arguments.sim_slow,
-                arguments.drag,
-                arguments.jobs,
-                progress,
-            )
-    except KeyboardInterrupt as stop:
-        partial = getattr(stop, "study", None)
-        if arguments.out is not None and partial is not None:
-            _write(partial, arguments.out)
-            print(f"what was flown: {arguments.out}", file=sys.stderr)
-        raise
+    def put(study: Study) -> None:
+        _write(study, arguments.out)
+
+    with kept("study", arguments.out, put), terminal.progress(arguments.quiet) as progress:
+        return conduct(
+            experiment,
+            arguments.engine,
+            arguments.sim_slow,
+            arguments.drag,
+            arguments.jobs,
+            progress,
+        )
 
 
 def _write(study: Study, out: Path) -> List[Path]:
