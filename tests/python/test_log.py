@@ -149,3 +149,12 @@ def test_a_log_file_is_read_back_bit_for_bit(log, tmp_path, suffix):
     assert set(back.wrenches) == set(wrenches)
     for name, wrench in wrenches.items():
         assert np.array_equal(back.wrenches[name], wrench)
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".mat"])
+def test_a_log_whose_orientation_is_none_is_refused(log, tmp_path, suffix):
+    log.table[3, 4:8] = 0
+    file = tmp_path / f"log{suffix}"
+    getattr(log, f"to_{suffix[1:]}")(file)
+    with pytest.raises(InputError, match="the orientation is no unit quaternion"):
+        Log.of_file(file)

@@ -9,6 +9,9 @@ import numpy as np
 
 from .._core import InputError, log_columns
 
+_ROUNDNESS = 1e-2
+"""By which the length of a quaternion may differ from 1 in logs with few digits."""
+
 
 class Table(NamedTuple):
     """Numbers from a file, and how a row is called in an error."""
@@ -87,6 +90,12 @@ def check_log_rows(place: Callable[[int], str], rows: np.ndarray, of_state: int)
     wrong = ~np.isfinite(rows[:, :of_state]).all(axis=1)
     if wrong.any():
         raise InputError(f"{place(int(wrong.argmax()))}: the state is not finite")
+    where = log_columns(0).index("qx")
+    turned = np.abs(np.linalg.norm(rows[:, where : where + 4], axis=1) - 1) > _ROUNDNESS
+    if turned.any():
+        raise InputError(
+            f"{place(int(turned.argmax()))}: the orientation is no unit quaternion qx, qy, qz, qw"
+        )
     late = np.diff(rows[:, 0]) <= 0
     if late.any():
         raise InputError(f"{place(1 + int(late.argmax()))}: the time is not later than before")
