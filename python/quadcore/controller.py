@@ -230,9 +230,9 @@ def faults_told(simulation: _core.Simulation) -> Iterator[None]:
     """
     try:
         yield
-    except (QuadcoreError, MemoryError):
+    except (QuadcoreError, MemoryError, KeyboardInterrupt):
         raise
-    except Exception as error:
+    except BaseException as error:  # SystemExit, too: a controller ends its flight, not the program
         failure = FlightError(
             f"the flight failed at t = {simulation.time:f} s: controller: {told(error)}"
         )

@@ -33,7 +33,7 @@ def imported(text: str) -> Any:
         found = getattr(importlib.import_module(module), name)
         controller = found() if inspect.isclass(found) else found
     except ModuleNotFoundError as error:
-        if error.name != module:
+        if not f"{module}.".startswith(f"{error.name}."):
             raise _failed(text, error) from error
         raise InputError(
             f"controller '{text}': there is no module '{module}' here or on PYTHONPATH"
@@ -42,7 +42,9 @@ def imported(text: str) -> Any:
         if module not in sys.modules or hasattr(sys.modules[module], name):
             raise _failed(text, error) from error
         raise InputError(f"controller '{text}': module '{module}' has no '{name}'") from error
-    except Exception as error:
+    except (KeyboardInterrupt, MemoryError):
+        raise
+    except BaseException as error:  # SystemExit, too
         raise _failed(text, error) from error
     finally:
         sys.path.remove(here)
@@ -60,5 +62,5 @@ def told(error: BaseException) -> str:
     return f"{reason} ({place.filename}:{place.lineno})"
 
 
-def _failed(text: str, error: Exception) -> InputError:
+def _failed(text: str, error: BaseException) -> InputError:
     return InputError(f"controller '{text}': {told(error)}")

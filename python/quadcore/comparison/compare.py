@@ -26,6 +26,7 @@ from ..log import Log
 from ..study.axes import Values
 from ..study.executor import conducted
 from ..study.metrics import metrics, states
+from ..study.table import NOT_FLOWN
 from .difference import Difference
 from .plan import Plan, Variant
 
@@ -180,7 +181,7 @@ class _Tally:
         self._plan, self._progress = plan, progress
         self._states = states(plan.rotor_count)
         self._metrics = np.full((plan.count, 2, len(self._states)), np.nan)
-        self._failures = ["not flown: interrupted"] * plan.count
+        self._failures = [NOT_FLOWN] * plan.count
         self._kept: List[Any] = [] if keep is None else [None] * plan.count
 
     def note(self, row: int, outcome: Union[Outcome, QuadcoreError]) -> None:

@@ -11,21 +11,11 @@ import os
 import signal
 import traceback
 from multiprocessing.connection import Connection, wait
-from typing import (
-    Any,
-    Callable,
-    Dict,
-    Iterable,
-    Iterator,
-    List,
-    Optional,
-    Tuple,
-    TypeVar,
-    Union,
-)
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Tuple, TypeVar, Union
 
 from .. import interrupts
 from .._core import QuadcoreError
+from ..imported import told
 
 Case = TypeVar("Case")
 Result = TypeVar("Result")
@@ -46,6 +36,7 @@ def each(
     take: Take,
     processes: Optional[int] = None,
     conclude: Callable[[Result], Any] = lambda result: result,
+    apart: bool = False,
 ) -> None:
     """Call `function` on every case, in parallel.
 
@@ -67,6 +58,9 @@ def each(
         Called on the result, in the same process, for what stands in its place. An interrupt waits
         until that is done and the outcome was taken: a file that `conclude` writes is there if and
         only if the outcome is.
+    apart
+        Whether each case has a process of its own, which begins as this one is now: nothing that
+        `function` leaves behind, be it in the globals of a module, is there for another case.
 
     Raises
     ------
@@ -78,7 +72,7 @@ def each(
     RuntimeError
         Anything else that `function` raised, with its traceback; see `contained`.
     """
-    crew = _Crew(function, conclude, cases)
+    crew = _Crew(function, conclude, cases, apart)
     try:
         crew.hire(processes or len(os.sched_getaffinity(0)))
         while crew.busy:
@@ -101,6 +95,7 @@ def conducted(
     processes: Optional[int] = None,
     conclude: Callable[[Any], Any] = lambda result: result,
     progress: Optional[Progress] = None,
+    apart: bool = False,
 ) -> None:
     """Do as `each` does, but with any fault its case's alone.
 
@@ -118,7 +113,7 @@ def conducted(
         if progress is not None:
             progress(done, len(cases))  # type: ignore[arg-type]
 
-    each(contained(function), cases, take_and_tell, processes, contained(conclude))
+    each(contained(function), cases, take_and_tell, processes, contained(conclude), apart)
 
 
 def contained(function: Callable[[Case], Result]) -> Callable[[Case], Result]:
@@ -127,12 +122,10 @@ def contained(function: Callable[[Case], Result]) -> Callable[[Case], Result]:
     def call(case: Case) -> Result:
         try:
             return function(case)
-        except (QuadcoreError, MemoryError):
+        except (QuadcoreError, MemoryError, KeyboardInterrupt):
             raise
-        except Exception as error:
-            place = traceback.extract_tb(error.__traceback__)[-1]
-            reason = " ".join(f"{type(error).__name__}: {error}".split())
-            raise QuadcoreError(f"{reason} ({place.filename}:{place.lineno})") from error
+        except BaseException as error:  # SystemExit, too: it is not for code that flies to end all
+            raise QuadcoreError(told(error)) from error
 
     return call
 
@@ -145,8 +138,10 @@ class _Crew:
         function: Callable[[Any], Any],
         conclude: Callable[[Any], Any],
         cases: Iterable[Any],
+        apart: bool,
     ) -> None:
         self._task = function, conclude
+        self._apart = apart
         self._queue = enumerate(cases)
         self.busy: Dict[Connection, Tuple[int, Any]] = {}
         """Index of the case and process, by the end of its pipe."""
@@ -171,7 +166,12 @@ class _Crew:
         if fault is not None:
             self.busy[connection] = index, process  # to be ended
             raise RuntimeError(fault)
-        self._give(connection, process)
+        if self._apart:
+            connection.close()
+            process.join()
+            self._replace()
+        else:
+            self._give(connection, process)
         return index, result
 
     def dismiss(self) -> Iterator[Tuple[int, Any]]:

@@ -32,10 +32,17 @@ def number_text(value: float) -> str:
     return "" if math.isnan(value) else f"{value:.4g}"
 
 
+NOT_FLOWN = "not flown: interrupted"
+"""Stands for the reason of flights that an interrupt left out: they did not fail."""
+
+
 def flown_and_failed(failures: Sequence[str]) -> str:
     """How many flew, in one line, of flights of which those that failed have a reason."""
-    failed = sum(1 for failure in failures if failure)
-    return f"{len(failures)} flights: {len(failures) - failed} flown, {failed} failed"
+    left_out = sum(1 for failure in failures if failure == NOT_FLOWN)
+    failed = sum(1 for failure in failures if failure) - left_out
+    flown = len(failures) - failed - left_out
+    told = f"{len(failures)} flights: {flown} flown, {failed} failed"
+    return told + (f", {left_out} not flown" if left_out else "")
 
 
 def save(folder: Path, files: Mapping[str, bytes]) -> List[Path]:

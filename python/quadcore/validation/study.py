@@ -7,6 +7,7 @@ from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Union
 from .._core import InputError, QuadcoreError
 from ..study.executor import conducted
 from ..study.metrics import Sizes
+from ..study.table import NOT_FLOWN
 from .chain import ORDER, Chain, forge, stages
 from .damping import Damping, measure
 from .experiment import LAG, MODEL, NO_LAG, TERMS, Case, Experiment, Flight
@@ -83,7 +84,7 @@ def conduct(
     terms = [Case(MODEL, 1.0, drags[-1], name) for name in TERMS if name != own]
     chains = [stages(drag, n, engines[0]) for drag in drags for n in sim_slow]
     cases = dict.fromkeys([*(case for chain in chains for case in chain), *asked, *terms])
-    flights = {case: Flight(case, None, "not flown: interrupted") for case in cases}
+    flights = {case: Flight(case, None, NOT_FLOWN) for case in cases}
     damping: List[Damping] = []
 
     def study() -> Study:
