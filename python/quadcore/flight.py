@@ -230,6 +230,8 @@ def steps_within(duration: float, dt: float) -> int:
 def check_logged(duration: float, dt: float, log_every: int) -> None:
     """Raise `InputError` if a log would hold the start alone: nothing could be told from it."""
     steps = steps_within(duration, dt)
+    if not isinstance(log_every, (int, np.integer)) or log_every < 1:
+        raise _core.InputError(f"log_every is {log_every!r}; give a whole number >= 1")
     if log_every > steps:
         raise _core.InputError(
             f"log_every is {log_every} but the flight has {steps} steps; log more often"

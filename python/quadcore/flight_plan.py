@@ -136,6 +136,11 @@ class FlightPlan:
         )
         return plan if commands is None else plan.commanded(commands)
 
+    @property
+    def step(self) -> float:
+        """Of the flight, s: the world's unless `dt` is another."""
+        return self.world.max_step_size if self.dt is None else self.dt
+
     def commanded(self, commands: CommandsLike) -> FlightPlan:
         """Make the same flight under other commands; a file is read now.
 
@@ -207,7 +212,7 @@ class FlightPlan:
                 raise _core.InputError(f"a plan whose {name} is your own has no fingerprint")
             else:
                 told[name] = told[name].told()
-        told["dt"] = self.world.max_step_size if self.dt is None else self.dt
+        told["dt"] = self.step
         if self.commands is not None:  # 10 and 10.0 are the same
             told["commands"] = np.asarray(self.commands, dtype=float).tolist()
         return {"version": _VERSION, **told}

@@ -7,12 +7,14 @@ parameters. ``NAMES`` holds them all. `of_file` makes one of a gains file.
 from __future__ import annotations
 
 from typing import Any, Callable, List, Optional, Sequence
+from warnings import warn
 
-from . import _core
+from . import _core, gains
 from .gains import law_for, of_file
 from .imported import imported
 from .law import Law
 from .parameters import did_you_mean, docstring, read_values
+from .warning import QuadcoreWarning
 
 
 def parse(text: str, vehicle: str = "") -> Any:
@@ -31,9 +33,22 @@ def parse(text: str, vehicle: str = "") -> Any:
     ------
     InputError
         No such law, parameter, file, module or class, or one that cannot be called as a controller.
+
+    Warns
+    -----
+    QuadcoreWarning
+        Gains of a file that are for another vehicle.
     """
     if text.lower().endswith((".yaml", ".yml")):
-        return of_file(text)
+        read = gains.read(text)
+        if vehicle and read.vehicle not in ("", vehicle):
+            warn(
+                f"{text}: these gains are for '{read.vehicle}', but '{vehicle}' flies with them; "
+                "tune some for it (quadcore tune)",
+                QuadcoreWarning,
+                stacklevel=2,
+            )
+        return read.make()
     name, _, rest = text.partition(":")
     if name in NAMES:
         law = law_for(name, vehicle)

@@ -23,3 +23,24 @@ def roll_pitch_yaw(orientation: np.ndarray) -> np.ndarray:
     pitch = np.arcsin(np.clip(2 * (w * y - z * x), -1, 1))
     yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
     return np.stack([roll, pitch, yaw], axis=-1)
+
+
+def turned(orientation: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """Turn a body about an axis of its own.
+
+    Parameters
+    ----------
+    orientation : ndarray (4,)
+        Unit quaternion x, y, z, w.
+    angle : ndarray (3,)
+        Along the axis, rad; not zero.
+
+    Returns
+    -------
+    ndarray (4,)
+        Unit quaternion x, y, z, w.
+    """
+    size = float(np.linalg.norm(angle))
+    v, w = np.sin(size / 2) * angle / size, np.cos(size / 2)
+    vector = orientation[3] * v + w * orientation[:3] + np.cross(orientation[:3], v)
+    return np.array([*vector, orientation[3] * w - orientation[:3] @ v])

@@ -9,10 +9,11 @@ from warnings import warn
 
 import numpy as np
 
-from . import _core
+from . import _core, references
 from .controller import Controller, Guided
 from .description import list_of_names, read_both
 from .flight import Progress, Rows, columns_of, fly
+from .law import Law
 from .log import Log
 from .overrides import check_names, with_links, without_xacro
 from .references import ReferenceLike
@@ -162,6 +163,7 @@ class Simulation(_core.Simulation):
         *,
         controller: Union[Controller, Callable[..., Any], str, None] = None,
         reference: Union[ReferenceLike, str, None] = None,
+        on_reference: bool = False,
     ) -> Log:
         """Fly for a while and log it.
 
@@ -187,10 +189,12 @@ class Simulation(_core.Simulation):
             `Controller`.
         reference : name or callable, optional
             Where the controller is to fly: one of `quadcore.references`, or what is called as
-            reference(t), t being the time of the simulation in s. The flight begins in the present
-            state; `quadcore.references.start` gives that of a vehicle already on the reference. The
-            log has it as topic ``reference`` (x, y, z, yaw), and the position less its own as topic
-            ``error`` (x, y, z).
+            reference(t), t being the time of the simulation in s. The log has it as topic
+            ``reference`` (x, y, z, yaw), and the position less its own as topic ``error`` (x, y,
+            z).
+        on_reference : bool
+            Whether the vehicle is first put onto the reference, in the full state of one that
+            follows it (`quadcore.references.start`); else the flight begins in the present state.
 
         Returns
         -------
@@ -210,6 +214,8 @@ class Simulation(_core.Simulation):
             raise _core.InputError("a flight takes commands or a controller; give one of them")
         if reference is not None and controller is None:
             raise _core.InputError("a reference needs a controller that follows it; give one")
+        if on_reference:
+            reference = self._put_on(controller, reference)
         names = list_of_names("topics", topics)
         pilot = None if controller is None else Guided(controller, self, reference)
         rows = Rows(self, columns_of(self, names, pilot))
@@ -219,6 +225,16 @@ class Simulation(_core.Simulation):
             error.log = rows.log()  # type: ignore[union-attr]
             raise
         return rows.log()
+
+    def _put_on(self, controller: Any, reference: Any) -> Any:
+        """Put the vehicle onto a reference, and give that."""
+        if reference is None:
+            raise _core.InputError("on_reference needs a reference to begin on; give one")
+        if isinstance(reference, str):
+            reference = references.parse(reference)
+        spins = controller.spins if isinstance(controller, Law) else ()
+        self.set_state(references.start(self, reference, spins))
+        return reference
 
 
 def _in_order(topic: str, values: Mapping[str, float], fields: Sequence[str]) -> list[float]:
@@ -230,10 +246,10 @@ def _in_order(topic: str, values: Mapping[str, float], fields: Sequence[str]) ->
     return [values[field] for field in fields]
 
 
-def whole(seed: object) -> int:
-    """Check a seed."""
+def whole(seed: object, name: str = "seed") -> int:
+    """Check a seed, or what else is such a number."""
     if not isinstance(seed, (int, np.integer)) or not 0 <= seed < 2**64:
-        raise _core.InputError(f"seed is {seed!r}; give a whole number from 0 to 2^64 - 1")
+        raise _core.InputError(f"{name} is {seed!r}; give a whole number from 0 to 2^64 - 1")
     return int(seed)
 
 

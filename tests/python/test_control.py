@@ -195,6 +195,17 @@ def test_the_start_is_that_of_a_vehicle_on_the_way():
     assert errors(log, circle).max() < 0.1e-3
 
 
+def test_a_run_may_begin_on_its_reference():
+    circle = references.circle()
+    simulation = quadrotor("eigen")
+    simulation.set_state(references.start(simulation, circle))
+    by_hand = simulation.run(0.5, controller="pd", reference=circle)
+    told = quadrotor("eigen").run(0.5, controller="pd", reference="circle", on_reference=True)
+    assert told.table.tobytes() == by_hand.table.tobytes()
+    with pytest.raises(qc.InputError, match="needs a reference to begin on"):
+        quadrotor("eigen").run(0.5, controller="pd", on_reference=True)
+
+
 def test_references_and_laws_can_be_pickled():
     for reference in (
         references.eight(width=2),

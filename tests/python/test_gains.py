@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 
 import pytest
@@ -120,3 +121,13 @@ def test_a_law_of_a_file_flies_at_its_rate(tmp_path):
         0.5, controller=laws.geometric(rate=100, kp_xy=7), reference=hover
     )
     assert one.table.tobytes() == other.table.tobytes()
+
+
+def test_gains_of_another_vehicle_are_warned_of(tmp_path):
+    path = written(tmp_path, "law: geometric\nvehicle: hexarotor\n")
+    with pytest.warns(qc.QuadcoreWarning, match="for 'hexarotor', but 'quadrotor' flies"):
+        laws.parse(str(path), "quadrotor")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        laws.parse(str(path), "hexarotor")
+        laws.parse(str(written(tmp_path, "law: geometric\n")), "quadrotor")

@@ -69,6 +69,8 @@ def test_what_was_found_is_written_with_its_history_and_read_back(found, tmp_pat
     assert history["held_out"] == found.held_out
     assert history["evaluations"] == found.evaluations and len(found.evaluations) >= 40
     assert min(found.evaluations) <= history["best"] == found.error
+    assert (history["models"], history["xacro_args"]) == (["quadrotor"], {"sim_slow": 1})
+    assert (history["dt"], history["duration"], history["quadcore"]) == (0.001, 4, qc.__version__)
     assert (history["seed"], history["budget"], history["start"]["kp_xy"]) == (3, 40, 0.24)
 
 
@@ -77,6 +79,18 @@ def test_gains_that_lose_a_held_out_case_are_refused():
     with pytest.raises(qc.FlightError, match=r"no gains found: .* lose far: lost at") as caught:
         qc.tune("pd", budget=3, references=["hover"], held_out=[_named("far", far)], **SHORT)
     assert len(caught.value.evaluations) >= 3
+
+
+def test_gains_that_do_not_bring_a_vehicle_back_are_refused():
+    """On its reference, in still air, a law that knows all flies well with next to no gains."""
+    weak = qc.laws.pd_compensated(kp_xy=0.02, kd_xy=0.02, kp_z=0.02, kd_z=0.02)
+    with pytest.raises(qc.FlightError, match="do not come back to hover from beside it") as caught:
+        qc.tune(weak, budget=1, references=["ramp"], held_out=["hover"], **SHORT)
+    assert caught.value.evaluations[0] < 5  # it is not lost
+    alone = qc.tune(
+        weak, budget=1, references=["ramp"], held_out=["hover"], spawn=(0, 0, 10), **SHORT
+    )
+    assert alone.held_out["hover"] < 0.01
 
 
 def _named(name, shape):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from pathlib import Path
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
@@ -14,10 +13,13 @@ from .._core import FlightError, InputError, QuadcoreError
 from ..evaluation.measures import LOST
 from ..gains import Gains
 from ..study.executor import conducted
-from ..warning import QuadcoreWarning
+from ..warning import unheard
 from .problem import Case, Flown, Problem
 
-OBJECTIVE = "mean over the cases of the root mean square of the distance to the reference, m"
+OBJECTIVE = (
+    "mean over the cases, from the start of the reference and from beside it, of the root mean "
+    "square of the distance, m"
+)
 
 _SPREAD = 0.8  # of the logarithm of a gain at first: most lie within a factor of 2.2
 _INTERRUPTED = "interrupted"
@@ -61,8 +63,9 @@ def tune(
     """Search for gains of a law.
 
     By CMA-ES (Hansen 2016, arXiv:1604.00772) on the logarithms of the gains. Gains that are better
-    than all before are flown in the held-out cases, too, and refused if one is lost there. The same
-    seed gives the same result, whatever the number of processes.
+    than all before are flown in the held-out cases, too, and refused if one is lost there, or if a
+    vehicle that begins beside a reference does not come back to it. The same seed gives the same
+    result, whatever the number of processes.
 
     Parameters
     ----------
@@ -177,6 +180,8 @@ class _Search:
 
     def result(self, cma: Any, ended: str) -> Optional[Tuning]:
         """Give the best so far."""
+        from .. import __version__  # which is there once the package is
+
         if self._best is None:
             return None
         error, gains, held_out = self._best
@@ -184,9 +189,11 @@ class _Search:
         history = {
             "start": dict(self._problem.start),
             "objective": OBJECTIVE,
-            "tuned_on": [case.label for case in self._problem.training],
+            "models": self._problem.models,
+            "tuned_on": [case.label for case in self._problem.training if not case.beside],
             "held_out": {label: float(value) for label, value in held_out.items()},
-            **self._setting(),
+            **self._problem.setting(),
+            "quadcore": __version__,
             "optimiser": f"cma {cma.__version__}",
             "seed": self._seed,
             "budget": self._budget,
@@ -199,10 +206,6 @@ class _Search:
         found = Gains(law.name, self._problem.vehicle, law.rate, law.delay, law.parameters, history)
         start = self.evaluations[0]
         return Tuning(found, error, start, list(self.evaluations), held_out, self.refused)
-
-    def _setting(self) -> Dict[str, Any]:
-        plan = self._problem.training[0].plan
-        return {"engine": plan.engine, "duration": plan.duration}
 
     def _gains(self, point: np.ndarray) -> Dict[str, float]:
         start = self._problem.start
@@ -226,16 +229,32 @@ class _Search:
         return errors
 
     def _judge(self, error: float, gains: Dict[str, float]) -> None:
-        cases = self._problem.held_out
-        flights = self._fly([(case, gains) for case in cases])
-        for case, flown in zip(cases, flights):
+        problem = self._problem
+        flights = self._fly([(case, gains) for case in problem.held_out])
+        held_out = {}
+        for case, flown in zip(problem.held_out, flights):
             if flown.failure:
-                self.refused += 1
-                self.refusal = f"those that fly best lose {case.label}: {flown.failure}"
-                return
+                return self._refuse(f"lose {case.label}: {flown.failure}")
+            held_out[case.label] = flown.error
+        left: List[str] = [""] * len(problem.to_come_back_to)
+
+        def take(index: int, outcome: Union[str, QuadcoreError]) -> None:
+            left[index] = str(outcome)
+
+        def fly(index: int) -> str:
+            with unheard():
+                return problem.comes_back(problem.to_come_back_to[index], gains)
+
+        conducted(fly, range(len(left)), take, self._processes)
+        for case, failure in zip(problem.to_come_back_to, left):
+            if failure:
+                return self._refuse(f"do not come back to {case.label} from beside it: {failure}")
         self._least = error
-        held_out = {case.label: flown.error for case, flown in zip(cases, flights)}
         self._best = error, gains, held_out
+
+    def _refuse(self, reason: str) -> None:
+        self.refused += 1
+        self.refusal = f"those that fly best {reason}"
 
     def _fly(self, flights: Sequence[Tuple[Case, Mapping[str, float]]]) -> List[Flown]:
         outcomes: List[Optional[Flown]] = [None] * len(flights)
@@ -246,8 +265,7 @@ class _Search:
             outcomes[index] = Flown(LOST, str(outcome)) if failed else outcome  # type: ignore
 
         def fly(index: int) -> Flown:
-            with warnings.catch_warnings():  # what is doubtful with bad gains is no news
-                warnings.simplefilter("ignore", QuadcoreWarning)
+            with unheard():
                 return self._problem.fly(*flights[index])
 
         # By their numbers: a reference may be a function, which no process can send to another.
