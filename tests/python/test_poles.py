@@ -76,3 +76,28 @@ def test_only_cascades_have_poles():
     assert not has_poles(lambda t, state, reference: None)
     assert gains_of(laws.pid_thesis(kp_z=3))["kp_z"] == 3
     assert gains_of(laws.pid_thesis())["kd_xy"] == 0.125
+
+
+def test_the_page_names_both_causes_of_the_printed_gains():
+    found = by_axis(laws.pid_thesis())
+    assert "Kd Kp = 0.3 is not above Ki = 0.8" in found["x, y"]["because"]
+    assert "2 b w0 sim_slow / I_R = +9.01 1/s" in found["yaw"]["because"]
+    assert not found["z"]["because"]
+    assert not by_axis(laws.pid_thesis(), slow=10)["yaw"]["because"]
+    assert not by_axis(laws.pid_thesis(kd_xy=2.5))["x, y"]["because"]
+
+
+@pytest.mark.parametrize(("slow", "fails"), [(1, True), (10, False)])
+def test_kd_2_5_alone_fails_at_sim_slow_1_by_its_yaw(slow, fails):
+    law = laws.pid_thesis(kd_xy=2.5, rate=1000)
+    assert by_axis(law, slow=slow)["x, y"]["stable"]
+    assert by_axis(law, slow=slow)["yaw"]["stable"] != fails
+    simulation = qc.Simulation(engine="eigen", xacro_args={"sim_slow": slow})
+    spiral = qc.references.spiral()
+    log = simulation.run(
+        15, controller=law, reference=spiral, on_reference=True, log_every=10, wrenches=False
+    )
+    away = np.linalg.norm([log.topics["error"][axis] for axis in "xyz"], axis=0)
+    turn = np.abs(log.angular_velocity[:, 2])[log.time > 5]
+    assert (away.max() > 0.5) == fails
+    assert (turn.max() > 0.5) == fails

@@ -6,13 +6,13 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import yaml
-
-from .. import interrupts, laws, references
+from .. import laws, references
 from .._core import FlightError, InputError
-from ..files import check_writable, make_folder, read_text
+from ..files import check_writable, make_folder
 from ..plants import plants
 from . import options, terminal, values
+from .kept import kept
+from .options_file import OptionsFile
 
 if TYPE_CHECKING:
     from ..evaluation.evaluate import Evaluation
@@ -73,30 +73,29 @@ def register(commands: Any) -> None:
 def evaluate(arguments: argparse.Namespace) -> None:
     """Fly everything, print how well, and write it."""
     from ..evaluation.evaluate import conduct
-    from ..evaluation.output import write
+    from ..evaluation.output import FILES, write
 
-    if arguments.file is not None:
-        arguments = _with_file(arguments)
-    plan = _plan(arguments)
+    if arguments.file is None:
+        plan = _plan(arguments)
+    else:
+        file = OptionsFile(Path(arguments.file), arguments.parser)
+        arguments = file.beneath(arguments)
+        with file.blamed():
+            plan = _plan(arguments)
     out = arguments.out
     if out is not None:
         make_folder(out)
-        check_writable(out / "report.html")  # after the flights would be too late
-    try:
-        with terminal.progress(arguments.quiet) as progress:
-            evaluation = conduct(
-                plan, arguments.time_limit, arguments.jobs, progress, arguments.margins
-            )
-    except KeyboardInterrupt as stop:
-        partial = getattr(stop, "evaluation", None)
-        if out is not None and partial is not None:
-            with interrupts.held():
-                write(partial, plan, _flight(arguments), out, plots=False)
-            terminal.say(f"what was flown: {out}")
-        raise
-    files = []
-    if out is not None:
-        files = write(evaluation, plan, _flight(arguments), out, not arguments.no_plots)
+        for name in FILES:
+            check_writable(out / name)  # after the flights would be too late
+
+    def put(flown: Evaluation, plots: bool = False) -> list[Path]:
+        return write(flown, plan, out, plots) if out is not None else []
+
+    with kept("evaluation", out, put), terminal.progress(arguments.quiet) as progress:
+        evaluation = conduct(
+            plan, arguments.time_limit, arguments.jobs, progress, arguments.margins
+        )
+    files = put(evaluation, not arguments.no_plots)
     if not arguments.quiet:
         _show(evaluation, files)
     _report_failures(evaluation)
@@ -127,88 +126,8 @@ def _plan(arguments: argparse.Namespace) -> Plan:
     )
 
 
-def _with_file(arguments: argparse.Namespace) -> argparse.Namespace:
-    """Read the options of a file as if they stood before those of the command line."""
-    path = Path(arguments.file)
-    words = []
-    for key, value, line in _entries(path):
-        option = f"--{key}"
-        if option not in arguments.parser._option_string_actions or key == "help":
-            raise InputError(f"{path}:{line}: there is no option '{key}'; see quadcore evaluate -h")
-        try:
-            words += _words(option, value)
-        except TypeError:
-            raise InputError(
-                f"{path}:{line}: {key} is {value!r}; write a value, a list, or true"
-            ) from None
-    try:
-        again: argparse.Namespace = arguments.parser.parse_args([*words, *arguments.words[1:]])
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from None
-    return again
-
-
-def _entries(path: Path) -> list[tuple[str, Any, int]]:
-    """Keys, values and lines of a mapping."""
-    text = read_text(path)
-    try:
-        node = yaml.compose(text, yaml.SafeLoader)
-        read = yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        line = mark.line + 1 if mark else 1
-        problem = getattr(error, "problem", None) or "not YAML"
-        raise InputError(f"{path}:{line}: {problem}") from None
-    if not isinstance(node, yaml.MappingNode):
-        raise InputError(f"{path}:1: write options as KEY: VALUE")
-    entries: list[tuple[str, Any, int]] = []
-    for key, _ in node.value:
-        name, line = str(key.value), key.start_mark.line + 1
-        if name in [entry[0] for entry in entries]:
-            raise InputError(f"{path}:{line}: {name} is given twice; keep one")
-        entries.append((name, read[name], line))
-    return entries
-
-
-def _words(option: str, value: Any) -> list[str]:
-    """Write an option as a command line does."""
-    if value is True:
-        return [option]
-    if value is False or value is None:
-        return []
-    if isinstance(value, dict):  # --set, --vary: repeated; --xacro: with another sign
-        sign = ":=" if option == "--xacro" else "="
-        return [w for k, v in value.items() for w in (option, f"{k}{sign}{_text(v)}")]
-    return [f"{option}={_text(value)}"]
-
-
-def _text(value: Any) -> str:
-    if isinstance(value, list):
-        return ",".join(map(_text, value))
-    if isinstance(value, bool):
-        return str(value).lower()
-    if not isinstance(value, (str, int, float)):
-        raise TypeError(value)
-    return str(value)
-
-
-def _flight(arguments: argparse.Namespace) -> dict[str, str]:
-    """Describe what all flights share."""
-    return {
-        "controllers": ", ".join(arguments.controller),
-        "references": ", ".join(arguments.reference),
-        "engines": ", ".join(arguments.engine),
-        "models": ", ".join(arguments.model),
-        "duration": f"{arguments.duration:g} s",
-        "seeds": f"{arguments.seeds}, from {arguments.seed} on",
-        "begins": "on the reference" if arguments.spawn is None else str(arguments.spawn),
-        **{f"vary {key}": value for key, value in arguments.vary},
-        **options.changes_told(arguments),
-    }
-
-
 def _show(evaluation: Evaluation, files: list[Path]) -> None:
-    from ..evaluation.output import rows_to_read, summary
+    from ..evaluation.output import causes, rows_to_read, summary
 
     console = terminal.console()
     lines = rows_to_read(evaluation)
@@ -235,24 +154,26 @@ def _show(evaluation: Evaluation, files: list[Path]) -> None:
         console.print("", _margins(evaluation))
     if len(lines) > _ROWS:
         console.print(f"{len(lines) - _ROWS} more combinations")
+    for cause in causes(evaluation):
+        console.print(f"unstable: {cause}")
     console.print(summary(evaluation))
     for file in files:
         console.print(f"written {file}")
 
 
 def _margins(evaluation: Evaluation) -> Any:
-    from ..evaluation.output import error_text
+    from ..evaluation.output import margins_to_read
 
     table = terminal.table("controller", "gain", "delay (s)", "box, median / worst (m)")
-    for row in evaluation.margins:
+    for row in margins_to_read(evaluation):
         if row["failure"]:
             table.add_row(row["controller"], row["failure"])
             continue
         gain, box = (
-            " / ".join(error_text(row[name]) or "-" for name in names)
+            " / ".join(row[name] or "-" for name in names)
             for names in (("gain_low", "gain_high"), ("box_median", "box_worst"))
         )
-        table.add_row(row["controller"], gain, error_text(row["delay_margin"]) or "-", box)
+        table.add_row(row["controller"], gain, row["delay_margin"] or "-", box)
     return table
 
 

@@ -4,28 +4,38 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import replace
+from numbers import Real
 from pathlib import Path
-from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import (
+    Any,
+    Callable,
+    Dict,
+    Iterable,
+    List,
+    Mapping,
+    NamedTuple,
+    Optional,
+    Sequence,
+    Union,
+)
 
-import numpy as np
-
-from .._core import QuadcoreError
+from .._core import InputError, QuadcoreError
+from ..flight_plan import FlightPlan
 from ..study.axes import Values
 from ..study.executor import conducted
 from ..study.sampling import evenly
-from . import robustness
-from .flights import NAN, Outcome, flown
-from .intervals import cvar, interval
-from .plan import Case, Named, Plan
+from .entries import Named
+from .flights import Outcome, flown
+from .plan import Case, Plan
 from .poles import has_poles, poles
+from .robustness import Searches
+from .sums import JUDGED as JUDGED
+from .sums import over_seeds
+from .trial import Trial
 
 Progress = Callable[[int, int], None]
 
-JUDGED = ("rms_position", "largest_position", "tail_position")
-"""Measures that have a mean, an interval and a risk over the seeds."""
-
 _DRAWN = 60  # flights of which enough is kept to draw them
-_NOT_FLOWN = "not flown: interrupted"
 
 
 class Evaluation(NamedTuple):
@@ -35,21 +45,21 @@ class Evaluation(NamedTuple):
     """A row per flight: controller, reference, engine, model, scenario, seed, failure ("" if it
     flew) and each of the measures, NaN where it failed."""
     groups: List[Dict[str, Any]]
-    """A row per combination, over its seeds: flights, failure_rate and, of those that flew, for
-    each of `JUDGED` mean, interval (low, high), cvar; and the mean difference from the first
-    controller under the same seeds, with its interval."""
+    """A row per combination, over its seeds: flights, not_flown and failure_rate; of those that
+    flew, for each of `JUDGED`, mean and interval (low, high); cvar, in which who failed counts as
+    infinite; and the mean difference from the first controller under the same seeds, with its
+    interval."""
     margins: List[Dict[str, Any]]
     """A row per controller if they were searched, see `robustness`."""
     poles: List[Dict[str, Any]]
-    """Of the cascaded laws in hover, for each axis, see `poles`; with controller and engines."""
-    seconds: List[float]
-    """Of the wall clock, per flight; NaN where it did not end."""
-    updates: List[int]
-    """Of the controller, per flight."""
-    warnings: List[Sequence[str]]
-    """Of the model and the flight, per flight."""
-    drawn: Dict[int, Outcome]
-    """What is needed to draw flights: the first seed of some combinations, by row of the table."""
+    """Of the cascaded laws in hover, for each axis, see `poles`; whose, and on what."""
+    outcomes: Sequence[Outcome]
+    """What is known of each flight; of the first seed of some combinations, enough to draw it."""
+
+    @property
+    def drawn(self) -> Dict[int, Outcome]:
+        """What can be drawn, by row of the table."""
+        return {row: outcome for row, outcome in enumerate(self.outcomes) if outcome.log}
 
 
 def evaluate(
@@ -106,7 +116,9 @@ def evaluate(
     Returns
     -------
     Evaluation
-        But for `seconds` the same whatever the number of processes.
+        But for the seconds the same whatever the number of processes: flights of a controller or
+        reference that is none of quadcore's have processes of their own, which begin as this one
+        is when they begin.
 
     Raises
     ------
@@ -115,6 +127,15 @@ def evaluate(
     KeyboardInterrupt
         With the attribute `evaluation`, whose missing rows say so.
     """
+    for name, value, kind, form in (
+        ("engines", engines, Iterable, "a name, or several"),
+        ("models", models, (str, Path, Iterable), "a name, or several"),
+        ("vary", {} if vary is None else vary, Mapping, "a mapping of names to values"),
+        ("duration", duration, Real, "seconds"),
+        ("time_limit", time_limit, Real, "seconds"),
+    ):
+        if not isinstance(value, kind):  # type: ignore[arg-type]
+            raise InputError(f"{name} is {value!r}; give {form}")
     plan = Plan(
         controllers,
         references,
@@ -141,50 +162,56 @@ def conduct(
 ) -> Evaluation:
     """Fly a plan; parameters as for `evaluate`."""
     cases = plan.cases()
-    kept = _to_draw(plan, cases)
-    missing = Outcome(_NOT_FLOWN, NAN, float("nan"), 0)
-    outcomes: List[Outcome] = [missing] * len(cases)
-    searches = robustness.searches(plan) if margins else []
-    found: List[Any] = [None] * len(searches)
+    kept = set(_to_draw(plan, cases))
+    outcomes = [Outcome()] * len(cases)
+    searches = Searches(plan.controllers, plan.lacking) if margins else None
     in_hover = _poles(plan)
-    total, done = len(cases) + len(searches), 0
+    done = 0
 
-    def note(outcome: Any) -> None:
-        nonlocal done
-        done += 1
-        if progress is not None:
-            progress(done, total)
+    def summed() -> Evaluation:
+        found = searches.rows() if searches else []
+        return _summed(plan, cases, outcomes, found, in_hover)
 
-    def fly(row: int) -> Outcome:
-        return flown(plan.flight(cases[row]), time_limit, row in kept)
+    def conduct_each(
+        described: Callable[[int], Callable[[], FlightPlan]], into: List[Outcome]
+    ) -> None:
+        def fly(i: int) -> Outcome:
+            return flown(described(i), time_limit, into is outcomes and i in kept)
 
-    def take(row: int, outcome: Union[Outcome, QuadcoreError]) -> None:
-        if isinstance(outcome, QuadcoreError):
-            outcome = Outcome(str(outcome), NAN, float("nan"), 0)
-        outcomes[row] = outcome
-        note(outcome)
+        def take(i: int, outcome: Union[Outcome, QuadcoreError]) -> None:
+            nonlocal done
+            failed = isinstance(outcome, QuadcoreError)
+            into[i] = Outcome(str(outcome)) if failed else outcome  # type: ignore[assignment]
+            done += 1
+            if progress is not None:
+                progress(done, total)
 
-    def take_found(row: int, result: Any) -> None:
-        found[row] = str(result) if isinstance(result, QuadcoreError) else result
-        note(result)
+        total = max(done + len(into), len(cases) + (searches.expected if searches else 0))
+        conducted(fly, range(len(into)), take, processes, apart=plan.apart)
+
+    def fly_trials(trials: Sequence[Trial]) -> List[Outcome]:
+        found = [Outcome()] * len(trials)
+        conduct_each(lambda i: lambda: trials[i].flight(plan), found)
+        return found
 
     try:
-        conducted(fly, range(len(cases)), take, processes)
-        conducted(lambda search: search.made(plan, time_limit), searches, take_found, processes)
+        conduct_each(lambda row: lambda: plan.flight(cases[row]), outcomes)
+        if searches is not None:
+            searches.run(fly_trials)
     except KeyboardInterrupt as stop:
-        stop.evaluation = _summed(plan, cases, outcomes, searches, found, in_hover)  # type: ignore[attr-defined]
+        stop.evaluation = summed()  # type: ignore[attr-defined]
         raise
-    return _summed(plan, cases, outcomes, searches, found, in_hover)
+    return summed()
 
 
 def _poles(plan: Plan) -> List[Dict[str, Any]]:
-    """Find the poles of the laws that have some, on the first model in the first scenario."""
+    """Find the poles of the laws that have some, on each model in the first scenario."""
     rows: List[Dict[str, Any]] = []
-    for label, engines, flight in plan.laws():
+    for names, flight in plan.laws():
         if has_poles(flight.controller):
             with suppress(QuadcoreError):  # a vehicle that chapter 2 cannot describe
                 found = poles(flight.controller, replace(flight, on_reference=False).simulation())
-                rows += [{"controller": label, "engine": engines, **row} for row in found]
+                rows += [{**names, **row} for row in found]
     return rows
 
 
@@ -198,58 +225,17 @@ def _summed(
     plan: Plan,
     cases: Sequence[Case],
     outcomes: Sequence[Outcome],
-    searches: Sequence[Any],
-    found: Sequence[Any],
+    margins: List[Dict[str, Any]],
     found_poles: List[Dict[str, Any]],
 ) -> Evaluation:
-    table = [
-        {**plan.names(case), "failure": outcome.failure, **outcome.measures}
-        for case, outcome in zip(cases, outcomes)
-    ]
+    names = [plan.names(case) for case in cases]
     return Evaluation(
-        table,
-        _groups(plan, cases, outcomes),
-        robustness.rows(plan, searches, found),
+        [
+            {**name, "failure": outcome.failure, **outcome.measures}
+            for name, outcome in zip(names, outcomes)
+        ],
+        over_seeds([case.group for case in cases], names, outcomes),
+        margins,
         found_poles,
-        [outcome.seconds for outcome in outcomes],
-        [outcome.updates for outcome in outcomes],
-        [outcome.warnings for outcome in outcomes],
-        {row: outcome for row, outcome in enumerate(outcomes) if outcome.log is not None},
+        outcomes,
     )
-
-
-def _groups(plan: Plan, cases: Sequence[Case], outcomes: Sequence[Outcome]) -> List[Dict[str, Any]]:
-    by_group: Dict[Tuple[int, ...], List[Outcome]] = {}
-    names: Dict[Tuple[int, ...], Dict[str, Any]] = {}
-    for case, outcome in zip(cases, outcomes):
-        by_group.setdefault(case.group, []).append(outcome)
-        names.setdefault(case.group, plan.names(case))
-    return [
-        {
-            **{name: value for name, value in names[group].items() if name != "seed"},
-            **_over_seeds(flights, by_group[(0, *group[1:])]),
-        }
-        for group, flights in by_group.items()
-    ]
-
-
-def _over_seeds(flights: Sequence[Outcome], first: Sequence[Outcome]) -> Dict[str, Any]:
-    """Sum the flights of one combination, and compare them with the first controller's."""
-    row: Dict[str, Any] = {
-        "flights": len(flights),
-        "failure_rate": sum(1 for f in flights if f.failure) / len(flights),
-    }
-    for name in JUDGED:
-        values = np.array([f.measures[name] for f in flights if not f.failure])
-        low, high = interval(values)
-        row[f"mean_{name}"] = float(values.mean()) if len(values) else float("nan")
-        row[f"low_{name}"], row[f"high_{name}"] = low, high
-        row[f"cvar_{name}"] = cvar(values)
-        apart = [
-            f.measures[name] - other.measures[name]
-            for f, other in zip(flights, first)
-            if not f.failure and not other.failure and flights is not first
-        ]
-        row[f"difference_{name}"] = float(np.mean(apart)) if apart else float("nan")
-        row[f"difference_low_{name}"], row[f"difference_high_{name}"] = interval(np.array(apart))
-    return row

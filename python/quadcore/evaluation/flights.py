@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import time
-import warnings
-from typing import Dict, NamedTuple, Optional, Sequence
+from dataclasses import replace
+from typing import Any, Callable, Dict, NamedTuple, Optional, Sequence
 
 import numpy as np
 
@@ -14,23 +14,35 @@ from ..flight import Rows, columns_of, fly
 from ..flight_plan import FlightPlan
 from ..log import Log
 from ..study.sampling import thinned
-from ..warning import QuadcoreWarning
+from ..study.table import NOT_FLOWN
+from ..warning import unheard
+from .clock import Clocked, ClockedPilot, clocked, typical_and_slow
 from .measures import UNITS, drag_power, lost, measure, slow_down
 from .step_response import step_response
 from .time_limit import time_limit
+
+NAN = dict.fromkeys(UNITS, float("nan"))
 
 
 class Outcome(NamedTuple):
     """What is known of a flight."""
 
-    failure: str
+    failure: str = NOT_FLOWN
     """Why it counts as failed: lost, diverged, no command; "" if it flew."""
-    measures: Dict[str, float]
+    measures: Dict[str, float] = NAN
     """Of `UNITS`; NaN where it failed."""
-    seconds: float
+    seconds: float = float("nan")
     """Of the wall clock."""
-    updates: int
+    updates: int = 0
     """Of the controller."""
+    call: float = float("nan")
+    """Median of what an update took, s."""
+    slow_call: float = float("nan")
+    """What one update of a hundred exceeded, s."""
+    rate: float = float("nan")
+    """Of the controller, 1/s."""
+    delay: float = float("nan")
+    """From the controller to the motors, s."""
     warnings: Sequence[str] = ()
     """What was perhaps not meant, as `Simulation.warnings`."""
     log: Optional[Log] = None
@@ -42,17 +54,24 @@ class Outcome(NamedTuple):
     rotors: Optional[np.ndarray] = None
     """Where they are in the frame, if it was asked for, m; (n, 3)."""
 
+    @property
+    def flew(self) -> bool:
+        """Whether there is something measured."""
+        return not self.failure
 
-NAN = dict.fromkeys(UNITS, float("nan"))
+    @property
+    def was_flown(self) -> bool:
+        """Whether it took place, be it that it failed."""
+        return self.failure != NOT_FLOWN
 
 
-def flown(flight: FlightPlan, most: float, keep: bool = False) -> Outcome:
+def flown(described: Callable[[], FlightPlan], most: float, keep: bool = False) -> Outcome:
     """Fly and measure.
 
     Parameters
     ----------
-    flight
-        Guided.
+    described
+        Gives the flight, guided; that a controller is brought in and made is part of the time.
     most
         Of the wall clock, s.
     keep
@@ -65,11 +84,14 @@ def flown(flight: FlightPlan, most: float, keep: bool = False) -> Outcome:
     """
     started = time.perf_counter()
     failure = ""
-    with time_limit(most), warnings.catch_warnings():
-        warnings.simplefilter("ignore", QuadcoreWarning)  # they are kept
+    with time_limit(most), unheard():
+        flight = described()
+        flight = replace(flight, controller=clocked(flight.controller))
         simulation = flight.simulation()
-        pilot = flight.pilot(simulation)
-        assert pilot is not None
+        pilot: Any = flight.pilot(simulation)
+        timed = flight.controller
+        if not isinstance(timed, Clocked):
+            timed = pilot = ClockedPilot(pilot)
         rows = Rows(simulation, columns_of(simulation, (), pilot))
         try:
             with faults_told(simulation):
@@ -91,9 +113,17 @@ def flown(flight: FlightPlan, most: float, keep: bool = False) -> Outcome:
     measures = NAN
     if not failure:
         share = pilot.saturated / max(1, pilot.updates)
-        measures = measure(log, share, drag_power(simulation))
-    seconds = time.perf_counter() - started
-    outcome = Outcome(failure, measures, seconds, pilot.updates, list(simulation.warnings))
+        measures = measure(log, share, drag_power(simulation), slow_down(simulation))
+    outcome = Outcome(
+        failure,
+        measures,
+        time.perf_counter() - started,
+        pilot.updates,
+        *typical_and_slow(timed.seconds),
+        pilot.rate,
+        pilot.delay,
+        list(simulation.warnings),
+    )
     if not keep:
         return outcome
     response = None if failure else step_response(log)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import Tuple
 
 import numpy as np
@@ -20,11 +21,16 @@ def interval(values: np.ndarray) -> Tuple[float, float]:
     """
     if len(values) < 2:
         return math.nan, math.nan
-    # Of a seed of its own, so that the same values have the same interval wherever they stand.
-    picks = np.random.default_rng(0).integers(len(values), size=(RESAMPLES, len(values)))
-    means = values[picks].mean(axis=1)
+    means = values[_picks(len(values))].mean(axis=1)
     low, high = np.quantile(means, [(1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2])
     return float(low), float(high)
+
+
+@lru_cache(maxsize=4)
+def _picks(count: int) -> np.ndarray:
+    # Of a seed of its own, so that the same values have the same interval wherever they stand.
+    picks: np.ndarray = np.random.default_rng(0).integers(count, size=(RESAMPLES, count))
+    return picks
 
 
 def cvar(values: np.ndarray) -> float:

@@ -36,7 +36,7 @@ MEANINGS = {
     "rms_position": "root of the mean square of the distance to the reference",
     "largest_position": "largest distance to the reference",
     "tail_position": f"the same of the last {TAIL:g} s",
-    "steady_position": f"length of the mean error of the last {TAIL:g} s",
+    "steady_position": f"length of the mean error of the last {TAIL:g} s, at most the second half",
     "iae_position": "integral of the distance",
     "itae_position": "integral of time x distance",
     "largest_yaw": "largest error of the yaw",
@@ -65,7 +65,9 @@ def distance(log: Log) -> np.ndarray:
     return length
 
 
-def measure(log: Log, saturated: float, drag_power: np.ndarray) -> Dict[str, float]:
+def measure(
+    log: Log, saturated: float, drag_power: np.ndarray, slow: float = 1.0
+) -> Dict[str, float]:
     """Measure a flight.
 
     Parameters
@@ -75,8 +77,10 @@ def measure(log: Log, saturated: float, drag_power: np.ndarray) -> Dict[str, flo
     saturated
         Share of the saturated updates.
     drag_power
-        Of each rotor, the power of the air's torque on it per cubed joint velocity,
-        W s^3/rad^3; shape (n,).
+        Of each rotor, the power of the air's torque on it per cubed speed, W s^3/rad^3;
+        shape (n,).
+    slow
+        How much slower than that speed the joints of the log turn.
 
     Returns
     -------
@@ -85,16 +89,17 @@ def measure(log: Log, saturated: float, drag_power: np.ndarray) -> Dict[str, flo
     """
     time, away = log.time - log.time[0], distance(log)
     tail = time > time[-1] - TAIL
+    late = time > time[-1] - min(TAIL, time[-1] / 2)
     errors = np.column_stack([log.topics["error"][axis] for axis in "xyz"])
     yaw = roll_pitch_yaw(log.orientation)[:, 2] - log.topics["reference"]["yaw"]
-    speeds = np.abs(log.rotor_velocity)
+    speeds = slow * np.abs(log.rotor_velocity)
     span = max(time[-1], np.finfo(float).tiny)
     rise, overshoot, settling = _step(log, away)
     return {
         "rms_position": float(np.sqrt(np.mean(away**2))),
         "largest_position": float(away.max()),
         "tail_position": float(away[tail].max()),
-        "steady_position": float(np.linalg.norm(errors[tail].mean(axis=0))),
+        "steady_position": float(np.linalg.norm(errors[late].mean(axis=0))),
         "iae_position": _integral(away, time),
         "itae_position": _integral(away * time, time),
         "largest_yaw": float(np.abs(np.remainder(yaw + np.pi, 2 * np.pi) - np.pi).max()),
@@ -113,7 +118,7 @@ def drag_power(simulation: Simulation) -> np.ndarray:
     for plugin in simulation.plugins:
         tags = {tag.name: tag.value for tag in plugin.parameters}
         if "rotorTorqueCoeff" in tags:
-            power = abs(float(tags["rotorTorqueCoeff"])) * slow_down(simulation) ** 3
+            power = abs(float(tags["rotorTorqueCoeff"]))
     return np.full(simulation.rotor_count, power)
 
 

@@ -6,14 +6,18 @@ import math
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Sequence
 
-from ..study.table import csv_bytes, flown_and_failed, json_bytes, number_text, save
-from .evaluate import JUDGED, Evaluation
+import numpy as np
+
+from .. import __version__
+from ..study.table import NOT_FLOWN, csv_bytes, flown_and_failed, json_bytes, number_text, save
+from .evaluate import Evaluation
 from .intervals import CONFIDENCE
 from .measures import MEANINGS, UNITS
-from .pictures import by_reference, draw, label
+from .pictures import by_reference, draw, is_picture, label
 from .plan import Plan
 from .poles import gains_of
 from .poles import text as poles_text
+from .robustness import BOX, ENDS, margin_text
 
 ROWS_OF_PAGE = 200
 
@@ -21,19 +25,19 @@ _PLAYERS, _PLAYED = 4, 8  # references, flights of each
 _SWITCHES = ("feed_forward", "drag", "gyroscopic", "flat_rates", "integral", "lead")
 
 _NAMES = ("controller", "reference", "engine", "model", "scenario")
+_SHOWN = ("rms_position", "largest_position", "tail_position")
 
 
-def write(
-    evaluation: Evaluation, plan: Plan, flight: Mapping[str, str], folder: Path, plots: bool
-) -> List[Path]:
-    """Write ``table.csv``, ``evaluation.json``, ``timing.csv``, ``report.html`` and pictures.
+FILES = ("table.csv", "evaluation.json", "timing.csv", "report.html")
+
+
+def write(evaluation: Evaluation, plan: Plan, folder: Path, plots: bool) -> List[Path]:
+    """Write `FILES` and pictures, and remove the pictures of an evaluation before.
 
     Parameters
     ----------
     evaluation, plan
         What was flown.
-    flight
-        What all flights share, for the page.
     folder
         Where to.
     plots
@@ -44,15 +48,18 @@ def write(
     # What was flown comes first: pictures can fail, and take their time.
     tables = {
         "table.csv": csv_bytes(_csv(evaluation.table)),
-        "evaluation.json": json_bytes(_content(evaluation, flight)),
+        "evaluation.json": json_bytes(_content(evaluation, plan)),
         "timing.csv": csv_bytes(_timing(evaluation, plan)),
     }
     written = save(folder, tables)
+    for old in folder.glob("*.png"):
+        if is_picture(old.stem):
+            old.unlink()
     images = draw(evaluation) if plots else {}
     written += save(folder, {f"{name}.png": data for name, data in images.items()})
     page = folder / "report.html"
     players = _players(evaluation) if plots else []
-    values = _page(evaluation, flight, images)
+    values = _page(evaluation, plan, images)
     write_page(page, "evaluate.html", **values, players=players, known=_known(plan))
     return [*written, page]
 
@@ -75,12 +82,27 @@ def _players(evaluation: Evaluation) -> List[Dict[str, Any]]:
 def _known(plan: Plan) -> List[Dict[str, str]]:
     """Tell what each law of quadcore flew with: only alike can be compared."""
     rows = []
-    for name, engines, flight in plan.laws():
+    for names, flight in plan.laws():
         gains = gains_of(flight.controller)
         shown = {part: f"{gains[part]:g}" if part in gains else "" for part in _SWITCHES}
         timing = {part: f"{getattr(flight.controller, part):g}" for part in ("rate", "delay")}
-        rows.append({"controller": name, "engine": engines, **timing, **shown})
+        rows.append({**names, **timing, **shown})
     return rows
+
+
+def _laws(plan: Plan) -> List[Dict[str, Any]]:
+    """Tell all that a law of quadcore flew with."""
+    return [
+        {
+            **names,
+            "law": flight.controller.name,
+            "rate": float(flight.controller.rate),
+            "delay": float(flight.controller.delay),
+            "spins": flight.controller.spins,
+            "parameters": gains_of(flight.controller),
+        }
+        for names, flight in plan.laws()
+    ]
 
 
 def summary(evaluation: Evaluation) -> str:
@@ -98,25 +120,35 @@ def rows_to_read(evaluation: Evaluation) -> List[Dict[str, str]]:
             best[key] = min(value, best.get(key, math.inf))
     lines = []
     for group in evaluation.groups:
-        failed = round(group["failure_rate"] * group["flights"])
+        flown = round((1 - group["failure_rate"]) * group["flights"]) if group["flights"] else 0
         line = {name: str(group[name]) for name in _NAMES}
-        line["flown"] = f"{group['flights'] - failed} of {group['flights']}"
-        for name in JUDGED:
-            line[name] = error_text(group[f"mean_{name}"])
-        line["tail_position"] += _interval(group, "", 3)
+        line["flown"] = f"{flown} of {group['flights']}"
+        line["flown"] += f", {group['not_flown']} not" * (group["not_flown"] > 0)
+        for name in _SHOWN:
+            line[name] = error_text(group[f"mean_{name}"]) + _interval(group, name)
         line["cvar"] = error_text(group["cvar_tail_position"])
         line["difference"] = error_text(group["difference_tail_position"])
-        line["difference"] += _interval(group, "difference_", 2)
+        line["difference"] += _interval(group, "tail_position", "difference_")
         key = tuple(group[name] for name in _NAMES[1:])
-        is_best = failed == 0 and group["mean_tail_position"] == best.get(key)
+        is_best = group["failure_rate"] == 0 and group["mean_tail_position"] == best.get(key)
         line["best"] = "*" if is_best else ""
         lines.append(line)
     return lines
 
 
-def _interval(group: Mapping[str, Any], of: str, digits: int) -> str:
-    low, high = group[f"{of}low_tail_position"], group[f"{of}high_tail_position"]
-    return "" if math.isnan(low) else f" [{low:.{digits}g}, {high:.{digits}g}]"
+def _interval(group: Mapping[str, Any], name: str, of: str = "") -> str:
+    low, high = group[f"{of}low_{name}"], group[f"{of}high_{name}"]
+    return "" if math.isnan(low) else f" [{low:.3g}, {high:.3g}]"
+
+
+def causes(evaluation: Evaluation) -> List[str]:
+    """Say why cascades do not hold the vehicle, a line for each axis that is unstable."""
+    return [
+        f"{row['controller']} ({row['engine']}), {row['axis']}: pole at {poles_text(row, 1)} 1/s"
+        + (f", for {row['because']}" if row["because"] else "")
+        for row in evaluation.poles
+        if not row["stable"]
+    ]
 
 
 def error_text(value: float) -> str:
@@ -129,29 +161,38 @@ def _csv(table: Sequence[Mapping[str, Any]]) -> List[List[Any]]:
 
 
 def _timing(evaluation: Evaluation, plan: Plan) -> List[List[Any]]:
-    rows: List[List[Any]] = [[*_NAMES, "seed", "seconds", "real_time_factor", "updates"]]
-    flights = zip(evaluation.table, evaluation.seconds, evaluation.updates)
-    for row, seconds, updates in flights:
+    measured = ("seconds", "real_time_factor", "updates", "update_median", "update_p99")
+    rows: List[List[Any]] = [[*_NAMES, "seed", *measured]]
+    for row, outcome in zip(evaluation.table, evaluation.outcomes):
         names = [row[name] for name in (*_NAMES, "seed")]
-        rows.append([*names, seconds, plan.duration / seconds, updates])
+        factor = plan.duration / outcome.seconds
+        calls = outcome.updates, outcome.call, outcome.slow_call
+        rows.append([*names, outcome.seconds, factor, *calls])
     return rows
 
 
-def _content(evaluation: Evaluation, flight: Mapping[str, str]) -> Dict[str, Any]:
+def _content(evaluation: Evaluation, plan: Plan) -> Dict[str, Any]:
     return {
-        "flight": dict(flight),
+        "quadcore": __version__,
+        "numpy": np.__version__,
+        "plan": plan.told(),
+        "laws": _laws(plan),
         "units": UNITS,
         "meanings": MEANINGS,
         "confidence": CONFIDENCE,
         "flights": [
-            {**row, "warnings": list(warned)}
-            for row, warned in zip(evaluation.table, evaluation.warnings)
+            {
+                **row,
+                "rate": outcome.rate,
+                "delay": outcome.delay,
+                "updates": outcome.updates,
+                "warnings": list(outcome.warnings),
+            }
+            for row, outcome in zip(evaluation.table, evaluation.outcomes)
         ],
-        "combinations": evaluation.groups,
-        "margins": [
-            {name: value if value != math.inf else "lost" for name, value in row.items()}
-            for row in evaluation.margins
-        ],
+        "combinations": [_finite(group) for group in evaluation.groups],
+        "margins": [_finite(row) for row in evaluation.margins],
+        "searched": {**ENDS, "box": BOX},
         "poles": [
             {
                 **row,
@@ -163,34 +204,55 @@ def _content(evaluation: Evaluation, flight: Mapping[str, str]) -> Dict[str, Any
     }
 
 
-def _page(
-    evaluation: Evaluation, flight: Mapping[str, str], images: Mapping[str, bytes]
-) -> Dict[str, Any]:
+def _finite(row: Mapping[str, Any]) -> Dict[str, Any]:
+    """Write an infinite error as what it means."""
+    return {name: "lost" if value == math.inf else value for name, value in row.items()}
+
+
+def margins_to_read(evaluation: Evaluation) -> List[Dict[str, str]]:
+    """Rows of the margins for people."""
+    return [
+        {
+            name: value if isinstance(value, str) else margin_text(row, name, error_text)
+            for name, value in row.items()
+        }
+        for row in evaluation.margins
+    ]
+
+
+def _told(plan: Plan) -> Dict[str, str]:
+    """Say what flew and how, as texts; what nobody asked for is left out."""
+    told = {}
+    for name, value in plan.told().items():
+        if isinstance(value, dict):
+            value = [f"{key}={one}" for key, one in value.items()]
+        text = ", ".join(map(str, value)) if isinstance(value, list) else str(value)
+        if text and value is not None:
+            told[name] = text
+    return told
+
+
+def _page(evaluation: Evaluation, plan: Plan, images: Mapping[str, bytes]) -> Dict[str, Any]:
     failures = [
         {
             "label": f"{label(row, evaluation.table)}, {row['reference']}, seed {row['seed']}",
             "failure": row["failure"],
         }
         for row in evaluation.table
-        if row["failure"]
+        if row["failure"] not in ("", NOT_FLOWN)
     ]
     return {
         "title": "Evaluation of controllers",
         "summary": summary(evaluation),
-        "flight": flight,
+        "flight": _told(plan),
         "lines": rows_to_read(evaluation)[:ROWS_OF_PAGE],
         "more": max(0, len(evaluation.groups) - ROWS_OF_PAGE),
         "failures": failures[:ROWS_OF_PAGE],
         "confidence": f"{100 * CONFIDENCE:g} %",
         "meanings": MEANINGS,
         "units": UNITS,
-        "margins": [
-            {
-                name: value if isinstance(value, str) else error_text(value)
-                for name, value in row.items()
-            }
-            for row in evaluation.margins
-        ],
+        "margins": margins_to_read(evaluation),
+        "causes": causes(evaluation),
         "poles": [
             {
                 **row,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any, Dict, List, Sequence, Tuple
 
 import numpy as np
@@ -36,6 +37,13 @@ def draw(evaluation: Evaluation) -> Dict[str, bytes]:
         figures["margins"] = _margins(evaluation.margins)
         figures["rates"] = _rates(evaluation.margins)
     return {name: png(figure) for name, figure in figures.items()}
+
+
+def is_picture(name: str) -> bool:
+    """Whether `draw` makes pictures of that name."""
+    return (
+        re.fullmatch(r"(tracks|errors|rotors|response)_\d+|seeds|margins|rates", name) is not None
+    )
 
 
 Flights = List[Tuple[str, Outcome]]

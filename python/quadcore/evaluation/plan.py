@@ -2,44 +2,31 @@
 
 from __future__ import annotations
 
-import copy
 import itertools
 import math
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
-from typing import (
-    Any,
-    Callable,
-    Dict,
-    Iterator,
-    List,
-    Mapping,
-    NamedTuple,
-    Optional,
-    Sequence,
-    Tuple,
-    Union,
-)
+from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 from .. import laws, references
-from .._core import InputError, check_ignored, parse_number
-from ..controller import check_callable, give
+from .._core import InputError, check_ignored
+from ..controller import Guided, give
 from ..description import list_of_names, read_model, read_world
 from ..files import shown
+from ..flight import check_logged
 from ..flight_plan import FlightPlan
 from ..overrides import check_names, without_xacro
 from ..plants import LAGRANGE, plants
-from ..simulation import text_of
-from ..study.axes import LARGEST, Values, axes_of
+from ..simulation import text_of, whole
+from ..study.axes import LARGEST, Values
+from . import entries, trial
+from .entries import Named
 
 LOG_RATE = 100.0
 """Rows per second that a flight is measured by."""
 
-_OF_CONTROLLER = "controller."
 _READ = 16  # models that are kept as they were read
-
-Named = Union[str, Any, Mapping[str, Any], Sequence[Any]]
 
 
 class Case(NamedTuple):
@@ -108,42 +95,52 @@ class Plan:
         self.models = [shown(model) for model in models]
         self.engines = list(engines)
         self._timing = {"rate": controller_rate, "delay": delay}
-        things = _labelled("controller", controllers, laws.Law)
+        things = entries.labelled("controller", controllers, laws.Law)
         self.controllers = [label for label, _ in things]
-        self._are_own = [_is_own(thing) for _, thing in things]
+        self._are_own = [entries.is_own(thing) for _, thing in things]
         self.references, self._shapes = [], []
-        for label, thing in _labelled("reference", references_, references.Shape):
+        for label, thing in entries.labelled("reference", references_, references.Shape):
             self.references.append(label)
             self._shapes.append(references.parse(thing) if isinstance(thing, str) else thing)
-        self._scenarios = _scenarios(vary)
-        self.scenarios = [_label(scenario) for scenario in self._scenarios]
+        self._scenarios = entries.scenarios(vary)
+        self.scenarios = [entries.label_of(scenario) for scenario in self._scenarios]
         own = dict(options)
-        first_seed = own.pop("seed", 0)
-        self.seeds = [first_seed + i for i in range(seeds)]
-        self.duration = duration
-        self._check(seeds)
-        ignore = own.pop("ignore", ())
+        first_seed = whole(own.pop("seed", 0))
+        self.seeds = [first_seed + i for i in range(whole(seeds, "seeds"))]
+        self.duration, self.spawn = duration, spawn
+        self._log_every = log_every
+        self._check(len(self.seeds))
+        self._ignore = own.pop("ignore", ())
         arguments, given = without_xacro(
             own.pop("parameters", None) or {}, own.pop("xacro_args", None)
         )
-        self._set = {key: text_of(value) for key, value in given.items()}
+        self._arguments, self._set = arguments, {k: text_of(v) for k, v in given.items()}
         self._read = lru_cache(_READ)(
-            lambda i, varied: read_model(models[i], {**arguments, **dict(varied)}, ignore)
+            lambda i, varied: read_model(models[i], {**arguments, **dict(varied)}, self._ignore)
         )
-        world = read_world(own.pop("world", None), ignore)
+        self.world = own.pop("world", None)
+        world = read_world(self.world, self._ignore)
         common = {**own, "duration": duration, "wrenches": False, "on_reference": spawn is None}
         if spawn is not None:
             common["spawn"] = spawn
         read = [self._read(i, ()) for i in range(len(models))]
         passed_over = [*(model.passed_over for model in read), world.passed_over]
-        check_ignored(list_of_names("ignore", ignore), passed_over)
+        check_ignored(list_of_names("ignore", self._ignore), passed_over)
         self._plans = [FlightPlan.of(model, world, **common) for model in read]
         vehicles = [plan.model.name for plan in self._plans]
-        self._makers = [[_maker(thing, vehicle) for vehicle in vehicles] for _, thing in things]
+        self._makers = [[entries.maker(thing, name) for name in vehicles] for _, thing in things]
         worlds = [scenario["world"] for scenario in self._scenarios if "world" in scenario]
-        self._worlds = {name: read_world(name, ignore) for name in worlds}
-        self.dt = [self._built(model).dt for model in range(len(models))]
-        self._every = [log_every or max(1, round(1 / (LOG_RATE * dt))) for dt in self.dt]
+        self._worlds = {name: read_world(name, self._ignore) for name in worlds}
+        built = [self._built(model) for model in range(len(models))]
+        self.lacking = trial.lacking(built[0])
+        self._check_logs()
+        self._check_laws(built)
+
+    @property
+    def apart(self) -> bool:
+        """Whether flights call what others wrote, which may remember one when it flies another."""
+        shipped = [isinstance(shape, references.Shape) for shape in self._shapes]
+        return any(self._are_own) or not all(shipped)
 
     def __len__(self) -> int:
         return math.prod(map(len, self._sides())) * len(self.seeds)
@@ -164,62 +161,120 @@ class Plan:
 
     def flight(self, case: Case) -> FlightPlan:
         """Describe a flight, its controller made anew; raises what making it raises."""
-        changed, timing = self._changed(case.model, self._scenarios[case.scenario])
-        controller = self._makers[case.controller][case.model]()
-        for name, value in timing.items():
-            give(controller, name, value)
-        return replace(
+        scenario = self._scenarios[case.scenario]
+        plan = replace(
             self._plans[case.model],
             engine=self.engines[case.engine],
             seed=case.seed,
-            controller=controller,
+            controller=self._controller(case.controller, case.model, scenario),
             reference=self._shapes[case.reference],
-            log_every=self._every[case.model],
-            **changed,
+            **self._changed(case.model, scenario),
         )
+        return replace(plan, log_every=self.rows_every(plan.step))
 
-    def _changed(
-        self, model: int, scenario: Mapping[str, str]
-    ) -> Tuple[Dict[str, Any], Dict[str, float]]:
-        """Tell what a scenario changes in a plan, and what of the controller."""
+    def first_of(self, controller: int) -> FlightPlan:
+        """Describe a flight of a controller on the first of everything else."""
+        return self.flight(Case(controller, 0, 0, 0, 0, self.seeds[0]))
+
+    def laws(self) -> Iterator[Tuple[Dict[str, str], FlightPlan]]:
+        """Name controller, model and engines, and describe a flight, for each law of quadcore.
+
+        Engines that fly the same plugins are one.
+        """
+        of_plugins = [name for name in self.engines if name != LAGRANGE]
+        several = [of_plugins, [LAGRANGE] if LAGRANGE in self.engines else []]
+        for row, label in enumerate(self.controllers):
+            for model, vehicle in enumerate(self.models):
+                for flown in several:
+                    if flown and not self._are_own[row]:
+                        engine = self.engines.index(flown[0])
+                        flight = self.flight(Case(row, 0, engine, model, 0, self.seeds[0]))
+                        names = {"controller": label, "model": vehicle, "engine": ", ".join(flown)}
+                        yield names, flight
+
+    def rows_every(self, dt: float) -> int:
+        """Count the steps between measured rows."""
+        if self._log_every is None:
+            return max(1, round(1 / (LOG_RATE * dt)))
+        return self._log_every
+
+    def told(self) -> Dict[str, Any]:
+        """Say what flies and how, in plain values; controllers are told by `laws`."""
+        step = self._plans[0].step
+        return {
+            "controllers": self.controllers,
+            "references": self.references,
+            "engines": self.engines,
+            "models": self.models,
+            "scenarios": self.scenarios,
+            "seeds": self.seeds,
+            "duration": float(self.duration),
+            "world": None if self.world is None else str(self.world),
+            "dt": step,
+            "log_every": self.rows_every(step),
+            "spawn": None if self.spawn is None else [float(value) for value in self.spawn],
+            "controller_rate": self._timing["rate"],
+            "delay": self._timing["delay"],
+            "set": dict(self._set),
+            "xacro": {name: str(value) for name, value in self._arguments.items()},
+            "ignore": list(self._ignore),
+        }
+
+    def _changed(self, model: int, scenario: Mapping[str, str]) -> Dict[str, Any]:
+        """Tell what a scenario changes in a plan."""
         changed: Dict[str, Any] = {}
-        timing = {name: value for name, value in self._timing.items() if value is not None}
         parameters = dict(self._set)
         for name, value in scenario.items():
-            if name.startswith(_OF_CONTROLLER):
-                timing[name[len(_OF_CONTROLLER) :]] = _number(name, value)
-            elif name == "world":
+            if name == "world":
                 changed["world"] = self._worlds[value]
-            else:
+            elif not name.startswith(entries.OF_CONTROLLER):
                 parameters.update(dict.fromkeys(name.split(","), value))
         varied, tags = without_xacro(parameters, None)
         read = self._read(model, tuple(varied.items()))
         check_names(read, parameters)
-        return {**changed, "model": read, "parameters": tags}, timing
+        return {**changed, "model": read, "parameters": tags}
 
-    def laws(self) -> Iterator[Tuple[str, str, FlightPlan]]:
-        """Name controller and engines, and describe a flight, for each law of quadcore.
-
-        Engines that fly the same plugins are one.
-        """
-        for row, label in enumerate(self.controllers):
-            if self._are_own[row]:
-                continue
-            of_plugins = [name for name in self.engines if name != LAGRANGE]
-            for flown in (of_plugins, [LAGRANGE] if LAGRANGE in self.engines else []):
-                if flown:
-                    engine = self.engines.index(flown[0])
-                    flight = self.flight(Case(row, 0, engine, 0, 0, self.seeds[0]))
-                    yield label, ", ".join(flown), flight
+    def _controller(self, row: int, model: int, scenario: Mapping[str, str]) -> Any:
+        """Make a controller with what a scenario changes in it."""
+        controller = self._makers[row][model]()
+        values = {name: value for name, value in self._timing.items() if value is not None}
+        for name, text in scenario.items():
+            if name.startswith(entries.OF_CONTROLLER):
+                values[name[len(entries.OF_CONTROLLER) :]] = entries.number(name, text)
+        for name, value in values.items():
+            give(controller, name, value)
+        return controller
 
     def _sides(self) -> Tuple[Sequence[str], ...]:
         return self.controllers, self.references, self.engines, self.models, self.scenarios
 
     def _built(self, model: int) -> Any:
         """Build a model as the first scenario has it: says at once what is wrong or doubtful."""
-        changed, _ = self._changed(model, self._scenarios[0])
+        changed = self._changed(model, self._scenarios[0])
         plan = replace(self._plans[model], engine=self.engines[0], on_reference=False, **changed)
         return plan.simulation()
+
+    def _check_logs(self) -> None:
+        """Refuse flights of which nothing would be measured but the start."""
+        for plan in self._plans:
+            for world in [plan.world, *self._worlds.values()]:
+                dt = replace(plan, world=world).step
+                check_logged(self.duration, dt, self.rows_every(dt))
+
+    def _check_laws(self, built: Sequence[Any]) -> None:
+        """Let each law of quadcore begin on each model, with each value of the axes."""
+        first = self._scenarios[0]
+        tried = {
+            tuple({**first, name: value}.items()): None
+            for scenario in self._scenarios
+            for name, value in scenario.items()
+            if name.startswith(entries.OF_CONTROLLER)
+        }
+        for row, is_own in enumerate(self._are_own):
+            for model, simulation in enumerate(built):
+                for scenario in [] if is_own else tried or [tuple(first.items())]:
+                    controller = self._controller(row, model, dict(scenario))
+                    Guided(controller, simulation).reset(simulation)
 
     def _check(self, seeds: int) -> None:
         known = [name for name, _ in plants()]
@@ -241,74 +296,3 @@ class Plan:
             raise InputError(f"seeds is {seeds}; give at least 1")
         if len(self) > LARGEST:
             raise InputError(f"these are {len(self)} flights; at most {LARGEST} are evaluated")
-
-
-def adjusted(controller: Any, values: Mapping[str, float]) -> Any:
-    """Give a controller values of its own, see `give`."""
-    for name, value in values.items():
-        give(controller, name, value)
-    return controller
-
-
-def _maker(thing: Any, vehicle: str) -> Callable[[], Any]:
-    """Make what makes a controller for a flight; one of the user's own is brought in then."""
-    if _is_own(thing):
-        return lambda: laws.parse(thing, vehicle)
-    if isinstance(thing, str):
-        thing = laws.parse(thing, vehicle)
-    check_callable(thing)
-
-    def again() -> Any:
-        try:
-            if isinstance(thing, laws.Law):
-                return thing.copy()
-            return copy.deepcopy(thing)  # so that no flight knows of another
-        except Exception:  # what cannot be copied has to begin anew by its reset()
-            return thing
-
-    return again
-
-
-def _is_own(thing: Any) -> bool:
-    """Whether a text names a module of the user's own."""
-    return isinstance(thing, str) and ":" in thing and thing.partition(":")[0] not in laws.NAMES
-
-
-def _number(name: str, text: str) -> float:
-    number = parse_number(text)
-    if number is None:
-        raise InputError(f"vary {name}: '{text}' is not a finite number")
-    return number
-
-
-def _labelled(kind: str, things: Named, one: type) -> List[Tuple[str, Any]]:
-    """Give each thing a label."""
-    if isinstance(things, Mapping):
-        return [(str(label), thing) for label, thing in things.items()]
-    if isinstance(things, (str, one)) or callable(things):
-        things = [things]
-    return [(_name(kind, thing), thing) for thing in things]
-
-
-def _name(kind: str, thing: Any) -> str:
-    if isinstance(thing, str):
-        return thing
-    if isinstance(thing, (laws.Law, references.Shape)):
-        values = ",".join(f"{name}={value:g}" for name, value in thing.parameters.items())
-        return f"{thing.name}:{values}" if values else thing.name
-    return getattr(thing, "__name__", type(thing).__name__)
-
-
-def _scenarios(vary: Mapping[str, Values]) -> List[Dict[str, str]]:
-    axes = axes_of(vary)
-    for axis in axes:
-        if axis.name == "engine":
-            raise InputError("vary engine: name the engines by themselves")
-        if "," in axis.name and _OF_CONTROLLER in axis.name:
-            raise InputError(f"vary {axis.name}: vary what is the controller's alone")
-    names = [axis.name for axis in axes]
-    return [dict(zip(names, values)) for values in itertools.product(*(a.values for a in axes))]
-
-
-def _label(scenario: Mapping[str, str]) -> str:
-    return " ".join(f"{name}={value}" for name, value in scenario.items())

@@ -54,8 +54,8 @@ def poles(law: Law, simulation: Simulation) -> List[Dict[str, Any]]:
     Returns
     -------
     list of dict
-        For each axis: ``axis``, ``poles`` (complex, 1/s), ``zero`` (1/s, infinite without one) and
-        ``stable``.
+        For each axis: ``axis``, ``poles`` (complex, 1/s), ``zero`` (1/s, infinite without one),
+        ``stable``, and ``because``, the cause of what is not.
 
     Raises
     ------
@@ -79,12 +79,32 @@ def poles(law: Law, simulation: Simulation) -> List[Dict[str, Any]]:
     height = np.polyadd(np.polymul([1, 0, 0, 0], lag), _pid(gains, "z"))
     turned = np.polymul([-1 / zero, 1.0], _pid(gains, "yaw"))
     yaw = np.polyadd(np.polymul([1, 0, 0, 0], lag), turned)
+    without = np.polyadd(np.polymul([1, 0, 0, 0], lag), _pid(gains, "yaw"))
     return [
-        _row("x, y", side, math.inf),
-        _row("z", height, math.inf),
-        _row("roll, pitch", tilt, math.inf),
-        _row("yaw", yaw, zero),
+        _row("x, y", side, math.inf, _too_much_integral(gains)),
+        _row("z", height, math.inf, ""),
+        _row("roll, pitch", tilt, math.inf, ""),
+        _row("yaw", yaw, zero, _wrong_way(zero, _roots(without))),
     ]
+
+
+def _too_much_integral(gains: Dict[str, float]) -> str:
+    d, p, i = _pid(gains, "xy")
+    if d * p > i:
+        return "the inner loop is too slow for the outer one"
+    return (
+        f"Kd Kp = {d * p:.3g} is not above Ki = {i:.3g}: by Routh and Hurwitz unstable however "
+        "fast the inner loop is"
+    )
+
+
+def _wrong_way(zero: float, without: np.ndarray) -> str:
+    if math.isinf(zero) or zero < 0 or np.any(without.real >= 0):
+        return ""
+    return (
+        f"the zero at 2 b w0 sim_slow / I_R = +{zero:.3g} 1/s: spinning up, the rotors first turn "
+        "the vehicle the wrong way, and the loop is faster than that; without the zero it is stable"
+    )
 
 
 def _pid(gains: Dict[str, float], axis: str) -> Polynomial:
@@ -92,16 +112,22 @@ def _pid(gains: Dict[str, float], axis: str) -> Polynomial:
     return gains["scale"] * np.array([gains[f"k{part}_{axis}"] for part in "dpi"])
 
 
-def _row(axis: str, polynomial: Polynomial, zero: float) -> Dict[str, Any]:
-    # A gain that is 0 leaves a pole at 0 that nothing excites.
-    roots = np.roots(np.trim_zeros(polynomial))
-    order = np.lexsort((roots.imag, -roots.real))
+def _row(axis: str, polynomial: Polynomial, zero: float, cause: str) -> Dict[str, Any]:
+    roots = _roots(polynomial)
+    stable = bool(np.all(roots.real < 0))
     return {
         "axis": axis,
-        "poles": [complex(root) for root in roots[order]],
+        "poles": [complex(root) for root in roots[np.lexsort((roots.imag, -roots.real))]],
         "zero": zero,
-        "stable": bool(np.all(roots.real < 0)),
+        "stable": stable,
+        "because": "" if stable else cause,
     }
+
+
+def _roots(polynomial: Polynomial) -> np.ndarray:
+    # A gain that is 0 leaves a pole at 0 that nothing excites.
+    roots: np.ndarray = np.roots(np.trim_zeros(polynomial))
+    return roots
 
 
 def text(row: Dict[str, Any], count: int = 3) -> str:

@@ -1,166 +1,179 @@
-"""How much a controller forgives: margins by search, a sweep of its rate, a box of beliefs."""
+"""How much a controller forgives: margins by search, a sweep of its rate, a box of wrong beliefs.
+
+A controller believes in the vehicle as it is described, and flies one whose rotors push harder,
+whose air resists more, or whose motors lag longer: a law of quadcore has the described one as its
+belief, one of one's own is told of it by its reset(). So what is forgiven means the same for all.
+"""
 
 from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import replace
-from typing import Any, Dict, List, NamedTuple, Sequence
+from typing import (
+    Any,
+    Callable,
+    Collection,
+    Dict,
+    Generator,
+    Iterator,
+    List,
+    Mapping,
+    Sequence,
+    Tuple,
+)
 
 import numpy as np
 
-from .. import laws
-from ..flight_plan import FlightPlan
-from .flights import flown
-from .plan import Case, Plan, adjusted
+from ..study.table import NOT_FLOWN
+from .flights import Outcome
+from .trial import Trial
 
 LARGEST_GAIN = 10.0
 LARGEST_DELAY = 0.5  # s
+ENDS = {"gain_low": 1 / LARGEST_GAIN, "gain_high": LARGEST_GAIN, "delay_margin": LARGEST_DELAY}
+"""Where a search ends: a margin of this value is at least so large."""
 RATES = (1000.0, 500.0, 250.0, 125.0, 100.0, 50.0, 25.0)  # 1/s
-BOX = {"believed_thrust": 0.1, "believed_drag": 0.5, "believed_lag": 0.3}
+BOX = {"thrust": 0.1, "drag": 0.5, "lag": 0.3}
 """By how much beliefs may be wrong, as part of the right value; the corners are flown, too."""
+
+NAMES = (*ENDS, *(f"rms_at_{rate:g}_Hz" for rate in RATES), "box_median", "box_worst")
 
 _STEPS = 7  # of each bisection: 2 % of a gain, 1 % of the range of the delay
 _SAMPLES = 16  # in the box
+_FIRST_DELAY = 0.004  # s
+_TRIALS = 60  # of a controller, about
 _FLOWN = "rms_position"
 
+Found = Dict[str, float]
+Search = Generator[List[Trial], List[Outcome], Found]
+Fly = Callable[[List[Trial]], List[Outcome]]
 
-class Scaled:
-    """A controller whose rotors push harder than it knows, by a factor.
 
-    Attributes
+class Searches:
+    """What is to be found out about controllers: on the first of everything else.
+
+    Parameters
     ----------
-    rate, delay : float
-        The controller's.
+    controllers
+        Names.
+    lacking
+        What no tag of the vehicle says, see `trial.lacking`: it cannot be varied.
     """
 
-    def __init__(self, controller: Any, factor: float) -> None:
-        self._controller, self._root = controller, math.sqrt(factor)
-        self.rate = getattr(controller, "rate", 500.0)
-        self.delay = getattr(controller, "delay", 0.0)
+    def __init__(self, controllers: Sequence[str], lacking: Collection[str]) -> None:
+        self._rows: List[Dict[str, Any]] = [
+            {"controller": name, "failure": NOT_FLOWN, **dict.fromkeys(NAMES, math.nan)}
+            for name in controllers
+        ]
+        self._kinds = [kind for kind, varied in _KINDS.items() if not varied & set(lacking)]
+        self._done: Dict[Trial, Outcome] = {}
 
-    def reset(self, simulation: Any) -> None:
-        """Let the controller begin anew."""
-        reset = getattr(self._controller, "reset", None)
-        if reset is not None:
-            reset(simulation)
+    @property
+    def expected(self) -> int:
+        """About how many flights that will be."""
+        return _TRIALS * len(self._rows)
 
-    def __call__(self, t: float, state: Any, reference: Any) -> Any:
-        """Give the speeds whose squares are so many times those that were asked for."""
-        return np.asarray(self._controller(t, state, reference)) * self._root
+    def run(self, fly: Fly) -> None:
+        """Make all searches side by side; `fly` flies what they ask for next."""
+        running: List[Tuple[int, Search]] = []
+        as_it_is = self._flown(fly, [Trial(row) for row in range(len(self._rows))])
+        for trial, outcome in as_it_is.items():
+            if outcome.flew:
+                running += [(trial.controller, kind(trial)) for kind in self._kinds]
+            else:
+                self._rows[trial.controller]["failure"] = outcome.failure
+        asked = [(row, search, next(search)) for row, search in running]
+        while asked:
+            self._flown(fly, [trial for *_, trials in asked for trial in trials])
+            asked = list(self._answered(asked))
+        for row, _ in running:
+            self._rows[row]["failure"] = ""
 
+    def rows(self) -> List[Dict[str, Any]]:
+        """Give a row per controller: `NAMES`, and the reason where nothing could be found."""
+        return [dict(row) for row in self._rows]
 
-class Search(NamedTuple):
-    """One thing to find out about one controller: on the first of everything else."""
+    def _flown(self, fly: Fly, trials: Sequence[Trial]) -> Mapping[Trial, Outcome]:
+        new = [trial for trial in dict.fromkeys(trials) if trial not in self._done]
+        self._done.update(zip(new, fly(new)))
+        return self._done
 
-    controller: int
-    kind: str
-
-    def made(self, plan: Plan, limit: float) -> Dict[str, float]:
-        """Fly as often as it takes; the values that the table gets."""
-        flight = plan.flight(Case(self.controller, 0, 0, 0, 0, plan.seeds[0]))
-        found: Dict[str, float] = _KINDS[self.kind](flight, limit)
-        return found
-
-
-def searches(plan: Plan) -> List[Search]:
-    """All of them."""
-    return [Search(c, kind) for c in range(len(plan.controllers)) for kind in _KINDS]
-
-
-def rows(plan: Plan, made: Sequence[Search], found: Sequence[Any]) -> List[Dict[str, Any]]:
-    """Put what was found into a row per controller; the reason where nothing could be."""
-    table: Dict[int, Dict[str, Any]] = {}
-    for search, values in zip(made, found):
-        row = table.setdefault(
-            search.controller, {"controller": plan.controllers[search.controller], "failure": ""}
-        )
-        if isinstance(values, dict):
-            row.update(values)
-        else:
-            row["failure"] = row["failure"] or values or "not flown: interrupted"
-    return list(table.values())
+    def _answered(self, asked: Sequence[Tuple[int, Search, List[Trial]]]) -> Iterator[Any]:
+        for row, search, trials in asked:
+            try:
+                yield row, search, search.send([self._done[trial] for trial in trials])
+            except StopIteration as stop:
+                self._rows[row].update(stop.value)
 
 
-def _gain(flight: FlightPlan, limit: float) -> Dict[str, float]:
-    """Factors on the thrust of all rotors between which the vehicle is not lost."""
+def _gain(own: Trial) -> Search:
+    """Find the factors on thrust and torque of all rotors between which it is not lost."""
 
-    def flies(factor: float) -> bool:
-        return _flies(replace(flight, controller=_with_gain(flight.controller, factor)), limit)
+    def at(logarithm: float) -> Trial:
+        return own._replace(thrust=math.exp(logarithm))
 
-    def edge(end: float) -> float:
-        if not flies(1.0):
-            return math.nan
-        if flies(end):
-            return end
-        good, bad = 0.0, math.log(end)
-        for _ in range(_STEPS):
-            middle = (good + bad) / 2
-            good, bad = (middle, bad) if flies(math.exp(middle)) else (good, middle)
-        return math.exp(good)
-
-    return {"gain_low": edge(1 / LARGEST_GAIN), "gain_high": edge(LARGEST_GAIN)}
-
-
-def _delay(flight: FlightPlan, limit: float) -> Dict[str, float]:
-    """Largest delay besides the controller's own with which the vehicle is not lost, s."""
-    own = float(getattr(flight.controller, "delay", 0.0))
-
-    def flies(delay: float) -> bool:
-        controller = adjusted(_again(flight.controller), {"delay": own + delay})
-        return _flies(replace(flight, controller=controller), limit)
-
-    if not flies(0.0):
-        return {"delay_margin": math.nan}
-    good, bad = 0.0, 0.004
-    while flies(bad):
-        good, bad = bad, 2 * bad
-        if good > LARGEST_DELAY:
-            return {"delay_margin": good}
-    for _ in range(_STEPS):
-        middle = (good + bad) / 2
-        good, bad = (middle, bad) if flies(middle) else (good, middle)
-    return {"delay_margin": good}
-
-
-def _rates(flight: FlightPlan, limit: float) -> Dict[str, float]:
-    """Error at each rate; NaN where the vehicle is lost."""
     found = {}
-    for rate in RATES:
-        controller = adjusted(_again(flight.controller), {"rate": rate})
-        outcome = flown(replace(flight, controller=controller), limit)
-        found[f"rms_at_{rate:g}_Hz"] = outcome.measures[_FLOWN]
+    for name in ("gain_low", "gain_high"):
+        end = math.log(ENDS[name])
+        if (yield from _flies(at(end))):
+            found[name] = ENDS[name]
+        else:
+            found[name] = math.exp((yield from _between(at, 0.0, end)))
     return found
 
 
-def _box(flight: FlightPlan, limit: float) -> Dict[str, float]:
+def _between(at: Callable[[float], Trial], good: float, bad: float) -> Generator[Any, Any, float]:
+    for _ in range(_STEPS):
+        middle = (good + bad) / 2
+        good, bad = (middle, bad) if (yield from _flies(at(middle))) else (good, middle)
+    return good
+
+
+def _delay(own: Trial) -> Search:
+    """Find the largest delay besides the controller's own with which the vehicle is not lost, s."""
+
+    def at(delay: float) -> Trial:
+        return own._replace(delay=delay)
+
+    good, bad = 0.0, _FIRST_DELAY
+    while (yield from _flies(at(bad))):
+        if bad == LARGEST_DELAY:
+            return {"delay_margin": bad}
+        good, bad = bad, min(2 * bad, LARGEST_DELAY)
+    return {"delay_margin": (yield from _between(at, good, bad))}
+
+
+def _rates(own: Trial) -> Search:
+    """Error at each rate; NaN where the vehicle is lost."""
+    outcomes = yield [own._replace(rate=rate) for rate in RATES]
+    return {f"rms_at_{r:g}_Hz": o.measures[_FLOWN] for r, o in zip(RATES, outcomes)}
+
+
+def _box(own: Trial) -> Search:
     """Worst and median error over wrong beliefs; the worst is infinite if a vehicle is lost."""
-    if not isinstance(flight.controller, laws.Law):
-        return {"box_median": math.nan, "box_worst": math.nan}
     corners = list(itertools.product(*((1 - part, 1 + part) for part in BOX.values())))
     inside = np.random.default_rng(0).uniform(-1, 1, (_SAMPLES, len(BOX)))
     points = [*corners, *(1 + inside * np.array(list(BOX.values()))).tolist()]
-    errors = []
-    for point in points:
-        controller = adjusted(_again(flight.controller), dict(zip(BOX, point)))
-        outcome = flown(replace(flight, controller=controller), limit)
-        errors.append(math.inf if outcome.failure else outcome.measures[_FLOWN])
+    outcomes = yield [
+        own._replace(**{name: 1 / believed for name, believed in zip(BOX, point)})
+        for point in points
+    ]
+    errors = [o.measures[_FLOWN] if o.flew else math.inf for o in outcomes]
     return {"box_median": float(np.median(errors)), "box_worst": max(errors)}
 
 
-_KINDS = {"gain": _gain, "delay": _delay, "rates": _rates, "box": _box}
+_KINDS = {_gain: {"thrust"}, _delay: set(), _rates: set(), _box: set(BOX)}
+"""Searches, and what they vary."""
 
 
-def _again(controller: Any) -> Any:
-    return controller.copy() if isinstance(controller, laws.Law) else controller
+def _flies(trial: Trial) -> Generator[List[Trial], List[Outcome], bool]:
+    (outcome,) = yield [trial]
+    return outcome.flew
 
 
-def _with_gain(controller: Any, factor: float) -> Any:
-    if not isinstance(controller, laws.Law):
-        return Scaled(controller, factor)
-    believed = controller.parameters.get("believed_thrust", 1.0)
-    return adjusted(controller.copy(), {"believed_thrust": believed / factor})
-
-
-def _flies(flight: FlightPlan, limit: float) -> bool:
-    return not flown(flight, limit).failure
+def margin_text(row: Mapping[str, Any], name: str, number: Callable[[float], str]) -> str:
+    """Write what was found; a margin at the end of its search is larger, or smaller, than that."""
+    value = row.get(name, math.nan)
+    if value == ENDS.get(name):
+        return f"{'<' if name == 'gain_low' else '>'} {number(value)}"
+    return number(value)

@@ -14,7 +14,7 @@ _AGAIN = 0.5  # s; who took the exception for one of its own is told once more
 _PATIENCE = 5.0  # s; what is not back by then does not run Python, and is ended
 
 
-class _TimeIsUp(BaseException):
+class _TimeIsUp(KeyboardInterrupt):
     """Not an Exception, so that a controller that catches those does not go on."""
 
 

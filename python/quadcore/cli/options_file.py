@@ -1,0 +1,158 @@
+"""Options of a command, written in a YAML file by their names."""
+
+from __future__ import annotations
+
+import argparse
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Iterator
+
+import yaml
+
+from .._core import InputError
+from ..files import read_text
+
+_SIGNS = {"set": "=", "vary": "=", "xacro": ":="}
+"""Options that give values to keys, with the sign between."""
+
+_SCALAR = "tag:yaml.org,2002:"
+
+
+class OptionsFile:
+    """What a file says.
+
+    Parameters
+    ----------
+    path
+        Of the file.
+    parser
+        Of the command.
+
+    Raises
+    ------
+    InputError
+        Something wrong in the file, with its line.
+    """
+
+    def __init__(self, path: Path, parser: argparse.ArgumentParser) -> None:
+        self._path = path
+        self._parser = parser
+        self._lines: dict[str, int] = {}
+        self._read = argparse.Namespace()
+        for key, node in _pairs(path, _root(path)):
+            name = key.value
+            action = parser._option_string_actions.get(f"--{name}")
+            if action is None or name == "help":
+                raise InputError(
+                    f"{path}:{_line(key)}: there is no option '{name}'; see {parser.prog} -h"
+                )
+            for word, line in self._words(name, action, node):
+                self._take(action, word, line)
+
+    def beneath(self, arguments: argparse.Namespace) -> argparse.Namespace:
+        """Put the file's options beneath those of the command line, which win.
+
+        Of options that give values to keys, key by key; others that may be repeated, such as
+        --ignore, hold what both say.
+        """
+        for name in _SIGNS:
+            mine = {key for key, _ in getattr(arguments, name)}
+            pairs = getattr(self._read, name, [])
+            setattr(self._read, name, [pair for pair in pairs if pair[0] not in mine])
+        both: argparse.Namespace = self._parser.parse_args(arguments.words[1:], self._read)
+        return both
+
+    @contextmanager
+    def blamed(self) -> Iterator[None]:
+        """Name file and line in an error of the block that names what stands there."""
+        try:
+            yield
+        except InputError as error:
+            text = str(error)
+            named = [part for part in self._lines if part in text and not text.startswith(part)]
+            if not named:
+                raise
+            line = self._lines[max(named, key=len)]
+            raise InputError(f"{self._path}:{line}: {text}") from error
+
+    def _take(self, action: argparse.Action, word: str, line: int) -> None:
+        try:
+            read = getattr(self._parser.parse_args([word]), action.dest)
+        except InputError as error:
+            raise InputError(f"{self._path}:{line}: {error}") from None
+        before = getattr(self._read, action.dest, [])
+        setattr(self._read, action.dest, [*before, *read] if _repeats(action) else read)
+
+    def _words(
+        self, name: str, action: argparse.Action, node: yaml.Node
+    ) -> Iterator[tuple[str, int]]:
+        """Write an option as a command line does, with the line that it stands on."""
+        if action.nargs == 0:
+            if self._text(name, node) not in ("true", "false"):
+                raise InputError(f"{self._path}:{_line(node)}: {name}: write true or false")
+            if self._text(name, node) == "true":
+                yield f"--{name}", _line(node)
+        elif name in _SIGNS and isinstance(node, yaml.MappingNode):
+            for key, value in _pairs(self._path, node):
+                self._lines[key.value] = _line(key)
+                yield f"--{name}={key.value}{_SIGNS[name]}{self._list(name, value)}", _line(key)
+        elif _repeats(action):
+            for item in node.value if isinstance(node, yaml.SequenceNode) else [node]:
+                yield f"--{name}={self._text(name, item)}", _line(item)
+        else:
+            yield f"--{name}={self._list(name, node)}", _line(node)
+
+    def _list(self, name: str, node: yaml.Node) -> str:
+        if isinstance(node, yaml.SequenceNode):
+            return ",".join(self._text(name, item) for item in node.value)
+        return self._text(name, node)
+
+    def _text(self, name: str, node: yaml.Node) -> str:
+        where = f"{self._path}:{_line(node)}"
+        if not isinstance(node, yaml.ScalarNode):
+            kind = "a list" if isinstance(node, yaml.SequenceNode) else "a mapping"
+            raise InputError(f"{where}: {name} is {kind} here; write a value, or a list of values")
+        if node.tag == f"{_SCALAR}null":
+            raise InputError(f"{where}: {name} is empty; write a value, or leave the line out")
+        text = str(node.value)
+        if node.tag == f"{_SCALAR}bool":  # yes and on are others
+            return "true" if yaml.SafeLoader.bool_values[text.lower()] else "false"
+        if not text[:1].isdigit():  # a number says nothing
+            self._lines[text] = _line(node)
+        return text
+
+
+def _root(path: Path) -> yaml.Node:
+    try:
+        return yaml.compose(read_text(path), yaml.SafeLoader)
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        line = mark.line + 1 if mark else 1
+        problem = getattr(error, "problem", None) or "not YAML"
+        raise InputError(f"{path}:{line}: {problem}") from None
+    except RecursionError:
+        raise InputError(f"{path}:1: nested too deeply") from None
+
+
+def _pairs(path: Path, node: Any) -> Iterator[tuple[yaml.ScalarNode, yaml.Node]]:
+    """Give keys and values of a mapping."""
+    if not isinstance(node, yaml.MappingNode):
+        raise InputError(f"{path}:1: write options as KEY: VALUE")
+    names = set()
+    for key, value in node.value:
+        if not isinstance(key, yaml.ScalarNode):
+            raise InputError(f"{path}:{_line(key)}: a key is no text; write options as KEY: VALUE")
+        if key.value in names:
+            raise InputError(f"{path}:{_line(key)}: {key.value} is given twice; keep one")
+        names.add(key.value)
+        yield key, value
+
+
+def _repeats(action: argparse.Action) -> bool:
+    """Whether an option may be repeated, and holds all."""
+    return isinstance(action, argparse._AppendAction)
+
+
+def _line(node: yaml.Node) -> int:
+    line: int = node.start_mark.line + 1
+    return line

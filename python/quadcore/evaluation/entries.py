@@ -1,0 +1,83 @@
+"""What a plan is made of: things with labels, makers of controllers, conditions."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any, Callable, Dict, Iterable, List, Mapping, Sequence, Tuple, Union
+
+from .. import laws, references
+from .._core import InputError, parse_number
+from ..controller import check_callable
+from ..study.axes import Values, axes_of
+
+OF_CONTROLLER = "controller."
+
+Named = Union[str, Any, Mapping[str, Any], Sequence[Any]]
+
+
+def labelled(kind: str, things: Named, one: type) -> List[Tuple[str, Any]]:
+    """Give each thing a label."""
+    if isinstance(things, Mapping):
+        return [(str(label), thing) for label, thing in things.items()]
+    if isinstance(things, (str, one)) or callable(things):
+        things = [things]
+    if not isinstance(things, Iterable):
+        raise InputError(f"{kind} is {things!r}; give a name, what is called, or several of these")
+    return [(_name(thing), thing) for thing in things]
+
+
+def maker(thing: Any, vehicle: str) -> Callable[[], Any]:
+    """Make what makes a controller for a flight; one of the user's own is brought in then.
+
+    An object is given as it is: flights of what others wrote have processes of their own.
+    """
+    if names_own(thing):
+        return lambda: laws.parse(thing, vehicle)
+    if isinstance(thing, str):
+        thing = laws.parse(thing, vehicle)
+    check_callable(thing)
+    return thing.copy if isinstance(thing, laws.Law) else lambda: thing
+
+
+def names_own(thing: Any) -> bool:
+    """Whether a text names a module of the user's own."""
+    return isinstance(thing, str) and ":" in thing and thing.partition(":")[0] not in laws.NAMES
+
+
+def is_own(thing: Any) -> bool:
+    """Whether a controller is none of quadcore's laws."""
+    return names_own(thing) if isinstance(thing, str) else not isinstance(thing, laws.Law)
+
+
+def scenarios(vary: Mapping[str, Values]) -> List[Dict[str, str]]:
+    """Make all combinations of the values of each axis."""
+    axes = axes_of(vary)
+    for axis in axes:
+        if axis.name == "engine":
+            raise InputError("vary engine: name the engines by themselves")
+        if "," in axis.name and OF_CONTROLLER in axis.name:
+            raise InputError(f"vary {axis.name}: vary what is the controller's alone")
+    names = [axis.name for axis in axes]
+    return [dict(zip(names, values)) for values in itertools.product(*(a.values for a in axes))]
+
+
+def label_of(scenario: Mapping[str, str]) -> str:
+    """Name a scenario."""
+    return " ".join(f"{name}={value}" for name, value in scenario.items())
+
+
+def number(name: str, text: str) -> float:
+    """Read a value of an axis that has numbers alone."""
+    value = parse_number(text)
+    if value is None:
+        raise InputError(f"vary {name}: '{text}' is not a finite number")
+    return value
+
+
+def _name(thing: Any) -> str:
+    if isinstance(thing, str):
+        return thing
+    if isinstance(thing, (laws.Law, references.Shape)):
+        values = ",".join(f"{name}={value:g}" for name, value in thing.parameters.items())
+        return f"{thing.name}:{values}" if values else thing.name
+    return getattr(thing, "__name__", type(thing).__name__)

@@ -1,0 +1,81 @@
+"""Sums over the seeds: rates, means, intervals, risks, and differences of controllers."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Dict, List, Mapping, Sequence, Tuple
+
+import numpy as np
+
+from .flights import Outcome
+from .intervals import cvar, interval
+from .measures import UNITS
+
+JUDGED = tuple(UNITS)
+"""Measures that have a mean, an interval and a risk over the seeds."""
+
+
+def over_seeds(
+    groups: Sequence[Tuple[int, ...]],
+    names: Sequence[Mapping[str, Any]],
+    outcomes: Sequence[Outcome],
+) -> List[Dict[str, Any]]:
+    """Sum the flights of each combination.
+
+    Parameters
+    ----------
+    groups
+        Of each flight: its combination, the controller's position first.
+    names
+        Of each flight: what its row of the table begins with.
+    outcomes
+        Of each flight.
+
+    Returns
+    -------
+    list of dict
+        A row per combination, see `Evaluation.groups`.
+    """
+    flights: Dict[Tuple[int, ...], List[Outcome]] = {}
+    named: Dict[Tuple[int, ...], Mapping[str, Any]] = {}
+    for group, name, outcome in zip(groups, names, outcomes):
+        flights.setdefault(group, []).append(outcome)
+        named.setdefault(group, name)
+    return [
+        {
+            **{name: value for name, value in named[group].items() if name != "seed"},
+            **_sums(some, flights[(0, *group[1:])]),
+        }
+        for group, some in flights.items()
+    ]
+
+
+def _sums(flights: Sequence[Outcome], first: Sequence[Outcome]) -> Dict[str, Any]:
+    """Sum the flights of one combination, and compare them with the first controller's."""
+    took_place = [flight for flight in flights if flight.was_flown]
+    flew = [flight for flight in took_place if flight.flew]
+    pairs = [(f, other) for f, other in zip(flights, first) if f.flew and other.flew]
+    row: Dict[str, Any] = {
+        "flights": len(took_place),
+        "not_flown": len(flights) - len(took_place),
+        "failure_rate": 1 - len(flew) / len(took_place) if took_place else math.nan,
+    }
+    for name in JUDGED:
+        values = _finite([flight.measures[name] for flight in flew])
+        row[f"mean_{name}"] = float(values.mean()) if len(values) else math.nan
+        row[f"low_{name}"], row[f"high_{name}"] = interval(values)
+        # Who is lost did worse than anybody who is not.
+        lost = np.full(len(took_place) - len(flew), math.inf)
+        row[f"cvar_{name}"] = cvar(np.concatenate([values, lost]))
+        apart = _finite([f.measures[name] - other.measures[name] for f, other in pairs])
+        if flights is first:
+            apart = apart[:0]
+        row[f"difference_{name}"] = float(apart.mean()) if len(apart) else math.nan
+        row[f"difference_low_{name}"], row[f"difference_high_{name}"] = interval(apart)
+    return row
+
+
+def _finite(values: Sequence[float]) -> np.ndarray:
+    """Leave out what a flight does not have, such as the overshoot of no step."""
+    array: np.ndarray = np.array([value for value in values if math.isfinite(value)], dtype=float)
+    return array

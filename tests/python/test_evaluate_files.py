@@ -1,0 +1,112 @@
+"""What an evaluation writes, and what is kept of one that is interrupted."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from evaluations import FLY, rows
+from test_own_controllers import here as here
+
+import quadcore as qc
+from quadcore.cli import main
+from quadcore.evaluation.evaluate import conduct
+from quadcore.evaluation.plan import Plan
+
+
+def test_everything_is_written_and_reproducible():
+    command = [*FLY, "--controller", "pd,geometric", "--reference", "circle,step:dx=1,time=0.2"]
+    for folder in ("out", "again"):
+        assert main([*command, "--seeds", "2", "--quiet", "--out", folder]) == 0
+    found = rows()
+    assert [row["controller"] for row in found[::4]] == ["pd", "geometric"]
+    head = ["controller", "reference", "engine", "model", "scenario", "seed", "failure"]
+    assert list(found[0])[:10] == [*head, "rms_position", "largest_position", "tail_position"]
+    assert found[2]["reference"] == "step:dx=1,time=0.2"
+    for name in ("table.csv", "evaluation.json", "report.html", "seeds.png"):
+        assert Path("out", name).read_bytes() == Path("again", name).read_bytes(), name
+    content = json.loads(Path("out/evaluation.json").read_text())
+    assert len(content["combinations"]) == 4
+    timing = rows("out/timing.csv")
+    assert all(float(row["seconds"]) > 0 for row in timing)
+    page = Path("out/report.html").read_text()
+    for text in (
+        "step:dx=1,time=0.2",
+        "What each law flew with",
+        "Poles of",
+        'class="player"',
+        "data:image/png;base64,",
+    ):
+        assert text in page
+    assert 'src="http' not in page
+
+
+def test_the_file_tells_all_that_flew():
+    command = [*FLY, "--controller", "geometric:kp_xy=7", "--reference", "hover", "--no-plots"]
+    more = ["--controller-rate", "250", "--delay", "0.004", "--world", "default.world"]
+    assert main([*command, *more, "--dt", "0.002", "--quiet", "--out", "out"]) == 0
+    content = json.loads(Path("out/evaluation.json").read_text())
+    (law,) = content["laws"]
+    assert (law["law"], law["model"], law["rate"], law["delay"]) == (
+        "geometric", "quadrotor", 250, 0.004
+    )  # fmt: skip
+    assert law["parameters"]["kp_xy"] == 7
+    assert {"kp_z", "lead", "believed_thrust"} <= set(law["parameters"])
+    told = content["plan"]
+    assert (told["world"], told["dt"], told["log_every"]) == ("default.world", 0.002, 5)
+    assert (told["seeds"], told["duration"], told["xacro"]) == ([0], 1, {"sim_slow": "1"})
+    assert content["quadcore"] == qc.__version__
+    assert (content["flights"][0]["rate"], content["flights"][0]["updates"]) == (250, 250)
+    (timing,) = rows("out/timing.csv")
+    assert 0 < float(timing["update_median"]) <= float(timing["update_p99"]) < 1
+
+
+def test_pictures_of_an_evaluation_before_are_gone_and_others_stay():
+    command = [*FLY, "--controller", "pd", "--reference", "hover", "--quiet", "--out", "out"]
+    Path("out").mkdir()
+    for name in ("tracks_7.png", "rates.png", "engines.png"):
+        Path("out", name).write_bytes(b"")
+    assert main([*command, "--no-plots"]) == 0
+    assert [path.name for path in Path("out").glob("*.png")] == ["engines.png"]
+
+
+@pytest.mark.parametrize("name", ["table.csv", "evaluation.json", "timing.csv", "report.html"])
+def test_what_cannot_be_written_is_told_before_anything_flies(name, capsys):
+    Path("out", name).mkdir(parents=True)
+    command = [*FLY, "--controller", "own:Never", "--reference", "hover", "--out", "out"]
+    assert main(command) == 2
+    assert f"{name}: is a folder" in capsys.readouterr().err
+
+
+def test_an_interrupted_evaluation_keeps_what_was_flown():
+    command = [sys.executable, "-m", "quadcore", *FLY, "--controller", "pd,own:Never"]
+    options = ["--reference", "hover", "--jobs", "1", "--out", "out", "--time-limit", "100"]
+    process = subprocess.Popen([*command, *options], stderr=subprocess.PIPE, text=True)
+    deadline = time.monotonic() + 60
+    while time.monotonic() < deadline and process.poll() is None:
+        children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+        busy = [Path(f"/proc/{child}/stat").read_text().split()[13] for child in children]
+        if any(int(ticks) > 300 for ticks in busy):  # 3 s of work: the second flight hangs
+            break
+        time.sleep(0.1)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(60) == 130
+    found = rows()
+    assert found[0]["failure"] == ""
+    assert found[1]["failure"] == "not flown: interrupted"
+    assert float(found[0]["rms_position"]) < 0.1
+
+
+def test_an_interrupt_carries_the_evaluation():
+    def progress(done, total):
+        raise KeyboardInterrupt
+
+    plan = Plan("pd", "hover", ["eigen"], ["quadrotor"], 3, {}, 0.2, None, None, None, None, {})
+    with pytest.raises(KeyboardInterrupt) as raised:
+        conduct(plan, 60, 1, progress)
+    assert raised.value.evaluation.table[0]["failure"] == ""

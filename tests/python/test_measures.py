@@ -1,0 +1,161 @@
+"""What is measured of a flight, and over seeds, beside closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from quadcore.evaluation import measures
+from quadcore.evaluation.flights import NAN, Outcome
+from quadcore.evaluation.intervals import cvar, interval
+from quadcore.evaluation.step_response import step_response
+from quadcore.evaluation.sums import over_seeds
+from quadcore.log import Log
+from quadcore.study.table import NOT_FLOWN, flown_and_failed
+
+
+def log_of(time, wanted, position, rotors=None):
+    """A log of a motion along x."""
+    table = np.zeros((len(time), 16 if rotors is None else 14 + rotors.shape[1]))
+    table[:, 0], table[:, 1], table[:, 7] = time, position, 1
+    if rotors is not None:
+        table[:, 14:] = rotors
+    zero = np.zeros(len(time))
+    topics = {
+        "reference": {"x": wanted, "y": zero, "z": zero, "yaw": zero},
+        "error": {"x": position - wanted, "y": zero, "z": zero},
+    }
+    return Log(table, {}, topics=topics)
+
+
+def test_measures_are_those_of_a_motion_in_closed_form():
+    time = np.linspace(0, 20, 2001)
+    error = 0.3 * np.exp(-time / 4)
+    rotors = np.column_stack([100 + 10 * time, np.full(2001, -50.0)])
+    log = log_of(time, np.sin(time), np.sin(time) + error, rotors)
+    found = measures.measure(log, 0.25, np.array([2e-6, 3e-6]))
+    assert found["largest_position"] == pytest.approx(0.3)
+    assert found["rms_position"] == pytest.approx(
+        np.sqrt(0.09 * 2 * (1 - np.exp(-10)) / 20), rel=2e-3
+    )
+    assert found["tail_position"] == pytest.approx(0.3 * np.exp(-10.01 / 4))
+    assert found["iae_position"] == pytest.approx(1.2 * (1 - np.exp(-5)), rel=1e-4)
+    assert found["itae_position"] == pytest.approx(0.3 * 16 * (1 - 6 * np.exp(-5)), rel=1e-4)
+    assert found["effort"] == pytest.approx(5)
+    ramp = (300.0**4 - 100.0**4) / 40  # of (100 + 10 t)^3 over 20 s
+    assert found["energy"] == pytest.approx(2e-6 * ramp + 3e-6 * 50**3 * 20, rel=1e-5)
+    assert found["saturated"] == 0.25
+    assert np.isnan(found["rise_time"])
+
+
+def test_rise_overshoot_and_settling_are_those_of_a_second_order_system():
+    w, d = 2.0, 0.4
+    time = np.arange(0, 20, 1e-3)
+    since = np.maximum(time - 2.0005, 0)
+    root = np.sqrt(1 - d**2)
+    answer = 1 - np.exp(-d * w * since) * (
+        np.cos(root * w * since) + d / root * np.sin(root * w * since)
+    )
+    wanted = np.where(time >= 2.0005, 5.0, 3.0)
+    found = measures.measure(log_of(time, wanted, 3 + 2 * answer), 0, np.zeros(2))
+    assert found["overshoot"] == pytest.approx(np.exp(-np.pi * d / root), rel=1e-3)
+    t = np.arange(0, 20, 1e-4)
+    exact = 1 - np.exp(-d * w * t) * (np.cos(root * w * t) + d / root * np.sin(root * w * t))
+    rise = t[np.argmax(exact >= 0.9)] - t[np.argmax(exact >= 0.1)]
+    assert found["rise_time"] == pytest.approx(rise, abs=3e-3)
+    settled = t[np.flatnonzero(np.abs(exact - 1) > 0.02)[-1]]
+    assert found["settling_time"] == pytest.approx(settled, abs=3e-3)
+
+
+def test_effort_and_energy_are_those_of_the_speeds_whatever_the_joints_are_slowed_to():
+    time = np.linspace(0, 20, 2001)
+    rotors = np.column_stack([100 + 10 * time, np.full(2001, -50.0)])
+    given = time, 0 * time, 0 * time
+    whole, slowed = (
+        measures.measure(log_of(*given, rotors / slow), 0, np.array([2e-6, 3e-6]), slow)
+        for slow in (1, 10)
+    )
+    for name in ("effort", "energy"):
+        assert slowed[name] == pytest.approx(whole[name], rel=1e-12)
+
+
+def test_the_steady_error_of_a_short_flight_is_that_of_its_second_half():
+    time = np.linspace(0, 4, 401)
+    found = measures.measure(log_of(time, 0 * time, np.where(time <= 2, 1, 0.25)), 0, np.zeros(2))
+    assert found["steady_position"] == pytest.approx(0.25)
+
+
+def test_who_is_more_than_5_m_off_is_lost():
+    time = np.linspace(0, 10, 101)
+    assert measures.lost(log_of(time, 0 * time, 0.49 * time)) is None
+    assert measures.lost(log_of(time, 0 * time, 0.7 * time)) == pytest.approx(7.2)
+    assert measures.lost(log_of(time, 0 * time, np.full(101, np.nan))) == 0
+
+
+def test_the_step_response_is_found_in_any_motion_that_excites_it():
+    rate, lag = 100, 0.3
+    time = np.arange(0, 40, 1 / rate)
+    wanted = np.cumsum(np.random.default_rng(4).normal(size=len(time))) / 50
+    position = np.zeros_like(wanted)
+    for k in range(1, len(time)):  # a lag of first order, exactly for held inputs
+        part = np.exp(-1 / rate / lag)
+        position[k] = part * position[k - 1] + (1 - part) * wanted[k - 1]
+    response = step_response(log_of(time, wanted - wanted[0], position - position[0]))
+    expected = 1 - np.exp(-response[:, 0] / lag)
+    assert np.abs(response[:, 1] - expected).max() < 0.12
+    assert response[-1, 1] == pytest.approx(1, abs=0.05)
+    assert step_response(log_of(time, np.cos(0.5 * time), np.cos(0.5 * time))) is None
+    assert step_response(log_of(time[:300], wanted[:300], position[:300])) is None
+
+
+def test_intervals_hold_the_mean_as_often_as_they_say():
+    draws = np.random.default_rng(1).normal(3, 1, size=(300, 30))
+    held = [low < 3 < high for low, high in map(interval, draws)]
+    assert 0.89 < np.mean(held) < 0.98
+    assert interval(draws[0]) == interval(draws[0])
+    assert np.isnan(interval(draws[0, :1])).all()
+
+
+def test_the_value_at_risk_is_the_mean_of_the_worst_tenth():
+    assert cvar(np.arange(1, 21)) == pytest.approx(19.5)
+    assert cvar(np.array([1.0, 7.0])) == 7
+    assert np.isnan(cvar(np.array([])))
+
+
+def judged(*values):
+    """Outcomes of flights: a number each, None of one that was lost, NaN of one not flown."""
+    return [
+        Outcome("lost", NAN)
+        if value is None
+        else Outcome()
+        if np.isnan(value)
+        else Outcome("", dict.fromkeys(NAN, value))
+        for value in values
+    ]
+
+
+def test_flights_that_an_interrupt_left_out_did_not_fail():
+    (row,) = over_seeds([(0, 0)] * 3, [{"seed": i} for i in range(3)], judged(2.0, None, np.nan))
+    assert (row["flights"], row["not_flown"], row["failure_rate"]) == (2, 1, 0.5)
+    (row,) = over_seeds([(0, 0)] * 2, [{}] * 2, judged(np.nan, np.nan))
+    assert (row["flights"], row["not_flown"]) == (0, 2)
+    assert np.isnan(row["failure_rate"])
+    assert flown_and_failed(["", "lost", NOT_FLOWN]) == (
+        "3 flights: 1 flown, 1 failed, 1 not flown"
+    )
+
+
+def test_a_lost_flight_is_worse_than_any_in_the_value_at_risk():
+    flights = judged(*range(1, 20), None)
+    (row,) = over_seeds([(0, 0)] * 20, [{}] * 20, flights)
+    assert row["mean_rms_position"] == 10
+    assert row["cvar_rms_position"] == np.inf
+
+
+def test_every_measure_has_an_interval_and_a_paired_difference():
+    first, second = judged(1.0, 2.0, 4.0), judged(1.5, 2.5, 4.5)
+    _, row = over_seeds([(0, 0)] * 3 + [(1, 0)] * 3, [{}] * 6, first + second)
+    for name in NAN:
+        assert row[f"low_{name}"] < row[f"mean_{name}"] < row[f"high_{name}"]
+        ends = row[f"difference_low_{name}"], row[f"difference_high_{name}"]
+        assert ends == (0.5, 0.5)  # seed by seed

@@ -1,0 +1,153 @@
+"""Controllers of one's own in an evaluation: each flight anew, faults are rows."""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from evaluations import FLY, evaluate, rows
+from test_guided_runs import OWN
+
+from quadcore import references
+from quadcore.cli import main
+
+OWN_MORE = """
+class Never(Hover):
+    def __call__(self, t, state, reference):
+        while t > 0.05:
+            try:
+                pass
+            except Exception:
+                pass
+        return self.speeds
+class Dies(Hover):
+    def __call__(self, t, state, reference):
+        import os
+        os._exit(3)
+class Leaves(Hover):
+    def __call__(self, t, state, reference):
+        raise SystemExit
+class Cancels(Hover):
+    def __call__(self, t, state, reference):
+        raise BaseException("cancelled")
+class Waits(Hover):
+    def __init__(self):
+        while True:
+            pass
+flights = []
+def remembers(t, state, reference):
+    if t == 0:
+        flights.append(t)
+    return [471 + len(flights), -471, 471, -471]
+class Counts(Hover):
+    calls = 0
+    def __call__(self, t, state, reference):
+        self.calls += 1
+        if self.calls > 101:
+            raise ValueError("another flight's calls")
+        return self.speeds
+"""
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "own.py").write_text(OWN + OWN_MORE)
+    monkeypatch.delitem(sys.modules, "own", raising=False)
+
+
+def test_objects_and_functions_are_evaluated_each_flight_anew():
+    class Counting:
+        rate = 100
+        calls = 0
+
+        def __call__(self, t, state, reference):
+            self.calls += 1
+            assert self.calls <= 50
+            return [471, -471, 471, -471]
+
+    found = evaluate([Counting()], "hover", seeds=3, duration=0.5, processes=1)
+    assert [row["failure"] for row in found.table] == ["", "", ""]
+    assert found.table[0]["controller"] == "Counting"
+
+
+def test_faults_of_a_controller_are_rows_and_the_other_flights_finish(capsys):
+    own = ["Raises", "Nan", "Short", "Wrong", "Asks", "Nope", "Never", "Dies", "Counts"]
+    own += ["Leaves", "Cancels", "Waits"]
+    text = ",".join(["pd", "nomodule:X", *(f"own:{name}" for name in own)])
+    command = [*FLY, "--controller", text, "--reference", "hover", "--seeds", "2"]
+    assert main([*command, "--time-limit", "2", "--out", "out", "--no-plots", "--quiet"]) == 3
+    error = capsys.readouterr().err.splitlines()
+    assert len(error) == 1
+    assert "24 of 28 flights failed; the first, nomodule:X on hover in eigen, seed 0" in error[0]
+    told = {row["controller"]: row["failure"] for row in rows()}
+    for name, says in {
+        "pd": "",
+        "own:Counts": "",
+        "nomodule:X": "there is no module 'nomodule'",
+        "own:Raises": "ValueError: no idea",
+        "own:Nan": "rotor 1 is not a finite number",
+        "own:Short": "holds 2 rotor speeds; give 4",
+        "own:Wrong": "cannot be called as controller(t, state, reference)",
+        "own:Asks": "missing 1 required positional argument",
+        "own:Nope": "module 'own' has no 'Nope'",
+        "own:Never": "not done within the time limit of 2 s",
+        "own:Dies": "status 3",
+        "own:Leaves": "controller: SystemExit",
+        "own:Cancels": "controller: BaseException: cancelled",
+        "own:Waits": "not done within the time limit of 2 s",
+    }.items():
+        assert says in told[name] if says else told[name] == "", name
+
+
+@pytest.mark.parametrize("options", [{"seeds": 3}, {"margins": True}])
+def test_what_a_module_remembers_of_a_flight_no_other_flight_knows(options):
+    """Whatever the number of processes: each flight is the first of its module."""
+    several = [
+        evaluate("own:remembers", "hover", duration=0.05, processes=n, **options) for n in (1, 2)
+    ]
+    assert str(several[0][:4]) == str(several[1][:4])
+    assert len({row["largest_position"] for row in several[0].table}) == 1
+
+
+def test_what_a_function_or_a_reference_of_ones_own_remembers_stays_in_its_flight():
+    calls = []
+
+    def law(t, state, reference):
+        calls.append(t)
+        return [471 + len(calls), -471, 471, -471]
+
+    def place(t):
+        calls.append(t)
+        return references.hover()(t)
+
+    found = evaluate([law], [place], seeds=3, duration=0.1, processes=1)
+    assert len({row["largest_position"] for row in found.table}) == 1
+    assert not calls
+
+
+def test_a_controller_that_leaves_the_program_ends_its_flight_alone(capsys):
+    command = ["run", "quadrotor", "--engine", "eigen", "--controller"]
+    assert main([*command, "own:Leaves", "--quiet"]) == 3
+    assert "the flight failed at t = 0.000000 s: controller: SystemExit" in capsys.readouterr().err
+    Path("quits.py").write_text("import sys\nsys.exit()\n")
+    assert main([*command, "quits:Law", "--quiet"]) == 2
+    assert "error: controller 'quits:Law': SystemExit" in capsys.readouterr().err
+
+
+def test_a_missing_module_of_a_package_is_told_as_missing(capsys):
+    assert main(["run", "quadrotor", "--controller", "no.such:Law", "--quiet"]) == 2
+    assert "there is no module 'no.such' here or on PYTHONPATH" in capsys.readouterr().err
+
+
+def test_the_time_of_a_controllers_own_calls_is_told():
+    def slow(t, state, reference):
+        time.sleep(0.002)
+        return [471, -471, 471, -471]
+
+    found = evaluate(["pd", slow], "hover", duration=0.1)
+    law, own = found.outcomes
+    assert law.call < 0.002 <= own.call <= own.slow_call
+    assert own.updates == 50
