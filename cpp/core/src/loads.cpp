@@ -1,6 +1,7 @@
 #include "quadcore/loads.hpp"
 
 #include <cmath>
+#include <numeric>
 #include <string>
 
 #include "quadcore/error.hpp"
@@ -22,10 +23,8 @@ void Loads::clear() {
 bool Loads::all_finite() const {
   // A sum is finite if its terms are, and they are far from overflow.
   double sum = (frame_.force_F + frame_.torque_F).sum();
-  for (std::size_t row = 0; row < LoadRow::count; ++row) {
-    for (std::size_t i = 0; i < rotors_.rotors(); ++i) sum += rotors_.number(row, i);
-  }
-  return std::isfinite(sum);
+  const double* const numbers = rotors_.data();  // zeros, where there is no rotor
+  return std::isfinite(std::accumulate(numbers, numbers + rotors_.size_of(rotors_.rotors()), sum));
 }
 
 void Loads::refuse_rotor(std::size_t i) const {
