@@ -7,6 +7,7 @@ import inspect
 import os
 import sys
 import traceback
+from contextlib import suppress
 from typing import Any
 
 from ._core import InputError
@@ -47,7 +48,8 @@ def imported(text: str) -> Any:
     except BaseException as error:  # SystemExit, too
         raise _failed(text, error) from error
     finally:
-        sys.path.remove(here)
+        with suppress(ValueError):  # the module may have seen to it itself
+            sys.path.remove(here)
     if not callable(controller):
         raise InputError(
             f"controller '{text}': it cannot be called as controller(t, state, reference)"

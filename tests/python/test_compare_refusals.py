@@ -99,3 +99,11 @@ def test_more_flights_than_can_be_held_leave_metrics_only():
     assert not Path("out/logs").exists()
     assert main([*arguments, "--out", "all", "--logs"]) == 0
     assert len(list(Path("all/logs").iterdir())) == 60
+
+
+@pytest.mark.parametrize("name", ["table.csv", "comparison.json", "report.html"])
+def test_what_cannot_be_written_is_told_before_anything_flies(name, toy, capsys):
+    Path("out", name).mkdir(parents=True)
+    flight = ["--vary", "motor.kp=1e-4,2e-4", "--duration", "1e6"]
+    assert main(["compare", "toy.urdf", *flight, "--out", "out", "--quiet"]) == 2
+    assert f"{name}: is a folder" in capsys.readouterr().err

@@ -9,9 +9,9 @@ from typing import Any
 
 from .._core import FlightError, InputError
 from ..comparison.compare import Comparison, fly
-from ..comparison.output import drawn, listed, summary, write
+from ..comparison.output import FILES, drawn, listed, summary, write
 from ..comparison.plan import Plan
-from ..files import make_folder
+from ..files import check_writable, make_folder
 from ..log import Log
 from ..study.sampling import thinned
 from ..study.table import number_text
@@ -48,6 +48,8 @@ def compare(arguments: argparse.Namespace) -> None:
     out = arguments.out
     if out is not None:
         make_folder(out)
+        for name in FILES:
+            check_writable(out / name)  # after the flights would be too late
     if not arguments.quiet:
         _show_models(plan)
 

@@ -19,6 +19,9 @@ def drawn(count: int) -> List[int]:
     return evenly(count, _DRAWN)
 
 
+FILES = ("table.csv", "comparison.json", "report.html")
+
+
 def write(
     comparison: Comparison, plan: Plan, flight: Mapping[str, str], folder: Path, plots: bool
 ) -> List[Path]:
