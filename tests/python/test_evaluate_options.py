@@ -86,6 +86,10 @@ def test_the_file_of_the_eight_readings_is_one(capsys):
             "fly.yaml:3: there is no law 'pdd'",
         ),
         (
+            "controller: pd\nreference: hover\nvary:\n  controller.kp: [1]\n",
+            "fly.yaml:4: vary controller.kp=1: law 'pd' has no parameter 'kp'",
+        ),
+        (
             "controller: pd\nreference: hover\nset:\n  odometri.rate: 1\n",
             "fly.yaml:4: ",
         ),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Iterator
@@ -69,7 +70,12 @@ class OptionsFile:
             yield
         except InputError as error:
             text = str(error)
-            named = [part for part in self._lines if part in text and not text.startswith(part)]
+            named = [
+                part
+                for part in self._lines
+                if re.search(rf"(?<![\w.]){re.escape(part)}(?![\w.])", text)
+                and not text.startswith(part)
+            ]
             if not named:
                 raise
             line = self._lines[max(named, key=len)]

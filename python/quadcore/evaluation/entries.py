@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from typing import Any, Callable, Dict, Iterable, List, Mapping, Sequence, Tuple, Union
+from contextlib import contextmanager
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Sequence, Tuple, Union
 
 from .. import laws, references
 from .._core import InputError, parse_number
@@ -64,6 +65,18 @@ def scenarios(vary: Mapping[str, Values]) -> List[Dict[str, str]]:
 def label_of(scenario: Mapping[str, str]) -> str:
     """Name a scenario."""
     return " ".join(f"{name}={value}" for name, value in scenario.items())
+
+
+@contextmanager
+def blaming(scenario: Mapping[str, str]) -> Iterator[None]:
+    """Name what a scenario gives to controllers in an error of the block."""
+    try:
+        yield
+    except InputError as error:
+        given = {name: text for name, text in scenario.items() if name.startswith(OF_CONTROLLER)}
+        if not given or str(error).startswith("vary "):
+            raise
+        raise InputError(f"vary {label_of(given)}: {error}") from error
 
 
 def number(name: str, text: str) -> float:

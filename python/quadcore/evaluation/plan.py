@@ -273,8 +273,9 @@ class Plan:
         for row, is_own in enumerate(self._are_own):
             for model, simulation in enumerate(built):
                 for scenario in [] if is_own else tried or [tuple(first.items())]:
-                    controller = self._controller(row, model, dict(scenario))
-                    Guided(controller, simulation).reset(simulation)
+                    with entries.blaming(dict(scenario)):
+                        controller = self._controller(row, model, dict(scenario))
+                        Guided(controller, simulation).reset(simulation)
 
     def _check(self, seeds: int) -> None:
         known = [name for name, _ in plants()]
