@@ -145,7 +145,7 @@ def causes(evaluation: Evaluation) -> List[str]:
     """Say why cascades do not hold the vehicle, a line for each axis that is unstable."""
     return [
         f"{row['controller']} ({row['engine']}), {row['axis']}: pole at {poles_text(row, 1)} 1/s"
-        + (f", for {row['because']}" if row["because"] else "")
+        + (f"; cause: {row['because']}" if row["because"] else "")
         for row in evaluation.poles
         if not row["stable"]
     ]
