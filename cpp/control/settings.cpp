@@ -66,6 +66,15 @@ std::vector<TagSpec> with_defaults(std::vector<TagSpec> table, const Values& def
   return table;
 }
 
+Values in_table(const std::vector<TagSpec>& table, const Values& values) {
+  Values known;
+  for (const TagSpec& spec : table) {
+    const auto given = values.find(spec.name);
+    if (given != values.end()) known.insert(*given);
+  }
+  return known;
+}
+
 Values completed(Values values, const Values& others) {
   values.insert(others.begin(), others.end());
   return values;

@@ -4,12 +4,10 @@
 
 namespace quadcore::control {
 
-Tracking::Tracking(const Belief& belief, const TrackingGains& g) : belief_(belief), gains_(g) {
+Tracking::Tracking(const Belief& belief, const TrackingGains& g) : attitude_(belief, g), gains_(g) {
   position_p_ << g.kp_xy, g.kp_xy, g.kp_z;
   position_i_ << g.ki_xy, g.ki_xy, g.ki_z;
   position_d_ << g.kd_xy, g.kd_xy, g.kd_z;
-  attitude_p_ << g.kr_rp, g.kr_rp, g.kr_yaw;
-  attitude_d_ << g.kw_rp, g.kw_rp, g.kw_yaw;
 }
 
 Vector3d Tracking::acceleration(const Instant& instant, double* integral) const {
@@ -32,38 +30,25 @@ Vector3d Tracking::acceleration(const Instant& instant, double* integral) const 
 
 Vector3d Tracking::air_force_W(const Instant& instant) const {
   if (!gains_.drag) return Vector3d::Zero();
-  return belief_.air_force_W(instant.now.orientation.toRotationMatrix(),
-                             instant.now.linear_velocity);
+  return belief().air_force_W(instant.now.orientation.toRotationMatrix(),
+                              instant.now.linear_velocity);
 }
 
 Vector3d Tracking::angular_acceleration(const Instant& instant, const Vector3d& z_W) const {
   const Matrix3d R_WF = instant.now.orientation.toRotationMatrix();
   const Matrix3d R_WD = attitude_of(z_W, instant.wanted.yaw);
   const Quaterniond q_FD(Matrix3d(R_WF.transpose() * R_WD));
-  // 2 sign(q_w) q_vec: it leaves every attitude but that of exactly half a turn at a constant rate
-  // (Mayhew, Sanfelice, Teel, IEEE TAC 2011), where that of the matrices has stopped.
-  const Vector3d error_F = (q_FD.w() < 0 ? -2 : 2) * q_FD.vec();
   const Vector3d& w_WF_F = instant.now.angular_velocity;
-  if (!gains_.flat_rates) {
-    return attitude_p_.cwiseProduct(error_F) - attitude_d_.cwiseProduct(w_WF_F);
-  }
-  const FlatState flat = flat_state(instant.wanted, belief_, gains_.drag);
+  if (!gains_.flat_rates) return attitude_.angular_acceleration(q_FD, -w_WF_F);
+  const FlatState flat = flat_state(instant.wanted, belief(), gains_.drag);
   const Matrix3d R_FD = R_WF.transpose() * flat.R_WF;
   const Vector3d wanted_w_F = R_FD * flat.w_WF_F;
   const Vector3d wanted_dw_F = R_FD * flat.dw_WF_F - w_WF_F.cross(wanted_w_F);
-  return attitude_p_.cwiseProduct(error_F) + attitude_d_.cwiseProduct(wanted_w_F - w_WF_F) +
-         wanted_dw_F;
+  return attitude_.angular_acceleration(q_FD, wanted_w_F - w_WF_F) + wanted_dw_F;
 }
 
 Vector3d Tracking::torque(const Instant& instant, const Vector3d& dw_WF_F) const {
-  const Odometry& now = instant.now;
-  Vector3d tau_air_F = Vector3d::Zero();
-  if (gains_.drag) {
-    tau_air_F = belief_.air_torque_F(now.orientation.conjugate() * now.linear_velocity,
-                                     now.angular_velocity);
-  }
-  const Vector3d h_F = gains_.gyroscopic ? instant.h_F : Vector3d(Vector3d::Zero());
-  return torque_for(belief_, dw_WF_F, now.angular_velocity, h_F, tau_air_F);
+  return attitude_.torque(instant.now, instant.h_F, dw_WF_F);
 }
 
 }  // namespace quadcore::control

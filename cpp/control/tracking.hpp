@@ -1,16 +1,18 @@
 #pragma once
 
+#include <utility>
+
+#include "quadcore/control/attitude_loop.hpp"
 #include "quadcore/control/flat_state.hpp"
 #include "quadcore/control/law.hpp"
 
 namespace quadcore::control {
 
 /// What the laws on rotations have in common: gains, and the loops around position and attitude.
-struct TrackingGains {
+struct TrackingGains : AttitudeGains {
   double kp_xy, ki_xy, kd_xy, kp_z, ki_z, kd_z;
   double integral_limit;
-  double kr_rp, kw_rp, kr_yaw, kw_yaw;
-  bool feed_forward, drag, gyroscopic, flat_rates, integral;
+  bool feed_forward, flat_rates, integral;
 };
 
 /// The settings of gains that have those for a base.
@@ -30,27 +32,21 @@ Settings<G> with_tracking(Settings<G> settings) {
       {gain("kd_z", "1/s", "8", "of the velocity along z"), &G::kd_z},
       {gain("integral_limit", "m/s^2", "1.5", "largest acceleration along an axis by the integral"),
        &G::integral_limit},
-      {gain("kr_rp", "1/s^2", "300", "of the error of roll and pitch"), &G::kr_rp},
-      {gain("kw_rp", "1/s", "30", "of the error of their rates"), &G::kw_rp},
-      {gain("kr_yaw", "1/s^2", "3", "of the error of yaw"), &G::kr_yaw},
-      {gain("kw_yaw", "1/s", "3", "of the error of its rate"), &G::kw_yaw},
       {T::flag("feed_forward", "true", "the acceleration of the reference"), &G::feed_forward},
-      {T::flag("drag", "true", "makes up for the believed force and torque of the air"), &G::drag},
-      {T::flag("gyroscopic", "true", "makes up for the rotors' gyroscopic torque"), &G::gyroscopic},
       {T::flag("flat_rates", "true",
                "angular velocity and acceleration that the reference asks for"),
        &G::flat_rates},
       {T::flag("integral", "true", "of the error of position"), &G::integral},
   };
   settings.insert(settings.end(), tracking.begin(), tracking.end());
-  return settings;
+  return with_attitude<G>(std::move(settings));
 }
 
 class Tracking {
  public:
   Tracking(const Belief& belief, const TrackingGains& gains);
 
-  const Belief& belief() const { return belief_; }
+  const Belief& belief() const { return attitude_.belief(); }
   const TrackingGains& gains() const { return gains_; }
 
   /// Acceleration that makes up for the errors of position and velocity, in W [m/s^2].
@@ -64,9 +60,9 @@ class Tracking {
   Vector3d torque(const Instant& instant, const Vector3d& dw_WF_F) const;
 
  private:
-  Belief belief_;
+  AttitudeLoop attitude_;
   TrackingGains gains_;
-  Vector3d position_p_, position_i_, position_d_, attitude_p_, attitude_d_;
+  Vector3d position_p_, position_i_, position_d_;
 };
 
 }  // namespace quadcore::control

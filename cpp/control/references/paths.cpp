@@ -6,19 +6,9 @@ namespace {
 
 using T = TagSpec;
 
-class Path final : public ReferenceShape {
- public:
-  explicit Path(SepticPath path) : path_(std::move(path)) {}
-  Reference at(double t) const override { return path_.at(t); }
-  double end() const override { return path_.end(); }
-
- private:
-  SepticPath path_;
-};
-
 ReferenceInfo through_rows(const char* name, const char* summary, SepticPath::Ends ends) {
   return {name, summary, true, {}, [ends](const Values&, const Rows& rows) {
-            return std::make_unique<Path>(SepticPath::smoothest(rows, ends));
+            return std::make_unique<SepticPath>(SepticPath::smoothest(rows, ends));
           }};
 }
 
@@ -68,7 +58,7 @@ ReferenceInfo takeoff_land() {
             be_at(s.height);
             t += s.rise;
             be_at(s.ground);
-            return std::make_unique<Path>(SepticPath::resting(rows));
+            return std::make_unique<SepticPath>(SepticPath::resting(rows));
           }};
 }
 

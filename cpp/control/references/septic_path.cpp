@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "quadcore/error.hpp"
@@ -60,45 +61,69 @@ Eigen::Matrix<double, 3, 8> high_derivatives(double h, bool at_its_end) {
 
 /// One row of blocks of the equations for the derivatives 1 to 3 of all knots.
 struct Equation {
-  Eigen::Matrix3d before = Eigen::Matrix3d::Zero(), own = Eigen::Matrix3d::Identity(),
+  Eigen::Matrix3d before = Eigen::Matrix3d::Zero(), own = Eigen::Matrix3d::Zero(),
                   after = Eigen::Matrix3d::Zero();
   Matrix34 right = Matrix34::Zero();
+
+  /// Makes one of the three equations say what an unknown is.
+  void fix(int equation, int unknown, const Eigen::RowVector4d& value) {
+    before.row(equation).setZero();
+    after.row(equation).setZero();
+    own.row(equation) = Eigen::RowVector3d::Unit(unknown);
+    right.row(equation) = value;
+  }
 };
 
-}  // namespace
-
-SepticPath::SepticPath(const Rows& rows) {
+std::vector<SepticPath::Point> points_of(const Rows& rows) {
   if (rows.rows() < 2 || (rows.cols() != 4 && rows.cols() != 5)) {
     throw InputError("a path needs two rows at least of t, x, y, z or t, x, y, z, yaw");
   }
-  if (!rows.allFinite()) throw InputError("a path holds a number that is not finite");
+  std::vector<SepticPath::Point> points;
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-    if (i > 0 && !(rows(i, 0) > rows(i - 1, 0))) {
+    points.emplace_back();
+    points.back().t = rows(i, 0);
+    points.back().derivatives.row(0).head(rows.cols() - 1) = rows.row(i).tail(rows.cols() - 1);
+  }
+  return points;
+}
+
+}  // namespace
+
+SepticPath::SepticPath(const std::vector<Point>& points) {
+  if (points.size() < 2) throw InputError("a path needs two points at least");
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!std::isfinite(points[i].t) || !points[i].derivatives.allFinite()) {
+      throw InputError("a path holds a number that is not finite");
+    }
+    if (i > 0 && !(points[i].t > points[i - 1].t)) {
       throw InputError("row " + std::to_string(i + 1) +
                        " of a path is not later than the one before; order them by time");
     }
-    times_.push_back(rows(i, 0));
-    knots_.push_back(Knot::Zero());
-    knots_.back().row(0).head(rows.cols() - 1) = rows.row(i).tail(rows.cols() - 1);
+    times_.push_back(points[i].t);
+    knots_.push_back(points[i].derivatives);
   }
 }
 
 SepticPath SepticPath::resting(const Rows& rows) {
-  SepticPath path(rows);
+  SepticPath path(points_of(rows));
   path.connect();
   return path;
 }
 
 SepticPath SepticPath::smoothest(const Rows& rows, Ends ends) {
-  SepticPath path(rows);
+  std::vector<Point> points = points_of(rows);
+  const bool rests = ends == Ends::at_rest;
+  points.front().given = points.back().given = {rests, rests, rests};
+  return smoothest(points);
+}
+
+SepticPath SepticPath::smoothest(const std::vector<Point>& points) {
+  SepticPath path(points);
   std::vector<Knot>& knots = path.knots_;
   const std::size_t n = knots.size();
   std::vector<Equation> equations(n);
   for (std::size_t i = 0; i < n; ++i) {
-    const bool inner = i > 0 && i + 1 < n;
-    if (!inner && ends == Ends::at_rest) continue;
     Equation& e = equations[i];
-    e.own.setZero();
     // Where two pieces meet their derivatives 4 to 6 agree; at a free end they are zero.
     if (i > 0) {
       const auto left = high_derivatives(path.times_[i] - path.times_[i - 1], true);
@@ -111,6 +136,10 @@ SepticPath SepticPath::smoothest(const Rows& rows, Ends ends) {
       e.own -= right.middleCols<3>(1);
       e.after -= right.rightCols<3>();
       e.right += right.col(0) * knots[i].row(0) + right.col(4) * knots[i + 1].row(0);
+    }
+    // That of derivative 7 - k stands for the freedom of derivative k.
+    for (int k = 1; k < 4; ++k) {
+      if (points[i].given[static_cast<std::size_t>(k) - 1]) e.fix(3 - k, k - 1, knots[i].row(k));
     }
   }
   // Elimination by blocks of three.

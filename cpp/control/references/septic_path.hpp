@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "quadcore/control/reference.hpp"
@@ -7,7 +8,7 @@
 namespace quadcore::control {
 
 /// Position and yaw as pieces of polynomials of the seventh order between knots.
-class SepticPath {
+class SepticPath final : public ReferenceShape {
  public:
   enum class Ends {
     at_rest,  ///< velocity, acceleration and jerk are zero: the waypoints of a vehicle that hovers
@@ -19,20 +20,30 @@ class SepticPath {
   /// continuous (Mellinger, Kumar, ICRA 2011, eq. 11 with times given).
   /// Throws InputError on rows whose times do not grow, or on fewer than two.
   static SepticPath smoothest(const Rows& rows, Ends ends);
+  /// What is wanted at one time of a path.
+  struct Point {
+    double t;
+    /// x, y, z and yaw in the columns; value, velocity, acceleration and jerk in the rows.
+    Eigen::Matrix4d derivatives = Eigen::Matrix4d::Zero();
+    /// Whether the velocity, the acceleration and the jerk are wanted, or what is smoothest.
+    std::array<bool, 3> given = {false, false, false};
+  };
+  /// The smoothest path through points. Throws InputError on times that do not grow, or on fewer
+  /// than two points.
+  static SepticPath smoothest(const std::vector<Point>& points);
   /// From rest to rest between each row and the next.
   static SepticPath resting(const Rows& rows);
 
-  Reference at(double t) const;
+  Reference at(double t) const override;
   double begin() const { return times_.front(); }
-  double end() const { return times_.back(); }
+  double end() const override { return times_.back(); }
 
  private:
-  /// x, y, z and yaw in the columns; value, velocity, acceleration and jerk in the rows.
-  using Knot = Eigen::Matrix4d;
+  using Knot = Eigen::Matrix4d;  ///< as Point::derivatives
   /// Coefficients of (t - t_i)/h, from the constant one on.
   using Piece = Eigen::Matrix<double, 8, 4>;
 
-  explicit SepticPath(const Rows& rows);
+  explicit SepticPath(const std::vector<Point>& points);
   void connect();
 
   std::vector<double> times_;

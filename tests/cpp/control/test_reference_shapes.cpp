@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "../vehicle.hpp"
+#include "derivatives.hpp"
 #include "quadcore/control/reference.hpp"
 
 using namespace quadcore;
@@ -16,24 +17,6 @@ Rows five_waypoints() {
   Rows rows(6, 4);
   rows << 0, 0, 0, 10, 2.2, 3, 1, 11, 4.2, 4, 4, 12, 6.2, 1, 5, 11, 8.2, -1, 2, 10, 10.4, 0, 0, 10;
   return rows;
-}
-
-/// Each derivative is that of the one before, by central differences.
-void check_derivatives(const ReferenceShape& shape, double t) {
-  constexpr double h = 1e-4;
-  const Reference before = shape.at(t - h), now = shape.at(t), after = shape.at(t + h);
-  const auto agree = [&](const Vector3d Reference::* of, const Vector3d Reference::* derivative) {
-    const Vector3d slope = (after.*of - before.*of) / (2 * h);
-    CHECK((slope - now.*derivative).norm() <= 2e-6 * (1 + (now.*derivative).norm()));
-  };
-  agree(&Reference::position, &Reference::velocity);
-  agree(&Reference::velocity, &Reference::acceleration);
-  agree(&Reference::acceleration, &Reference::jerk);
-  agree(&Reference::jerk, &Reference::snap);
-  const double turn = std::remainder(after.yaw - before.yaw, 2 * pi) / (2 * h);
-  CHECK(turn == doctest::Approx(now.yaw_rate).epsilon(1e-5).scale(1));
-  const double turn_rate = (after.yaw_rate - before.yaw_rate) / (2 * h);
-  CHECK(turn_rate == doctest::Approx(now.yaw_acceleration).epsilon(1e-5).scale(1));
 }
 
 /// The same path by the equations of all coefficients at once, in plain powers of t.
@@ -85,7 +68,7 @@ TEST_CASE("every derivative of a reference is that of the one before") {
     const auto shape = info.takes_rows               ? info.make({}, five_waypoints())
                        : info.name == "takeoff_land" ? make_reference(info.name, {{"yaw", 0.4}})
                                                      : make_reference(info.name, odd);
-    for (const double t : {0.41, 1.7, 3.3, 5.02, 7.9, 9.6}) check_derivatives(*shape, t);
+    for (const double t : {0.41, 1.7, 3.3, 5.02, 7.9, 9.6}) test::check_derivatives(*shape, t);
   }
 }
 
@@ -93,7 +76,7 @@ TEST_CASE("yaw points along the velocity where it is told to") {
   for (const char* name : {"circle", "eight", "spiral"}) {
     const auto shape = make_reference(name, {{"along", 1}, {"yaw", 0.2}});
     for (const double t : {0.1, 0.83, 2.6, 4.4}) {
-      check_derivatives(*shape, t);
+      test::check_derivatives(*shape, t);
       const Reference r = shape->at(t);
       const double heading = std::atan2(r.velocity.y(), r.velocity.x());
       CHECK(std::abs(std::remainder(r.yaw - heading - 0.2, 2 * pi)) < 1e-12);

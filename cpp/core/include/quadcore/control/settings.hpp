@@ -34,6 +34,8 @@ void check_values(const std::string& who, const std::vector<TagSpec>& table, con
 double default_of(const TagSpec& spec);
 /// The same table with other defaults.
 std::vector<TagSpec> with_defaults(std::vector<TagSpec> table, const Values& defaults);
+/// Those values whose names a table has.
+Values in_table(const std::vector<TagSpec>& table, const Values& values);
 /// Values, and those of `others` that they lack.
 Values completed(Values values, const Values& others);
 

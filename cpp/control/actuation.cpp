@@ -1,0 +1,87 @@
+#include "quadcore/control/actuation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "quadcore/elementary.hpp"
+
+namespace quadcore::control {
+namespace {
+
+using T = TagSpec;
+
+struct Lead {
+  bool lead;
+  double time;
+};
+
+const Settings<Lead>& settings() {
+  static const Settings<Lead> all = {
+      {T::flag("lead", "true", "whether the lag of the motors is inverted"), &Lead::lead},
+      {T::number("lead_time", "s", "0.01", "time constant that is left of it").above(0),
+       &Lead::time},
+  };
+  return all;
+}
+
+}  // namespace
+
+const std::vector<TagSpec>& Actuation::table() {
+  static const std::vector<TagSpec> all = table_of(settings());
+  return all;
+}
+
+Actuation::Actuation(const Belief& belief, const Values& values)
+    : rotors_(belief.rotors), allocation_(belief) {
+  Lead lead{};
+  configure(lead, settings(), values);
+  leads_ = lead.lead;
+  lead_time_ = lead.time;
+}
+
+Actuation::Now Actuation::now(const double* state, double* scratch) const {
+  const double* const believed = state + kRotors;
+  Now now{state[kBegun] == 0, saturated(state), {}, Vector3d::Zero()};
+  for (std::size_t i = 0; i < rotors_.size(); ++i) {
+    const BelievedRotor& rotor = rotors_[i];
+    now.h_F += rotor.momentum * rotor.spin * believed[i] * rotor.axis_F;
+    scratch[i] = believed[i] * believed[i];
+  }
+  now.exerted = allocation_.exerted(scratch);
+  return now;
+}
+
+void Actuation::command(double period, const Demand& demand, double* state, double* speeds) const {
+  const bool met = allocation_.allocate(demand, speeds);
+  for (std::size_t i = 0; i < rotors_.size(); ++i) speeds[i] = std::sqrt(speeds[i]);
+  const bool reached = lead(period, state[kBegun] == 0, state + kRotors, speeds);
+  for (std::size_t i = 0; i < rotors_.size(); ++i) speeds[i] *= rotors_[i].spin;
+  state[kBegun] = 1;
+  state[kSaturated] = met && reached ? 0 : 1;
+}
+
+/// Makes commands of wanted speeds and follows what the rotors make of them: speeds that approach a
+/// command with their lag tau, dw/dt = (command - w)/tau, approach the wanted speed with lead_time.
+/// Says whether the commands can be followed.
+bool Actuation::lead(double period, bool begins, double* believed, double* speeds) const {
+  bool all = true;
+  for (std::size_t i = 0; i < rotors_.size(); ++i) {
+    const BelievedRotor& rotor = rotors_[i];
+    if (begins) believed[i] = speeds[i];
+    if (rotor.lag == 0) {
+      believed[i] = speeds[i];
+      continue;
+    }
+    const double share = 1 - elementary::exp(-period / rotor.lag);  // of the way, in a period
+    if (leads_ && lead_time_ < rotor.lag) {
+      const double wanted_share = 1 - elementary::exp(-period / lead_time_);
+      const double ahead = believed[i] + wanted_share / share * (speeds[i] - believed[i]);
+      speeds[i] = std::clamp(ahead, rotor.slowest, rotor.fastest);
+      all &= speeds[i] == ahead;
+    }
+    believed[i] += share * (speeds[i] - believed[i]);
+  }
+  return all;
+}
+
+}  // namespace quadcore::control

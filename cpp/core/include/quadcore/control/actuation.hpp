@@ -1,0 +1,49 @@
+#pragma once
+
+#include "quadcore/control/allocation.hpp"
+
+namespace quadcore QUADCORE_EXPORT {
+namespace control {
+
+/// From what is asked of the rotors down to their speeds: the allocation, and, by parameter `lead`,
+/// an inversion of the motors' lag. Immutable; its state is numbers of its caller, all zero at the
+/// beginning.
+class Actuation {
+ public:
+  /// Throws InputError if the rotors cannot exert what may be asked of them.
+  Actuation(const Belief& belief, const Values& values);
+
+  static const std::vector<TagSpec>& table();
+  static std::size_t state_size(std::size_t rotors) { return kRotors + rotors; }
+
+  /// What the rotors do, as is believed.
+  struct Now {
+    bool begins;     ///< nothing was asked of them yet
+    bool saturated;  ///< they could not do what was asked of them last
+    Demand exerted;
+    Vector3d h_F;  ///< their angular momentum, relative to the frame [kg m^2/s]
+  };
+  /// \param scratch  one number for each rotor
+  Now now(const double* state, double* scratch) const;
+  static bool saturated(const double* state) { return state[kSaturated] != 0; }
+
+  /// Speeds to command until the next call.
+  /// \param period  since the last call and until the next [s]
+  /// \param speeds  (rotors,) signed [rad/s]
+  void command(double period, const Demand& demand, double* state, double* speeds) const;
+
+ private:
+  /// State: whether it has begun, whether the last demand was not met, believed speeds of the
+  /// rotors (without sign).
+  enum : std::size_t { kBegun, kSaturated, kRotors };
+
+  bool lead(double period, bool begins, double* believed, double* speeds) const;
+
+  std::vector<BelievedRotor> rotors_;
+  Allocation allocation_;
+  bool leads_;
+  double lead_time_;
+};
+
+}  // namespace control
+}  // namespace quadcore

@@ -1,0 +1,66 @@
+#include <doctest/doctest.h>
+
+#include <vector>
+
+#include "control/schedule.hpp"
+
+using quadcore::control::Schedule;
+
+namespace {
+
+/// Steps at which a schedule asks, and at which what was asked then arrives.
+struct Flown {
+  std::vector<int> asked, arrived;
+};
+
+Flown fly(const Schedule& schedule, const std::vector<int>& steps, double dt) {
+  std::vector<double> state(schedule.state_size(), 0.0);
+  Flown flown;
+  for (const int step : steps) {
+    const auto ask = [&](double, double* speeds) {
+      flown.asked.push_back(step);
+      speeds[0] = step;
+    };
+    const double* const speeds = schedule.update(step, dt, state.data(), ask);
+    if (speeds) flown.arrived.push_back(step);
+  }
+  return flown;
+}
+
+std::vector<int> counted(int steps) {
+  std::vector<int> all;
+  for (int i = 0; i < steps; ++i) all.push_back(i);
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("a schedule asks at its rate, by the count of steps") {
+  CHECK(fly({500, 0, 1}, counted(7), 1e-3).asked == std::vector<int>{0, 2, 4, 6});
+  CHECK(fly({300, 0, 1}, counted(11), 1e-3).asked == std::vector<int>{0, 4, 7, 10});
+  CHECK(fly({5000, 0, 1}, counted(3), 1e-3).asked == std::vector<int>{0, 1, 2});
+  // 100 of 0.1 s are 10 s to the step, though the sum of the times is not.
+  CHECK(fly({10, 0, 1}, counted(10001), 1e-3).asked.size() == 101);
+}
+
+TEST_CASE("the first command acts at once and the others after the delay") {
+  CHECK(fly({500, 0.003, 1}, counted(8), 1e-3).arrived == std::vector<int>{0, 5, 7});
+  // Rounded up to whole steps; several are under way at once.
+  CHECK(fly({1000, 0.0024, 1}, counted(6), 1e-3).arrived == std::vector<int>{0, 4, 5});
+}
+
+TEST_CASE("steps that are left out are made up for by one call") {
+  const Flown flown = fly({500, 0, 1}, {0, 1, 7, 8, 9, 20}, 1e-3);
+  CHECK(flown.asked == std::vector<int>{0, 7, 8, 20});
+}
+
+TEST_CASE("a schedule that is asked once a step tells that period and not its own") {
+  for (const double rate : {100.0, 2000.0}) {
+    const Schedule schedule(rate, 0, 1);
+    std::vector<double> state(schedule.state_size(), 0.0);
+    double told = 0;
+    const auto ask = [&](double period, double*) { told = period; };
+    schedule.update(0, 1e-3, state.data(), ask);
+    CHECK(told == doctest::Approx(rate == 100 ? 0.01 : 0.001));
+  }
+}
