@@ -6,6 +6,7 @@
 #include "guarded.hpp"
 #include "quadcore/control/controller.hpp"
 #include "quadcore/control/gains_file.hpp"
+#include "quadcore/control/inner_loop.hpp"
 #include "quadcore/control/rows_file.hpp"
 #include "quadcore/control/start.hpp"
 
@@ -17,16 +18,21 @@ using control::Reference;
 using control::ReferenceShape;
 using control::Values;
 
-/// A controller and its memory.
+/// What commands rotors, and its memory.
+template <class Controller>
 struct Flown {
   Controller controller;
   std::vector<double> state;
 
-  Flown(const std::string& law, const VehicleDescription& vehicle, const Values& values,
-        const std::vector<double>& spins)
-      : controller(law, vehicle, values, spins),
-        state(Controller::state_size(law, controller.rotors()), 0.0) {}
+  template <class Wanted>
+  py::array_t<double> command(double period, const messages::Odometry& now, const Wanted& wanted) {
+    py::array_t<double> speeds(static_cast<py::ssize_t>(controller.rotors()));
+    controller.command(period, now, wanted, state.data(), speeds.mutable_data());
+    return speeds;
+  }
 };
+using FlownLaw = Flown<Controller>;
+using FlownInnerLoop = Flown<control::InnerLoop>;
 
 VehicleDescription describe(const Self& self) {
   const Lock lock(*self);
@@ -39,30 +45,28 @@ Vector3d vector(const py::object& object, const char* what) {
   return Eigen::Map<const Vector3d>(array.data());
 }
 
-py::array_t<double> command(Flown& flown, double period, const py::object& state,
-                            const Reference& wanted) {
+Quaterniond orientation(const py::object& object, const char* what) {
+  const Numbers array = numbers(object, 1, what);
+  if (array.size() != 4) throw InputError(std::string(what) + " has not four numbers");
+  return Quaterniond(Eigen::Map<const Eigen::Vector4d>(array.data()));
+}
+
+messages::Odometry odometry(const py::object& state) {
   messages::Odometry now;
   now.position = vector(state.attr("position"), "state.position");
+  now.orientation = orientation(state.attr("orientation"), "state.orientation");
   now.linear_velocity = vector(state.attr("linear_velocity"), "state.linear_velocity");
   now.angular_velocity = vector(state.attr("angular_velocity"), "state.angular_velocity");
-  const Numbers orientation = numbers(state.attr("orientation"), 1, "state.orientation");
-  if (orientation.size() != 4) throw InputError("state.orientation has not four numbers");
-  std::copy_n(orientation.data(), 4, now.orientation.coeffs().data());
-  py::array_t<double> speeds(static_cast<py::ssize_t>(flown.controller.rotors()));
-  flown.controller.command(period, now, wanted, flown.state.data(), speeds.mutable_data());
-  return speeds;
+  return now;
 }
 
 /// The same from what stands on a topic and from a shape, with no Python object between.
-py::array_t<double> command_at(Flown& flown, double period, const Self& self,
+py::array_t<double> command_at(FlownLaw& flown, double period, const Self& self,
                                const std::string& sensed, const ReferenceShape& shape) {
   const Lock lock(*self);
   const Topics& topics = self->topics();
   const auto now = topics.read<messages::Odometry>(topics.at(sensed));
-  py::array_t<double> speeds(static_cast<py::ssize_t>(flown.controller.rotors()));
-  flown.controller.command(period, now, shape.at(self->time()), flown.state.data(),
-                           speeds.mutable_data());
-  return speeds;
+  return flown.command(period, now, shape.at(self->time()));
 }
 
 /// Position and yaw at each of these times, shape (n, 4).
@@ -127,18 +131,55 @@ void bind_control(py::module_& m) {
       .def("places", &places, py::arg("times"))
       .def_property_readonly("end", &ReferenceShape::end);
 
-  py::class_<Flown>(m, "Controller", "A law that flies one vehicle.")
-      .def(py::init([](const std::string& law, const Self& simulation, const Values& values,
-                       const std::vector<double>& spins) {
-             return std::make_unique<Flown>(law, describe(simulation), values, spins);
-           }),
-           py::arg("law"), py::arg("simulation"), py::arg("values"), py::arg("spins"))
-      .def("command", &command, py::arg("period"), py::arg("state"), py::arg("reference"))
+  py::class_<FlownLaw>(m, "Controller", "A law that flies one vehicle.")
+      .def(
+          py::init([](const std::string& law, const Self& simulation, const Values& values,
+                      const std::vector<double>& spins) {
+            Controller made(law, describe(simulation), values, spins);
+            const std::size_t size = Controller::state_size(law, made.rotors());
+            return std::make_unique<FlownLaw>(FlownLaw{std::move(made), std::vector<double>(size)});
+          }),
+          py::arg("law"), py::arg("simulation"), py::arg("values"), py::arg("spins"))
+      .def(
+          "command",
+          [](FlownLaw& flown, double period, const py::object& state, const Reference& wanted) {
+            return flown.command(period, odometry(state), wanted);
+          },
+          py::arg("period"), py::arg("state"), py::arg("reference"))
       .def("command_at", &command_at, py::arg("period"), py::arg("simulation"), py::arg("sensed"),
            py::arg("shape"))
       .def_property_readonly(
-          "saturated", [](const Flown& flown) { return Controller::saturated(flown.state.data()); },
+          "saturated",
+          [](const FlownLaw& flown) { return Controller::saturated(flown.state.data()); },
           "Whether the rotors could not do what was asked of them last.");
+
+  py::class_<FlownInnerLoop>(m, "InnerLoop", "An inner loop that flies one vehicle.")
+      .def(py::init(
+               [](const Self& simulation, const Values& values, const std::vector<double>& spins) {
+                 control::InnerLoop made(describe(simulation), values, spins);
+                 const std::size_t size = control::InnerLoop::state_size(made.rotors());
+                 return std::make_unique<FlownInnerLoop>(
+                     FlownInnerLoop{std::move(made), std::vector<double>(size)});
+               }),
+           py::arg("simulation"), py::arg("values"), py::arg("spins"))
+      .def(
+          "attitude",
+          [](FlownInnerLoop& flown, double period, const py::object& state,
+             const py::object& wanted, double thrust) {
+            return flown.command(
+                period, odometry(state),
+                control::AttitudeThrust{orientation(wanted, "orientation"), thrust});
+          },
+          py::arg("period"), py::arg("state"), py::arg("orientation"), py::arg("thrust"))
+      .def(
+          "rates",
+          [](FlownInnerLoop& flown, double period, const py::object& state,
+             const py::object& wanted, double thrust) {
+            return flown.command(period, odometry(state),
+                                 control::RatesThrust{vector(wanted, "angular_velocity"), thrust});
+          },
+          py::arg("period"), py::arg("state"), py::arg("angular_velocity"), py::arg("thrust"));
+  m.def("inner_loop", [] { return control::InnerLoop::table(); }, "Parameters of the inner loop.");
 
   m.def("start_on", &start, py::arg("simulation"), py::arg("reference"), py::arg("spins"),
         "Members of the state of a vehicle that follows a reference exactly.");

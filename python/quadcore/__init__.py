@@ -28,6 +28,7 @@ from .controller import Controller, Odometry
 from .description import read_model, read_world
 from .evaluation.evaluate import Evaluation, evaluate
 from .flight_plan import FlightPlan
+from .inner_loop import AttitudeThrust, InnerLoop, RatesThrust
 from .log import Log
 from .resources import cmake_prefix
 from .simulation import Simulation
@@ -38,17 +39,20 @@ from .warning import QuadcoreWarning
 __version__ = "0.1.0"
 
 __all__ = [
+    "AttitudeThrust",
     "Comparison",
     "Controller",
     "Evaluation",
     "FlightError",
     "FlightPlan",
+    "InnerLoop",
     "InputError",
     "Log",
     "Model",
     "Odometry",
     "QuadcoreError",
     "QuadcoreWarning",
+    "RatesThrust",
     "Reference",
     "Simulation",
     "Snapshot",

@@ -14,6 +14,7 @@ from . import _core, laws, references
 from ._core import FlightError, InputError, QuadcoreError, odometry_parts
 from .flight import Pilot
 from .imported import told
+from .inner_loop import AttitudeThrust, InnerLoop, RatesThrust
 
 DEFAULT_RATE = 500.0  # 1/s
 _LOWEST_RATE = 1e-6  # 1/s
@@ -31,6 +32,9 @@ class Controller(Protocol):
     delay : float
         From a call to the first step whose motors know of it, s, rounded up to whole steps; 0
         without the attribute. The first call of a run acts at once, for nothing precedes it.
+    inner_loop : InnerLoop
+        Flies the `AttitudeThrust` and `RatesThrust` that it returns; one with the defaults without
+        the attribute.
     """
 
     def reset(self, simulation: Any) -> None:
@@ -51,8 +55,9 @@ class Controller(Protocol):
 
         Returns
         -------
-        array_like, shape (n,)
-            Rotor speeds, rad/s, signed, as `Simulation.command` takes them.
+        array_like, shape (n,), or AttitudeThrust, or RatesThrust
+            Rotor speeds, rad/s, signed, as `Simulation.command` takes them; or what an inner loop
+            is to make of them.
         """
 
 
@@ -131,6 +136,12 @@ class Guided(Pilot):
             raise InputError(f"controller: its delay is {delay!r}; give seconds, >= 0")
         self.rate = float(rate)
         self.delay = float(delay)
+        inner_loop = getattr(controller, "inner_loop", None)
+        if not (inner_loop is None or isinstance(inner_loop, InnerLoop)):
+            raise InputError(
+                f"controller: its inner_loop is {inner_loop!r}; give a quadcore.InnerLoop"
+            )
+        self._inner_loop = InnerLoop() if inner_loop is None else inner_loop
         self.columns = _COLUMNS if reference is not None else ()
         self.updates = self.saturated = 0
         self._controller: Any = controller
@@ -145,6 +156,7 @@ class Guided(Pilot):
 
     def reset(self, simulation: _core.Simulation) -> None:
         """Let the controller begin anew."""
+        self._inner_loop.leave()
         reset = getattr(self._controller, "reset", None)
         if reset is not None:
             reset(simulation)
@@ -160,7 +172,13 @@ class Guided(Pilot):
                 speeds = law(simulation.time, Odometry(simulation), self._wanted(simulation))
             self.saturated += law.saturated
             return speeds
-        speeds = law(simulation.time, Odometry(simulation), self._wanted(simulation))
+        state = Odometry(simulation)
+        speeds = law(simulation.time, state, self._wanted(simulation))
+        if isinstance(speeds, (AttitudeThrust, RatesThrust)):
+            period = max(1 / self.rate, simulation.dt)  # called once a step at most
+            speeds = self._inner_loop.speeds(simulation, period, state, speeds)
+        else:
+            self._inner_loop.leave()
         if self.limit < math.inf:
             with suppress(TypeError, ValueError):  # what is no command is told when it is given
                 self.saturated += bool(np.any(np.abs(np.asarray(speeds, float)) >= self.limit))

@@ -7,6 +7,7 @@ from typing import Any, Dict, Optional, Sequence
 import numpy as np
 
 from . import _core
+from .belief import believed
 from .parameters import values
 
 
@@ -50,23 +51,8 @@ class Law:
 
     def reset(self, simulation: _core.Simulation) -> None:
         """Begin on what the simulation flies."""
-        twist = {
-            p.value
-            for plugin in simulation.plugins
-            for p in plugin.parameters
-            if p.name == "twistFrame"
-        }
-        if twist == {"body"}:
-            raise _core.InputError(
-                f"law '{self.name}' needs velocities in the world; set <twistFrame> to world"
-            )
-        believed = simulation if self.belief is None else self.belief
-        if believed.rotor_count != simulation.rotor_count:
-            raise _core.InputError(
-                f"law '{self.name}' believes in {believed.rotor_count} rotors; "
-                f"this vehicle has {simulation.rotor_count}"
-            )
-        self._controller = _core.Controller(self.name, believed, self.parameters, self.spins)
+        vehicle = believed(f"law '{self.name}'", self.belief, simulation)
+        self._controller = _core.Controller(self.name, vehicle, self.parameters, self.spins)
         self._period = max(1 / self.rate, simulation.dt)  # called once a step at most
 
     def __call__(self, t: float, state: Any, reference: Any) -> np.ndarray:
