@@ -52,7 +52,7 @@ install_quadcore() {
   local sources extras=$python_extras
   [ -x .venv/bin/pytest ] && extras=test  # once there, they stay in step
   sources=$(find CMakeLists.txt pyproject.toml constraints.txt cpp python urdf worlds config launch \
-    srv -type f -not -name '*.pyc' -print0 | sort -z | xargs -0 sha256sum | sha256sum)
+    msg srv -type f -not -name '*.pyc' -print0 | sort -z | xargs -0 sha256sum | sha256sum)
   [ "$(cat .venv/quadcore.sha256 2>/dev/null)" = "$sources $extras" ] && return
   say "building and installing quadcore and what it needs into .venv"
   # An older pip does not know the names of today's binary packages.

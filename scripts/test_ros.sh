@@ -11,13 +11,15 @@ skip() { say "ROS tests skipped: $*"; exit 0; }
 debian_packages="catkin rosout python3-rosbag python3-roslaunch python3-rosnode python3-rosparam
   python3-rostest python3-rostopic python3-rosservice python3-rospy python3-diagnostic-msgs
   python3-geometry-msgs python3-nav-msgs python3-sensor-msgs python3-std-srvs python3-tf2-msgs
-  ros-diagnostic-msgs ros-geometry-msgs ros-nav-msgs ros-rosgraph-msgs ros-sensor-msgs ros-std-msgs
-  ros-std-srvs ros-tf2-msgs ros-message-generation ros-message-runtime libdiagnostic-msgs-dev
-  libgeometry-msgs-dev libnav-msgs-dev libroscpp-dev libros-rosgraph-msgs-dev librostest-dev
-  libsensor-msgs-dev libstd-msgs-dev libstd-srvs-dev libtf2-msgs-dev
+  python3-trajectory-msgs ros-diagnostic-msgs ros-geometry-msgs ros-nav-msgs ros-rosgraph-msgs
+  ros-sensor-msgs ros-std-msgs ros-std-srvs ros-tf2-msgs ros-trajectory-msgs ros-message-generation
+  ros-message-runtime libdiagnostic-msgs-dev libgeometry-msgs-dev libnav-msgs-dev libroscpp-dev
+  libros-rosgraph-msgs-dev librostest-dev libsensor-msgs-dev libstd-msgs-dev libstd-srvs-dev
+  libtf2-msgs-dev libtrajectory-msgs-dev
   pybind11-dev python3-dev python3-numpy python3-setuptools"
 noetic_packages="ros-noetic-ros-base ros-noetic-rostest ros-noetic-tf2-msgs ros-noetic-diagnostic-msgs
-  ros-noetic-nav-msgs ros-noetic-sensor-msgs ros-noetic-std-srvs ros-noetic-xacro
+  ros-noetic-nav-msgs ros-noetic-sensor-msgs ros-noetic-std-srvs ros-noetic-trajectory-msgs
+  ros-noetic-xacro
   pybind11-dev python3-dev python3-numpy python3-setuptools"
 
 as_root() {
@@ -49,7 +51,7 @@ install_ros() {
 copy_sources() {
   rm -rf $workspace/src/quadcore
   mkdir -p $workspace/src/quadcore/tests
-  cp -rp CMakeLists.txt LICENSE README.md package.xml pyproject.toml setup.py cpp python launch srv \
+  cp -rp CMakeLists.txt LICENSE README.md package.xml pyproject.toml setup.py cpp python launch msg srv \
     urdf worlds config scripts $workspace/src/quadcore
   cp -rp tests/ros $workspace/src/quadcore/tests
 }
@@ -121,6 +123,6 @@ build
 say "running the ROS tests"
 SECONDS=0
 (run_in devel topics services lockstep playing clock several parameters faults masters fly_from_python \
-  launch plugin_by_others plugin_topics; [ -z "$failed" ])
+  controller set_points pid launch plugin_by_others plugin_topics; [ -z "$failed" ])
 (run_in install launch playing fly_from_python plugin_by_others; [ -z "$failed" ])
 say "the ROS tests passed in $SECONDS s"

@@ -5,8 +5,6 @@
 namespace quadcore::node {
 namespace {
 
-/// The thesis' name of the vehicle's frame.
-constexpr const char* vehicle_name = "drone";
 constexpr bool kept = true;  ///< the last message, for those who subscribe later
 
 geometry_msgs::TransformStamped same_place(const std::string& parent, const std::string& child) {

@@ -3,12 +3,16 @@
 #include <geometry_msgs/Quaternion.h>
 #include <ros/time.h>
 
+#include "quadcore/spatial.hpp"
+
 /// \file
-/// From numbers to parts of messages.
+/// Between numbers and parts of messages.
 
 namespace quadcore::node {
 
 constexpr const char* world_frame = "world";
+/// The thesis' name of the vehicle's frame.
+constexpr const char* vehicle_name = "drone";
 
 inline ros::Time to_ros(double time) { return ros::Time().fromSec(time); }
 
@@ -17,6 +21,11 @@ void set_vector(Vector& vector, const double* values) {
   vector.x = values[0];
   vector.y = values[1];
   vector.z = values[2];
+}
+
+template <class Vector>
+Vector3d vector_of(const Vector& vector) {
+  return {vector.x, vector.y, vector.z};
 }
 
 inline void set_quaternion(geometry_msgs::Quaternion& quaternion, const double* xyzw) {

@@ -7,10 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "quadcore/tags.hpp"
+
 namespace quadcore::node {
 
 /// \name What a parameter's value is to be
-/// Each throws InputError, naming the parameter, if the value is of another kind.
+/// Each throws InputError, naming the parameter, if the value is of another kind. A name without a
+/// slash or tilde before it is one of the node's own.
 /// @{
 bool to_flag(const std::string& name, const XmlRpc::XmlRpcValue& value);
 double to_number(const std::string& name, const XmlRpc::XmlRpcValue& value);
@@ -25,6 +28,11 @@ double to_no_negative(const std::string& name, const XmlRpc::XmlRpcValue& value,
 /// The private parameters of a node, each read once and strictly.
 class PrivateParameters {
  public:
+  /// \param space  "~": of this node; "~sub": those below one of them; "/node": of another node
+  explicit PrivateParameters(const std::string& space = "~");
+
+  /// Whether there are any.
+  bool any() const { return !all().empty(); }
   std::string text(const std::string& name, const std::string& fallback);
   bool flag(const std::string& name, bool fallback);
   std::optional<double> number(const std::string& name);
@@ -34,13 +42,20 @@ class PrivateParameters {
   std::optional<double> no_negative(const std::string& name, const std::string& hint = "");
   /// Text of words with blanks between them, or a list of texts, which may hold blanks.
   std::vector<std::string> words(const std::string& name);
+  /// What is given of a table of tags, as if the URDF said it. Empty text gives nothing.
+  std::vector<PluginTag> tags(const std::vector<TagSpec>& table);
+  /// Parameters that lie below one, for which PrivateParameters of their own ask.
+  void know(const std::string& name) { known_.insert(name); }
   /// Throws if the server holds a parameter that nobody asked for: a misspelt one.
   void check_all_known() const;
 
  private:
   bool get(const std::string& name, XmlRpc::XmlRpcValue& value);
+  std::vector<std::string> all() const;
+  std::string called(const std::string& name) const { return prefix_ + name; }
 
-  ros::NodeHandle nh_{"~"};
+  ros::NodeHandle nh_;
+  std::string prefix_;  ///< of names in errors
   std::set<std::string> known_;
 };
 

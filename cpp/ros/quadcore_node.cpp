@@ -5,7 +5,6 @@
 
 #include "command_subscriber.hpp"
 #include "diagnostics.hpp"
-#include "drag_choice.hpp"
 #include "end_signal.hpp"
 #include "flight_thread.hpp"
 #include "listener.hpp"
@@ -33,39 +32,6 @@ void describe(const Simulation& simulation) {
   }
 }
 
-/// Where commands come in: below the model's name, as Gazebo has it.
-std::string command_topic(const ros::NodeHandle& nh, const Settings& settings, const Model& model) {
-  const std::string name = settings.name.empty() ? model.name : settings.name;
-  std::string why;
-  if (!ros::names::validate(name, why)) {
-    throw InputError("model name '" + name + "' cannot name a topic (" + why + "); set ~name");
-  }
-  return nh.resolveName(name + "/" + Simulation::command_topic);
-}
-
-/// The world that was asked for. gazebo_ros' empty world has a ground plane, too.
-World read_world_of(const Settings& settings) {
-  if (!settings.world.empty()) return read_world(Document::read(settings.world), settings.ignore);
-  World world;
-  world.ground_plane = true;
-  return world;
-}
-
-/// The simulation that was asked for.
-Simulation make_simulation(const Settings& settings, const World& world) {
-  Model model = read_model(settings.model, settings.ignore);
-  check_ignored(settings.ignore, {&model.passed_over, &world.passed_over});
-  SimulationOptions options = settings.simulation;
-  choose_drag(settings.drag, model, options.parameters);
-  return {std::move(model), world, options};
-}
-
-/// What a vehicle's frames begin with: "uav1/" in the namespace uav1.
-std::string frame_prefix(const ros::NodeHandle& nh) {
-  const std::string space = nh.getNamespace().substr(1);
-  return space.empty() ? "" : space + "/";
-}
-
 /// What others ask the parameter server for, to be there again after a restart of the master.
 MasterWatch::Parameters public_parameters(const ros::NodeHandle& nh, const Settings& settings,
                                           bool leads_clock) {
@@ -73,7 +39,7 @@ MasterWatch::Parameters public_parameters(const ros::NodeHandle& nh, const Setti
   // As gazebo_ros does: whoever makes the time says that there is one.
   if (leads_clock && !nh.hasParam(use_sim_time)) nh.setParam(use_sim_time, true);
   MasterWatch::Parameters parameters;
-  for (const std::string& key : {use_sim_time, settings.description}) {
+  for (const std::string& key : {use_sim_time, settings.plant.description}) {
     if (!key.empty()) nh.getParam(key, parameters[key]);
   }
   return parameters;
@@ -87,10 +53,10 @@ void run(const EndSignal& end_signal) {
       ros::console::set_logger_level(ROSCONSOLE_DEFAULT_NAME, ros::console::levels::Debug)) {
     ros::console::notifyLoggerLevelsChanged();
   }
-  const World world = read_world_of(settings);
-  Simulation simulation = make_simulation(settings, world);
+  const World world = read_world_of(settings.plant);
+  Simulation simulation = make_simulation(settings.plant, world);
   describe(simulation);
-  const std::string topic = command_topic(nh, settings, simulation.model());
+  const std::string topic = command_topic(nh, settings.plant, simulation.model());
 
   const KeptPublisher<rosgraph_msgs::Clock> clock = take_part_in_clock(nh, settings.clock);
   FlightSettings flight_settings = settings.flight;

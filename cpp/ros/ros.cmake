@@ -4,7 +4,7 @@
 # What needs others stands after them, for a package that lacks one of its own ends everything.
 set(ros_packages
   message_generation roscpp std_msgs std_srvs geometry_msgs sensor_msgs nav_msgs rosgraph_msgs
-  diagnostic_msgs tf2_msgs)
+  diagnostic_msgs tf2_msgs trajectory_msgs)
 
 # The first python3 on PATH may be one that ROS' packages were not made for, and catkin ends the
 # configuration over it even when asked quietly. Some packages load catkin, so this comes first.
@@ -67,13 +67,14 @@ add_subdirectory(cpp/bindings)
 set_target_properties(_core PROPERTIES
   LIBRARY_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${QUADCORE_PYTHONDIR})
 catkin_python_setup()
+add_message_files(FILES AttitudeThrust.msg RateThrust.msg)
 add_service_files(FILES Step.srv SetState.srv)
-generate_messages(DEPENDENCIES geometry_msgs)
+generate_messages(DEPENDENCIES geometry_msgs std_msgs)
 catkin_package(
   INCLUDE_DIRS cpp/core/include ${PROJECT_BINARY_DIR}/cpp/core/include
   LIBRARIES quadcore
   CATKIN_DEPENDS diagnostic_msgs geometry_msgs message_runtime nav_msgs roscpp rosgraph_msgs
-                 sensor_msgs std_msgs std_srvs tf2_msgs
+                 sensor_msgs std_msgs std_srvs tf2_msgs trajectory_msgs
   CFG_EXTRAS ${CMAKE_CURRENT_LIST_DIR}/quadcore-target.cmake)
 export(TARGETS quadcore NAMESPACE quadcore::
        FILE ${CATKIN_DEVEL_PREFIX}/lib/cmake/quadcore/quadcore.cmake)
@@ -101,10 +102,15 @@ add_ros_node(quadcore_node
   cpp/ros/csv_log.cpp cpp/ros/diagnostics.cpp cpp/ros/drag_choice.cpp cpp/ros/flight_loop.cpp
   cpp/ros/flight_thread.cpp cpp/ros/listener.cpp cpp/ros/master_api.cpp cpp/ros/master_check.cpp
   cpp/ros/master_watch.cpp cpp/ros/odometry_topic.cpp cpp/ros/parameter_watch.cpp cpp/ros/path.cpp
-  cpp/ros/private_parameters.cpp cpp/ros/quadcore_node.cpp cpp/ros/ros_types.cpp
+  cpp/ros/plant.cpp cpp/ros/private_parameters.cpp cpp/ros/quadcore_node.cpp cpp/ros/ros_types.cpp
   cpp/ros/services.cpp cpp/ros/settings.cpp cpp/ros/topic_broadcast.cpp cpp/ros/topic_inlets.cpp)
 target_link_libraries(quadcore_node PRIVATE quadcore)
-add_ros_node(hover_node cpp/ros/hover_node.cpp)
+add_ros_node(controller_node
+  cpp/ros/controller_node.cpp cpp/ros/controller_settings.cpp cpp/ros/drag_choice.cpp
+  cpp/ros/guide.cpp cpp/ros/master_check.cpp cpp/ros/odometry_topic.cpp cpp/ros/plant.cpp
+  cpp/ros/private_parameters.cpp cpp/ros/ros_types.cpp cpp/ros/set_points.cpp)
+target_link_libraries(controller_node PRIVATE quadcore)
+target_include_directories(controller_node PRIVATE cpp)
 if(QUADCORE_BUILD_BENCHMARKS)
   add_ros_node(ros_probe benchmarks/ros_probe.cpp)
 endif()
@@ -119,7 +125,7 @@ if(CATKIN_ENABLE_TESTING)
   find_package(rostest QUIET)
   if(rostest_FOUND)
     foreach(test topics services lockstep playing clock several parameters faults masters launch
-                 fly_from_python)
+                 fly_from_python controller set_points pid)
       add_rostest(tests/ros/${test}.test)
     endforeach()
   endif()

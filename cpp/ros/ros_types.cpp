@@ -15,6 +15,7 @@
 namespace quadcore::node {
 namespace {
 
+using node::from_ros;
 using node::set_frames;
 using node::to_ros;
 
@@ -31,25 +32,6 @@ void set_covariance(Matrix& matrix, std::initializer_list<double> variances) {
   for (std::size_t i = 0; i < side; ++i) {
     matrix[(side + 1) * i] = std::max(variances.begin()[i / 3], least_variance);
   }
-}
-
-template <class Vector>
-Vector3d vector_of(const Vector& v) {
-  return {v.x, v.y, v.z};
-}
-
-messages::Odometry from_ros(const nav_msgs::Odometry& message) {
-  messages::Odometry odometry;
-  const geometry_msgs::Quaternion& q = message.pose.pose.orientation;
-  odometry.position = vector_of(message.pose.pose.position);
-  odometry.orientation = Quaterniond(q.w, q.x, q.y, q.z);
-  odometry.linear_velocity = vector_of(message.twist.twist.linear);
-  odometry.angular_velocity = vector_of(message.twist.twist.angular);
-  odometry.position_variance = message.pose.covariance.front();
-  odometry.orientation_variance = message.pose.covariance.back();
-  odometry.linear_velocity_variance = message.twist.covariance.front();
-  odometry.angular_velocity_variance = message.twist.covariance.back();
-  return odometry;
 }
 
 void set_frames(sensor_msgs::Imu& message, const std::string& vehicle_frame) {
@@ -198,6 +180,20 @@ void to_ros(const messages::Odometry& odometry, nav_msgs::Odometry& message) {
                  {odometry.position_variance, odometry.orientation_variance});
   set_covariance(message.twist.covariance,
                  {odometry.linear_velocity_variance, odometry.angular_velocity_variance});
+}
+
+messages::Odometry from_ros(const nav_msgs::Odometry& message) {
+  messages::Odometry odometry;
+  const geometry_msgs::Quaternion& q = message.pose.pose.orientation;
+  odometry.position = vector_of(message.pose.pose.position);
+  odometry.orientation = Quaterniond(q.w, q.x, q.y, q.z);
+  odometry.linear_velocity = vector_of(message.twist.twist.linear);
+  odometry.angular_velocity = vector_of(message.twist.twist.angular);
+  odometry.position_variance = message.pose.covariance.front();
+  odometry.orientation_variance = message.pose.covariance.back();
+  odometry.linear_velocity_variance = message.twist.covariance.front();
+  odometry.angular_velocity_variance = message.twist.covariance.back();
+  return odometry;
 }
 
 std::unique_ptr<Outlet> make_outlet(ros::NodeHandle& nh, const Topic& topic,

@@ -38,5 +38,6 @@ ros::Subscriber make_inlet(ros::NodeHandle& nh, const Topic& topic, const Take& 
 void set_frames(nav_msgs::Odometry& message, const std::string& vehicle_frame);
 /// Fills pose, twist and their covariances. A variance of 0 becomes the least that filters bear.
 void to_ros(const messages::Odometry& odometry, nav_msgs::Odometry& message);
+messages::Odometry from_ros(const nav_msgs::Odometry& message);
 
 }  // namespace quadcore::node

@@ -8,26 +8,19 @@
 
 #include "clock.hpp"
 #include "flight_thread.hpp"
-#include "quadcore/document.hpp"
-#include "quadcore/simulation.hpp"
+#include "plant.hpp"
 
 namespace quadcore::node {
 
 /// What the node's private parameters say.
 struct Settings {
-  Document model;
-  std::string description;              ///< the parameter that holds the model; "" = it is a file
-  std::string world;                    ///< path; "" = Gazebo's empty world, which has a ground
-  std::string name;                     ///< of the model, for its topic; "" = as the URDF says
+  Plant plant;
   std::string log;                      ///< path of a CSV log; "" = none
   std::vector<std::string> log_topics;  ///< topics in it
-  std::string drag;                     ///< the one effect that drags, or "all", "none"
   bool verbose = false;
   bool rotor_tf = false;  ///< send the rotors' links, too
   ClockRole clock = ClockRole::automatic;
-  std::vector<std::string> ignore;         ///< what model and world are read without
   std::optional<double> real_time_factor;  ///< absent = what the world asks for
-  SimulationOptions simulation;
   FlightSettings flight;
 };
 

@@ -3,7 +3,7 @@
 
 A template for those who script: it speaks the topics of quadcore_node, in one process with
 whatever you add between two steps. ``rosrun quadcore fly_from_python.py``, and in another terminal
-``rosrun quadcore hover_node``.
+``roslaunch quadcore controller.launch reference:=hover reference_parameters:='{height: 1}'``.
 """
 
 import time
@@ -18,8 +18,11 @@ from std_msgs.msg import Float64MultiArray
 from tf2_msgs.msg import TFMessage
 
 import quadcore as qc
+from quadcore.description import load_description
 
 rospy.init_node("quadcore", disable_rostime=True)  # this node makes the time, it follows none
+# For who asks what flies: a controller, rviz.
+rospy.set_param("robot_description", load_description("quadrotor").text)
 sim = qc.Simulation("quadrotor", world="default", spawn=(0, 0, rospy.get_param("~z", 0.1)))
 
 clock = rospy.Publisher("/clock", Clock, queue_size=1000, tcp_nodelay=True)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The template for scripts speaks the topics of the node, and hover_node flies it."""
+"""The template for scripts speaks the topics of the node, and controller_node flies it."""
 
 import os
 import unittest

@@ -211,9 +211,11 @@ class TestTopics(unittest.TestCase):
 
     def test_a_roscpp_client_flies_a_robot_of_any_name(self):
         fast = ("_real_time_factor:=0", "_lockstep:=true")
+        place = ("_reference/shape:=hover", "_reference/height:=12")
         topic = Recording("/odom", Odometry)
         mine = description().replace('name="quadrotor"', 'name="mine"', 1)
-        with flight(*fast, urdf=mine), Process("hover_node", "_altitude:=12"), topic as odometry:
+        client = Process("controller_node", "_law:=geometric", *place)
+        with flight(*fast, urdf=mine), client, topic as odometry:
             odometry.wait(lambda m: m and abs(m[-1].pose.pose.position.z - 12) < 0.01)
 
 

@@ -1,0 +1,157 @@
+#include <geometry_msgs/Vector3Stamped.h>
+#include <ros/ros.h>
+#include <std_msgs/Float64MultiArray.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "controller_settings.hpp"
+#include "guide.hpp"
+#include "master_check.hpp"
+#include "messages.hpp"
+#include "no_delay.hpp"
+#include "ros_types.hpp"
+#include "set_points.hpp"
+
+namespace quadcore::node {
+namespace {
+
+constexpr std::uint32_t queue = 1000;
+
+/// Answers each odometry message with a command.
+class ControllerNode {
+ public:
+  ControllerNode(ros::NodeHandle& nh, ControllerSettings settings)
+      : setup_(settings.setup),
+        controller_(setup_.controller(settings.vehicle)),
+        inner_loop_(setup_.believed(settings.vehicle),
+                    control::in_table(control::InnerLoop::table(), setup_.gains.values),
+                    setup_.spins),
+        schedule_(setup_.schedule(controller_.rotors())),
+        guide_(settings.reference),
+        set_points_(nh, settings.velocity_timeout, guide_),
+        dt_(settings.dt) {
+    ros::NodeHandle own("~");
+    command_.data.resize(controller_.rotors());
+    set_frames(reference_, frame_prefix(nh) + vehicle_name);
+    error_.header.frame_id = world_frame;
+    reference_publisher_ = own.advertise<nav_msgs::Odometry>("reference", queue);
+    error_publisher_ = own.advertise<geometry_msgs::Vector3Stamped>("error", queue);
+    command_publisher_ = nh.advertise<std_msgs::Float64MultiArray>(settings.command_topic, queue);
+    // Free-running, what came before the last message is of no use any more.
+    odometry_subscriber_ =
+        nh.subscribe("odom", settings.lockstep ? queue : 1, &ControllerNode::control, this,
+                     ros::TransportHints().tcpNoDelay());
+    check_ = nh.createWallTimer(ros::WallDuration(5), &ControllerNode::check, this, true);
+  }
+
+ private:
+  void check(const ros::WallTimerEvent&) {
+    if (command_publisher_.getNumSubscribers() > 0) return;
+    ROS_WARN("nobody takes commands on %s; give the node that flies as _plant:=NAME",
+             command_publisher_.getTopic().c_str());
+  }
+
+  void control(const nav_msgs::Odometry& message) {
+    // By the count of steps: a stamp is rounded.
+    const double step = std::round(message.header.stamp.toSec() / dt_);
+    if (step < last_step_) guide_.begin();
+    if (schedule_state_.empty() || step < last_step_) begin(step);
+    last_step_ = step;
+    const control::Odometry now = setup_.in_world(from_ros(message));
+    const Aim aim = guide_.at(step * dt_, now);
+    const auto ask = [&](double period, double* speeds) {
+      std::visit([&](const auto& wanted) { fly(period, now, wanted, speeds); }, aim);
+    };
+    const double* const speeds =
+        schedule_.update(step - first_step_, dt_, schedule_state_.data(), ask);
+    if (speeds) std::copy_n(speeds, command_.data.size(), command_.data.begin());
+    command_publisher_.publish(command_);
+    if (const auto* const wanted = std::get_if<control::Reference>(&aim)) {
+      tell(message.header.stamp, now, *wanted);
+    }
+  }
+
+  /// At the first message, and when the time was set back.
+  void begin(double step) {
+    schedule_state_.assign(schedule_.state_size(), 0);
+    state_.clear();
+    inner_state_.clear();
+    first_step_ = step;
+  }
+
+  // Of the law and the inner loop, the one that is entered begins anew.
+
+  void fly(double period, const control::Odometry& now, const control::Reference& wanted,
+           double* speeds) {
+    inner_state_.clear();
+    state_.resize(control::Controller::state_size(setup_.gains.law, controller_.rotors()));
+    controller_.command(period, now, wanted, state_.data(), speeds);
+  }
+  template <class Wanted>
+  void fly(double period, const control::Odometry& now, const Wanted& wanted, double* speeds) {
+    state_.clear();
+    inner_state_.resize(control::InnerLoop::state_size(inner_loop_.rotors()));
+    inner_loop_.command(period, now, wanted, inner_state_.data(), speeds);
+  }
+
+  void tell(const ros::Time& stamp, const control::Odometry& now,
+            const control::Reference& wanted) {
+    messages::Odometry where;
+    where.position = wanted.position;
+    where.orientation = Eigen::AngleAxisd(wanted.yaw, Vector3d::UnitZ());
+    where.linear_velocity = setup_.in_body ? where.orientation.conjugate() * wanted.velocity
+                                           : Vector3d(wanted.velocity);
+    where.angular_velocity.z() = wanted.yaw_rate;
+    to_ros(where, reference_);
+    reference_.header.stamp = error_.header.stamp = stamp;
+    reference_publisher_.publish(reference_);
+    const Vector3d error = wanted.position - now.position;
+    set_vector(error_.vector, error.data());
+    error_publisher_.publish(error_);
+  }
+
+  control::ControllerSetup setup_;
+  control::Controller controller_;
+  control::InnerLoop inner_loop_;
+  control::Schedule schedule_;
+  Guide guide_;
+  SetPoints set_points_;
+  double dt_;
+  std::vector<double> schedule_state_, state_, inner_state_;  ///< none before the flight
+  double first_step_ = 0, last_step_ = 0;
+
+  std_msgs::Float64MultiArray command_;
+  nav_msgs::Odometry reference_;
+  geometry_msgs::Vector3Stamped error_;
+  ros::Publisher command_publisher_, reference_publisher_, error_publisher_;
+  ros::Subscriber odometry_subscriber_;
+  ros::WallTimer check_;
+};
+
+void run() {
+  ros::NodeHandle nh;
+  send_without_delay();
+  ControllerSettings settings = read_controller_settings(nh);
+  ROS_INFO("law %s commands %s", settings.setup.gains.law.c_str(), settings.command_topic.c_str());
+  const ControllerNode node(nh, std::move(settings));
+  ros::spin();
+}
+
+}  // namespace
+}  // namespace quadcore::node
+
+int main(int argc, char** argv) {
+  try {
+    quadcore::node::check_master_uri();
+    ros::init(argc, argv, "controller");
+    quadcore::node::check_master();
+    quadcore::node::run();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return 2;
+  }
+  return 0;
+}

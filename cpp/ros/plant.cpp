@@ -1,0 +1,128 @@
+#include "plant.hpp"
+
+#include <cmath>
+#include <fstream>
+
+#include "drag_choice.hpp"
+#include "quadcore/error.hpp"
+
+namespace quadcore::node {
+namespace {
+
+/// The path of a world, or of the one of this name among the shipped ones.
+std::string world_path(const std::string& world, const std::string& shipped_worlds,
+                       const std::string& folder) {
+  const std::string shipped = shipped_worlds + "/" + world + ".world";
+  const bool is_name = world.find_first_of("/.") == std::string::npos;
+  return is_name && std::ifstream(shipped) ? shipped : path_from(folder, world);
+}
+
+/// "PLUGIN.TAG=VALUE" ... as the command line takes it.
+std::map<std::string, std::string> assignments(const std::string& parameter,
+                                               const std::vector<std::string>& words) {
+  std::map<std::string, std::string> values;
+  for (const std::string& word : words) {
+    const auto equals = word.find('=');
+    const auto dot = word.rfind('.', equals);
+    if (equals == std::string::npos || equals + 1 == word.size() || dot == std::string::npos ||
+        dot == 0 || dot + 1 == equals) {
+      throw InputError("parameter ~" + parameter + ": '" + word +
+                       "' is not of the form PLUGIN.TAG=VALUE");
+    }
+    if (!values.emplace(word.substr(0, equals), word.substr(equals + 1)).second) {
+      throw InputError("parameter ~" + parameter + ": " + word.substr(0, equals) +
+                       " is given twice; keep one");
+    }
+  }
+  return values;
+}
+
+}  // namespace
+
+// roslaunch starts nodes in a folder of its own, and the launch file tells with `pwd`, newline and
+// all, where it was started itself.
+std::string path_from(std::string folder, const std::string& path) {
+  while (!folder.empty() && folder.back() == '\n') folder.pop_back();
+  return folder.empty() || path.empty() || path.front() == '/' ? path : folder + "/" + path;
+}
+
+Plant read_plant(PrivateParameters& p) {
+  Plant plant;
+  plant.model_path = p.text("model", "");
+  plant.folder = p.text("folder", "");
+  const std::string shipped_worlds = p.text("shipped_worlds", "worlds");
+  plant.world = world_path(p.text("world", ""), shipped_worlds, plant.folder);
+  plant.name = p.text("name", "");
+  plant.drag = p.text("drag", "all");
+  plant.ignore = p.words("ignore");
+
+  SimulationOptions& s = plant.simulation;
+  s.parameters = assignments("set", p.words("set"));
+  s.engine = p.text("engine", s.engine);
+  const double dt = p.no_negative("dt", "; 0 is that of the world").value_or(0);
+  if (dt > 0) s.dt = dt;
+  constexpr double greatest_seed = 9007199254740992;  // all whole numbers below are doubles
+  const double seed = p.number("seed", 0);
+  if (seed != std::floor(seed) || seed < 0 || seed > greatest_seed) {
+    refuse_parameter("seed", "a whole number from 0 to 9007199254740992");
+  }
+  s.seed = static_cast<std::uint64_t>(seed);
+  s.spawn.xyz = {p.number("x", 0), p.number("y", 0), p.number("z", 0.1)};
+  s.spawn.rpy = {p.number("roll", 0), p.number("pitch", 0), p.number("yaw", 0)};
+  return plant;
+}
+
+void read_description(const ros::NodeHandle& nh, Plant& plant) {
+  const std::string& path = plant.model_path;
+  if (!path.empty()) {
+    if (path.size() > 6 && path.compare(path.size() - 6, 6, ".xacro") == 0) {
+      throw InputError(path +
+                       ": is xacro; load it expanded as robot_description, as "
+                       "quadrotor.launch does");
+    }
+    plant.model = Document::read(path);
+    return;
+  }
+  std::string text;
+  if (!nh.searchParam("robot_description", plant.description) ||
+      !nh.getParam(plant.description, text)) {
+    throw InputError(
+        "robot_description: is not on the parameter server; start with roslaunch quadcore "
+        "quadrotor.launch, or set ~model to a URDF file");
+  }
+  plant.model = {"robot_description", text};
+}
+
+// gazebo_ros' empty world has a ground plane, too.
+World read_world_of(const Plant& plant) {
+  if (!plant.world.empty()) return read_world(Document::read(plant.world), plant.ignore);
+  World world;
+  world.ground_plane = true;
+  return world;
+}
+
+Simulation make_simulation(const Plant& plant, const World& world,
+                           const std::vector<PluginElement>& guests) {
+  Model model = read_model(plant.model, plant.ignore);
+  check_ignored(plant.ignore, {&model.passed_over, &world.passed_over});
+  SimulationOptions options = plant.simulation;
+  choose_drag(plant.drag, model, options.parameters);
+  model.plugins.insert(model.plugins.end(), guests.begin(), guests.end());
+  return {std::move(model), world, options};
+}
+
+std::string command_topic(const ros::NodeHandle& nh, const Plant& plant, const Model& model) {
+  const std::string name = plant.name.empty() ? model.name : plant.name;
+  std::string why;
+  if (!ros::names::validate(name, why)) {
+    throw InputError("model name '" + name + "' cannot name a topic (" + why + "); set ~name");
+  }
+  return nh.resolveName(name + "/" + Simulation::command_topic);
+}
+
+std::string frame_prefix(const ros::NodeHandle& nh) {
+  const std::string space = nh.getNamespace().substr(1);
+  return space.empty() ? "" : space + "/";
+}
+
+}  // namespace quadcore::node
