@@ -77,6 +77,9 @@ class TestController(unittest.TestCase):
             ("ode", {"law": "pid", "rate": 300, "scale": 0.8}),
             ("eigen", {"law": "indi", "rate": 170, "delay": 0.0131}),
             ("eigen", {"law": "lqr", "delay": 0.005, "lead": "false"}),
+            ("gazebo11", {"law": "pd_compensated"}),
+            ("ode", {"law": "pd", "rate": 2000}),
+            ("eigen", {"law": "pid_thesis"}),
         ]
         start = ("_x:=1", "_roll:=0.3", "_seed:=7")
         for engine, law in cases:
