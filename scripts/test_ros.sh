@@ -123,6 +123,7 @@ build
 say "running the ROS tests"
 SECONDS=0
 (run_in devel topics services lockstep playing clock several parameters faults masters fly_from_python \
-  controller set_points pid launch plugin_by_others plugin_topics; [ -z "$failed" ])
+  controller controller_faults set_points pid joystick launch plugin_by_others plugin_topics
+  [ -z "$failed" ])
 (run_in install launch playing fly_from_python plugin_by_others; [ -z "$failed" ])
 say "the ROS tests passed in $SECONDS s"

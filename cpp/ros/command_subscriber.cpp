@@ -1,5 +1,7 @@
 #include "command_subscriber.hpp"
 
+#include <algorithm>
+
 #include "quadcore/error.hpp"
 
 namespace quadcore::node {
@@ -24,9 +26,16 @@ Refusals CommandSubscriber::refusals() const {
   return refusals_;
 }
 
-void CommandSubscriber::take(const std_msgs::Float64MultiArray& message) {
+void CommandSubscriber::take(const ros::MessageEvent<std_msgs::Float64MultiArray const>& event) {
+  const std::string& commander = event.getPublisherName();
+  if (commander != commander_ && !commander_.empty() && subscriber_.getNumPublishers() > 1) {
+    const auto [one, other] = std::minmax(commander, commander_);
+    sayer_.warn(subscriber_.getTopic() + ": commands of " + one + " and of " + other +
+                " come in turn; end one of them");
+  }
+  commander_ = commander;
   try {
-    flight_.command(message.data);
+    flight_.command(event.getConstMessage()->data);
   } catch (const InputError& error) {
     {
       const std::lock_guard<std::mutex> lock(mutex_);

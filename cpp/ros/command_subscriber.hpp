@@ -13,7 +13,7 @@
 namespace quadcore::node {
 
 /// Takes commands from a topic, on the callback thread; those that are refused are counted and
-/// told.
+/// told, and so are those of two who command at once.
 class CommandSubscriber {
  public:
   CommandSubscriber(ros::NodeHandle& nh, const std::string& topic, bool lockstep,
@@ -21,12 +21,13 @@ class CommandSubscriber {
   Refusals refusals() const;
 
  private:
-  void take(const std_msgs::Float64MultiArray& message);
+  void take(const ros::MessageEvent<std_msgs::Float64MultiArray const>& event);
 
   FlightThread& flight_;
   ros::Subscriber subscriber_;
   mutable std::mutex mutex_;
   Refusals refusals_;
+  std::string commander_;  ///< who sent the last command
   Sayer sayer_;
 };
 

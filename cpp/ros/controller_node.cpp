@@ -1,10 +1,13 @@
 #include <geometry_msgs/Vector3Stamped.h>
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <std_msgs/Float64MultiArray.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "controller_settings.hpp"
@@ -13,12 +16,19 @@
 #include "messages.hpp"
 #include "no_delay.hpp"
 #include "ros_types.hpp"
+#include "sayer.hpp"
 #include "set_points.hpp"
 
 namespace quadcore::node {
 namespace {
 
 constexpr std::uint32_t queue = 1000;
+constexpr double between_checks = 5;  ///< s
+
+bool makes_sense(const control::Odometry& now) {
+  return now.position.allFinite() && is_unit(now.orientation) && now.linear_velocity.allFinite() &&
+         now.angular_velocity.allFinite();
+}
 
 /// Answers each odometry message with a command.
 class ControllerNode {
@@ -32,6 +42,7 @@ class ControllerNode {
         schedule_(setup_.schedule(controller_.rotors())),
         guide_(settings.reference),
         set_points_(nh, settings.velocity_timeout, guide_),
+        plant_(std::move(settings.plant)),
         dt_(settings.dt) {
     ros::NodeHandle own("~");
     command_.data.resize(controller_.rotors());
@@ -44,23 +55,49 @@ class ControllerNode {
     odometry_subscriber_ =
         nh.subscribe("odom", settings.lockstep ? queue : 1, &ControllerNode::control, this,
                      ros::TransportHints().tcpNoDelay());
-    check_ = nh.createWallTimer(ros::WallDuration(5), &ControllerNode::check, this, true);
+    check_ = nh.createWallTimer(ros::WallDuration(between_checks), &ControllerNode::check, this);
   }
 
+  /// Whether the plant that is believed in has gone, and another one has come.
+  bool is_outdated() const { return is_outdated_; }
+
  private:
+  /// Says once what keeps it from flying, or spoils the flight.
   void check(const ros::WallTimerEvent&) {
-    if (command_publisher_.getNumSubscribers() > 0) return;
-    ROS_WARN("nobody takes commands on %s; give the node that flies as _plant:=NAME",
-             command_publisher_.getTopic().c_str());
+    const std::string odometry = odometry_subscriber_.getTopic();
+    const std::uint32_t sources = odometry_subscriber_.getNumPublishers();
+    std::string what;
+    if (command_publisher_.getNumSubscribers() == 0) {
+      what = "nobody takes commands on " + command_publisher_.getTopic() +
+             "; give the node that flies as _plant:=NAME";
+    } else if (sources == 0) {
+      what = "nobody publishes odometry on " + odometry + "; map it with odom:=TOPIC";
+    } else if (sources > 1) {
+      what = std::to_string(sources) + " nodes publish odometry on " + odometry +
+             "; put each vehicle in a namespace of its own";
+    }
+    if (!what.empty() && what != told_) ROS_WARN("%s", what.c_str());
+    told_ = what;
   }
 
   void control(const nav_msgs::Odometry& message) {
     // By the count of steps: a stamp is rounded.
     const double step = std::round(message.header.stamp.toSec() / dt_);
-    if (step < last_step_) guide_.begin();
-    if (schedule_state_.empty() || step < last_step_) begin(step);
+    if (schedule_state_.empty() || step < last_step_) {
+      is_outdated_ = plant_.has_changed();
+      if (is_outdated_) return;
+      if (step < last_step_) guide_.begin();
+      begin(step);
+    }
     last_step_ = step;
     const control::Odometry now = setup_.in_world(from_ros(message));
+    if (!makes_sense(now)) {
+      sayer_.warn(odometry_subscriber_.getTopic() +
+                  ": holds numbers that are not finite, or a quaternion whose length is not 1; the "
+                  "last command is kept");
+      command_publisher_.publish(command_);
+      return;
+    }
     const Aim aim = guide_.at(step * dt_, now);
     const auto ask = [&](double period, double* speeds) {
       std::visit([&](const auto& wanted) { fly(period, now, wanted, speeds); }, aim);
@@ -119,9 +156,13 @@ class ControllerNode {
   control::Schedule schedule_;
   Guide guide_;
   SetPoints set_points_;
+  PlantWatch plant_;
   double dt_;
   std::vector<double> schedule_state_, state_, inner_state_;  ///< none before the flight
   double first_step_ = 0, last_step_ = 0;
+  bool is_outdated_ = false;
+  std::string told_;  ///< by the last check
+  Sayer sayer_;
 
   std_msgs::Float64MultiArray command_;
   nav_msgs::Odometry reference_;
@@ -134,10 +175,15 @@ class ControllerNode {
 void run() {
   ros::NodeHandle nh;
   send_without_delay();
-  ControllerSettings settings = read_controller_settings(nh);
-  ROS_INFO("law %s commands %s", settings.setup.gains.law.c_str(), settings.command_topic.c_str());
-  const ControllerNode node(nh, std::move(settings));
-  ros::spin();
+  while (ros::ok()) {
+    ControllerSettings settings = read_controller_settings(nh);
+    ROS_INFO("law %s commands %s", settings.setup.gains.law.c_str(),
+             settings.command_topic.c_str());
+    const ControllerNode node(nh, std::move(settings));
+    while (ros::ok() && !node.is_outdated()) {
+      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.1));
+    }
+  }
 }
 
 }  // namespace

@@ -31,8 +31,8 @@ const LoadedPlugin* writer_of(const Simulation& simulation, const std::string& t
   return writer == the_caller ? nullptr : &simulation.plugins()[static_cast<std::size_t>(writer)];
 }
 
-/// A law cannot be called more often than it is told something.
-void check_rate(const control::ControllerSetup& setup, const Simulation& plant) {
+/// Calls per second: a law cannot be called more often than it is told something.
+double rate_of(const control::Gains& gains, const Parameters& parameters, const Simulation& plant) {
   const LoadedPlugin* const odometry = writer_of(plant, OdometryTopic::name);
   if (!odometry) {
     throw InputError(
@@ -42,11 +42,16 @@ void check_rate(const control::ControllerSetup& setup, const Simulation& plant) 
   for (const Parameter& parameter : odometry->parameters.all()) {
     if (parameter.spec.name != "rate") continue;
     const double sent = odometry->parameters.number("rate");
-    if (sent >= setup.gains.rate || sent * plant.dt() >= 1) return;
-    throw InputError("parameter ~rate: odometry comes " + parameter.text +
-                     " times a second; give that at most, or let plugin '" + odometry->name +
-                     "' send more");
+    if (sent >= gains.rate || sent * plant.dt() >= 1) break;
+    if (parameters.has("rate") || parameters.has("gains")) {
+      throw InputError("parameter ~rate: odometry comes " + parameter.text +
+                       " times a second; give that at most, or let plugin '" + odometry->name +
+                       "' send more");
+    }
+    ROS_INFO("the law is called as often as odometry comes, %g times a second", sent);
+    return sent;
   }
+  return gains.rate;
 }
 
 }  // namespace
@@ -62,7 +67,9 @@ ControllerSettings read_controller_settings(const ros::NodeHandle& nh) {
   if (!reference.empty()) {
     guests.push_back({name + "_reference", reference_file, reference, "parameter ~reference"});
   }
-  PrivateParameters flown(nh.resolveName(own.text("plant", "quadcore")));
+  const std::string node = nh.resolveName(own.text("plant", "quadcore"));
+  const PlantWatch watch(node);
+  PrivateParameters flown(node);
   const double velocity_timeout = own.no_negative("velocity_timeout").value_or(0.5);
   own.check_all_known();
 
@@ -77,11 +84,13 @@ ControllerSettings read_controller_settings(const ros::NodeHandle& nh) {
                               simulation.describe_vehicle(),
                               simulation.dt(),
                               flown.flag("lockstep", false),
-                              command_topic(nh, plant, simulation.model())};
+                              command_topic(nh, plant, simulation.model()),
+                              watch};
   if (shape && shape->filename == reference_file) {
     settings.reference = control::reference_of(shape->parameters);
   }
-  check_rate(settings.setup, simulation);
+  control::Gains& gains = settings.setup.gains;
+  gains.rate = rate_of(gains, controller->parameters, simulation);
   return settings;
 }
 

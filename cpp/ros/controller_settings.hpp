@@ -5,6 +5,7 @@
 
 #include "control/setup.hpp"
 #include "plant.hpp"
+#include "plant_watch.hpp"
 
 namespace quadcore::node {
 
@@ -17,6 +18,7 @@ struct ControllerSettings {
   double dt;                  ///< of the plant [s]
   bool lockstep;              ///< whether the plant waits for an answer to each odometry message
   std::string command_topic;  ///< of the plant
+  PlantWatch plant;           ///< begun before it was read
 };
 
 /// Reads the private parameters: those of libcontroller_plugin.so but for its topics, `reference`,

@@ -3,6 +3,8 @@
 #include <geometry_msgs/Quaternion.h>
 #include <ros/time.h>
 
+#include <cmath>
+
 #include "quadcore/spatial.hpp"
 
 /// \file
@@ -21,6 +23,12 @@ void set_vector(Vector& vector, const double* values) {
   vector.x = values[0];
   vector.y = values[1];
   vector.z = values[2];
+}
+
+/// Whether it turns and nothing else.
+inline bool is_unit(const Quaterniond& q) {
+  constexpr double roundness = 1e-3;  // by which the length may differ from 1
+  return std::abs(q.norm() - 1) <= roundness;
 }
 
 template <class Vector>

@@ -108,7 +108,8 @@ target_link_libraries(quadcore_node PRIVATE quadcore)
 add_ros_node(controller_node
   cpp/ros/controller_node.cpp cpp/ros/controller_settings.cpp cpp/ros/drag_choice.cpp
   cpp/ros/guide.cpp cpp/ros/master_check.cpp cpp/ros/odometry_topic.cpp cpp/ros/plant.cpp
-  cpp/ros/private_parameters.cpp cpp/ros/ros_types.cpp cpp/ros/set_points.cpp)
+  cpp/ros/plant_watch.cpp cpp/ros/private_parameters.cpp cpp/ros/ros_types.cpp
+  cpp/ros/set_points.cpp)
 target_link_libraries(controller_node PRIVATE quadcore)
 target_include_directories(controller_node PRIVATE cpp)
 if(QUADCORE_BUILD_BENCHMARKS)
@@ -125,7 +126,7 @@ if(CATKIN_ENABLE_TESTING)
   find_package(rostest QUIET)
   if(rostest_FOUND)
     foreach(test topics services lockstep playing clock several parameters faults masters launch
-                 fly_from_python controller set_points pid)
+                 fly_from_python controller controller_faults set_points pid joystick)
       add_rostest(tests/ros/${test}.test)
     endforeach()
   endif()

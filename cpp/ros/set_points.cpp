@@ -1,7 +1,5 @@
 #include "set_points.hpp"
 
-#include <cmath>
-
 #include "control/references/set_points.hpp"
 #include "messages.hpp"
 #include "quadcore/error.hpp"
@@ -11,7 +9,6 @@ namespace quadcore::node {
 namespace {
 
 constexpr std::uint32_t queue = 1000;
-constexpr double roundness = 1e-3;  ///< by which the length of a quaternion may differ from 1
 
 Vector3d finite(const char* what, const Vector3d& v) {
   if (!v.allFinite()) {
@@ -27,7 +24,7 @@ Vector3d finite(const char* what, const Vector& v) {
 
 Quaterniond orientation_of(const char* what, const geometry_msgs::Quaternion& q) {
   const Quaterniond orientation(q.w, q.x, q.y, q.z);
-  if (!(std::abs(orientation.norm() - 1) <= roundness)) {
+  if (!is_unit(orientation)) {
     throw InputError(std::string(what) + " is no quaternion of length 1; w: 1 is level, ahead");
   }
   return orientation.normalized();

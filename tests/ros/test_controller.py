@@ -159,7 +159,7 @@ class TestController(unittest.TestCase):
             ({"kp_rp": 1}, "law 'geometric' has no parameter 'kp_rp'"),
             ({"reference": "spirale"}, "parameter ~reference: plugin"),
             ({"reference": {"shape": "circle", "radios": 1}}, "parameter ~reference/radios: is"),
-            ({"urdf": description(rate="100")}, "parameter ~rate: odometry comes 100 times a sec"),
+            ({"urdf": description(rate="100"), "rate": 200}, "~rate: odometry comes 100 times a"),
             ({"urdf": flown}, "vel_cmd"),
             ({"urdf": description(twistFrame="body")}, "twistFrame"),
         ]
