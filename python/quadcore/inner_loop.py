@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from numbers import Real
-from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Dict, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 
@@ -105,6 +105,9 @@ class InnerLoop:
         if isinstance(wanted, AttitudeThrust):
             return self._loop.attitude(period, state, target, thrust)
         return self._loop.rates(period, state, target, thrust)
+
+    def __getstate__(self) -> Dict[str, Any]:
+        return {**self.__dict__, "_loop": None}  # made anew by the next call
 
     def __repr__(self) -> str:
         inside = ", ".join(f"{name}={value:g}" for name, value in self.parameters.items())

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 from flights import ENGINES, quadrotor
@@ -119,6 +122,18 @@ def test_speeds_and_attitudes_may_alternate():
 
     log = quadrotor("eigen", parameters=SLOW).run(1, controller=law)
     assert np.abs(log.angular_velocity[-1]).max() < 1e-3
+
+
+def test_a_controller_is_copied_with_its_inner_loop():
+    law = Outer()
+    law.inner_loop = qc.InnerLoop(kr_rp=200)
+    tables = []
+    for copied in (lambda law: law, copy.deepcopy, lambda law: pickle.loads(pickle.dumps(law))):
+        flown_by = copied(law)  # after the first flight
+        simulation = quadrotor("eigen", parameters=SLOW, spawn=(0, 0, 20))
+        tables.append(simulation.run(0.5, controller=flown_by, wrenches=False).table)
+    np.testing.assert_array_equal(tables[0], tables[1])
+    np.testing.assert_array_equal(tables[0], tables[2])
 
 
 @pytest.mark.parametrize(
