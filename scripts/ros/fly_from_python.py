@@ -22,7 +22,7 @@ from quadcore.description import load_description
 
 rospy.init_node("quadcore", disable_rostime=True)  # this node makes the time, it follows none
 # For who asks what flies: a controller, rviz.
-rospy.set_param("robot_description", load_description("quadrotor").text)
+rospy.set_param("robot_description", load_description("quadrotor", {}).text)
 sim = qc.Simulation("quadrotor", world="default", spawn=(0, 0, rospy.get_param("~z", 0.1)))
 
 clock = rospy.Publisher("/clock", Clock, queue_size=1000, tcp_nodelay=True)
