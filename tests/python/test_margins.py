@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 from evaluations import evaluate
 
+import quadcore as qc
 from quadcore import laws
 from quadcore.evaluation.flights import NAN, Outcome
+from quadcore.evaluation.plan import Plan
 from quadcore.evaluation.robustness import ENDS, Searches, margin_text
+from quadcore.evaluation.trial import Trial
 
 
 def test_margins_are_found(capsys):
@@ -45,6 +48,22 @@ def test_margins_of_an_own_law_mean_what_those_of_a_shipped_one_mean():
     shipped, own = found.margins
     for name in (*ENDS, "box_median", "box_worst"):
         assert own[name] == pytest.approx(shipped[name], rel=1e-6), name
+
+
+def thrust_of(simulation):
+    tags = {tag.name: tag.value for plugin in simulation.plugins for tag in plugin.parameters}
+    return float(tags["rotorThrustCoeff"])
+
+
+def test_the_inner_loop_of_an_own_law_believes_in_the_vehicle_as_it_is_described():
+    laws_ = {"none": Own(), "its own": Own()}
+    laws_["its own"].inner_loop = qc.InnerLoop(spins=[1, -1, 1, -1])
+    plan = Plan(laws_, "hover", ["eigen"], ["quadrotor"], 1, {}, 1.0, *[None] * 4, {})
+    for row in range(2):
+        flight = Trial(row, thrust=2.0).flight(plan)
+        told = flight.controller.inner_loop.belief
+        assert thrust_of(flight.simulation()) == pytest.approx(2 * thrust_of(told))
+    assert flight.controller.inner_loop.spins == [1, -1, 1, -1]
 
 
 def test_a_margin_at_the_end_of_its_search_is_told_as_larger():

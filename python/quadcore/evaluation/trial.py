@@ -9,6 +9,7 @@ from .. import laws
 from .._core import parse_number
 from ..controller import check_callable, give
 from ..flight_plan import FlightPlan
+from ..inner_loop import InnerLoop
 from ..simulation import Simulation
 
 if TYPE_CHECKING:
@@ -98,6 +99,11 @@ class _Told:
     def __init__(self, controller: Any, vehicle: Simulation) -> None:
         check_callable(controller)
         self._controller, self._vehicle = controller, vehicle
+        own = getattr(controller, "inner_loop", None)
+        if own is None:
+            self.inner_loop = InnerLoop(belief=vehicle)
+        elif isinstance(own, InnerLoop) and own.belief is None:
+            self.inner_loop = InnerLoop(own.spins, vehicle, **own.parameters)
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._controller, name)
