@@ -1,5 +1,7 @@
 #include "quadcore/control/inner_loop.hpp"
 
+#include "attitude_settings.hpp"
+
 namespace quadcore::control {
 namespace {
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "quadcore/control/attitude_loop.hpp"
+#include "attitude_settings.hpp"
 #include "quadcore/control/flat_state.hpp"
 #include "quadcore/control/law.hpp"
 
