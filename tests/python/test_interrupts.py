@@ -18,8 +18,6 @@ from processes import outcomes
 
 import quadcore as qc
 from quadcore import interrupts
-from quadcore.cli import main
-from quadcore.files import atomic_write
 from quadcore.study.executor import contained, each
 
 SIGNALS = list(interrupts.SIGNALS)
@@ -198,71 +196,6 @@ def test_nohup_keeps_a_flight_in_the_air(tmp_path):
     size = log.stat().st_size
     until(lambda: log.stat().st_size > size)
     ended(process, signal.SIGTERM)
-
-
-@pytest.mark.parametrize("number", SIGNALS)
-def test_a_signal_that_is_sent_twice_is_heard_once(number):
-    kept = []
-    with pytest.raises(interrupts.Interrupted) as stop, interrupts.heard():
-        try:
-            signal.raise_signal(number)
-        finally:
-            signal.raise_signal(number)  # `timeout` signals the process and its group
-            kept.append("kept")
-    assert kept == ["kept"]
-    assert interrupts.exit_status(stop.value) == 128 + number
-
-
-def test_an_interrupt_that_others_take_for_a_fault_is_an_interrupt(capsys, monkeypatch):
-    import xacro
-
-    def expand(*_, **__):
-        try:
-            signal.raise_signal(signal.SIGTERM)
-        except BaseException:
-            raise NameError("name 'x' is not defined") from None
-
-    monkeypatch.setattr(xacro, "process_file", expand)
-    assert main(["info", "quadrotor"]) == 143
-    assert capsys.readouterr().err == "interrupted\n"
-
-
-@pytest.mark.parametrize("number", SIGNALS)
-def test_an_interrupt_that_met_the_start_of_a_module_is_an_interrupt(number):
-    with pytest.raises(interrupts.Interrupted) as stop, interrupts.heard():
-        try:
-            signal.raise_signal(number)
-        except BaseException:
-            raise ImportError("initialization failed") from None  # as matplotlib's ft2font says it
-    assert stop.value.number == number
-
-
-def test_handlers_are_as_before_afterwards():
-    before = [signal.getsignal(number) for number in SIGNALS]
-    with interrupts.heard(), interrupts.held():
-        pass
-    assert [signal.getsignal(number) for number in SIGNALS] == before
-
-
-@pytest.mark.parametrize("number", SIGNALS)
-def test_what_is_held_is_done_before_the_interrupt(number):
-    done = []
-    with pytest.raises(KeyboardInterrupt), interrupts.heard(), interrupts.held():
-        with interrupts.held():
-            signal.raise_signal(number)
-            done.append("inner")
-        done.append("outer")
-    assert done == ["inner", "outer"]
-
-
-@pytest.mark.parametrize("number", SIGNALS)
-def test_an_interrupted_file_leaves_the_old_one_and_nothing_else(number, tmp_path):
-    (tmp_path / "a").write_text("old")
-    with pytest.raises(KeyboardInterrupt), interrupts.heard(), atomic_write(tmp_path / "a") as file:
-        file.write(b"new")
-        signal.raise_signal(number)
-    assert (tmp_path / "a").read_text() == "old"
-    assert files(tmp_path) == ["a"]
 
 
 def test_a_process_ended_by_a_signal_without_a_name_is_a_case_that_failed():
