@@ -189,9 +189,9 @@ class Simulation(_core.Simulation):
             `Controller`.
         reference : name or callable, optional
             Where the controller is to fly: one of `quadcore.references`, or what is called as
-            reference(t), t being the time of the simulation in s. The log has it as topic
-            ``reference`` (x, y, z, yaw), and the position less its own as topic ``error`` (x, y,
-            z).
+            reference(t), t being the time of the simulation in s, and depends on that alone: it is
+            asked for the rows of the log, too, which has it as topic ``reference`` (x, y, z, yaw),
+            and the position less its own as topic ``error`` (x, y, z).
         on_reference : bool
             Whether the vehicle is first put onto the reference, in the full state of one that
             follows it (`quadcore.references.start`); else the flight begins in the present state.

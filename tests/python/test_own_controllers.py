@@ -113,19 +113,19 @@ def test_what_a_module_remembers_of_a_flight_no_other_flight_knows(options):
 
 
 def test_what_a_function_or_a_reference_of_ones_own_remembers_stays_in_its_flight():
-    calls = []
+    calls, places = [], []
 
     def law(t, state, reference):
         calls.append(t)
         return [471 + len(calls), -471, 471, -471]
 
-    def place(t):
-        calls.append(t)
+    def place(t):  # is asked for the log, too, whenever rows of that are handed over
+        places.append(t)
         return references.hover()(t)
 
     found = evaluate([law], [place], seeds=3, duration=0.1, processes=1)
     assert len({row["largest_position"] for row in found.table}) == 1
-    assert not calls
+    assert not calls and not places
 
 
 def test_a_controller_that_leaves_the_program_ends_its_flight_alone(capsys):
