@@ -7,15 +7,19 @@ Ctrl-C is pressed keeps it for all three.
 
 from __future__ import annotations
 
+import os
 import signal
 import threading
 import time
 from contextlib import contextmanager
-from typing import Any, Dict, Iterator, List
+from importlib.machinery import ExtensionFileLoader
+from types import FrameType
+from typing import Any, Dict, Iterator, List, Optional
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 _HEARD_TWICE = 0.5  # s
+_AGAIN = 0.02  # s; until a signal is sent anew that met the start of a module in C
 
 
 class Interrupted(KeyboardInterrupt):
@@ -45,14 +49,19 @@ def heard() -> Iterator[None]:
     shells start background jobs with it ignored. Once one was raised, no other is, so that work can
     be kept, but a second Ctrl-C of a person who does not want to wait. What comes within half a
     second is not one: ``timeout`` sends its signal to the process and to its group. Whatever error
-    code by others made of it, such as the ImportError of a module whose start it met, leaves the
-    block as what was raised.
+    code by others made of it leaves the block as what was raised. While a module in C starts,
+    signals wait: some leave the interpreter unable to end when they are cut off.
     """
     raised: List[Interrupted] = []
     first = 0.0
 
-    def raise_it(number: int, _: Any) -> None:
+    def raise_it(number: int, frame: Optional[FrameType]) -> None:
         nonlocal first
+        if _starts_module_in_c(frame):
+            again = threading.Timer(_AGAIN, os.kill, (os.getpid(), number))
+            again.daemon = True
+            again.start()
+            return
         now = time.monotonic()
         if raised and (number != signal.SIGINT or now - first < _HEARD_TWICE):
             return
@@ -73,6 +82,14 @@ def heard() -> Iterator[None]:
     finally:
         for changed, handler in before.items():
             signal.signal(changed, handler)
+
+
+def _starts_module_in_c(frame: Optional[FrameType]) -> bool:
+    while frame is not None:
+        if isinstance(frame.f_locals.get("self"), ExtensionFileLoader):
+            return True
+        frame = frame.f_back
+    return False
 
 
 @contextmanager

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import signal
+import time
+from importlib.machinery import ExtensionFileLoader
 
 import pytest
 
@@ -48,6 +50,24 @@ def test_an_interrupt_that_met_the_start_of_a_module_is_an_interrupt(number):
         except BaseException:
             raise ImportError("initialization failed") from None  # as matplotlib's ft2font says it
     assert stop.value.number == number
+
+
+@pytest.mark.parametrize("number", SIGNALS)
+def test_an_interrupt_waits_for_the_start_of_a_module_in_c(number):
+    """Such as matplotlib's ft2font: cut off, it hangs, or aborts when the interpreter ends."""
+    done = []
+
+    class Starting(ExtensionFileLoader):
+        def exec_module(self, module):
+            signal.raise_signal(number)
+            done.append("started")
+
+    with pytest.raises(interrupts.Interrupted) as stop, interrupts.heard():
+        Starting("module", "module.so").exec_module(None)
+        give_up = time.monotonic() + 60
+        while time.monotonic() < give_up:
+            time.sleep(0.01)
+    assert done == ["started"] and stop.value.number == number
 
 
 def test_handlers_are_as_before_afterwards():
