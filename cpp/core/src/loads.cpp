@@ -1,7 +1,6 @@
 #include "quadcore/loads.hpp"
 
 #include <cmath>
-#include <numeric>
 #include <string>
 
 #include "quadcore/error.hpp"
@@ -23,8 +22,10 @@ void Loads::clear() {
 bool Loads::all_finite() const {
   // A sum is finite if its terms are, and they are far from overflow.
   double sum = (frame_.force_F + frame_.torque_F).sum();
-  const double* const numbers = rotors_.data();  // zeros, where there is no rotor
-  return std::isfinite(std::accumulate(numbers, numbers + rotors_.size_of(rotors_.rotors()), sum));
+  for (std::size_t row = 0; row < LoadRow::count; ++row) {
+    for (std::size_t i = 0; i < rotors_.rotors(); ++i) sum += rotors_.number(row, i);
+  }
+  return std::isfinite(sum);
 }
 
 void Loads::refuse_rotor(std::size_t i) const {
