@@ -1,7 +1,7 @@
 # quadcore_compile_lanes(TARGET SOURCE OPTION...): adds SOURCE to TARGET once for each width of lanes,
-# compiled with the options, each time with that QUADCORE_LANES defined and the instructions of the processors that have registers of that
-# width; lane_width.hpp chooses one. SOURCE includes only what may be compiled so: see
-# cpp/lanes/pack.hpp.
+# compiled with the options, each time with that QUADCORE_LANES defined and the instructions of the
+# processors that have registers of that width; lane_width.hpp chooses one. SOURCE includes only what
+# may be compiled so: see cpp/lanes/pack.hpp.
 function(quadcore_compile_lanes target source)
   get_filename_component(name ${source} NAME_WE)
   foreach(lanes 1 2 4 8)

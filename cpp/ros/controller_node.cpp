@@ -22,7 +22,6 @@
 namespace quadcore::node {
 namespace {
 
-constexpr std::uint32_t queue = 1000;
 constexpr double between_checks = 5;  ///< s
 
 bool makes_sense(const control::Odometry& now) {
@@ -48,12 +47,13 @@ class ControllerNode {
     command_.data.resize(controller_.rotors());
     set_frames(reference_, frame_prefix(nh) + vehicle_name);
     error_.header.frame_id = world_frame;
-    reference_publisher_ = own.advertise<nav_msgs::Odometry>("reference", queue);
-    error_publisher_ = own.advertise<geometry_msgs::Vector3Stamped>("error", queue);
-    command_publisher_ = nh.advertise<std_msgs::Float64MultiArray>(settings.command_topic, queue);
+    reference_publisher_ = own.advertise<nav_msgs::Odometry>("reference", queue_size);
+    error_publisher_ = own.advertise<geometry_msgs::Vector3Stamped>("error", queue_size);
+    command_publisher_ =
+        nh.advertise<std_msgs::Float64MultiArray>(settings.command_topic, queue_size);
     // Free-running, what came before the last message is of no use any more.
     odometry_subscriber_ =
-        nh.subscribe("odom", settings.lockstep ? queue : 1, &ControllerNode::control, this,
+        nh.subscribe("odom", settings.lockstep ? queue_size : 1, &ControllerNode::control, this,
                      ros::TransportHints().tcpNoDelay());
     check_ = nh.createWallTimer(ros::WallDuration(between_checks), &ControllerNode::check, this);
   }

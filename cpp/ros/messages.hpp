@@ -10,11 +10,15 @@
 /// \file
 /// Between numbers and parts of messages.
 
+#include <cstdint>
+
 namespace quadcore::node {
 
 constexpr const char* world_frame = "world";
 /// The thesis' name of the vehicle's frame.
 constexpr const char* vehicle_name = "drone";
+/// Messages of a topic that wait for who is slow.
+constexpr std::uint32_t queue_size = 1000;
 
 inline ros::Time to_ros(double time) { return ros::Time().fromSec(time); }
 

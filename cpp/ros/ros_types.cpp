@@ -19,8 +19,6 @@ using node::from_ros;
 using node::set_frames;
 using node::to_ros;
 
-constexpr std::uint32_t queue = 1000;
-
 /// A variance of zero stands for "unknown" to some filters and is singular to others. Without
 /// noise this is sent: a deviation of 1e-6.
 constexpr double least_variance = 1e-12;
@@ -76,7 +74,7 @@ template <class Message, class Ros>
 class TypedOutlet final : public Outlet {
  public:
   TypedOutlet(ros::NodeHandle& nh, const std::string& name, const std::string& vehicle_frame)
-      : publisher_(nh, name, queue) {
+      : publisher_(nh, name, queue_size) {
     set_frames(message_, vehicle_frame);
   }
   void send(const Topic& topic, const ros::Time& stamp) override {
@@ -93,7 +91,7 @@ class TypedOutlet final : public Outlet {
 /// Of a kind that has no type of its own: the numbers, with their names as the label.
 class ArrayOutlet final : public Outlet {
  public:
-  ArrayOutlet(ros::NodeHandle& nh, const Topic& topic) : publisher_(nh, topic.name, queue) {
+  ArrayOutlet(ros::NodeHandle& nh, const Topic& topic) : publisher_(nh, topic.name, queue_size) {
     std_msgs::MultiArrayDimension fields;
     fields.label = joined(topic.kind.fields);
     fields.size = fields.stride = static_cast<std::uint32_t>(topic.kind.fields.size());
@@ -113,7 +111,7 @@ template <class Ros, class Act>
 ros::Subscriber subscribe(ros::NodeHandle& nh, const std::string& name, const Act& act) {
   const boost::function<void(const boost::shared_ptr<const Ros>&)> callback =
       [act](const boost::shared_ptr<const Ros>& message) { act(*message); };
-  return nh.subscribe<Ros>(name, queue, callback, ros::VoidConstPtr(),
+  return nh.subscribe<Ros>(name, queue_size, callback, ros::VoidConstPtr(),
                            ros::TransportHints().tcpNoDelay());
 }
 

@@ -8,8 +8,6 @@
 namespace quadcore::node {
 namespace {
 
-constexpr std::uint32_t queue = 1000;
-
 Vector3d finite(const char* what, const Vector3d& v) {
   if (!v.allFinite()) {
     throw InputError(std::string(what) + " holds a number that is not finite; give finite ones");
@@ -87,7 +85,7 @@ void SetPoints::take(ros::NodeHandle& nh, const std::string& topic,
           sayer_.warn(name + ": refused: " + error.what());
         }
       };
-  subscribers_.push_back(nh.subscribe<Message>(topic, queue, callback, ros::VoidConstPtr(),
+  subscribers_.push_back(nh.subscribe<Message>(topic, queue_size, callback, ros::VoidConstPtr(),
                                                ros::TransportHints().tcpNoDelay()));
 }
 

@@ -8,8 +8,7 @@ import sys
 from typing import NoReturn
 
 from .cli import main
-
-_FIRST_OF_SIGNALS = 128
+from .interrupts import ENDED
 
 
 def run() -> NoReturn:
@@ -19,7 +18,7 @@ def run() -> NoReturn:
     may abort when the interpreter is taken down.
     """
     status = main()
-    if status > _FIRST_OF_SIGNALS:
+    if status > ENDED:
         for stream in (sys.stdout, sys.stderr):
             with contextlib.suppress(OSError, ValueError):
                 stream.flush()

@@ -8,7 +8,7 @@ import shutil
 import stat
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, Iterator, Optional, Union
+from typing import IO, Iterable, Iterator, Optional, Union
 
 from . import interrupts
 from ._core import InputError
@@ -170,6 +170,19 @@ def make_folder(path: Path) -> None:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{path}: cannot be made: {error.strerror}") from error
+
+
+def prepare_folder(path: Path, names: Iterable[str]) -> None:
+    """Make a folder in which files of these names are to be written later.
+
+    Raises
+    ------
+    InputError
+        It cannot be made, or one of them cannot be written.
+    """
+    make_folder(path)
+    for name in names:
+        check_writable(path / name)
 
 
 def check_writable(path: Path) -> None:

@@ -18,6 +18,9 @@ from typing import Any, Dict, Iterator, List, Optional
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
+ENDED = 128
+"""A process that a signal ended has this status, and more by the number of the signal."""
+
 _HEARD_TWICE = 0.5  # s
 _AGAIN = 0.02  # s; until a signal is sent anew that met the start of a module in C
 
@@ -38,7 +41,7 @@ class Interrupted(KeyboardInterrupt):
 
 def exit_status(stop: KeyboardInterrupt) -> int:
     """Status with which a process that was asked to end does so: 130, 143 or 129."""
-    return 128 + (stop.number if isinstance(stop, Interrupted) else signal.SIGINT)
+    return ENDED + (stop.number if isinstance(stop, Interrupted) else signal.SIGINT)
 
 
 @contextmanager

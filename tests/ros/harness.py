@@ -7,10 +7,12 @@ import re
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 import unittest
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Callable
 
 import roslib.packages
@@ -35,6 +37,13 @@ def description(**tags: str) -> str:
         text, count = re.subn(f"<{tag}>[^<]*<", f"<{tag}>{value}<", text)
         assert count > 0, tag
     return text
+
+
+def folder_of(test: unittest.TestCase) -> Path:
+    """A folder that lasts as long as a test."""
+    folder = tempfile.TemporaryDirectory()
+    test.addCleanup(folder.cleanup)
+    return Path(folder.name)
 
 
 def executable(name: str) -> str:

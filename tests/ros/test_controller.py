@@ -1,10 +1,8 @@
 #!/usr/bin/env python3
 """controller_node flies as the plugin does, and says what it follows and how far off it is."""
 
-import tempfile
 import unittest
 from contextlib import contextmanager
-from pathlib import Path
 
 import harness
 import numpy as np
@@ -67,9 +65,7 @@ def place(message):
 
 class TestController(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
+        self.folder = harness.folder_of(self)
 
     def test_as_plugin_and_as_node_it_is_one_flight_byte_for_byte(self):
         cases = [

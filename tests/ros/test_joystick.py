@@ -4,9 +4,7 @@
 import os
 import signal
 import subprocess
-import tempfile
 import unittest
-from pathlib import Path
 
 import harness
 from harness import Recording
@@ -44,11 +42,10 @@ def stand_in(folder, package, node, text):
 
 class TestJoystick(unittest.TestCase):
     def test_sticks_are_velocities_along_the_heading(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        stand_in(Path(folder.name), "joy", "joy_node", IDLE)
-        stand_in(Path(folder.name), "teleop_twist_joy", "teleop_node", PUSHED)
-        path = f"{folder.name}:{os.environ['ROS_PACKAGE_PATH']}"
+        folder = harness.folder_of(self)
+        stand_in(folder, "joy", "joy_node", IDLE)
+        stand_in(folder, "teleop_twist_joy", "teleop_node", PUSHED)
+        path = f"{folder}:{os.environ['ROS_PACKAGE_PATH']}"
         launch = subprocess.Popen(
             ["roslaunch", "quadcore", "joystick.launch", "gui:=false", "speed:=1.5", "climb:=0.8"],
             env={**os.environ, "ROS_PACKAGE_PATH": path},

@@ -2,10 +2,8 @@
 """Lockstep: the same flight whatever the controller's pace, and nothing added to the physics."""
 
 import random
-import tempfile
 import time
 import unittest
-from pathlib import Path
 
 import harness
 import numpy as np
@@ -82,9 +80,7 @@ def random_commands(steps):
 
 class TestLockstep(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
+        self.folder = harness.folder_of(self)
 
     def test_a_slow_controller_gives_the_log_of_a_fast_one(self):
         generator = random.Random(1)

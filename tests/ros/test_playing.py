@@ -1,9 +1,7 @@
 #!/usr/bin/env python3
 """A recording that is played in lockstep gives the flight that was recorded."""
 
-import tempfile
 import unittest
-from pathlib import Path
 
 import harness
 import rosbag
@@ -18,9 +16,7 @@ TOPIC = "/quadrotor/vel_cmd"
 
 class TestPlaying(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
+        self.folder = harness.folder_of(self)
 
     def record(self, log):
         """Fly under a controller and record its commands; return the bag.

@@ -11,7 +11,7 @@ from .._core import FlightError, InputError
 from ..comparison.compare import Comparison, fly
 from ..comparison.output import FILES, drawn, listed, summary, write
 from ..comparison.plan import Plan
-from ..files import check_writable, make_folder
+from ..files import make_folder, prepare_folder
 from ..log import Log
 from ..study.sampling import thinned
 from ..study.table import number_text
@@ -47,9 +47,7 @@ def compare(arguments: argparse.Namespace) -> None:
     plan = _plan(arguments)
     out = arguments.out
     if out is not None:
-        make_folder(out)
-        for name in FILES:
-            check_writable(out / name)  # after the flights would be too late
+        prepare_folder(out, FILES)  # after the flights would be too late
     if not arguments.quiet:
         _show_models(plan)
 

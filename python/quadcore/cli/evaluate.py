@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from .. import laws, references
 from .._core import FlightError, InputError
-from ..files import check_writable, make_folder
+from ..files import prepare_folder
 from ..plants import plants
 from . import options, terminal, values
 from .kept import kept
@@ -84,9 +84,7 @@ def evaluate(arguments: argparse.Namespace) -> None:
             plan = _plan(arguments)
     out = arguments.out
     if out is not None:
-        make_folder(out)
-        for name in FILES:
-            check_writable(out / name)  # after the flights would be too late
+        prepare_folder(out, FILES)  # after the flights would be too late
 
     def put(flown: Evaluation, plots: bool = False) -> list[Path]:
         return write(flown, plan, out, plots) if out is not None else []

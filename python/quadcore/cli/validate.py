@@ -10,7 +10,7 @@ from rich.table import Table
 
 from .. import interrupts
 from .._core import FlightError, QuadcoreError
-from ..files import check_writable, make_folder
+from ..files import prepare_folder
 from ..study.executor import conducted
 from . import options, terminal, values
 from .kept import kept
@@ -71,8 +71,7 @@ def run(arguments: argparse.Namespace) -> None:
     experiment.flight(Case("eigen")).simulation()  # says at once what is wrong or doubtful
     out = arguments.out
     if out is not None:
-        make_folder(out)
-        check_writable(out / "report.html")  # after the flights would be too late
+        prepare_folder(out, ["report.html"])  # after the flights would be too late
     study = _conduct(experiment, arguments)
     failures = _row_failures(study)
     if out is not None:
