@@ -58,7 +58,8 @@ copy_sources() {
 
 build() {
   catkin_make -C $workspace -DPYTHON_EXECUTABLE=/usr/bin/python3 -DQUADCORE_WITH_ROS=ON \
-    -DQUADCORE_WERROR=ON -DCMAKE_POLICY_VERSION_MINIMUM=3.5 install >$workspace/build.log 2>&1 ||
+    -DQUADCORE_WERROR=ON -DCMAKE_UNITY_BUILD=ON -DCMAKE_POLICY_VERSION_MINIMUM=3.5 \
+    install >$workspace/build.log 2>&1 ||
     { tail -n 40 $workspace/build.log; say "the catkin workspace does not build"; exit 1; }
   # Found in the install space like the tests of any package that installs its own.
   mkdir -p $workspace/install/share/quadcore/tests

@@ -61,12 +61,15 @@ KeptPublisher<rosgraph_msgs::Clock> take_part_in_clock(ros::NodeHandle& nh, Cloc
   return {};
 }
 
-ClockLeader::ClockLeader(ros::NodeHandle& nh, FlightThread& flight)
+ClockLeader::ClockLeader(ros::NodeHandle& nh, FlightThread& flight,
+                         const KeptPublisher<rosgraph_msgs::Clock>& clock)
     : flight_(flight),
+      clock_(clock),
       subscriber_(nh.subscribe(followers_topic, 1000, &ClockLeader::take, this,
                                ros::TransportHints().tcpNoDelay())) {}
 
 void ClockLeader::take(const std_msgs::Header& needs) {
+  if (needs.stamp.isZero()) return clock_.repeat();
   const std::lock_guard<std::mutex> lock(mutex_);
   followers_[needs.frame_id] = {needs.stamp.toSec(), Wall::now()};
   hold();
@@ -109,26 +112,26 @@ void ClockFollower::subscribe() {
 void ClockFollower::reached(double time) {
   if (std::abs(time - told_) < telling_period) return;
   told_ = time;
-  tell(time);
+  tell(ros::Time(time + dt_));
 }
 
 void ClockFollower::tell(const FlightReport& report) {
   if (report.waits_for_clock) {
-    // A leader keeps its clock for those who come; roscpp does not try a connection twice.
+    // roscpp does not try a connection twice.
     if (Wall::now() - subscribed_ > longest_connecting) subscribe();
-    return;
-  }
-  if (report.paused || !report.failure.empty()) {
-    tell(std::numeric_limits<double>::infinity());
+    // What a leader keeps for those who come may have come to roscpp's own subscription alone.
+    tell(ros::Time());
+  } else if (report.paused || !report.failure.empty()) {
+    tell(ros::TIME_MAX);
   } else {
-    tell(report.time);
+    tell(ros::Time(report.time + dt_));
   }
 }
 
-void ClockFollower::tell(double time) {
+void ClockFollower::tell(const ros::Time& needs) {
   std_msgs::Header header;
   header.frame_id = ros::this_node::getName();
-  header.stamp = std::isfinite(time) ? ros::Time(time + dt_) : ros::TIME_MAX;
+  header.stamp = needs;
   publisher_.publish(header);
 }
 

@@ -29,7 +29,7 @@ enum class ClockRole {
 KeptPublisher<rosgraph_msgs::Clock> take_part_in_clock(ros::NodeHandle& nh, ClockRole role);
 
 /// Followers tell the leader up to where they need the clock for their next step, so that it does
-/// not run away from them.
+/// not run away from them; a time of zero asks for the clock, which may stand.
 constexpr const char* followers_topic = "/clock_followers";
 /// The leader is ahead of that by at most this [s of simulation].
 constexpr double longest_lead = 0.02;
@@ -37,7 +37,8 @@ constexpr double longest_lead = 0.02;
 /// The leader's side: holds the flight back for those who follow.
 class ClockLeader {
  public:
-  ClockLeader(ros::NodeHandle& nh, FlightThread& flight);
+  ClockLeader(ros::NodeHandle& nh, FlightThread& flight,
+              const KeptPublisher<rosgraph_msgs::Clock>& clock);
   /// Forgets followers that have gone. To be called now and then.
   void look();
 
@@ -50,6 +51,7 @@ class ClockLeader {
   void hold();
 
   FlightThread& flight_;
+  KeptPublisher<rosgraph_msgs::Clock> clock_;
   std::mutex mutex_;
   std::map<std::string, Follower> followers_;
   ros::Subscriber subscriber_;
@@ -67,7 +69,7 @@ class ClockFollower {
   void tell(const FlightReport& report);
 
  private:
-  void tell(double time);
+  void tell(const ros::Time& needs);
   void subscribe();
 
   ros::NodeHandle& nh_;

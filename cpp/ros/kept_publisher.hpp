@@ -35,6 +35,12 @@ class KeptPublisher {
     publisher_.publish(message);
   }
 
+  /// Sends the last message again, to all.
+  void repeat() {
+    const std::lock_guard<std::mutex> lock(kept_->mutex);
+    if (kept_->any) publisher_.publish(kept_->last);
+  }
+
   void shutdown() { publisher_.shutdown(); }
 
  private:

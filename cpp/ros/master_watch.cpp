@@ -3,11 +3,38 @@
 #include <ros/connection_manager.h>
 #include <ros/network.h>
 
+#include <set>
+
 #include "master_api.hpp"
 
 namespace quadcore::node {
 
 using XmlRpc::XmlRpcValue;
+
+namespace {
+
+/// Nodes look once a second each: after so many looks all are back at a new master.
+constexpr int looks_until_all_are_back = 3;
+
+/// Publishers of a topic: those of a list, and those whom the node at `uri` is connected to.
+XmlRpcValue with_connected(const std::string& uri, const std::string& topic, XmlRpcValue& listed) {
+  std::set<std::string> all;
+  for (int i = 0; i < listed.size(); ++i) all.insert(listed[i]);
+  XmlRpcValue connections;
+  if (!call_node(uri, "getBusInfo", {}, connections)) connections.setSize(0);
+  // Each with: number, who is there, direction, transport, topic, ...
+  for (int i = 0; i < connections.size(); ++i) {
+    XmlRpcValue& connection = connections[i];
+    if (static_cast<std::string>(connection[2]) != "i") continue;
+    if (static_cast<std::string>(connection[4]) == topic) all.insert(connection[1]);
+  }
+  XmlRpcValue publishers;
+  publishers.setSize(0);
+  for (const std::string& publisher : all) publishers[publishers.size()] = publisher;
+  return publishers;
+}
+
+}  // namespace
 
 MasterWatch::MasterWatch(std::vector<std::string> services, Parameters parameters,
                          std::function<void()> while_known)
@@ -53,9 +80,14 @@ void MasterWatch::look() {
     register_again();
     ROS_WARN("there is a new ROS master; registered again");
     gone_ = false;
+    looks_to_register_again_ = looks_until_all_are_back;
   } else {
     if (gone_) ROS_INFO("the ROS master is back");
     gone_ = false;
+    if (looks_to_register_again_ > 0) {
+      --looks_to_register_again_;
+      register_again();
+    }
     while_known_();
   }
 }
@@ -77,8 +109,10 @@ void MasterWatch::register_again() const {
   for (int i = 0; i < topics.size(); ++i) {
     XmlRpcValue publishers;
     if (!call_master("registerSubscriber", {topics[i][0], topics[i][1], uri}, publishers)) continue;
-    // As the master does for those who come later.
-    call_node(uri, "publisherUpdate", {topics[i][0], publishers}, result);
+    // As the master does for those who come later. roscpp cuts off whom such a list leaves out, and
+    // the others come back to a new master one by one.
+    call_node(uri, "publisherUpdate", {topics[i][0], with_connected(uri, topics[i][0], publishers)},
+              result);
   }
   for (const std::string& service : services_) {
     call_master("registerService", {service, service_uri_, uri}, result);

@@ -41,6 +41,7 @@ class MasterWatch {
   const Parameters parameters_;
   const std::function<void()> while_known_;
   bool gone_ = false;
+  int looks_to_register_again_ = 0;
   std::mutex mutex_;
   std::condition_variable ending_changed_;
   bool ending_ = false;

@@ -80,7 +80,7 @@ void run(const EndSignal& end_signal) {
            flight_settings.lockstep ? ", one for each odometry message" : "");
   FlightThread flight(simulation, flight_settings, listener);
   std::optional<ClockLeader> leader;
-  if (clock) leader.emplace(nh, flight);
+  if (clock) leader.emplace(nh, flight, clock);
   if (follower) follower->follow(flight);
   const CommandSubscriber commands(nh, topic, flight_settings.lockstep, flight);
   // In a namespace the clock is not this vehicle's alone.

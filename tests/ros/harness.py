@@ -26,7 +26,7 @@ from std_srvs.srv import Empty
 from quadcore.description import load_description
 
 # s; a ceiling for whatever is waited for, on machines that are busy with other things
-LONG = 60.0
+LONG = 180.0
 HOVER = [475.0, -475.0, 475.0, -475.0]  # rad/s, a little more than the weight
 
 
@@ -173,11 +173,12 @@ def settled(recording: Recording):
     return recording.messages[-1]
 
 
-def step(n: int, namespace: str = "") -> None:
-    """Fly n steps of a paused flight."""
+def step(n: int, namespace: str = "") -> rospy.Time:
+    """Fly n steps of a paused flight, to the time returned."""
     response = rospy.ServiceProxy(f"{namespace}/quadcore/step", Step)(n)
     if not response.success:
         raise AssertionError(response.message)
+    return response.stamp
 
 
 def call(service: str) -> None:
@@ -195,6 +196,21 @@ def diagnostic(key: str, until: Callable[[float], bool] = lambda _: True) -> flo
     with Recording("/diagnostics", DiagnosticArray) as recording:
         known = recording.wait(lambda m: value(m) == value(m) and until(value(m)))
         return value(known)
+
+
+def ends_within_a_second(start: Callable, number: int) -> None:
+    """Check that a node ends well and at once at a signal; `start` makes a block that gives it.
+
+    A busy machine may hold up one that ends. What waits for something holds up all.
+    """
+    ends = []
+    for _ in range(8):
+        with start() as node:
+            time_taken = node.end(number)
+        if time_taken < 1 and node.process.returncode == 0:
+            return
+        ends.append((time_taken, node.process.returncode, node.error))
+    raise AssertionError(f"ended after so many seconds, with that status, saying this: {ends}")
 
 
 def outcome(*arguments, **environment):

@@ -46,8 +46,9 @@ class TestJoystick(unittest.TestCase):
         stand_in(folder, "joy", "joy_node", IDLE)
         stand_in(folder, "teleop_twist_joy", "teleop_node", PUSHED)
         path = f"{folder}:{os.environ['ROS_PACKAGE_PATH']}"
+        options = ("gui:=false", "speed:=1.5", "climb:=0.8", "lockstep:=true")
         launch = subprocess.Popen(
-            ["roslaunch", "quadcore", "joystick.launch", "gui:=false", "speed:=1.5", "climb:=0.8"],
+            ["roslaunch", "quadcore", "joystick.launch", *options],
             env={**os.environ, "ROS_PACKAGE_PATH": path},
             stdout=subprocess.DEVNULL,
         )

@@ -14,7 +14,7 @@ from harness import (
     step,
 )
 from nav_msgs.msg import Odometry
-from rosgraph_msgs.msg import Clock
+from rosgraph_msgs.msg import Clock, Log
 
 import quadcore as qc
 
@@ -115,18 +115,21 @@ class TestParameters(unittest.TestCase):
             clock.wait(lambda m: m[-1].clock > paused_at)
 
     def test_what_cannot_be_changed_while_it_flies_is_told_once(self):
-        with flight("_engine:=ode") as node:
-            rospy.set_param("/quadcore/engine", "eigen")
-            rospy.set_param("/quadcore/paused", "yes")
-            rospy.set_param("/quadcore/real_time_factor", -1)
-            rospy.sleep(3.5)  # it looks once a second
-            diagnostic("steps")
-            node.end()
-        for message in (
+        messages = (
             "parameter ~engine: has no effect on a flight under way, only paused and real_time_",
             "parameter ~paused: give true or false",
             "parameter ~real_time_factor: give a number >= 0",
-        ):
+        )
+        with flight("_engine:=ode") as node, Recording("/rosout", Log) as told:
+            told.wait_for_connection()
+            rospy.set_param("/quadcore/engine", "eigen")
+            rospy.set_param("/quadcore/paused", "yes")
+            rospy.set_param("/quadcore/real_time_factor", -1)
+            for message in messages:
+                told.wait(lambda logs, says=message: any(says in log.msg for log in logs))
+            rospy.sleep(2.5)  # it looks once a second
+            node.end()
+        for message in messages:
             self.assertEqual(node.error.count(message), 1, node.error)
 
     def test_a_warning_of_the_flight_is_told_once_a_flight(self):

@@ -74,9 +74,12 @@ class TestTopics(unittest.TestCase):
         with flight(), Recording("/odom", Odometry) as odometry, Recording("/tf", TFMessage) as tf:
             with Recording("/tf_static", TFMessage) as static:
                 fixed = static.wait_for_count(1)[0].transforms[0]
-            message = odometry.wait_for_count(1)[0]
+            message = odometry.wait_for_publisher().wait_for_count(1)[0]
+            tf.wait_for_publisher()
             transforms = [m.transforms[0] for m in tf.wait_for_count(300)]
-            poses = {m.header.stamp: m.pose.pose for m in odometry.wait_for_count(300)}
+            last = transforms[-1].header.stamp
+            known = odometry.wait(lambda m: m[-1].header.stamp >= last)
+            poses = {m.header.stamp: m.pose.pose for m in known}
         self.assertEqual((message.header.frame_id, message.child_frame_id), ("world", "drone"))
         self.assertEqual((fixed.header.frame_id, fixed.child_frame_id), ("drone", "frame"))
         compared = 0
