@@ -9,6 +9,7 @@ from typing import Any, Dict, List, Mapping, Sequence
 import numpy as np
 
 from .. import __version__
+from ..study.sampling import evenly
 from ..study.table import NOT_FLOWN, csv_bytes, flown_and_failed, json_bytes, number_text, save
 from .evaluate import Evaluation
 from .intervals import CONFIDENCE
@@ -70,9 +71,10 @@ def _players(evaluation: Evaluation) -> List[Dict[str, Any]]:
 
     players = []
     for reference, flights in list(by_reference(evaluation).items())[:_PLAYERS]:
+        picked = [flights[i] for i in evenly(len(flights), _PLAYED)]
         shown = [
             PlayerFlight(named, outcome.log, outcome.rotors)
-            for named, outcome in flights[:_PLAYED]
+            for named, outcome in picked
             if outcome.log is not None
         ]
         players.append({"reference": reference, "player": fragment(shown)})

@@ -9,16 +9,18 @@ import numpy as np
 
 from ..colours import PALETTE
 from ..plots import dress, panels, png, titled
+from ..study.sampling import evenly
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 from .evaluate import Evaluation
 from .flights import Outcome
-from .measures import distance
+from .measures import distance, lost
 from .robustness import RATES
 
 _CURVES = 16  # in one panel; more cannot be told apart
+_PANELS = 9  # of rotor speeds; of more flights, evenly many
 _STYLES = ("-", "--", ":", "-.")
 
 
@@ -71,6 +73,13 @@ def by_reference(evaluation: Evaluation) -> Dict[str, Flights]:
     return found
 
 
+def _held(outcome: Outcome) -> int:
+    """Count the rows until the vehicle is lost: what it does then hides what the others do."""
+    assert outcome.log is not None
+    end = lost(outcome.log)
+    return len(outcome.log) if end is None else int(np.searchsorted(outcome.log.time, end))
+
+
 def _look(i: int) -> Dict[str, Any]:
     return {"color": PALETTE[i % len(PALETTE)], "linestyle": _STYLES[i // len(PALETTE) % 4]}
 
@@ -82,20 +91,16 @@ def _tracks(reference: str, flights: Flights) -> Figure:
     margins = dict(_MARGINS, top=1 - room / height, bottom=0.5 / height, wspace=0.25)
     above, side = figure.subplots(1, 2, gridspec_kw=margins)
     wanted = next(outcome.log.topics["reference"] for _, outcome in flights if outcome.log)
-    middle = np.array([np.mean([wanted[a].min(), wanted[a].max()]) for a in "xyz"])
-    reach = max(1.0, *(0.75 * np.ptp(wanted[axis]) for axis in "xyz"))
     for axes, (a, b) in ((above, "xy"), (side, "xz")):
         dress(axes)
         for i, (named, outcome) in enumerate(flights[:_CURVES]):
             assert outcome.log is not None
-            at = dict(zip("xyz", outcome.log.position.T))
+            at = dict(zip("xyz", outcome.log.position[: _held(outcome)].T))
             axes.plot(at[a], at[b], label=named, linewidth=1.2, **_look(i))
         axes.plot(wanted[a], wanted[b], color="0.5", linewidth=0.8, label="reference", zorder=0)
         axes.set_xlabel(f"{a} (m)")
         axes.set_ylabel(f"{b} (m)")
-        # A vehicle that is lost would leave no room for the others.
-        axes.set_xlim(*(middle["xyz".index(a)] + reach * np.array([-1, 1])))
-        axes.set_ylim(*(middle["xyz".index(b)] + reach * np.array([-1, 1])))
+        axes.set_aspect("equal", adjustable="datalim")
     _legend(figure, above)
     return figure
 
@@ -107,24 +112,27 @@ def _errors(reference: str, flights: Flights) -> Figure:
     for i, (named, outcome) in enumerate(flights[:_CURVES]):
         assert outcome.log is not None
         # A logarithm has no 0, which is where a flight begins.
-        away = np.maximum(distance(outcome.log), 1e-7)
-        axes.semilogy(outcome.log.time, away, label=named, linewidth=1, **_look(i))
+        rows = slice(_held(outcome))
+        away = np.maximum(distance(outcome.log)[rows], 1e-7)
+        axes.semilogy(outcome.log.time[rows], away, label=named, linewidth=1, **_look(i))
     axes.set_ylabel("distance (m)")
     _legend(figure, axes)
     return figure
 
 
 def _rotors(reference: str, flights: Flights) -> Figure:
-    shown = flights[:6]
+    shown = [flights[i] for i in evenly(len(flights), _PANELS)]
     title = f"Speeds of the rotors and their limit: {reference}"
     figure, grid = panels(title, len(shown), height=1.3)
     for axes, (named, outcome) in zip(grid[:, 0], shown):
         assert outcome.log is not None
-        speeds = np.abs(outcome.log.rotor_velocity)
+        rows = slice(_held(outcome))
+        speeds = np.abs(outcome.log.rotor_velocity[rows])
         for i, speed in enumerate(speeds.T):
-            axes.plot(outcome.log.time, speed, color=PALETTE[i % len(PALETTE)], linewidth=0.8)
+            axes.plot(outcome.log.time[rows], speed, color=PALETTE[i % len(PALETTE)], linewidth=0.8)
         if np.isfinite(outcome.limit):
             axes.axhline(outcome.limit, color="black", linestyle="--", linewidth=1)
+        axes.set_ylim(bottom=0)
         axes.set_title(named, loc="left", fontsize="small", pad=2)
         axes.set_ylabel("rad/s")
     return figure
