@@ -17,6 +17,7 @@ import numpy as np
 import quadcore as qc
 from quadcore import laws, references
 from quadcore.study.executor import each
+from quadcore.warning import unheard
 
 WAYPOINTS = Path(__file__).resolve().parents[1] / "config" / "waypoints.yaml"
 THESIS = {"odometry.positionNoise": 0.2106e-3, "odometry.orientationNoise": 0.2e-3}
@@ -82,12 +83,17 @@ def fly(flight: Tuple[Case, int]) -> float:
     parameters = {**case.noise, "xacro.sim_slow": case.sim_slow}
     simulation = qc.Simulation(engine=case.engine, seed=seed, parameters=parameters)
     simulation.set_state(references.start(simulation, reference))
-    try:
-        log = simulation.run(
-            case.duration, log_every=5, wrenches=False, controller=case.law(), reference=reference
-        )
-    except qc.FlightError as error:
-        log = error.log  # type: ignore[attr-defined]
+    with unheard():
+        try:
+            log = simulation.run(
+                case.duration,
+                log_every=5,
+                wrenches=False,
+                controller=case.law(),
+                reference=reference,
+            )
+        except qc.FlightError as error:
+            log = error.log  # type: ignore[attr-defined]
     wanted = np.array([reference(t).position for t in log.time])
     errors = np.linalg.norm(log.position - wanted, axis=1)
     if errors.max() > LOST or log.time[-1] < case.duration - 0.1:

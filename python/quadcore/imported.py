@@ -59,9 +59,12 @@ def imported(text: str) -> Any:
 
 def told(error: BaseException) -> str:
     """Say in one line what was raised, and where."""
-    place = traceback.extract_tb(error.__traceback__)[-1]
-    reason = " ".join(f"{type(error).__name__}: {error}".split())
-    return f"{reason} ({place.filename}:{place.lineno})"
+    if isinstance(error, SyntaxError) and error.filename:
+        kind, reason, file, line = type(error).__name__, error.msg, error.filename, error.lineno
+    else:
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        kind, reason, file, line = type(error).__name__, f"{error}", place.filename, place.lineno
+    return " ".join(f"{kind}: {reason}".split()) + f" ({file}:{line})"
 
 
 def _failed(text: str, error: BaseException) -> InputError:

@@ -32,7 +32,9 @@ def read_values(who: str, text: str) -> Dict[str, float]:
     for part in filter(None, text.split(",")):
         key, _, value = part.partition("=")
         number = _FLAGS.get(value, _core.parse_number(value))
-        if number is None or not key or key in read:
+        if key in read:
+            raise _core.InputError(f"{who}: '{key}' is given twice; keep one")
+        if number is None or not key:
             raise _core.InputError(
                 f"{who}: '{part}' is not one KEY=NUMBER; write NAME:KEY=NUMBER,..."
             )

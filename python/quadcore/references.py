@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Protocol,
 import numpy as np
 
 from . import _core, resources
-from .formats import format_of
+from .formats import mat
 from .parameters import did_you_mean, docstring, read_values, values
 from .state import State
 
@@ -165,7 +165,9 @@ def read_rows(path: Path) -> npt.ArrayLike:
     """
     if path.suffix.lower() in (".csv", ".yaml", ".yml"):
         return _core.read_rows(str(path))
-    return format_of(path, "paths are read from").read_commands(path, ["t", "x", "y", "z"])[0]
+    if path.suffix.lower() == ".mat":
+        return mat.read_path(path)
+    raise _core.InputError(f"{path}: paths are read from {', '.join(_FILES)} files")
 
 
 def _function(

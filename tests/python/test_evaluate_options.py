@@ -125,6 +125,10 @@ def test_a_file_that_is_wrong_is_one_line(capsys, text, says):
             "log_every is 10 but the flight has",
         ),
         ("--controller pd --reference hover --log-every 5000", "log_every is 5000 but the flight"),
+        ("--controller pd, --reference hover", "'pd,' has an empty name; write names"),
+        ("--controller pd --reference hover --engine eigen,,ode", "'' is none of"),
+        ("--controller pd --reference hover --model ,", "',' has an empty name"),
+        ("--controller pd:kp_xy=1,kp_xy=2 --reference hover", "'kp_xy' is given twice; keep one"),
     ],
 )
 def test_what_cannot_be_evaluated_is_one_line(capsys, arguments, says):

@@ -137,6 +137,13 @@ def test_a_controller_that_leaves_the_program_ends_its_flight_alone(capsys):
     assert "error: controller 'quits:Law': SystemExit" in capsys.readouterr().err
 
 
+def test_what_is_no_python_is_told_with_its_line(capsys):
+    Path("half.py").write_text("x = 1\ndef f(:\n")
+    assert main(["run", "quadrotor", "--controller", "half:f", "--quiet"]) == 2
+    error = capsys.readouterr().err
+    assert "error: controller 'half:f': SyntaxError: " in error and "half.py:2)" in error
+
+
 def test_a_missing_module_of_a_package_is_told_as_missing(capsys):
     assert main(["run", "quadrotor", "--controller", "no.such:Law", "--quiet"]) == 2
     assert "there is no module 'no.such' here or on PYTHONPATH" in capsys.readouterr().err

@@ -37,7 +37,7 @@ def several(names: Sequence[str]) -> Callable[[str], list[str]]:
 
 def names(text: str) -> list[str]:
     """Read names with commas between."""
-    return text.split(",")
+    return _named(text, text.split(","))
 
 
 def several_calls(text: str) -> list[str]:
@@ -48,6 +48,12 @@ def several_calls(text: str) -> list[str]:
             found[-1] += f",{part}"
         else:
             found.append(part)
+    return _named(text, found)
+
+
+def _named(text: str, found: list[str]) -> list[str]:
+    if not all(found):
+        raise argparse.ArgumentTypeError(f"'{text}' has an empty name; write names, commas between")
     return found
 
 

@@ -14,6 +14,7 @@ from ..files import atomic_write, check_regular, unwritable
 from ..forks import LOCK
 from .rows import LogRows, Table, check_log_columns, check_log_rows, split_columns
 
+_OF_PATH = ("t", "x", "y", "z")
 _MOST_VALUES = 10**7  # of a variable; of commands more than three hours at 1 kHz
 
 
@@ -26,15 +27,30 @@ def read_commands(path: Path, names: Sequence[str]) -> Table:
         A variable is missing or no vector of real numbers, or they differ in length.
     """
     variables = _variables(path, names)
-    columns = [_vector(path, name, variables[name]) for name in names]
-    for name, column in zip(names, columns):
-        if len(column) != len(columns[0]):
-            raise InputError(f"{path}: {name} has {len(column)} values, t has {len(columns[0])}")
     return Table(
-        np.column_stack(columns),
+        _together(path, {name: _vector(path, name, variables[name]) for name in names}),
         lambda row: f"{path}: row {1 + row}",
         " (rows count from 1, as MATLAB's do)",
     )
+
+
+def read_path(path: Path) -> np.ndarray:
+    """Read vectors t, x, y, z and, where it is held, yaw; shape (rows, 4 or 5).
+
+    Raises
+    ------
+    InputError
+        A variable is missing or no vector of real numbers, or they differ in length.
+    """
+
+    def choose(held: Mapping[str, int]) -> Sequence[str]:
+        if not set(_OF_PATH) <= set(held):
+            found = ", ".join(sorted(held)) or "no variables"
+            raise InputError(f"{path}: holds {found}; a path is {', '.join(_OF_PATH)}[, yaw]")
+        return [*_OF_PATH, *(["yaw"] if "yaw" in held else [])]
+
+    variables = _load(path, choose)
+    return _together(path, {name: _vector(path, name, variables[name]) for name in variables})
 
 
 def read_log(path: Path) -> LogRows:
@@ -58,10 +74,7 @@ def read_log(path: Path) -> LogRows:
             for field in value.dtype.names or ():
                 columns.append(f"{rest}.{field}")
                 parts.append(_vector(path, columns[-1], value[field][0, 0]))
-    for name, part in zip(columns, parts):
-        if len(part) != len(parts[0]):
-            raise InputError(f"{path}: {name} has {len(part)} values, t has {len(parts[0])}")
-    rows = np.column_stack(parts)
+    rows = _together(path, dict(zip(columns, parts)))
     check_log_rows(lambda row: f"{path}: row {1 + row}", rows, of_state)
     ignored = [str(name[0]) for name in variables.get("ignored", np.empty((0, 0))).flat]
     return LogRows(columns, rows, wrenches, ignored)
@@ -108,6 +121,14 @@ def _load(path: Path, choose: Callable[[Mapping[str, int]], Sequence[str]]) -> M
         raise InputError(f"{path}: a MATLAB 7.3 file; save it with the option -v7") from error
     except Exception as error:  # scipy has no common base class for what a broken file raises
         raise InputError(f"{path}: not a MATLAB file: {error}") from error
+
+
+def _together(path: Path, columns: Mapping[str, np.ndarray]) -> np.ndarray:
+    count = len(columns["t"])
+    for name, column in columns.items():
+        if len(column) != count:
+            raise InputError(f"{path}: {name} has {len(column)} values, t has {count}")
+    return np.column_stack(list(columns.values()))
 
 
 def _vector(path: Path, name: str, value: np.ndarray) -> np.ndarray:
