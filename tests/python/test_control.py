@@ -97,9 +97,10 @@ def test_the_law_and_its_twin_in_numpy_fly_one_flight():
     assert np.abs(logs[0].position - logs[1].position).max() < 1e-9
 
 
-def test_a_thrust_believed_wrong_is_made_up_for():
+@pytest.mark.parametrize("believed", [0.9, 1.1])
+def test_a_thrust_believed_wrong_is_made_up_for(believed):
     spiral = references.spiral()
-    law = laws.geometric(believed_thrust=1.1)
+    law = laws.geometric(believed_thrust=believed)
     log = on(spiral).run(30, controller=law, reference=spiral, wrenches=False, log_every=10)
     assert largest_at_the_end(log, spiral) < 0.02
 

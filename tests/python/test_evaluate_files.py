@@ -46,6 +46,21 @@ def test_everything_is_written_and_reproducible():
     assert 'src="http' not in page
 
 
+def test_the_page_says_why_the_printed_gains_are_lost(capsys):
+    command = [*FLY, "--controller", "pid_thesis,pid_thesis:kd_xy=2.5", "--reference", "spiral"]
+    assert main([*command, "--no-plots", "--out", "out"]) == 0
+    page = Path("out/report.html").read_text()
+    told = page + capsys.readouterr().out
+    for text in (
+        "pid_thesis (eigen), x, y: pole at 0.27 +- 1.63i 1/s; cause: Kd Kp = 0.3 is not above Ki",
+        "pid_thesis (eigen), yaw: pole at 10.4 +- 11.3i 1/s; cause: the zero at 2 b w0 sim_slow",
+        "pid_thesis:kd_xy=2.5 (eigen), yaw: pole at 10.4 +- 11.3i 1/s; cause: the zero at 2 b w0",
+    ):
+        assert text in page
+        assert told.count(text) == 2
+    assert "pid_thesis:kd_xy=2.5 (eigen), x, y" not in page
+
+
 def test_the_file_tells_all_that_flew():
     command = [*FLY, "--controller", "geometric:kp_xy=7", "--reference", "hover", "--no-plots"]
     more = ["--controller-rate", "250", "--delay", "0.004", "--world", "default.world"]
