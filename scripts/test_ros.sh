@@ -78,9 +78,23 @@ build_plugins() {
   done
 }
 
-# run_in SPACE TEST...: the tests, with the environment of that space.
+# run_test SPACE TEST: says how it went; all that it printed if it did not go well.
+run_test() {
+  local log=$workspace/$1-$2.log count
+  rostest --text quadcore "$2.test" >$log 2>&1 || true
+  count=$(sed -n 's/^ \* TESTS: //p' $log)
+  if grep -q 'RESULT: SUCCESS' $log && [ "$count" -gt 0 ]; then
+    say "  $1 $2: $count passed"
+  else
+    cat $log
+    say "  $1 $2: FAILED"
+    touch $workspace/failed
+  fi
+}
+
+# run_in SPACE TEST...: the tests, some at a time, with the environment of that space.
 run_in() {
-  local space=$1 name log count
+  local space=$1 name
   shift
   set +u
   . $workspace/$space/setup.bash
@@ -90,22 +104,15 @@ run_in() {
   [ -d /opt/ros/noetic ] || export ROS_PACKAGE_PATH="$ROS_PACKAGE_PATH:/usr/share" \
     PYTHONPATH="$PYTHONPATH:$PWD/$workspace/xacro"
   for name in "$@"; do
-    log=$workspace/$space-$name.log
-    rostest --text quadcore "$name.test" >$log 2>&1 || true
-    count=$(sed -n 's/^ \* TESTS: //p' $log)
-    if grep -q 'RESULT: SUCCESS' $log && [ "$count" -gt 0 ]; then
-      say "  $space $name: $count passed"
-    else
-      cat $log
-      say "  $space $name: FAILED"
-      failed="$failed $space/$name"
-    fi
+    while [ "$(jobs -rp | wc -l)" -ge "$(nproc)" ]; do wait -n; done
+    run_test $space $name &
   done
+  wait
 }
 
 workspace=build/catkin
-failed=""
 mkdir -p $workspace
+rm -f $workspace/failed
 install_ros
 # The nodes written in Python run on the system's, with quadcore from the workspace and nothing of
 # .venv, except xacro where the distribution has none.
@@ -123,7 +130,7 @@ build
 say "running the ROS tests"
 SECONDS=0
 (run_in devel topics services lockstep playing clock several parameters faults masters fly_from_python \
-  controller controller_faults set_points pid joystick launch plugin_by_others plugin_topics
-  [ -z "$failed" ])
-(run_in install launch playing fly_from_python plugin_by_others; [ -z "$failed" ])
+  controller controller_faults set_points pid joystick launch plugin_by_others plugin_topics)
+(run_in install launch playing fly_from_python plugin_by_others)
+[ ! -e $workspace/failed ]
 say "the ROS tests passed in $SECONDS s"
