@@ -40,6 +40,18 @@ def maker(thing: Any, vehicle: str) -> Callable[[], Any]:
     return thing.copy if isinstance(thing, laws.Law) else lambda: thing
 
 
+def shape(thing: Any) -> Any:
+    """Make a reference of its name; what is one already is given as it is."""
+    if isinstance(thing, str):
+        return references.parse(thing)
+    if not callable(thing):
+        raise InputError(
+            f"reference is {thing!r}; give one of quadcore.references, or a function that is "
+            "called as reference(t)"
+        )
+    return thing
+
+
 def names_own(thing: Any) -> bool:
     """Whether a text names a module of the user's own."""
     return isinstance(thing, str) and ":" in thing and thing.partition(":")[0] not in laws.NAMES

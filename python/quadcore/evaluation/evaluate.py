@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import replace
-from numbers import Real
 from pathlib import Path
 from typing import (
     Any,
     Callable,
     Dict,
-    Iterable,
     List,
     Mapping,
     NamedTuple,
@@ -19,11 +17,12 @@ from typing import (
     Union,
 )
 
-from .._core import InputError, QuadcoreError
+from .._core import QuadcoreError
 from ..flight_plan import FlightPlan
 from ..study.axes import Values
 from ..study.executor import conducted
 from ..study.sampling import evenly
+from .arguments import check
 from .entries import Named
 from .flights import Outcome, flown
 from .plan import Case, Plan
@@ -127,15 +126,19 @@ def evaluate(
     KeyboardInterrupt
         With the attribute `evaluation`, whose missing rows say so.
     """
-    for name, value, kind, form in (
-        ("engines", engines, Iterable, "a name, or several"),
-        ("models", models, (str, Path, Iterable), "a name, or several"),
-        ("vary", {} if vary is None else vary, Mapping, "a mapping of names to values"),
-        ("duration", duration, Real, "seconds"),
-        ("time_limit", time_limit, Real, "seconds"),
-    ):
-        if not isinstance(value, kind):  # type: ignore[arg-type]
-            raise InputError(f"{name} is {value!r}; give {form}")
+    check(
+        {
+            "engines": engines,
+            "models": models,
+            "vary": vary,
+            "duration": duration,
+            "margins": margins,
+            "time_limit": time_limit,
+            "processes": processes,
+            "progress": progress,
+            **options,
+        }
+    )
     plan = Plan(
         controllers,
         references,

@@ -101,7 +101,7 @@ class Plan:
         self.references, self._shapes = [], []
         for label, thing in entries.labelled("reference", references_, references.Shape):
             self.references.append(label)
-            self._shapes.append(references.parse(thing) if isinstance(thing, str) else thing)
+            self._shapes.append(entries.shape(thing))
         self._scenarios = entries.scenarios(vary)
         self.scenarios = [entries.label_of(scenario) for scenario in self._scenarios]
         own = dict(options)
