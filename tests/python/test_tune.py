@@ -128,6 +128,16 @@ def test_other_models_judge_too(tmp_path):
         ({"references": ["stair"]}, "there is no reference 'stair'"),
         ({"budget": 0}, "budget is 0; give at least 1"),
         ({"engine": "odd"}, "odd"),
+        ({"engine": 5}, "engine is 5; give a name"),
+        ({"model": 5}, "model is 5; give a name, or several"),
+        ({"references": 5}, "references is 5; give names, or functions that are called as"),
+        ({"held_out": [5]}, r"held_out is \[5\]; give names, or functions"),
+        ({"references": "hover", "held_out": "hover"}, "'hover' is tuned on and held out"),
+        ({"only": 5}, "only is 5; give a name, or several"),
+        ({"only": "kp_xz"}, "has no number 'kp_xz'"),
+        ({"budget": 1.5}, "budget is 1.5; give a whole number"),
+        ({"processes": 0}, "processes is 0; give a whole number from 1 on"),
+        ({"commands": 3}, "there is no option 'commands'"),
     ],
 )
 def test_what_cannot_be_tuned_is_told_before_anything_flies(arguments, message):

@@ -19,10 +19,10 @@ from typing import (
 
 from .._core import QuadcoreError
 from ..flight_plan import FlightPlan
+from ..study import arguments
 from ..study.axes import Values
 from ..study.executor import conducted
 from ..study.sampling import evenly
-from .arguments import check
 from .entries import Named
 from .flights import Outcome, flown
 from .plan import Case, Plan
@@ -34,6 +34,16 @@ from .trial import Trial
 
 Progress = Callable[[int, int], None]
 
+_KINDS = {
+    "engines": arguments.NAMES,
+    "models": arguments.NAMES,
+    "vary": arguments.or_none(arguments.AXES),
+    "duration": arguments.SECONDS,
+    "margins": arguments.FLAG,
+    "time_limit": arguments.LIMIT,
+    "processes": arguments.or_none(arguments.COUNT),
+    "progress": arguments.or_none(arguments.PROGRESS),
+}
 _DRAWN = 60  # flights of which enough is kept to draw them
 
 
@@ -126,19 +136,17 @@ def evaluate(
     KeyboardInterrupt
         With the attribute `evaluation`, whose missing rows say so.
     """
-    check(
-        {
-            "engines": engines,
-            "models": models,
-            "vary": vary,
-            "duration": duration,
-            "margins": margins,
-            "time_limit": time_limit,
-            "processes": processes,
-            "progress": progress,
-            **options,
-        }
-    )
+    given = {
+        "engines": engines,
+        "models": models,
+        "vary": vary,
+        "duration": duration,
+        "margins": margins,
+        "time_limit": time_limit,
+        "processes": processes,
+        "progress": progress,
+    }
+    arguments.check({**given, **options}, _KINDS)
     plan = Plan(
         controllers,
         references,

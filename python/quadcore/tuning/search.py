@@ -12,6 +12,8 @@ from .. import laws
 from .._core import FlightError, InputError, QuadcoreError
 from ..evaluation.measures import LOST
 from ..gains import Gains
+from ..study import arguments
+from ..study.arguments import several
 from ..study.executor import conducted
 from ..warning import unheard
 from .problem import Case, Flown, Problem
@@ -21,6 +23,18 @@ OBJECTIVE = (
     "square of the distance, m"
 )
 
+_KINDS = {
+    "model": arguments.NAMES,
+    "references": arguments.GUIDES,
+    "held_out": arguments.GUIDES,
+    "held_out_models": arguments.NAMES,
+    "only": arguments.or_none(arguments.NAMES),
+    "engine": arguments.NAME,
+    "duration": arguments.SECONDS,
+    "budget": arguments.WHOLE,
+    "processes": arguments.or_none(arguments.COUNT),
+    "progress": arguments.or_none(arguments.PROGRESS),
+}
 _SPREAD = 0.8  # of the logarithm of a gain at first: most lie within a factor of 2.2
 _INTERRUPTED = "interrupted"
 
@@ -111,9 +125,30 @@ def tune(
     KeyboardInterrupt
         Its attribute `tuning` has the best so far, or None if all were refused.
     """
-    models = [model] if isinstance(model, (str, Path)) else list(model)
+    given = {
+        "model": model,
+        "references": references,
+        "held_out": held_out,
+        "held_out_models": held_out_models,
+        "only": only,
+        "engine": engine,
+        "duration": duration,
+        "budget": budget,
+        "processes": processes,
+        "progress": progress,
+    }
+    arguments.check({**given, **options}, _KINDS)
     options.update(engine=engine, duration=duration, seed=seed)
-    problem = Problem(law, models, held_out_models, references, held_out, only, spawn, options)
+    problem = Problem(
+        law,
+        several(model),
+        several(held_out_models),
+        several(references),
+        several(held_out),
+        None if only is None else several(only),
+        spawn,
+        options,
+    )
     cma = _cma()
     search = _Search(problem, budget, seed, processes, progress)
     try:

@@ -1,0 +1,104 @@
+"""What kind of value each argument takes, told before anything flies."""
+
+from __future__ import annotations
+
+import math
+from numbers import Integral, Real
+from pathlib import Path
+from typing import Any, Callable, Dict, Iterable, List, Mapping, Tuple
+
+from .._core import InputError
+
+Kind = Tuple[Callable[[Any], bool], str]
+"""Whether a value is of it, and what to give."""
+
+_LONGEST = 1e9  # s, of the wall clock
+
+
+def check(arguments: Mapping[str, Any], kinds: Mapping[str, Kind]) -> None:
+    """Raise `InputError` for an argument of another kind than its own.
+
+    Parameters
+    ----------
+    arguments
+        Values by name.
+    kinds
+        Of each name; those of other names are `OPTIONS`.
+    """
+    for name, value in arguments.items():
+        kind = kinds.get(name) or OPTIONS.get(name)
+        if kind is None:
+            raise InputError(
+                f"there is no option '{name}'; besides those of help() there are "
+                f"{', '.join(OPTIONS)}"
+            )
+        if not kind[0](value):
+            raise InputError(f"{name} is {value!r}; give {kind[1]}")
+
+
+def or_none(kind: Kind) -> Kind:
+    """Make a kind that None is of, too."""
+    return (lambda value: value is None or kind[0](value)), kind[1]
+
+
+def several(value: Any) -> List[Any]:
+    """Make a list of one or several names or functions."""
+    return [value] if _is_text(value) or callable(value) else list(value)
+
+
+def _is_text(value: Any) -> bool:
+    return isinstance(value, (str, Path))
+
+
+def _are_names(value: Any) -> bool:
+    return _is_text(value) or (isinstance(value, Iterable) and all(map(_is_text, value)))
+
+
+def _are_guides(value: Any) -> bool:
+    several = value if isinstance(value, (list, tuple)) else [value]
+    return all(isinstance(one, str) or callable(one) for one in several)
+
+
+def _are_named(value: Any) -> bool:
+    return isinstance(value, Mapping) and all(isinstance(name, str) for name in value)
+
+
+def _are_axes(value: Any) -> bool:
+    return _are_named(value) and all(
+        isinstance(one, Iterable) and not isinstance(one, (str, bytes)) for one in value.values()
+    )
+
+
+def _is_whole(value: Any) -> bool:
+    return isinstance(value, Integral) and not isinstance(value, bool)
+
+
+def _is_count(value: Any) -> bool:
+    return _is_whole(value) and int(value) >= 1
+
+
+def _is_limit(value: Any) -> bool:
+    return isinstance(value, Real) and 0 < float(value) <= _LONGEST
+
+
+NAME: Kind = (_is_text, "a name or a path")
+NAMES: Kind = (_are_names, "a name, or several")
+GUIDES: Kind = (_are_guides, "names, or functions that are called as reference(t)")
+NAMED: Kind = (_are_named, "a mapping of names to values")
+AXES: Kind = (_are_axes, "a mapping of names to lists of values")
+SECONDS: Kind = (lambda value: isinstance(value, Real) and math.isfinite(value), "seconds")
+LIMIT: Kind = (_is_limit, f"seconds, more than 0 and at most {_LONGEST:g}")
+WHOLE: Kind = (_is_whole, "a whole number")
+COUNT: Kind = (_is_count, "a whole number from 1 on")
+FLAG: Kind = (lambda value: isinstance(value, bool), "True or False")
+PROGRESS: Kind = (callable, "a function that is called as progress(done, total)")
+
+OPTIONS: Dict[str, Kind] = {
+    "world": or_none(NAME),
+    "dt": or_none((lambda value: isinstance(value, Real), "a step in s")),
+    "seed": (lambda value: True, ""),  # told where it is read
+    "parameters": or_none(NAMED),
+    "xacro_args": or_none(NAMED),
+    "ignore": NAMES,
+}
+"""What every study passes on to its simulations."""
