@@ -8,6 +8,7 @@
 #include "quadcore/control/gains_file.hpp"
 #include "quadcore/control/inner_loop.hpp"
 #include "quadcore/control/rows_file.hpp"
+#include "quadcore/control/second_vehicle.hpp"
 #include "quadcore/control/start.hpp"
 
 namespace quadcore::bindings {
@@ -37,6 +38,12 @@ using FlownInnerLoop = Flown<control::InnerLoop>;
 VehicleDescription describe(const Self& self) {
   const Lock lock(*self);
   return self->describe_vehicle();
+}
+
+/// A vehicle, driven as the one that flies, which it may be itself.
+VehicleDescription describe_as(const Self& believed, const Self& flown) {
+  if (&*believed == &*flown) return describe(flown);
+  return control::driven_as(describe(flown), describe(believed), "the belief ");
 }
 
 Vector3d vector(const py::object& object, const char* what) {
@@ -133,13 +140,14 @@ void bind_control(py::module_& m) {
 
   py::class_<FlownLaw>(m, "Controller", "A law that flies one vehicle.")
       .def(
-          py::init([](const std::string& law, const Self& simulation, const Values& values,
-                      const std::vector<double>& spins) {
-            Controller made(law, describe(simulation), values, spins);
+          py::init([](const std::string& law, const Self& believed, const Self& flown,
+                      const Values& values, const std::vector<double>& spins) {
+            Controller made(law, describe_as(believed, flown), values, spins);
             const std::size_t size = Controller::state_size(law, made.rotors());
             return std::make_unique<FlownLaw>(FlownLaw{std::move(made), std::vector<double>(size)});
           }),
-          py::arg("law"), py::arg("simulation"), py::arg("values"), py::arg("spins"))
+          py::arg("law"), py::arg("believed"), py::arg("flown"), py::arg("values"),
+          py::arg("spins"))
       .def(
           "command",
           [](FlownLaw& flown, double period, const py::object& state, const Reference& wanted) {
@@ -154,14 +162,14 @@ void bind_control(py::module_& m) {
           "Whether the rotors could not do what was asked of them last.");
 
   py::class_<FlownInnerLoop>(m, "InnerLoop", "An inner loop that flies one vehicle.")
-      .def(py::init(
-               [](const Self& simulation, const Values& values, const std::vector<double>& spins) {
-                 control::InnerLoop made(describe(simulation), values, spins);
-                 const std::size_t size = control::InnerLoop::state_size(made.rotors());
-                 return std::make_unique<FlownInnerLoop>(
-                     FlownInnerLoop{std::move(made), std::vector<double>(size)});
-               }),
-           py::arg("simulation"), py::arg("values"), py::arg("spins"))
+      .def(py::init([](const Self& believed, const Self& flown, const Values& values,
+                       const std::vector<double>& spins) {
+             control::InnerLoop made(describe_as(believed, flown), values, spins);
+             const std::size_t size = control::InnerLoop::state_size(made.rotors());
+             return std::make_unique<FlownInnerLoop>(
+                 FlownInnerLoop{std::move(made), std::vector<double>(size)});
+           }),
+           py::arg("believed"), py::arg("flown"), py::arg("values"), py::arg("spins"))
       .def(
           "attitude",
           [](FlownInnerLoop& flown, double period, const py::object& state,

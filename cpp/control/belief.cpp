@@ -49,15 +49,16 @@ const Wrench& wrench_of(const RotorDescription& rotor, double spin) {
 
 /// By turns, in the order in which the rotors stand around the vehicle: of the two ways that in
 /// which they yaw it more, and if both are equal that in which the first is positive.
-std::vector<double> alternating(const VehicleDescription& vehicle) {
-  const std::size_t n = vehicle.rotors.size();
+std::vector<double> alternating(const VehicleDescription& vehicle,
+                                const std::vector<std::size_t>& driven) {
+  const std::size_t n = driven.size();
   if (n % 2 != 0) {
     throw InputError("which way " + std::to_string(n) +
                      " rotors turn cannot be told; give their spins, 1 or -1 each");
   }
   std::vector<double> angles;
-  for (const RotorDescription& rotor : vehicle.rotors) {
-    const Vector3d p_F = rotor.p_FRcm_F - vehicle.body.p_FCcm;
+  for (const std::size_t joint : driven) {
+    const Vector3d p_F = vehicle.rotors[joint].p_FRcm_F - vehicle.body.p_FCcm;
     angles.push_back(elementary::atan2(p_F.y(), p_F.x()));
   }
   std::vector<std::size_t> around(n);
@@ -69,11 +70,10 @@ std::vector<double> alternating(const VehicleDescription& vehicle) {
   const auto turned = [&](double sense) {
     double sum = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      sum += std::abs(wrench_of(vehicle.rotors[i], sense * spins[i]).torque_F.z());
+      sum += std::abs(wrench_of(vehicle.rotors[driven[i]], sense * spins[i]).torque_F.z());
     }
     return sum;
   };
-  if (n == 0) return spins;
   constexpr double equal = 1 + 1e-6;
   const double first = spins[0];
   const double sense = turned(-first) > equal * turned(first) ? -first : first;
@@ -104,8 +104,9 @@ Belief Belief::of(const VehicleDescription& vehicle, std::vector<double> spins,
   if (!(g_W.z() < 0) || g_W.x() != 0 || g_W.y() != 0) {
     throw InputError("gravity is not along -z of the world, which these laws need");
   }
-  if (spins.empty()) spins = alternating(vehicle);
-  check_spins(spins, vehicle.rotors.size());
+  const std::vector<std::size_t> driven = vehicle.driven();
+  if (spins.empty()) spins = alternating(vehicle, driven);
+  check_spins(spins, driven.size());
 
   Belief belief;
   belief.mass = doubts.mass * vehicle.body.mass;
@@ -118,10 +119,10 @@ Belief Belief::of(const VehicleDescription& vehicle, std::vector<double> spins,
   for (int i = 0; i < 2; ++i) {
     belief.air.linear(3 + i, 3 + i) += doubts.rate_damping * belief.inertia_Ccm_F(i, i);
   }
-  const std::size_t n = vehicle.rotors.size();
+  const std::size_t n = driven.size();
   belief.effectiveness.resize(6, static_cast<Eigen::Index>(n));
   for (std::size_t i = 0; i < n; ++i) {
-    const RotorDescription& told = vehicle.rotors[i];
+    const RotorDescription& told = vehicle.rotors[driven[i]];
     const double ratio = told.rate_per_command;
     const double fastest =
         doubts.fastest > 0 ? std::min(doubts.fastest, told.fastest) : told.fastest;
@@ -138,14 +139,16 @@ Belief Belief::of(const VehicleDescription& vehicle, std::vector<double> spins,
   return belief;
 }
 
-Vector3d Belief::air_force_W(const Matrix3d& R_WF, const Vector3d& v_WC_W) const {
-  const Vector3d f_F = air.linear.topLeftCorner<3, 3>() * (R_WF.transpose() * v_WC_W) +
-                       air.of_components.cwiseProduct(v_WC_W.cwiseAbs()).cwiseProduct(v_WC_W);
-  return -(R_WF * f_F) - air.quadratic * v_WC_W.norm() * v_WC_W;
+Vector3d Belief::air_force_W(const Matrix3d& R_WF, const Vector3d& v_WF_W,
+                             const Vector3d& w_WF_F) const {
+  const Vector3d v_F = v_WCcm_F(R_WF.transpose() * v_WF_W, w_WF_F), v_W = R_WF * v_F;
+  const Vector3d f_F = air.linear.topLeftCorner<3, 3>() * v_F +
+                       air.of_components.cwiseProduct(v_W.cwiseAbs()).cwiseProduct(v_W);
+  return -(R_WF * f_F) - air.quadratic * v_W.norm() * v_W;
 }
 
-Vector3d Belief::air_torque_F(const Vector3d& v_WC_F, const Vector3d& w_WF_F) const {
-  return -(air.linear.bottomLeftCorner<3, 3>() * v_WC_F +
+Vector3d Belief::air_torque_F(const Vector3d& v_WF_F, const Vector3d& w_WF_F) const {
+  return -(air.linear.bottomLeftCorner<3, 3>() * v_WCcm_F(v_WF_F, w_WF_F) +
            air.linear.bottomRightCorner<3, 3>() * w_WF_F);
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "control/euler_rates.hpp"
-#include "quadcore/control/flat_state.hpp"
 
 namespace quadcore::control {
 namespace {
@@ -43,8 +42,9 @@ const Settings<Cascade::Gains>& Cascade::settings() {
        &G::drag},
       {T::flag("gyroscopic", "false", "makes up for the rotors' gyroscopic torque").from("(2.57)"),
        &G::gyroscopic},
-      {T::flag("flat_rates", "false",
-               "rates and accelerations of the angles that the reference asks for"),
+      {T::flag(
+           "flat_rates", "false",
+           "rates of roll and pitch, and accelerations of all angles, that the reference asks for"),
        &G::flat_rates},
   };
   return all;
@@ -65,9 +65,15 @@ Demand Cascade::demand(const Instant& instant, double* memory) const {
   const Matrix3d R_WF = now.orientation.toRotationMatrix();
   const Vector3d rpy = rpy_from_quaternion(now.orientation);
 
+  std::optional<FlatState> flat;
+  if (gains_.flat_rates) flat = flat_state(instant.wanted, belief_, gains_.drag);
+
   // U* + g e3 (2.56): what the rotors must exert per mass, in W.
   Vector3d lift_W = acceleration(instant, memory) + Vector3d(0, 0, belief_.gravity);
-  if (gains_.drag) lift_W -= belief_.air_force_W(R_WF, now.linear_velocity) / belief_.mass;
+  if (flat) lift_W += flat->a_FCcm_W;
+  if (gains_.drag) {
+    lift_W -= belief_.air_force_W(R_WF, now.linear_velocity, now.angular_velocity) / belief_.mass;
+  }
 
   // (2.46), (2.47) or (2.53), (2.54), with the measured yaw. Of four quadrants, so that a demand to
   // fall faster than freely turns the vehicle over instead of the demand.
@@ -78,7 +84,7 @@ Demand Cascade::demand(const Instant& instant, double* memory) const {
   const double roll = elementary::asin(std::clamp(sine, -1.0, 1.0));
   // (2.48) or (2.55).
   const double thrust = belief_.mass * lift_W.dot(R_WF.col(2));
-  return {thrust, torque(instant, rpy, {roll, pitch, instant.wanted.yaw}, memory)};
+  return {thrust, torque(instant, flat, rpy, {roll, pitch, instant.wanted.yaw}, memory)};
 }
 
 /// (2.43), with an integral as in section 6.2.
@@ -95,8 +101,8 @@ Vector3d Cascade::acceleration(const Instant& instant, double* memory) const {
 
 /// (2.49), (2.50) or (2.57). J(eta) y + C(eta, eta') eta' are generalised torques, W^T times those
 /// about the body's axes, which with J = W^T I W are I (W y + W' eta') + w x I w.
-Vector3d Cascade::torque(const Instant& instant, const Vector3d& rpy, const Vector3d& wanted_rpy,
-                         double* memory) const {
+Vector3d Cascade::torque(const Instant& instant, const std::optional<FlatState>& flat,
+                         const Vector3d& rpy, const Vector3d& wanted_rpy, double* memory) const {
   const Vector3d& w_WF_F = instant.now.angular_velocity;
   const Vector3d rates = rates_of(rpy, w_WF_F);
   const EulerRates of_now = euler_rates(rpy, rates);
@@ -105,14 +111,15 @@ Vector3d Cascade::torque(const Instant& instant, const Vector3d& rpy, const Vect
   error = error.unaryExpr([](double angle) { return wrapped(angle); });
   auto integral = vector(memory + kAngles);
   integral += instant.period * error;
-  Vector3d wanted_rates = Vector3d::Zero(), wanted_accelerations = Vector3d::Zero();
-  if (gains_.flat_rates) {
-    const FlatState flat = flat_state(instant.wanted, belief_, gains_.drag);
-    const Vector3d flat_rpy = rpy_from_quaternion(Quaterniond(flat.R_WF));
-    wanted_rates = rates_of(flat_rpy, flat.w_WF_F);
+  // eta_d' of (2.50): that of yaw the reference says, those of roll and pitch its flat state.
+  Vector3d wanted_rates(0, 0, instant.wanted.yaw_rate);
+  Vector3d wanted_accelerations = Vector3d::Zero();
+  if (flat) {
+    const Vector3d flat_rpy = rpy_from_quaternion(Quaterniond(flat->R_WF));
+    wanted_rates = rates_of(flat_rpy, flat->w_WF_F);
     const EulerRates of_flat = euler_rates(flat_rpy, wanted_rates);
     // W eta'' = w' - W' eta', and rates_of() divides by W.
-    wanted_accelerations = rates_of(flat_rpy, flat.dw_WF_F - of_flat.dW * wanted_rates);
+    wanted_accelerations = rates_of(flat_rpy, flat->dw_WF_F - of_flat.dW * wanted_rates);
   }
   const Vector3d y = inner_p_.cwiseProduct(error) + inner_i_.cwiseProduct(integral) +
                      inner_d_.cwiseProduct(wanted_rates - rates) + wanted_accelerations;

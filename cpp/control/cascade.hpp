@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+
+#include "quadcore/control/flat_state.hpp"
 #include "quadcore/control/law.hpp"
 
 namespace quadcore::control {
@@ -28,8 +31,8 @@ class Cascade final : public Law {
   enum : std::size_t { kPosition, kAngles = 3 };
 
   Vector3d acceleration(const Instant& instant, double* memory) const;
-  Vector3d torque(const Instant& instant, const Vector3d& rpy, const Vector3d& wanted_rpy,
-                  double* memory) const;
+  Vector3d torque(const Instant& instant, const std::optional<FlatState>& flat, const Vector3d& rpy,
+                  const Vector3d& wanted_rpy, double* memory) const;
 
   Belief belief_;
   Gains gains_;

@@ -26,14 +26,17 @@ Jet force(const Reference& wanted, const Belief& belief, bool with_drag) {
   return with_linear + belief.air.quadratic * (norm(v) * v);
 }
 
-}  // namespace
+/// Of the attitude in which the centre of mass follows the reference, which it changes in turn: a
+/// fixed point, to which a centre of mass near the origin leads at once.
+constexpr int rounds = 2;
 
-FlatState flat_state(const Reference& wanted, const Belief& belief, bool with_drag) {
+/// How a vehicle turns whose centre of mass follows a reference exactly.
+FlatState attitude_along(const Reference& wanted, const Belief& belief, bool with_drag) {
   const Jet f_W = force(wanted, belief, with_drag);
   const Jet z = unit(f_W);
   const Jet x = unit(cross(across(wanted.yaw, wanted.yaw_rate, wanted.yaw_acceleration), z));
   const Jet y = cross(z, x);
-  FlatState flat;
+  FlatState flat{};
   flat.R_WF << x.x, y.x, z.x;
   if (!flat.R_WF.allFinite()) {
     throw Error("the reference has no attitude: it falls freely, or along its own x");
@@ -42,10 +45,44 @@ FlatState flat_state(const Reference& wanted, const Belief& belief, bool with_dr
   flat.w_WF_F << z.x.dot(y.dx), x.x.dot(z.dx), y.x.dot(x.dx);
   flat.dw_WF_F << z.dx.dot(y.dx) + z.x.dot(y.ddx), x.dx.dot(z.dx) + x.x.dot(z.ddx),
       y.dx.dot(x.dx) + y.x.dot(x.ddx);
-  Vector3d exerted_W = belief.mass * (wanted.acceleration + Vector3d(0, 0, belief.gravity));
-  if (with_drag) exerted_W -= belief.air_force_W(flat.R_WF, wanted.velocity);
-  flat.thrust = z.x.dot(exerted_W);
   return flat;
+}
+
+}  // namespace
+
+FlatState flat_state(const Reference& wanted, const Belief& belief, bool with_drag) {
+  FlatState flat = attitude_along(wanted, belief, with_drag);
+  if (!belief.p_FCcm_F.isZero(0)) {
+    for (int round = 0; round < rounds; ++round) {
+      flat = attitude_along(at_centre_of_mass(wanted, belief, flat), belief, with_drag);
+    }
+    flat.a_FCcm_W = at_centre_of_mass(wanted, belief, flat).acceleration - wanted.acceleration;
+  }
+  const Vector3d up(0, 0, belief.gravity);
+  Vector3d exerted_W = belief.mass * (wanted.acceleration + flat.a_FCcm_W + up);
+  if (with_drag) exerted_W -= belief.air_force_W(flat.R_WF, wanted.velocity, flat.w_WF_F);
+  flat.thrust = flat.R_WF.col(2).dot(exerted_W);
+  return flat;
+}
+
+Reference at_centre_of_mass(const Reference& wanted, const Belief& belief, const FlatState& flat) {
+  const Vector3d &r_F = belief.p_FCcm_F, &w_F = flat.w_WF_F, &dw_F = flat.dw_WF_F;
+  // Each derivative in W is that in F and w x; what is primed is a derivative in F.
+  const Vector3d v_F = w_F.cross(r_F);
+  const Vector3d dv_F = dw_F.cross(r_F);
+  const Vector3d a_F = w_F.cross(v_F) + dv_F;
+  const Vector3d da_F = dw_F.cross(v_F) + w_F.cross(dv_F);
+  const Vector3d j_F = w_F.cross(a_F) + da_F;
+  const Vector3d dda_F = 2 * dw_F.cross(dv_F);
+  const Vector3d dj_F = dw_F.cross(a_F) + w_F.cross(da_F) + dda_F;
+  const Vector3d s_F = w_F.cross(j_F) + dj_F;
+  Reference centre = wanted;
+  centre.position += flat.R_WF * r_F;
+  centre.velocity += flat.R_WF * v_F;
+  centre.acceleration += flat.R_WF * a_F;
+  centre.jerk += flat.R_WF * j_F;
+  centre.snap += flat.R_WF * s_F;
+  return centre;
 }
 
 Matrix3d attitude_of(const Vector3d& z_W, double yaw) {

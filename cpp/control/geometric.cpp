@@ -8,12 +8,11 @@ const Settings<Geometric::Gains>& Geometric::settings() {
 }
 
 Demand Geometric::demand(const Instant& instant, double* memory) const {
-  const Belief& belief = tracking_.belief();
-  const Vector3d up(0, 0, belief.gravity);
-  const Vector3d f_W =
-      belief.mass * (tracking_.acceleration(instant, memory) + up) - tracking_.air_force_W(instant);
+  const std::optional<FlatState> flat = tracking_.fed_forward(instant);
+  const Vector3d f_W = tracking_.force_W(instant, flat, tracking_.acceleration(instant, memory));
   const Vector3d z_W = instant.now.orientation * Vector3d::UnitZ();
-  return {f_W.dot(z_W), tracking_.torque(instant, tracking_.angular_acceleration(instant, f_W))};
+  return {f_W.dot(z_W),
+          tracking_.torque(instant, tracking_.angular_acceleration(instant, flat, f_W))};
 }
 
 }  // namespace quadcore::control

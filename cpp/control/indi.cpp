@@ -18,14 +18,14 @@ Demand Indi::demand(const Instant& instant, double* memory) const {
   const Belief& belief = tracking_.belief();
   const Odometry& now = instant.now;
   const Vector3d z_W = now.orientation * Vector3d::UnitZ();
-  const Vector3d up(0, 0, belief.gravity);
+  const std::optional<FlatState> flat = tracking_.fed_forward(instant);
   const Vector3d a_W = tracking_.acceleration(instant, memory + kIntegral);
   const auto filtered = [memory](std::size_t at) { return Eigen::Map<Vector3d>(memory + at); };
 
   const double share = 1 - elementary::exp(-filter_ * instant.period);
   if (instant.begins) {  // nothing was measured yet: as the model has it, accelerations included
-    const Vector3d f_W = belief.mass * (a_W + up) - tracking_.air_force_W(instant);
-    const Vector3d dw_F = tracking_.angular_acceleration(instant, f_W);
+    const Vector3d f_W = tracking_.force_W(instant, flat, a_W);
+    const Vector3d dw_F = tracking_.angular_acceleration(instant, flat, f_W);
     const Demand demand{f_W.dot(z_W), tracking_.torque(instant, dw_F)};
     const double behind = instant.period * (1 / share - 1);  // a filter is that of a ramp
     filtered(kVelocity) = now.linear_velocity - behind * a_W;
@@ -45,8 +45,10 @@ Demand Indi::demand(const Instant& instant, double* memory) const {
   follow(kForce, instant.exerted.thrust * z_W);
   follow(kTorque, instant.exerted.torque_F);
 
+  // Both accelerations are those of the origin of F: what the centre of mass has beside them is in
+  // the force already.
   const Vector3d f_W = filtered(kForce) + belief.mass * (a_W - measured_a_W);
-  const Vector3d dw_F = tracking_.angular_acceleration(instant, f_W);
+  const Vector3d dw_F = tracking_.angular_acceleration(instant, flat, f_W);
   Demand demand{f_W.dot(z_W), tracking_.torque(instant, dw_F)};
   const Vector3d incremental_F = filtered(kTorque) + belief.inertia_Ccm_F * (dw_F - measured_dw_F);
   demand.torque_F.head<2>() = incremental_F.head<2>();

@@ -39,11 +39,13 @@ VehicleState start_on(const Reference& wanted, const VehicleDescription& vehicle
   state.orientation = Quaterniond(flat.R_WF).normalized();
   state.linear_velocity = wanted.velocity;
   state.angular_velocity = flat.w_WF_F;
-  state.rotor_angle = VectorXd::Zero(n);
-  state.rotor_velocity.resize(n);
+  state.rotor_angle = VectorXd::Zero(static_cast<Eigen::Index>(vehicle.rotors.size()));
+  state.rotor_velocity = state.rotor_angle;  // what is not driven stands still
+  const std::vector<std::size_t> driven = vehicle.driven();
   for (Eigen::Index i = 0; i < n; ++i) {
-    state.rotor_velocity[i] =
-        speeds[i] * vehicle.rotors[static_cast<std::size_t>(i)].rate_per_command;
+    const std::size_t joint = driven[static_cast<std::size_t>(i)];
+    state.rotor_velocity[static_cast<Eigen::Index>(joint)] =
+        speeds[i] * vehicle.rotors[joint].rate_per_command;
   }
   return state;
 }

@@ -28,22 +28,32 @@ Vector3d Tracking::acceleration(const Instant& instant, double* integral) const 
   return a_W;
 }
 
-Vector3d Tracking::air_force_W(const Instant& instant) const {
-  if (!gains_.drag) return Vector3d::Zero();
-  return belief().air_force_W(instant.now.orientation.toRotationMatrix(),
-                              instant.now.linear_velocity);
+Vector3d Tracking::force_W(const Instant& instant, const std::optional<FlatState>& flat,
+                           const Vector3d& a_WF_W) const {
+  Vector3d a_W = a_WF_W + Vector3d(0, 0, belief().gravity);
+  if (flat) a_W += flat->a_FCcm_W;
+  if (!gains_.drag) return belief().mass * a_W;
+  const Odometry& now = instant.now;
+  return belief().mass * a_W - belief().air_force_W(now.orientation.toRotationMatrix(),
+                                                    now.linear_velocity, now.angular_velocity);
 }
 
-Vector3d Tracking::angular_acceleration(const Instant& instant, const Vector3d& z_W) const {
+std::optional<FlatState> Tracking::fed_forward(const Instant& instant) const {
+  if (!gains_.flat_rates) return {};
+  return flat_state(instant.wanted, belief(), gains_.drag);
+}
+
+Vector3d Tracking::angular_acceleration(const Instant& instant,
+                                        const std::optional<FlatState>& flat,
+                                        const Vector3d& z_W) const {
   const Matrix3d R_WF = instant.now.orientation.toRotationMatrix();
   const Matrix3d R_WD = attitude_of(z_W, instant.wanted.yaw);
   const Quaterniond q_FD(Matrix3d(R_WF.transpose() * R_WD));
   const Vector3d& w_WF_F = instant.now.angular_velocity;
-  if (!gains_.flat_rates) return attitude_.angular_acceleration(q_FD, -w_WF_F);
-  const FlatState flat = flat_state(instant.wanted, belief(), gains_.drag);
-  const Matrix3d R_FD = R_WF.transpose() * flat.R_WF;
-  const Vector3d wanted_w_F = R_FD * flat.w_WF_F;
-  const Vector3d wanted_dw_F = R_FD * flat.dw_WF_F - w_WF_F.cross(wanted_w_F);
+  if (!flat) return attitude_.angular_acceleration(q_FD, -w_WF_F);
+  const Matrix3d R_FD = R_WF.transpose() * flat->R_WF;
+  const Vector3d wanted_w_F = R_FD * flat->w_WF_F;
+  const Vector3d wanted_dw_F = R_FD * flat->dw_WF_F - w_WF_F.cross(wanted_w_F);
   return attitude_.angular_acceleration(q_FD, wanted_w_F - w_WF_F) + wanted_dw_F;
 }
 

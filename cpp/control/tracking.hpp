@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <utility>
 
 #include "attitude_settings.hpp"
@@ -47,15 +48,18 @@ class Tracking {
   Tracking(const Belief& belief, const TrackingGains& gains);
 
   const Belief& belief() const { return attitude_.belief(); }
-  const TrackingGains& gains() const { return gains_; }
 
+  /// What the reference asks for, if it is to be fed forward.
+  std::optional<FlatState> fed_forward(const Instant& instant) const;
   /// Acceleration that makes up for the errors of position and velocity, in W [m/s^2].
   /// \param integral  three numbers of memory [m s]
   Vector3d acceleration(const Instant& instant, double* integral) const;
-  /// Force of the believed air, zero if it is not to be made up for, in W [N].
-  Vector3d air_force_W(const Instant& instant) const;
+  /// Force of the rotors that accelerates the origin of F so, in W [N].
+  Vector3d force_W(const Instant& instant, const std::optional<FlatState>& flat,
+                   const Vector3d& a_WF_W) const;
   /// Angular acceleration that turns z of F into a direction and x to the yaw, in F [rad/s^2].
-  Vector3d angular_acceleration(const Instant& instant, const Vector3d& z_W) const;
+  Vector3d angular_acceleration(const Instant& instant, const std::optional<FlatState>& flat,
+                                const Vector3d& z_W) const;
   /// Torque of the rotors that turns the vehicle so, in F [N m].
   Vector3d torque(const Instant& instant, const Vector3d& dw_WF_F) const;
 

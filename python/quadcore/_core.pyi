@@ -298,7 +298,12 @@ class ReferenceShape(metaclass=_Bound):
 
 class Controller(metaclass=_Bound):
     def __init__(
-        self, law: str, simulation: Simulation, values: Dict[str, float], spins: List[float]
+        self,
+        law: str,
+        believed: Simulation,
+        flown: Simulation,
+        values: Dict[str, float],
+        spins: List[float],
     ) -> None: ...
     def command(self, period: float, state: Any, reference: Reference) -> _Array: ...
     def command_at(
@@ -309,7 +314,11 @@ class Controller(metaclass=_Bound):
 
 class InnerLoop(metaclass=_Bound):
     def __init__(
-        self, simulation: Simulation, values: Dict[str, float], spins: List[float]
+        self,
+        believed: Simulation,
+        flown: Simulation,
+        values: Dict[str, float],
+        spins: List[float],
     ) -> None: ...
     def attitude(self, period: float, state: Any, orientation: Any, thrust: float) -> _Array: ...
     def rates(self, period: float, state: Any, angular_velocity: Any, thrust: float) -> _Array: ...

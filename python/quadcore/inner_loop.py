@@ -101,7 +101,7 @@ class InnerLoop:
         target, thrust = _checked(wanted)
         if self._loop is None:
             vehicle = believed("inner loop", self.belief, simulation)
-            self._loop = _core.InnerLoop(vehicle, self.parameters, self.spins)
+            self._loop = _core.InnerLoop(vehicle, simulation, self.parameters, self.spins)
         if isinstance(wanted, AttitudeThrust):
             return self._loop.attitude(period, state, target, thrust)
         return self._loop.rates(period, state, target, thrust)

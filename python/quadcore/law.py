@@ -52,7 +52,9 @@ class Law:
     def reset(self, simulation: _core.Simulation) -> None:
         """Begin on what the simulation flies."""
         vehicle = believed(f"law '{self.name}'", self.belief, simulation)
-        self._controller = _core.Controller(self.name, vehicle, self.parameters, self.spins)
+        self._controller = _core.Controller(
+            self.name, vehicle, simulation, self.parameters, self.spins
+        )
         self._period = max(1 / self.rate, simulation.dt)  # called once a step at most
 
     def __call__(self, t: float, state: Any, reference: Any) -> np.ndarray:

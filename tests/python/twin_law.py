@@ -48,9 +48,30 @@ def attitude(f, yaw):
     return np.stack([np.cross(y, z), y, z], axis=1)
 
 
-def flat(reference, step=1e-30):
-    """Attitude, angular velocity and acceleration that the reference asks for."""
-    v, a, j, s = (getattr(reference, name) for name in ("velocity", "acceleration", "jerk", "snap"))
+def flat(reference):
+    """Attitude, angular velocity and acceleration that the reference asks for.
+
+    And the acceleration of the centre of mass beside the frame's; its own jerk and snap are those
+    of a rotation whose angular acceleration stays as it is.
+    """
+    given = [getattr(reference, name) for name in ("velocity", "acceleration", "jerk", "snap")]
+    beside = np.zeros((4, 3))
+    for _ in range(5):
+        R, w, dw = turning(reference, *(np.array(given) + beside))
+        S, dS = skew(w), skew(dw)
+        second = S @ S + dS
+        third = S @ second + dS @ S + S @ dS
+        fourth = S @ third + dS @ second + S @ (dS @ S + S @ dS) + 2 * dS @ dS
+        beside = np.array([R @ turned @ C for turned in (S, second, third, fourth)])
+    return R, w, dw, beside[1]
+
+
+def skew(w):
+    return np.array([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
+
+
+def turning(reference, v, a, j, s, step=1e-30):
+    """The same for a centre of mass with these derivatives."""
     d = 4 * DRAG
 
     def rate(f, df, yaw, yaw_rate):
@@ -90,23 +111,25 @@ class Twin:
         v, w = state.linear_velocity, state.angular_velocity
         error = reference.position - state.position
         self.integral = self.integral + error / self.rate
-        a = KP * error + KD * (reference.velocity - v) + reference.acceleration
+        R_D, w_D, dw_D, beside = flat(reference)
+        a = KP * error + KD * (reference.velocity - v) + reference.acceleration + beside
         a = a + KI * self.integral
         assert np.all(np.abs(KI * self.integral) < LIMIT)
 
         v_F = R.T @ v
-        vertical = 4 * PARASITIC * abs(v[2]) * v[2]
-        drag = -(R @ np.array([4 * DRAG * v_F[0], 4 * DRAG * v_F[1], vertical]))
+        of_mass_F = v_F + np.cross(w, C)
+        climb = (R @ of_mass_F)[2]
+        vertical = 4 * PARASITIC * abs(climb) * climb
+        drag = -(R @ np.array([4 * DRAG * of_mass_F[0], 4 * DRAG * of_mass_F[1], vertical]))
         f = M * (a + UP) - drag
         q = Rotation.from_matrix(R.T @ attitude(f, reference.yaw)).as_quat()
         tilt = 2 * np.sign(q[3]) * q[:3]
-        R_D, w_D, dw_D = flat(reference)
         turn = R.T @ R_D
         dw = KR * tilt + KW * (turn @ w_D - w) + turn @ dw_D - np.cross(w, turn @ w_D)
 
         moment = np.zeros(3)  # of the air
         for place in PLACES:
-            V = v_F + np.cross(w, place - C)
+            V = v_F + np.cross(w, place)
             moment += np.cross(place - C, -DRAG * np.array([V[0], V[1], 0]))
         rates = np.zeros(4) if self.speeds is None else SPINS * self.speeds
         h = MOMENT * np.array([0, 0, rates.sum()])

@@ -30,6 +30,9 @@ std::vector<std::size_t> Topics::settle() {
     if (topic.writer != the_caller) refuse_second(name_of(declared.plugin), topic);
     topic.writer = declared.plugin;
   }
+  for (Declaration& declared : declarations_) {
+    if (declared.open) close(declared);
+  }
   for (const Declaration& declared : declarations_) {
     const Declaration& other = authority(declared.topic);
     if (other.kind == declared.kind) continue;
@@ -38,6 +41,18 @@ std::vector<std::size_t> Topics::settle() {
                      " has it as " + describe(other.kind) + "; make them agree");
   }
   return order();
+}
+
+/// Gives a topic the fields of the first who takes it as this kind.
+void Topics::close(Declaration& open) {
+  const auto takes = [&](const Declaration& other) {
+    return other.topic == open.topic && !other.writes && other.kind.name == open.kind.name;
+  };
+  const auto taker = std::find_if(declarations_.begin(), declarations_.end(), takes);
+  if (taker != declarations_.end()) open.kind = taker->kind;
+  Topic& topic = topics_[open.topic];
+  topic.kind = open.kind;
+  topic.values.assign(open.kind.fields.size(), 0.0);
 }
 
 /// Who says what kind a topic is: its writer, or else the first who takes it.

@@ -26,6 +26,12 @@ std::size_t Topics::publishes(const std::string& name, const MessageKind& kind) 
   return declare(name, kind, true, false);
 }
 
+std::size_t Topics::publishes_as_taken(const std::string& name, const MessageKind& kind) {
+  const std::size_t index = declare(name, kind, true, false);
+  declarations_.back().open = true;
+  return index;
+}
+
 std::size_t Topics::takes(const std::string& name, const MessageKind& kind, bool late) {
   const std::size_t original = declare(name, kind, false, late);
   if (!late) return original;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "quadcore/error.hpp"
 #include "quadcore/simulation.hpp"
 
 namespace quadcore {
@@ -24,18 +25,53 @@ VehicleState still(const VehicleState& state) {
   return rest;
 }
 
-/// Rate of all joints at which their mean thrust, turning either way, carries the vehicle; 0 if
+/// Of the joints that turn: those that are driven, or all where nobody says who is.
+VectorXd turning(const VehicleDescription& vehicle) {
+  VectorXd turns(static_cast<Eigen::Index>(vehicle.rotors.size()));
+  for (Eigen::Index i = 0; i < turns.size(); ++i) {
+    turns[i] = vehicle.rotors[static_cast<std::size_t>(i)].place == not_driven ? 0 : 1;
+  }
+  return turns.isZero(0) ? VectorXd::Ones(turns.size()).eval() : turns;
+}
+
+/// Rate of these joints at which their mean thrust, turning either way, carries the vehicle; 0 if
 /// none does [rad/s].
-double hover_rate(const VehicleDescription& vehicle) {
+double hover_rate(const VehicleDescription& vehicle, const VectorXd& turns) {
   Vector3d lift_F = Vector3d::Zero();
-  for (const RotorDescription& rotor : vehicle.rotors) {
-    lift_F += (rotor.forward.force_F + rotor.backward.force_F) / 2;
+  for (std::size_t i = 0; i < vehicle.rotors.size(); ++i) {
+    const RotorDescription& rotor = vehicle.rotors[i];
+    lift_F +=
+        turns[static_cast<Eigen::Index>(i)] * (rotor.forward.force_F + rotor.backward.force_F) / 2;
   }
   const double weight = vehicle.body.mass * vehicle.gravity_W.norm();
   return lift_F.norm() > 0 ? std::sqrt(weight / lift_F.norm()) : 0;
 }
 
 }  // namespace
+
+std::vector<std::size_t> VehicleDescription::driven() const {
+  std::vector<std::size_t> joints;
+  for (std::size_t place = 0; place < rotors.size(); ++place) {
+    for (std::size_t i = 0; i < rotors.size(); ++i) {
+      if (rotors[i].place != static_cast<int>(place)) continue;
+      if (joints.size() > place) {
+        throw InputError("rotors '" + rotors[joints.back()].joint + "' and '" + rotors[i].joint +
+                         "' follow one number of the command; drive them by one plugin");
+      }
+      joints.push_back(i);
+    }
+    if (joints.size() <= place) break;
+  }
+  const auto count = std::count_if(rotors.begin(), rotors.end(), [](const RotorDescription& rotor) {
+    return rotor.place != not_driven;
+  });
+  if (joints.empty() || static_cast<std::ptrdiff_t>(joints.size()) != count) {
+    throw InputError(
+        "it is not told which rotor follows which number of the command; add "
+        "libmotorpid_plugin.so, or let your motors' describe_rotors() say each one's place");
+  }
+  return joints;
+}
 
 void Simulation::prepare_plugins() {
   const auto asks = [](const LoadedPlugin& p) { return p.descriptor->create.hooks.prepare; };
@@ -99,7 +135,8 @@ Wrench Simulation::probe(const VehicleState& state) {
 AirResistance Simulation::probe_air(const VehicleDescription& vehicle) {
   using Vector6d = Eigen::Matrix<double, 6, 1>;
   VehicleState state = still(state_);
-  const double hover = hover_rate(vehicle);
+  const VectorXd turns = turning(vehicle);
+  const double hover = hover_rate(vehicle, turns);
   // The part of the wrench that changes its sign with the velocity, the mean over quarter turns and
   // senses of the rotors.
   const auto odd = [&](const Vector6d& velocity) {
@@ -107,7 +144,7 @@ AirResistance Simulation::probe_air(const VehicleDescription& vehicle) {
     for (int quarter = 0; quarter < 4; ++quarter) {
       state.rotor_angle.setConstant(std::remainder(quarter * M_PI / 2, 2 * M_PI));
       for (const double rate : {hover, -hover}) {
-        state.rotor_velocity.setConstant(rate);
+        state.rotor_velocity = rate * turns;
         for (const double sign : {1.0, -1.0}) {
           state.angular_velocity = sign * velocity.tail<3>();
           state.linear_velocity =

@@ -19,7 +19,7 @@ class ControllerPlugin final : public Plugin {
     const Parameters& p = setup.parameters;
     odometry_ = setup.topics.takes(p.text("odometry"), messages::kind_of<messages::Odometry>());
     reference_ = setup.topics.takes(p.text("reference"), messages::kind_of<messages::Reference>());
-    command_ = setup.topics.publishes(p.text("command"), messages::speeds(rotors_));
+    command_ = setup.topics.publishes_as_taken(p.text("command"), messages::speeds(rotors_));
   }
 
   std::size_t state_size() const override {
@@ -39,7 +39,10 @@ class ControllerPlugin final : public Plugin {
       controller_->command(period, now, wanted, own + schedule_.state_size(), speeds);
     };
     const double* const speeds = schedule_.update(state[kSteps], sample.dt, own, ask);
-    if (speeds) std::copy_n(speeds, rotors_, sample.topics.publish(command_, sample.time));
+    if (speeds) {
+      double* const command = sample.topics.publish(command_, sample.time);
+      std::copy_n(speeds, controller_->rotors(), command);
+    }
     state[kSteps] += 1;
   }
 
@@ -48,7 +51,7 @@ class ControllerPlugin final : public Plugin {
   enum Memory { kSteps, kSchedule };
 
   ControllerSetup setup_;
-  std::size_t rotors_;
+  std::size_t rotors_;  ///< joints, of which some may not be driven
   control::Schedule schedule_;
   std::size_t odometry_, reference_, command_;
   std::unique_ptr<const Controller> controller_;

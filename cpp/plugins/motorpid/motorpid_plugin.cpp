@@ -70,6 +70,7 @@ class MotorPidPlugin final : public Plugin {
       rotor.rate_per_command = stiffness > 0 ? config_.kp / stiffness / config_.sim_slow : 0;
       rotor.lag = stiffness > 0 ? rotor.moment / stiffness : 0;
       rotor.fastest = config_.max_velocity;
+      rotor.place = static_cast<int>(j);
     }
   }
 

@@ -88,6 +88,7 @@ TEST_CASE("neighbours turn against each other unless they are told otherwise") {
   // Its rotors are tilted so that their thrust helps this sense to yaw, and hinders the other.
   CHECK(spins({}) == std::vector<double>{-1, 1, -1, 1, -1, 1});
   std::swap(vehicle.rotors[1], vehicle.rotors[2]);
+  std::swap(vehicle.rotors[1].place, vehicle.rotors[2].place);
   CHECK(spins({}) == std::vector<double>{-1, -1, 1, 1, -1, 1});
   for (RotorDescription& rotor : vehicle.rotors) rotor.backward = rotor.forward;
   CHECK(spins({}) == std::vector<double>{1, 1, -1, -1, 1, -1});

@@ -37,6 +37,8 @@ class Topics {
   /// @{
   /// Declares that the plugin writes the topic, which nobody else may then.
   std::size_t publishes(const std::string& name, const MessageKind& kind);
+  /// The same of a topic that has as many fields as who takes it asks for, or else those of `kind`.
+  std::size_t publishes_as_taken(const std::string& name, const MessageKind& kind);
   /// Declares that the plugin reads the topic. It runs after the plugin that writes it, and so has
   /// the value of the same sample; or, `late`, whenever that runs, the value from before this
   /// sample began.
@@ -111,6 +113,7 @@ class Topics {
     std::size_t topic;
     MessageKind kind;
     bool writes, late;
+    bool open = false;  ///< the takers say which fields it has
   };
   struct LateCopy {
     std::size_t copy, original;
@@ -121,6 +124,7 @@ class Topics {
   bool is_copy(std::size_t index) const;
   [[noreturn]] void refuse_writer(const Topic& topic) const;
   [[noreturn]] void refuse_loop(const std::vector<bool>& placed) const;
+  void close(Declaration& open);
   const Declaration& authority(std::size_t topic) const;
   std::vector<std::size_t> order() const;
   const Declaration* awaited(std::size_t plugin, const std::vector<bool>& placed) const;

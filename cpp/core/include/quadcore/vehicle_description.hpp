@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -8,6 +9,8 @@
 #include "quadcore/model.hpp"
 
 namespace quadcore {
+
+constexpr int not_driven = -1;  ///< place of a joint that follows no command
 
 /// A rotor as it stands in the frame, and what the force laws of all plugins make of it.
 struct RotorDescription {
@@ -24,6 +27,7 @@ struct RotorDescription {
   double rate_per_command = 1;  ///< joint rate in the long run per commanded speed
   double lag = 0;  ///< time constant with which the joint follows [s]; 0: at once, or not known
   double fastest = std::numeric_limits<double>::infinity();  ///< command that is followed [rad/s]
+  int place = not_driven;  ///< of its number in the command, from 0 on
   /// @}
 };
 
@@ -43,10 +47,14 @@ struct AirResistance {
 /// The vehicle as its engine flies it, with what it carries at the start: what a control law would
 /// otherwise ask for as tags.
 struct VehicleDescription {
-  MassProperties body;  ///< of the whole vehicle
-  Vector3d gravity_W;   ///< m/s^2
-  std::vector<RotorDescription> rotors;
+  MassProperties body;                   ///< of the whole vehicle
+  Vector3d gravity_W;                    ///< m/s^2
+  std::vector<RotorDescription> rotors;  ///< every joint, in file order
   AirResistance air;
+
+  /// Those of `rotors` that follow the command, in the order of its numbers. Throws InputError if
+  /// no plugin says who does, or if two follow one number.
+  std::vector<std::size_t> driven() const;
 };
 
 }  // namespace quadcore

@@ -12,16 +12,25 @@ struct FlatState {
   Vector3d w_WF_F;   ///< angular velocity [rad/s]
   Vector3d dw_WF_F;  ///< its derivative [rad/s^2]
   double thrust;     ///< of all rotors along z of F [N]
+  /// Acceleration of the centre of mass beside that of the origin of F, in W [m/s^2].
+  Vector3d a_FCcm_W = Vector3d::Zero();
 };
 
 /// The flat output of a quadrotor is its position and yaw (Mellinger, Kumar, ICRA 2011, sec. III);
 /// it remains so with rotor drag (Faessler, Franchi, Scaramuzza, RA-L 2018, sec. II): what the
 /// rotors must exert is m (a - g) + d v + q |v| v in W but for a part along z of F, d being the
 /// mean drag along x and y of F. z of F is its direction, and x of F stands in the vertical plane
-/// of the yaw, which makes the yaw that of roll, pitch and yaw. Throws FlightError where the
-/// reference falls so fast that no direction is left, or lays x of F straight up.
+/// of the yaw, which makes the yaw that of roll, pitch and yaw. The reference is that of the origin
+/// of F, and Newton's law that of the centre of mass, see at_centre_of_mass(). Throws Error where
+/// the reference falls so fast that no direction is left, or lays x of F straight up.
 /// \param with_drag  whether the believed drag is made up for
 FlatState flat_state(const Reference& wanted, const Belief& belief, bool with_drag);
+
+/// Where the centre of mass is to be, of a vehicle whose origin of F follows a reference in such an
+/// attitude: r being the way to it, p + r with v + w x r, a + w' x r + w x (w x r) and so on. A
+/// reference ends with the snap, which leaves the second and third derivative of w open: in F they
+/// are taken for zero, as they are in a steady turn.
+Reference at_centre_of_mass(const Reference& wanted, const Belief& belief, const FlatState& flat);
 
 /// Orientation whose z is the given direction, not zero, and whose x stands in the vertical plane
 /// of the yaw.
