@@ -1,7 +1,9 @@
 #include "quadcore/control/allocation.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "quadcore/error.hpp"
@@ -14,6 +16,17 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// More is no question of thrust, and the sums below stay finite.
 constexpr double largest_square = 1e12;
 
+/// What is orthogonal to three vectors of four numbers.
+Eigen::Vector4d orthogonal(const Eigen::Matrix<double, 4, 3>& vectors) {
+  Eigen::Vector4d normal;
+  for (int i = 0; i < 4; ++i) {
+    Matrix3d minor;
+    for (int row = 0; row < 3; ++row) minor.row(row) = vectors.row(row < i ? row : row + 1);
+    normal[i] = (i % 2 == 0 ? 1 : -1) * minor.determinant();
+  }
+  return normal;
+}
+
 }  // namespace
 
 Allocation::Allocation(const Belief& belief) {
@@ -21,14 +34,14 @@ Allocation::Allocation(const Belief& belief) {
   effect_ = belief.effectiveness.bottomRows<4>();  // z, then the torques
   inverse_.resize(n, 4);
   // In units in which thrust and torques are of one size, so that the rank can be told.
-  const Eigen::Vector4d size = effect_.rowwise().norm();
-  const bool spans = n >= 4 && (size.array() > 0).all();
+  size_ = effect_.rowwise().norm();
+  const bool spans = n >= 4 && (size_.array() > 0).all();
   if (spans) {
-    const Eigen::Matrix4Xd scaled = size.cwiseInverse().asDiagonal() * effect_;
-    const Eigen::Matrix4d squared = scaled * scaled.transpose();
+    scaled_ = size_.cwiseInverse().asDiagonal() * effect_;
+    const Eigen::Matrix4d squared = scaled_ * scaled_.transpose();
     const Eigen::Vector4d singular = squared.jacobiSvd().singularValues();
     if (singular[3] > 1e-9 * singular[0]) {
-      inverse_ = scaled.transpose() * squared.inverse() * size.cwiseInverse().asDiagonal();
+      inverse_ = scaled_.transpose() * squared.inverse() * size_.cwiseInverse().asDiagonal();
       least_.resize(n);
       most_.resize(n);
       for (Eigen::Index i = 0; i < n; ++i) {
@@ -36,6 +49,7 @@ Allocation::Allocation(const Belief& belief) {
         least_[i] = rotor.slowest * rotor.slowest;
         most_[i] = std::min(rotor.fastest * rotor.fastest, largest_square);
       }
+      find_facets();
       return;
     }
   }
@@ -44,61 +58,155 @@ Allocation::Allocation(const Belief& belief) {
       "rotors or force laws, or give the spins that turn them against each other");
 }
 
+void Allocation::find_facets() {
+  constexpr double parallel = 1e-6, rounding = 1e-10;
+  const Eigen::Index n = scaled_.cols();
+  if (n == 4) {  // each rotor's own limits
+    for (int i = 0; i < n; ++i) facets_.push_back({inverse_.row(i), least_[i], most_[i]});
+    return;
+  }
+  const Eigen::Matrix4Xd directions = scaled_.colwise().normalized();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = i + 1; j < n; ++j) {
+      for (Eigen::Index k = j + 1; k < n; ++k) {
+        Eigen::Matrix<double, 4, 3> plane;
+        plane << directions.col(i), directions.col(j), directions.col(k);
+        Eigen::Vector4d normal = orthogonal(plane);
+        if (normal.norm() < parallel) continue;  // they span no facet
+        normal.normalize();
+        normal = (normal.array().abs() < rounding).select(0, normal);
+        Facets facets{normal.cwiseQuotient(size_), 0, 0};
+        for (Eigen::Index l = 0; l < n; ++l) {
+          if (std::abs(normal.dot(directions.col(l))) < rounding) continue;  // l is in the plane
+          const double along = normal.dot(scaled_.col(l));
+          facets.least += along * (along > 0 ? least_[l] : most_[l]);
+          facets.most += along * (along > 0 ? most_[l] : least_[l]);
+        }
+        facets_.push_back(facets);
+      }
+    }
+  }
+}
+
 bool Allocation::allocate(const Demand& demand, double* squares) const {
-  Eigen::Map<VectorXd> u(squares, inverse_.rows());
+  const Eigen::Index n = inverse_.rows();
+  Eigen::Map<VectorXd> u(squares, n);
+  const auto fits = [&] {
+    return (u.array() >= least_.array()).all() && (u.array() <= most_.array()).all();
+  };
   // Columns, not a product with a matrix, whose order of summation would depend on where the
   // caller's numbers lie in memory.
   u = demand.torque_F.x() * inverse_.col(1) + demand.torque_F.y() * inverse_.col(2);
   u += demand.torque_F.z() * inverse_.col(3) + demand.thrust * inverse_.col(0);
-  if ((u.array() >= least_.array()).all() && (u.array() <= most_.array()).all()) return true;
-
-  u = demand.torque_F.x() * inverse_.col(1) + demand.torque_F.y() * inverse_.col(2);
-  const Share share = fit(u, demand.thrust);
-  u = share.roll_pitch * u + share.thrust * inverse_.col(0);
-  double yaw = 1;  // share of it
-  for (Eigen::Index i = 0; i < u.size(); ++i) {
-    const double change = inverse_(i, 3) * demand.torque_F.z();
-    if (change == 0) continue;
-    const double room = (change > 0 ? most_[i] : least_[i]) - u[i];
-    yaw = std::clamp(room / change, 0.0, yaw);
+  if (fits()) return true;
+  Eigen::Vector4d whole;
+  whole << demand.thrust, demand.torque_F;
+  if (n > 4 && is_within(whole)) {
+    redistribute(whole, squares);
+    return true;
   }
-  u += yaw * demand.torque_F.z() * inverse_.col(3);
+  const Share share = fit(demand);
+  u = demand.torque_F.x() * inverse_.col(1) + demand.torque_F.y() * inverse_.col(2);
+  u = share.roll_pitch * u + share.thrust * inverse_.col(0);
+  u += share.yaw * demand.torque_F.z() * inverse_.col(3);
+  if (n > 4 && !fits()) {
+    const Vector3d of_torque(share.roll_pitch, share.roll_pitch, share.yaw);
+    whole << share.thrust, of_torque.cwiseProduct(demand.torque_F);
+    redistribute(whole, squares);
+  }
   u = u.cwiseMax(least_).cwiseMin(most_);  // last digits
   return false;
 }
 
-Allocation::Share Allocation::fit(const Eigen::Ref<const VectorXd>& of_torques,
-                                  double thrust) const {
-  // Rotor i: least <= s torque_i + T lift_i <= most bounds T from two sides by lines in s. The
+bool Allocation::is_within(const Eigen::Vector4d& demand) const {
+  const double rounding = 1e-9 * demand.cwiseQuotient(size_).norm();
+  return std::all_of(facets_.begin(), facets_.end(), [&](const Facets& f) {
+    const double at = f.normal.dot(demand);
+    return at >= f.least - rounding && at <= f.most + rounding;
+  });
+}
+
+Allocation::Share Allocation::fit(const Demand& demand) const {
+  // Facets: least <= s level + T lift + yaw <= most bounds T from two sides by lines in s. The
   // largest s in [0, 1] is where a lower line meets an upper one.
-  const auto line = [&](Eigen::Index i, bool upper) {  // T at s = 0 and its slope
-    const double lift = inverse_(i, 0);
-    const double limit = upper == (lift > 0) ? most_[i] : least_[i];
-    return std::pair{limit / lift, -of_torques[i] / lift};
+  const auto level = [&](const Facets& f) {
+    return demand.torque_F.x() * f.normal[1] + demand.torque_F.y() * f.normal[2];
   };
-  const Eigen::Index n = of_torques.size();
+  const auto line = [&](const Facets& f, bool upper) {  // T at s = 0 and its slope
+    const double lift = f.normal[0];
+    const double limit = upper == (lift > 0) ? f.most : f.least;
+    return std::pair{limit / lift, -level(f) / lift};
+  };
   double s = 1;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (inverse_(i, 0) == 0) continue;
-    const auto [low, low_slope] = line(i, false);
-    for (Eigen::Index j = 0; j < n; ++j) {
-      if (inverse_(j, 0) == 0) continue;
-      const auto [high, high_slope] = line(j, true);
+  for (const Facets& f : facets_) {
+    if (f.normal[0] == 0) {
+      const double change = level(f);
+      if (change != 0) s = std::clamp((change > 0 ? f.most : f.least) / change, 0.0, s);
+      continue;
+    }
+    const auto [low, low_slope] = line(f, false);
+    for (const Facets& g : facets_) {
+      if (g.normal[0] == 0) continue;
+      const auto [high, high_slope] = line(g, true);
       if (low_slope > high_slope) {
         s = std::clamp((high - low) / (low_slope - high_slope), 0.0, s);
       }
     }
   }
   double least = -infinity, most = infinity;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (inverse_(i, 0) == 0) continue;
-    const auto [low, low_slope] = line(i, false);
-    const auto [high, high_slope] = line(i, true);
+  for (const Facets& f : facets_) {
+    if (f.normal[0] == 0) continue;
+    const auto [low, low_slope] = line(f, false);
+    const auto [high, high_slope] = line(f, true);
     least = std::max(least, low + s * low_slope);
     most = std::min(most, high + s * high_slope);
   }
   // At the last share the two bounds are one but for rounding.
-  return {s, std::max(least, std::min(thrust, most))};
+  Share share{s, std::max(least, std::min(demand.thrust, most)), 1};
+  for (const Facets& f : facets_) {
+    const double change = f.normal[3] * demand.torque_F.z();
+    if (change == 0) continue;
+    const double at = s * level(f) + share.thrust * f.normal[0];
+    share.yaw = std::clamp(((change > 0 ? f.most : f.least) - at) / change, 0.0, share.yaw);
+  }
+  return share;
+}
+
+/// The least squares are clamp(B^T x) for the x that maximises a concave function (the dual), whose
+/// gradient is what is missing of the demand: Newton's method with a line search. A touch of `give`
+/// keeps it well posed where too few rotors are off their limits.
+void Allocation::redistribute(const Eigen::Vector4d& demand, double* squares) const {
+  constexpr double give = 1e-14, close = 1e-12;
+  constexpr int rounds = 60, halvings = 60;
+  const Eigen::Vector4d wanted = demand.cwiseQuotient(size_);
+  /// What is missing at x, whose squares are written down.
+  const auto missing = [&](const Eigen::Vector4d& x) {
+    Eigen::Vector4d rest = wanted - give * x;
+    for (Eigen::Index i = 0; i < scaled_.cols(); ++i) {
+      squares[i] = std::clamp(scaled_.col(i).dot(x), least_[i], most_[i]);
+      rest -= squares[i] * scaled_.col(i);
+    }
+    return rest;
+  };
+  Eigen::Vector4d x = Eigen::Vector4d::Zero(), rest = missing(x);
+  for (int round = 0; round < rounds && rest.norm() > close * wanted.norm(); ++round) {
+    Eigen::Matrix4d slope = give * Eigen::Matrix4d::Identity();
+    for (Eigen::Index i = 0; i < scaled_.cols(); ++i) {
+      const double free = scaled_.col(i).dot(x);
+      const bool moves = round == 0 || (free >= least_[i] && free <= most_[i]);
+      if (moves) slope += scaled_.col(i) * scaled_.col(i).transpose();
+    }
+    const Eigen::Vector4d step = slope.ldlt().solve(rest);
+    double from = 0, to = 1;
+    if (step.dot(missing(x + step)) < 0) {
+      for (int halving = 0; halving < halvings; ++halving) {
+        const double middle = (from + to) / 2;
+        (step.dot(missing(x + middle * step)) > 0 ? from : to) = middle;
+      }
+    }
+    x += to * step;
+    rest = missing(x);
+  }
 }
 
 Demand Allocation::exerted(const double* squares) const {

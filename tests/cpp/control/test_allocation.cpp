@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "../plugin_bench.hpp"
@@ -20,6 +21,75 @@ Eigen::Vector4d sum(const Belief& belief, const VectorXd& squares) {
   return total;
 }
 
+/// Largest c . x under A x <= b with a unique solution, by trying every corner. NaN: there is none.
+double largest(const Eigen::MatrixXd& A, const VectorXd& b, const VectorXd& c) {
+  const Eigen::Index n = A.cols(), m = A.rows();
+  const double slack = 1e-9 * (1 + b.cwiseAbs().maxCoeff());
+  double best = NAN;
+  std::vector<Eigen::Index> chosen(static_cast<std::size_t>(n));
+  const std::function<void(std::size_t, Eigen::Index)> choose = [&](std::size_t depth,
+                                                                    Eigen::Index from) {
+    if (depth < chosen.size()) {
+      for (Eigen::Index i = from; i < m; ++i) {
+        chosen[depth] = i;
+        choose(depth + 1, i + 1);
+      }
+      return;
+    }
+    Eigen::MatrixXd corner(n, n);
+    VectorXd at(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      corner.row(i) = A.row(chosen[static_cast<std::size_t>(i)]);
+      at[i] = b[chosen[static_cast<std::size_t>(i)]];
+    }
+    const Eigen::FullPivLU<Eigen::MatrixXd> solver(corner);
+    if (!solver.isInvertible()) return;
+    const VectorXd x = solver.solve(at);
+    if ((A * x - b).maxCoeff() <= slack && !(c.dot(x) <= best)) best = c.dot(x);
+  };
+  choose(0, 0);
+  return best;
+}
+
+/// What speeds of all kinds can do for a demand, by linear programs over the squares' freedom.
+struct Reachable {
+  Eigen::MatrixXd inverse, freedom;
+  double most;
+
+  Reachable(const Belief& belief, double fastest) : most(fastest * fastest) {
+    const Eigen::MatrixXd B = belief.effectiveness.bottomRows<4>();
+    inverse = B.transpose() * (B * B.transpose()).inverse() / most;
+    if (B.cols() > 4) {
+      freedom = Eigen::FullPivLU<Eigen::MatrixXd>(B).kernel();
+      freedom.colwise().normalize();
+    }
+  }
+
+  /// Largest x <= 1 for which base + x direction can be exerted.
+  double along(const Eigen::Vector4d& base, const Eigen::Vector4d& direction,
+               double up_to = 1e3) const {
+    return over(base, {direction}, up_to);
+  }
+  /// The same, another direction being of any size.
+  double over(const Eigen::Vector4d& base, const std::vector<Eigen::Vector4d>& directions,
+              double up_to) const {
+    const auto n = inverse.rows(), d = static_cast<Eigen::Index>(directions.size());
+    const auto k = freedom.cols();
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * n + 1, d + k);
+    VectorXd b(2 * n + 1), c = VectorXd::Unit(d + k, 0);
+    for (Eigen::Index i = 0; i < d; ++i) {
+      A.col(i).head(n) = inverse * directions[static_cast<std::size_t>(i)];
+    }
+    if (k > 0) A.topRightCorner(2 * n + 1, k).topRows(n) = freedom;
+    A.middleRows(n, n) = -A.topRows(n);
+    b.head(n) = VectorXd::Ones(n) - inverse * base;
+    b.segment(n, n) = inverse * base;
+    A(2 * n, 0) = 1;
+    b[2 * n] = up_to;
+    return largest(A, b, c);
+  }
+};
+
 }  // namespace
 
 TEST_CASE("a demand that fits is met with the least squares") {
@@ -31,6 +101,9 @@ TEST_CASE("a demand that fits is met with the least squares") {
       const Demand demand{13 + draw.number(), 0.1 * draw.vector()};
       VectorXd squares(n);
       if (!allocation.allocate(demand, squares.data())) continue;
+      const Eigen::Vector4d wanted(demand.thrust, demand.torque_F.x(), demand.torque_F.y(),
+                                   demand.torque_F.z());
+      if ((Reachable(belief, 1).inverse * wanted).minCoeff() < 0) continue;  // see below
       const Eigen::Vector4d got = sum(belief, squares);
       CHECK(got[0] == doctest::Approx(demand.thrust).epsilon(1e-12));
       CHECK((got.tail<3>() - demand.torque_F).norm() < 1e-12);
@@ -43,59 +116,74 @@ TEST_CASE("a demand that fits is met with the least squares") {
 }
 
 TEST_CASE("a demand that does not fit keeps roll and pitch, then thrust, then yaw") {
-  constexpr int steps = 400;  // of the brute force
-  for (const int n : {4, 6}) {
+  for (const int n : {4, 5, 6}) {
     const Belief belief = test::odd_belief(n, 700);
     const Allocation allocation(belief);
-    const Eigen::MatrixXd B = belief.effectiveness.bottomRows<4>();
-    const Eigen::MatrixXd inverse = B.transpose() * (B * B.transpose()).inverse();
-    const double most = 700.0 * 700.0;
-    const auto fits = [&](const VectorXd& u) {
-      return u.minCoeff() >= -1e-6 * most && u.maxCoeff() <= (1 + 1e-6) * most;
-    };
+    const Reachable reachable(belief, 700);
+    const Eigen::Vector4d up = Eigen::Vector4d::UnitX();
     test::Draw draw{7};
-    int saturated = 0;
-    for (int trial = 0; trial < 60; ++trial) {
+    int saturated = 0, freed = 0;
+    for (int trial = 0; trial < 100; ++trial) {
       const double thrust = 13 + 12 * draw.number();
-      const Vector3d torque = 3 * Vector3d(draw.number(), draw.number(), 0.1 * draw.number());
+      const double size = trial % 2 == 0 ? 3 : 0.7;
+      const Vector3d torque = size * Vector3d(draw.number(), draw.number(), 0.1 * draw.number());
       VectorXd squares(n);
-      if (allocation.allocate({thrust, torque}, squares.data())) continue;
-      ++saturated;
+      const bool met = allocation.allocate({thrust, torque}, squares.data());
       CHECK(squares.minCoeff() >= 0);
-      CHECK(squares.maxCoeff() <= most);
+      CHECK(squares.maxCoeff() <= 700.0 * 700.0);
       const Eigen::Vector4d got = sum(belief, squares);
-      // Shares found by trying.
-      const auto of = [&](double T, double share, double yaw) -> VectorXd {
-        Eigen::Vector4d demand;
-        demand << T, share * torque.x(), share * torque.y(), yaw * torque.z();
-        return inverse * demand;
-      };
-      const auto best_thrust = [&](double share) {
-        double best = NAN;
-        for (int i = 0; i <= 4 * steps; ++i) {
-          const double T = 40.0 * i / (4 * steps);
-          const bool nearer = !(std::abs(T - thrust) >= std::abs(best - thrust));
-          if (nearer && fits(of(T, share, 0))) best = T;
+      const Eigen::Vector4d level(0, torque.x(), torque.y(), 0), yaw(0, 0, 0, torque.z());
+      const double share = reachable.over(Eigen::Vector4d::Zero(), {level, up}, 1);
+      REQUIRE(share >= 0);
+      const double most = reachable.along(share * level, up);
+      const double least = -reachable.along(share * level, -up);
+      const double best = std::max(least, std::min(thrust, most));
+      const double turned = std::max(0.0, reachable.along(share * level + best * up, yaw, 1));
+      // What can be exerted as a whole is, even if it could not be without its yaw.
+      const Eigen::Vector4d whole = level + thrust * up + yaw;
+      const bool fits = reachable.along(whole, up) >= 0 && reachable.along(whole, -up) >= 0;
+      const Eigen::Vector4d expected = fits ? whole : (share * level + best * up + turned * yaw);
+      CHECK((got - expected).norm() < 1e-6);
+      CHECK(met == ((got - up * thrust - level - yaw).norm() < 1e-9));
+      if (!met) ++saturated;
+      const VectorXd least_norm = reachable.inverse * (up * thrust + level + yaw);
+      if (met && (least_norm.minCoeff() < 0 || least_norm.maxCoeff() > 1)) {
+        ++freed;
+        // Nothing else near that exerts it has smaller squares.
+        const VectorXd u = squares / (700.0 * 700.0);
+        test::Draw way{3};
+        for (int other = 0; other < 50; ++other) {
+          VectorXd change = VectorXd::Zero(n);
+          for (Eigen::Index k = 0; k < reachable.freedom.cols(); ++k) {
+            change += 0.01 * way.number() * reachable.freedom.col(k);
+          }
+          const VectorXd beside = u + change;
+          if (beside.minCoeff() < 0 || beside.maxCoeff() > 1) continue;
+          CHECK(beside.norm() >= u.norm() - 1e-9);
         }
-        return best;
-      };
-      const double share = got.segment<2>(1).dot(torque.head<2>()) / torque.head<2>().squaredNorm();
-      double best_share = 0;
-      for (int i = 0; i <= 100; ++i) {
-        if (!std::isnan(best_thrust(i / 100.0))) best_share = i / 100.0;
       }
-      CHECK(share >= best_share - 1e-6);
-      CHECK(share <= best_share + 0.0101);
-      CHECK((got.segment<2>(1) - share * torque.head<2>()).norm() < 1e-9);
-      if (share > 1 - 1e-9) {
-        CHECK(got[0] == doctest::Approx(best_thrust(1)).scale(1).epsilon(0.03));
-      }
-      const double yaw = got[3] / torque.z();
-      CHECK(yaw >= -1e-9);
-      CHECK(yaw <= 1 + 1e-9);
-      if (yaw < 1 - 1e-6) CHECK(!fits(of(got[0], share, yaw + 0.01)));
     }
     CHECK(saturated > 10);
+    if (n > 4) CHECK(freed > 0);
+  }
+}
+
+TEST_CASE("more rotors than needed meet every demand that some speeds meet") {
+  for (const int n : {5, 6, 8, 12}) {
+    const Belief belief = test::odd_belief(n, 700);
+    const Allocation allocation(belief);
+    test::Draw draw{static_cast<std::uint64_t>(n)};
+    for (int trial = 0; trial < 2000; ++trial) {
+      VectorXd some(n), squares(n);
+      for (Eigen::Index i = 0; i < n; ++i) {
+        some[i] = 700.0 * 700.0 * std::clamp(0.5 + 0.8 * draw.number(), 0.0, 1.0);
+      }
+      const Demand demand = allocation.exerted(some.data());
+      allocation.allocate(demand, squares.data());
+      const Demand got = allocation.exerted(squares.data());
+      CHECK(std::abs(got.thrust - demand.thrust) < 1e-8);
+      CHECK((got.torque_F - demand.torque_F).norm() < 1e-8);
+    }
   }
 }
 

@@ -12,9 +12,12 @@ struct Demand {
 };
 
 /// Squared speeds that exert a demand, thesis eq. (2.51) for any number of rotors: those with the
-/// least sum of squares, and where they do not fit between the slowest and the fastest, by
+/// least sum of squares between the slowest and the fastest. What no such speeds exert is met by
 /// priority: first as much roll and pitch as any thrust leaves room for, then the thrust that is
 /// nearest to the wanted one, then as much yaw as is left.
+///
+/// What rotors can exert is a zonotope (Bolender, Doman, JGCD 27(5), 2004): each of its facets,
+/// which any three rotors span, bounds the demands that are met.
 class Allocation {
  public:
   /// Throws InputError if the rotors do not span thrust and torques.
@@ -28,15 +31,27 @@ class Allocation {
   Demand exerted(const double* squares) const;
 
  private:
+  /// Parallel facets: least <= normal . (thrust, torque) <= most.
+  struct Facets {
+    Eigen::Vector4d normal;
+    double least, most;
+  };
   struct Share {
     double roll_pitch;  ///< of the wanted torques, 0 to 1
     double thrust;      ///< N
+    double yaw;         ///< of the wanted torque, 0 to 1
   };
-  Share fit(const Eigen::Ref<const VectorXd>& of_torques, double thrust) const;
+  void find_facets();
+  bool is_within(const Eigen::Vector4d& demand) const;
+  Share fit(const Demand& demand) const;
+  void redistribute(const Eigen::Vector4d& demand, double* squares) const;
 
   Eigen::Matrix<double, 4, Eigen::Dynamic> effect_;
   Eigen::Matrix<double, Eigen::Dynamic, 4> inverse_;
-  VectorXd least_, most_;  ///< squares
+  VectorXd least_, most_;    ///< squares
+  Eigen::Vector4d size_;     ///< of thrust and torques, so that they can be compared
+  Eigen::Matrix4Xd scaled_;  ///< effect_ in these units
+  std::vector<Facets> facets_;
 };
 
 }  // namespace control
