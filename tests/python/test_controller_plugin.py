@@ -98,7 +98,7 @@ def test_a_law_believes_in_the_vehicle_of_a_second_file(tmp_path, hangar):
 @pytest.mark.parametrize("shape", ["waypoints", "series"])
 @pytest.mark.parametrize("kind", ["csv", "yaml"])
 def test_a_reference_of_rows_is_read_from_a_file(shape, kind, tmp_path, hangar):
-    rows = [[0, 0, 0, 10, 0.1], [0.4, 0.5, 0, 10.2, 0.2], [1, 0.7, -0.3, 10.1, -0.1]]
+    rows = [[0, 0, 0, 10, 0.1], [4, 0.5, 0, 10.2, 0.2], [10, 0.7, -0.3, 10.1, -0.1]]
     path = tmp_path / f"rows.{kind}"
     if kind == "csv":
         lines = ["t, x, y, z, yaw", *(",".join(map(str, row)) for row in rows)]
@@ -109,7 +109,7 @@ def test_a_reference_of_rows_is_read_from_a_file(shape, kind, tmp_path, hangar):
     wanted = getattr(references, shape)(rows)
     assert np.array_equal(getattr(references, shape)(path).rows, wanted.rows)
     for _ in range(20):
-        simulation.step(40)
+        simulation.step(400)
         said, meant = simulation.topic("reference"), wanted(simulation.time - simulation.dt)
         assert [said["ax"], said["ay"], said["az"]] == pytest.approx(list(meant.acceleration))
         assert said["yaw"] == pytest.approx(meant.yaw)
