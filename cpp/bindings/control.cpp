@@ -192,6 +192,14 @@ void bind_control(py::module_& m) {
   m.def("start_on", &start, py::arg("simulation"), py::arg("reference"), py::arg("spins"),
         "Members of the state of a vehicle that follows a reference exactly.");
   m.def(
+      "on_vehicle",
+      [](const std::string& name, const Values& values, const Self& simulation) {
+        const Lock lock(*simulation);
+        return control::on_vehicle(name, values, simulation->model());
+      },
+      py::arg("name"), py::arg("values"), py::arg("simulation"),
+      "Parameters of a reference, and what a vehicle says where they do not.");
+  m.def(
       "read_gains",
       [](const std::string& path) {
         const control::Gains gains = control::read_gains(path);

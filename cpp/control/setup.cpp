@@ -116,8 +116,10 @@ const std::vector<TagSpec>& reference_tags() {
   return all;
 }
 
-std::unique_ptr<ReferenceShape> reference_of(const Parameters& parameters) {
-  return make_reference(parameters.choice("shape"), values_of(parameters, tags_of(of_references())),
+std::unique_ptr<ReferenceShape> reference_of(const Parameters& parameters, const Model& model) {
+  const std::string& name = parameters.choice("shape");
+  const Values values = values_of(parameters, tags_of(of_references()));
+  return make_reference(name, on_vehicle(name, values, model),
                         parameters.has("rows") ? read_rows(parameters.file("rows")) : Rows());
 }
 

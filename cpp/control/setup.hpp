@@ -41,8 +41,8 @@ struct ControllerSetup {
 
 /// The tags of a shape.
 const std::vector<TagSpec>& reference_tags();
-/// What they are set to.
-std::unique_ptr<ReferenceShape> reference_of(const Parameters& parameters);
+/// What they are set to, for a vehicle.
+std::unique_ptr<ReferenceShape> reference_of(const Parameters& parameters, const Model& model);
 
 }  // namespace control
 }  // namespace quadcore

@@ -87,7 +87,7 @@ ControllerSettings read_controller_settings(const ros::NodeHandle& nh) {
                               command_topic(nh, plant, simulation.model()),
                               watch};
   if (shape && shape->filename == reference_file) {
-    settings.reference = control::reference_of(shape->parameters);
+    settings.reference = control::reference_of(shape->parameters, simulation.model());
   }
   control::Gains& gains = settings.setup.gains;
   gains.rate = rate_of(gains, controller->parameters, simulation);

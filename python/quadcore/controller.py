@@ -121,6 +121,8 @@ class Guided(Pilot):
             controller = laws.parse(controller, simulation.model.name)
         if isinstance(reference, str):
             reference = references.parse(reference)
+        if isinstance(reference, references.Shape):
+            reference = reference.on(simulation)
         if reference is not None and not callable(reference):
             raise InputError(
                 f"reference is {reference!r}; give one of quadcore.references, or a function that "

@@ -55,6 +55,13 @@ class Shape:
         """Say where the vehicle is to be at a time [s]."""
         return self.shape.at(t)
 
+    def on(self, simulation: _core.Simulation) -> Shape:
+        """Make the same for a vehicle: from the `ground` where that rests, if none is given."""
+        parameters = _core.on_vehicle(self.name, self.parameters, simulation)
+        if parameters == self.parameters:
+            return self
+        return Shape(self.name, self.rows, **parameters)
+
     @property
     def end(self) -> float:
         """From when on nothing moves any more, s; infinite if that never comes."""
@@ -94,6 +101,8 @@ def start(simulation: Any, reference: ReferenceLike, spins: Sequence[float] = ()
     State
         Attitude, rates and rotor speeds included; for `Simulation.set_state`.
     """
+    if isinstance(reference, Shape):
+        reference = reference.on(simulation)
     state: State = simulation.state.copy()
     for name, value in _core.start_on(simulation, reference(state.time), list(spins)).items():
         setattr(state, name, value)
@@ -125,8 +134,8 @@ def parse(text: str) -> Shape:
     ----------
     text
         ``NAME[:KEY=VALUE,...]``, or the path of a .csv, .mat or .yaml file of waypoints, which
-        ``waypoints:FILE`` names too; ``waypoints`` alone are those of config/waypoints.yaml. The
-        rows of ``series:FILE`` neither begin nor end at rest.
+        ``waypoints:FILE[,KEY=VALUE,...]`` names too; ``waypoints`` alone are those of
+        config/waypoints.yaml. The rows of ``series:FILE`` neither begin nor end at rest.
 
     Raises
     ------
@@ -143,9 +152,13 @@ def parse(text: str) -> Shape:
             f"file that ends in {', '.join(_FILES)}"
         )
     if name in _OF_ROWS:
-        if not rest and name != _SHIPPED.stem:
+        parts = rest.split(",")
+        given = [part for part in parts if "=" in part and not part.lower().endswith(_FILES)]
+        file = ",".join(part for part in parts if part not in given)
+        if not file and name != _SHIPPED.stem:
             raise _core.InputError(f"reference '{name}' has no rows; write {name}:FILE")
-        return Shape(name, read_rows(Path(rest) if rest else _SHIPPED))
+        parameters = read_values(f"reference '{text}'", ",".join(given))
+        return Shape(name, read_rows(Path(file) if file else _SHIPPED), **parameters)
     return Shape(name, **read_values(f"reference '{text}'", rest))
 
 
@@ -155,8 +168,8 @@ def read_rows(path: Path) -> npt.ArrayLike:
     Parameters
     ----------
     path
-        A .csv file with columns t, x, y, z and perhaps yaw, a .yaml file with `columns`, these, and
-        `rows`, or a .mat file with t, x, y, z.
+        A .csv file with columns t, x, y, z and perhaps yaw, or a log, a .yaml file with `columns`,
+        these, and `rows`, or a .mat file with t, x, y, z.
 
     Raises
     ------
@@ -175,8 +188,9 @@ def _function(
 ) -> Callable[..., Shape]:
     if takes_rows:
 
-        def make_of_rows(rows: Union[npt.ArrayLike, str, Path]) -> Shape:
-            return Shape(name, read_rows(Path(rows)) if isinstance(rows, (str, Path)) else rows)
+        def make_of_rows(rows: Union[npt.ArrayLike, str, Path], **parameters: float) -> Shape:
+            read = read_rows(Path(rows)) if isinstance(rows, (str, Path)) else rows
+            return Shape(name, read, **parameters)
 
         make: Callable[..., Shape] = make_of_rows
     else:

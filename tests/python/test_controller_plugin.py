@@ -121,6 +121,15 @@ def test_a_reference_of_rows_is_read_from_a_file(shape, kind, tmp_path, hangar):
         ("rows.csv", "t,x,y\n", "rows.csv:1: the header is 't,x,y'; write t,x,y,z"),
         ("rows.csv", "t,x,y,z\n0,0,0,1\n1,0,0\n", "rows.csv:3: 3 columns instead of 4"),
         ("rows.csv", "t,x,y,z\n0,0,nan,1\n", "rows.csv:2: 'nan' is no finite number"),
+        ("rows.csv", "t,x,y,z\n0,0,0,1,\n1,0,0,1\n", "rows.csv:2: 5 columns instead of 4"),
+        ("rows.csv", "t,x,y,z\n0,0,0,1\n\n0,0,0,1\n", "rows.csv:4: the row is not later than"),
+        ("rows.csv", "t,x,y,z\n0,0,0,1\n", "rows.csv: holds fewer than two rows"),
+        ("rows.yaml", "columns: {a: 1}\nrows: []\n", r"rows.yaml:1: write `columns: \[t, x, y"),
+        (
+            "rows.yaml",
+            "columns: [t, x, y, z]\nrows:\n  - [1, 0, 0, 1]\n  - [0, 0, 0, 1]\n",
+            "rows.yaml:4: the row is not later than the row before",
+        ),
         ("rows.yaml", "rows: []\n", r"rows.yaml:1: write `columns: \[t, x, y, z\]`"),
         ("rows.yaml", "columns: [t, x, y, z]\n", "rows.yaml:1: 'rows' is no list"),
         ("rows.yaml", "columns: [t, x, y, z]\nrows:\n  - [0, 1]\n", "rows.yaml:3: is no row of 4"),
@@ -138,6 +147,22 @@ def test_rows_that_cannot_be_read_are_told_with_their_line(name, text, says, tmp
     path.write_text(text)
     with pytest.raises(qc.InputError, match=says):
         hangar(guided({"law": "pd"}, {"shape": "waypoints", "rows": path}), G)
+
+
+def test_a_log_is_a_series_with_the_yaw_of_its_orientation(hangar, tmp_path):
+    simulation = hangar(bare({}), G, engine="eigen")
+    simulation.set_state(references.start(simulation, circle()))
+    log = simulation.run(6, controller="geometric", reference=circle(), log_every=10)
+    log.to_csv(tmp_path / "log.csv")
+    flown = references.series(tmp_path / "log.csv")
+    for t in (1.3, 2.9, 4.4):
+        assert np.linalg.norm(flown(t).position - circle()(t).position) < 1e-3
+        assert np.linalg.norm(flown(t).acceleration - circle()(t).acceleration) < 0.05
+        assert flown(t).yaw == pytest.approx(0.2 * t, abs=1e-3)
+    again = hangar(bare({}), G, engine="eigen")
+    again.set_state(references.start(again, flown))
+    second = again.run(6, controller="geometric", reference=flown, log_every=10)
+    assert np.abs(second.position - log.position).max() < 1e-3
 
 
 def test_rows_and_shapes_that_need_none_are_told_apart(hangar, tmp_path):

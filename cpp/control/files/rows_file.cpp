@@ -1,26 +1,88 @@
 #include "quadcore/control/rows_file.hpp"
 
+#include <algorithm>
+#include <optional>
 #include <sstream>
 
 #include "control/files/text_file.hpp"
 #include "control/files/yaml_file.hpp"
 #include "quadcore/error.hpp"
+#include "quadcore/spatial.hpp"
 #include "quadcore/text.hpp"
 
 namespace quadcore::control {
 namespace {
 
-const std::vector<std::string> columns = {"t", "x", "y", "z", "yaw"};
+const std::vector<std::string> columns = {"t", "x", "y", "z"};
+const std::vector<std::string> of_orientation = {"qx", "qy", "qz", "qw"};
+constexpr const char* yaw_column = "yaw";
 
-/// Whether the names are columns, yaw being the one that may lack.
-bool are_columns(const std::vector<std::string>& names) {
-  return names == columns || names == std::vector<std::string>(columns.begin(), columns.end() - 1);
+/// Where the columns stand that are read: those of place, and yaw or an orientation or neither.
+struct Header {
+  std::vector<std::size_t> places, yaw;
+
+  std::size_t width() const { return places.size() + (yaw.empty() ? 0 : 1); }
+};
+
+/// Of columns t, x, y, z, and perhaps yaw, in any order, or of a log, which has an orientation and
+/// whatever else. Nothing for other names.
+std::optional<Header> header_of(const std::vector<std::string>& names) {
+  const auto places = [&](const std::vector<std::string>& wanted) {
+    std::vector<std::size_t> found;
+    for (const std::string& name : wanted) {
+      if (std::count(names.begin(), names.end(), name) != 1) continue;
+      const auto at = std::find(names.begin(), names.end(), name) - names.begin();
+      found.push_back(static_cast<std::size_t>(at));
+    }
+    return found;
+  };
+  const Header of_log{places(columns), places(of_orientation)},
+      of_rows{of_log.places, places({yaw_column})};
+  if (of_log.places.size() != columns.size()) return {};
+  if (of_log.yaw.size() == of_orientation.size()) return of_log;
+  if (names.size() == of_rows.width()) return of_rows;
+  return {};
 }
 
-Rows stacked(const std::vector<double>& values, std::size_t width) {
-  return Eigen::Map<const Rows>(values.data(), static_cast<Eigen::Index>(values.size() / width),
-                                static_cast<Eigen::Index>(width));
-}
+/// Gathers rows, and refuses what is no path with the place where it stands.
+class Gathered {
+ public:
+  explicit Gathered(const Header& header) : header_(header) {}
+
+  /// \param number   of a column of the file
+  /// \param refuse   throws
+  template <class Number, class Refuse>
+  void add(const Number& number, const Refuse& refuse) {
+    const double t = number(header_.places.front());
+    if (rows_ > 0 && !(t > last_)) {
+      refuse("is not later than the row before; order them by time");
+    }
+    last_ = t;
+    rows_ += 1;
+    for (const std::size_t place : header_.places) values_.push_back(number(place));
+    const std::vector<std::size_t>& of_yaw = header_.yaw;
+    if (of_yaw.size() == 1) values_.push_back(number(of_yaw.front()));
+    if (of_yaw.size() == of_orientation.size()) {
+      const Quaterniond q(number(of_yaw[3]), number(of_yaw[0]), number(of_yaw[1]),
+                          number(of_yaw[2]));
+      values_.push_back(rpy_from_quaternion(q.normalized()).z());
+    }
+  }
+
+  Rows rows(const std::string& path) const {
+    if (rows_ < 2) {
+      throw InputError(path + ": holds fewer than two rows, between which a path would lead");
+    }
+    const auto width = static_cast<Eigen::Index>(header_.width());
+    return Eigen::Map<const Rows>(values_.data(), rows_, width);
+  }
+
+ private:
+  Header header_;
+  std::vector<double> values_;
+  Eigen::Index rows_ = 0;
+  double last_ = 0;
+};
 
 Rows read_yaml_rows(const std::string& path) {
   const YamlFile file(path);
@@ -32,26 +94,33 @@ Rows read_yaml_rows(const std::string& path) {
     (key == "rows" ? rows : named).reset(node);
   }
   std::vector<std::string> names;
-  for (const YAML::Node& name : named) names.push_back(file.text(name, "a column"));
-  if (!are_columns(names)) {
+  if (named.IsSequence()) {
+    for (const YAML::Node& name : named) names.push_back(file.text(name, "a column"));
+  }
+  const std::optional<Header> header = header_of(names);
+  if (!header) {
     file.refuse(named.IsNull() ? file.root() : named,
                 "write `columns: [t, x, y, z]`, or yaw besides, and `rows`");
   }
   if (!rows.IsSequence()) file.refuse(file.root(), "'rows' is no list; write rows of numbers");
-  std::vector<double> values;
+  Gathered gathered(*header);
   for (const YAML::Node& row : rows) {
     if (!row.IsSequence() || row.size() != names.size()) {
       file.refuse(row, "is no row of " + std::to_string(names.size()) + " numbers");
     }
-    for (std::size_t i = 0; i < names.size(); ++i) values.push_back(file.number(row[i], names[i]));
+    gathered.add([&](std::size_t i) { return file.number(row[i], names[i]); },
+                 [&](const char* what) { file.refuse(row, std::string("the row ") + what); });
   }
-  return stacked(values, names.size());
+  return gathered.rows(path);
 }
 
 std::vector<std::string> cells(const std::string& line) {
   std::vector<std::string> cells;
-  std::istringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(trimmed(cell));
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t end = std::min(line.find(',', begin), line.size());
+    cells.push_back(trimmed(line.substr(begin, end - begin)));
+    begin = end + 1;
+  }
   return cells;
 }
 
@@ -60,11 +129,12 @@ Rows read_csv_rows(const std::string& path) {
   std::string line;
   std::getline(text, line);
   const std::vector<std::string> names = cells(line);
-  if (!are_columns(names)) {
+  const std::optional<Header> header = header_of(names);
+  if (!header) {
     throw InputError(path + ":1: the header is '" + trimmed(line) +
-                     "'; write t,x,y,z or t,x,y,z,yaw");
+                     "'; write t,x,y,z or t,x,y,z,yaw, or give a log");
   }
-  std::vector<double> values;
+  Gathered gathered(*header);
   for (int number = 2; std::getline(text, line); ++number) {
     if (trimmed(line).empty()) continue;
     const std::string where = path + ":" + std::to_string(number) + ": ";
@@ -73,13 +143,14 @@ Rows read_csv_rows(const std::string& path) {
       throw InputError(where + std::to_string(row.size()) + " columns instead of " +
                        std::to_string(names.size()));
     }
-    for (const std::string& cell : row) {
-      const auto value = parse_number(cell);
-      if (!value) throw InputError(where + "'" + cell + "' is no finite number; write one");
-      values.push_back(*value);
-    }
+    const auto value = [&](std::size_t i) {
+      const auto parsed = parse_number(row[i]);
+      if (!parsed) throw InputError(where + "'" + row[i] + "' is no finite number; write one");
+      return *parsed;
+    };
+    gathered.add(value, [&](const char* what) { throw InputError(where + "the row " + what); });
   }
-  return stacked(values, names.size());
+  return gathered.rows(path);
 }
 
 }  // namespace

@@ -1,40 +1,127 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "control/references/row_fit.hpp"
 #include "control/references/septic_path.hpp"
 #include "control/references/shapes.hpp"
+#include "quadcore/elementary.hpp"
+#include "quadcore/error.hpp"
 
 namespace quadcore::control {
 namespace {
 
 using T = TagSpec;
 
-ReferenceInfo through_rows(const char* name, const char* summary, SepticPath::Ends ends) {
-  return {name, summary, true, {}, [ends](const Values&, const Rows& rows) {
-            return std::make_unique<SepticPath>(SepticPath::smoothest(rows, ends));
-          }};
+constexpr Eigen::Index with_own_yaw = 5;  ///< columns
+
+struct RowSettings : YawLaw {
+  double tolerance = 0;  ///< m, rad
+};
+
+/// A path whose rows say no yaw.
+class Heading final : public ReferenceShape {
+ public:
+  Heading(const SepticPath& path, const YawLaw& yaw) : path_(path), yaw_(yaw) {
+    const Reference first = path.at(path.begin());
+    const Reference last = path.at(std::nextafter(path.end(), path.begin()));
+    // From rest it leaves along the snap, and into rest it comes against it.
+    const auto direction = [](const Vector3d& v_W, const Vector3d& at_rest_W) {
+      const Vector3d& d = v_W.head<2>().norm() > 1e-6 ? v_W : at_rest_W;
+      return elementary::atan2(d.y(), d.x());
+    };
+    leaves_ = direction(first.velocity, first.snap);
+    comes_ = direction(last.velocity, -last.snap);
+  }
+
+  Reference at(double t) const override {
+    Reference wanted = path_.at(t);
+    yaw_.turn(t, wanted, 2 * t < path_.begin() + path_.end() ? leaves_ : comes_);
+    return wanted;
+  }
+  double end() const override {
+    return yaw_.yaw_rate == 0 ? path_.end() : std::numeric_limits<double>::infinity();
+  }
+
+ private:
+  SepticPath path_;
+  YawLaw yaw_;
+  double leaves_, comes_;  ///< headings at rest [rad]
+};
+
+std::unique_ptr<ReferenceShape> with_yaw_law(const std::string& name, SepticPath path,
+                                             const YawLaw& yaw, const Values& values,
+                                             const Rows& rows) {
+  if (rows.cols() != with_own_yaw) return std::make_unique<Heading>(path, yaw);
+  for (const char* own : {"yaw", "yaw_rate", "along"}) {
+    if (values.count(own) == 0) continue;
+    throw InputError("reference '" + name + "': its rows say the yaw; leave '" + own +
+                     "' out, or the column");
+  }
+  return std::make_unique<SepticPath>(std::move(path));
+}
+
+/// Times from the first row on, and a yaw without the jumps of one that is told from -pi to pi.
+Rows of_motion(Rows rows) {
+  if (rows.rows() > 0) rows.col(0).array() -= rows(0, 0);
+  for (Eigen::Index i = 1; i < rows.rows() && rows.cols() == with_own_yaw; ++i) {
+    const double step = rows(i, 4) - rows(i - 1, 4);
+    rows(i, 4) = rows(i - 1, 4) + std::remainder(step, 2 * M_PI);
+  }
+  return rows;
+}
+
+SepticPath path_of(const Rows& motion, const VectorXd& tolerances) {
+  SepticPath through = SepticPath::smoothest(motion, SepticPath::Ends::free);
+  const std::vector<SepticPath::Point> points = fitted(motion, tolerances);
+  return points.empty() ? through : SepticPath::smoothest(points);
 }
 
 struct TakeoffLand : Place {
-  double ground, wait, rise, stay;
+  double ground, wait, rise, stay, by;
 };
 
 }  // namespace
 
 ReferenceInfo waypoints() {
-  return through_rows("waypoints", "the smoothest path (minimum snap) through places at times",
-                      SepticPath::Ends::at_rest);
+  const Settings<YawLaw> settings = with_yaw<YawLaw>({});
+  return {"waypoints", "the smoothest path (minimum snap) through places at times", true,
+          table_of(settings), [settings](const Values& values, const Rows& rows) {
+            YawLaw yaw;
+            configure(yaw, settings, values);
+            return with_yaw_law("waypoints", SepticPath::smoothest(rows, SepticPath::Ends::at_rest),
+                                yaw, values, rows);
+          }};
 }
 
 ReferenceInfo series() {
-  return through_rows("series", "a motion as rows of time and place tell it",
-                      SepticPath::Ends::free);
+  const Settings<RowSettings> settings = with_yaw<RowSettings>(
+      {{T::number("tolerance", "m", "0",
+                  "how far off the motion its rows may lie, and their yaw in rad, beside the last "
+                  "of their digits")
+            .at_least(0),
+        &RowSettings::tolerance}});
+  return {"series", "a motion as rows of time and place tell it", true, table_of(settings),
+          [settings](const Values& values, const Rows& rows) {
+            RowSettings s;
+            configure(s, settings, values);
+            const Rows motion = of_motion(rows);
+            const VectorXd tolerances = last_digits(rows).array() + s.tolerance;
+            return with_yaw_law("series", path_of(motion, tolerances), s, values, motion);
+          }};
 }
 
 ReferenceInfo takeoff_land() {
   const Settings<TakeoffLand> settings = {
       {T::number("x", "m", "0", "where it stands"), &TakeoffLand::x},
       {T::number("y", "m", "0", "where it stands"), &TakeoffLand::y},
-      {T::number("yaw", "rad", "0", "which is kept"), &TakeoffLand::yaw},
+      {T::number("yaw", "rad", "0", "at the start"), &TakeoffLand::yaw},
+      {T::number("turn", "rad", "0", "by which it yaws in the hover, from rest to rest"),
+       &TakeoffLand::by},
       {T::number("height", "m", "1", "of the frame in the hover"), &TakeoffLand::height},
-      {T::number("ground", "m", "0.0125", "height of the frame where it stands"),
+      {T::number(
+           "ground", "m", "0.0125",
+           "height of the frame where it stands; on a vehicle that is known, where that rests"),
        &TakeoffLand::ground},
       {T::number("wait", "s", "1", "on the ground before").above(0), &TakeoffLand::wait},
       {T::number("rise", "s", "4", "for the way up, and for the way down").above(0),
@@ -48,16 +135,18 @@ ReferenceInfo takeoff_land() {
             Rows rows(5, 5);
             double t = 0;
             int row = 0;
-            const auto be_at = [&](double z) { rows.row(row++) << t, s.x, s.y, z, s.yaw; };
-            be_at(s.ground);
+            const auto be_at = [&](double z, double yaw) {
+              rows.row(row++) << t, s.x, s.y, z, yaw;
+            };
+            be_at(s.ground, s.yaw);
             t += s.wait;
-            be_at(s.ground);
+            be_at(s.ground, s.yaw);
             t += s.rise;
-            be_at(s.height);
+            be_at(s.height, s.yaw);
             t += s.stay;
-            be_at(s.height);
+            be_at(s.height, s.yaw + s.by);
             t += s.rise;
-            be_at(s.ground);
+            be_at(s.ground, s.yaw + s.by);
             return std::make_unique<SepticPath>(SepticPath::resting(rows));
           }};
 }

@@ -1,4 +1,9 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "control/references/shapes.hpp"
+#include "eigen/lowest_point.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/text.hpp"
 
@@ -18,6 +23,22 @@ const ReferenceInfo& reference_info(const std::string& name) {
   }
   throw InputError("there is no reference '" + name + "'" + did_you_mean(name, names) +
                    "; give one of " + joined(names));
+}
+
+Values on_vehicle(const std::string& name, Values values, const Model& model) {
+  const std::vector<TagSpec>& table = reference_info(name).table;
+  const auto is_ground = [](const TagSpec& spec) { return spec.name == "ground"; };
+  if (std::none_of(table.begin(), table.end(), is_ground)) return values;
+  double lowest = std::numeric_limits<double>::infinity();
+  const std::vector<Eigen::Isometry3d> poses = link_poses(model);
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    for (const Collision& shape : model.links[i].collisions) {
+      const Matrix3d R_WS = poses[i].linear() * shape.pose.rotation().toRotationMatrix();
+      lowest = std::min(lowest, (poses[i] * shape.pose.xyz).z() - reach_down(shape, R_WS));
+    }
+  }
+  if (std::isfinite(lowest)) values.insert({"ground", -lowest});
+  return values;
 }
 
 std::unique_ptr<ReferenceShape> make_reference(const std::string& name, const Values& values,

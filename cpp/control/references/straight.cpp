@@ -47,17 +47,19 @@ struct Ramp : ReferenceShape, Place {
 
 }  // namespace
 
-ReferenceInfo hover() { return shape<Hover>("hover", "one place", with_place<Hover>({})); }
+ReferenceInfo hover() { return shape<Hover>("hover", "one place", with_place<Hover>({}, false)); }
 
 ReferenceInfo step() {
   return shape<Step>("step", "one place, and suddenly another",
-                     with_place<Step>({
-                         {T::number("dx", "m", "1", "step along x"), &Step::dx},
-                         {T::number("dy", "m", "0", "step along y"), &Step::dy},
-                         {T::number("dz", "m", "0", "step along z"), &Step::dz},
-                         {T::number("dyaw", "rad", "0", "step of the yaw"), &Step::dyaw},
-                         {T::number("time", "s", "1", "of the step").at_least(0), &Step::time},
-                     }));
+                     with_place<Step>(
+                         {
+                             {T::number("dx", "m", "1", "step along x"), &Step::dx},
+                             {T::number("dy", "m", "0", "step along y"), &Step::dy},
+                             {T::number("dz", "m", "0", "step along z"), &Step::dz},
+                             {T::number("dyaw", "rad", "0", "step of the yaw"), &Step::dyaw},
+                             {T::number("time", "s", "1", "of the step").at_least(0), &Step::time},
+                         },
+                         false));
 }
 
 ReferenceInfo ramp() {

@@ -4,7 +4,8 @@
 
 namespace quadcore::control {
 
-void Place::turn(double t, Reference& wanted) const {
+void YawLaw::turn(double t, Reference& wanted, double standing) const {
+  constexpr double slowest = 1e-6;  // m/s; below it the direction is one of rounding
   wanted.yaw = yaw + yaw_rate * t;
   wanted.yaw_rate = yaw_rate;
   wanted.yaw_acceleration = 0;
@@ -14,7 +15,10 @@ void Place::turn(double t, Reference& wanted) const {
   };
   const Vector3d &v = wanted.velocity, &a = wanted.acceleration, &j = wanted.jerk;
   const double squared = v.x() * v.x() + v.y() * v.y();
-  if (squared == 0) return;  // nothing to point along
+  if (squared < slowest * slowest) {
+    wanted.yaw += standing;
+    return;
+  }
   // psi = atan2(vy, vx), psi' = (v x a)/v^2, psi'' = (v x j)/v^2 - 2 psi' (v . a)/v^2
   const double turning = cross(v, a) / squared;
   wanted.yaw += elementary::atan2(v.y(), v.x());

@@ -7,9 +7,7 @@
 #include "quadcore/error.hpp"
 
 namespace quadcore {
-namespace {
 
-/// How far a shape reaches down from its centre; R_WS is its orientation [m].
 double reach_down(const Collision& shape, const Matrix3d& R_WS) {
   const Eigen::RowVector3d down = R_WS.row(2);
   switch (shape.kind) {
@@ -26,8 +24,6 @@ double reach_down(const Collision& shape, const Matrix3d& R_WS) {
   }
   return 0;
 }
-
-}  // namespace
 
 double lowest_point(const Model& model, const Kinematics& k) {
   double lowest = std::numeric_limits<double>::infinity();

@@ -8,7 +8,7 @@ namespace {
 class ReferencePlugin final : public Plugin {
  public:
   explicit ReferencePlugin(const PluginSetup& setup)
-      : shape_(control::reference_of(setup.parameters)),
+      : shape_(control::reference_of(setup.parameters, setup.model)),
         topic_(setup.topics.publishes(setup.parameters.text("topic"),
                                       messages::kind_of<messages::Reference>())) {}
 

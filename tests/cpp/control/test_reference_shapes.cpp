@@ -1,6 +1,8 @@
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
+#include "../plugin_bench.hpp"
 #include "../vehicle.hpp"
 #include "derivatives.hpp"
 #include "quadcore/control/reference.hpp"
@@ -133,6 +135,117 @@ TEST_CASE("a series tells the motion it was taken from, its ends included") {
     CHECK(std::abs(r.yaw_acceleration + 0.3 * std::sin(t)) < 1e-5);
   }
   CHECK((series->at(0).velocity - Vector3d(0, 1.3, 0.2)).norm() < 1e-2);
+}
+
+namespace {
+
+/// A motion with no symmetry, told to so many digits.
+Rows told(double rate, int digits, double begin = 0) {
+  const int n = static_cast<int>(std::lround(8 * rate)) + 1;
+  Rows rows(n, 5);
+  const double unit = std::pow(10.0, -digits);
+  for (int i = 0; i < n; ++i) {
+    const double t = i / rate;
+    rows.row(i) << t + begin, 2 * std::cos(1.5 * t), 1.4 * std::sin(1.1 * t),
+        3 + 0.3 * t + 0.2 * std::sin(2 * t), std::remainder(2.5 + 0.8 * t, 2 * pi);
+    rows.row(i).tail<4>() = (rows.row(i).tail<4>() / unit).array().round() * unit;
+  }
+  return rows;
+}
+
+}  // namespace
+
+TEST_CASE("a series is flown as the motion, not as the digits in which it is told") {
+  struct Telling {
+    double rate;
+    int digits;
+    double position, snap;  // bars [m, m/s^4]
+  };
+  for (const Telling& telling : {Telling{100, 6, 2e-6, 0.2}, Telling{1000, 9, 2e-9, 0.05},
+                                 Telling{50, 4, 2e-4, 2}, Telling{100, 3, 2e-3, 8}}) {
+    CAPTURE(telling.digits);
+    const auto series = make_reference("series", {}, told(telling.rate, telling.digits));
+    for (double t = 0.5; t < 7.5; t += 0.0317) {
+      const Reference r = series->at(t);
+      const Vector3d p(2 * std::cos(1.5 * t), 1.4 * std::sin(1.1 * t),
+                       3 + 0.3 * t + 0.2 * std::sin(2 * t));
+      const Vector3d s(2 * std::pow(1.5, 4) * std::cos(1.5 * t),
+                       1.4 * std::pow(1.1, 4) * std::sin(1.1 * t), 3.2 * std::sin(2 * t));
+      CHECK((r.position - p).norm() < telling.position);
+      CHECK((r.snap - s).norm() < telling.snap);
+    }
+  }
+}
+
+TEST_CASE("rows with noise are smoothed as far as they are said to lie off") {
+  Rows rows = told(100, 12);
+  test::Draw draw{5};
+  for (Eigen::Index i = 0; i < rows.rows(); ++i)
+    rows(i, 1) += 1e-3 * std::clamp(draw.number(), -1.0, 1.0);
+  const auto series = make_reference("series", {{"tolerance", 1.5e-3}}, rows);
+  for (double t = 0.5; t < 7.5; t += 0.1) {
+    CHECK(std::abs(series->at(t).position.x() - 2 * std::cos(1.5 * t)) < 1.5e-3);
+    CHECK(std::abs(series->at(t).acceleration.x() + 4.5 * std::cos(1.5 * t)) < 0.2);
+  }
+}
+
+TEST_CASE("the yaw of a series goes on where its numbers jump by a turn") {
+  for (const int digits : {6, 14}) {
+    const auto series = make_reference("series", {}, told(100, digits));
+    for (double t = 0.1; t < 8; t += 0.113) {
+      CHECK(series->at(t).yaw == doctest::Approx(2.5 + 0.8 * t).epsilon(1e-6));
+      CHECK(series->at(t).yaw_rate == doctest::Approx(0.8).epsilon(1e-2));
+    }
+  }
+}
+
+TEST_CASE("a series begins at once, whenever its first row was told") {
+  const auto early = make_reference("series", {}, told(20, 12)),
+             late = make_reference("series", {}, told(20, 12, 17.5));
+  CHECK(late->end() == doctest::Approx(8));
+  for (const double t : {0.0, 2.2, 7.9}) {
+    CHECK((early->at(t).position - late->at(t).position).norm() < 1e-9);
+    CHECK((early->at(t).velocity - late->at(t).velocity).norm() < 1e-6);
+  }
+}
+
+TEST_CASE("paths through rows have a yaw law where their rows say no yaw") {
+  const Rows rows = five_waypoints();
+  for (const char* name : {"waypoints", "series"}) {
+    CAPTURE(name);
+    const auto turning = make_reference(name, {{"yaw", 0.3}, {"yaw_rate", -0.4}}, rows);
+    CHECK(turning->at(2).yaw == doctest::Approx(0.3 - 0.8));
+    const auto along = make_reference(name, {{"along", 1}, {"yaw", 0.2}}, rows);
+    for (const double t : {0.6, 3.1, 7.7}) {
+      test::check_derivatives(*along, t);
+      const Reference r = along->at(t);
+      const double heading = std::atan2(r.velocity.y(), r.velocity.x());
+      CHECK(std::abs(std::remainder(r.yaw - heading - 0.2, 2 * pi)) < 1e-12);
+    }
+    // Where it rests it looks as it leaves, and as it came.
+    for (const double end : {0.0, 10.4}) {
+      const double inside = end == 0 ? 1e-3 : end - 1e-3;
+      CHECK(std::abs(std::remainder(along->at(end).yaw - along->at(inside).yaw, 2 * pi)) < 0.02);
+    }
+    CHECK(along->at(30).yaw == along->at(10.4).yaw);
+    CHECK(test::contains(test::refusal([&] { make_reference(name, {{"along", 1}}, told(10, 6)); }),
+                         "its rows say the yaw; leave 'along' out"));
+  }
+}
+
+TEST_CASE("what never moves has no direction of motion to point along") {
+  for (const char* name : {"hover", "step", "takeoff_land"}) {
+    CHECK(test::contains(test::refusal([&] { make_reference(name, {{"along", 1}}); }),
+                         "has no parameter 'along'"));
+  }
+}
+
+TEST_CASE("a vehicle that takes off turns in the hover and nowhere else") {
+  const auto shape = make_reference("takeoff_land", {{"yaw", 0.5}, {"turn", -2}, {"stay", 6}});
+  for (const double t : {0.0, 2.5, 5.0}) CHECK(shape->at(t).yaw == 0.5);
+  for (const double t : {11.0, 13.0, 16.0}) CHECK(shape->at(t).yaw == -1.5);
+  CHECK(shape->at(8).yaw == doctest::Approx(-0.5));
+  CHECK(shape->at(8).yaw_rate < -0.3);
 }
 
 TEST_CASE("take-off and landing begin and end at rest on the ground") {

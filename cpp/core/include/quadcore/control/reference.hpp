@@ -8,6 +8,7 @@
 
 #include "quadcore/control/settings.hpp"
 #include "quadcore/messages.hpp"
+#include "quadcore/model.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 namespace control {
@@ -40,6 +41,9 @@ struct ReferenceInfo {
 const std::vector<ReferenceInfo>& references();
 /// Throws InputError with the names of those there are.
 const ReferenceInfo& reference_info(const std::string& name);
+/// Values, and what a vehicle says where they do not: `ground` is where its frame is when it rests
+/// on what touches the ground first, upright.
+Values on_vehicle(const std::string& name, Values values, const Model& model);
 /// Throws InputError on an unknown name, a value out of range, or rows that are none.
 std::unique_ptr<ReferenceShape> make_reference(const std::string& name, const Values& values,
                                                const Rows& rows = {});
