@@ -199,6 +199,18 @@ void bind_control(py::module_& m) {
       },
       py::arg("name"), py::arg("values"), py::arg("simulation"),
       "Parameters of a reference, and what a vehicle says where they do not.");
+  m.def("timing", &control::timing_table, "When a controller is called, and how late it acts.");
+  m.def(
+      "is_timing",
+      [](const std::string& name, double value) {
+        try {
+          control::check_values("", control::timing_table(), {{name, value}});
+        } catch (const InputError&) {
+          return false;
+        }
+        return true;
+      },
+      py::arg("name"), py::arg("value"), "Whether this can be one of timing().");
   m.def(
       "read_gains",
       [](const std::string& path) {

@@ -1,16 +1,36 @@
 #include "control/indi.hpp"
 
+#include <string>
+
 #include "quadcore/elementary.hpp"
 
 namespace quadcore::control {
+namespace {
+
+/// What the model says of force, roll and pitch is measured here.
+Settings<Indi::Gains> of_what_is_measured(Settings<Indi::Gains> settings) {
+  for (Setting<Indi::Gains>& setting : settings) {
+    std::string& meaning = setting.spec.meaning;
+    if (setting.spec.name == "drag") {
+      meaning =
+          "makes up for the believed torque of the air about z, and bends the reference's "
+          "flat state; the rest is measured";
+    } else if (setting.spec.name == "gyroscopic") {
+      meaning = "makes up for the rotors' gyroscopic torque about z; the rest is measured";
+    }
+  }
+  return settings;
+}
+
+}  // namespace
 
 const Settings<Indi::Gains>& Indi::settings() {
-  static const Settings<Gains> all = with_tracking<Gains>(
+  static const Settings<Gains> all = of_what_is_measured(with_tracking<Gains>(
       {{TagSpec::number(
             "filter", "rad/s", "40",
             "bandwidth up to which accelerations and what the rotors exert are compared")
             .above(0),
-        &Gains::filter}});
+        &Gains::filter}}));
   return all;
 }
 

@@ -53,10 +53,12 @@ const Settings<Lqr::Gains>& Lqr::settings() {
       {T::number("sum_limit", "m s", "0.5", "largest integral along an axis").at_least(0),
        &G::sum_limit},
       {T::flag("integral", "true", "of the error of position"), &G::integral},
-      {T::flag("feed_forward", "true", "angular acceleration that the reference asks for"),
-       &G::feed_forward},
+      {T::flag("feed_forward", "true", "the acceleration of the reference"), &G::feed_forward},
       {T::flag("drag", "true", "makes up for the believed force and torque of the air"), &G::drag},
       {T::flag("gyroscopic", "true", "makes up for the rotors' gyroscopic torque"), &G::gyroscopic},
+      {T::flag("flat_rates", "true",
+               "angular velocity and acceleration that the reference asks for"),
+       &G::flat_rates},
   };
   return all;
 }
@@ -78,7 +80,16 @@ Lqr::Lqr(const Belief& belief, const Gains& g) : belief_(belief), gains_(g) {
 Demand Lqr::demand(const Instant& instant, double* memory) const {
   const Odometry& now = instant.now;
   const Reference& wanted = instant.wanted;
-  const FlatState flat = flat_state(wanted, belief_, gains_.drag);
+  FlatState flat = flat_state(wanted, belief_, gains_.drag);
+  if (!gains_.feed_forward) {
+    Reference unmoved = wanted;
+    unmoved.acceleration.setZero();
+    unmoved.jerk.setZero();
+    unmoved.snap.setZero();
+    const FlatState level = flat_state(unmoved, belief_, gains_.drag);
+    flat.R_WF = level.R_WF;
+    flat.thrust = level.thrust;
+  }
 
   const Vector3d error_W = wanted.position - now.position;
   Eigen::Map<Vector3d> integral(memory);
@@ -95,7 +106,7 @@ Demand Lqr::demand(const Instant& instant, double* memory) const {
   const Matrix3d R_FD = now.orientation.conjugate().toRotationMatrix() * flat.R_WF;
   const Quaterniond q_FD(R_FD);
   const Vector3d turn_F = (q_FD.w() < 0 ? -2 : 2) * q_FD.vec();
-  const Vector3d wanted_w_F = R_FD * flat.w_WF_F;
+  const Vector3d wanted_w_F = (gains_.flat_rates ? 1 : 0) * (R_FD * flat.w_WF_F);
   const Vector3d slip_w_F = wanted_w_F - now.angular_velocity;
 
   const auto level = [&](double sum, double error, double slip, double tilt, double rate) {
@@ -106,7 +117,7 @@ Demand Lqr::demand(const Instant& instant, double* memory) const {
   Vector3d dw_F(-level(sum_D.y(), error_D.y(), slip_D.y(), -turn_F.x(), -slip_w_F.x()),
                 level(sum_D.x(), error_D.x(), slip_D.x(), turn_F.y(), slip_w_F.y()),
                 yaw_[0] * turn_F.z() + yaw_[1] * slip_w_F.z());
-  if (gains_.feed_forward) dw_F += R_FD * flat.dw_WF_F - now.angular_velocity.cross(wanted_w_F);
+  if (gains_.flat_rates) dw_F += R_FD * flat.dw_WF_F - now.angular_velocity.cross(wanted_w_F);
   const double climb = height_.dot(Eigen::RowVector3d(sum_D.z(), error_D.z(), slip_D.z()));
 
   Vector3d tau_air_F = Vector3d::Zero();

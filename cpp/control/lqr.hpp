@@ -15,7 +15,7 @@ class Lqr final : public Law {
     double q_height_integral, q_height, q_climb, r_thrust;
     double q_yaw, q_yaw_rate, r_yaw;
     double sum_limit;
-    bool integral, feed_forward, drag, gyroscopic;
+    bool integral, feed_forward, drag, gyroscopic, flat_rates;
   };
   static const Settings<Gains>& settings();
 

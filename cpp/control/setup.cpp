@@ -45,6 +45,14 @@ std::vector<TagSpec> with(std::vector<TagSpec> tags, const std::vector<TagSpec>&
   return tags;
 }
 
+std::vector<TagSpec> timing_tags() {
+  std::vector<TagSpec> tags;
+  for (const TagSpec& spec : timing_table()) {
+    tags.push_back(spec.or_absent("that of the gains, or " + spec.fallback));
+  }
+  return tags;
+}
+
 /// What the tags ask for; what they leave open is that of the gains file.
 Gains chosen(const Parameters& tags) {
   Gains gains;
@@ -73,13 +81,6 @@ const std::vector<TagSpec>& ControllerSetup::tags() {
            .or_absent("that of the gains"),
        T::file("gains", "a gains file; what other tags set wins")
            .or_absent("every parameter at its default"),
-       T::number("rate", "1/s", "", "calls per second; at most one per step")
-           .above(0)
-           .or_absent("that of the gains, or 500"),
-       T::number("delay", "s", "", "from a call to the first step that it commands")
-           .at_least(0)
-           .at_most(longest_delay)
-           .or_absent("that of the gains, or 0"),
        T::file("belief",
                "URDF of the vehicle that the law believes to fly; of its plugins only "
                "what exerts forces is asked")
@@ -88,7 +89,7 @@ const std::vector<TagSpec>& ControllerSetup::tags() {
            .or_absent("neighbours around the vehicle turn against each other"),
        T::choice("twistFrame", {"world", "body"}, "axes of the odometry's linear velocity")
            .agreed()},
-      tags_of(of_laws()));
+      with(timing_tags(), tags_of(of_laws())));
   return all;
 }
 

@@ -14,34 +14,39 @@
 
 namespace quadcore::control {
 
-/// What a parameter is by default, and for whom.
-struct Defaults {
-  std::vector<std::pair<std::string, std::vector<std::string>>> values;  ///< value, names
+/// What is said of a parameter, and of whose.
+struct Said {
+  std::vector<std::pair<std::string, std::vector<std::string>>> texts;  ///< text, names
 
-  void add(const std::string& value, const std::string& who) {
-    for (auto& [known, names] : values) {
-      if (known == value) return names.push_back(who);
+  void add(const std::string& text, const std::string& who) {
+    for (auto& [known, names] : texts) {
+      if (known == text) return names.push_back(who);
     }
-    values.push_back({value, {who}});
+    texts.push_back({text, {who}});
   }
-  /// "2.4 (pd, pid), 9 (indi)", or the value alone where all of so many names have it.
+  /// "2.4 (pd, pid), 9 (indi)", or the text alone where all of so many names have it. What is empty
+  /// is left out.
   std::string text(std::size_t all) const {
     std::string text;
-    for (const auto& [value, names] : values) {
-      if (names.size() == all) return value;
-      text += (text.empty() ? "" : ", ") + value + " (" + joined(names) + ")";
+    for (const auto& [said, names] : texts) {
+      if (names.size() == all) return said;
+      if (!said.empty()) text += (text.empty() ? "" : ", ") + said + " (" + joined(names) + ")";
     }
     return text;
   }
 };
 
-/// The rows of all tables, each name once; what is absent has the default of the one that is
-/// chosen. Throws std::logic_error if a name has two units.
+/// The rows of all tables, each name once, with what each table says of it; what is absent has the
+/// default of the one that is chosen. Throws std::logic_error if a name has two units or ranges.
 /// \param tables  (who has it, table)
 inline std::vector<TagSpec> tags_of(
     const std::vector<std::pair<std::string, std::vector<TagSpec>>>& tables) {
+  struct Merged {
+    Said defaults, meanings, equations;
+    std::size_t count = 0;
+  };
   std::vector<TagSpec> tags;
-  std::vector<Defaults> defaults;
+  std::vector<Merged> merged;
   for (const auto& [who, table] : tables) {
     for (const TagSpec& spec : table) {
       const auto same = [&](const TagSpec& tag) { return tag.name == spec.name; };
@@ -49,15 +54,21 @@ inline std::vector<TagSpec> tags_of(
       const auto i = static_cast<std::size_t>(known - tags.begin());
       if (known == tags.end()) {
         tags.push_back(spec);
-        defaults.emplace_back();
-      } else if (known->unit != spec.unit) {
-        throw std::logic_error("parameter '" + spec.name + "' has two units");
+        merged.emplace_back();
+      } else if (known->unit != spec.unit || known->range() != spec.range()) {
+        throw std::logic_error("parameter '" + spec.name + "' has two units or ranges");
       }
-      defaults[i].add(spec.fallback.empty() ? "off" : spec.fallback, who);
+      merged[i].count += 1;
+      merged[i].defaults.add(spec.fallback.empty() ? "off" : spec.fallback, who);
+      merged[i].meanings.add(spec.meaning, who);
+      merged[i].equations.add(spec.equation, who);
     }
   }
   for (std::size_t i = 0; i < tags.size(); ++i) {
-    tags[i] = tags[i].or_absent(defaults[i].text(tables.size()));
+    // A parameter that few have is told with their names once, by its default.
+    tags[i] = tags[i].or_absent(merged[i].defaults.text(tables.size()));
+    tags[i].meaning = merged[i].meanings.text(merged[i].count);
+    tags[i].equation = merged[i].equations.text(merged[i].count);
   }
   return tags;
 }

@@ -5,7 +5,6 @@ from __future__ import annotations
 import inspect
 import math
 from contextlib import contextmanager, suppress
-from numbers import Real
 from typing import Any, Callable, Iterator, Protocol, Union
 
 import numpy as np
@@ -15,9 +14,7 @@ from ._core import FlightError, InputError, QuadcoreError, odometry_parts
 from .flight import Pilot
 from .imported import told
 from .inner_loop import AttitudeThrust, InnerLoop, RatesThrust
-
-DEFAULT_RATE = 500.0  # 1/s
-_LOWEST_RATE = 1e-6  # 1/s
+from .timing import DELAY, RATE, checked
 
 _SENSED = "odom"
 
@@ -129,15 +126,8 @@ class Guided(Pilot):
                 "is called as reference(t)"
             )
         check_callable(controller)
-        rate = getattr(controller, "rate", DEFAULT_RATE)
-        if not (isinstance(rate, Real) and _LOWEST_RATE <= float(rate) < math.inf):
-            least = f"{_LOWEST_RATE:g}"
-            raise InputError(f"controller: its rate is {rate!r}; give calls per second, >= {least}")
-        delay = getattr(controller, "delay", 0)
-        if not (isinstance(delay, Real) and 0 <= float(delay) < math.inf):
-            raise InputError(f"controller: its delay is {delay!r}; give seconds, >= 0")
-        self.rate = float(rate)
-        self.delay = float(delay)
+        self.rate = checked("controller", "rate", getattr(controller, "rate", RATE))
+        self.delay = checked("controller", "delay", getattr(controller, "delay", DELAY))
         inner_loop = getattr(controller, "inner_loop", None)
         if not (inner_loop is None or isinstance(inner_loop, InnerLoop)):
             raise InputError(

@@ -16,6 +16,7 @@ import yaml
 from . import _core, resources
 from .files import atomic_write, is_file, text_bytes
 from .law import Law
+from .timing import DELAY, RATE, checked
 
 
 @dataclass(frozen=True)
@@ -40,8 +41,8 @@ class Gains:
 
     law: str
     vehicle: str = ""
-    rate: float = 500.0
-    delay: float = 0.0
+    rate: float = RATE
+    delay: float = DELAY
     parameters: Mapping[str, float] = field(default_factory=dict)
     history: Any = None
 
@@ -66,7 +67,8 @@ def write(gains: Gains, path: Union[str, Path]) -> None:
     told: Dict[str, Any] = {"law": gains.law}
     if gains.vehicle:
         told["vehicle"] = gains.vehicle
-    told["rate"], told["delay"] = float(gains.rate), float(gains.delay)
+    told["rate"] = checked("gains", "rate", gains.rate)
+    told["delay"] = checked("gains", "delay", gains.delay)
     told["parameters"] = {name: float(value) for name, value in gains.parameters.items()}
     if gains.history is not None:
         told["history"] = gains.history

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Dict, Optional, Sequence
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from . import _core
 from .belief import believed
 from .parameters import values
+from .timing import DELAY, RATE, checked
 
 
 class Law:
@@ -34,8 +36,8 @@ class Law:
     def __init__(
         self,
         name: str,
-        rate: float = 500,
-        delay: float = 0,
+        rate: float = RATE,
+        delay: float = DELAY,
         spins: Sequence[float] = (),
         belief: Optional[_core.Simulation] = None,
         **parameters: Any,
@@ -47,7 +49,7 @@ class Law:
         self.belief = belief
         self.parameters = values(f"law '{name}'", parameters)
         self._controller: Optional[_core.Controller] = None
-        self._period = 1 / self.rate
+        self._period = math.nan
 
     def reset(self, simulation: _core.Simulation) -> None:
         """Begin on what the simulation flies."""
@@ -55,7 +57,8 @@ class Law:
         self._controller = _core.Controller(
             self.name, vehicle, simulation, self.parameters, self.spins
         )
-        self._period = max(1 / self.rate, simulation.dt)  # called once a step at most
+        rate = checked(f"law '{self.name}'", "rate", self.rate)
+        self._period = max(1 / rate, simulation.dt)  # called once a step at most
 
     def __call__(self, t: float, state: Any, reference: Any) -> np.ndarray:
         """Give the speeds of the rotors, rad/s."""

@@ -14,6 +14,7 @@ from .gains import law_for, of_file
 from .imported import imported
 from .law import Law
 from .parameters import did_you_mean, docstring, read_values
+from .timing import DELAY, RATE
 from .warning import QuadcoreWarning
 
 
@@ -76,8 +77,8 @@ belief : Simulation, optional
 def _function(name: str, summary: str, table: List[_core.ParameterSpec]) -> Callable[..., Law]:
     def make(
         *,
-        rate: float = 500,
-        delay: float = 0,
+        rate: float = RATE,
+        delay: float = DELAY,
         spins: Sequence[float] = (),
         belief: Optional[_core.Simulation] = None,
         **parameters: float,

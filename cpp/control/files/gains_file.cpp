@@ -1,6 +1,7 @@
 #include "quadcore/control/gains_file.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "control/files/yaml_file.hpp"
 #include "quadcore/control/controller.hpp"
@@ -13,6 +14,26 @@ namespace {
 const std::vector<std::string> keys = {"law", "vehicle", "rate", "delay", "parameters", "history"};
 
 }  // namespace
+
+const std::vector<TagSpec>& timing_table() {
+  using T = TagSpec;
+  static const std::vector<TagSpec> table = {
+      T::number("rate", "1/s", "500", "calls per second; at most one per step")
+          .at_least(1e-6)
+          .at_most(1e9),
+      T::number("delay", "s", "0", "from a call to the first step that it commands")
+          .at_least(0)
+          .at_most(10),
+  };
+  return table;
+}
+
+double default_timing(const std::string& name) {
+  const std::vector<TagSpec>& table = timing_table();
+  const auto row = std::find_if(table.begin(), table.end(),
+                                [&](const TagSpec& spec) { return spec.name == name; });
+  return default_of(*row);
+}
 
 Gains read_gains(const std::string& path) {
   const YamlFile file(path);
@@ -42,14 +63,14 @@ Gains read_gains(const std::string& path) {
   gains.law = file.text(*law, "the law");
   check(*law, gains.law, {});
   if (const YAML::Node* node = entry("vehicle")) gains.vehicle = file.text(*node, "the vehicle");
-  if (const YAML::Node* node = entry("rate")) {
-    gains.rate = file.number(*node, "rate");
-    if (!(gains.rate > 0)) file.refuse(*node, "'rate' is not above 0; write calls per second");
-  }
-  if (const YAML::Node* node = entry("delay")) {
-    gains.delay = file.number(*node, "delay");
-    if (!(gains.delay >= 0 && gains.delay <= longest_delay)) {
-      file.refuse(*node, "'delay' is out of range; write seconds, from 0 to 10");
+  for (const auto& [name, member] : {std::pair{"rate", &Gains::rate}, {"delay", &Gains::delay}}) {
+    const YAML::Node* const node = entry(name);
+    if (!node) continue;
+    gains.*member = file.number(*node, name);
+    try {
+      check_values("a gains file", timing_table(), {{name, gains.*member}});
+    } catch (const InputError& error) {
+      file.refuse(*node, error.what());
     }
   }
   if (const YAML::Node* node = entry("parameters")) {

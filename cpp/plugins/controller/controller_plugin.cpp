@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <string>
 
 #include "control/setup.hpp"
 #include "quadcore/plugin.hpp"
@@ -20,6 +21,11 @@ class ControllerPlugin final : public Plugin {
     odometry_ = setup.topics.takes(p.text("odometry"), messages::kind_of<messages::Odometry>());
     reference_ = setup.topics.takes(p.text("reference"), messages::kind_of<messages::Reference>());
     command_ = setup.topics.publishes_as_taken(p.text("command"), messages::speeds(rotors_));
+    const std::string& vehicle = setup_.gains.vehicle;
+    if (!vehicle.empty() && vehicle != setup.model.name) {
+      setup.warnings.push_back("the gains of " + p.text("gains") + " are those of vehicle '" +
+                               vehicle + "', this one is '" + setup.model.name + "'");
+    }
   }
 
   std::size_t state_size() const override {
