@@ -83,7 +83,9 @@ class Law:
 
     def copy(self) -> Law:
         """Make the same law, as it is before it flies."""
-        return Law(self.name, self.rate, self.delay, self.spins, self.belief, **self.parameters)
+        same = Law(self.name, self.rate, self.delay, self.spins, self.belief)
+        same.parameters.update(self.parameters)  # whose names the core checks
+        return same
 
     def told(self) -> Dict[str, Any]:
         """Say what it is, in plain values."""

@@ -42,7 +42,9 @@ class Shape:
         Which says it.
     """
 
-    def __init__(self, name: str, rows: Optional[npt.ArrayLike] = None, **parameters: Any) -> None:
+    def __init__(
+        self, name: str, rows: Optional[npt.ArrayLike] = None, /, **parameters: Any
+    ) -> None:
         self.name = name
         self.parameters = values(f"reference '{name}'", parameters)
         try:

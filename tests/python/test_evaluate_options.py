@@ -125,6 +125,13 @@ def test_a_file_that_is_wrong_is_one_line(capsys, text, says):
             "log_every is 10 but the flight has",
         ),
         ("--controller pd --reference hover --log-every 5000", "log_every is 5000 but the flight"),
+        (
+            "--controller pd --reference hover --vary odometry.positionNoise=0,x",
+            "plugin 'odometry': <positionNoise> 'x' is not a finite number",
+        ),
+        ("--controller pd:spins=1 --reference hover", "law 'pd' has no parameter 'spins'"),
+        ("--controller pd --reference hover:name=3", "'hover' has no parameter 'name'"),
+        ("--controller pd --reference hover:rows=3", "'hover' has no parameter 'rows'"),
         ("--controller pd, --reference hover", "'pd,' has an empty name; write names"),
         ("--controller pd --reference hover --engine eigen,,ode", "'' is none of"),
         ("--controller pd --reference hover --model ,", "',' has an empty name"),

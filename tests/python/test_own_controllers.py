@@ -102,6 +102,12 @@ def test_faults_of_a_controller_are_rows_and_the_other_flights_finish(capsys):
         assert says in told[name] if says else told[name] == "", name
 
 
+def test_the_time_limit_holds_for_the_mathematical_model_too():
+    """Which holds interrupts back while it takes a step."""
+    found = evaluate("pd", "hover", engines="lagrange", duration=100, time_limit=0.5)
+    assert found.table[0]["failure"] == "not done within the time limit of 0.5 s"
+
+
 @pytest.mark.parametrize("options", [{"seeds": 3}, {"margins": True}])
 def test_what_a_module_remembers_of_a_flight_no_other_flight_knows(options):
     """Whatever the number of processes: each flight is the first of its module."""

@@ -119,6 +119,7 @@ def test_other_models_judge_too(tmp_path):
     [
         ({"law": "pidd"}, "there is no law 'pidd'"),
         ({"law": "controllers:Mine"}, "controllers"),
+        ({"law": "pd:spins=1"}, "law 'pd' has no parameter 'spins'"),
         ({"only": ["kp_xz"]}, "law 'pd' has no number 'kp_xz'; tune some of scale, kp_xy"),
         ({"only": ["ki_xy"]}, "ki_xy is 0; begin with more than 0"),
         ({"only": ["drag"]}, "no number 'drag'"),

@@ -74,6 +74,17 @@ def scenarios(vary: Mapping[str, Values]) -> List[Dict[str, str]]:
     return [dict(zip(names, values)) for values in itertools.product(*(a.values for a in axes))]
 
 
+def one_by_one(scenarios: Sequence[Mapping[str, str]]) -> List[Dict[str, str]]:
+    """Choose scenarios, the first first, in which each value of each axis comes once."""
+    first = dict(scenarios[0])
+    chosen = {tuple(first.items()): first}
+    for scenario in scenarios:
+        for name, value in scenario.items():
+            one = {**first, name: value}
+            chosen.setdefault(tuple(one.items()), one)
+    return list(chosen.values())
+
+
 def label_of(scenario: Mapping[str, str]) -> str:
     """Name a scenario."""
     return " ".join(f"{name}={value}" for name, value in scenario.items())

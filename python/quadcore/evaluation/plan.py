@@ -20,6 +20,7 @@ from ..overrides import check_names, without_xacro
 from ..plants import LAGRANGE, plants
 from ..simulation import text_of, whole
 from ..study.axes import LARGEST, Values
+from ..warning import unheard
 from . import entries, trial
 from .entries import Named
 
@@ -131,10 +132,9 @@ class Plan:
         self._makers = [[entries.maker(thing, name) for name in vehicles] for _, thing in things]
         worlds = [scenario["world"] for scenario in self._scenarios if "world" in scenario]
         self._worlds = {name: read_world(name, self._ignore) for name in worlds}
-        built = [self._built(model) for model in range(len(models))]
-        self.lacking = trial.lacking(built[0])
+        begun = [self._begun(model) for model in range(len(models))]
+        self.lacking = trial.lacking(begun[0])
         self._check_logs()
-        self._check_laws(built)
 
     @property
     def apart(self) -> bool:
@@ -248,9 +248,8 @@ class Plan:
     def _sides(self) -> Tuple[Sequence[str], ...]:
         return self.controllers, self.references, self.engines, self.models, self.scenarios
 
-    def _built(self, model: int) -> Any:
-        """Build a model as the first scenario has it: says at once what is wrong or doubtful."""
-        changed = self._changed(model, self._scenarios[0])
+    def _built(self, model: int, scenario: Mapping[str, str]) -> Any:
+        changed = self._changed(model, scenario)
         plan = replace(self._plans[model], engine=self.engines[0], on_reference=False, **changed)
         return plan.simulation()
 
@@ -261,21 +260,24 @@ class Plan:
                 dt = replace(plan, world=world).step
                 check_logged(self.duration, dt, self.rows_every(dt))
 
-    def _check_laws(self, built: Sequence[Any]) -> None:
-        """Let each law of quadcore begin on each model, with each value of the axes."""
-        first = self._scenarios[0]
-        tried = {
-            tuple({**first, name: value}.items()): None
-            for scenario in self._scenarios
-            for name, value in scenario.items()
-            if name.startswith(entries.OF_CONTROLLER)
-        }
-        for row, is_own in enumerate(self._are_own):
-            for model, simulation in enumerate(built):
-                for scenario in [] if is_own else tried or [tuple(first.items())]:
-                    with entries.blaming(dict(scenario)):
-                        controller = self._controller(row, model, dict(scenario))
-                        Guided(controller, simulation).reset(simulation)
+    def _begun(self, model: int) -> Any:
+        """Let each law of quadcore begin on a model, with each value of the axes.
+
+        Returns the vehicle as the first scenario has it, which alone says what is doubtful.
+        """
+        first, *others = entries.one_by_one(self._scenarios)
+        vehicle = self._built(model, first)
+        self._begin_laws(model, first, vehicle)
+        with unheard():
+            for scenario in others:
+                self._begin_laws(model, scenario, self._built(model, scenario))
+        return vehicle
+
+    def _begin_laws(self, model: int, scenario: Mapping[str, str], vehicle: Any) -> None:
+        with entries.blaming(scenario):
+            for row, is_own in enumerate(self._are_own):
+                if not is_own:
+                    Guided(self._controller(row, model, scenario), vehicle).reset(vehicle)
 
     def _check(self, seeds: int) -> None:
         known = [name for name, _ in plants()]

@@ -117,9 +117,9 @@ class Problem:
 
     def with_gains(self, gains: Mapping[str, float]) -> laws.Law:
         """Make the law with some gains."""
-        law = self.law
-        parameters = {**law.parameters, **gains}
-        return laws.Law(law.name, law.rate, law.delay, law.spins, law.belief, **parameters)
+        law = self.law.copy()
+        law.parameters.update(gains)
+        return law
 
     def fly(self, case: Case, gains: Mapping[str, float]) -> Flown:
         """Fly a case and measure it; raises `InputError` if the law refuses gains or vehicle."""
