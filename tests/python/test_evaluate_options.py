@@ -129,6 +129,7 @@ def test_a_file_that_is_wrong_is_one_line(capsys, text, says):
             "--controller pd --reference hover --vary odometry.positionNoise=0,x",
             "plugin 'odometry': <positionNoise> 'x' is not a finite number",
         ),
+        ("--controller pd --reference hover --time-limit 1e300", "give seconds, more than 0 and"),
         ("--controller pd:spins=1 --reference hover", "law 'pd' has no parameter 'spins'"),
         ("--controller pd --reference hover:name=3", "'hover' has no parameter 'name'"),
         ("--controller pd --reference hover:rows=3", "'hover' has no parameter 'rows'"),

@@ -172,6 +172,7 @@ def conduct(
     margins: bool = False,
 ) -> Evaluation:
     """Fly a plan; parameters as for `evaluate`."""
+    arguments.check({"time_limit": time_limit}, _KINDS)
     cases = plan.cases()
     kept = set(_to_draw(plan, cases))
     outcomes = [Outcome()] * len(cases)
