@@ -49,7 +49,7 @@ std::string first_publisher(const std::string& topic) {
 
 KeptPublisher<rosgraph_msgs::Clock> take_part_in_clock(ros::NodeHandle& nh, ClockRole role) {
   if (role == ClockRole::follow) return {};
-  KeptPublisher<rosgraph_msgs::Clock> publisher(nh, "/clock", 1000);
+  KeptPublisher<rosgraph_msgs::Clock> publisher(nh, "/clock", 1000, Again::to_all);
   const std::string leader = first_publisher("/clock");
   if (leader.empty()) return publisher;
   if (role == ClockRole::lead) {
