@@ -29,17 +29,18 @@ std::array<double, order> splines(int k, double u) {
   return values;
 }
 
-/// Decimals of the numbers, 0 to 10.
-int decimals_of(const VectorXd& numbers) {
-  constexpr int most = 10;
-  for (int decimals = 0; decimals < most; ++decimals) {
-    const double unit = std::pow(10.0, -decimals);
+/// Unit of the last decimal of the numbers, 1 to 1e-10.
+double last_digit(const VectorXd& numbers) {
+  constexpr double most = 1e10;
+  double inverse = 1;  // a whole number, so that the unit is rounded once
+  for (; inverse < most; inverse *= 10) {
+    const double unit = 1 / inverse;
     const auto is_whole = [&](double x) {
       return std::abs(x - unit * std::round(x / unit)) <= 1e-13 * std::max(1.0, std::abs(x));
     };
-    if (std::all_of(numbers.begin(), numbers.end(), is_whole)) return decimals;
+    if (std::all_of(numbers.data(), numbers.data() + numbers.size(), is_whole)) break;
   }
-  return most;
+  return 1 / inverse;
 }
 
 /// Least squares by so many pieces.
@@ -115,7 +116,7 @@ class Fit {
 VectorXd last_digits(const Rows& rows) {
   VectorXd units(rows.cols() - 1);
   for (Eigen::Index i = 0; i < units.size(); ++i) {
-    units[i] = std::min(std::pow(10.0, -decimals_of(rows.col(i + 1))), 1e-3);
+    units[i] = std::min(last_digit(rows.col(i + 1)), 1e-3);
   }
   return units;
 }

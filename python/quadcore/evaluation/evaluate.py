@@ -136,17 +136,8 @@ def evaluate(
     KeyboardInterrupt
         With the attribute `evaluation`, whose missing rows say so.
     """
-    given = {
-        "engines": engines,
-        "models": models,
-        "vary": vary,
-        "duration": duration,
-        "margins": margins,
-        "time_limit": time_limit,
-        "processes": processes,
-        "progress": progress,
-    }
-    arguments.check({**given, **options}, _KINDS)
+    given = dict(locals())
+    arguments.check({**{name: given[name] for name in _KINDS}, **options}, _KINDS)
     plan = Plan(
         controllers,
         references,

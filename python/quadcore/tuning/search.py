@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from .. import laws
-from .._core import FlightError, InputError, QuadcoreError
+from .._core import InputError, QuadcoreError
 from ..evaluation.measures import LOST
 from ..gains import Gains
-from ..study import arguments
-from ..study.arguments import several
 from ..study.executor import conducted
 from ..warning import unheard
 from .problem import Case, Flown, Problem
@@ -23,20 +19,7 @@ OBJECTIVE = (
     "square of the distance, m"
 )
 
-_KINDS = {
-    "model": arguments.NAMES,
-    "references": arguments.GUIDES,
-    "held_out": arguments.GUIDES,
-    "held_out_models": arguments.NAMES,
-    "only": arguments.or_none(arguments.NAMES),
-    "engine": arguments.NAME,
-    "duration": arguments.SECONDS,
-    "budget": arguments.WHOLE,
-    "processes": arguments.or_none(arguments.COUNT),
-    "progress": arguments.or_none(arguments.PROGRESS),
-}
 _SPREAD = 0.8  # of the logarithm of a gain at first: most lie within a factor of 2.2
-_INTERRUPTED = "interrupted"
 
 Progress = Callable[[int, int], None]
 
@@ -58,115 +41,7 @@ class Tuning(NamedTuple):
     """How many gains were better on what they were tuned on, but lost a held-out case."""
 
 
-def tune(
-    law: Union[str, laws.Law],
-    model: Union[str, Path, Sequence[Union[str, Path]]] = "quadrotor",
-    references: Sequence[Any] = ("spiral", "step"),
-    held_out: Sequence[Any] = ("circle", "eight"),
-    held_out_models: Sequence[Union[str, Path]] = (),
-    only: Optional[Sequence[str]] = None,
-    engine: str = "eigen",
-    duration: float = 10.0,
-    budget: int = 300,
-    seed: int = 0,
-    spawn: Optional[Sequence[float]] = None,
-    processes: Optional[int] = None,
-    progress: Optional[Progress] = None,
-    **options: Any,
-) -> Tuning:
-    """Search for gains of a law.
-
-    By CMA-ES (Hansen 2016, arXiv:1604.00772) on the logarithms of the gains. Gains that are better
-    than all before are flown in the held-out cases, too, and refused if one is lost there, or if a
-    vehicle that begins beside a reference does not come back to it. The same seed gives the same
-    result, whatever the number of processes.
-
-    Parameters
-    ----------
-    law
-        Name, ``NAME:KEY=VALUE,...`` or gains file, or one of `quadcore.laws`: its parameters are
-        where the search begins.
-    model
-        What flies, or several; the gains are for the first.
-    references
-        What is flown to tune: names as on the command line, or functions.
-    held_out
-        What is flown, by every model, to judge; others than `references`.
-    held_out_models
-        Fly everything, to judge only.
-    only
-        Parameters to tune; without, all gains that are not zero at the start: those named k._...,
-        q_... and r_....
-    engine, duration
-        Of each flight; s.
-    budget
-        Gains to try, at least.
-    seed
-        Of the search and of all noise.
-    spawn
-        Where flights begin; without, in the full flat state of the reference.
-    processes
-        How many; None takes one per core.
-    progress
-        Called as progress(evaluations, budget).
-    **options
-        As for `Simulation`: world, dt, parameters, xacro_args, ignore.
-
-    Returns
-    -------
-    Tuning
-
-    Raises
-    ------
-    InputError
-        Something is at fault, or the package cma is missing; nothing was flown.
-    FlightError
-        No gains kept every held-out case. Its `evaluations` are those of `Tuning`.
-    KeyboardInterrupt
-        Its attribute `tuning` has the best so far, or None if all were refused.
-    """
-    given = {
-        "model": model,
-        "references": references,
-        "held_out": held_out,
-        "held_out_models": held_out_models,
-        "only": only,
-        "engine": engine,
-        "duration": duration,
-        "budget": budget,
-        "processes": processes,
-        "progress": progress,
-    }
-    arguments.check({**given, **options}, _KINDS)
-    options.update(engine=engine, duration=duration, seed=seed)
-    problem = Problem(
-        law,
-        several(model),
-        several(held_out_models),
-        several(references),
-        several(held_out),
-        None if only is None else several(only),
-        spawn,
-        options,
-    )
-    cma = _cma()
-    search = _Search(problem, budget, seed, processes, progress)
-    try:
-        search.run(cma)
-    except KeyboardInterrupt as stop:
-        stop.tuning = search.result(cma, _INTERRUPTED)  # type: ignore[attr-defined]
-        raise
-    found = search.result(cma, "")
-    if found is None:
-        failure = FlightError(
-            f"no gains found: {search.refusal}; begin elsewhere, or search longer"
-        )
-        failure.evaluations = search.evaluations  # type: ignore[attr-defined]
-        raise failure
-    return found
-
-
-class _Search:
+class Search:
     """What was tried so far."""
 
     def __init__(
@@ -306,13 +181,3 @@ class _Search:
         # By their numbers: a reference may be a function, which no process can send to another.
         conducted(fly, range(len(flights)), take, self._processes)
         return outcomes  # type: ignore[return-value]
-
-
-def _cma() -> Any:
-    try:
-        import cma
-    except ImportError:
-        raise InputError(
-            "tuning needs the package cma; install it: pip install 'quadcore[tune]'"
-        ) from None
-    return cma
