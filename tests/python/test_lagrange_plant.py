@@ -145,7 +145,7 @@ def test_a_force_that_it_does_not_know_is_refused():
         check(told)
 
 
-def test_the_command_line_flies_it(capsys):
+def test_the_command_line_flies_it(capsys, in_empty_folder):
     command = ["run", "quadrotor", "--engine", "lagrange", "--xacro", "sim_slow:=1", "--dt", "4e-3"]
     arguments = ["--controller", "geometric:rate=250", "--reference", "spiral", "--duration", "0.2"]
     assert main([*command, *arguments, "--log", "log.mat"]) == 0
