@@ -11,10 +11,12 @@ import tempfile
 import threading
 import time
 import unittest
+import xmlrpc.client
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Callable
 
+import rosgraph
 import roslib.packages
 import rospy
 import rostest
@@ -211,6 +213,21 @@ def ends_within_a_second(start: Callable, number: int) -> None:
             return
         ends.append((time_taken, node.process.returncode, node.error))
     raise AssertionError(f"ended after so many seconds, with that status, saying this: {ends}")
+
+
+def publishers(topic: str) -> list[str]:
+    """Nodes that publish a topic now: one that had no time to take its leave is still listed."""
+    master = rosgraph.Master("/test")
+    state, _, _ = master.getSystemState()
+
+    def lives(node: str) -> bool:
+        try:
+            xmlrpc.client.ServerProxy(master.lookupNode(node)).getPid("/test")
+        except (OSError, rosgraph.MasterException):
+            return False
+        return True
+
+    return [node for node in dict(state).get(topic, []) if lives(node)]
 
 
 def outcome(*arguments, **environment):

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import harness
 import numpy as np
-import rosgraph
 import rospy
 from harness import Process, Recording, description, flight, step, wait_until
 from nav_msgs.msg import Odometry
@@ -18,11 +17,6 @@ from test_controller import CIRCLE, LOCKSTEP, controller, place
 
 SLOW = ("_dt:=0.002", "_set:=drone_plugin.sim_slow=10 motorpid_plugin.sim_slow=10")
 FAST = ("_lockstep:=true", "_real_time_factor:=0", "_lockstep_timeout:=30", "_engine:=eigen")
-
-
-def is_published(topic):
-    published, _, _ = rosgraph.Master("/test").getSystemState()
-    return any(name == topic for name, _ in published)
 
 
 def odometry(t, x=0.0):
@@ -53,7 +47,7 @@ class TestControllerFaults(unittest.TestCase):
         folder = Path(self.stack.enter_context(tempfile.TemporaryDirectory()))
         logs = [folder / "before.csv", folder / "after.csv"]
         with controller(CIRCLE):
-            wait_until(lambda: is_published("/controller/reference"))
+            wait_until(lambda: harness.publishers("/controller/reference"))
             with flight(*LOCKSTEP, *SLOW, "_x:=1.2", f"_log:={logs[0]}"):
                 step(400)
         with flight(*LOCKSTEP, *SLOW, "_x:=1.2", f"_log:={logs[1]}"), controller(CIRCLE):

@@ -5,7 +5,6 @@ import unittest
 
 import harness
 import numpy as np
-import rosgraph
 from harness import LONG, Recording, call
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
@@ -23,11 +22,6 @@ def height(message):
     return message.pose.pose.position.z
 
 
-def publishers(topic):
-    state, _, _ = rosgraph.Master("/test").getSystemState()
-    return dict(state).get(topic, [])
-
-
 class TestSeveral(unittest.TestCase):
     def test_three_fly_for_a_minute(self):
         clock = Recording("/clock", Clock)
@@ -42,7 +36,7 @@ class TestSeveral(unittest.TestCase):
         for flight in flights.values():
             flight.wait(lambda m: time_of(m[-1]) > end - 0.1, 5 * LONG)
 
-        self.assertEqual(len(publishers("/clock")), 1)
+        self.assertEqual(len(harness.publishers("/clock")), 1)
         ticks = np.array([m.clock.to_nsec() for m in list(clock.messages)])
         self.assertGreaterEqual(np.diff(ticks).min(), 0)
         self.assertGreater(np.mean(np.diff(ticks) == 1000000), 0.99)
