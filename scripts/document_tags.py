@@ -50,6 +50,20 @@ TOPICS = {
     "odom": "units as in the log, variances in their squares",
     "reference": "where the vehicle is to be and derivatives, world axes, m, rad, s",
     "saturation": "steps so far whose command reached the motors' `maxVelocity`",
+    "effectiveness": "of each rotor the share of thrust and reaction torque that is left",
+    "power": "of each rotor the share of its motor's torque that is left",
+    "fault": "a rotor, counted from 1, and its shares, to be so at once",
+    "health": "of each joint that turns, what laws are told is left of its rotor's thrust",
+    "payload": "1: it rides on the frame, 0: it is gone",
+    "payload_carried": "mass of what rides on the frame, kg, 0 if nothing does; its place, m",
+    "push": "force, N, and torque, N m",
+    "wind": "velocity of the air, world axes, m/s",
+    "imu": "angular velocity, rad/s, and specific force, m/s^2, link axes, and their variances",
+    "faults": "the same for the battery, which multiplies by them",
+    "battery": "V, A drawn, A h left, A h of a full one",
+    "pressure": "static pressure of the air, Pa, and its variance",
+    "magnetic_field": "flux density, T, link axes, and its variance",
+    "fix": "degrees, m, m/s, and variances; place and velocity in world axes",
 }
 
 
@@ -171,9 +185,10 @@ def reference_section() -> str:
     unfelt = ((f"`{tag.name}`", tag.of, tag.range, tag.meaning) for tag in tags if not tag.felt_by)
     return (
         "\n## Tags of `<gazebo reference>`\n\n"
-        "Felt by the engines `gazebo11` and `ode`. `eigen` has no contact, in which the first\n"
-        "eight act; it refuses `dampingFactor` and `turnGravityOff`. A value is the element's\n"
-        "text or its attribute `value`. What a reference to a lumped link does:\n"
+        "Felt by the engines `gazebo11` and `ode`. Of the first eight, those of contact, `eigen`\n"
+        "feels `mu1`, `mu2`, `fdir1` and a `kp` that is softer than its springs; of the others it\n"
+        "warns. It refuses `dampingFactor` and `turnGravityOff`. A value is the element's text or\n"
+        "its attribute `value`. What a reference to a lumped link does:\n"
         "[models.md](models.md#lumping).\n\n"
         + table(("tag", "of a", "unit", "default", "range", "meaning"), felt)
         + "\nWithout effect, as in Gazebo, within the range given:\n\n"
@@ -226,17 +241,37 @@ def topic_section(simulation: qc.Simulation) -> str:
     return (
         "\n## Topics\n\nMessages between plugins, and between them and Python or ROS; "
         "see [plugins.md](plugins.md#topics).\n"
-        "Those of the shipped quadrotor with a controller:\n\n"
+        "Those of the shipped quadrotor with every plugin that ships:\n\n"
         + table(("topic", "kind", "fields", "plugins", "meaning"), rows)
     )
 
 
-def guided_quadrotor() -> qc.Simulation:
-    """Make the shipped quadrotor with the plugins that fly it by itself."""
+# Plugins that the shipped quadrotor does not have, and the tags that they need.
+FURTHER = {
+    "barometer": "",
+    "battery": "<fullVoltage>12.6</fullVoltage><emptyVoltage>9.9</emptyVoltage>"
+    "<capacity>2.2</capacity><resistance>0.03</resistance>"
+    "<faults>faults</faults>",
+    "controller": "<law>geometric</law>",
+    "fault": "<effectiveness>faults</effectiveness><detection>0.1</detection>",
+    "gps": "",
+    "ground_effect": "",
+    "imu": "",
+    "magnetometer": "",
+    "motor": "<sim_slow>10</sim_slow>",
+    "payload": "<mass>0.1</mass>",
+    "push": "",
+    "reference": "",
+    "wind": "",
+}
+
+
+def quadrotor_with(further: dict[str, str]) -> qc.Simulation:
+    """Make the shipped quadrotor with further plugins."""
     document = load_description("quadrotor", {})
     plugins = "".join(
-        f'<gazebo><plugin name="{name}" filename="lib{name}_plugin.so">{tag}</plugin></gazebo>'
-        for name, tag in (("controller", "<law>geometric</law>"), ("reference", ""))
+        f'<gazebo><plugin name="{name}" filename="lib{name}_plugin.so">{tags}</plugin></gazebo>'
+        for name, tags in further.items()
     )
     text = document.text.replace("</robot>", f"{plugins}</robot>")
     return qc.Simulation(_core.read_model(_core.Document(document.name, text, document.lines), []))
@@ -244,7 +279,7 @@ def guided_quadrotor() -> qc.Simulation:
 
 def page() -> str:
     """Write out the whole page."""
-    simulation = guided_quadrotor()
+    simulation = quadrotor_with(FURTHER)
     return "".join(
         [
             INTRODUCTION,

@@ -11,6 +11,19 @@ WORLD = {
         "`0 0 0`",
         "velocity of the air in world axes; `chapter2` only",
     ),
+    "atmosphere": (
+        "",
+        "",
+        "attribute `type`, if given, must be `adiabatic`; felt where a plugin's tag says so",
+    ),
+    "atmosphere/temperature": ("K", "288.15", "of the air at z = 0"),
+    "atmosphere/temperature_gradient": ("K/m", "-0.0065", "its change with height"),
+    "atmosphere/pressure": ("Pa", "101325", "of the air at z = 0"),
+    "magnetic_field": (
+        "T",
+        "`5.5645e-6 22.8758e-6 -42.3884e-6`",
+        "of the Earth in world axes, x east, y north, z up; for magnetometers",
+    ),
     "include/uri": (
         "",
         "",
@@ -24,6 +37,11 @@ WORLD = {
     "model/link/visual": ("", "", "ignored"),
     "physics": ("", "", "attribute `type`, if given, must be `ode`; also written `physics:ode`"),
     "physics/gravity": ("m/s^2", "`0 0 -9.8`", "the same as `gravity`; only one of them"),
+    "physics/magnetic_field": (
+        "T",
+        "`5.5645e-6 22.8758e-6 -42.3884e-6`",
+        "the same as `magnetic_field`; only one of them",
+    ),
     "physics/max_step_size": ("s", "0.001", "the step, unless `--dt` or `dt=` is given"),
     "physics/real_time_update_rate": (
         "1/s",

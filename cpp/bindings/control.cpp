@@ -7,9 +7,11 @@
 #include "quadcore/control/controller.hpp"
 #include "quadcore/control/gains_file.hpp"
 #include "quadcore/control/inner_loop.hpp"
+#include "quadcore/control/rotor_health.hpp"
 #include "quadcore/control/rows_file.hpp"
 #include "quadcore/control/second_vehicle.hpp"
 #include "quadcore/control/start.hpp"
+#include "quadcore/rotor_shares.hpp"
 
 namespace quadcore::bindings {
 namespace {
@@ -32,8 +34,21 @@ struct Flown {
     return speeds;
   }
 };
-using FlownLaw = Flown<Controller>;
 using FlownInnerLoop = Flown<control::InnerLoop>;
+
+/// A law, which is told what is left of the rotors if a plugin tells it.
+struct FlownLaw : Flown<Controller> {
+  Self flown;
+  control::RotorHealth health;
+  int topic;  ///< that tells; -1: none
+
+  /// To be called with the vehicle locked.
+  void hear() {
+    if (topic < 0) return;
+    const Topic& said = flown->topics()[static_cast<std::size_t>(topic)];
+    health.tell(said, flown->time(), controller, state.data());
+  }
+};
 
 VehicleDescription describe(const Self& self) {
   const Lock lock(*self);
@@ -73,6 +88,7 @@ py::array_t<double> command_at(FlownLaw& flown, double period, const Self& self,
   const Lock lock(*self);
   const Topics& topics = self->topics();
   const auto now = topics.read<messages::Odometry>(topics.at(sensed));
+  flown.hear();
   return flown.command(period, now, shape.at(self->time()));
 }
 
@@ -144,13 +160,20 @@ void bind_control(py::module_& m) {
                       const Values& values, const std::vector<double>& spins) {
             Controller made(law, describe_as(believed, flown), values, spins);
             const std::size_t size = Controller::state_size(law, made.rotors());
-            return std::make_unique<FlownLaw>(FlownLaw{std::move(made), std::vector<double>(size)});
+            return std::make_unique<FlownLaw>(FlownLaw{{std::move(made), std::vector<double>(size)},
+                                                       flown,
+                                                       control::RotorHealth(describe(flown)),
+                                                       flown->topics().find(health_topic)});
           }),
           py::arg("law"), py::arg("believed"), py::arg("flown"), py::arg("values"),
           py::arg("spins"))
       .def(
           "command",
           [](FlownLaw& flown, double period, const py::object& state, const Reference& wanted) {
+            {
+              const Lock lock(*flown.flown);
+              flown.hear();
+            }
             return flown.command(period, odometry(state), wanted);
           },
           py::arg("period"), py::arg("state"), py::arg("reference"))

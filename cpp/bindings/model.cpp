@@ -127,6 +127,9 @@ void bind_model(py::module_& m) {
                              [](const Built<World>& held) -> Vector3d { return held->gravity_W; })
       .def_property_readonly("wind",
                              [](const Built<World>& held) -> Vector3d { return held->wind_W; })
+      .def_property_readonly(
+          "magnetic_field",
+          [](const Built<World>& held) -> Vector3d { return held->magnetic_field_W; })
       .def_property_readonly("max_step_size",
                              [](const Built<World>& held) { return held->max_step_size; })
       .def_property_readonly("real_time_update_rate",

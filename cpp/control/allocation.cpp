@@ -27,6 +27,13 @@ Eigen::Vector4d orthogonal(const Eigen::Matrix<double, 4, 3>& vectors) {
   return normal;
 }
 
+/// Of numbers for each rotor, with what is left of the rotors.
+double left_of(const VectorXd& numbers, const double* lost) {
+  double sum = 0;
+  for (Eigen::Index i = 0; i < numbers.size(); ++i) sum += (1 - lost[i]) * numbers[i];
+  return sum;
+}
+
 }  // namespace
 
 Allocation::Allocation(const Belief& belief) {
@@ -49,6 +56,7 @@ Allocation::Allocation(const Belief& belief) {
         least_[i] = rotor.slowest * rotor.slowest;
         most_[i] = std::min(rotor.fastest * rotor.fastest, largest_square);
       }
+      nothing_.setZero(n);
       find_facets();
       return;
     }
@@ -59,93 +67,110 @@ Allocation::Allocation(const Belief& belief) {
 }
 
 void Allocation::find_facets() {
-  constexpr double parallel = 1e-6, rounding = 1e-10;
   const Eigen::Index n = scaled_.cols();
-  if (n == 4) {  // each rotor's own limits
-    for (int i = 0; i < n; ++i) facets_.push_back({inverse_.row(i), least_[i], most_[i]});
-    return;
-  }
   const Eigen::Matrix4Xd directions = scaled_.colwise().normalized();
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = i + 1; j < n; ++j) {
-      for (Eigen::Index k = j + 1; k < n; ++k) {
-        Eigen::Matrix<double, 4, 3> plane;
-        plane << directions.col(i), directions.col(j), directions.col(k);
-        Eigen::Vector4d normal = orthogonal(plane);
-        if (normal.norm() < parallel) continue;  // they span no facet
-        normal.normalize();
-        normal = (normal.array().abs() < rounding).select(0, normal);
-        Facets facets{normal.cwiseQuotient(size_), 0, 0};
-        for (Eigen::Index l = 0; l < n; ++l) {
-          if (std::abs(normal.dot(directions.col(l))) < rounding) continue;  // l is in the plane
-          const double along = normal.dot(scaled_.col(l));
-          facets.least += along * (along > 0 ? least_[l] : most_[l]);
-          facets.most += along * (along > 0 ? most_[l] : least_[l]);
-        }
-        facets_.push_back(facets);
+      Eigen::Matrix<double, 4, 3> plane;
+      plane << directions.col(i), directions.col(j), Eigen::Vector4d::UnitW();
+      add_facets(level_, orthogonal(plane));
+      for (Eigen::Index k = j + 1; n > 4 && k < n; ++k) {
+        plane.col(2) = directions.col(k);
+        add_facets(facets_, orthogonal(plane));
       }
     }
   }
+  for (int i = 0; n == 4 && i < n; ++i) {  // each rotor's own limits
+    facets_.push_back(
+        {inverse_.row(i), least_[i] * VectorXd::Unit(n, i), most_[i] * VectorXd::Unit(n, i)});
+  }
 }
 
-bool Allocation::allocate(const Demand& demand, double* squares) const {
+void Allocation::add_facets(std::vector<Facets>& facets, Eigen::Vector4d scaled_normal) const {
+  constexpr double parallel = 1e-6, rounding = 1e-10;
+  if (scaled_normal.norm() < parallel) return;  // they span no facet
+  scaled_normal.normalize();
+  scaled_normal = (scaled_normal.array().abs() < rounding).select(0, scaled_normal);
+  Facets made{scaled_normal.cwiseQuotient(size_), nothing_, nothing_};
+  for (Eigen::Index l = 0; l < scaled_.cols(); ++l) {
+    const double along = scaled_normal.dot(scaled_.col(l));
+    if (std::abs(along) < rounding * scaled_.col(l).norm()) continue;  // l is in the plane
+    made.least[l] = along * (along > 0 ? least_[l] : most_[l]);
+    made.most[l] = along * (along > 0 ? most_[l] : least_[l]);
+  }
+  facets.push_back(made);
+}
+
+bool Allocation::allocate(const Demand& demand, double* squares, const double* lost) const {
   const Eigen::Index n = inverse_.rows();
+  if (!lost) lost = nothing_.data();
   Eigen::Map<VectorXd> u(squares, n);
   const auto fits = [&] {
-    return (u.array() >= least_.array()).all() && (u.array() <= most_.array()).all();
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (!(u[i] >= (1 - lost[i]) * least_[i] && u[i] <= (1 - lost[i]) * most_[i])) return false;
+    }
+    return true;
   };
   // Columns, not a product with a matrix, whose order of summation would depend on where the
   // caller's numbers lie in memory.
   u = demand.torque_F.x() * inverse_.col(1) + demand.torque_F.y() * inverse_.col(2);
   u += demand.torque_F.z() * inverse_.col(3) + demand.thrust * inverse_.col(0);
-  if (fits()) return true;
+  bool met = fits();
   Eigen::Vector4d whole;
   whole << demand.thrust, demand.torque_F;
-  if (n > 4 && is_within(whole)) {
-    redistribute(whole, squares);
-    return true;
+  if (!met && n > 4 && is_within(whole, lost)) {
+    redistribute(whole, squares, lost);
+    met = true;
+  } else if (!met) {
+    const bool at_any_yaw = std::any_of(lost, lost + n, [](double share) { return share > 0; });
+    const Share share = fit(demand, lost, at_any_yaw);
+    u = demand.torque_F.x() * inverse_.col(1) + demand.torque_F.y() * inverse_.col(2);
+    u = share.roll_pitch * u + share.thrust * inverse_.col(0);
+    u += share.yaw * inverse_.col(3);
+    if (n > 4 && !fits()) {
+      whole << share.thrust, share.roll_pitch * demand.torque_F;
+      whole[3] = share.yaw;
+      redistribute(whole, squares, lost);
+    }
+    met = at_any_yaw && share.roll_pitch == 1 && share.thrust == demand.thrust;
   }
-  const Share share = fit(demand);
-  u = demand.torque_F.x() * inverse_.col(1) + demand.torque_F.y() * inverse_.col(2);
-  u = share.roll_pitch * u + share.thrust * inverse_.col(0);
-  u += share.yaw * demand.torque_F.z() * inverse_.col(3);
-  if (n > 4 && !fits()) {
-    const Vector3d of_torque(share.roll_pitch, share.roll_pitch, share.yaw);
-    whole << share.thrust, of_torque.cwiseProduct(demand.torque_F);
-    redistribute(whole, squares);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double left = 1 - lost[i];
+    u[i] = left > 0 ? std::clamp(u[i] / left, least_[i], most_[i]) : least_[i];
   }
-  u = u.cwiseMax(least_).cwiseMin(most_);  // last digits
-  return false;
+  return met;
 }
 
-bool Allocation::is_within(const Eigen::Vector4d& demand) const {
+bool Allocation::is_within(const Eigen::Vector4d& demand, const double* lost) const {
   const double rounding = 1e-9 * demand.cwiseQuotient(size_).norm();
   return std::all_of(facets_.begin(), facets_.end(), [&](const Facets& f) {
     const double at = f.normal.dot(demand);
-    return at >= f.least - rounding && at <= f.most + rounding;
+    return at >= left_of(f.least, lost) - rounding && at <= left_of(f.most, lost) + rounding;
   });
 }
 
-Allocation::Share Allocation::fit(const Demand& demand) const {
+Allocation::Share Allocation::fit(const Demand& demand, const double* lost, bool at_any_yaw) const {
   // Facets: least <= s level + T lift + yaw <= most bounds T from two sides by lines in s. The
   // largest s in [0, 1] is where a lower line meets an upper one.
+  const std::vector<Facets>& facets = at_any_yaw ? level_ : facets_;
   const auto level = [&](const Facets& f) {
     return demand.torque_F.x() * f.normal[1] + demand.torque_F.y() * f.normal[2];
   };
   const auto line = [&](const Facets& f, bool upper) {  // T at s = 0 and its slope
     const double lift = f.normal[0];
-    const double limit = upper == (lift > 0) ? f.most : f.least;
+    const double limit = left_of(upper == (lift > 0) ? f.most : f.least, lost);
     return std::pair{limit / lift, -level(f) / lift};
   };
   double s = 1;
-  for (const Facets& f : facets_) {
+  for (const Facets& f : facets) {
     if (f.normal[0] == 0) {
       const double change = level(f);
-      if (change != 0) s = std::clamp((change > 0 ? f.most : f.least) / change, 0.0, s);
+      const VectorXd& limit = change > 0 ? f.most : f.least;
+      if (change != 0) s = std::clamp(left_of(limit, lost) / change, 0.0, s);
       continue;
     }
     const auto [low, low_slope] = line(f, false);
-    for (const Facets& g : facets_) {
+    for (const Facets& g : facets) {
       if (g.normal[0] == 0) continue;
       const auto [high, high_slope] = line(g, true);
       if (low_slope > high_slope) {
@@ -154,7 +179,7 @@ Allocation::Share Allocation::fit(const Demand& demand) const {
     }
   }
   double least = -infinity, most = infinity;
-  for (const Facets& f : facets_) {
+  for (const Facets& f : facets) {
     if (f.normal[0] == 0) continue;
     const auto [low, low_slope] = line(f, false);
     const auto [high, high_slope] = line(f, true);
@@ -162,20 +187,38 @@ Allocation::Share Allocation::fit(const Demand& demand) const {
     most = std::min(most, high + s * high_slope);
   }
   // At the last share the two bounds are one but for rounding.
-  Share share{s, std::max(least, std::min(demand.thrust, most)), 1};
-  for (const Facets& f : facets_) {
-    const double change = f.normal[3] * demand.torque_F.z();
-    if (change == 0) continue;
-    const double at = s * level(f) + share.thrust * f.normal[0];
-    share.yaw = std::clamp(((change > 0 ? f.most : f.least) - at) / change, 0.0, share.yaw);
-  }
+  Share share{s, std::max(least, std::min(demand.thrust, most)), 0};
+  const auto [low, high] =
+      yaw_beside(share.thrust, s * demand.torque_F.x(), s * demand.torque_F.y(), lost);
+  share.yaw = std::max(low, std::min(demand.torque_F.z(), high));
   return share;
+}
+
+Allocation::Interval Allocation::yaw_beside(double thrust, double roll, double pitch,
+                                            const double* lost) const {
+  Interval yaw{-infinity, infinity};
+  for (const Facets& f : facets_) {
+    if (f.normal[3] == 0) continue;
+    const double at = thrust * f.normal[0] + roll * f.normal[1] + pitch * f.normal[2];
+    const double one = (left_of(f.least, lost) - at) / f.normal[3];
+    const double other = (left_of(f.most, lost) - at) / f.normal[3];
+    yaw.least = std::max(yaw.least, std::min(one, other));
+    yaw.most = std::min(yaw.most, std::max(one, other));
+  }
+  return yaw;
+}
+
+bool Allocation::keeps_yaw(double thrust, const double* lost) const {
+  constexpr double share = 0.01;  // of what turns the one way that must turn the other
+  const auto [least, most] = yaw_beside(thrust, 0, 0, lost);
+  return std::min(-least, most) > share * std::max(-least, most);
 }
 
 /// The least squares are clamp(B^T x) for the x that maximises a concave function (the dual), whose
 /// gradient is what is missing of the demand: Newton's method with a line search. A touch of `give`
 /// keeps it well posed where too few rotors are off their limits.
-void Allocation::redistribute(const Eigen::Vector4d& demand, double* squares) const {
+void Allocation::redistribute(const Eigen::Vector4d& demand, double* squares,
+                              const double* lost) const {
   constexpr double give = 1e-14, close = 1e-12;
   constexpr int rounds = 60, halvings = 60;
   const Eigen::Vector4d wanted = demand.cwiseQuotient(size_);
@@ -183,7 +226,8 @@ void Allocation::redistribute(const Eigen::Vector4d& demand, double* squares) co
   const auto missing = [&](const Eigen::Vector4d& x) {
     Eigen::Vector4d rest = wanted - give * x;
     for (Eigen::Index i = 0; i < scaled_.cols(); ++i) {
-      squares[i] = std::clamp(scaled_.col(i).dot(x), least_[i], most_[i]);
+      const double left = 1 - lost[i];
+      squares[i] = std::clamp(scaled_.col(i).dot(x), left * least_[i], left * most_[i]);
       rest -= squares[i] * scaled_.col(i);
     }
     return rest;
@@ -192,8 +236,8 @@ void Allocation::redistribute(const Eigen::Vector4d& demand, double* squares) co
   for (int round = 0; round < rounds && rest.norm() > close * wanted.norm(); ++round) {
     Eigen::Matrix4d slope = give * Eigen::Matrix4d::Identity();
     for (Eigen::Index i = 0; i < scaled_.cols(); ++i) {
-      const double free = scaled_.col(i).dot(x);
-      const bool moves = round == 0 || (free >= least_[i] && free <= most_[i]);
+      const double free = scaled_.col(i).dot(x), left = 1 - lost[i];
+      const bool moves = round == 0 || (free >= left * least_[i] && free <= left * most_[i]);
       if (moves) slope += scaled_.col(i) * scaled_.col(i).transpose();
     }
     const Eigen::Vector4d step = slope.ldlt().solve(rest);
@@ -209,9 +253,12 @@ void Allocation::redistribute(const Eigen::Vector4d& demand, double* squares) co
   }
 }
 
-Demand Allocation::exerted(const double* squares) const {
+Demand Allocation::exerted(const double* squares, const double* lost) const {
+  if (!lost) lost = nothing_.data();
   Eigen::Vector4d sum = Eigen::Vector4d::Zero();
-  for (Eigen::Index i = 0; i < effect_.cols(); ++i) sum += squares[i] * effect_.col(i);
+  for (Eigen::Index i = 0; i < effect_.cols(); ++i) {
+    sum += (1 - lost[i]) * squares[i] * effect_.col(i);
+  }
   return {sum[0], sum.tail<3>()};
 }
 

@@ -26,8 +26,13 @@ Controller::Controller(const LawInfo& law, const VehicleDescription& vehicle, co
       actuation_(belief_, values),
       law_(law.make(belief_, values)) {}
 
-void Controller::command(double period, const Odometry& now, const Reference& wanted, double* state,
-                         double* speeds) const {
+void Controller::command(double period, const Odometry& now, const Reference& reference,
+                         double* state, double* speeds) const {
+  Reference wanted = reference;
+  if (!actuation_.keeps_yaw(belief_.mass * belief_.gravity, state)) {
+    wanted.yaw = rpy_from_quaternion(now.orientation).z();
+    wanted.yaw_rate = wanted.yaw_acceleration = 0;
+  }
   const Actuation::Now rotors_now = actuation_.now(state, speeds);
   const Instant instant{period,         rotors_now.begins,   now, wanted, rotors_now.exerted,
                         rotors_now.h_F, rotors_now.saturated};

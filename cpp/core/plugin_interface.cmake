@@ -2,7 +2,8 @@
 # and every other there that they include, each once, and lists them: what a plugin and a core must
 # have in common.
 function(hash_plugin_interface hash_variable headers_variable folder)
-  set(waiting quadcore/plugin.hpp quadcore/random.hpp quadcore/elementary.hpp)
+  set(waiting quadcore/plugin.hpp quadcore/random.hpp quadcore/elementary.hpp
+      quadcore/switch.hpp)
   set(headers "")
   set(digests "")
   while(waiting)

@@ -31,7 +31,8 @@ const std::vector<EngineEntry>& table() {
          return std::make_unique<OdeEngine>(model, world, ode_recipe);
        }},
       {{"eigen",
-        "exact reduced coordinates, fourth order: the accurate and the fast one, no contact",
+        "exact reduced coordinates, fourth order: the accurate and the fast one, approximate on "
+        "the ground",
         decay_limit_of_rk4},
        [](const Model& model, const World& world) -> std::unique_ptr<Engine> {
          return std::make_unique<EigenEngine>(model, world);

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#ifdef __SSE2__
+#include <immintrin.h>
+#endif
 
 /// \file
 /// Several numbers side by side, on which a law is written once: a pack holds W doubles of W rotors
@@ -82,6 +85,18 @@ QUADCORE_LAW T from_bits(BitsOf<T> pattern) {
   }
 }
 
+/// Whole numbers of a pack's size, one behind another.
+template <class T>
+QUADCORE_LAW BitsOf<T> load_bits(const std::int64_t* from) {
+  BitsOf<T> pack;
+  __builtin_memcpy(&pack, from, sizeof pack);
+  return pack;
+}
+template <class T>
+QUADCORE_LAW void store_bits(std::int64_t* to, BitsOf<T> pack) {
+  __builtin_memcpy(to, &pack, sizeof pack);
+}
+
 template <class T>
 constexpr int lanes_of = sizeof(T) / sizeof(double);
 
@@ -102,6 +117,39 @@ constexpr std::int64_t sign_bit = INT64_MIN;
 template <class T>
 QUADCORE_LAW T absolute(T a) {
   return from_bits<T>(bits(a) & ~sign_bit);
+}
+
+/// Of each lane, rounded as IEEE 754 asks.
+template <class T>
+QUADCORE_LAW T square_root(T a) {
+  if constexpr (lanes_of<T> == 1) {
+    return __builtin_sqrt(a);
+#ifdef __SSE2__
+  } else if constexpr (lanes_of<T> == 2) {
+    return _mm_sqrt_pd(a);
+#endif
+#ifdef __AVX__
+  } else if constexpr (lanes_of<T> == 4) {
+    return _mm256_sqrt_pd(a);
+#endif
+#ifdef __AVX512F__
+  } else if constexpr (lanes_of<T> == 8) {
+    return _mm512_maskz_sqrt_pd(0xFF, a);
+#endif
+  } else {
+    for (int i = 0; i < lanes_of<T>; ++i) a[i] = __builtin_sqrt(a[i]);
+    return a;
+  }
+}
+
+/// a where a comparison of packs holds, else b.
+template <class Mask, class T>
+QUADCORE_LAW T chosen_by(const Mask& mask, T a, T b) {
+  if constexpr (lanes_of<T> == 1) {
+    return mask ? a : b;
+  } else {
+    return from_bits<T>((bits(a) & mask) | (bits(b) & ~mask));
+  }
 }
 
 /// Told by the bits, because the compiler may be told to take every number for finite.

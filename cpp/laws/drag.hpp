@@ -16,12 +16,12 @@ QUADCORE_LAW Vec3<T> rotor_drag(const RotorDisc<T>& disc, K coefficient) {
 
 /// Parasitic drag of the airframe, thesis eq. (2.31): -K |V| V at the vehicle's centre of mass, V
 /// its velocity through the air.
-/// \param K    parasiticDragCoeff [N s^2/m^2]
-/// \param speed  |V| [m/s]
+/// \param speed        |V| [m/s]
+/// \param coefficient  parasiticDragCoeff [N s^2/m^2]
 /// \return     force on the frame in F [N]
-template <class Vector>
-QUADCORE_LAW Vector parasitic_drag(const Vector& V_F, double speed, double K) {
-  return (-K * speed) * V_F;
+template <class Vector, class K>
+QUADCORE_LAW Vector parasitic_drag(const Vector& V_F, K speed, K coefficient) {
+  return (-coefficient * speed) * V_F;
 }
 
 /// Parasitic drag as the thesis' plugin (appendix A.5) computes it: -K |v_i| v_i of each component

@@ -12,10 +12,11 @@ namespace quadcore::laws {
 /// B nu = -s B2 nu - B1 a x nu for the in-plane V and nu: no axes need to be chosen.
 /// \param w_WF_F  nu, angular velocity of the frame [rad/s]
 /// \param k       rotorThrustCoeff [N s^2/rad^2]
+/// \param c       as Flapping has them
 /// \return        force on the rotor in F [N]
-template <class T, class K>
+template <class T, class K, class Coefficients>
 QUADCORE_LAW Vec3<T> flapping(const RotorDisc<T>& disc, const Vec3<T>& w_WF_F, K k,
-                              const Flapping& c) {
+                              const Coefficients& c) {
   const T s = with_sign_of(disc.speed, broadcast<T>(1));
   const Vec3<T> nu_F = across(disc.axis_F, w_WF_F);
   const Vec3<T> A_V_r = -c.A1c * disc.V_F - (s * c.A1s) * cross(disc.axis_F, disc.V_F);

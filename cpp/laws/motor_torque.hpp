@@ -5,13 +5,23 @@
 
 namespace quadcore::laws {
 
-/// Torque of the motors' joints on a pack of rotors, from rotor i on [N m].
+/// Torque of a motor's joint on its rotor, thesis appendix A.4 [N m].
+/// \param active   share of the torque that is left
+/// \param target   of the joint's rate [rad/s]
+/// \param sampled  torque of integral and derivative [N m]
+template <class T, class K>
+QUADCORE_LAW T motor_torque(T active, K kp, T target, T sampled, T rate) {
+  const T error = rate - target;
+  return active * (-kp * error + sampled);
+}
+
+/// The same of a pack of rotors, from rotor i on.
 template <class T>
 QUADCORE_LAW T motor_torque(const MotorTorques& law, std::size_t i, T rate) {
   const double* rows = law.memory + rotor_offset(MemoryRow::count, i);
   const auto memory = [rows](std::size_t row) { return load<T>(rows + row * widest_lanes); };
-  const T error = rate - memory(MemoryRow::target);
-  return memory(MemoryRow::active) * (-law.kp * error + memory(MemoryRow::sampled_torque));
+  return motor_torque(memory(MemoryRow::active), law.kp, memory(MemoryRow::target),
+                      memory(MemoryRow::sampled_torque), rate);
 }
 
 }  // namespace quadcore::laws

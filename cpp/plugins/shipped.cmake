@@ -1,5 +1,6 @@
 # The shipped plugins, and which of them have laws in lanes.
-set(QUADCORE_PLUGINS aerodynamic controller motorpid odometry reference)
+set(QUADCORE_PLUGINS aerodynamic barometer battery controller fault gps ground_effect imu magnetometer
+  motor motorpid odometry payload push reference wind)
 set(aerodynamic_lanes rotor_forces_lanes.cpp)
 set(motorpid_lanes motor_torques_lanes.cpp)
 

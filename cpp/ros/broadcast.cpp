@@ -30,7 +30,7 @@ Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
     ROS_WARN("no plugin of the model publishes odometry on topic odom: odom and tf are not sent");
   }
   // Last, so that none takes the name of one of these.
-  others_.emplace(nh, simulation, frame_prefix + vehicle_name, OdometryTopic::name);
+  others_.emplace(nh, simulation, frame_prefix, OdometryTopic::name);
 }
 
 void Broadcast::advertise_odometry(ros::NodeHandle& nh, const std::string& frame_prefix,
@@ -74,7 +74,8 @@ void Broadcast::show(const Simulation& simulation) {
 
 void Broadcast::send_odometry(const Simulation& simulation, const Topic& topic) {
   sent_ = topic.count;
-  odometry_.header.stamp = truth_.header.stamp = clock_.clock;
+  odometry_.header.stamp = to_ros(topic.stamp);  // earlier where it was delayed
+  truth_.header.stamp = clock_.clock;
   to_ros(messages::read<messages::Odometry>(topic.values.data()), odometry_);
   odometry_publisher_.publish(odometry_);
   to_ros(odometry_topic_.truth(simulation.state()), truth_);

@@ -93,12 +93,16 @@ void FlightThread::step(std::int64_t n) {
   throw InputError("stopped with " + std::to_string(goal - report_.steps) + " steps to go");
 }
 
-void FlightThread::change(const std::function<void(Simulation&)>& change) { run(change, false); }
+void FlightThread::tell(const std::function<void(Simulation&)>& change) {
+  between_steps([&] { change(simulation_); });
+}
 
-void FlightThread::reset(const std::function<void(Simulation&)>& change) { run(change, true); }
+void FlightThread::change(const std::function<void(Simulation&)>& change) { jump(change, false); }
 
-void FlightThread::run(const std::function<void(Simulation&)>& change, bool forget_commands) {
-  std::packaged_task<void()> task([this, &change, forget_commands] {
+void FlightThread::reset(const std::function<void(Simulation&)>& change) { jump(change, true); }
+
+void FlightThread::jump(const std::function<void(Simulation&)>& change, bool forget_commands) {
+  between_steps([&] {
     change(simulation_);
     {
       const Lock lock(mutex_);
@@ -108,6 +112,10 @@ void FlightThread::run(const std::function<void(Simulation&)>& change, bool forg
     }
     observe_jump();
   });
+}
+
+void FlightThread::between_steps(const std::function<void()>& action) {
+  std::packaged_task<void()> task(action);
   std::future<void> done = task.get_future();
   {
     const Lock lock(mutex_);

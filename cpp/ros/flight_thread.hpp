@@ -82,6 +82,8 @@ class FlightThread {
   /// Pauses, flies n steps and returns once the last is observed. Throws InputError if stopped
   /// short, while another call steps or if the flight follows a clock, FlightError if it fails.
   void step(std::int64_t n);
+  /// Runs `change` between two steps; it leaves the motion as it is. Rethrows what it throws.
+  void tell(const std::function<void(Simulation&)>& change);
   /// Runs `change` between two steps and returns once the result is observed. Rethrows what it
   /// throws.
   void change(const std::function<void(Simulation&)>& change);
@@ -112,7 +114,8 @@ class FlightThread {
   template <class Condition>
   bool wait(Lock& lock, std::chrono::duration<double> patience, const Condition& condition);
 
-  void run(const std::function<void(Simulation&)>& change, bool forget_commands);
+  void between_steps(const std::function<void()>& action);
+  void jump(const std::function<void(Simulation&)>& change, bool forget_commands);
   bool may_step() const { return failure_.empty() && (!paused_ || steps_allowed_ > 0); }
   bool disturbed() const { return ending_ || !changes_.empty() || !may_step(); }
 

@@ -3,14 +3,15 @@
 #include <geometry_msgs/Quaternion.h>
 #include <ros/time.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <initializer_list>
 
 #include "quadcore/spatial.hpp"
 
 /// \file
 /// Between numbers and parts of messages.
-
-#include <cstdint>
 
 namespace quadcore::node {
 
@@ -19,6 +20,19 @@ constexpr const char* world_frame = "world";
 constexpr const char* vehicle_name = "drone";
 /// Messages of a topic that wait for who is slow.
 constexpr std::uint32_t queue_size = 1000;
+
+/// A variance of zero stands for "unknown" to some filters and is singular to others. Without
+/// noise this is sent: a deviation of 1e-6.
+constexpr double least_variance = 1e-12;
+
+/// A diagonal covariance, equal numbers for each three.
+template <class Matrix>
+void set_covariance(Matrix& matrix, std::initializer_list<double> variances) {
+  const std::size_t side = 3 * variances.size();
+  for (std::size_t i = 0; i < side; ++i) {
+    matrix[(side + 1) * i] = std::max(variances.begin()[i / 3], least_variance);
+  }
+}
 
 inline ros::Time to_ros(double time) { return ros::Time().fromSec(time); }
 

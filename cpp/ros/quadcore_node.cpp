@@ -84,7 +84,7 @@ void run(const EndSignal& end_signal) {
   if (follower) follower->follow(flight);
   const CommandSubscriber commands(nh, topic, flight_settings.lockstep, flight);
   // In a namespace the clock is not this vehicle's alone.
-  const Services services(nh, flight, clock && prefix.empty());
+  const Services services(nh, simulation, flight, clock && prefix.empty());
   ParameterWatch parameters(flight, !clock);
   MasterWatch master_watch(services.names(), public_parameters(nh, settings, !!clock),
                            [&parameters] { parameters.look(); });

@@ -68,7 +68,7 @@ set_target_properties(_core PROPERTIES
   LIBRARY_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${QUADCORE_PYTHONDIR})
 catkin_python_setup()
 add_message_files(FILES AttitudeThrust.msg RateThrust.msg)
-add_service_files(FILES Step.srv SetState.srv)
+add_service_files(FILES ApplyWrench.srv Publish.srv SetState.srv Step.srv)
 generate_messages(DEPENDENCIES geometry_msgs std_msgs)
 catkin_package(
   INCLUDE_DIRS cpp/core/include ${PROJECT_BINARY_DIR}/cpp/core/include
@@ -103,7 +103,8 @@ add_ros_node(quadcore_node
   cpp/ros/flight_thread.cpp cpp/ros/listener.cpp cpp/ros/master_api.cpp cpp/ros/master_check.cpp
   cpp/ros/master_watch.cpp cpp/ros/odometry_topic.cpp cpp/ros/parameter_watch.cpp cpp/ros/path.cpp
   cpp/ros/plant.cpp cpp/ros/private_parameters.cpp cpp/ros/quadcore_node.cpp cpp/ros/ros_types.cpp
-  cpp/ros/services.cpp cpp/ros/settings.cpp cpp/ros/topic_broadcast.cpp cpp/ros/topic_inlets.cpp)
+  cpp/ros/services.cpp cpp/ros/settings.cpp cpp/ros/topic_broadcast.cpp cpp/ros/topic_inlets.cpp
+  cpp/ros/topic_services.cpp)
 target_link_libraries(quadcore_node PRIVATE quadcore)
 add_ros_node(controller_node
   cpp/ros/controller_node.cpp cpp/ros/controller_settings.cpp cpp/ros/drag_choice.cpp
@@ -126,7 +127,8 @@ if(CATKIN_ENABLE_TESTING)
   find_package(rostest QUIET)
   if(rostest_FOUND)
     foreach(test topics services lockstep playing clock several parameters faults masters launch
-                 fly_from_python controller controller_faults set_points pid joystick)
+                 fly_from_python controller controller_faults set_points pid joystick sensors
+                 disturbances)
       add_rostest(tests/ros/${test}.test)
     endforeach()
   endif()

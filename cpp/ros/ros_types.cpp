@@ -2,15 +2,16 @@
 
 #include <geometry_msgs/Vector3Stamped.h>
 #include <geometry_msgs/WrenchStamped.h>
-#include <sensor_msgs/Imu.h>
 #include <std_msgs/Float64MultiArray.h>
 
 #include <algorithm>
+#include <type_traits>
 
 #include "kept_publisher.hpp"
 #include "messages.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/text.hpp"
+#include "sensor_types.hpp"
 
 namespace quadcore::node {
 namespace {
@@ -19,40 +20,8 @@ using node::from_ros;
 using node::set_frames;
 using node::to_ros;
 
-/// A variance of zero stands for "unknown" to some filters and is singular to others. Without
-/// noise this is sent: a deviation of 1e-6.
-constexpr double least_variance = 1e-12;
-
-/// A diagonal covariance, equal numbers for each three.
-template <class Matrix>
-void set_covariance(Matrix& matrix, std::initializer_list<double> variances) {
-  const std::size_t side = 3 * variances.size();
-  for (std::size_t i = 0; i < side; ++i) {
-    matrix[(side + 1) * i] = std::max(variances.begin()[i / 3], least_variance);
-  }
-}
-
-void set_frames(sensor_msgs::Imu& message, const std::string& vehicle_frame) {
-  message.header.frame_id = vehicle_frame;
-  message.orientation_covariance[0] = -1;  // none is given
-}
-void to_ros(const messages::Imu& imu, sensor_msgs::Imu& message) {
-  set_vector(message.angular_velocity, imu.angular_velocity.data());
-  set_vector(message.linear_acceleration, imu.specific_force.data());
-  set_covariance(message.angular_velocity_covariance, {imu.angular_velocity_variance});
-  set_covariance(message.linear_acceleration_covariance, {imu.specific_force_variance});
-}
-messages::Imu from_ros(const sensor_msgs::Imu& message) {
-  messages::Imu imu;
-  imu.angular_velocity = vector_of(message.angular_velocity);
-  imu.specific_force = vector_of(message.linear_acceleration);
-  imu.angular_velocity_variance = message.angular_velocity_covariance[0];
-  imu.specific_force_variance = message.linear_acceleration_covariance[0];
-  return imu;
-}
-
-void set_frames(geometry_msgs::WrenchStamped& message, const std::string& vehicle_frame) {
-  message.header.frame_id = vehicle_frame;
+void set_frames(geometry_msgs::WrenchStamped& message, const std::string& frame) {
+  message.header.frame_id = frame;
 }
 void to_ros(const messages::Wrench& wrench, geometry_msgs::WrenchStamped& message) {
   set_vector(message.wrench.force, wrench.force.data());
@@ -70,15 +39,21 @@ messages::Vector from_ros(const geometry_msgs::Vector3Stamped& message) {
   return {vector_of(message.vector)};
 }
 
+/// What is measured carries the time of the measurement, however late it arrives; anything else
+/// that of the step that ends.
+template <class Message>
+constexpr bool is_measured =
+    !std::is_same_v<Message, messages::Wrench> && !std::is_same_v<Message, messages::Vector>;
+
 template <class Message, class Ros>
 class TypedOutlet final : public Outlet {
  public:
-  TypedOutlet(ros::NodeHandle& nh, const std::string& name, const std::string& vehicle_frame)
+  TypedOutlet(ros::NodeHandle& nh, const std::string& name, const std::string& frame)
       : publisher_(nh, name, queue_size) {
-    set_frames(message_, vehicle_frame);
+    set_frames(message_, frame);
   }
   void send(const Topic& topic, const ros::Time& stamp) override {
-    message_.header.stamp = stamp;
+    message_.header.stamp = is_measured<Message> ? node::to_ros(topic.stamp) : stamp;
     to_ros(messages::read<Message>(topic.values.data()), message_);
     publisher_.publish(message_);
   }
@@ -86,6 +61,21 @@ class TypedOutlet final : public Outlet {
  private:
   KeptPublisher<Ros> publisher_;
   Ros message_;  // kept, so that sending it needs no new memory
+};
+
+/// Of a fix: a type for the place and one, on NAME/velocity, for the velocity.
+class FixOutlet final : public Outlet {
+ public:
+  FixOutlet(ros::NodeHandle& nh, const std::string& name, const std::string& frame)
+      : place_(nh, name, frame), velocity_(nh, name + "/velocity", frame) {}
+  void send(const Topic& topic, const ros::Time& stamp) override {
+    place_.send(topic, stamp);
+    velocity_.send(topic, stamp);
+  }
+
+ private:
+  TypedOutlet<messages::Fix, sensor_msgs::NavSatFix> place_;
+  TypedOutlet<messages::Fix, geometry_msgs::TwistWithCovarianceStamped> velocity_;
 };
 
 /// Of a kind that has no type of its own: the numbers, with their names as the label.
@@ -122,20 +112,26 @@ struct Carriage {
   ros::Subscriber (*inlet)(ros::NodeHandle&, const std::string&, const Take&);
 };
 
+/// Of a kind that no one type holds all of: it goes out, and does not come in.
+template <class Message, class Out>
+Carriage outward() {
+  return {messages::kind_of<Message>(),
+          [](ros::NodeHandle& nh, const std::string& name, const std::string& frame)
+              -> std::unique_ptr<Outlet> { return std::make_unique<Out>(nh, name, frame); },
+          nullptr};
+}
+
 template <class Message, class Ros>
 Carriage carriage() {
-  return {messages::kind_of<Message>(),
-          [](ros::NodeHandle& nh, const std::string& name,
-             const std::string& vehicle_frame) -> std::unique_ptr<Outlet> {
-            return std::make_unique<TypedOutlet<Message, Ros>>(nh, name, vehicle_frame);
-          },
-          [](ros::NodeHandle& nh, const std::string& name, const Take& take) {
-            return subscribe<Ros>(nh, name, [take](const Ros& message) {
-              std::vector<double> row(messages::kind_of<Message>().fields.size());
-              messages::write(from_ros(message), row.data());
-              take(row);
-            });
-          }};
+  Carriage both_ways = outward<Message, TypedOutlet<Message, Ros>>();
+  both_ways.inlet = [](ros::NodeHandle& nh, const std::string& name, const Take& take) {
+    return subscribe<Ros>(nh, name, [take](const Ros& message) {
+      std::vector<double> row(messages::kind_of<Message>().fields.size());
+      messages::write(from_ros(message), row.data());
+      take(row);
+    });
+  };
+  return both_ways;
 }
 
 /// How a kind of message travels; null for an array of numbers.
@@ -143,6 +139,10 @@ const Carriage* carriage_of(const MessageKind& kind) {
   static const std::vector<Carriage> table = {
       carriage<messages::Odometry, nav_msgs::Odometry>(),
       carriage<messages::Imu, sensor_msgs::Imu>(),
+      carriage<messages::Pressure, sensor_msgs::FluidPressure>(),
+      carriage<messages::Field, sensor_msgs::MagneticField>(),
+      carriage<messages::Battery, sensor_msgs::BatteryState>(),
+      outward<messages::Fix, FixOutlet>(),
       carriage<messages::Wrench, geometry_msgs::WrenchStamped>(),
       carriage<messages::Vector, geometry_msgs::Vector3Stamped>(),
   };
@@ -195,16 +195,20 @@ messages::Odometry from_ros(const nav_msgs::Odometry& message) {
 }
 
 std::unique_ptr<Outlet> make_outlet(ros::NodeHandle& nh, const Topic& topic,
-                                    const std::string& vehicle_frame) {
+                                    const std::string& frame) {
   check_free(nh, topic.name);
   const Carriage* const carriage = carriage_of(topic.kind);
-  if (carriage) return carriage->outlet(nh, topic.name, vehicle_frame);
+  if (carriage) return carriage->outlet(nh, topic.name, frame);
   return std::make_unique<ArrayOutlet>(nh, topic);
 }
 
 ros::Subscriber make_inlet(ros::NodeHandle& nh, const Topic& topic, const Take& take) {
   check_free(nh, topic.name);
   const Carriage* const carriage = carriage_of(topic.kind);
+  if (carriage && !carriage->inlet) {
+    throw InputError("topic '" + topic.name + "': no type of ROS holds all of a " +
+                     topic.kind.name + "; let a plugin publish it");
+  }
   if (carriage) return carriage->inlet(nh, topic.name, take);
   return subscribe<std_msgs::Float64MultiArray>(
       nh, topic.name, [take](const std_msgs::Float64MultiArray& message) { take(message.data); });

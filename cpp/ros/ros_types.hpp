@@ -26,12 +26,12 @@ class Outlet {
 using Take = std::function<void(const std::vector<double>&)>;
 
 /// Advertises a topic under its own name.
-/// \param vehicle_frame  tf's name of the vehicle
+/// \param frame  tf's name of what its numbers are in, or of the vehicle that an odometry is of
 /// Throws InputError if the node has a topic of that name already.
 std::unique_ptr<Outlet> make_outlet(ros::NodeHandle& nh, const Topic& topic,
-                                    const std::string& vehicle_frame);
+                                    const std::string& frame);
 /// Subscribes to a topic under its own name; `take` runs where the callbacks of `nh` do.
-/// Throws InputError if the node has a topic of that name already.
+/// Throws InputError if the node has a topic of that name already, or no type of ROS holds it.
 ros::Subscriber make_inlet(ros::NodeHandle& nh, const Topic& topic, const Take& take);
 
 /// Names the frames of an odometry message.

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "answer.hpp"
 #include "quadcore/error.hpp"
+#include "topic_services.hpp"
 
 namespace quadcore::node {
 namespace {
@@ -49,20 +51,10 @@ void set_state(const SetState::Request& request, Simulation& simulation) {
   simulation.set_state(state);
 }
 
-/// Does what a request asks for; the response says whether it went well.
-template <class Response, class Action>
-void answer(Response& response, const Action& action) {
-  try {
-    action();
-    response.success = true;
-  } catch (const std::exception& error) {
-    response.message = error.what();
-  }
-}
-
 }  // namespace
 
-Services::Services(ros::NodeHandle nh, FlightThread& flight, bool own_clock)
+Services::Services(ros::NodeHandle nh, const Simulation& simulation, FlightThread& flight,
+                   bool own_clock)
     : spinner_(2, &queue_) {
   nh.setCallbackQueue(&queue_);
   using Empty = std_srvs::Empty;
@@ -98,6 +90,8 @@ Services::Services(ros::NodeHandle nh, FlightThread& flight, bool own_clock)
         });
         return true;
       }));
+  const auto of_topics = offer_topics(nh, simulation.topics(), Simulation::command_topic, flight);
+  servers_.insert(servers_.end(), of_topics.begin(), of_topics.end());
   spinner_.start();
 }
 

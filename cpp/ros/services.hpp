@@ -10,12 +10,13 @@
 
 namespace quadcore::node {
 
-/// Gazebo's services to pause and reset, and quadcore's to step and to set the state. They answer
-/// in threads of their own, so that one that takes long holds up neither commands nor the others.
+/// Gazebo's services to pause and reset, quadcore's to step, to set the state, and to say something
+/// to plugins. They answer in threads of their own, so that one that takes long holds up neither
+/// commands nor the others.
 class Services {
  public:
   /// \param own_clock  whether a reset of the simulation sets the clock back; else time goes on
-  Services(ros::NodeHandle nh, FlightThread& flight, bool own_clock);
+  Services(ros::NodeHandle nh, const Simulation& simulation, FlightThread& flight, bool own_clock);
 
   /// Resolved names.
   std::vector<std::string> names() const;

@@ -73,11 +73,22 @@ class Odometry:
         Of the frame origin, m/s; in the axes that the plugin's `twistFrame` names.
     angular_velocity : ndarray (3,)
         Of the frame, body axes, rad/s.
+    topic : callable
+        ``topic(name)`` is what stands on another topic of the flight, as `Simulation.topic` has
+        it: what other sensors say.
     """
 
-    __slots__ = ("angular_velocity", "linear_velocity", "orientation", "position", "time")
+    __slots__ = (
+        "angular_velocity",
+        "linear_velocity",
+        "orientation",
+        "position",
+        "time",
+        "topic",
+    )
 
     def __init__(self, simulation: _core.Simulation) -> None:
+        self.topic = simulation.topic
         message = simulation.topic(_SENSED)
         self.time = message["stamp"]
         for part, fields in _PARTS:

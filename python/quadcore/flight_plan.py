@@ -7,6 +7,7 @@ import json
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, Dict, Mapping, Optional, Sequence, Tuple, Union
+from warnings import warn
 
 import numpy as np
 
@@ -20,7 +21,10 @@ from .log import Log
 from .overrides import check_names, with_links, without_xacro
 from .plants import build
 from .references import ReferenceLike
+from .scenarios import Scenario
+from .scenarios import read as read_scenario
 from .simulation import Number, Simulation, Value, pose, text_of, whole
+from .warning import QuadcoreWarning, unheard
 
 _VERSION = 1  # of what a fingerprint stands for
 
@@ -106,6 +110,7 @@ class FlightPlan:
         spawn: Sequence[Number] = (0, 0, 10),
         seed: int = 0,
         commands: Optional[CommandsLike] = None,
+        scenario: Union[str, Path, Scenario, None] = None,
         **others: Any,
     ) -> FlightPlan:
         """Read what a flight needs.
@@ -116,13 +121,15 @@ class FlightPlan:
             As for `Simulation`.
         commands
             As for `Simulation.run`; a file is read now.
+        scenario
+            What befalls the vehicle: a file, or the name of a shipped one.
         **others
             Members as they stand.
 
         Raises
         ------
         InputError
-            The model, the world, the commands or an argument is at fault.
+            The model, the world, the commands, the scenario or an argument is at fault.
         """
         arguments, given = without_xacro(parameters or {}, xacro_args)
         readings = read_both(model, world, arguments, ignore)
@@ -134,12 +141,38 @@ class FlightPlan:
             seed=seed,
             **others,
         )
+        plan = plan.befallen(scenario)
         return plan if commands is None else plan.commanded(commands)
 
     @property
     def step(self) -> float:
         """Of the flight, s: the world's unless `dt` is another."""
         return self.world.max_step_size if self.dt is None else self.dt
+
+    def befallen(self, scenario: Union[str, Path, Scenario, None]) -> FlightPlan:
+        """Make the same flight in a scenario; what the plan sets wins over it.
+
+        Raises
+        ------
+        InputError
+            The scenario is at fault: one line with file and line.
+
+        Warns
+        -----
+        QuadcoreWarning
+            Events that come when the flight has ended.
+        """
+        read = read_scenario(scenario)
+        if read is None:
+            return self
+        model, tags = read.onto(self.model)
+        plan = replace(self, model=model, parameters={**tags, **self.parameters})
+        with read.blamed(), unheard():  # what else is wrong is told as the vehicle is made
+            build(**plan._vehicle())
+        unseen = read.unseen(self.duration)
+        if unseen:
+            warn(unseen, QuadcoreWarning, stacklevel=2)
+        return plan
 
     def commanded(self, commands: CommandsLike) -> FlightPlan:
         """Make the same flight under other commands; a file is read now.

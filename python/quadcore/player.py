@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 from dataclasses import dataclass
-from typing import Any, Dict, List, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence
 
 import numpy as np
 
@@ -14,8 +14,13 @@ from .report import rendered
 from .study.sampling import evenly
 from .trajectory import Trajectory
 
+if TYPE_CHECKING:
+    from .simulation import Simulation
+
 _POINTS = 1500  # per flight: 50 in a second of half a minute, between which the page interpolates
 _COLOURS = PALETTE[:6]  # legible on light and on dark
+_WIND = "wind"
+_CARRIED = ("mass", "x", "y", "z")  # of a body that rides on the frame, kg and m; no mass: none
 _REACH = 0.25  # m, of a vehicle of which no more is known
 
 
@@ -28,7 +33,8 @@ class PlayerFlight:
     name : str
         What it is called on the page.
     log : Trajectory
-        At least one row. If it has a topic ``reference`` with fields x, y, z, that is drawn.
+        At least one row. If it has a topic ``reference`` with fields x, y, z, that is drawn, and
+        what `topics_to_watch` names.
     rotors : ndarray (n, 3), optional
         Places of the rotors in the frame, m, as `Model.joint_places` gives them. Without, the
         vehicle is drawn as a cross.
@@ -48,6 +54,16 @@ class PlayerFlight:
                 f"flight '{self.name}': rotors has shape {np.shape(self.rotors)}; its log is of "
                 f"{turning} rotors: give an array of shape ({turning}, 3)"
             )
+
+
+def topics_to_watch(simulation: Simulation) -> List[str]:
+    """Name the topics that a player draws beside the flight: the wind, and what is carried."""
+    published = {n: topic for n, topic in simulation.topics.items() if topic.writer is not None}
+    return [
+        name
+        for name, topic in published.items()
+        if topic.kind == "carried" or (name == _WIND and topic.kind == "vector")
+    ]
 
 
 def page(flights: Sequence[PlayerFlight], title: str = "Flights") -> str:
@@ -101,6 +117,11 @@ def _told(flight: PlayerFlight) -> Dict[str, Any]:
     }
     if set("xyz") <= set(reference):  # a plugin may call anything so
         told["reference"] = np.column_stack([reference[axis] for axis in "xyz"])
+    for name, fields in log.topics.items():
+        if name == _WIND and set("xyz") <= set(fields):
+            told["wind"] = np.column_stack([fields[axis] for axis in "xyz"])
+        elif set(fields) - {"stamp"} == set(_CARRIED):
+            told[f"carried {name}"] = np.column_stack([fields[field] for field in _CARRIED])
     return {
         "name": flight.name,
         "rotors": _places(flight),

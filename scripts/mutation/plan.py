@@ -66,16 +66,25 @@ PARTS = [
         [
             f"cpp/engines/eigen/{name}"
             for name in (
+                "compliant_ground.cpp",
+                "contact_stiffness.cpp",
                 "eigen_engine.cpp",
                 "gyrostat.cpp",
                 "gyrostat_motion.hpp",
                 "gyrostat_step.hpp",
                 "gyrostat_step_lanes.cpp",
                 "lowest_point.cpp",
+                "touching_points.cpp",
             )
         ]
-        + _headers("lanes/four", "laws/gyrostat", "laws/rotors", "lanes/vec3"),
-        ["test_eigen.py", "test_gyroscopics.py", "test_simulation.py", "test_bad_models.py"],
+        + _headers("lanes/four", "laws/contact", "laws/gyrostat", "laws/rotors", "lanes/vec3"),
+        [
+            "test_eigen.py",
+            "test_ground_contact.py",
+            "test_gyroscopics.py",
+            "test_simulation.py",
+            "test_bad_models.py",
+        ],
     ),
     _core(
         "ode",

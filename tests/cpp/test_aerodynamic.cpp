@@ -82,7 +82,7 @@ TEST_CASE("each force law is the thesis', in whatever motion, with and without a
         Wrench terms[term_count];
         Loads logged(rotor_count);
         logged.record_terms(terms, term_count, &motion);
-        bench.loaded.plugin->forces(motion, {nullptr, 0}, logged);
+        bench.loaded.plugin->forces(motion, {bench.memory.data(), bench.memory.size()}, logged);
         for (int term = 0; term < term_count; ++term) {
           CAPTURE(term);
           Wrench sum;
@@ -120,6 +120,7 @@ TEST_CASE("drag that drives is told where a propeller's axis points down, once")
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     PluginBench bench("aerodynamic", everything, rotor_count);
     Kinematics motion = any_motion(seed, rotor_count);
+    motion.v_WA_F.setZero();
     for (std::size_t i = 0; i < rotor_count; ++i) motion.rotors.number(MotionRow::rate, i) = 100;
     bool down = false;
     for (const std::size_t i : named) {

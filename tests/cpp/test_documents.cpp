@@ -55,6 +55,11 @@ TEST_CASE("a world that says nothing is Gazebo's") {
   CHECK(world.erp == 0.2);
   CHECK(world.cfm == 0);
   CHECK(world.wind_W == Vector3d::Zero());
+  CHECK(world.atmosphere.temperature == 288.15);
+  CHECK(world.atmosphere.temperature_gradient == -0.0065);
+  CHECK(world.atmosphere.pressure == 101325);
+  CHECK(world.atmosphere.density() == doctest::Approx(1.225).epsilon(1e-5));
+  CHECK(world.magnetic_field_W == Vector3d(5.5645e-6, 22.8758e-6, -42.3884e-6));
   CHECK_FALSE(world.ground_plane);
 }
 
@@ -65,6 +70,7 @@ TEST_CASE("a world says what it says, also in the thesis' spelling") {
       <include><uri>model://ground_plane</uri></include>
       <physics:ode>
         <gravity>1 2 3</gravity>
+        <magnetic_field>2e-5 1e-6 -4e-5</magnetic_field>
         <updateRate>250</updateRate>
         <max_step_size>0.004</max_step_size>
         <real_time_factor>2</real_time_factor>
@@ -74,6 +80,11 @@ TEST_CASE("a world says what it says, also in the thesis' spelling") {
         </ode>
       </physics:ode>
       <wind><linear_velocity>4 5 6</linear_velocity></wind>
+      <atmosphere type="adiabatic">
+        <temperature>300</temperature>
+        <temperature_gradient>-0.005</temperature_gradient>
+        <pressure>90000</pressure>
+      </atmosphere>
     </world></sdf>)"});
   CHECK(world.gravity_W == Vector3d(1, 2, 3));
   CHECK(world.real_time_update_rate == 250);
@@ -84,6 +95,10 @@ TEST_CASE("a world says what it says, also in the thesis' spelling") {
   CHECK(world.erp == 0.3);
   CHECK(world.cfm == 1e-6);
   CHECK(world.wind_W == Vector3d(4, 5, 6));
+  CHECK(world.atmosphere.temperature == 300);
+  CHECK(world.atmosphere.temperature_gradient == -0.005);
+  CHECK(world.atmosphere.pressure == 90000);
+  CHECK(world.magnetic_field_W == Vector3d(2e-5, 1e-6, -4e-5));
   CHECK(world.ground_plane);
 }
 

@@ -15,6 +15,10 @@ PHYSICS = '<physics type="ode">'
 END = "    </physics>"
 
 
+def air(inside):
+    return f"<atmosphere>{inside}</atmosphere>"
+
+
 @pytest.mark.parametrize(
     "broken",
     [
@@ -34,6 +38,9 @@ END = "    </physics>"
         fault("<cfm>0", "<cfm>-1", "<cfm>", "write a number >= 0"),
         fault("<type>quick", "<type>slow", "<type> is 'slow'", "write quick or world"),
         fault(WIND, WIND.replace("1 0 0", "1 0 fast"), "'1 0 fast'", "three finite numbers"),
+        fault(GRAVITY, air("<temperature>0</temperature>"), "<temperature>", "a number > 0"),
+        fault(GRAVITY, air("<pressure>-1</pressure>"), "<pressure>", "write a number >= 0"),
+        fault(GRAVITY, air("<temperature_gradient>x</temperature_gradient>"), "finite number"),
     ],
     ids=str,
 )
@@ -45,12 +52,19 @@ def test_a_value_that_is_none(broken):
     "broken",
     [
         *(
-            fault(GRAVITY, f"<{name}/>", f"<{name}> in <world> is not supported", "takes gravity")
+            fault(
+                GRAVITY,
+                f"<{name}/>",
+                f"<{name}> in <world> is not supported",
+                "takes atmosphere, gravity",
+            )
             for name in ("state", "population", "joint")
         ),
         fault(GRAVITY, "<plugin/>", '<plugin> needs the attribute name="..."'),
         fault("<sor>1.3</sor>", "<use_dynamic_moi_rescaling>1</use_dynamic_moi_rescaling>", "0"),
         fault(GRAVITY, "<gravty>0 0 1</gravty>", "<gravty> in <world>", "did you mean 'gravity'?"),
+        fault(GRAVITY, '<atmosphere type="thick"/>', "atmosphere type 'thick'", "write adiabatic"),
+        fault(GRAVITY, air("<density>1</density>"), "<density> in <atmosphere>", "pressure"),
         fault(PHYSICS, '<physics type="bullet">', "physics type 'bullet'", "write ode"),
         fault(STEP, "<max_contacts>20</max_contacts>", "<max_contacts> in <physics>", "takes"),
         fault("<sor>1.3</sor>", "<friction_model/>", "<friction_model> in <solver>", "takes"),

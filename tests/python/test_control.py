@@ -130,7 +130,9 @@ def test_wind_is_made_up_for(law, engine, tmp_path):
     assert largest_at_the_end(log, hover, 2) < 1e-3
 
 
-@pytest.mark.parametrize(("engine", "slow"), [("ode", 1), ("gazebo11", 1), ("gazebo11", 10)])
+@pytest.mark.parametrize(
+    ("engine", "slow"), [("ode", 1), ("gazebo11", 1), ("gazebo11", 10), ("eigen", 1), ("eigen", 10)]
+)
 def test_the_geometric_law_takes_off_hovers_and_lands(engine, slow):
     flight = references.takeoff_land(stay=8)
     simulation = quadrotor(engine, parameters=at_slow(slow), world="default", spawn=(0, 0, 0.0125))

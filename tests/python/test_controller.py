@@ -39,6 +39,21 @@ def test_a_law_flies_the_bytes_that_a_loop_by_hand_flies(engine):
     assert bits(by_law) == bits(by_hand)
 
 
+def test_a_law_is_told_what_stands_on_any_topic():
+    heard = []
+
+    def law(t, state, reference):
+        heard.append((state.time, state.topic("odom")["stamp"], state.topic("vel_cmd")["count"]))
+        return HOVER
+
+    simulation = quadrotor()
+    simulation.run(0.01, controller=law)
+    assert [row[2] for row in heard] == list(range(len(heard))) and len(heard) == 5
+    assert all(time == stamp for time, stamp, _ in heard)
+    with pytest.raises(qc.InputError, match="topic 'odm' is not declared"):
+        simulation.run(0.01, controller=lambda t, state, reference: state.topic("odm"))
+
+
 @pytest.mark.parametrize(
     ("rate", "dt", "steps"),
     [

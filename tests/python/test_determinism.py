@@ -20,8 +20,7 @@ GROUNDED = {"spawn": (1, 2, 0.2, 0.3, -0.2, 1), "world": "default", "parameters"
 
 everywhere = pytest.mark.parametrize(
     ("engine", "place"),
-    [(engine, ALOFT) for engine in ENGINES]
-    + [(engine, GROUNDED) for engine in ("gazebo11", "ode")],
+    [(engine, flight) for engine in ENGINES for flight in (ALOFT, GROUNDED)],
     ids=lambda value: value if isinstance(value, str) else value.get("world", "empty"),
 )
 

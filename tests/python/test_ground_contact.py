@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from flights import ENGINES
 from test_gazebo_recordings import DATA, FOLDERS, distances, name_of
 
 import quadcore as qc
@@ -93,7 +94,7 @@ def test_the_order_of_links_and_joints_in_the_file_does_not_matter(engine, spawn
     assert np.abs(permuted - original).max() < apart
 
 
-@pytest.mark.parametrize("engine", ["gazebo11", "ode"])
+@pytest.mark.parametrize("engine", ENGINES)
 def test_a_tilted_drop_comes_to_rest_and_does_not_slide(engine):
     sim = qc.Simulation(
         "quadrotor", engine=engine, world="default", spawn=(0, 0, 0.3, 0.3, -0.2, 1)
@@ -107,7 +108,7 @@ def test_a_tilted_drop_comes_to_rest_and_does_not_slide(engine):
     assert -1e-4 < lowest < 0.1
 
 
-@pytest.mark.parametrize("engine", ["gazebo11", "ode"])
+@pytest.mark.parametrize("engine", ENGINES)
 def test_restoring_on_the_ground_repeats_the_bytes(engine):
     sim = spawned(DROP, engine)
     sim.step(140)  # just landed: hinge forces are carried over from step to step
@@ -127,7 +128,7 @@ def test_a_mesh_cannot_touch_the_ground_and_is_named(tmp_path):
     model = tmp_path / "mesh.urdf"
     model.write_text(mesh)
     qc.Simulation(model)
-    for engine, _ in qc.engines():
+    for engine in ENGINES:
         with pytest.raises(qc.InputError, match=r"mesh\.urdf:5: .*box, cylinder or sphere"):
             qc.Simulation(model, engine=engine, world="default")
 
@@ -160,3 +161,18 @@ def test_friction_is_a_pyramid_along_the_axes_of_the_world(tmp_path, engine, hea
     before, after = simulation.run(0.01).linear_velocity[[0, -1]]
     # mu is 1; along each axis of the world along which it slides the body is slowed by mu g.
     assert (before - after) @ way / 0.01 == pytest.approx(share * 9.8, rel=1e-3)
+
+
+def test_eigen_warns_of_tags_of_contact_that_it_does_not_feel(tmp_path):
+    def warnings_of(tags):
+        text = BOX.replace("</robot>", f'<gazebo reference="frame">{tags}</gazebo></robot>')
+        (tmp_path / "box.urdf").write_text(text)
+        simulation = qc.Simulation(
+            tmp_path / "box.urdf", engine="eigen", world="default", spawn=(0, 0, 0.01)
+        )
+        return [warning for warning in simulation.warnings if "contact" in warning]
+
+    assert warnings_of("<mu1>0.3</mu1><fdir1>1 0 0</fdir1><kp>1e5</kp>") == []
+    (warning,) = warnings_of("<kd>7</kd>")
+    assert "box.urdf:8: " in warning
+    assert "feels no <kd>" in warning

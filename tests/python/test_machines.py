@@ -33,16 +33,18 @@ FLY = """
 import hashlib, sys
 import quadcore as qc
 from flights import bits
-for engine in sys.argv[3:]:
+for engine in sys.argv[4:]:
     for drag in ("appendix", "chapter2"):
+        touches = sys.argv[3] == "default"
         simulation = qc.Simulation(
             sys.argv[1],
             engine=engine,
+            world=sys.argv[3],
             parameters={sys.argv[2] + ".dragModel": drag},
-            spawn=(1, 2, 10, 0.3, -0.2, 1),
+            spawn=(1, 2, 0.3 if touches else 10, 0.3, -0.2, 1),
             seed=7,
         )
-        simulation.command([471, -400, 480, -395])
+        simulation.command([71, -40, 80, -35] if touches else [471, -400, 480, -395])
         digest = hashlib.sha256()
         for _ in range(400):
             simulation.step(5)
@@ -51,10 +53,10 @@ for engine in sys.argv[3:]:
 """
 
 
-def fly(model, **environment):
+def fly(model, world="empty", **environment):
     """Hash of every bit of state and odometry on the way, for each engine and drag model."""
     aerodynamic = "drone_plugin" if model == "quadrotor" else "aerodynamic"
-    command = [sys.executable, "-c", FLY, str(model), aerodynamic, *ENGINES]
+    command = [sys.executable, "-c", FLY, str(model), aerodynamic, world, *ENGINES]
     environment = {**os.environ, "PYTHONPATH": str(TESTS), **environment}
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     return done.stdout.splitlines()
@@ -78,6 +80,13 @@ def test_rotors_in_lanes_of_every_width_fly_the_same_bytes(name, lanes, tmp_path
         model = tmp_path / "odd.urdf"
         model.write_text(urdf.replace("</robot>", plugin("odometry", NOISE) + "</robot>"))
     assert fly(model, QUADCORE_LANES=lanes) == fly(model)
+
+
+def test_what_touches_the_ground_flies_the_same_bytes_too():
+    here = fly("quadrotor", "default")
+    assert fly("quadrotor", "default", GLIBC_TUNABLES=AS_AN_OLD_PROCESSOR) == here
+    for lanes in ("1", "2", "8"):
+        assert fly("quadrotor", "default", QUADCORE_LANES=lanes) == here
 
 
 def test_a_width_that_no_lanes_have_is_refused():

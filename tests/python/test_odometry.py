@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from flights import BUSY, HOVER, quadrotor
 from scipy.spatial.transform import Rotation
+from sensed import mounted
 
 POSE = ("x", "y", "z", "qx", "qy", "qz", "qw")
 LINEAR = ("vx", "vy", "vz")
@@ -130,3 +133,45 @@ def test_a_state_that_is_set_is_sensed_at_once():
     message = simulation.topic("odom")
     assert message["stamp"] == 0.3
     assert part(message, POSE[:3]).tolist() == [7, 8, 9]
+
+
+def odometry_at_rest(hangar, seconds=100, **tags):
+    simulation = hangar(mounted("odometry", tags), spawn=(1, 2, 3), engine="eigen", dt=0.01)
+    odom = simulation.run(seconds, topics=["odom"]).topics["odom"]
+    return {name: np.array(odom[name]) for name in odom}
+
+
+def test_the_bias_of_odometry_walks(hangar):
+    found = []
+    for seed in range(30):
+        simulation = hangar(
+            mounted("odometry", {"positionWalk": 0.2, "orientationWalk": 1e-3}),
+            engine="eigen",
+            dt=0.01,
+            seed=seed,
+        )
+        odom = simulation.run(10, topics=["odom"]).topics["odom"]
+        for walk, scale in ((odom["x"], 0.2), (odom["y"], 0.2), (odom["qz"], 0.5e-3)):
+            assert walk[0] == 0
+            found.append(np.diff(walk[1:]) / scale)
+    assert np.std(found) == pytest.approx(math.sqrt(0.01), rel=0.02)
+
+
+def test_odometry_is_told_in_steps_of_its_resolution(hangar):
+    odom = odometry_at_rest(
+        hangar, positionNoise=0.3, positionResolution=0.25, angularVelocityResolution=0.5
+    )
+    steps = odom["x"] / 0.25
+    assert np.array_equal(steps, np.round(steps)) and len(np.unique(steps)) > 3
+    assert odom["position_variance"][0] == pytest.approx(0.3**2 + 0.25**2 / 12, rel=1e-15)
+    assert odom["angular_velocity_variance"][0] == pytest.approx(0.5**2 / 12, rel=1e-15)
+    assert np.var(odom["x"]) == pytest.approx(0.3**2 + 0.25**2 / 12, rel=0.05)
+
+
+@pytest.mark.parametrize("rate", [990, 900, 800, 1000, 333])
+@pytest.mark.parametrize("delay", [0.0011, 0.0101, 0.0105, 0.0212])
+def test_a_delay_that_is_no_whole_number_of_steps_loses_no_message(rate, delay, hangar):
+    simulation = hangar(mounted("odometry", {"rate": rate, "delay": delay}), engine="eigen")
+    simulation.step(200)
+    arrived = simulation.topic("odom")["count"]
+    assert arrived >= math.floor((0.2 - delay - 0.0021) * rate)

@@ -42,6 +42,34 @@ def test_where_the_urdf_has_its_plugins_does_not_matter(engine, hangar):
 
 
 @pytest.mark.parametrize("engine", ENGINES)
+def test_where_the_urdf_has_the_shipped_plugins_does_not_matter(engine, hangar):
+    urdf = vehicle(ODD, inertia=SKEW, com=(0.01, -0.02, 0.03))
+    plugins = [
+        plugin("aerodynamic", CHAPTER2),
+        plugin("motor", {"delay": 0.003}),
+        plugin("odometry", {"positionNoise": 0.1, "delay": 0.01}),
+        plugin("imu", {"gyroNoise": 0.01, "dropout": 0.2}),
+        plugin("gps", {"horizontalNoise": 0.5}),
+        plugin("wind", {"velocity": "3 -2 1", "turbulence": 15}),
+        plugin("payload", {"mass": 0.2, "release": 0.05}),
+        plugin("fault", {"losses": "0.03 2 0.5", "cuts": "0.07 1"}),
+        plugin("push", {"link": "propeller3"}),
+    ]
+    logs = []
+    for turn in range(0, len(plugins), 2):
+        order = plugins[turn:] + plugins[:turn][::-1]
+        simulation = hangar(with_plugins(urdf, *order), G, engine=engine, seed=3)
+        simulation.publish("push", [1, -2, 0.5, 0.01, 0.02, -0.03])
+        simulation.command((471, -465, 480, -475))
+        logs.append(simulation.run(0.1, topics=["odom", "imu", "fix", "wind", "power"]))
+    for log in logs[1:]:
+        assert_same_bytes(logs[0], log)
+        for name, rows in logs[0].topics.items():
+            for field in rows:
+                assert log.topics[name][field].tobytes() == rows[field].tobytes(), (name, field)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
 def test_a_reset_with_a_seed_is_a_new_simulation_with_it(engine, hangar):
     urdf = with_plugins(
         motored(), plugin("buffet", {"deviation": 0.2}), plugin("odometry", {"positionNoise": 0.1})

@@ -22,7 +22,7 @@ ODOM = ["x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz
 
 def test_a_simulation_tells_its_topics():
     topics = quadrotor().topics
-    assert list(topics) == ["vel_cmd", "saturation", "odom"]
+    assert list(topics) == ["effectiveness", "vel_cmd", "power", "saturation", "odom"]
     odom, commands, saturation = topics["odom"], topics["vel_cmd"], topics["saturation"]
     assert (odom.name, odom.kind, odom.fields) == ("odom", "odometry", ODOM)
     assert (odom.writer, odom.readers) == ("odometry", [])
@@ -30,6 +30,10 @@ def test_a_simulation_tells_its_topics():
     assert (commands.writer, commands.readers) == (None, ["motorpid_plugin"])
     assert (saturation.kind, saturation.fields) == ("saturation", ["steps"])
     assert (saturation.writer, saturation.readers) == ("motorpid_plugin", [])
+    for name, reader in (("effectiveness", "drone_plugin"), ("power", "motorpid_plugin")):
+        shares = topics[name]
+        assert (shares.kind, shares.fields) == ("shares", ["s1", "s2", "s3", "s4"])
+        assert (shares.writer, shares.readers) == (None, [reader])
 
 
 def test_a_command_is_a_message_on_vel_cmd():
@@ -52,7 +56,7 @@ def test_a_command_is_a_message_on_vel_cmd():
     ("topic", "values", "says"),
     [
         ("vel_cmb", [1], "topic 'vel_cmb' is not declared by any plugin (did you mean 'vel_cmd'?)"),
-        ("rain", {"x": 1}, "topic 'rain' is not declared by any plugin; declared are vel_cmd, sat"),
+        ("rain", {"x": 1}, "topic 'rain' is not declared by any plugin; declared are effect"),
         ("vel_cmd", [1, 2], "publish: topic 'vel_cmd': 2 numbers; give 4: w1, w2, w3, w4"),
         ("vel_cmd", [1, 2, np.nan, 4], "publish: topic 'vel_cmd': w3 is not a finite number"),
         ("vel_cmd", "fast", "publish: topic 'vel_cmd' is not a 1-dimensional array of numbers"),

@@ -71,6 +71,9 @@ Facts facts_of(const World& world) {
   add(facts, "max_step_size", {world.max_step_size});
   add(facts, "gravity", numbers(world.gravity_W));
   add(facts, "wind", numbers(world.wind_W));
+  const Atmosphere& air = world.atmosphere;
+  add(facts, "atmosphere", {air.temperature, air.temperature_gradient, air.pressure});
+  add(facts, "magnetic field", numbers(world.magnetic_field_W));
   add(facts, "ground plane", {world.ground_plane ? 1.0 : 0.0});
   facts.push_back({"solver", {}, world.solver_type});
   add(facts, "iters", {static_cast<double>(world.solver_iterations)});

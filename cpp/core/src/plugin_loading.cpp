@@ -133,7 +133,7 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
     try {
       std::vector<std::string> warnings;
       loaded.plugin = library.descriptor->create.make(
-          {element.name, loaded.parameters, model, world_, topics_, warnings, fastest_decay});
+          {element.name, loaded.parameters, model, world_, topics_, warnings, fastest_decay, dt_});
       if (!loaded.plugin) throw Error("its create() returned no plugin");
       const std::size_t numbers = loaded.plugin->state_size();
       if (numbers > max_plugin_state) {

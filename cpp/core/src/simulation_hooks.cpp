@@ -34,6 +34,8 @@ void Simulation::gather_laws() {
   }
   active_ = nullptr;
   laws_.complete = !windy_ && with_.forces_without_laws.empty();
+  laws_.all_quiet =
+      laws_.complete && with_.carried.empty() && laws_.quiet.size() == with_.update.size();
 }
 
 void Simulation::show_instant() {

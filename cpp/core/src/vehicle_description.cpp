@@ -85,8 +85,28 @@ void Simulation::prepare_plugins() {
   active_ = nullptr;
 }
 
+namespace {
+
+/// Puts numbers back at the end of a block.
+class Kept {
+ public:
+  explicit Kept(VectorXd& numbers) : numbers_(numbers), kept_(numbers) {}
+  ~Kept() { numbers_ = kept_; }
+  Kept(const Kept&) = delete;
+  Kept& operator=(const Kept&) = delete;
+
+ private:
+  VectorXd& numbers_;
+  const VectorXd kept_;
+};
+
+}  // namespace
+
 VehicleDescription Simulation::describe_vehicle() {
   const std::vector<double> as_it_is = engine_->save();
+  // As before the flight: what has befallen plugins since is not the vehicle.
+  const Kept state_of_plugins(plugin_state_);
+  plugin_state_.setZero();
   const Model& flown = engine_->model();
   VehicleDescription vehicle{mass_properties(flown), world_.gravity_W, {}, {}};
   const std::vector<Eigen::Isometry3d> poses = link_poses(flown);

@@ -21,6 +21,7 @@ using Handlers = std::map<std::string, Handler>;
 /// What an element that holds others may have besides them.
 std::set<std::string> attributes_of(const std::string& element) {
   if (element == "sdf") return {"version"};
+  if (element == "atmosphere") return {"type"};
   if (element == "physics" || element == "physics:ode") return {"name", "default", "type"};
   if (element == "world" || element == "model" || element == "link" || element == "collision") {
     return {"name"};
@@ -41,20 +42,23 @@ class WorldReader {
     read_children(xml_.root(), {{"world", [](const Element&) {}}});
     refuse_both(xml_.child(world, "physics"), xml_.child(world, "physics:ode"));
     const Handler physics = [this, &world](const Element& e) {
-      refuse_both(xml_.child(world, "gravity"), xml_.child(e, "gravity"));
+      for (const char* const name : {"gravity", "magnetic_field"}) {
+        refuse_both(xml_.child(world, name), xml_.child(e, name));
+      }
       refuse_both(xml_.child(e, "real_time_update_rate"), xml_.child(e, "updateRate"));
       read_physics(e);
     };
-    read_children(
-        world,
-        {{"gravity", [this](const Element& e) { world_.gravity_W = xml_.vector_in_text(e); }},
-         {"physics", physics},
-         {"physics:ode", physics},
-         {"wind", [this](const Element& e) { read_wind(e); }},
-         {"include", [this](const Element& e) { read_include(e); }},
-         {"model", [this](const Element& e) { read_model(e); }},
-         {"plugin", [this](const Element& e) { read_plugin(e); }}},
-        {"include", "model", "plugin"});
+    read_children(world,
+                  {{"gravity", vector(world_.gravity_W)},
+                   {"magnetic_field", vector(world_.magnetic_field_W)},
+                   {"physics", physics},
+                   {"physics:ode", physics},
+                   {"wind", [this](const Element& e) { read_wind(e); }},
+                   {"atmosphere", [this](const Element& e) { read_atmosphere(e); }},
+                   {"include", [this](const Element& e) { read_include(e); }},
+                   {"model", [this](const Element& e) { read_model(e); }},
+                   {"plugin", [this](const Element& e) { read_plugin(e); }}},
+                  {"include", "model", "plugin"});
     return world_;
   }
 
@@ -87,12 +91,17 @@ class WorldReader {
         [this, &target, min, open, max](const Element& e) { target = in_range(e, min, open, max); };
   }
 
+  Handler vector(Vector3d& target) {
+    return [this, &target](const Element& e) { target = xml_.vector_in_text(e); };
+  }
+
   Handlers physics_handlers() {
     return {{"max_step_size", number(world_.max_step_size, shortest_step)},
             {"real_time_update_rate", number(world_.real_time_update_rate, 0)},
             {"updateRate", number(world_.real_time_update_rate, 0)},
             {"real_time_factor", [this](const Element& e) { in_range(e, 0, true); }},
-            {"gravity", [this](const Element& e) { world_.gravity_W = xml_.vector_in_text(e); }},
+            {"gravity", vector(world_.gravity_W)},
+            {"magnetic_field", vector(world_.magnetic_field_W)},
             {"ode", [this](const Element& e) { read_ode(e); }}};
   }
 
@@ -148,9 +157,23 @@ class WorldReader {
   }
 
   void read_wind(const Element& wind) {
-    read_children(wind, {{"linear_velocity",
-                          [this](const Element& e) { world_.wind_W = xml_.vector_in_text(e); }}});
+    read_children(wind, {{"linear_velocity", vector(world_.wind_W)}});
     xml_.required_child(wind, "linear_velocity");
+  }
+
+  void read_atmosphere(const Element& atmosphere) {
+    const char* type = atmosphere.Attribute("type");
+    if (type && std::string(type) != "adiabatic") {
+      xml_.fail(atmosphere,
+                "atmosphere type '" + std::string(type) + "' is not supported; write adiabatic");
+    }
+    Atmosphere& air = world_.atmosphere;
+    const auto gradient = [this, &air](const Element& e) {
+      air.temperature_gradient = xml_.number_in_text(e);
+    };
+    read_children(atmosphere, {{"temperature", number(air.temperature, 0, true)},
+                               {"temperature_gradient", gradient},
+                               {"pressure", number(air.pressure, 0)}});
   }
 
   void read_include(const Element& include) {

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "lanes/for_each_width.hpp"
-#include "lowest_point.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/lane_width.hpp"
 
@@ -29,7 +28,8 @@ void refuse_tags(const Model& model) {
   }
 }
 
-bool is_along_z(const Vector3d& v) { return v.x() == 0 && v.y() == 0; }
+/// Of a step at the ground, where what strikes is faster than all else.
+constexpr int parts_at_ground = 4;
 
 }  // namespace
 
@@ -37,7 +37,6 @@ EigenEngine::EigenEngine(const Model& model, const World& world)
     : model_(model),
       body_(model),
       gravity_W_(world.gravity_W),
-      ground_(world.ground_plane),
       kinematics_(model.joints.size(), false),
       loads_(model.joints.size()),
       state_(GyrostatState::joints +
@@ -47,7 +46,7 @@ EigenEngine::EigenEngine(const Model& model, const World& world)
       joint_torques_(RotorRows<1>::size_of(model.joints.size())),
       turns_(RotorRows<TurnRow::count>::size_of(model.joints.size())) {
   refuse_tags(model_);
-  if (ground_) check_collisions(model_);
+  if (world.ground_plane) ground_.emplace(model_, body_);
   kinematics_.p_FCcm_F = body_.p_FCcm_F;
   RotorMotions& rotors = kinematics_.rotors;
   for (std::size_t i = 0; i < rotors.size(); ++i) {
@@ -75,15 +74,8 @@ GyrostatStep EigenEngine::view() {
   GyrostatStep g;
   g.rotors = k.rotors.size();
   g.constants = body_.rotors.data();
-  g.normals_turn = std::any_of(model_.joints.begin(), model_.joints.end(), [](const Joint& joint) {
-    return !joint.axis.cross(Vector3d::UnitZ()).isZero(0);
-  });
-  g.upright = true;
-  for (std::size_t i = 0; i < g.rotors; ++i) {
-    g.upright &= is_along_z(body_.rotors.vector(RotorConstant::axis_F, i)) &&
-                 is_along_z(k.rotors.matrix(MotionRow::R_FR_at_zero, i).col(2)) &&
-                 is_along_z(k.rotors.matrix(MotionRow::R_FR_at_zero, i).row(2));
-  }
+  g.normals_turn = body_.normals_turn;
+  g.upright = body_.upright;
   g.inverse_mass = body_.inverse_mass;
   const auto copy = [](const Vector3d& from, double (&to)[4]) {
     std::copy(from.data(), from.data() + 3, to);
@@ -132,8 +124,38 @@ void EigenEngine::step(double time, double dt, const ForceField& forces) {
   if (!laws.complete) {
     step_.evaluate_rest = [](void* engine) { static_cast<EigenEngine*>(engine)->evaluate_rest(); };
   }
-  advance_(step_, time, dt);
-  if (ground_) refuse_ground();
+  if (ground_ && is_at_ground(dt)) {
+    step_at_ground(time, dt);
+  } else {
+    advance_(step_, time, dt);
+  }
+}
+
+bool EigenEngine::is_at_ground(double dt) const {
+  constexpr std::size_t z = 2;
+  return ground_->is_near(state_[GyrostatState::position + z], state_[GyrostatState::velocity + z],
+                          dt) &&
+         ground_->is_ahead(kinematics_, dt);
+}
+
+void EigenEngine::step_at_ground(double time, double dt) {
+  const double part = dt / parts_at_ground;
+  if (placed_) ground_->refuse_deep(kinematics_, part);
+  placed_ = false;
+  step_.evaluate_rest = [](void* engine) {
+    EigenEngine& self = *static_cast<EigenEngine*>(engine);
+    if (self.forces_->laws().complete) {
+      self.loads_.clear_frame();
+    } else {
+      self.evaluate_rest();
+    }
+    self.ground_->add_forces(self.kinematics_, self.loads_);
+  };
+  for (int i = 0; i < parts_at_ground; ++i) {
+    ground_->begin(part);
+    advance_(step_, time + i * part, part);
+    ground_->end();
+  }
 }
 
 void EigenEngine::evaluate_rest() {
@@ -144,13 +166,6 @@ void EigenEngine::evaluate_rest() {
 void EigenEngine::refuse() { forces_->refuse(kinematics_, loads_); }
 
 void EigenEngine::show() { show_(step_, state_.data()); }
-
-void EigenEngine::refuse_ground() const {
-  if (lowest_point(model_, kinematics_) > 0) return;
-  throw Error(
-      "the vehicle touches the ground, for which the engine eigen has no contact; use the "
-      "engine ode or gazebo11");
-}
 
 void EigenEngine::get_state(VehicleState& state) const {
   state.position = kinematics_.p_WF;
@@ -184,20 +199,39 @@ void EigenEngine::set_state(const VehicleState& state) {
     joint[GyrostatState::joint_angle * widest_lanes] =
         std::remainder(state.rotor_angle[row], 2 * M_PI);
   }
+  if (ground_) ground_->clear();
+  placed_ = true;
   show();
 }
 
 std::string EigenEngine::method() const {
-  return "classical Runge-Kutta of fourth order on the reduced equations of motion";
+  std::string method = "classical Runge-Kutta of fourth order on the reduced equations of motion";
+  if (ground_) {
+    method += "; on the ground by springs, dampers and bristles, approximate, in " +
+              std::to_string(parts_at_ground) + " parts of a step";
+  }
+  return method;
 }
 
-std::vector<double> EigenEngine::save() const { return {state_.begin(), state_.end()}; }
+std::vector<std::string> EigenEngine::warnings() const {
+  return ground_ ? ground_->warnings() : std::vector<std::string>{};
+}
+
+std::vector<double> EigenEngine::save() const {
+  std::vector<double> saved(state_.begin(), state_.end());
+  if (!ground_) return saved;
+  saved.resize(state_.size() + ground_->saved_size() + 1);
+  *ground_->save(saved.data() + state_.size()) = placed_;
+  return saved;
+}
 
 void EigenEngine::restore(const std::vector<double>& saved) {
-  if (saved.size() != state_.size()) {
+  if (saved.size() != state_.size() + (ground_ ? ground_->saved_size() + 1 : 0)) {
     throw InputError("snapshot: was taken from another model or engine; restore one of its own");
   }
-  std::copy(saved.begin(), saved.end(), state_.begin());
+  const auto from = saved.begin() + static_cast<std::ptrdiff_t>(state_.size());
+  std::copy(saved.begin(), from, state_.begin());
+  if (ground_) placed_ = *ground_->restore(&*from) != 0;
   show();
 }
 

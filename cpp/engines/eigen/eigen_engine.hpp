@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+
+#include "compliant_ground.hpp"
 #include "gyrostat.hpp"
 #include "gyrostat_step.hpp"
 #include "quadcore/engine.hpp"
@@ -7,8 +10,8 @@
 namespace quadcore {
 
 /// The exact engine: the vehicle as a gyrostat in reduced coordinates, integrated with the
-/// classical fourth-order Runge-Kutta method; force laws are evaluated at every stage. It has no
-/// contact: touching a ground plane ends the flight.
+/// classical fourth-order Runge-Kutta method; force laws are evaluated at every stage. Its contact
+/// with a ground plane is approximate.
 class EigenEngine final : public Engine {
  public:
   EigenEngine(const Model& model, const World& world);
@@ -21,6 +24,7 @@ class EigenEngine final : public Engine {
   std::vector<double> save() const override;
   void restore(const std::vector<double>& saved) override;
   std::string method() const override;
+  std::vector<std::string> warnings() const override;
 
  private:
   /// The step's view of this engine; it points into the members below.
@@ -28,12 +32,14 @@ class EigenEngine final : public Engine {
   void show();
   void evaluate_rest();
   void refuse();
-  void refuse_ground() const;
+  bool is_at_ground(double dt) const;
+  void step_at_ground(double time, double dt);
 
   Model model_;
   Gyrostat body_;
   Vector3d gravity_W_;
-  bool ground_;
+  std::optional<CompliantGround> ground_;  ///< none in a world without ground
+  bool placed_ = true;                     ///< and not yet moved on the ground
   Kinematics kinematics_;
   Loads loads_;
   LaneNumbers state_, stage_, sum_;

@@ -32,6 +32,8 @@ void check(const Model& model, std::size_t i) {
   }
 }
 
+bool is_along_z(const Vector3d& v) { return v.x() == 0 && v.y() == 0; }
+
 }  // namespace
 
 Gyrostat::Gyrostat(const Model& model) : rotors(model.joints.size()) {
@@ -56,6 +58,9 @@ Gyrostat::Gyrostat(const Model& model) : rotors(model.joints.size()) {
     rotors.number(RotorConstant::inverse_moment, i) = 1 / moment;
     rotors.number(RotorConstant::damping, i) = joint.damping;
     reduced -= moment * axis_F * axis_F.transpose();
+    const Matrix3d& R_FR = R_FR_at_zero.back();
+    normals_turn |= !joint.axis.cross(Vector3d::UnitZ()).isZero(0);
+    upright &= is_along_z(axis_F) && is_along_z(R_FR.col(2)) && is_along_z(R_FR.row(2));
   }
   inverse_reduced_I_F = reduced.inverse();
 }

@@ -15,6 +15,8 @@ struct Gyrostat {
   RotorRows<RotorConstant::count> rotors;
   std::vector<Vector3d> p_FRcm_F;      ///< centre of mass of each rotor [m]
   std::vector<Matrix3d> R_FR_at_zero;  ///< orientation of each rotor's link at angle zero
+  bool normals_turn = false;           ///< some rotor's link has its z off the joint's axis
+  bool upright = true;  ///< each rotor's axis and its link's z lie along the frame's z
 
   /// Throws InputError on a model that is no gyrostat: why, and which engine to use instead.
   explicit Gyrostat(const Model& model);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ground_surface.hpp"
 #include "ode_math.hpp"
 #include "quadcore/error.hpp"
 
@@ -10,15 +11,10 @@ namespace {
 
 // Measured in the running Gazebo 11.
 constexpr int max_contacts_per_pair = 10;
-constexpr double ground_stiffness = 1e12;  // N/m
-constexpr double ground_damping = 1;       // N s/m
-constexpr double ground_mu1 = 100, ground_mu2 = 50;
 
-/// Springs in series, dampers in sum, the smaller friction of the two.
 SurfacePair on_ground(const Surface& surface, double max_correction) {
-  return {1 / (1 / surface.kp + 1 / ground_stiffness), surface.kd + ground_damping,
-          std::min(surface.mu1, ground_mu1), std::min(surface.mu2, ground_mu2),
-          std::min(surface.max_vel, max_correction)};
+  return {ground::stiffness_with(surface), ground::damping_with(surface), ground::mu1_with(surface),
+          ground::mu2_with(surface), std::min(surface.max_vel, max_correction)};
 }
 
 dGeomID create_shape(const Collision& collision) {

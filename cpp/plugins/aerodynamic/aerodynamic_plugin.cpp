@@ -3,6 +3,7 @@
 #include <string>
 
 #include "configuration.hpp"
+#include "effectiveness.hpp"
 #include "lanes/for_each_width.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/lane_width.hpp"
@@ -14,6 +15,13 @@ namespace {
 
 /// Wrench terms, in the order the descriptor names them.
 enum Term { kThrust, kReaction, kInduced, kTranslational, kProfile, kParasitic, kFlapping };
+
+/// Which warnings this flight has heard, behind the coefficients; filled up to a whole block, so
+/// that the tables of other plugins begin where a pack can be read at once.
+enum Memory { kDriven, kUnfelt, kMemorySize = widest_lanes - 1 };
+
+/// rad
+constexpr double surely_below_half_a_turn = 3;
 
 /// Drag tags and what the thesis' plugin (A.5) has in their place: compiled in, no tags.
 constexpr std::pair<const char*, const char*> compiled_in_drag[] = {
@@ -65,9 +73,11 @@ Vector3d vector(const Vec3<double>& v) { return {v.x, v.y, v.z}; }
 class AerodynamicPlugin final : public Plugin {
  public:
   explicit AerodynamicPlugin(const PluginSetup& setup)
-      : config_(setup.parameters, setup.model.joints.size()),
+      : config_(setup.parameters, setup.model.joints.size(), setup.world.atmosphere),
         joint_names_(setup.model.joint_names()),
-        law_(config_.law()) {
+        law_(config_.law()),
+        fastest_(surely_below_half_a_turn / setup.dt),
+        effectiveness_(setup, config_) {
     static constexpr laws::ForEachWidth<void(const RotorForces&, const ShownMotion&)> widths{
         &add_rotor_forces<1>, &add_rotor_forces<2>, &add_rotor_forces<4>, &add_rotor_forces<8>};
     add_ = widths[lane_width(setup.model.joints.size())];
@@ -76,15 +86,25 @@ class AerodynamicPlugin final : public Plugin {
     warn_of_axes_against_lift(setup, config_);
   }
 
-  std::size_t state_size() const override { return 1; }
+  std::size_t state_size() const override {
+    return static_cast<std::size_t>(effectiveness_.size()) + kMemorySize;
+  }
 
   /// The thesis' plugin falls silent for a rotor that turns more than half a turn per step; here
   /// such a speed ends the flight.
   void update(const Sample& sample, PluginState state) const override {
-    if (!sample.kinematics.rotors.slower_than(3 / sample.dt)) refuse_half_turns(sample);
-    double& has_warned = state[0];
-    if (has_warned == 0 && drag_drives(sample.kinematics)) {
-      has_warned = 1;
+    effectiveness_.follow(sample, state);
+    auto memory = state.tail<kMemorySize>();
+    if (!sample.kinematics.rotors.slower_than(surely_below_half_a_turn / sample.dt))
+      refuse_half_turns(sample);
+    if (memory[kUnfelt] == 0 && config_.appendix && !sample.kinematics.v_WA_F.isZero(0)) {
+      memory[kUnfelt] = 1;
+      sample.warnings.push_back(
+          "the air moves, and <dragModel> appendix feels nothing of it, as in the thesis; set "
+          "<dragModel> to chapter2 for a flight in wind");
+    }
+    if (memory[kDriven] == 0 && drag_drives(sample.kinematics)) {
+      memory[kDriven] = 1;
       sample.warnings.push_back(
           "a propeller tilts beyond 90 degrees, where the parasitic drag of <dragModel> appendix "
           "drives the vehicle with the square of its speed instead of slowing it; set <dragModel> "
@@ -92,14 +112,15 @@ class AerodynamicPlugin final : public Plugin {
     }
   }
 
-  void forces(const Kinematics& kinematics, ConstPluginState, Loads& loads) const override {
+  void forces(const Kinematics& kinematics, ConstPluginState state, Loads& loads) const override {
+    const RotorForces law = effectiveness_.has_begun(state) ? law_in_force(state) : law_;
     const ShownMotion shown{{kinematics.rotors.data(), loads.rotors().data(),
                              kinematics.rotors.size(), kinematics.has_rotations()},
                             kinematics.numbers()};
     if (loads.terms()) {
-      record(shown, loads);
+      record(law, shown, loads);
     } else {
-      add_(law_, shown);
+      add_(law, shown);
     }
     if (drags_frame()) {
       const Vector3d v_ACcm_F = kinematics.v_WCcm_F - kinematics.v_WA_F;
@@ -110,8 +131,9 @@ class AerodynamicPlugin final : public Plugin {
     }
   }
 
-  void laws(ConstPluginState, ForceLaws& laws) const override {
-    laws.rotor_forces.push_back(law_);
+  void laws(ConstPluginState state, ForceLaws& laws) const override {
+    laws.rotor_forces.push_back(law_in_force(state));
+    laws.quiet.push_back({fastest_, drag_may_drive()});
     if (drags_frame()) laws.frame_drags.push_back({config_.parasitic});
   }
 
@@ -120,13 +142,13 @@ class AerodynamicPlugin final : public Plugin {
   bool drags_frame() const { return !config_.appendix && config_.parasitic != 0; }
 
   /// The same loads, rotor by rotor and term by term.
-  void record(const ShownMotion& shown, Loads& loads) const {
+  void record(const RotorForces& law, const ShownMotion& shown, Loads& loads) const {
     using Row = CoefficientRow;
     for (const std::size_t i : config_.rotors) {
       const ShownPack<double> motion{shown, i};
-      const laws::RotorDisc<double> disc = laws::disc_of<double>(law_, motion);
+      const laws::RotorDisc<double> disc = laws::disc_of<double>(law, motion);
       const auto coefficient = [&](std::size_t row) {
-        return laws::coefficient<double>(law_, row, i);
+        return laws::coefficient<double>(law, row, i);
       };
       const auto add = [&](Term term, const Vec3<double>& f_F) {
         loads.add_rotor_force(term, i, vector(f_F));
@@ -135,13 +157,13 @@ class AerodynamicPlugin final : public Plugin {
       add(kInduced, laws::rotor_drag(disc, coefficient(Row::induced)));
       add(kTranslational, laws::rotor_drag(disc, coefficient(Row::translational)));
       add(kProfile, laws::rotor_drag(disc, coefficient(Row::profile)));
-      if (law_.parasitic) add(kParasitic, laws::parasitic_F<double>(law_, motion, i));
-      if (law_.flaps) add(kFlapping, laws::flapping_F<double>(law_, disc, motion, i));
-      const double torque = laws::reaction_of(law_, disc, i);
-      loads.add_frame_torque(kReaction, law_.about_frame_z ? Vector3d(0, 0, torque)
-                                                           : torque * vector(laws::reaction_axis_F(
-                                                                          law_, disc, motion)));
-      if (law_.on_rotor) loads.add_joint_torque(i, torque);
+      if (law.parasitic) add(kParasitic, laws::parasitic_F<double>(law, motion, i));
+      if (law.flaps) add(kFlapping, laws::flapping_F<double>(law, disc, motion, i));
+      const double torque = laws::reaction_of(law, disc, i);
+      loads.add_frame_torque(
+          kReaction, law.about_frame_z ? Vector3d(0, 0, torque)
+                                       : torque * vector(laws::reaction_axis_F(law, disc, motion)));
+      if (law.on_rotor) loads.add_joint_torque(i, torque);
     }
   }
 
@@ -155,18 +177,28 @@ class AerodynamicPlugin final : public Plugin {
     }
   }
 
+  bool drag_may_drive() const { return config_.appendix && config_.parasitic != 0; }
+
   /// Whether the vertical part of parasitic_drag_of_appendix() points along the motion.
   bool drag_drives(const Kinematics& kinematics) const {
-    if (!config_.appendix || config_.parasitic == 0) return false;
+    if (!drag_may_drive()) return false;
     const Vector3d up_F = kinematics.R_WF.row(2);
     return std::any_of(config_.rotors.begin(), config_.rotors.end(), [&](std::size_t i) {
       return up_F.dot(kinematics.rotors.vector(MotionRow::normal, i)) < 0;
     });
   }
 
+  RotorForces law_in_force(ConstPluginState state) const {
+    RotorForces law = law_;
+    law.coefficients = state.data();
+    return law;
+  }
+
   Config config_;
   std::vector<std::string> joint_names_;
-  RotorForces law_;
+  RotorForces law_;  ///< while all rotors are whole
+  double fastest_;   ///< rate of a joint below which update() does not look at it [rad/s]
+  Effectiveness effectiveness_;
   void (*add_)(const RotorForces&, const ShownMotion&);
 };
 
@@ -192,7 +224,8 @@ PluginDescriptor describe() {
               .agreed(),
           T::choice("dragModel", {"appendix", "chapter2"},
                     "forces as the thesis' plugin computes them, or as its chapter 2 says; the "
-                    "parasitic drag of appendix drives a vehicle tilted beyond 90 degrees")
+                    "parasitic drag of appendix drives a vehicle tilted beyond 90 degrees, and it "
+                    "feels no wind")
               .from("A.5, (2.28)-(2.31)"),
           T::number("inducedDragCoeff", "N s/m", "0", "induced drag of a rotor, K_I")
               .at_least(0)
@@ -206,6 +239,11 @@ PluginDescriptor describe() {
           T::number("parasiticDragCoeff", "N s^2/m^2", "0", "parasitic drag of the airframe, K_par")
               .at_least(0)
               .from("(2.31)"),
+          T::number("airDensity", "kg/m^3", "",
+                    "density of the air for which the thrust, torque and drag coefficients are: "
+                    "they become those of the world's <atmosphere> at z = 0")
+              .above(0)
+              .or_absent("they hold as they are"),
           T::number("flappingA1c", "rad", "0",
                     "blade flapping, longitudinal; positive opposes motion")
               .from("(2.26)"),
@@ -229,6 +267,9 @@ PluginDescriptor describe() {
               .from("(2.11)"),
           T::link("frameLink", "link that takes the reaction torque; part of the root body"),
           T::joints("rotorJoints", "the rotors"),
+          T::text("effectiveness", "effectiveness",
+                  "topic: of each rotor the share of thrust and reaction torque that is left, 1 "
+                  "before the first message"),
           T::number("updateRate", "1/s", "", no_effect).at_least(0).or_absent("no effect"),
           T::flag("publishTf", "false", no_effect),
       },

@@ -6,6 +6,7 @@
 #include "quadcore/force_laws.hpp"
 #include "quadcore/rotor_rows.hpp"
 #include "quadcore/tags.hpp"
+#include "quadcore/world.hpp"
 
 namespace quadcore::aerodynamic {
 
@@ -18,7 +19,7 @@ struct Config {
   std::vector<std::size_t> rotors;
   RotorRows<CoefficientRow::count> coefficients;  ///< 0 for the rotors of others
 
-  Config(const Parameters& p, std::size_t rotor_count)
+  Config(const Parameters& p, std::size_t rotor_count, const Atmosphere& air)
       : sim_slow(p.number("sim_slow")),
         parasitic(p.number("parasiticDragCoeff")),
         appendix(p.choice("dragModel") == "appendix"),
@@ -33,17 +34,19 @@ struct Config {
           "<reactionOn> rotor lets the air brake the rotors, so that <reactionTorque> cannot be "
           "thesis; write opposing, or leave it out");
     }
+    const double thinness = p.has("airDensity") ? air.density() / p.number("airDensity") : 1;
+    parasitic *= thinness;
     const double reaction_sign = as_in_thesis && !on_rotor ? 1 : -1;
     for (const std::size_t i : rotors) {
       const auto coefficient = [&](std::size_t row) -> double& {
         return coefficients.number(row, i);
       };
       using Row = CoefficientRow;
-      coefficient(Row::k) = p.number("rotorThrustCoeff");
-      coefficient(Row::b) = reaction_sign * p.number("rotorTorqueCoeff");
-      coefficient(Row::induced) = p.number("inducedDragCoeff");
-      coefficient(Row::translational) = p.number("translationalDragCoeff");
-      coefficient(Row::profile) = p.number("profileDragCoeff");
+      coefficient(Row::k) = thinness * p.number("rotorThrustCoeff");
+      coefficient(Row::b) = thinness * reaction_sign * p.number("rotorTorqueCoeff");
+      coefficient(Row::induced) = thinness * p.number("inducedDragCoeff");
+      coefficient(Row::translational) = thinness * p.number("translationalDragCoeff");
+      coefficient(Row::profile) = thinness * p.number("profileDragCoeff");
       coefficient(Row::linear) =
           coefficient(Row::induced) + coefficient(Row::translational) + coefficient(Row::profile);
       coefficient(Row::parasitic) = parasitic;

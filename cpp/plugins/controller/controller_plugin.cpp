@@ -2,7 +2,9 @@
 #include <string>
 
 #include "control/setup.hpp"
+#include "quadcore/control/rotor_health.hpp"
 #include "quadcore/plugin.hpp"
+#include "quadcore/rotor_shares.hpp"
 
 namespace quadcore::controller {
 namespace {
@@ -20,6 +22,8 @@ class ControllerPlugin final : public Plugin {
     const Parameters& p = setup.parameters;
     odometry_ = setup.topics.takes(p.text("odometry"), messages::kind_of<messages::Odometry>());
     reference_ = setup.topics.takes(p.text("reference"), messages::kind_of<messages::Reference>());
+    // Late, as whoever flies the law from outside hears of it.
+    health_ = setup.topics.takes(p.text("health"), shares(rotors_), true);
     command_ = setup.topics.publishes_as_taken(p.text("command"), messages::speeds(rotors_));
     const std::string& vehicle = setup_.gains.vehicle;
     if (!vehicle.empty() && vehicle != setup.model.name) {
@@ -34,15 +38,18 @@ class ControllerPlugin final : public Plugin {
 
   void prepare(const VehicleDescription& vehicle) override {
     controller_ = std::make_unique<Controller>(setup_.controller(vehicle));
+    health_of_ = std::make_unique<control::RotorHealth>(vehicle);
   }
 
   void update(const Sample& sample, PluginState state) const override {
     if (sample.topics[odometry_].count == 0 || sample.topics[reference_].count == 0) return;
     double* const own = state.data() + kSchedule;
+    double* const laws = own + schedule_.state_size();
+    health_of_->tell(sample.topics[health_], sample.time, *controller_, laws);
     const auto ask = [&](double period, double* speeds) {
       const auto now = setup_.in_world(sample.topics.read<messages::Odometry>(odometry_));
       const auto wanted = sample.topics.read<messages::Reference>(reference_);
-      controller_->command(period, now, wanted, own + schedule_.state_size(), speeds);
+      controller_->command(period, now, wanted, laws, speeds);
     };
     const double* const speeds = schedule_.update(state[kSteps], sample.dt, own, ask);
     if (speeds) {
@@ -59,8 +66,9 @@ class ControllerPlugin final : public Plugin {
   ControllerSetup setup_;
   std::size_t rotors_;  ///< joints, of which some may not be driven
   control::Schedule schedule_;
-  std::size_t odometry_, reference_, command_;
+  std::size_t odometry_, reference_, health_, command_;
   std::unique_ptr<const Controller> controller_;
+  std::unique_ptr<const control::RotorHealth> health_of_;
 };
 
 PluginDescriptor describe() {
@@ -68,6 +76,8 @@ PluginDescriptor describe() {
   std::vector<TagSpec> tags = ControllerSetup::tags();
   tags.insert(tags.end(), {T::text("odometry", "odom", "topic of what is measured"),
                            T::text("reference", "reference", "topic of where the vehicle is to be"),
+                           T::text("health", health_topic,
+                                   "topic of what is left of the rotors, as the law is told"),
                            T::text("command", "vel_cmd", "topic of the rotors' speeds")});
   return {"flies a control law", tags, {}, create<ControllerPlugin>};
 }

@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <sstream>
 
 #include "lanes/for_each_width.hpp"
+#include "laws/motor_target.hpp"
 #include "motor_torques.hpp"
+#include "plugins/rotor_shares.hpp"
+#include "plugins/speed_limit.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/lane_width.hpp"
 #include "quadcore/plugin.hpp"
@@ -15,7 +17,6 @@ namespace {
 struct Config {
   double kp, ki, kd, i_max, i_min, sim_slow;
   bool samples;            ///< whether integral or derivative act
-  double max_velocity;     ///< rad/s; infinite if there is none
   double command_timeout;  ///< s; infinite if there is none
   std::vector<std::size_t> rotors;
 
@@ -27,7 +28,6 @@ struct Config {
         i_min(p.number("iMin")),
         sim_slow(p.number("sim_slow")),
         samples(ki != 0 || kd != 0),
-        max_velocity(p.has("maxVelocity") ? p.number("maxVelocity") : INFINITY),
         command_timeout(p.has("commandTimeout") ? p.number("commandTimeout") : INFINITY),
         rotors(p.joints("rotorJoints")) {}
 };
@@ -39,7 +39,15 @@ struct Config {
 class MotorPidPlugin final : public Plugin {
  public:
   explicit MotorPidPlugin(const PluginSetup& setup)
-      : config_(setup.parameters), rotor_count_(setup.model.joints.size()) {
+      : config_(setup.parameters),
+        rotor_count_(setup.model.joints.size()),
+        places_(rotor_count_, not_driven),
+        topic_(setup.topics.takes("vel_cmd", messages::speeds(config_.rotors.size()))),
+        power_(setup.topics.takes(setup.parameters.text("power"), shares(config_.rotors.size()))),
+        limit_(setup) {
+    for (std::size_t j = 0; j < config_.rotors.size(); ++j) {
+      places_[config_.rotors[j]] = static_cast<int>(j);
+    }
     static constexpr laws::ForEachWidth<void(const MotorTorques&, const RotorLanes&)> widths{
         &add_motor_torques<1>, &add_motor_torques<2>, &add_motor_torques<4>, &add_motor_torques<8>};
     add_ = widths[lane_width(setup.model.joints.size())];
@@ -53,10 +61,6 @@ class MotorPidPlugin final : public Plugin {
       warn_if_stiff(setup, i);
       dampings_.push_back(setup.model.joints[i].damping);
     }
-    topic_ = setup.topics.takes("vel_cmd", messages::speeds(config_.rotors.size()));
-    if (std::isfinite(config_.max_velocity)) {
-      saturation_ = setup.topics.publishes(setup.parameters.text("saturation"), saturated_steps());
-    }
   }
 
   std::size_t state_size() const override {
@@ -69,7 +73,7 @@ class MotorPidPlugin final : public Plugin {
       const double stiffness = config_.kp + dampings_[j];
       rotor.rate_per_command = stiffness > 0 ? config_.kp / stiffness / config_.sim_slow : 0;
       rotor.lag = stiffness > 0 ? rotor.moment / stiffness : 0;
-      rotor.fastest = config_.max_velocity;
+      rotor.fastest = limit_.fastest();
       rotor.place = static_cast<int>(j);
     }
   }
@@ -78,22 +82,21 @@ class MotorPidPlugin final : public Plugin {
     const Topic& command = sample.topics[topic_];
     if (command.count == 0) return;
     const bool stale = sample.time - command.stamp > config_.command_timeout;
-    const double number = stale ? -1 : command.count;
-    if (!stale && is_at_limit(command)) {
-      const double steps = sample.topics[*saturation_].values.front();
-      *sample.topics.publish(*saturation_, sample.time) = steps + 1;
-    }
+    const Topic& power = sample.topics[power_];
+    // Counts only grow: a message on either topic makes another number.
+    const double number = stale ? -1 - power.count : command.count + power.count;
+    if (!stale) limit_.count(sample, command.values);
     for (std::size_t j = 0; j < config_.rotors.size(); ++j) {
       const std::size_t i = config_.rotors[j];
       double* rows = state.data() + rotor_offset(MemoryRow::count, i);
       const auto memory = [rows](std::size_t row) -> double& { return rows[row * widest_lanes]; };
       if (memory(MemoryRow::followed) == number && !config_.samples) return;  // so do all rotors
+      if (j == 0) check_shares(power, sample.time);
       memory(MemoryRow::followed) = number;
       const double wanted = stale ? 0 : command.values[j];
-      memory(MemoryRow::active) = 1;
-      memory(MemoryRow::target) =
-          std::clamp(wanted, -config_.max_velocity, config_.max_velocity) / config_.sim_slow;
-      if (!config_.samples) continue;
+      memory(MemoryRow::active) = share_of(power, j);
+      memory(MemoryRow::target) = laws::motor_target(wanted, limit_.fastest(), config_.sim_slow);
+      if (!config_.samples || memory(MemoryRow::active) == 0) continue;
       const double error =
           sample.kinematics.rotors.number(MotionRow::rate, i) - memory(MemoryRow::target);
       memory(MemoryRow::error_sum) += sample.dt * error;
@@ -115,17 +118,13 @@ class MotorPidPlugin final : public Plugin {
 
   void laws(ConstPluginState state, ForceLaws& laws) const override {
     laws.motor_torques.push_back(law(state));
+    if (!config_.samples && std::isinf(config_.command_timeout)) laws.quiet.push_back({});
   }
 
  private:
-  static MessageKind saturated_steps() { return {"saturation", {"steps"}}; }
-
-  bool is_at_limit(const Topic& command) const {
-    return std::any_of(command.values.begin(), command.values.end(),
-                       [this](double speed) { return std::abs(speed) >= config_.max_velocity; });
+  MotorTorques law(ConstPluginState state) const {
+    return {state.data(), config_.kp, limit_.fastest(), config_.sim_slow, places_.data()};
   }
-
-  MotorTorques law(ConstPluginState state) const { return {state.data(), config_.kp}; }
 
   void warn_if_stiff(const PluginSetup& setup, std::size_t i) const {
     const Joint& joint = setup.model.joints[i];
@@ -143,9 +142,11 @@ class MotorPidPlugin final : public Plugin {
   Config config_;
   std::size_t rotor_count_;       ///< of the model
   std::vector<double> dampings_;  ///< of the joints of config_.rotors [N m s/rad]
+  std::vector<int> places_;       ///< of each rotor of the model, as MotorTorques has them
   void (*add_)(const MotorTorques&, const RotorLanes&);
   std::size_t topic_;
-  std::optional<std::size_t> saturation_;  ///< topic; without a limit there is none
+  std::size_t power_;  ///< topic
+  SpeedLimit limit_;
 };
 
 PluginDescriptor describe() {
@@ -169,15 +170,12 @@ PluginDescriptor describe() {
               .above(0)
               .from("chapter 4")
               .agreed(),
-          T::number("maxVelocity", "rad/s", "",
-                    "fastest rotor speed the motor follows; faster commands saturate")
-              .above(0)
-              .or_absent("none"),
+          SpeedLimit::limit_tag(),
           T::number("commandTimeout", "s", "", "a command older than this counts as 0")
               .above(0)
               .or_absent("off"),
-          T::text("saturation", "saturation",
-                  "topic, where there is a maxVelocity: steps so far whose command reached it"),
+          SpeedLimit::topic_tag(),
+          power_tag(),
           T::joints("rotorJoints", "the rotors, in the order of the command's numbers"),
       },
       {},

@@ -1,89 +1,97 @@
 #include <cmath>
 #include <optional>
 
+#include "imperfection.hpp"
+#include "plugins/sensing.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
-#include "quadcore/random.hpp"
 
 namespace quadcore::odometry {
 namespace {
 
-struct Config {
-  double rate;
-  double position_noise, orientation_noise, linear_velocity_noise, angular_velocity_noise;
-  bool twist_in_body;
-
-  explicit Config(const Parameters& p)
-      : rate(p.number("rate")),
-        position_noise(p.number("positionNoise")),
-        orientation_noise(p.number("orientationNoise")),
-        linear_velocity_noise(p.number("linearVelocityNoise")),
-        angular_velocity_noise(p.number("angularVelocityNoise")),
-        twist_in_body(p.choice("twistFrame") == "body") {}
-};
-
-/// What the sensor remembers: the number of its last message plus one, and how far its noise stream
-/// has been drawn.
-enum Memory { kMessages, kDraws, kMemorySize };
+/// What the sensor remembers: when it measured, how far its noise stream has been drawn, the biases
+/// of position, orientation and velocities, then what is on the way.
+enum Memory { kMessages, kTime, kDraws, kBiases, kChannel = kBiases + 12 };
 
 /// Odometry of the frame (thesis appendix A.6): pose in the world, linear velocity in the world (or
-/// in body axes, as nav_msgs/Odometry defines it), angular velocity in body axes, each with white
-/// noise of the given standard deviation. Orientation noise is a small rotation about the body
-/// axes.
+/// in body axes, as nav_msgs/Odometry defines it), angular velocity in body axes, each with what is
+/// wrong with it. The errors of the orientation are small rotations about the body axes.
 class OdometryPlugin final : public Plugin {
  public:
-  explicit OdometryPlugin(const PluginSetup& setup) : config_(setup.parameters) {
+  explicit OdometryPlugin(const PluginSetup& setup)
+      : rate_(setup.parameters.number("rate")),
+        position_(setup.parameters, "position", true),
+        orientation_(setup.parameters, "orientation", false),
+        linear_velocity_(setup.parameters, "linearVelocity", true),
+        angular_velocity_(setup.parameters, "angularVelocity", true),
+        twist_in_body_(setup.parameters.choice("twistFrame") == "body"),
+        topic_(setup.topics.publishes(setup.parameters.text("topic"),
+                                      messages::kind_of<messages::Odometry>())),
+        channel_(setup, topic_, messages::kind_of<messages::Odometry>(),
+                 setup.parameters.number("rate")),
+        is_perfect_(position_.is_none() && orientation_.is_none() && linear_velocity_.is_none() &&
+                    angular_velocity_.is_none() && channel_.is_direct()) {
     const bool own_seed = setup.parameters.has("seed");
     const double seed = own_seed ? setup.parameters.number("seed") : 0;
     if (seed != std::floor(seed)) throw InputError("<seed> is not a whole number; write one");
     if (own_seed) seed_ = stream_seed(static_cast<std::uint64_t>(seed), setup.name);
-    topic_ = setup.topics.publishes(setup.parameters.text("topic"),
-                                    messages::kind_of<messages::Odometry>());
-    variances_.position_variance = square(config_.position_noise);
-    variances_.orientation_variance = square(config_.orientation_noise);
-    variances_.linear_velocity_variance = square(config_.linear_velocity_noise);
-    variances_.angular_velocity_variance = square(config_.angular_velocity_noise);
+    variances_.position_variance = position_.variance();
+    variances_.orientation_variance = orientation_.variance();
+    variances_.linear_velocity_variance = linear_velocity_.variance();
+    variances_.angular_velocity_variance = angular_velocity_.variance();
   }
 
-  std::size_t state_size() const override { return kMemorySize; }
+  std::size_t state_size() const override { return kChannel + channel_.state_size(); }
 
   void sense(const Sample& sample, PluginState state) const override {
-    const double due = std::floor(sample.time * config_.rate + 1e-6) + 1;
-    if (due == state[kMessages] && !sample.jumped) return;
-    state[kMessages] = due;
-
-    const std::uint64_t seed = seed_.value_or(sample.seed);
-    const auto noisy = [&](const Vector3d& v, double deviation) -> Vector3d {
-      return deviation == 0 ? v : v + deviation * normal_vector(seed, state[kDraws]);
-    };
-    const Kinematics& k = sample.kinematics;
-    messages::Odometry message = variances_;
-    message.position = noisy(k.p_WF, config_.position_noise);
-    message.orientation = k.q_WF;
-    if (config_.orientation_noise != 0) {
-      const Vector3d turn = config_.orientation_noise * normal_vector(seed, state[kDraws]);
-      const double angle = turn.norm();
-      if (angle > 0) message.orientation = k.q_WF * quaternion_about(turn / angle, angle);
+    if (is_perfect_) {
+      if (!rate_.is_due(sample, state[kMessages])) return;
+      return sample.topics.publish(topic_, sample.time, truth(sample.kinematics));
     }
-    message.linear_velocity =
-        noisy(config_.twist_in_body ? k.v_WF_F : k.R_WF * k.v_WF_F, config_.linear_velocity_noise);
-    message.angular_velocity = noisy(k.w_WF_F, config_.angular_velocity_noise);
-    sample.topics.publish(topic_, sample.time, message);
+    PluginState on_the_way(state.data() + kChannel, state.size() - kChannel);
+    if (rate_.is_due(sample, state[kMessages])) {
+      const std::uint64_t seed = seed_.value_or(sample.seed);
+      channel_.send(sample, seed, on_the_way, measured(sample, seed, state));
+    }
+    channel_.deliver(sample, on_the_way);
   }
 
  private:
-  static Vector3d normal_vector(std::uint64_t seed, double& draws) {
-    Vector3d v;
-    for (int i = 0; i < 3; ++i) v[i] = random_normal(seed, draws);
-    return v;
+  messages::Odometry truth(const Kinematics& k) const {
+    messages::Odometry message = variances_;
+    message.position = k.p_WF;
+    message.orientation = k.q_WF;
+    message.linear_velocity = twist_in_body_ ? k.v_WF_F : k.R_WF * k.v_WF_F;
+    message.angular_velocity = k.w_WF_F;
+    return message;
   }
 
-  static double square(double x) { return x * x; }
+  messages::Odometry measured(const Sample& sample, std::uint64_t seed, PluginState state) const {
+    const double since = sample.jumped ? 0 : sample.time - state[kTime];
+    state[kTime] = sample.time;
+    const auto imperfect = [&](const Imperfection& error, const Vector3d& truth, int quantity) {
+      return error.apply(truth, since, seed, state[kDraws],
+                         state.segment<3>(kBiases + 3 * quantity));
+    };
+    messages::Odometry message = truth(sample.kinematics);
+    message.position = imperfect(position_, message.position, 0);
+    const Vector3d turn = imperfect(orientation_, Vector3d::Zero(), 1);
+    const double angle = turn.norm();
+    if (angle > 0)
+      message.orientation = message.orientation * quaternion_about(turn / angle, angle);
+    message.linear_velocity = imperfect(linear_velocity_, message.linear_velocity, 2);
+    message.angular_velocity = imperfect(angular_velocity_, message.angular_velocity, 3);
+    return message;
+  }
 
-  Config config_;
+  sensing::Rate rate_;
+  Imperfection position_, orientation_, linear_velocity_, angular_velocity_;
+  bool twist_in_body_;
+  std::size_t topic_;
+  sensing::Channel channel_;
+  bool is_perfect_;                    ///< each message is the truth, and arrives at once
   messages::Odometry variances_;       ///< a message but for what moves
   std::optional<std::uint64_t> seed_;  ///< its own, if it has one
-  std::size_t topic_;
 };
 
 PluginDescriptor describe() {
@@ -93,6 +101,21 @@ PluginDescriptor describe() {
         .at_least(0)
         .from("A.6");
   };
+  const auto walk = [](const char* name, const char* unit, const char* of) {
+    return T::number(name, unit, "0",
+                     std::string("random walk of the bias of ") + of +
+                         ": its standard deviation after a second, which grows as sqrt(t)")
+        .at_least(0);
+  };
+  const auto resolution = [](const char* name, const char* unit, const char* of) {
+    return T::number(name, unit, "0",
+                     std::string("step in which is told ") + of +
+                         ", 0: in none; adds step^2/12 to the variance")
+        .at_least(0);
+  };
+  const char *position = "each position component", *turn = "the rotation about each body axis",
+             *linear = "each linear velocity component",
+             *angular = "each angular velocity component";
   return {
       "pose and velocity of the frame, with noise (thesis appendix A.6)",
       {
@@ -103,10 +126,19 @@ PluginDescriptor describe() {
           T::text("topic", "odom", "where the messages are published").from("A.6"),
           T::flag("publishTf", "true", "whether a ROS node sends tf world->drone with topic odom")
               .from("A.6"),
-          deviation("positionNoise", "m", "each position component"),
-          deviation("orientationNoise", "rad", "the rotation about each body axis"),
-          deviation("linearVelocityNoise", "m/s", "each linear velocity component"),
-          deviation("angularVelocityNoise", "rad/s", "each angular velocity component"),
+          deviation("positionNoise", "m", position),
+          deviation("orientationNoise", "rad", turn),
+          deviation("linearVelocityNoise", "m/s", linear),
+          deviation("angularVelocityNoise", "rad/s", angular),
+          walk("positionWalk", "m/sqrt(s)", position),
+          walk("orientationWalk", "rad/sqrt(s)", turn),
+          walk("linearVelocityWalk", "m/s/sqrt(s)", linear),
+          walk("angularVelocityWalk", "rad/s/sqrt(s)", angular),
+          resolution("positionResolution", "m", position),
+          resolution("linearVelocityResolution", "m/s", linear),
+          resolution("angularVelocityResolution", "rad/s", angular),
+          sensing::Channel::delay_tag(),
+          sensing::Channel::dropout_tag(),
           T::choice("twistFrame", {"world", "body"},
                     "axes of the linear velocity: world as in the thesis, body as nav_msgs says")
               .agreed()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any, List, Mapping
 
 import numpy as np
@@ -13,6 +14,9 @@ from ..simulation import Simulation
 from ..state import State, state_of
 from .model import THESIS, MathematicalModel, Terms
 from .vehicle import Vehicle, air_of, command_order
+
+_UNFELT = ("libwind_plugin.so", "libpayload_plugin.so", "libfault_plugin.so")
+"""What changes the forces of others, not of the mathematical model."""
 
 
 class Plant(Simulation):
@@ -89,4 +93,9 @@ def check(simulation: Simulation) -> None:
             raise InputError(
                 f"engine {LAGRANGE}: plugin '{plugin.name}' exerts {', '.join(plugin.wrenches)}, "
                 "which the mathematical model does not know; remove it, or fly another engine"
+            )
+        if Path(plugin.filename).name in _UNFELT:
+            raise InputError(
+                f"engine {LAGRANGE}: plugin '{plugin.name}' ({plugin.filename}) would not be felt "
+                "by the mathematical model; remove it, or fly another engine"
             )

@@ -31,6 +31,7 @@ def register(commands: Any) -> None:
     options.add_vary(parser, " and engine")
     options.add_flight(parser)
     options.add_commands(parser)
+    options.add_scenario(parser)
     options.add_jobs(parser)
     parser.add_argument(
         "--out",
@@ -75,7 +76,7 @@ def _plan(arguments: argparse.Namespace) -> Plan:
         arguments.commands,
         arguments.duration,
         arguments.log_every,
-        {**model, **options.flight_arguments(arguments)},
+        {**model, **options.flight_arguments(arguments), "scenario": arguments.scenario},
     )
 
 
@@ -104,6 +105,7 @@ def _flight(arguments: argparse.Namespace) -> dict[str, str]:
     """Describe what all flights share."""
     return {
         "commands": arguments.commands or "none",
+        **({"scenario": arguments.scenario} if arguments.scenario else {}),
         "duration": f"{arguments.duration:g} s",
         **{
             name: str(value).strip("()")

@@ -6,10 +6,11 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .. import laws, references
+from .. import laws, references, resources
 from .._core import FlightError, InputError
 from ..files import prepare_folder
 from ..plants import plants
+from ..scenarios import NONE
 from . import options, terminal, values
 from .kept import kept
 from .options_file import OptionsFile
@@ -48,6 +49,13 @@ def register(commands: Any) -> None:
     options.add_changes(parser)
     parser.add_argument(
         "--seeds", metavar="N", type=values.integer(1), default=1, help="from --seed on (1)"
+    )
+    parser.add_argument(
+        "--scenario",
+        metavar="A,B",
+        type=values.names,
+        help="what befalls the vehicle, files or shipped: "
+        + ", ".join([NONE, *resources.shipped("config/scenarios")]),
     )
     options.add_vary(parser, " and controller.KEY, its rate, delay or a parameter of the laws")
     options.add_flight(parser, several_engines=True, log_every=None, flown=plants(), seconds=30.0)
@@ -114,7 +122,7 @@ def _plan(arguments: argparse.Namespace) -> Plan:
         arguments.engine,
         arguments.model,
         arguments.seeds,
-        options.varied(arguments),
+        _varied(arguments),
         arguments.duration,
         arguments.log_every,
         arguments.spawn,
@@ -122,6 +130,15 @@ def _plan(arguments: argparse.Namespace) -> Plan:
         arguments.delay,
         shared,
     )
+
+
+def _varied(arguments: argparse.Namespace) -> dict[str, Any]:
+    varied = options.varied(arguments)
+    if arguments.scenario is None:
+        return varied
+    if "scenario" in varied:
+        raise InputError("vary scenario: it is given by --scenario, too; keep one")
+    return {"scenario": arguments.scenario, **varied}
 
 
 def _show(evaluation: Evaluation, files: list[Path]) -> None:

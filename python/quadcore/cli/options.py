@@ -7,7 +7,7 @@ import re
 from dataclasses import replace
 from typing import Any, Callable, Sequence
 
-from .. import laws, references
+from .. import laws, references, resources
 from .._core import InputError, engines
 from ..controller import give
 from ..flight_plan import FlightPlan
@@ -170,6 +170,16 @@ def add_timing(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_scenario(parser: argparse.ArgumentParser) -> None:
+    """Add the option that says what befalls the vehicle."""
+    parser.add_argument(
+        "--scenario",
+        metavar="FILE",
+        help="what befalls the vehicle: a file, or a shipped scenario: "
+        + ", ".join(resources.shipped("config/scenarios")),
+    )
+
+
 def add_jobs(parser: argparse.ArgumentParser) -> None:
     """Add the option that limits the processes."""
     parser.add_argument(
@@ -200,6 +210,7 @@ def flight_plan(arguments: argparse.Namespace) -> FlightPlan:
         **flight_arguments(arguments),
         duration=arguments.duration,
         commands=arguments.commands,
+        scenario=arguments.scenario,
         log_every=arguments.log_every,
         topics=tuple(arguments.log_topics),
     )

@@ -6,17 +6,17 @@ import argparse
 import re
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Iterator
+from typing import Iterator
 
 import yaml
 
 from .._core import InputError
-from ..files import read_text
+from ..yaml_nodes import line_of, pairs, root, scalar
 
 _SIGNS = {"set": "=", "vary": "=", "xacro": ":="}
 """Options that give values to keys, with the sign between."""
 
-_SCALAR = "tag:yaml.org,2002:"
+_PAIRS = "options as KEY: VALUE"
 
 
 class OptionsFile:
@@ -40,12 +40,12 @@ class OptionsFile:
         self._parser = parser
         self._lines: dict[str, int] = {}
         self._read = argparse.Namespace()
-        for key, node in _pairs(path, _root(path)):
+        for key, node in pairs(path, root(path), _PAIRS):
             name = key.value
             action = parser._option_string_actions.get(f"--{name}")
             if action is None or name == "help":
                 raise InputError(
-                    f"{path}:{_line(key)}: there is no option '{name}'; see {parser.prog} -h"
+                    f"{path}:{line_of(key)}: there is no option '{name}'; see {parser.prog} -h"
                 )
             for word, line in self._words(name, action, node):
                 self._take(action, word, line)
@@ -95,18 +95,18 @@ class OptionsFile:
         """Write an option as a command line does, with the line that it stands on."""
         if action.nargs == 0:
             if self._text(name, node) not in ("true", "false"):
-                raise InputError(f"{self._path}:{_line(node)}: {name}: write true or false")
+                raise InputError(f"{self._path}:{line_of(node)}: {name}: write true or false")
             if self._text(name, node) == "true":
-                yield f"--{name}", _line(node)
+                yield f"--{name}", line_of(node)
         elif name in _SIGNS and isinstance(node, yaml.MappingNode):
-            for key, value in _pairs(self._path, node):
-                self._lines[key.value] = _line(key)
-                yield f"--{name}={key.value}{_SIGNS[name]}{self._list(name, value)}", _line(key)
+            for key, value in pairs(self._path, node, _PAIRS):
+                self._lines[key.value] = line_of(key)
+                yield f"--{name}={key.value}{_SIGNS[name]}{self._list(name, value)}", line_of(key)
         elif _repeats(action):
             for item in node.value if isinstance(node, yaml.SequenceNode) else [node]:
-                yield f"--{name}={self._text(name, item)}", _line(item)
+                yield f"--{name}={self._text(name, item)}", line_of(item)
         else:
-            yield f"--{name}={self._list(name, node)}", _line(node)
+            yield f"--{name}={self._list(name, node)}", line_of(node)
 
     def _list(self, name: str, node: yaml.Node) -> str:
         if isinstance(node, yaml.SequenceNode):
@@ -114,51 +114,12 @@ class OptionsFile:
         return self._text(name, node)
 
     def _text(self, name: str, node: yaml.Node) -> str:
-        where = f"{self._path}:{_line(node)}"
-        if not isinstance(node, yaml.ScalarNode):
-            kind = "a list" if isinstance(node, yaml.SequenceNode) else "a mapping"
-            raise InputError(f"{where}: {name} is {kind} here; write a value, or a list of values")
-        if node.tag == f"{_SCALAR}null":
-            raise InputError(f"{where}: {name} is empty; write a value, or leave the line out")
-        text = str(node.value)
-        if node.tag == f"{_SCALAR}bool":  # yes and on are others
-            return "true" if yaml.SafeLoader.bool_values[text.lower()] else "false"
-        if not text[:1].isdigit():  # a number says nothing
-            self._lines[text] = _line(node)
-        return text
-
-
-def _root(path: Path) -> yaml.Node:
-    try:
-        return yaml.compose(read_text(path), yaml.SafeLoader)
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        line = mark.line + 1 if mark else 1
-        problem = getattr(error, "problem", None) or "not YAML"
-        raise InputError(f"{path}:{line}: {problem}") from None
-    except RecursionError:
-        raise InputError(f"{path}:1: nested too deeply") from None
-
-
-def _pairs(path: Path, node: Any) -> Iterator[tuple[yaml.ScalarNode, yaml.Node]]:
-    """Give keys and values of a mapping."""
-    if not isinstance(node, yaml.MappingNode):
-        raise InputError(f"{path}:1: write options as KEY: VALUE")
-    names = set()
-    for key, value in node.value:
-        if not isinstance(key, yaml.ScalarNode):
-            raise InputError(f"{path}:{_line(key)}: a key is no text; write options as KEY: VALUE")
-        if key.value in names:
-            raise InputError(f"{path}:{_line(key)}: {key.value} is given twice; keep one")
-        names.add(key.value)
-        yield key, value
+        written = scalar(self._path, name, node)
+        if not written[:1].isdigit() and written not in ("true", "false"):  # those say nothing
+            self._lines[written] = line_of(node)
+        return written
 
 
 def _repeats(action: argparse.Action) -> bool:
     """Whether an option may be repeated, and holds all."""
     return isinstance(action, argparse._AppendAction)
-
-
-def _line(node: yaml.Node) -> int:
-    line: int = node.start_mark.line + 1
-    return line

@@ -32,6 +32,7 @@ def register(commands: Any) -> None:
     options.add_flight(parser, flown=plants())
     options.add_commands(parser)
     options.add_controller(parser)
+    options.add_scenario(parser)
     parser.add_argument(
         "--out", metavar="DIR", type=Path, help="write log.csv and plots here; made if missing"
     )

@@ -79,10 +79,13 @@ def table(*columns: str, numbers: bool = False, **options: Any) -> Table:
 def warnings_as_lines() -> Iterator[None]:
     """Print each QuadcoreWarning once, as a line on standard error."""
     show_others = warnings.showwarning
+    said = set()  # "once" is forgotten where a block ignores some
 
     def show(message: Any, category: Any, *where: Any, **to: Any) -> None:
         if issubclass(category, QuadcoreWarning):
-            say(f"warning: {message}")
+            if str(message) not in said:
+                say(f"warning: {message}")
+            said.add(str(message))
         else:
             show_others(message, category, *where, **to)
 

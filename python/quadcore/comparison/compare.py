@@ -73,7 +73,7 @@ def compare(
         One or several models: files or names of shipped ones.
     vary
         Values by ``"PLUGIN.TAG"``, ``"LINK.mass"`` or the like, or ``"xacro.ARG"`` (several, joined
-        by commas, take the same value), ``"engine"`` or ``"world"``. All
+        by commas, take the same value), ``"engine"``, ``"world"`` or ``"scenario"``. All
         combinations are flown; the last axis runs fastest.
     commands, duration, log_every
         As for `Simulation.run`.
@@ -84,7 +84,8 @@ def compare(
     progress
         Called as progress(flights_done, flights_total).
     **options
-        As for `Simulation`: engine, world, dt, seed, parameters, xacro_args, spawn.
+        As for `Simulation`: engine, world, dt, seed, parameters, xacro_args, spawn; and scenario, a
+        file or the name of a shipped one.
 
     Returns
     -------

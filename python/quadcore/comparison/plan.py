@@ -16,8 +16,9 @@ from ..flight import check_logged
 from ..flight_plan import FlightPlan
 from ..log import Log
 from ..overrides import XACRO, check_names, link_values, without_xacro
+from ..scenarios import read as read_scenario
 from ..simulation import Simulation, text_of
-from ..study.axes import Axis, Values, axes_of, check_size, variants
+from ..study.axes import WHOLE, Axis, Values, axes_of, check_size, variants
 from .difference import Difference, differences, facts
 
 Variant = Tuple[int, Tuple[str, ...]]
@@ -39,7 +40,7 @@ class Plan:
     duration, log_every
         As for `Simulation.run`.
     options
-        As for `Simulation`.
+        As for `Simulation`, and `scenario`, which all fly in.
 
     Raises
     ------
@@ -72,6 +73,11 @@ class Plan:
         )
         self._models = [self._read(i, ()) for i in range(len(models))]
         self._worlds = {name: read_world(name, ignore) for name in self._values("world")}
+        given_scenario = own.pop("scenario", None)
+        if given_scenario is not None and self._values("scenario"):
+            raise InputError("vary scenario: it is given as well; keep one")
+        self._scenario = read_scenario(given_scenario)
+        self._scenarios = {name: read_scenario(name) for name in self._values("scenario")}
         world = own.pop("world", None)
         if not isinstance(world, World):
             world = read_world(world, ignore)
@@ -106,14 +112,18 @@ class Plan:
         index, values = variant
         changed: Dict[str, Any] = {}
         parameters: Dict[str, str] = {}
+        scenario = self._scenario
         for axis, value in zip(self.axes, values):
-            if not axis.tags:
+            if axis.name == "scenario":
+                scenario = self._scenarios[value]
+            elif not axis.tags:
                 changed[axis.name] = self._worlds[value] if axis.name == "world" else value
             parameters.update(dict.fromkeys(axis.tags, value))
         varied, tags = without_xacro(parameters, None)
         model = self._read(index, tuple(varied.items()))
         check_names(model, parameters)
-        return replace(self._base, model=model, parameters={**self._set, **tags}, **changed)
+        plan = replace(self._base, model=model, parameters={**self._set, **tags}, **changed)
+        return plan.befallen(scenario)
 
     def fly(self, variant: Variant) -> Log:
         """Fly a variant; raises what building or flying it raises."""
@@ -148,9 +158,11 @@ class Plan:
     def _built(self) -> List[Simulation]:
         """Build the models as they are; one that cannot be is a variant that will fail."""
         built = []
+        scenario = next(iter(self._scenarios.values()), self._scenario)
         for model in self._models:
+            plan = replace(self._base, model=model, parameters=self._set)
             try:
-                built.append(replace(self._base, model=model, parameters=self._set).simulation())
+                built.append(plan.befallen(scenario).simulation())
             except QuadcoreError:
                 continue
         return built
@@ -163,7 +175,7 @@ class Plan:
 
     def _check_tags(self, built: Sequence[Simulation]) -> None:
         for simulation in built:
-            known = ["engine", "world"]
+            known = list(WHOLE)
             for plugin in simulation.plugins:
                 known += [f"{plugin.name}.{tag.name}" for tag in plugin.parameters]
                 known += [f"{plugin.name}.{tag.alias}" for tag in plugin.parameters if tag.alias]

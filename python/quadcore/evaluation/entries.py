@@ -9,6 +9,7 @@ from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Seque
 from .. import laws, references
 from .._core import InputError, parse_number
 from ..controller import check_callable
+from ..plants import plants
 from ..study.axes import Values, axes_of
 
 OF_CONTROLLER = "controller."
@@ -87,7 +88,9 @@ def one_by_one(scenarios: Sequence[Mapping[str, str]]) -> List[Dict[str, str]]:
 
 def label_of(scenario: Mapping[str, str]) -> str:
     """Name a scenario."""
-    return " ".join(f"{name}={value}" for name, value in scenario.items())
+    return " ".join(
+        value if name == "scenario" else f"{name}={value}" for name, value in scenario.items()
+    )
 
 
 @contextmanager
@@ -100,6 +103,24 @@ def blaming(scenario: Mapping[str, str]) -> Iterator[None]:
         if not given or str(error).startswith("vary "):
             raise
         raise InputError(f"vary {label_of(given)}: {error}") from error
+
+
+def check_engines(engines: Iterable[str]) -> None:
+    """Raise `InputError` if there is no such plant."""
+    known = [name for name, _ in plants()]
+    for engine in engines:
+        if engine not in known:
+            raise InputError(f"there is no engine '{engine}'; give some of {', '.join(known)}")
+
+
+def check_labels(sides: Sequence[Sequence[str]]) -> None:
+    """Raise `InputError` if no controller, reference, engine or model is named, or one twice."""
+    for kind, names in zip(("controller", "reference", "engine", "model"), sides):
+        for name in names:
+            if names.count(name) > 1:
+                raise InputError(f"{kind} '{name}' is named twice; keep one, or label them")
+        if not names:
+            raise InputError(f"no {kind} is named; name at least one")
 
 
 def number(name: str, text: str) -> float:

@@ -103,8 +103,8 @@ def evaluate(
     seeds
         How many, from `seed` on, each with noise of its own.
     vary
-        Values by ``"PLUGIN.TAG"``, ``"world"`` or ``"controller.KEY"``, KEY being ``rate``,
-        ``delay`` or a parameter of a law: conditions, all combinations of which are flown.
+        Values by ``"PLUGIN.TAG"``, ``"world"``, ``"scenario"`` or ``"controller.KEY"``, KEY being
+        ``rate``, ``delay`` or a parameter of a law: conditions, of which all combinations fly.
     duration
         s
     log_every

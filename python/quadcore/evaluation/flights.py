@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from typing import Any, Callable, Dict, NamedTuple, Optional, Sequence
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence
 
 import numpy as np
 
@@ -13,11 +13,12 @@ from ..controller import faults_told
 from ..flight import Rows, columns_of, fly
 from ..flight_plan import FlightPlan
 from ..log import Log
+from ..simulation import Simulation
 from ..study.sampling import thinned
 from ..study.table import NOT_FLOWN
 from ..warning import unheard
 from .clock import Clocked, ClockedPilot, clocked, typical_and_slow
-from .measures import UNITS, drag_power, lost, measure, slow_down
+from .measures import UNITS, drag_power, loss, measure, slow_down
 from .step_response import step_response
 from .time_limit import time_limit
 
@@ -92,7 +93,8 @@ def flown(described: Callable[[], FlightPlan], most: float, keep: bool = False) 
         timed = flight.controller
         if not isinstance(timed, Clocked):
             timed = pilot = ClockedPilot(pilot)
-        rows = Rows(simulation, columns_of(simulation, (), pilot))
+        topics = _watched(simulation) if keep else []
+        rows = Rows(simulation, columns_of(simulation, topics, pilot))
         try:
             with faults_told(simulation):
                 fly(
@@ -103,13 +105,12 @@ def flown(described: Callable[[], FlightPlan], most: float, keep: bool = False) 
                     rows.receive,
                     wrenches=False,
                     pilot=pilot,
+                    topics=topics,
                 )
         except FlightError as error:
             failure = str(error)
     log = rows.log()
-    away = lost(log)
-    if away is not None:
-        failure = f"lost at t = {away:.6g} s"
+    failure = loss(log) or failure
     measures = NAN
     if not failure:
         share = pilot.saturated / max(1, pilot.updates)
@@ -130,3 +131,9 @@ def flown(described: Callable[[], FlightPlan], most: float, keep: bool = False) 
     limit = pilot.limit / slow_down(simulation)
     rotors = simulation.model.joint_places
     return outcome._replace(log=thinned(log), response=response, limit=limit, rotors=rotors)
+
+
+def _watched(simulation: Simulation) -> List[str]:
+    from ..player import topics_to_watch  # not every flight should pay for jinja2
+
+    return topics_to_watch(simulation)

@@ -58,6 +58,15 @@ def lost(log: Log) -> Optional[float]:
     return float(log.time[away[0]]) if len(away) else None
 
 
+def loss(log: Log) -> str:
+    """Tell when and where a vehicle is lost; "" if it is not."""
+    time = lost(log)
+    if time is None:
+        return ""
+    x, y, z = log.position[np.flatnonzero(log.time == time)[0]]
+    return f"lost at t = {time:.6g} s, x = {x:.4g} m, y = {y:.4g} m, z = {z:.4g} m"
+
+
 def distance(log: Log) -> np.ndarray:
     """Distance to the reference, m; shape (rows,)."""
     error = log.topics["error"]

@@ -13,6 +13,7 @@ from ..study.sampling import evenly
 from ..study.table import NOT_FLOWN, csv_bytes, flown_and_failed, json_bytes, number_text, save
 from .evaluate import Evaluation
 from .intervals import CONFIDENCE
+from .losses import losses
 from .measures import MEANINGS, UNITS
 from .pictures import by_reference, draw, is_picture, label
 from .plan import Plan
@@ -56,7 +57,7 @@ def write(evaluation: Evaluation, plan: Plan, folder: Path, plots: bool) -> List
     for old in folder.glob("*.png"):
         if is_picture(old.stem):
             old.unlink()
-    images = draw(evaluation) if plots else {}
+    images = draw(evaluation, plan.events()) if plots else {}
     written += save(folder, {f"{name}.png": data for name, data in images.items()})
     page = folder / "report.html"
     players = _players(evaluation) if plots else []
@@ -192,6 +193,7 @@ def _content(evaluation: Evaluation, plan: Plan) -> Dict[str, Any]:
             }
             for row, outcome in zip(evaluation.table, evaluation.outcomes)
         ],
+        "losses": [_finite(row) for row in losses(evaluation.groups)],
         "combinations": [_finite(group) for group in evaluation.groups],
         "margins": [_finite(row) for row in evaluation.margins],
         "searched": {**ENDS, "box": BOX},
@@ -253,6 +255,13 @@ def _page(evaluation: Evaluation, plan: Plan, images: Mapping[str, bytes]) -> Di
         "confidence": f"{100 * CONFIDENCE:g} %",
         "meanings": MEANINGS,
         "units": UNITS,
+        "losses": [
+            {
+                name: value if isinstance(value, str) else error_text(value)
+                for name, value in row.items()
+            }
+            for row in losses(evaluation.groups)
+        ],
         "margins": margins_to_read(evaluation),
         "causes": causes(evaluation),
         "poles": [

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any, Dict, List, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -14,7 +14,9 @@ from ..study.sampling import evenly
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+from ..scenario_events import Event
 from .evaluate import Evaluation
+from .event_marks import mark
 from .flights import Outcome
 from .measures import distance, lost
 from .robustness import RATES
@@ -24,13 +26,25 @@ _PANELS = 9  # of rotor speeds; of more flights, evenly many
 _STYLES = ("-", "--", ":", "-.")
 
 
-def draw(evaluation: Evaluation) -> Dict[str, bytes]:
-    """Draw all pictures: PNG by name, in the order in which they are looked at."""
+def draw(
+    evaluation: Evaluation, events: Optional[Mapping[str, Sequence[Event]]] = None
+) -> Dict[str, bytes]:
+    """Draw all pictures: PNG by name, in the order in which they are looked at.
+
+    Parameters
+    ----------
+    evaluation
+        What was flown.
+    events
+        What happens in it, by scenario.
+    """
     figures: Dict[str, Figure] = {}
     for i, (reference, flights) in enumerate(by_reference(evaluation).items(), start=1):
         figures[f"tracks_{i}"] = _tracks(reference, flights)
         figures[f"errors_{i}"] = _errors(reference, flights)
         figures[f"rotors_{i}"] = _rotors(reference, flights)
+        for name in ("errors", "rotors"):
+            mark(figures[f"{name}_{i}"], events or {})
         if any(outcome.response is not None for _, outcome in flights):
             figures[f"response_{i}"] = _responses(reference, flights)
     if any(group["flights"] * (1 - group["failure_rate"]) > 1 for group in evaluation.groups):

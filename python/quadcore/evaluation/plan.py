@@ -17,7 +17,9 @@ from ..files import shown
 from ..flight import check_logged
 from ..flight_plan import FlightPlan
 from ..overrides import check_names, without_xacro
-from ..plants import LAGRANGE, plants
+from ..plants import LAGRANGE
+from ..scenario_events import Event
+from ..scenarios import read as read_scenario
 from ..simulation import text_of, whole
 from ..study.axes import LARGEST, Values
 from ..warning import unheard
@@ -58,8 +60,8 @@ class Plan:
     seeds
         How many, from `seed` on.
     vary
-        Values by axis: ``PLUGIN.TAG``, ``world``, and ``controller.KEY``, KEY being ``rate``,
-        ``delay`` or a parameter of the laws. All combinations are scenarios.
+        Values by axis: ``PLUGIN.TAG``, ``world``, ``scenario`` and ``controller.KEY``, KEY being
+        ``rate``, ``delay`` or a parameter of the laws. All combinations are scenarios.
     duration
         s
     log_every
@@ -110,7 +112,12 @@ class Plan:
         self.seeds = [first_seed + i for i in range(whole(seeds, "seeds"))]
         self.duration, self.spawn = duration, spawn
         self._log_every = log_every
-        self._check(len(self.seeds))
+        entries.check_engines(self.engines)
+        entries.check_labels(self._sides()[:-1])
+        if not self.seeds:
+            raise InputError("seeds is 0; give at least 1")
+        if len(self) > LARGEST:
+            raise InputError(f"these are {len(self)} flights; at most {LARGEST} are evaluated")
         self._ignore = own.pop("ignore", ())
         arguments, given = without_xacro(
             own.pop("parameters", None) or {}, own.pop("xacro_args", None)
@@ -132,6 +139,8 @@ class Plan:
         self._makers = [[entries.maker(thing, name) for name in vehicles] for _, thing in things]
         worlds = [scenario["world"] for scenario in self._scenarios if "world" in scenario]
         self._worlds = {name: read_world(name, self._ignore) for name in worlds}
+        befalling = dict.fromkeys(each.get("scenario") for each in self._scenarios)
+        self._befalls = {name: read_scenario(name) for name in befalling}
         begun = [self._begun(model) for model in range(len(models))]
         self.lacking = trial.lacking(begun[0])
         self._check_logs()
@@ -168,9 +177,9 @@ class Plan:
             seed=case.seed,
             controller=self._controller(case.controller, case.model, scenario),
             reference=self._shapes[case.reference],
-            **self._changed(case.model, scenario),
         )
-        return replace(plan, log_every=self.rows_every(plan.step))
+        varied = self._varied(plan, case.model, scenario)
+        return replace(varied, log_every=self.rows_every(varied.step))
 
     def first_of(self, controller: int) -> FlightPlan:
         """Describe a flight of a controller on the first of everything else."""
@@ -197,6 +206,12 @@ class Plan:
         if self._log_every is None:
             return max(1, round(1 / (LOG_RATE * dt)))
         return self._log_every
+
+    def events(self) -> Dict[str, Sequence[Event]]:
+        """Give what happens in time, by scenario."""
+        named = zip(self.scenarios, self._scenarios)
+        befall = {label: self._befalls[each.get("scenario")] for label, each in named}
+        return {label: each.events for label, each in befall.items() if each is not None}
 
     def told(self) -> Dict[str, Any]:
         """Say what flies and how, in plain values; controllers are told by `laws`."""
@@ -227,7 +242,7 @@ class Plan:
         for name, value in scenario.items():
             if name == "world":
                 changed["world"] = self._worlds[value]
-            elif not name.startswith(entries.OF_CONTROLLER):
+            elif name != "scenario" and not name.startswith(entries.OF_CONTROLLER):
                 parameters.update(dict.fromkeys(name.split(","), value))
         varied, tags = without_xacro(parameters, None)
         read = self._read(model, tuple(varied.items()))
@@ -249,9 +264,13 @@ class Plan:
         return self.controllers, self.references, self.engines, self.models, self.scenarios
 
     def _built(self, model: int, scenario: Mapping[str, str]) -> Any:
-        changed = self._changed(model, scenario)
-        plan = replace(self._plans[model], engine=self.engines[0], on_reference=False, **changed)
-        return plan.simulation()
+        plan = replace(self._plans[model], engine=self.engines[0], on_reference=False)
+        return self._varied(plan, model, scenario).simulation()
+
+    def _varied(self, plan: FlightPlan, model: int, scenario: Mapping[str, str]) -> FlightPlan:
+        """Make a plan for a model as a scenario has it."""
+        varied = replace(plan, **self._changed(model, scenario))
+        return varied.befallen(self._befalls[scenario.get("scenario")])
 
     def _check_logs(self) -> None:
         """Refuse flights of which nothing would be measured but the start."""
@@ -278,24 +297,3 @@ class Plan:
             for row, is_own in enumerate(self._are_own):
                 if not is_own:
                     Guided(self._controller(row, model, scenario), vehicle).reset(vehicle)
-
-    def _check(self, seeds: int) -> None:
-        known = [name for name, _ in plants()]
-        for engine in self.engines:
-            if engine not in known:
-                raise InputError(f"there is no engine '{engine}'; give some of {', '.join(known)}")
-        for kind, names in (
-            ("controller", self.controllers),
-            ("reference", self.references),
-            ("engine", self.engines),
-            ("model", self.models),
-        ):
-            for name in names:
-                if names.count(name) > 1:
-                    raise InputError(f"{kind} '{name}' is named twice; keep one, or label them")
-            if not names:
-                raise InputError(f"no {kind} is named; name at least one")
-        if seeds < 1:
-            raise InputError(f"seeds is {seeds}; give at least 1")
-        if len(self) > LARGEST:
-            raise InputError(f"these are {len(self)} flights; at most {LARGEST} are evaluated")

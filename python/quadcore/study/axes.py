@@ -13,6 +13,9 @@ import numpy as np
 from .._core import InputError, parse_number
 from ..simulation import Value, text_of
 
+WHOLE = ("engine", "world", "scenario")
+"""What is varied by name, as a whole."""
+
 LARGEST = 100_000
 """Variants of one comparison."""
 
@@ -24,13 +27,13 @@ class Axis(NamedTuple):
 
     name: str
     """``PLUGIN.TAG``, ``LINK.mass`` or the like, ``xacro.ARG``, several of them joined by commas,
-    ``engine`` or ``world``."""
+    or one of `WHOLE`."""
     values: Sequence[str]
 
     @property
     def tags(self) -> List[str]:
-        """The plugin tags that take the value; none for ``engine`` and ``world``."""
-        return [] if self.name in ("engine", "world") else self.name.split(",")
+        """The plugin tags that take the value; none for `WHOLE`."""
+        return [] if self.name in WHOLE else self.name.split(",")
 
 
 class Range(Sequence[str]):
@@ -61,7 +64,7 @@ def parse_axis(name: str, text: str) -> Axis:
     InputError
         No values, or a range that is none.
     """
-    if ":" in text and name != "world":
+    if ":" in text and name not in ("world", "scenario"):
         return Axis(name, _range(name, text))
     return Axis(name, [part.strip() for part in text.split(",") if part.strip()])
 
@@ -80,8 +83,9 @@ def axes_of(vary: Mapping[str, Values]) -> List[Axis]:
         name = ",".join(part.strip() for part in key.split(","))
         if isinstance(values, str) or len(values) == 0:
             raise InputError(f"vary {name}: holds no values; give at least one")
-        if {"engine", "world"} & set(name.split(",")) and "," in name:
-            raise InputError(f"vary {name}: engine and world take values of their own; vary each")
+        if set(WHOLE) & set(name.split(",")) and "," in name:
+            own = f"{', '.join(WHOLE[:-1])} and {WHOLE[-1]}"
+            raise InputError(f"vary {name}: {own} take values of their own; vary each")
         axis = Axis(name, values if isinstance(values, Range) else [text_of(v) for v in values])
         for part in axis.tags or [name]:
             if part in taken:

@@ -2,11 +2,15 @@
 
 // ---- the table ----
 
-function tell(flight, { position, reference }) {
+function tell(flight, { position, reference, wind, carried }) {
   const state = !begun(flight) ? " (not begun)" : ended(flight) ? " (ended)" : "";
   flight.cells[0].textContent = position.map((value) => value.toFixed(3)).join(", ") + state;
   const away = reference ? 1000 * Math.hypot(...difference(position, reference)) : NaN;
   flight.cells[1].textContent = reference ? String(Number(away.toPrecision(3))) : "";
+  const speed = wind ? Math.hypot(...wind) : NaN;
+  flight.cells[2].textContent = Number.isFinite(speed) ? speed.toFixed(1) : "";
+  const load = carried.reduce((sum, [mass]) => sum + (mass || 0), 0);
+  flight.cells[3].textContent = load > 0 ? String(Number(load.toPrecision(3))) : "";
 }
 
 for (const flight of flights) {
@@ -18,7 +22,11 @@ for (const flight of flights) {
   swatch.className = "swatch";
   swatch.style.background = flight.colour;
   label.append(flight.name);
-  flight.cells = [row.insertCell(), row.insertCell()];
+  flight.cells = ["where", "away", "wind", "load"].map((column) => {
+    const cell = row.insertCell();
+    cell.className = column;
+    return cell;
+  });
   flight.box.addEventListener("change", () => show(flight, flight.box.checked));
 }
 
@@ -122,6 +130,9 @@ canvas.addEventListener("keydown", (event) => {
 });
 
 // ---- begin ----
+
+if (!flights.some((flight) => flight.wind)) root.classList.add("calm");
+if (!flights.some((flight) => flight.carried.length)) root.classList.add("unladen");
 
 const wanted = /^#t=([0-9.]+)$/.exec(location.hash);  // a link to a moment
 fit();

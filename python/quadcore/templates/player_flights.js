@@ -15,6 +15,7 @@ class Flight {
     Object.assign(this, { name, rotors, colour, shown: true });
     for (const column in columns) this[column] = unpacked(columns[column]);
     this.rows = this.time.length;
+    this.carried = Object.keys(columns).filter((column) => column.startsWith("carried "));
     this.turning = this.rotor_velocity.length / this.rows;
     const speeds = this.rotor_velocity.map(Math.abs).sort();
     this.usual = speeds[speeds.length >> 1] || 1;  // median; of a vehicle at rest anything
@@ -55,6 +56,8 @@ class Flight {
       turn: matrix(this.between(q, 4, place, same < 0 ? -1 : 1)),
       speeds: this.between(this.rotor_velocity, this.turning, place),
       reference: this.reference ? this.between(this.reference, 3, place) : null,
+      wind: this.wind ? this.between(this.wind, 3, place) : null,
+      carried: this.carried.map((name) => this.between(this[name], 4, { ...place, share: 0 })),
       row: place.row,
     };
   }

@@ -130,12 +130,44 @@ function drawVehicle(flight, now, ink) {
   });
   style(ink, 2, alpha);
   line(2, (i) => of([i * reach, 0, 0]));  // forward is along x of the frame
+  for (const [mass, ...place] of now.carried) if (mass > 0) drawCarried(of([0, 0, 0]), of(place), ink);
+  if (now.wind && Math.hypot(...now.wind) > 0) drawWind(now.position, now.wind, ink);
   if (now.reference) {
     const p = project(now.reference);
     if (!p) return;
     style(ink, 1.5, 0.8);
     pen.strokeRect(p[0] - 4, p[1] - 4, 8, 8);
   }
+}
+
+// A body that hangs on the frame.
+function drawCarried(frame, place, ink) {
+  const p = project(place);
+  if (!p) return;
+  style(ink, 1.5, 0.8);
+  line(2, (i) => (i ? place : frame));
+  pen.fillRect(p[0] - 5, p[1] - 5, 10, 10);
+}
+
+// An arrow that blows away from the vehicle, of a length that does not go by the view's distance.
+function drawWind(from, wind, ink) {
+  const a = project(from);
+  const b = project(from.map((value, i) => value + 0.01 * wind[i]));
+  if (!a || !b) return;
+  const along = [0, 1].map((i) => 30 * (b[i] - a[i]) / (0.01 * a[2]));  // 30 per m/s
+  const shorter = Math.min(1, 160 / Math.hypot(...along));
+  const tip = [0, 1].map((i) => a[i] + shorter * along[i]);
+  const angle = Math.atan2(along[1], along[0]);
+  style(ink, 2, 0.8, [2, 3]);
+  pen.beginPath();
+  pen.moveTo(a[0], a[1]);
+  pen.lineTo(tip[0], tip[1]);
+  pen.stroke();
+  style(ink, 2, 0.8);
+  pen.beginPath();
+  for (const turn of [2.7, 0, -2.7])
+    pen.lineTo(tip[0] + (turn && 9 * Math.cos(angle + turn)), tip[1] + (turn && 9 * Math.sin(angle + turn)));
+  pen.stroke();
 }
 
 let time = begin;

@@ -11,7 +11,7 @@ import numpy as np
 
 from .. import _core, laws, references, rotation
 from .._core import FlightError, InputError
-from ..evaluation.measures import LOST, distance, lost
+from ..evaluation.measures import LOST, distance, loss, lost
 from ..files import shown
 from ..flight import check_logged
 from ..flight_plan import FlightPlan
@@ -131,7 +131,7 @@ class Problem:
         away = np.minimum(np.nan_to_num(distance(log), nan=LOST), LOST)
         late = lost(log)
         if late is not None:
-            failure = f"lost at t = {late:.6g} s"
+            failure = loss(log)
             away[log.time >= late] = LOST
         # What a flight that failed has not flown, it was lost in.
         rest = max(0.0, 1 - (log.time[-1] - log.time[0]) / case.plan.duration) if failure else 0.0

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "quadcore/export.hpp"
@@ -7,12 +8,22 @@
 
 namespace quadcore QUADCORE_EXPORT {
 
+/// Says of a plugin that its update() does nothing in a motion within these bounds, unless there is
+/// a message that it has not heard.
+struct Quiet {
+  double fastest = std::numeric_limits<double>::infinity();  ///< every joint is slower [rad/s]
+  bool no_tilt = false;  ///< no rotor's normal points below the horizon
+};
+
 /// Laws that plugins hand out beside their forces(), for engines that evaluate them themselves.
 /// What they point to lies in the plugins or in their state.
 struct ForceLaws {
   std::vector<RotorForces> rotor_forces;
   std::vector<FrameDrag> frame_drags;
   std::vector<MotorTorques> motor_torques;
+  std::vector<Quiet> quiet;  ///< of plugins that have an update()
+  /// Every plugin that has an update() is in `quiet`, and the laws are complete.
+  bool all_quiet = false;
   bool complete = false;  ///< nothing else acts on the vehicle, and the air stands still
 };
 

@@ -55,6 +55,8 @@ struct MemoryRow {
 struct MotorTorques {
   const double* memory;  ///< table of MemoryRow
   double kp;
+  double fastest, sim_slow;  ///< a command is followed up to the one [rad/s], divided by the other
+  const int* places;         ///< of each rotor, its number in the command; not_driven for others
 };
 
 }  // namespace quadcore

@@ -80,6 +80,74 @@ struct Imu {
   }
 };
 
+/// What a satellite receiver tells: a place on Earth and in the world, and a velocity.
+struct Fix {
+  static constexpr const char* kind = "fix";
+  double latitude = 0;                   ///< positive north [deg]
+  double longitude = 0;                  ///< positive east [deg]
+  double altitude = 0;                   ///< [m]
+  Vector3d position = Vector3d::Zero();  ///< the same place in world axes [m]
+  Vector3d velocity = Vector3d::Zero();  ///< world axes [m/s]
+  double horizontal_variance = 0;        ///< of x and y each [m^2]
+  double vertical_variance = 0;          ///< of z [m^2]
+  double velocity_variance = 0;          ///< of each component [m^2/s^2]
+
+  template <class M, class Visit>
+  static void for_each_field(M& m, const Visit& visit) {
+    visit_number(visit, "latitude", m.latitude);
+    visit_number(visit, "longitude", m.longitude);
+    visit_number(visit, "altitude", m.altitude);
+    visit("position", {"x", "y", "z"}, m.position.data());
+    visit("velocity", {"vx", "vy", "vz"}, m.velocity.data());
+    visit_number(visit, "horizontal_variance", m.horizontal_variance);
+    visit_number(visit, "vertical_variance", m.vertical_variance);
+    visit_number(visit, "velocity_variance", m.velocity_variance);
+  }
+};
+
+/// What a barometer tells.
+struct Pressure {
+  static constexpr const char* kind = "pressure";
+  double pressure = 0;  ///< static, of the air [Pa]
+  double variance = 0;  ///< [Pa^2]
+
+  template <class M, class Visit>
+  static void for_each_field(M& m, const Visit& visit) {
+    visit_number(visit, "pressure", m.pressure);
+    visit_number(visit, "variance", m.variance);
+  }
+};
+
+/// What a magnetometer tells, in its own axes.
+struct Field {
+  static constexpr const char* kind = "field";
+  Vector3d flux_density = Vector3d::Zero();  ///< [T]
+  double variance = 0;                       ///< of each component [T^2]
+
+  template <class M, class Visit>
+  static void for_each_field(M& m, const Visit& visit) {
+    visit("flux_density", {"x", "y", "z"}, m.flux_density.data());
+    visit_number(visit, "variance", m.variance);
+  }
+};
+
+/// What a battery tells.
+struct Battery {
+  static constexpr const char* kind = "battery";
+  double voltage = 0;   ///< between its poles [V]
+  double current = 0;   ///< drawn from it [A]
+  double charge = 0;    ///< that is left [A h]
+  double capacity = 0;  ///< charge of a full one [A h]
+
+  template <class M, class Visit>
+  static void for_each_field(M& m, const Visit& visit) {
+    visit_number(visit, "voltage", m.voltage);
+    visit_number(visit, "current", m.current);
+    visit_number(visit, "charge", m.charge);
+    visit_number(visit, "capacity", m.capacity);
+  }
+};
+
 /// Where a vehicle is to be, with the derivatives of a flat output, world axes.
 struct Reference {
   static constexpr const char* kind = "reference";
@@ -105,11 +173,11 @@ struct Reference {
   }
 };
 
-/// A force and a torque on the frame at its origin, frame axes.
+/// A force at a point and a torque; point and axes are the taker's.
 struct Wrench {
   static constexpr const char* kind = "wrench";
   Vector3d force = Vector3d::Zero();   ///< [N]
-  Vector3d torque = Vector3d::Zero();  ///< about the frame's origin [N m]
+  Vector3d torque = Vector3d::Zero();  ///< about the point [N m]
 
   template <class M, class Visit>
   static void for_each_field(M& m, const Visit& visit) {

@@ -98,6 +98,7 @@ struct PluginSetup {
   /// Rate at which the engine's step no longer makes an error decay but grow, where the force law
   /// makes it decay faster than this [1/s].
   double fastest_decay;
+  double dt;  ///< length of the step [s]
 };
 
 /// Makes plugins of one class.

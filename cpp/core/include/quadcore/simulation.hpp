@@ -118,6 +118,8 @@ class Simulation : private ForceField {
   void reset(std::uint64_t seed);
   void reset() { reset(seed_); }
 
+  /// Laws that plugins hand out beside their forces(). Valid as long as this simulation.
+  const ForceLaws& force_laws() const { return laws_; }
   /// What flies, as force laws and engine have it now. Takes some milliseconds; nothing changes.
   VehicleDescription describe_vehicle();
 

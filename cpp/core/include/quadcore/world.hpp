@@ -13,6 +13,17 @@ namespace quadcore QUADCORE_EXPORT {
 /// With steps below this [s] no flight would end.
 constexpr double shortest_step = 1e-9;
 
+/// The air at z = 0; the defaults are SDF's, the standard atmosphere.
+struct Atmosphere {
+  double temperature = 288.15;            ///< K
+  double temperature_gradient = -0.0065;  ///< K/m
+  double pressure = 101325;               ///< Pa
+
+  static constexpr double gas_constant = 287.05287;  ///< of dry air (ISO 2533) [J/(kg K)]
+  /// Of dry air [kg/m^3].
+  double density() const { return pressure / (gas_constant * temperature); }
+};
+
 /// What a world file sets; the defaults are Gazebo 11's.
 struct World {
   Vector3d gravity_W{0, 0, -9.8};       ///< m/s^2
@@ -27,6 +38,8 @@ struct World {
   double contact_max_correcting_vel = 100;  ///< m/s, also rad/s of hinges
   bool ground_plane = false;
   Vector3d wind_W{0, 0, 0};  ///< velocity of the air [m/s]
+  Atmosphere atmosphere;
+  Vector3d magnetic_field_W{5.5645e-6, 22.8758e-6, -42.3884e-6};  ///< x east, y north, z up [T]
   PassedOver passed_over;
   /// What it was read from; null unless read_world() made it.
   std::shared_ptr<const Source> source;

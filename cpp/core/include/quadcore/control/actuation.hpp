@@ -14,7 +14,7 @@ class Actuation {
   Actuation(const Belief& belief, const Values& values);
 
   static const std::vector<TagSpec>& table();
-  static std::size_t state_size(std::size_t rotors) { return kRotors + rotors; }
+  static std::size_t state_size(std::size_t rotors) { return kRotors + 2 * rotors; }
 
   /// What the rotors do, as is believed.
   struct Now {
@@ -27,17 +27,26 @@ class Actuation {
   Now now(const double* state, double* scratch) const;
   static bool saturated(const double* state) { return state[kSaturated] != 0; }
 
+  /// Of a rotor, the share of what it exerts that is left, as is known from now on.
+  void know(std::size_t rotor, double left, double* state) const {
+    state[kRotors + rotors_.size() + rotor] = 1 - left;
+  }
+  /// Whether what is known to be left of rotors that lift so much [N] turns the vehicle about z
+  /// either way.
+  bool keeps_yaw(double thrust, const double* state) const;
+
   /// Speeds to command until the next call.
   /// \param period  since the last call and until the next [s]
   /// \param speeds  (rotors,) signed [rad/s]
   void command(double period, const Demand& demand, double* state, double* speeds) const;
 
  private:
-  /// State: whether it has begun, whether the last demand was not met, believed speeds of the
-  /// rotors (without sign).
+  /// State: whether it has begun, whether the last demand was not met, of the rotors the believed
+  /// speeds (without sign), then the shares that are lost.
   enum : std::size_t { kBegun, kSaturated, kRotors };
 
-  bool lead(double period, bool begins, double* believed, double* speeds) const;
+  const double* lost(const double* state) const { return state + kRotors + rotors_.size(); }
+  bool lead(double period, bool begins, double* state, double* speeds) const;
 
   std::vector<BelievedRotor> rotors_;
   Allocation allocation_;

@@ -22,11 +22,16 @@ class Controller {
   }
 
   std::size_t rotors() const { return belief_.rotors.size(); }
-  /// Speeds to command until the next call.
+  /// Speeds to command until the next call. Yaw is given up, and only its rate damped as far as may
+  /// be, where what is left of the rotors cannot turn the hovering vehicle either way.
   /// \param period  since the last call and until the next [s]
   /// \param speeds  (rotors(),) signed [rad/s]
   void command(double period, const Odometry& now, const Reference& wanted, double* state,
                double* speeds) const;
+  /// Of a rotor, the share of what it exerts that is left, as the allocation is told from now on.
+  void know(std::size_t rotor, double left, double* state) const {
+    actuation_.know(rotor, left, state);
+  }
   /// Whether the rotors could not do what was asked of them last.
   static bool saturated(const double* state) { return Actuation::saturated(state); }
 

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+
+#include "quadcore/error.hpp"
+#include "quadcore/topics.hpp"
+
+/// \file
+/// What faults say of rotors: of each the share that is left of something.
+
+namespace quadcore {
+
+/// Topic on which control laws are told what is left of the rotors.
+constexpr const char* health_topic = "health";
+
+inline MessageKind shares(std::size_t rotors) {
+  MessageKind kind{"shares", {}};
+  for (std::size_t i = 1; i <= rotors; ++i) kind.fields.push_back("s" + std::to_string(i));
+  return kind;
+}
+
+/// Of the j-th rotor; all of it before the first message.
+inline double share_of(const Topic& topic, std::size_t j) {
+  return topic.count > 0 ? topic.values[j] : 1;
+}
+
+/// Throws FlightError on a share that is none.
+inline void check_shares(const Topic& topic, double time) {
+  for (std::size_t j = 0; j < topic.values.size(); ++j) {
+    if (topic.values[j] >= 0 && topic.values[j] <= 1) continue;
+    throw FlightError(time, "topic '" + topic.name + "': " + topic.kind.fields[j] +
+                                " is out of range; publish a share from 0 to 1");
+  }
+}
+
+}  // namespace quadcore

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+#include "quadcore/messages.hpp"
+
+/// \file
+/// The kind of message that says whether something is so.
+
+namespace quadcore {
+
+/// One number, 1 or 0.
+inline MessageKind switch_kind(const std::string& field) { return {"switch", {field}}; }
+
+inline bool is_switch(const MessageKind& kind) { return kind == switch_kind(kind.fields.front()); }
+
+}  // namespace quadcore

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <algorithm>
+
+#include "quadcore/model.hpp"
+
+/// \file
+/// The ground's part in how a shape and the ground feel each other, measured in the running
+/// Gazebo 11: springs in series, dampers in sum, the smaller friction of the two.
+
+namespace quadcore::ground {
+
+constexpr double stiffness = 1e12;  // N/m
+constexpr double damping = 1;       // N s/m
+constexpr double mu1 = 100, mu2 = 50;
+
+inline double stiffness_with(const Surface& surface) {
+  return 1 / (1 / surface.kp + 1 / stiffness);
+}
+inline double damping_with(const Surface& surface) { return surface.kd + damping; }
+inline double mu1_with(const Surface& surface) { return std::min(surface.mu1, mu1); }
+inline double mu2_with(const Surface& surface) { return std::min(surface.mu2, mu2); }
+
+}  // namespace quadcore::ground

@@ -1,0 +1,83 @@
+#include <cmath>
+
+#include "plugins/noise_and_drift.hpp"
+#include "plugins/sensing.hpp"
+#include "quadcore/elementary.hpp"
+#include "quadcore/plugin.hpp"
+
+namespace quadcore::barometer {
+namespace {
+
+using Errors = sensing::NoiseAndDrift<1>;
+
+/// What it remembers: when it measured, its errors, what is on the way.
+enum Memory { kSamples, kErrors, kChannel = kErrors + Errors::kMemorySize };
+
+/// Static pressure of the world's atmosphere where a link of the frame is.
+class BarometerPlugin final : public Plugin {
+ public:
+  explicit BarometerPlugin(const PluginSetup& setup)
+      : p_FS_F_(setup.model.pose_of_link.at(setup.parameters.choice("link")).xyz),
+        rate_(setup.parameters.number("rate")),
+        errors_(setup.parameters),
+        channel_(setup,
+                 setup.topics.publishes(setup.parameters.text("topic"),
+                                        messages::kind_of<messages::Pressure>()),
+                 messages::kind_of<messages::Pressure>(), setup.parameters.number("rate")) {}
+
+  std::size_t state_size() const override { return kChannel + channel_.state_size(); }
+
+  void sense(const Sample& sample, PluginState state) const override {
+    PluginState on_the_way(state.data() + kChannel, state.size() - kChannel);
+    if (rate_.is_due(sample, state[kSamples])) {
+      const Kinematics& k = sample.kinematics;
+      const double height = k.p_WF.z() + k.R_WF.row(2).dot(p_FS_F_);
+      const auto error = errors_.next(sample, state.segment<Errors::kMemorySize>(kErrors));
+      channel_.send(
+          sample, sample.seed, on_the_way,
+          messages::Pressure{pressure(sample, height) + error.value(), errors_.variance().value()});
+    }
+    channel_.deliver(sample, on_the_way);
+  }
+
+ private:
+  /// Of a layer whose temperature changes linearly, T = T0 + L z: p = p0 (T/T0)^(-g/(R L)), and
+  /// p0 exp(-g z/(R T0)) of one that is isothermal (ISO 2533).
+  static double pressure(const Sample& sample, double height) {
+    const Atmosphere& air = sample.world.atmosphere;
+    const double gradient = air.temperature_gradient;
+    const double warmth = 1 + gradient * height / air.temperature;
+    if (!(warmth > 0)) {
+      throw FlightError(sample.time,
+                        "the world's atmosphere is at absolute zero at this height; "
+                        "give it a smaller <temperature_gradient>");
+    }
+    const double g_by_R = 9.80665 / Atmosphere::gas_constant;
+    const double exponent = gradient == 0 ? -g_by_R * height / air.temperature
+                                          : -g_by_R / gradient * elementary::log(warmth);
+    return air.pressure * elementary::exp(exponent);
+  }
+
+  Vector3d p_FS_F_;  ///< of the link's origin [m]
+  sensing::Rate rate_;
+  Errors errors_;
+  sensing::Channel channel_;
+};
+
+PluginDescriptor describe() {
+  using T = TagSpec;
+  std::vector<TagSpec> tags = {
+      T::link("link", "where it is mounted"),
+      T::number("rate", "1/s", "50", "messages per second; at most one per step").above(0),
+      T::text("topic", "pressure", "where the messages are published"),
+  };
+  Errors::add_tags(tags, "Pa", "the pressure");
+  tags.push_back(sensing::Channel::delay_tag());
+  tags.push_back(sensing::Channel::dropout_tag());
+  return {"a barometer on a link of the frame", tags, {}, create<BarometerPlugin>};
+}
+
+}  // namespace
+}  // namespace quadcore::barometer
+
+QUADCORE_REGISTER_PLUGIN(quadcore::barometer::describe)

@@ -1,0 +1,181 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "plugins/rotor_shares.hpp"
+#include "quadcore/plugin.hpp"
+
+namespace quadcore::fault {
+namespace {
+
+/// What is left of a rotor's lift, or of its motor's torque, from a time on.
+struct Event {
+  double time;        ///< s
+  std::size_t rotor;  ///< from 0
+  double share;
+};
+
+/// The events that a tag lists: time and rotor, and the share unless it is 0.
+std::vector<Event> events(const Parameters& p, const std::string& tag, std::size_t numbers,
+                          std::size_t rotors) {
+  const std::vector<double>& n = p.numbers(tag);
+  const std::string row = numbers == 3 ? "three numbers for each: time, rotor, share"
+                                       : "two numbers for each: time, rotor";
+  const auto refuse = [&](const std::string& why) { throw InputError("<" + tag + "> " + why); };
+  if (n.size() % numbers != 0) {
+    refuse("has " + std::to_string(n.size()) + " numbers; write " + row);
+  }
+  std::vector<Event> events;
+  for (std::size_t i = 0; i < n.size(); i += numbers) {
+    const std::string which = "event " + std::to_string(i / numbers + 1);
+    const double rotor = n[i + 1], share = numbers == 3 ? n[i + 2] : 0;
+    if (n[i] < 0) refuse(which + " is before the start; write a time >= 0");
+    if (!(rotor >= 1 && rotor <= static_cast<double>(rotors) && rotor == std::floor(rotor))) {
+      refuse(which + " is of no rotor; they count from 1 to " + std::to_string(rotors));
+    }
+    if (!(share >= 0 && share <= 1)) refuse(which + " leaves no share; write one from 0 to 1");
+    const Event event{n[i], static_cast<std::size_t>(rotor) - 1, share};
+    for (const Event& other : events) {
+      if (other.time == event.time && other.rotor == event.rotor) {
+        refuse(which + " is a second one of rotor " + std::to_string(event.rotor + 1) +
+               " at its time; keep one of them");
+      }
+    }
+    events.push_back(event);
+  }
+  std::stable_sort(events.begin(), events.end(),
+                   [](const Event& a, const Event& b) { return a.time < b.time; });
+  return events;
+}
+
+/// What it remembers: whether it has begun, how many events of each kind are past, and how many
+/// messages it has followed; then of each rotor what it is like, and since when.
+enum Memory { kBegun, kLossesPast, kCutsPast, kFollowed, kRotors };
+enum OfRotor { kLost, kSince, kOfRotor };
+
+/// Rotors that lose thrust, and motors that are cut, by time or by topic.
+class FaultPlugin final : public Plugin {
+ public:
+  explicit FaultPlugin(const PluginSetup& setup)
+      : rotors_(setup.parameters.joints("rotorJoints").size()),
+        losses_(events(setup.parameters, "losses", 3, rotors_)),
+        cuts_(events(setup.parameters, "cuts", 2, rotors_)),
+        topic_(setup.topics.takes(setup.parameters.text("topic"),
+                                  {"fault", {"rotor", "effectiveness", "power"}})),
+        effectiveness_(
+            setup.topics.publishes(setup.parameters.text("effectiveness"), shares(rotors_))),
+        power_(setup.topics.publishes(setup.parameters.text("power"), shares(rotors_))),
+        joints_(setup.parameters.joints("rotorJoints")) {
+    if (!setup.parameters.has("detection")) return;
+    detection_ = setup.parameters.number("detection");
+    health_ =
+        setup.topics.publishes(setup.parameters.text("health"), shares(setup.model.joints.size()));
+  }
+
+  std::size_t state_size() const override { return kRotors + kOfRotor * rotors_; }
+
+  void update(const Sample& sample, PluginState state) const override {
+    if (state[kBegun] == 0) {
+      state[kBegun] = 1;
+      for (const std::size_t topic : {effectiveness_, power_}) {
+        std::fill_n(sample.topics.publish(topic, sample.time), rotors_, 1.0);
+      }
+    }
+    let_happen(losses_, effectiveness_, sample, state[kLossesPast]);
+    let_happen(cuts_, power_, sample, state[kCutsPast]);
+    follow(sample, state[kFollowed]);
+    if (health_) detect(sample, state);
+  }
+
+ private:
+  /// What is published of one rotor.
+  void follow(const Sample& sample, double& followed) const {
+    const Topic& said = sample.topics[topic_];
+    if (said.count == followed) return;
+    if (said.count > followed + 1) {
+      throw FlightError(sample.time, "topic '" + said.name +
+                                         "': two messages since the last step, of which the first "
+                                         "is lost; publish one per step");
+    }
+    followed = said.count;
+    const double rotor = said.values[0];
+    if (!(rotor >= 1 && rotor <= static_cast<double>(rotors_) && rotor == std::floor(rotor))) {
+      throw FlightError(sample.time, "topic '" + said.name + "': rotor is none; publish 1 to " +
+                                         std::to_string(rotors_));
+    }
+    const std::size_t j = static_cast<std::size_t>(rotor) - 1;
+    sample.topics.publish(effectiveness_, sample.time)[j] = said.values[1];
+    sample.topics.publish(power_, sample.time)[j] = said.values[2];
+  }
+
+  /// Tells control laws of each rotor that has been as it is for the time of detection.
+  void detect(const Sample& sample, PluginState state) const {
+    const Topic& health = sample.topics[*health_];
+    if (health.count == 0) {
+      double* const whole = sample.topics.publish(*health_, sample.time);
+      std::fill_n(whole, health.values.size(), 1.0);
+    }
+    for (std::size_t j = 0; j < rotors_; ++j) {
+      const bool is_driven = sample.topics[power_].values[j] > 0;
+      const double left = is_driven ? sample.topics[effectiveness_].values[j] : 0;
+      auto rotor = state.segment<kOfRotor>(static_cast<Eigen::Index>(kRotors + kOfRotor * j));
+      if (rotor[kLost] != 1 - left) rotor << 1 - left, sample.time;
+      const bool is_known = health.values[joints_[j]] == left;
+      if (is_known || sample.time < rotor[kSince] + detection_ - 1e-9) continue;
+      sample.topics.publish(*health_, sample.time)[joints_[j]] = left;
+    }
+  }
+
+  /// A message holds what the last one held, but for what happened since.
+  static void let_happen(const std::vector<Event>& events, std::size_t topic, const Sample& sample,
+                         double& past) {
+    for (; past < static_cast<double>(events.size()); ++past) {
+      const Event& event = events[static_cast<std::size_t>(past)];
+      if (sample.time < event.time - 1e-9) return;  // the clock is a sum of steps
+      sample.topics.publish(topic, sample.time)[event.rotor] = event.share;
+    }
+  }
+
+  std::size_t rotors_;
+  std::vector<Event> losses_, cuts_;  ///< by time
+  std::size_t topic_, effectiveness_, power_;
+  std::vector<std::size_t> joints_;    ///< of the rotors
+  std::optional<std::size_t> health_;  ///< none: nobody is told
+  double detection_ = 0;               ///< s
+};
+
+PluginDescriptor describe() {
+  using T = TagSpec;
+  return {
+      "faults of rotors: lost thrust, cut motors",
+      {
+          T::numbers("losses", "s", "",
+                     "three numbers for each: when, which rotor, counted from 1, and the share of "
+                     "its thrust and reaction torque that is left from then on, 0 to 1")
+              .or_absent("none"),
+          T::numbers("cuts", "s", "",
+                     "two numbers for each: when, and of which rotor, counted from 1, the motor "
+                     "is cut: the rotor turns freely")
+              .or_absent("none"),
+          T::text("topic", "fault",
+                  "where a rotor, counted from 1, its effectiveness and its power are published, "
+                  "to be so at once"),
+          T::text("effectiveness", "effectiveness", "topic that the aerodynamics take"),
+          T::text("power", "power", "topic that the motors take"),
+          T::number("detection", "s", "",
+                    "how long a rotor must have been as it is until control laws are told")
+              .at_least(0)
+              .or_absent("they never are"),
+          T::text("health", health_topic, "topic that control laws take"),
+          T::joints("rotorJoints", "the rotors, in the order in which they are counted"),
+      },
+      {},
+      create<FaultPlugin>,
+  };
+}
+
+}  // namespace
+}  // namespace quadcore::fault
+
+QUADCORE_REGISTER_PLUGIN(quadcore::fault::describe)

@@ -1,0 +1,125 @@
+#include <cmath>
+
+#include "plugins/noise_and_drift.hpp"
+#include "plugins/sensing.hpp"
+#include "quadcore/elementary.hpp"
+#include "quadcore/plugin.hpp"
+
+namespace quadcore::gps {
+namespace {
+
+using Errors = sensing::NoiseAndDrift<3>;
+
+/// What it remembers: when it measured, the errors of the position, what is on the way.
+enum Memory { kSamples, kErrors, kChannel = kErrors + Errors::kMemorySize };
+
+/// Radii of curvature of the ellipsoid of WGS 84 (NIMA TR8350.2) where the world is, and how many
+/// degrees a metre is.
+struct Earth {
+  double north, east;  ///< deg/m
+
+  Earth(double latitude, double altitude) {
+    const double a = 6378137, f = 1 / 298.257223563, degrees = 180 / M_PI;
+    const auto [sin, cos] = elementary::sincos(latitude / degrees);
+    const double e2 = f * (2 - f), w2 = 1 - e2 * sin * sin, w = std::sqrt(w2);
+    north = degrees / (a * (1 - e2) / (w2 * w) + altitude);
+    east = degrees / ((a / w + altitude) * cos);
+  }
+};
+
+/// Place and velocity of a link of the frame as a satellite receiver has them.
+class GpsPlugin final : public Plugin {
+ public:
+  explicit GpsPlugin(const PluginSetup& setup)
+      : p_FS_F_(setup.model.pose_of_link.at(setup.parameters.choice("link")).xyz),
+        rate_(setup.parameters.number("rate")),
+        latitude_(setup.parameters.number("latitude")),
+        longitude_(setup.parameters.number("longitude")),
+        altitude_(setup.parameters.number("altitude")),
+        earth_(latitude_, altitude_),
+        errors_(along(setup, "Noise"), along(setup, "Drift"), setup.parameters.number("driftTime")),
+        velocity_noise_(setup.parameters.number("velocityNoise")),
+        channel_(setup,
+                 setup.topics.publishes(setup.parameters.text("topic"),
+                                        messages::kind_of<messages::Fix>()),
+                 messages::kind_of<messages::Fix>(), setup.parameters.number("rate")) {}
+
+  std::size_t state_size() const override { return kChannel + channel_.state_size(); }
+
+  void sense(const Sample& sample, PluginState state) const override {
+    PluginState on_the_way(state.data() + kChannel, state.size() - kChannel);
+    if (rate_.is_due(sample, state[kSamples])) {
+      channel_.send(sample, sample.seed, on_the_way, measured(sample, state));
+    }
+    channel_.deliver(sample, on_the_way);
+  }
+
+ private:
+  static Vector3d along(const PluginSetup& setup, const std::string& what) {
+    const double level = setup.parameters.number("horizontal" + what);
+    return {level, level, setup.parameters.number("vertical" + what)};
+  }
+
+  messages::Fix measured(const Sample& sample, PluginState state) const {
+    auto memory = state.segment<Errors::kMemorySize>(kErrors);
+    const Vector3d error = errors_.next(sample, memory), variance = errors_.variance();
+    const Kinematics& k = sample.kinematics;
+    messages::Fix fix;
+    fix.position = k.p_WF + k.R_WF * p_FS_F_ + error;
+    fix.velocity = k.v_WS_W(p_FS_F_) + velocity_noise_ * Errors::draw(sample, memory);
+    fix.latitude = latitude_ + earth_.north * fix.position.y();
+    fix.longitude = std::remainder(longitude_ + earth_.east * fix.position.x(), 360);
+    fix.altitude = altitude_ + fix.position.z();
+    fix.horizontal_variance = variance.x();
+    fix.vertical_variance = variance.z();
+    fix.velocity_variance = velocity_noise_ * velocity_noise_;
+    return fix;
+  }
+
+  Vector3d p_FS_F_;  ///< of the link's origin [m]
+  sensing::Rate rate_;
+  double latitude_, longitude_;  ///< deg
+  double altitude_;              ///< m
+  Earth earth_;
+  Errors errors_;          ///< of the position, along the world's axes [m]
+  double velocity_noise_;  ///< m/s
+  sensing::Channel channel_;
+};
+
+PluginDescriptor describe() {
+  using T = TagSpec;
+  const auto deviation = [](const char* name, const char* unit, const char* of) {
+    return T::number(name, unit, "0", std::string("standard deviation of ") + of).at_least(0);
+  };
+  return {
+      "a satellite receiver on a link of the frame",
+      {
+          T::link("link", "where its antenna is"),
+          T::number("rate", "1/s", "10", "messages per second; at most one per step").above(0),
+          T::text("topic", "fix", "where the messages are published"),
+          T::number("latitude", "deg", "0", "of the world's origin, positive north")
+              .at_least(-89)
+              .at_most(89),
+          T::number("longitude", "deg", "0", "of the world's origin, positive east")
+              .at_least(-180)
+              .at_most(180),
+          T::number("altitude", "m", "0", "of the world's origin").at_least(-1000),
+          deviation("horizontalNoise", "m", "the white noise on x and y each"),
+          deviation("verticalNoise", "m", "the white noise on z"),
+          deviation("horizontalDrift", "m",
+                    "an error of x and y each that drifts, a Gauss-Markov process"),
+          deviation("verticalDrift", "m", "the like of z"),
+          Errors::drift_time_tag(),
+          deviation("velocityNoise", "m/s", "the white noise on each component of the velocity"),
+          sensing::Channel::delay_tag(),
+          sensing::Channel::dropout_tag(),
+      },
+      {},
+      create<GpsPlugin>,
+  };
+}
+
+}  // namespace
+}  // namespace quadcore::gps
+
+QUADCORE_REGISTER_PLUGIN(quadcore::gps::describe)

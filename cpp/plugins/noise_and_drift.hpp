@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "quadcore/elementary.hpp"
+#include "quadcore/plugin.hpp"
+#include "quadcore/random.hpp"
+
+namespace quadcore::sensing {
+
+/// White noise, and an error that drifts, a Gauss-Markov process that is stationary from the start:
+/// on n numbers that are measured together.
+template <int n>
+class NoiseAndDrift {
+ public:
+  using Numbers = Eigen::Matrix<double, n, 1>;
+  /// Whether it is turned on, the time, how far its random numbers are drawn, the error that
+  /// drifts.
+  enum Memory { kOn, kTime, kDraws, kDrift, kMemorySize = kDrift + n };
+
+  /// \param noise, drift  standard deviations
+  /// \param drift_time    correlation time [s]
+  NoiseAndDrift(const Numbers& noise, const Numbers& drift, double drift_time)
+      : noise_(noise), drift_(drift), drift_time_(drift_time) {}
+  /// From the tags of add_tags(), which are of each number.
+  explicit NoiseAndDrift(const Parameters& p)
+      : NoiseAndDrift(Numbers::Constant(p.number("noise")), Numbers::Constant(p.number("drift")),
+                      p.number("driftTime")) {}
+
+  Numbers variance() const { return noise_.cwiseAbs2() + drift_.cwiseAbs2(); }
+
+  /// The error of a measurement.
+  Numbers next(const Sample& sample, Eigen::Ref<VectorXd> memory) const {
+    auto drift = memory.template segment<n>(kDrift);
+    if (memory[kOn] == 0) {
+      memory[kOn] = 1;
+      drift = drift_.cwiseProduct(draw(sample, memory));
+    } else {
+      const double since = sample.jumped ? 0 : sample.time - memory[kTime];
+      const double decay = elementary::exp(-since / drift_time_);
+      drift =
+          decay * drift + std::sqrt(1 - decay * decay) * drift_.cwiseProduct(draw(sample, memory));
+    }
+    memory[kTime] = sample.time;
+    return drift + noise_.cwiseProduct(draw(sample, memory));
+  }
+
+  /// Further standard normal numbers from the same stream.
+  static Numbers draw(const Sample& sample, Eigen::Ref<VectorXd> memory) {
+    Numbers numbers;
+    for (int i = 0; i < n; ++i) numbers[i] = random_normal(sample.seed, memory[kDraws]);
+    return numbers;
+  }
+
+  static TagSpec drift_time_tag() {
+    return TagSpec::number("driftTime", "s", "60", "correlation time of that drift").above(0);
+  }
+  /// \param of  what is measured
+  static void add_tags(std::vector<TagSpec>& tags, const std::string& unit, const std::string& of) {
+    tags.push_back(
+        TagSpec::number("noise", unit, "0", "standard deviation of the white noise of " + of)
+            .at_least(0));
+    tags.push_back(TagSpec::number("drift", unit, "0",
+                                   "standard deviation of an error of " + of +
+                                       " that drifts, a Gauss-Markov process")
+                       .at_least(0));
+    tags.push_back(drift_time_tag());
+  }
+
+ private:
+  Numbers noise_, drift_;
+  double drift_time_;  ///< s
+};
+
+}  // namespace quadcore::sensing

@@ -1,0 +1,132 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "quadcore/error.hpp"
+#include "quadcore/plugin.hpp"
+#include "quadcore/random.hpp"
+
+/// \file
+/// What sensors have in common: when they measure, their noise, and the way of what they measured
+/// to those who read it.
+
+namespace quadcore::sensing {
+
+inline Vector3d normal_vector(std::uint64_t seed, double& draws) {
+  Vector3d v;
+  for (int i = 0; i < 3; ++i) v[i] = random_normal(seed, draws);
+  return v;
+}
+
+/// When a sensor measures: at most once per step, and when the motion was set. Its memory is one
+/// number.
+class Rate {
+ public:
+  explicit Rate(double rate) : rate_(rate) {}
+
+  bool is_due(const Sample& sample, double& memory) const {
+    const double due = std::floor(sample.time * rate_ + 1e-6) + 1;
+    if (due == memory && !sample.jumped) return false;
+    memory = due;
+    return true;
+  }
+
+ private:
+  double rate_;  ///< 1/s
+};
+
+/// The way from a sensor to its topic, on which messages get lost and arrive late. A message
+/// carries the time of its measurement. The first one after the motion was set arrives at once.
+class Channel {
+ public:
+  /// \param rate  of the messages [1/s]
+  Channel(const PluginSetup& setup, std::size_t topic, const MessageKind& kind, double rate)
+      : topic_(topic),
+        row_(static_cast<Eigen::Index>(kind.fields.size()) + 1),
+        delay_(setup.parameters.number("delay")),
+        dropout_(setup.parameters.number("dropout")) {
+    // A message arrives with the first step that ends when it is old enough.
+    const double waiting =
+        std::ceil((delay_ + 2 * setup.dt) * std::min(rate, 1 / setup.dt) + 1e-6) + 1;
+    if (waiting * static_cast<double>(row_) > most_numbers) {
+      throw InputError("<delay> lets more messages wait than can be kept; write a shorter one");
+    }
+    places_ = delay_ > 0 ? static_cast<Eigen::Index>(waiting) : 0;
+  }
+
+  std::size_t state_size() const { return static_cast<std::size_t>(kRing + places_ * row_); }
+
+  /// Whether every message arrives, at once.
+  bool is_direct() const { return delay_ == 0 && dropout_ == 0; }
+
+  template <class M>
+  void send(const Sample& sample, std::uint64_t seed, PluginState memory, const M& message) const {
+    if (is_direct()) return sample.topics.publish(topic_, sample.time, message);
+    if (sample.jumped) {
+      clear(memory);
+    } else if (dropout_ > 0 && uniform(seed, memory[kDraws]) < dropout_) {
+      return;
+    }
+    if (sample.jumped || delay_ == 0) return sample.topics.publish(topic_, sample.time, message);
+    double* row = at(memory, memory[kFirst] + memory[kWaiting]);
+    row[0] = sample.time;
+    messages::write(message, row + 1);
+    memory[kWaiting] += 1;
+  }
+
+  /// Forgets what is on the way, because the motion was set.
+  void clear(PluginState memory) const {
+    if (!is_direct()) memory[kWaiting] = 0;
+  }
+
+  /// Publishes what has arrived; at the end of each step.
+  void deliver(const Sample& sample, PluginState memory) const {
+    if (delay_ == 0) return;
+    while (memory[kWaiting] > 0) {
+      const double* row = at(memory, memory[kFirst]);
+      if (sample.time < row[0] + delay_ - 1e-9) return;  // the clock is a sum of steps
+      std::copy_n(row + 1, row_ - 1, sample.topics.publish(topic_, row[0]));
+      memory[kFirst] = std::fmod(memory[kFirst] + 1, static_cast<double>(places_));
+      memory[kWaiting] -= 1;
+    }
+  }
+
+  static TagSpec delay_tag() {
+    return TagSpec::number("delay", "s", "0",
+                           "age of a message when it arrives; its stamp is the time it was "
+                           "measured")
+        .at_least(0);
+  }
+  static TagSpec dropout_tag() {
+    return TagSpec::number("dropout", "", "0", "share of the messages that get lost, by chance")
+        .at_least(0)
+        .at_most(1);
+  }
+
+ private:
+  /// How many numbers of chance are drawn, the place of the message that has waited longest, how
+  /// many wait; then their places, each a time and a message.
+  enum Memory { kDraws, kFirst, kWaiting, kRing };
+  static constexpr double most_numbers = 500000;
+
+  static double uniform(std::uint64_t seed, double& draws) {
+    const std::uint64_t bits =
+        random_bits(stream_seed(seed, "dropout"), static_cast<std::uint64_t>(draws));
+    draws += 1;
+    return static_cast<double>(bits >> 11) / 9007199254740992.0;  // 2^53
+  }
+  double* at(PluginState& memory, double place) const {
+    const double index = std::fmod(place, static_cast<double>(places_));
+    return memory.data() + kRing + static_cast<Eigen::Index>(index) * row_;
+  }
+
+  std::size_t topic_;
+  Eigen::Index row_, places_;  ///< numbers of a place, and places
+  double delay_;               ///< s
+  double dropout_;
+};
+
+}  // namespace quadcore::sensing

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "quadcore/plugin.hpp"
+
+namespace quadcore {
+
+/// The fastest speed that motors follow, and the topic that counts the steps whose command reached
+/// it; without a limit there is none.
+class SpeedLimit {
+ public:
+  explicit SpeedLimit(const PluginSetup& setup) {
+    if (!setup.parameters.has("maxVelocity")) return;
+    fastest_ = setup.parameters.number("maxVelocity");
+    topic_ = setup.topics.publishes(setup.parameters.text("saturation"), {"saturation", {"steps"}});
+  }
+
+  double fastest() const { return fastest_; }
+  double clamped(double speed) const { return std::clamp(speed, -fastest_, fastest_); }
+  void count(const Sample& sample, const std::vector<double>& command) const {
+    const bool is_reached = std::any_of(command.begin(), command.end(), [this](double speed) {
+      return std::abs(speed) >= fastest_;
+    });
+    if (!is_reached) return;
+    const double steps = sample.topics[*topic_].values.front();
+    *sample.topics.publish(*topic_, sample.time) = steps + 1;
+  }
+
+  /// \name Of the plugins' tables
+  /// @{
+  static TagSpec limit_tag() {
+    return TagSpec::number("maxVelocity", "rad/s", "",
+                           "fastest rotor speed the motor follows; faster commands saturate")
+        .above(0)
+        .or_absent("none");
+  }
+  static TagSpec topic_tag() {
+    return TagSpec::text("saturation", "saturation",
+                         "topic, where there is a maxVelocity: steps so far whose command reached "
+                         "it");
+  }
+  /// @}
+
+ private:
+  double fastest_ = INFINITY;  ///< rad/s
+  std::optional<std::size_t> topic_;
+};
+
+}  // namespace quadcore

@@ -1,0 +1,127 @@
+#include <cstring>
+#include <type_traits>
+
+#include "dryden.hpp"
+#include "mean_wind.hpp"
+#include "quadcore/plugin.hpp"
+
+namespace quadcore::wind {
+namespace {
+
+constexpr std::size_t turbulence_numbers = sizeof(Turbulence) / sizeof(double);
+static_assert(std::is_trivially_copyable_v<Turbulence> &&
+              turbulence_numbers * sizeof(double) == sizeof(Turbulence));
+
+/// What it remembers: the turbulence of this step, and the filters.
+enum Memory { kAir, kFilters = kAir + 3 };
+
+/// Mean wind, gusts and turbulence: the velocity of the air where the frame is.
+class WindPlugin final : public Plugin {
+ public:
+  explicit WindPlugin(const PluginSetup& setup)
+      : velocity_W_(setup.parameters.numbers("velocity").data()),
+        shear_(setup.parameters),
+        gusts_(Gust::all(setup.parameters)),
+        turbulent_(setup.parameters.number("turbulence") > 0),
+        scales_(
+            low_altitude(setup.parameters.number("height"), setup.parameters.number("turbulence"))),
+        airspeed_(setup.parameters.number("airspeed")),
+        topic_(setup.topics.publishes(setup.parameters.text("topic"),
+                                      messages::kind_of<messages::Vector>())) {
+    if (!shear_.acts() || !velocity_W_.isZero(0)) return;
+    setup.warnings.push_back(
+        "<shear> has no effect while <velocity> is 0; write the wind at "
+        "<referenceHeight>");
+  }
+
+  std::size_t state_size() const override { return kFilters + turbulence_numbers; }
+
+  void update(const Sample& sample, PluginState state) const override {
+    if (!turbulent_) return;
+    Turbulence turbulence;
+    std::memcpy(&turbulence, state.data() + kFilters, sizeof turbulence);
+    if (turbulence.begun == 0) {
+      const Kinematics& k = sample.kinematics;
+      turbulence.begin(scales_, mean_W(k) - k.R_WF * k.v_WF_F, airspeed_, sample.dt, sample.seed);
+    } else {
+      turbulence.advance(sample.seed);
+    }
+    std::memcpy(state.data() + kFilters, &turbulence, sizeof turbulence);
+    state.segment<3>(kAir) = turbulence.v_WA_W(scales_);
+  }
+
+  void air(const Kinematics& kinematics, ConstPluginState state, Vector3d& v_WA_W) const override {
+    v_WA_W += mean_W(kinematics);
+    for (const Gust& gust : gusts_) gust.blow(kinematics.time, v_WA_W);
+    if (turbulent_) v_WA_W += state.segment<3>(kAir);
+  }
+
+  void sense(const Sample& sample, PluginState state) const override {
+    messages::Vector v_WA_W;
+    air(sample.kinematics, {state.data(), state.size()}, v_WA_W.value);
+    sample.topics.publish(topic_, sample.time, v_WA_W);
+  }
+
+ private:
+  Vector3d mean_W(const Kinematics& kinematics) const {
+    if (!shear_.acts()) return velocity_W_;
+    return shear_.factor(kinematics.p_WF.z()) * velocity_W_;
+  }
+
+  Vector3d velocity_W_;  ///< m/s
+  Shear shear_;
+  std::vector<Gust> gusts_;
+  bool turbulent_;
+  DrydenScales scales_;
+  double airspeed_;  ///< m/s
+  std::size_t topic_;
+};
+
+PluginDescriptor describe() {
+  using T = TagSpec;
+  const std::string mil = "MIL-F-8785C 3.7.3";
+  return {
+      "wind: mean, shear, gusts and turbulence; felt by <dragModel> chapter2, by appendix not",
+      {
+          T::numbers("velocity", "m/s", "0 0 0", "mean velocity of the air, world axes").of(3),
+          T::choice("shear", {"none", "power", "logarithmic"},
+                    "how the mean wind grows with the height above the world's z = 0: not at all, "
+                    "(z/referenceHeight)^exponent, ln(z/roughness)/ln(referenceHeight/roughness)")
+              .from(mil + ".2"),
+          T::number("referenceHeight", "m", "6.096", "where the mean wind is <velocity>; 20 ft")
+              .above(0)
+              .from(mil + ".2"),
+          T::number("exponent", "", "0.14285714285714285", "of power").at_least(0),
+          T::number("roughness", "m", "0.04572",
+                    "of logarithmic: length below which the air stands still; 0.04572 (0.15 ft) "
+                    "on an airfield, 0.6096 (2 ft) elsewhere")
+              .above(0)
+              .from(mil + ".2"),
+          T::numbers("gusts", "m/s m/s m/s s s", "",
+                     "five numbers for each: the largest velocity along the world's x, y, z, when "
+                     "it begins, how long it lasts; V/2 (1 - cos(2 pi (t - begin)/duration))")
+              .or_absent("none"),
+          T::number("turbulence", "m/s", "0",
+                    "wind at 20 ft by which turbulence goes, W20: 7.717 light (15 kt), 15.433 "
+                    "moderate, 23.15 severe, 0 none")
+              .at_least(0)
+              .from(mil),
+          T::number("height", "m", "10", "height for which the turbulence is")
+              .at_least(3.048)
+              .at_most(304.8)
+              .from(mil),
+          T::number("airspeed", "m/s", "5",
+                    "smallest speed at which turbulence passes the vehicle; larger is the mean "
+                    "wind's relative to it as the flight begins, and so it stays")
+              .above(0),
+          T::text("topic", "wind", "where its velocity of the air, world axes, is published"),
+      },
+      {},
+      create<WindPlugin>,
+  };
+}
+
+}  // namespace
+}  // namespace quadcore::wind
+
+QUADCORE_REGISTER_PLUGIN(quadcore::wind::describe)

@@ -1,0 +1,59 @@
+#include "topic_services.hpp"
+
+#include <quadcore/ApplyWrench.h>
+#include <quadcore/Publish.h>
+#include <std_srvs/SetBool.h>
+
+#include "answer.hpp"
+#include "messages.hpp"
+#include "quadcore/switch.hpp"
+
+namespace quadcore::node {
+namespace {
+
+std::vector<double> numbers(const std_srvs::SetBool::Request& request) {
+  return {request.data ? 1.0 : 0.0};
+}
+std::vector<double> numbers(const ApplyWrench::Request& request) {
+  const messages::Wrench wrench{vector_of(request.wrench.force), vector_of(request.wrench.torque)};
+  std::vector<double> row(messages::kind_of<messages::Wrench>().fields.size());
+  messages::write(wrench, row.data());
+  return row;
+}
+std::vector<double> numbers(const Publish::Request& request) { return request.values; }
+
+template <class Service>
+ros::ServiceServer offer(ros::NodeHandle& nh, const std::string& name, FlightThread& flight) {
+  const boost::function<bool(typename Service::Request&, typename Service::Response&)> callback =
+      [name, &flight](typename Service::Request& request, typename Service::Response& response) {
+        answer(response, [&] {
+          const std::vector<double> row = numbers(request);
+          flight.tell(
+              [&](Simulation& simulation) { simulation.publish(name, row.data(), row.size()); });
+        });
+        return true;
+      };
+  return nh.advertiseService(name, callback);
+}
+
+ros::ServiceServer offer(ros::NodeHandle& nh, const Topic& topic, FlightThread& flight) {
+  if (is_switch(topic.kind)) return offer<std_srvs::SetBool>(nh, topic.name, flight);
+  if (topic.kind == messages::kind_of<messages::Wrench>()) {
+    return offer<ApplyWrench>(nh, topic.name, flight);
+  }
+  return offer<Publish>(nh, topic.name, flight);
+}
+
+}  // namespace
+
+std::vector<ros::ServiceServer> offer_topics(ros::NodeHandle& nh, const Topics& topics,
+                                             const std::string& but, FlightThread& flight) {
+  std::vector<ros::ServiceServer> servers;
+  for (const std::string& name : topics.names()) {
+    const Topic& topic = topics[topics.at(name)];
+    if (name != but && topic.writer == the_caller) servers.push_back(offer(nh, topic, flight));
+  }
+  return servers;
+}
+
+}  // namespace quadcore::node

@@ -1,0 +1,143 @@
+"""An error-state Kalman filter of a vehicle's motion (Solà, arXiv:1711.02508, chapters 5 and 6).
+
+Unit, receiver, barometer and magnetometer sit at the origin of the frame and have its axes. World
+axes are x east, y north, z up.
+"""
+
+from __future__ import annotations
+
+from typing import Sequence
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+# Parts of the error: position, velocity (world axes), turn (frame axes), biases of the gyroscopes
+# and of the accelerometers.
+_P, _V, _TURN, _GYRO, _ACCELEROMETER = (slice(i, i + 3) for i in range(0, 15, 3))
+
+_ISA = (288.15, -0.0065, 101325.0)  # K, K/m, Pa
+_ISA_EXPONENT = 9.80665 / (287.05287 * 0.0065)
+
+
+def _cross(v: np.ndarray) -> np.ndarray:
+    x, y, z = v
+    return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+
+
+class ErrorStateFilter:
+    """Sums up rates and accelerations to a motion, and corrects it by what else is sensed.
+
+    Parameters
+    ----------
+    position, velocity : array_like (3,)
+        At the start, world axes, m, m/s.
+    orientation : array_like (4,)
+        The same, x, y, z, w.
+    deviations : sequence of 5 floats
+        Standard deviations of these three (m, m/s, rad) and of the biases of gyroscopes (rad/s) and
+        accelerometers (m/s^2), of each component.
+    walks : sequence of 2 floats
+        By how much these biases walk, rad/s/sqrt(s), m/s^2/sqrt(s).
+    gravity, field : array_like (3,)
+        World axes, m/s^2, T.
+
+    Attributes
+    ----------
+    position, linear_velocity, orientation, angular_velocity : ndarray
+        The estimate, as a controller takes it; the last in frame axes.
+    """
+
+    def __init__(
+        self,
+        position: Sequence[float],
+        velocity: Sequence[float],
+        orientation: Sequence[float],
+        deviations: Sequence[float],
+        walks: Sequence[float],
+        gravity: Sequence[float],
+        field: Sequence[float],
+    ) -> None:
+        self.position = np.array(position)
+        self.linear_velocity = np.array(velocity)
+        self.angular_velocity = np.zeros(3)
+        self._R = Rotation.from_quat(orientation)
+        self._gyro, self._accelerometer = np.zeros(3), np.zeros(3)
+        self._covariance = np.diag(np.repeat(np.square(deviations), 3))
+        self._walks = np.repeat(np.square(walks), 3)
+        self._gravity, self._field = np.array(gravity), np.array(field)
+
+    @property
+    def orientation(self) -> np.ndarray:
+        """Of the frame in the world, x, y, z, w."""
+        return self._R.as_quat()
+
+    @property
+    def deviations(self) -> np.ndarray:
+        """What it believes its errors to be, in the order of its parts, (15,)."""
+        return np.sqrt(np.diag(self._covariance))
+
+    def predict(
+        self, rates: np.ndarray, forces: np.ndarray, variances: Sequence[float], dt: float
+    ) -> None:
+        """Go on by means over a time `dt` that the unit measured, with the variances of both."""
+        self.angular_velocity = rates - self._gyro
+        force = forces - self._accelerometer
+        turn = Rotation.from_rotvec(self.angular_velocity * dt)
+        half_way = self._R * Rotation.from_rotvec(self.angular_velocity * dt / 2)
+        self._R = self._R * turn
+        R = half_way.as_matrix()  # the mean of turning axes, to second order
+        acceleration = R @ force + self._gravity
+        self.position = self.position + dt * (self.linear_velocity + dt / 2 * acceleration)
+        self.linear_velocity = self.linear_velocity + dt * acceleration
+
+        F = np.eye(15)
+        F[_P, _V] = dt * np.eye(3)
+        F[_V, _TURN] = -dt * R @ _cross(force)
+        F[_V, _ACCELEROMETER] = -dt * R
+        F[_TURN, _TURN] = turn.as_matrix().T
+        F[_TURN, _GYRO] = -dt * np.eye(3)
+        noise = np.zeros(15)
+        noise[_V] = variances[1] * dt * dt
+        noise[_TURN] = variances[0] * dt * dt
+        noise[9:] = self._walks * dt
+        self._covariance = F @ self._covariance @ F.T + np.diag(noise)
+
+    def correct_place(self, place: np.ndarray, variances: Sequence[float]) -> None:
+        """Take in a position, m, m^2."""
+        H = np.zeros((3, 15))
+        H[:, _P] = np.eye(3)
+        self._correct(place - self.position, H, variances)
+
+    def correct_velocity(self, velocity: np.ndarray, variance: float) -> None:
+        """Take in a velocity, world axes, m/s, (m/s)^2."""
+        H = np.zeros((3, 15))
+        H[:, _V] = np.eye(3)
+        self._correct(velocity - self.linear_velocity, H, [variance] * 3)
+
+    def correct_pressure(self, pressure: float, variance: float) -> None:
+        """Take in a pressure of the standard atmosphere, Pa, Pa^2."""
+        temperature, gradient, ground = _ISA
+        warmth = 1 + gradient * self.position[2] / temperature
+        expected = ground * warmth**_ISA_EXPONENT
+        H = np.zeros((1, 15))
+        H[0, 2] = expected * _ISA_EXPONENT * gradient / (temperature * warmth)
+        self._correct(np.array([pressure - expected]), H, [variance])
+
+    def correct_field(self, field: np.ndarray, variance: float) -> None:
+        """Take in a magnetic field, frame axes, T, T^2."""
+        expected = self._R.inv().apply(self._field)
+        H = np.zeros((3, 15))
+        H[:, _TURN] = _cross(expected)
+        self._correct(field - expected, H, [variance] * 3)
+
+    def _correct(self, surprise: np.ndarray, H: np.ndarray, variances: Sequence[float]) -> None:
+        noise = np.diag(variances)
+        gain = np.linalg.solve(H @ self._covariance @ H.T + noise, H @ self._covariance).T
+        error = gain @ surprise
+        rest = np.eye(15) - gain @ H
+        self._covariance = rest @ self._covariance @ rest.T + gain @ noise @ gain.T
+        self.position = self.position + error[_P]
+        self.linear_velocity = self.linear_velocity + error[_V]
+        self._R = self._R * Rotation.from_rotvec(error[_TURN])
+        self._gyro = self._gyro + error[_GYRO]
+        self._accelerometer = self._accelerometer + error[_ACCELEROMETER]

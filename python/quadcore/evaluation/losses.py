@@ -1,0 +1,43 @@
+"""What controllers lose in each scenario."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Dict, List, Mapping, Sequence
+
+_MEASURE = "rms_position"
+_WHO = ("controller", "reference", "engine", "model")
+
+
+def losses(groups: Sequence[Mapping[str, Any]]) -> List[Dict[str, Any]]:
+    """Compare each combination with the same in the first scenario.
+
+    Parameters
+    ----------
+    groups
+        As `Evaluation.groups`.
+
+    Returns
+    -------
+    list of dict
+        A row per combination of all but scenarios, and scenario: its names, the mean of
+        ``rms_position`` (m), ``loss``, what that is more than in the first scenario (m), and
+        ``factor``, how many times as much; infinite where a vehicle was lost. Empty with a single
+        scenario.
+    """
+    first: Dict[Any, float] = {}
+    rows = []
+    for group in groups:
+        who = tuple(group[name] for name in _WHO)
+        error = math.inf if group["failure_rate"] > 0 else group[f"mean_{_MEASURE}"]
+        before = first.setdefault(who, error)
+        rows.append(
+            {
+                **dict(zip(_WHO, who)),
+                "scenario": group["scenario"],
+                _MEASURE: error,
+                "loss": error - before if math.isfinite(before) else math.nan,
+                "factor": error / before if 0 < before < math.inf else math.nan,
+            }
+        )
+    return rows if len({row["scenario"] for row in rows}) > 1 else []
