@@ -14,6 +14,7 @@ void bind_plugins(py::module_& m);
 void bind_snapshot(py::module_& m);
 void bind_simulation(py::module_& m);
 void bind_flight(py::module_& m);
+void bind_batch(py::module_& m);
 void bind_control(py::module_& m);
 
 struct Guarded;

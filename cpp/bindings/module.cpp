@@ -7,6 +7,7 @@ PYBIND11_MODULE(_core, m) {
   quadcore::bindings::bind_plugins(m);
   quadcore::bindings::bind_snapshot(m);
   quadcore::bindings::bind_simulation(m);
+  quadcore::bindings::bind_batch(m);
   quadcore::bindings::bind_flight(m);
   quadcore::bindings::bind_control(m);
 }

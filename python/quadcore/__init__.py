@@ -23,6 +23,7 @@ from ._core import (
     load_plugin_path,
     plugin_folders,
 )
+from .batch import BatchSimulation, BatchState
 from .comparison import Comparison, compare
 from .controller import Controller, Odometry
 from .description import read_model, read_world
@@ -40,6 +41,8 @@ __version__ = "0.1.0"
 
 __all__ = [
     "AttitudeThrust",
+    "BatchSimulation",
+    "BatchState",
     "Comparison",
     "Controller",
     "Evaluation",

@@ -1,0 +1,157 @@
+#pragma once
+
+#include "block.hpp"
+#include "lanes/four.hpp"
+#include "lanes/turn.hpp"
+#include "laws/angles.hpp"
+#include "laws/rotor_forces.hpp"
+
+namespace quadcore::batch {
+
+using laws::Matrix3;
+using laws::Vec3;
+
+/// The numbers of some vehicles of a block, from one of them on.
+template <class T>
+struct Table {
+  const double* first;
+
+  QUADCORE_LAW T number(std::size_t row) const { return laws::load<T>(first + row * widest_lanes); }
+  QUADCORE_LAW Vec3<T> vector(std::size_t row) const {
+    return {number(row), number(row + 1), number(row + 2)};
+  }
+  QUADCORE_LAW Matrix3<T> matrix(std::size_t row) const {
+    return {number(row),     number(row + 3), number(row + 6), number(row + 1), number(row + 4),
+            number(row + 7), number(row + 2), number(row + 5), number(row + 8)};
+  }
+};
+
+/// A quaternion, or its rate.
+template <class T>
+struct Quaternion {
+  T x, y, z, w;
+};
+
+/// As laws::rotation().
+template <class T>
+QUADCORE_LAW Matrix3<T> rotation(const Quaternion<T>& q) {
+  const T x2 = q.x + q.x, y2 = q.y + q.y, z2 = q.z + q.z;
+  const T xx = x2 * q.x, yy = y2 * q.y, zz = z2 * q.z;
+  const T xy = x2 * q.y, yz = y2 * q.z, zx = z2 * q.x;
+  const T wx = q.w * x2, wy = q.w * y2, wz = q.w * z2;
+  return {1 - (yy + zz), xy - wz, zx + wy, xy + wz,      1 - (zz + xx),
+          yz - wx,       zx - wy, yz + wx, 1 - (xx + yy)};
+}
+
+/// As laws::quaternion_rate().
+template <class T>
+QUADCORE_LAW Quaternion<T> quaternion_rate(const Quaternion<T>& q, const Vec3<T>& w_F) {
+  const Vec3<T> h = 0.5 * w_F;
+  return {q.w * h.x + (q.y * h.z - q.z * h.y), q.z * h.x + (q.w * h.y - q.x * h.z),
+          (q.x * h.y + q.w * h.z) - q.y * h.x, -q.x * h.x - (q.y * h.y + q.z * h.z)};
+}
+
+/// The inverse rotation of a vector.
+template <class T>
+QUADCORE_LAW Vec3<T> inversely(const Matrix3<T>& R, const Vec3<T>& a) {
+  return {R.xx * a.x + (R.yx * a.y + R.zx * a.z), R.xy * a.x + (R.yy * a.y + R.zy * a.z),
+          R.xz * a.x + (R.yz * a.y + R.zz * a.z)};
+}
+
+/// The motion of the frames of a pack of vehicles.
+template <class T>
+struct Frames {
+  Quaternion<T> q_WF;
+  Vec3<T> v_WCcm_W, w_WF_F;
+  Matrix3<T> R_WF;
+  Vec3<T> v_WCcm_F;
+
+  QUADCORE_LAW explicit Frames(const Table<T>& state)
+      : q_WF{state.number(StateRow::orientation), state.number(StateRow::orientation + 1),
+             state.number(StateRow::orientation + 2), state.number(StateRow::orientation + 3)},
+        v_WCcm_W(state.vector(StateRow::velocity)),
+        w_WF_F(state.vector(StateRow::rate)),
+        R_WF(rotation(q_WF)),
+        v_WCcm_F(inversely(R_WF, v_WCcm_W)) {}
+};
+
+/// The motion of the i-th rotors of a pack of vehicles: see laws/rotor_forces.hpp. `upright` as in
+/// RotorsOfState.
+template <class T, bool upright>
+struct Rotors {
+  const Block& block;
+  const Frames<T>& frames;
+  Table<T> constants, state;
+  const double* turns;  ///< sine and cosine of rotor 0
+  std::size_t i;
+
+  QUADCORE_LAW T constant(std::size_t row) const {
+    return constants.number(ConstantRow::rotor(row, i));
+  }
+  QUADCORE_LAW Vec3<T> vector(std::size_t row) const {
+    return constants.vector(ConstantRow::rotor(row, i));
+  }
+  QUADCORE_LAW T rate() const { return state.number(StateRow::joint(StateRow::joint_rate, i)); }
+  QUADCORE_LAW Vec3<T> axis_F() const {
+    if constexpr (upright) return {T{}, T{}, constant(ConstantRow::axis_F + 2)};
+    return vector(ConstantRow::axis_F);
+  }
+  QUADCORE_LAW Vec3<T> normal_F() const {
+    if constexpr (upright) return {T{}, T{}, constant(ConstantRow::R_FR_at_zero + 8)};
+    const Vec3<T> at_zero = vector(ConstantRow::R_FR_at_zero + 6);
+    if (!block.laws.normals_turn) return at_zero;
+    return turned(at_zero);
+  }
+  QUADCORE_LAW Vec3<T> velocity_F(bool of_origins) const {
+    return frames.v_WCcm_F + laws::cross(frames.w_WF_F, vector(of_origins ? ConstantRow::p_CR_F
+                                                                          : ConstantRow::p_CRcm_F));
+  }
+  QUADCORE_LAW Vec3<T> in_frame(const Vec3<T>& f_R) const {
+    Matrix3<T> R_FR_at_zero = constants.matrix(ConstantRow::rotor(ConstantRow::R_FR_at_zero, i));
+    if constexpr (upright) {
+      R_FR_at_zero.xz = R_FR_at_zero.yz = R_FR_at_zero.zx = R_FR_at_zero.zy = T{};
+    }
+    return turned(R_FR_at_zero * f_R);
+  }
+  QUADCORE_LAW bool windy() const { return false; }
+  QUADCORE_LAW Vec3<T> v_WA_F() const { return {T{}, T{}, T{}}; }
+  QUADCORE_LAW Vec3<T> w_WF_F() const { return frames.w_WF_F; }
+  QUADCORE_LAW Vec3<T> v_WF_W() const {
+    return frames.R_WF *
+           (frames.v_WCcm_F - laws::cross(frames.w_WF_F, constants.vector(ConstantRow::p_FCcm_F)));
+  }
+
+ private:
+  QUADCORE_LAW Vec3<T> turned(const Vec3<T>& at_zero_F) const {
+    const double* rows = turns + 2 * i * widest_lanes;
+    return laws::turned(
+        axis_F(), laws::SineCosine<T>{laws::load<T>(rows), laws::load<T>(rows + widest_lanes)},
+        at_zero_F);
+  }
+};
+
+/// The numbers that RotorForces has, of a pack of vehicles.
+template <class T>
+struct Forces : Laws {
+  Table<T> constants;
+  struct {
+    T A1c, A1s, B1, B2, radius;
+  } flapping;
+  T sim_slow;
+  bool meets_wind = false;
+
+  QUADCORE_LAW Forces(const Laws& laws, const Table<T>& table)
+      : Laws(laws),
+        constants(table),
+        flapping{table.number(ConstantRow::flapping), table.number(ConstantRow::flapping + 1),
+                 table.number(ConstantRow::flapping + 2), table.number(ConstantRow::flapping + 3),
+                 table.number(ConstantRow::flapping + 4)},
+        sim_slow(table.number(ConstantRow::sim_slow)) {}
+};
+
+template <class T>
+QUADCORE_LAW T coefficient(const Forces<T>& law, std::size_t row, std::size_t i) {
+  return law.constants.number(ConstantRow::rotor(ConstantRow::coefficients + row, i));
+}
+
+}  // namespace quadcore::batch

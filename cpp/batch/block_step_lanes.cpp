@@ -1,0 +1,260 @@
+#include "block_motion.hpp"
+#include "laws/ahead.hpp"
+#include "laws/gyrostat.hpp"
+#include "laws/motor_torque.hpp"
+
+namespace quadcore::batch {
+namespace {
+
+/// Which of the four rates of a step: the first, the last, or between.
+enum class Stage { first, between, last };
+
+/// As Share of the step of one vehicle.
+struct Share {
+  double weight, reach;
+};
+
+/// The places of a pack of vehicles.
+struct Places {
+  const double *constants, *motors;
+  double *state, *stage, *sum, *turns;
+};
+
+template <Stage stage, class T>
+QUADCORE_LAW void share_out(const Places& at, const Share& share, std::size_t row, T k) {
+  const std::size_t place = row * widest_lanes;
+  T sum = k;
+  if constexpr (stage == Stage::between) sum = laws::load<T>(at.sum + place) + share.weight * k;
+  if constexpr (stage == Stage::last) sum = laws::load<T>(at.sum + place) + k;
+  const T begin = laws::load<T>(at.state + place);
+  if constexpr (stage == Stage::last) {
+    laws::store(at.stage + place, begin + share.reach * sum);
+  } else {
+    laws::store(at.sum + place, sum);
+    laws::store(at.stage + place, begin + share.reach * k);
+  }
+}
+
+template <Stage stage, class T>
+QUADCORE_LAW void share_out(const Places& at, const Share& share, std::size_t row,
+                            const Vec3<T>& k) {
+  share_out<stage>(at, share, row, k.x);
+  share_out<stage>(at, share, row + 1, k.y);
+  share_out<stage>(at, share, row + 2, k.z);
+}
+
+template <class T>
+QUADCORE_LAW void turn(const Block& block, const Places& at, const double* state) {
+  for (std::size_t i = 0; i < block.rotors; ++i) {
+    auto turn =
+        laws::sine_and_cosine(Table<T>{state}.number(StateRow::joint(StateRow::joint_angle, i)));
+    double* rows = at.turns + 2 * i * widest_lanes;
+    laws::store(rows, turn.sin);
+    laws::store(rows + widest_lanes, turn.cos);
+  }
+}
+
+/// Shares out the rate of a state, whose turns the table holds.
+template <class T, Stage stage, bool upright>
+QUADCORE_LAW void differentiate(const Block& block, const Places& at, const double* from,
+                                const Share& share) {
+  const Table<T> constants{at.constants}, state{from}, motors{at.motors};
+  const Frames<T> frames(state);
+  const Forces<T> forces(block.laws, constants);
+
+  Vec3<T> f_F{T{}, T{}, T{}};
+  if (block.laws.drag) {
+    const Vec3<T>& v_F = frames.v_WCcm_F;
+    f_F = laws::parasitic_drag(v_F, laws::square_root(laws::dot(v_F, v_F)),
+                               constants.number(ConstantRow::frame_drag));
+  }
+  Vec3<T> tau_F =
+      -1.0 * laws::cross(frames.w_WF_F, constants.matrix(ConstantRow::I_C_F) * frames.w_WF_F);
+  T joint_torques[most_rotors];
+  for (std::size_t i = 0; i < block.rotors; ++i) {
+    const Rotors<T, upright> rotors{block, frames, constants, state, at.turns, i};
+    laws::RotorLoads<T> loads{{T{}, T{}, T{}}, {T{}, T{}, T{}}, T{}};
+    if (block.laws.forces) laws::add_rotor_forces<T>(forces, rotors, i, loads);
+    if (block.laws.motors) {
+      loads.joint_torque =
+          loads.joint_torque +
+          laws::motor_torque<T>(motors.number(i * MotorRow::count + MotorRow::active),
+                                constants.number(ConstantRow::kp),
+                                motors.number(i * MotorRow::count + MotorRow::target), T{},
+                                rotors.rate());
+    }
+    loads.joint_torque = loads.joint_torque - rotors.constant(ConstantRow::damping) * rotors.rate();
+    joint_torques[i] = loads.joint_torque;
+    f_F = f_F + loads.f_F;
+    tau_F = tau_F + laws::rotor_torque(frames.w_WF_F, rotors.axis_F(),
+                                       rotors.vector(ConstantRow::p_CRcm_F),
+                                       rotors.constant(ConstantRow::moment), rotors.rate(),
+                                       loads.f_F, loads.reaction_F, loads.joint_torque);
+  }
+  const Vec3<T> angular = constants.matrix(ConstantRow::inverse_reduced_I_F) * tau_F;
+  for (std::size_t i = 0; i < block.rotors; ++i) {
+    const Rotors<T, upright> rotors{block, frames, constants, state, at.turns, i};
+    share_out<stage>(at, share, StateRow::joint(StateRow::joint_angle, i), rotors.rate());
+    share_out<stage>(at, share, StateRow::joint(StateRow::joint_rate, i),
+                     joint_torques[i] * rotors.constant(ConstantRow::inverse_moment) -
+                         laws::dot(rotors.axis_F(), angular));
+  }
+  share_out<stage>(at, share, StateRow::position, frames.v_WCcm_W);
+  const Quaternion<T> q = quaternion_rate(frames.q_WF, frames.w_WF_F);
+  share_out<stage>(at, share, StateRow::orientation, Vec3<T>{q.x, q.y, q.z});
+  share_out<stage>(at, share, StateRow::orientation + 3, q.w);
+  share_out<stage>(at, share, StateRow::velocity,
+                   constants.number(ConstantRow::inverse_mass) * (frames.R_WF * f_F) +
+                       laws::broadcast<T>(block.gravity_W));
+  share_out<stage>(at, share, StateRow::rate, angular);
+  if (stage != Stage::last && block.laws.turn) turn<T>(block, at, at.stage);
+}
+
+template <class T>
+QUADCORE_LAW void normalise(const Block& block, double* state) {
+  double* const q = state + StateRow::orientation * widest_lanes;
+  const T x = laws::load<T>(q), y = laws::load<T>(q + widest_lanes),
+          z = laws::load<T>(q + 2 * widest_lanes), w = laws::load<T>(q + 3 * widest_lanes);
+  const T square = (x * x + y * y) + (z * z + w * w);
+  T by = 1.5 - 0.5 * square;  // 1/sqrt(s) to the last digit near 1, where steps leave it
+  const auto far = laws::absolute(square - 1) >= 1e-8;
+  const auto put = [&](std::size_t i, T component)
+                       QUADCORE_INLINED { laws::store(q + i * widest_lanes, component); };
+  if (__builtin_expect(laws::any(far), 0)) {
+    const T root = laws::square_root(square);
+    const auto normal = [&](T a)
+                            QUADCORE_INLINED { return laws::chosen_by(far, a / root, a * by); };
+    put(0, normal(x)), put(1, normal(y)), put(2, normal(z)), put(3, normal(w));
+  } else {
+    put(0, x * by), put(1, y * by), put(2, z * by), put(3, w * by);
+  }
+  for (std::size_t i = 0; i < block.rotors; ++i) {
+    double* angle = state + StateRow::joint(StateRow::joint_angle, i) * widest_lanes;
+    laws::store(angle, laws::within_half_turn(laws::load<T>(angle)));
+  }
+}
+
+/// Where a comparison holds, all bits.
+template <class T>
+using Mask = laws::BitsOf<T>;
+
+template <class T, class Comparison>
+QUADCORE_LAW Mask<T> mask(const Comparison& comparison) {
+  if constexpr (laws::lanes_of<T> == 1) {
+    return -static_cast<std::int64_t>(comparison);
+  } else {
+    return comparison;
+  }
+}
+
+/// Vehicles of which no plugin has to be asked about the state in which a step begins.
+template <class T>
+QUADCORE_LAW Mask<T> is_quiet(const Block& block, const Table<T>& constants, const Table<T>& state,
+                              const std::int64_t* tilts, double dt) {
+  Mask<T> good = ~Mask<T>{};
+  for (std::size_t i = 0; i < block.rotors; ++i) {
+    const T rate = state.number(StateRow::joint(StateRow::joint_rate, i));
+    good &= mask<T>(laws::absolute(rate) < block.bounds.fastest);
+  }
+  const T z = state.number(StateRow::position + 2), v_z = state.number(StateRow::velocity + 2);
+  good &= mask<T>(z >= block.bounds.reach + laws::ahead(laws::absolute(v_z), dt));
+  if (!block.bounds.no_tilt) return good;
+  const Frames<T> frames(state);
+  const Vec3<T> up_F{frames.R_WF.zx, frames.R_WF.zy, frames.R_WF.zz};
+  for (std::size_t i = 0; i < block.rotors; ++i) {
+    const Vec3<T> normal_F = constants.vector(ConstantRow::rotor(ConstantRow::R_FR_at_zero + 6, i));
+    good &= mask<T>(laws::dot(up_F, normal_F) >= 0) | laws::load_bits<T>(tilts);
+  }
+  return good;
+}
+
+/// Vehicles that a step left where a flight may go on without looking closer.
+template <class T>
+QUADCORE_LAW Mask<T> is_sound(const Block& block, const Table<T>& state) {
+  const Bounds& bounds = block.bounds;
+  const auto square = [&](std::size_t row) QUADCORE_INLINED {
+    const Vec3<T> a = state.vector(row);
+    return laws::dot(a, a);
+  };
+  const T p2 = square(StateRow::position), v2 = square(StateRow::velocity),
+          w2 = square(StateRow::rate);
+  T rates2{};
+  for (std::size_t i = 0; i < block.rotors; ++i) {
+    const T rate = state.number(StateRow::joint(StateRow::joint_rate, i));
+    rates2 = rates2 + rate * rate;
+  }
+  // By the bits, because the compiler is told that numbers are finite.
+  constexpr std::int64_t exponent = 0x7FF0000000000000;
+  const auto finite = (laws::bits(((p2 + v2) + w2) + rates2) & exponent) != exponent;
+  return mask<T>(finite) & mask<T>(p2 < bounds.distance_squared) &
+         mask<T>(v2 < bounds.speed_squared) & mask<T>(w2 < bounds.rate_squared) &
+         mask<T>(rates2 < bounds.rate_squared);
+}
+
+template <class T, bool upright>
+QUADCORE_LAW void fly(const Block& block, std::size_t first, std::int64_t count, double dt) {
+  const std::size_t numbers = StateRow::count(block.rotors) * widest_lanes;
+  const Places at{block.constants + first,      block.motors + first,
+                  block.state + first,          block.work + first,
+                  block.work + numbers + first, block.work + 2 * numbers + first};
+  const Table<T> constants{at.constants}, state{at.state}, moved{at.stage};
+  Mask<T> flies = laws::load_bits<T>(block.flies + first);
+  Mask<T> steps{};
+  for (std::int64_t n = 0; n < count && laws::any(flies); ++n) {
+    flies &= is_quiet(block, constants, state, block.may_tilt + first, dt);
+    if (block.laws.turn) turn<T>(block, at, at.state);
+    differentiate<T, Stage::first, upright>(block, at, at.state, {1, dt / 2});
+    differentiate<T, Stage::between, upright>(block, at, at.stage, {2, dt / 2});
+    differentiate<T, Stage::between, upright>(block, at, at.stage, {2, dt});
+    differentiate<T, Stage::last, upright>(block, at, at.stage, {1, dt / 6});
+    normalise<T>(block, at.stage);
+    flies &= is_sound(block, moved);
+    steps -= flies;
+    for (std::size_t row = 0; row < numbers; row += widest_lanes) {
+      laws::store(at.state + row, laws::chosen_by(flies, laws::load<T>(at.stage + row),
+                                                  laws::load<T>(at.state + row)));
+    }
+  }
+  laws::store_bits<T>(block.steps + first, steps);
+}
+
+}  // namespace
+
+template <int W>
+void step_block(const Block& block, std::int64_t count, double dt) {
+  using T = laws::Pack<W>;
+  for (std::size_t first = 0; first < widest_lanes; first += W) {
+    if (block.laws.upright) {
+      fly<T, true>(block, first, count, dt);
+    } else {
+      fly<T, false>(block, first, count, dt);
+    }
+  }
+}
+
+template <int W>
+void show_block(const Block& block, double* shown) {
+  using T = laws::Pack<W>;
+  for (std::size_t first = 0; first < widest_lanes; first += W) {
+    const Table<T> constants{block.constants + first}, state{block.state + first};
+    const Frames<T> frames(state);
+    const Vec3<T> p_FCcm_F = constants.vector(ConstantRow::p_FCcm_F);
+    const auto put = [&](std::size_t row, const Vec3<T>& a)
+                         QUADCORE_INLINED { laws::store3(shown + first + row * widest_lanes, a); };
+    put(StateRow::position, state.vector(StateRow::position) - frames.R_WF * p_FCcm_F);
+    put(StateRow::velocity, frames.R_WF * (frames.v_WCcm_F - laws::cross(frames.w_WF_F, p_FCcm_F)));
+    put(StateRow::rate, frames.w_WF_F);
+    const auto copy = [&](std::size_t begin, std::size_t end) QUADCORE_INLINED {
+      for (std::size_t row = begin; row < end; ++row) {
+        laws::store(shown + first + row * widest_lanes, state.number(row));
+      }
+    };
+    copy(StateRow::orientation, StateRow::velocity);
+    copy(StateRow::joints, StateRow::count(block.rotors));
+  }
+}
+
+template void show_block<QUADCORE_LANES>(const Block&, double*);
+template void step_block<QUADCORE_LANES>(const Block&, std::int64_t, double);
+
+}  // namespace quadcore::batch

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "batch/lane_vehicle.hpp"
+#include "quadcore/rotor_rows.hpp"
+
+namespace quadcore::batch {
+
+/// The vehicles of a batch, eight to a block, as their laws alone move them.
+class LaneBlocks {
+ public:
+  /// \param vehicles  of which those that are null are not in the lanes
+  LaneBlocks(const std::vector<std::shared_ptr<const LaneVehicle>>& vehicles, std::size_t rotors,
+             const Vector3d& gravity_W);
+
+  std::size_t blocks() const { return flies_.size() / widest_lanes; }
+  std::size_t state_rows() const { return StateRow::count(rotors_); }
+
+  /// Takes a vehicle to a state, in which nothing was commanded or warned of yet.
+  void begin(std::size_t vehicle, const std::vector<double>& engine_state);
+  /// Sets what the motors of a vehicle follow.
+  void command(std::size_t vehicle, const double* speeds);
+  /// Whether a vehicle moves in steps of its block.
+  void let_fly(std::size_t vehicle, bool flies) { flies_[vehicle] = -std::int64_t{flies}; }
+  /// Whether a vehicle may turn over without anybody being asked.
+  void let_tilt(std::size_t vehicle, bool may) { may_tilt_[vehicle] = -std::int64_t{may}; }
+  /// \param work   room of its own for each thread, of work_size()
+  /// \param steps  of each vehicle of the block: how many of `count` it has flown
+  void step(std::size_t block, std::int64_t count, double dt, double* work, std::int64_t* steps);
+
+  /// To and from the state that the engine eigen saves, of which the ground's part stays as it is.
+  void get_engine_state(std::size_t vehicle, std::vector<double>& state) const;
+  void set_engine_state(std::size_t vehicle, const std::vector<double>& state);
+  /// As Batch::get_state() has it, the rows of all vehicles of a block that there are.
+  void show(std::size_t block, std::size_t vehicles, double* work, double* rows) const;
+
+  /// All that changes.
+  struct Saved {
+    LaneNumbers state, motors;
+    std::vector<std::int64_t> flies, may_tilt;
+  };
+  Saved save() const { return {state_, motors_, flies_, may_tilt_}; }
+  void restore(const Saved& saved) {
+    state_ = saved.state;
+    motors_ = saved.motors;
+    flies_ = saved.flies;
+    may_tilt_ = saved.may_tilt;
+  }
+
+ private:
+  bool is_empty() const { return state_.empty(); }
+  Block view(std::size_t block, double* work, std::int64_t* steps);
+  double* column(LaneNumbers& table, std::size_t rows, std::size_t vehicle) const {
+    return table.data() + vehicle / widest_lanes * rows * widest_lanes + vehicle % widest_lanes;
+  }
+  const double* column(const LaneNumbers& table, std::size_t rows, std::size_t vehicle) const {
+    return column(const_cast<LaneNumbers&>(table), rows, vehicle);
+  }
+
+  std::size_t rotors_;
+  Laws laws_ = {};
+  Bounds bounds_;
+  Vector3d gravity_W_;
+  bool constants_differ_;  ///< or all blocks share one
+  LaneNumbers constants_, motors_, state_;
+  std::vector<std::int64_t> flies_, may_tilt_;
+  std::vector<int> places_;  ///< as LaneVehicle has them
+  void (*step_)(const Block&, std::int64_t, double);
+  void (*show_)(const Block&, double*);
+};
+
+}  // namespace quadcore::batch

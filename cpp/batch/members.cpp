@@ -1,0 +1,107 @@
+#include "members.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "quadcore/error.hpp"
+
+namespace quadcore::batch {
+namespace {
+
+bool are_built_alike(const BatchVehicle& a, const BatchVehicle& b) {
+  return a.model == b.model && a.parameters == b.parameters;
+}
+
+VehicleState at_rest(const Pose& spawn, std::size_t rotors) {
+  VehicleState state;
+  state.position = spawn.xyz;
+  state.orientation = spawn.rotation();
+  state.rotor_velocity = state.rotor_angle = VectorXd::Zero(static_cast<Eigen::Index>(rotors));
+  return state;
+}
+
+}  // namespace
+
+void Member::hear(const std::vector<std::string>& said) {
+  const auto what = [](const std::string& warning) { return warning.substr(warning.find(':')); };
+  for (const std::string& warning : said) {
+    const auto of_flight = warnings.begin() + static_cast<std::ptrdiff_t>(warned_at_load);
+    const bool is_known = std::any_of(of_flight, warnings.end(), [&](const std::string& other) {
+      return what(other) == what(warning);
+    });
+    if (!is_known) warnings.push_back(warning);
+  }
+}
+
+std::unique_ptr<Simulation> Common::simulate(const BatchVehicle& vehicle) const {
+  SimulationOptions options = options_;
+  options.parameters = vehicle.parameters;
+  options.spawn = vehicle.spawn;
+  options.seed = vehicle.seed;
+  return std::make_unique<Simulation>(*vehicle.model, world_, options);
+}
+
+void Common::check(std::size_t i, Simulation& made) {
+  if (i > 0) {
+    if (made.rotor_count() == rotors_ && made.command_width() == command_width_) return;
+    throw InputError("vehicle " + std::to_string(i) + " has " + std::to_string(made.rotor_count()) +
+                     " rotors, vehicle 0 has " + std::to_string(rotors_) +
+                     "; make a batch of each kind");
+  }
+  dt_ = made.dt();
+  command_width_ = made.command_width();
+  rotors_ = made.rotor_count();
+  const Snapshot start = made.snapshot();
+  try {
+    made.command(std::vector<double>(command_width_).data(), command_width_);
+  } catch (const InputError& error) {
+    refused_ = error.what();
+  }
+  made.restore(start);
+}
+
+void Common::check(const double* commands, std::size_t vehicles) const {
+  if (!refused_.empty()) throw InputError(refused_);
+  for (std::size_t k = 0; k < vehicles * command_width_; ++k) {
+    if (std::isfinite(commands[k])) continue;
+    std::ostringstream what;
+    what << "command of vehicle " << k / command_width_ << ", rotor " << k % command_width_ + 1
+         << " is " << commands[k] << "; give a finite speed in rad/s";
+    throw InputError(what.str());
+  }
+}
+
+Crew make_crew(std::vector<BatchVehicle> vehicles, Common& common) {
+  if (vehicles.empty()) throw InputError("a batch has no vehicle; give it one at least");
+  Crew crew{std::vector<Member>(vehicles.size()), {}};
+  std::shared_ptr<const LaneVehicle> first;
+  std::unique_ptr<Simulation> made;  // of the vehicle before, if that is in the lanes
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    Member& member = crew.members[i];
+    member.made_of = std::move(vehicles[i]);
+    if (made && are_built_alike(member.made_of, crew.members[i - 1].made_of)) {
+      made->set_state(at_rest(member.made_of.spawn, common.rotors()));
+      crew.in_lanes.push_back(crew.in_lanes.back());
+    } else {
+      made = common.simulate(member.made_of);
+      common.check(i, *made);
+      std::optional<LaneVehicle> kind = lane_vehicle(*made);
+      const bool fits = kind && (!first || fit(*kind, *first));
+      crew.in_lanes.push_back(fits ? std::make_shared<const LaneVehicle>(*std::move(kind))
+                                   : nullptr);
+      if (!first) first = crew.in_lanes.back();
+    }
+    member.warned_at_load = made->warnings().size();
+    member.warnings = made->warnings();
+    member.in_lanes = crew.in_lanes.back() != nullptr;
+    if (member.in_lanes) {
+      member.start = made->snapshot().engine;
+    } else {
+      member.apart = std::move(made);
+    }
+  }
+  return crew;
+}
+
+}  // namespace quadcore::batch

@@ -1,0 +1,163 @@
+#include "quadcore/batch.hpp"
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <atomic>
+#include <optional>
+
+#include "arguments.hpp"
+#include "bindings.hpp"
+#include "guarded.hpp"
+#include "quadcore/error.hpp"
+
+namespace quadcore::bindings {
+namespace {
+
+/// Signals are looked at after about so many steps of single vehicles, some hundredths of a second.
+constexpr std::int64_t between_signals = 100000;
+
+/// A batch that refuses to be used by two Python threads at once.
+struct GuardedBatch {
+  Batch batch;
+  std::atomic<bool> busy{false};
+};
+
+class BatchLock {
+ public:
+  explicit BatchLock(GuardedBatch& guarded) : guarded_(guarded) {
+    if (guarded.busy.exchange(true)) {
+      throw InputError("this batch is being used by another thread; give each its own");
+    }
+  }
+  ~BatchLock() { guarded_.busy = false; }
+  BatchLock(const BatchLock&) = delete;
+  BatchLock& operator=(const BatchLock&) = delete;
+
+ private:
+  GuardedBatch& guarded_;
+};
+
+using Flags = py::array_t<bool, py::array::c_style | py::array::forcecast>;
+using Seeds = py::array_t<std::uint64_t, py::array::c_style>;
+
+std::shared_ptr<GuardedBatch> create_batch(
+    const std::vector<Built<Model>>& models, const Built<World>& world, std::string engine,
+    std::optional<double> dt, const std::vector<std::map<std::string, std::string>>& parameters,
+    const Numbers& spawn, const Seeds& seeds, unsigned threads) {
+  std::vector<BatchVehicle> vehicles;
+  const auto places = spawn.unchecked<2>();
+  const auto numbers = seeds.unchecked<1>();
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    BatchVehicle vehicle{models[i].held, parameters[i], {}, numbers(static_cast<py::ssize_t>(i))};
+    for (py::ssize_t k = 0; k < 3; ++k) {
+      vehicle.spawn.xyz[k] = places(static_cast<py::ssize_t>(i), k);
+      vehicle.spawn.rpy[k] = places(static_cast<py::ssize_t>(i), k + 3);
+    }
+    vehicles.push_back(std::move(vehicle));
+  }
+  SimulationOptions options;
+  options.engine = std::move(engine);
+  options.dt = dt;
+  std::shared_ptr<GuardedBatch> made;
+  without_gil([&] {
+    made = std::shared_ptr<GuardedBatch>(
+        new GuardedBatch{Batch(std::move(vehicles), *world, options, threads)});
+  });
+  return made;
+}
+
+void step(GuardedBatch& self, const py::object& commands, std::int64_t steps) {
+  Numbers rows;
+  if (!commands.is_none()) {
+    rows = numbers(commands, 2, "commands");
+    const auto n = static_cast<py::ssize_t>(self.batch.size());
+    const auto width = static_cast<py::ssize_t>(self.batch.command_width());
+    if (rows.shape(0) != n || rows.shape(1) != width) {
+      throw InputError("commands are an array of " + std::to_string(rows.shape(0)) + " x " +
+                       std::to_string(rows.shape(1)) + " numbers; give " + std::to_string(n) +
+                       " x " + std::to_string(width));
+    }
+  }
+  const BatchLock lock(self);
+  const double* told = commands.is_none() ? nullptr : rows.data();
+  const std::int64_t piece =
+      std::max<std::int64_t>(1, between_signals / static_cast<std::int64_t>(self.batch.size()));
+  do {
+    const std::int64_t now = std::min(steps, piece);
+    without_gil([&] { self.batch.step(told, now); });
+    told = nullptr;
+    steps -= now;
+    if (steps > 0 && PyErr_CheckSignals() != 0) throw py::error_already_set();
+  } while (steps > 0);
+}
+
+void write_state(GuardedBatch& self, py::array_t<double, py::array::c_style>& rows) {
+  const BatchLock lock(self);
+  double* const to = rows.mutable_data();
+  without_gil([&] { self.batch.get_state(to); });
+}
+
+template <class Get>
+auto of_each(const GuardedBatch& self, const Get& get) {
+  py::array_t<decltype(get(std::size_t{0}))> values(static_cast<py::ssize_t>(self.batch.size()));
+  for (std::size_t i = 0; i < self.batch.size(); ++i) values.mutable_data()[i] = get(i);
+  return values;
+}
+
+}  // namespace
+
+void bind_batch(py::module_& m) {
+  py::class_<BatchSnapshot, std::shared_ptr<BatchSnapshot>>(m, "BatchSnapshot");
+  py::class_<GuardedBatch, std::shared_ptr<GuardedBatch>>(m, "Batch")
+      .def(py::init(&create_batch), py::arg("models"), py::arg("world"), py::arg("engine"),
+           py::arg("dt"), py::arg("parameters"), py::arg("spawn"), py::arg("seeds"),
+           py::arg("threads"))
+      .def("step", &step, py::arg("commands"), py::arg("steps"))
+      .def("_write_state", &write_state, py::arg("rows"))
+      .def(
+          "reset",
+          [](GuardedBatch& self, const Flags& mask, const std::optional<Seeds>& seeds) {
+            const BatchLock lock(self);
+            self.batch.reset(mask.data(), seeds ? seeds->data() : nullptr);
+          },
+          py::arg("mask"), py::arg("seeds"))
+      .def("snapshot",
+           [](GuardedBatch& self) {
+             const BatchLock lock(self);
+             return self.batch.snapshot();
+           })
+      .def(
+          "restore",
+          [](GuardedBatch& self, const Built<BatchSnapshot>& snapshot) {
+            const BatchLock lock(self);
+            self.batch.restore(*snapshot);
+          },
+          py::arg("snapshot"))
+      .def_property_readonly("dt", [](const GuardedBatch& self) { return self.batch.dt(); })
+      .def_property_readonly("command_width",
+                             [](const GuardedBatch& self) { return self.batch.command_width(); })
+      .def_property_readonly("state_width",
+                             [](const GuardedBatch& self) { return self.batch.state_width(); })
+      .def_property_readonly("time",
+                             [](GuardedBatch& self) {
+                               const BatchLock lock(self);
+                               return of_each(self,
+                                              [&](std::size_t i) { return self.batch.time(i); });
+                             })
+      .def_property_readonly("failures",
+                             [](GuardedBatch& self) {
+                               const BatchLock lock(self);
+                               return self.batch.failures();
+                             })
+      .def(
+          "warnings",
+          [](GuardedBatch& self, std::size_t vehicle) {
+            const BatchLock lock(self);
+            return self.batch.warnings(vehicle);
+          },
+          py::arg("vehicle"));
+}
+
+}  // namespace quadcore::bindings

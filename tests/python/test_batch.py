@@ -1,0 +1,264 @@
+"""Batches: every vehicle moves as a simulation of it alone does."""
+
+import time
+
+import numpy as np
+import pytest
+import vehicles as v
+
+import quadcore as qc
+from quadcore import BatchSimulation, InputError, Simulation
+
+N = 21  # two blocks, and a part of a third
+ROWS = np.arange(N)
+SPAWN = np.column_stack([ROWS - 7, 1 + 0.1 * ROWS, 9 + 0.2 * ROWS, *np.zeros((2, N)), 0.3 * ROWS])
+THRUST = np.linspace(8.0e-6, 9.0e-6, N)
+COMMANDS = (500 + 20 * np.sin(np.arange(4 * N)).reshape(N, 4)) * [1, -1, 1, -1]
+TAG = "aerodynamic.rotorThrustCoeff"
+
+
+@pytest.fixture(scope="module", params=["appendix", "chapter2"])
+def odd(request, tmp_path_factory):
+    """A vehicle without any symmetry, with every force law."""
+    air = {**v.LIFT, **v.DRAG, **v.FLAPPING, "dragModel": request.param}
+    motor = {**v.MOTOR, "maxVelocity": 515}
+    file = tmp_path_factory.mktemp("odd") / "odd.urdf"
+    file.write_text(v.vehicle(v.ODD, 1.1, v.SKEW, v.COM, air, motor))
+    return file
+
+
+def fly(flight, commands, steps):
+    """Three calls, each with weaker commands."""
+    for k in range(3):
+        flight.step(commands * (1 - 0.02 * k), steps)
+
+
+def batch_of(model, n=N, **options):
+    parameters = {TAG: THRUST[:n], **options.pop("parameters", {})}
+    return BatchSimulation(model, n, spawn=SPAWN[:n], parameters=parameters, **options)
+
+
+def alone(model, i, **options):
+    parameters = {TAG: float(THRUST[i]), **options.pop("parameters", {})}
+    options.setdefault("engine", "eigen")
+    return Simulation(model, spawn=SPAWN[i], parameters=parameters, **options)
+
+
+def fly_alone(sim, i, steps):
+    for k in range(3):
+        sim.command(COMMANDS[i] * (1 - 0.02 * k))
+        sim.step(steps)
+    return sim
+
+
+def assert_same(batch, i, sim):
+    for name, rows in batch.state._asdict().items():
+        np.testing.assert_array_equal(rows[i], getattr(sim.state, name), err_msg=f"{name} of {i}")
+    assert batch.time[i] == sim.time
+
+
+@pytest.mark.parametrize("width", ["1", "2", "4", "8"])
+def test_each_moves_as_it_does_alone_to_the_last_bit(odd, width, monkeypatch):
+    monkeypatch.setenv("QUADCORE_LANES", width)
+    batch = batch_of(odd)
+    fly(batch, COMMANDS, 40)
+    for i in (0, 7, 8, N - 1):
+        assert_same(batch, i, fly_alone(alone(odd, i), i, 40))
+
+
+@pytest.mark.parametrize("engine", ["gazebo11", "ode"])
+def test_engines_without_lanes_fly_the_same_one_by_one(odd, engine):
+    batch = batch_of(odd, 3, engine=engine)
+    fly(batch, COMMANDS[:3], 20)
+    for i in range(3):
+        assert_same(batch, i, fly_alone(alone(odd, i, engine=engine), i, 20))
+
+
+def test_neither_threads_nor_neighbours_nor_the_length_of_calls_change_a_bit(odd):
+    batch = batch_of(odd, threads=1)
+    fly(batch, COMMANDS, 30)
+    expected = batch.read_state()
+    several = batch_of(odd, threads=3)
+    fly(several, COMMANDS, 30)
+    np.testing.assert_array_equal(several.read_state(), expected)
+    few = batch_of(odd, 3)
+    fly(few, COMMANDS[:3], 30)
+    np.testing.assert_array_equal(few.read_state(), expected[:3])
+    piecewise = batch_of(odd)
+    for k in range(3):
+        for _ in range(30):
+            piecewise.step(COMMANDS * (1 - 0.02 * k))
+    np.testing.assert_array_equal(piecewise.read_state(), expected)
+
+
+def test_a_vehicle_that_fails_is_told_of_and_the_others_fly_on():
+    commands = COMMANDS.copy()
+    commands[5] = 3300, -500, 500, -500  # half a turn per step, as if it could
+    parameters = {"drone_plugin.sim_slow": 1, "motorpid_plugin.sim_slow": 1}
+    free = {**parameters, "motorpid_plugin.maxVelocity": 1e6}
+    batch = BatchSimulation(n=N, spawn=SPAWN, parameters=free)
+    batch.step(commands, 300)
+    sim = Simulation(engine="eigen", spawn=SPAWN[5], parameters=free)
+    sim.command(commands[5])
+    with pytest.raises(qc.FlightError) as failure:
+        sim.step(300)
+    assert list(np.flatnonzero(batch.failed)) == [5]
+    assert batch.failures[5] == str(failure.value)
+    for i in (4, 6):
+        sim = Simulation(engine="eigen", spawn=SPAWN[i], parameters=free)
+        sim.command(commands[i])
+        sim.step(300)
+        assert_same(batch, i, sim)
+    before = batch.read_state()
+    batch.step(commands, 10)
+    np.testing.assert_array_equal(batch.read_state()[5], before[5])
+    batch.reset(batch.failed)
+    assert not batch.failed.any()
+    assert batch.time[5] == 0 and batch.time[4] == pytest.approx(0.31)
+
+
+def test_what_only_a_simulation_can_say_is_said_of_a_vehicle_of_a_batch():
+    """It leaves the lanes for that, and no bit changes."""
+    spawn = [(0, 0, 50, 0, 0.1 * i, 0) for i in range(4)]
+    batch = BatchSimulation(n=4, spawn=spawn)
+    commands = np.array([[480, -480, 530, -480]] * 4, dtype=float)
+    with pytest.warns(qc.QuadcoreWarning, match="tilts beyond 90"):
+        sim = Simulation(engine="eigen", spawn=spawn[3])
+        sim.command(commands[3])
+        sim.step(2000)
+    for _ in range(20):
+        batch.step(commands, 100)
+    assert_same(batch, 3, sim)
+    assert batch.warnings(3) == sim.warnings
+
+
+def test_a_reset_brings_back_the_start_with_another_seed(odd):
+    batch = batch_of(odd)
+    start = batch.read_state()
+    batch.step(COMMANDS, 50)
+    moved = batch.read_state()
+    mask = ROWS % 3 == 0
+    batch.reset(mask, seed=7)
+    np.testing.assert_array_equal(batch.read_state(), np.where(mask[:, None], start, moved))
+    np.testing.assert_array_equal(batch.time == 0, mask)
+
+
+def test_after_a_reset_the_motors_are_free_until_the_next_command(odd):
+    batch = batch_of(odd)
+    batch.step(COMMANDS, 20)
+    batch.reset()
+    batch.step(None, 20)
+    sim = alone(odd, 4)
+    sim.step(20)
+    assert_same(batch, 4, sim)
+
+
+def test_a_snapshot_brings_back_what_was_to_come(odd):
+    batch = batch_of(odd)
+    batch.step(COMMANDS, 20)
+    snapshot = batch.snapshot()
+    batch.step(None, 20)
+    expected = batch.read_state()
+    batch.step(0.9 * COMMANDS, 30)
+    batch.restore(snapshot)
+    batch.step(None, 20)
+    np.testing.assert_array_equal(batch.read_state(), expected)
+    with pytest.raises(InputError, match="another batch"):
+        batch_of(odd).restore(snapshot)
+
+
+def test_vehicles_take_off_and_land_as_they_do_alone():
+    """They leave the lanes at the ground, and come back above it."""
+    heights = np.array([0.05, 0.3, 0.6, 3.0])
+    spawn = np.column_stack([*np.zeros((2, 4)), heights, 0.1 * np.ones(4), *np.zeros((2, 4))])
+    batch = BatchSimulation(n=4, world="default", spawn=spawn)
+    for speed in (0, 0, 620, 620, 450, 450, 450):
+        batch.step(np.resize(np.array([speed, -speed], float), (4, 4)), 150)
+    assert not batch.failed.any()
+    for i in range(4):
+        sim = Simulation(engine="eigen", world="default", spawn=spawn[i])
+        for speed in (0, 0, 620, 620, 450, 450, 450):
+            sim.command([speed, -speed] * 2)
+            sim.step(150)
+        assert_same(batch, i, sim)
+
+
+def test_masses_and_poses_may_be_each_vehicles_own():
+    masses = np.array([0.8, 1.0, 1.3])
+    batch = BatchSimulation(n=3, parameters={"frame.mass": masses}, spawn=(1, 2, 30))
+    batch.step(COMMANDS[:3], 30)
+    sim = Simulation(engine="eigen", parameters={"frame.mass": 1.3}, spawn=(1, 2, 30))
+    sim.command(COMMANDS[2])
+    sim.step(30)
+    assert_same(batch, 2, sim)
+
+
+def test_plugins_that_fly_in_no_lane_fly_each_by_itself():
+    """A controller's commands are its own."""
+    given = {"motorpid_plugin.ki": 1e-4, "motorpid_plugin.iMax": 1, "motorpid_plugin.iMin": -1}
+    batch = BatchSimulation(n=2, parameters=given)
+    batch.step(COMMANDS[:2], 30)
+    sim = Simulation(engine="eigen", parameters=given)
+    sim.command(COMMANDS[1])
+    sim.step(30)
+    assert_same(batch, 1, sim)
+
+
+def test_the_state_is_written_into_the_callers_array():
+    batch = BatchSimulation(n=2)
+    mine = np.empty((2, 21))
+    assert batch.read_state(mine) is mine
+    np.testing.assert_array_equal(qc.BatchState.of(mine).position, batch.state.position)
+    for wrong in (np.empty((2, 20)), np.empty((2, 21), np.float32), np.empty((2, 42))[:, ::2]):
+        with pytest.raises(InputError, match=r"array of \(2, 21\) float64"):
+            batch.read_state(wrong)
+
+
+@pytest.mark.parametrize(
+    ("call", "what"),
+    [
+        (lambda: BatchSimulation(n=0), "n is 0"),
+        (
+            lambda: BatchSimulation(n=2, parameters={"drone_plugin.sim_slow": np.ones(3)}),
+            "3 values",
+        ),
+        (lambda: BatchSimulation(n=2, spawn=np.zeros((3, 6))), "poses of 2 vehicles"),
+        (lambda: BatchSimulation(n=2, seed=[1, 2, 3]), "no 2 whole numbers"),
+        (lambda: BatchSimulation(n=2).step(np.zeros((2, 3))), "give 2 x 4"),
+        (lambda: BatchSimulation(n=2).step(np.zeros(4)), "commands"),
+        (lambda: BatchSimulation(n=2).step([[0] * 4, [0, np.nan, 0, 0]]), "vehicle 1, rotor 2"),
+        (lambda: BatchSimulation(n=2).step(None, -1), "steps is -1"),
+        (lambda: BatchSimulation(n=2).reset([True]), "mask"),
+        (lambda: BatchSimulation(n=2, engine="eigne"), "eigne"),
+    ],
+)
+def test_what_makes_no_batch_is_refused(call, what):
+    with pytest.raises(InputError, match=what) as refusal:
+        call()
+    assert "\n" not in str(refusal.value)
+
+
+def test_a_long_step_can_be_interrupted():
+    import _thread
+    import threading
+
+    batch = BatchSimulation(n=64)
+    timer = threading.Timer(0.3, _thread.interrupt_main)
+    begin = time.monotonic()
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        batch.step(np.resize([480.0, -480, 480, -480], (64, 4)), 10**9)
+    assert time.monotonic() - begin < 60
+    timer.join()
+
+
+def test_a_command_that_grows_old_does_so_in_a_batch_as_it_does_alone():
+    given = {"motorpid_plugin.commandTimeout": 0.02}
+    batch = BatchSimulation(n=2, parameters=given)
+    batch.step(COMMANDS[:2], 10)
+    for _ in range(40):
+        batch.step()
+    sim = Simulation(engine="eigen", parameters=given)
+    sim.command(COMMANDS[1])
+    sim.step(50)
+    assert_same(batch, 1, sim)
