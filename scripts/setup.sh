@@ -7,6 +7,9 @@ apt_packages="g++ make cmake ninja-build pkg-config python3-dev python3-venv
 build_packages="scikit-build-core>=0.5 pybind11>=2.10"
 # With "test", the tools of the tests too.
 python_extras=${python_extras:-}
+[ -x .venv/bin/pytest ] && python_extras=test  # once there, they stay in step
+# Of foundation-policy there is but the source.
+[ "$python_extras" = test ] && build_packages="$build_packages hatchling"
 
 say() { echo "quadcore: $*"; }
 
@@ -49,16 +52,15 @@ create_venv() {
 }
 
 install_quadcore() {
-  local sources extras=$python_extras
-  [ -x .venv/bin/pytest ] && extras=test  # once there, they stay in step
+  local sources
   sources=$(find CMakeLists.txt pyproject.toml constraints.txt cpp python urdf worlds config launch \
     msg srv -type f -not -name '*.pyc' -print0 | sort -z | xargs -0 sha256sum | sha256sum)
-  [ "$(cat .venv/quadcore.sha256 2>/dev/null)" = "$sources $extras" ] && return
+  [ "$(cat .venv/quadcore.sha256 2>/dev/null)" = "$sources $python_extras" ] && return
   say "building and installing quadcore and what it needs into .venv"
   # An older pip does not know the names of today's binary packages.
   pip_install "pip>=20.3" $build_packages
-  pip_install --no-build-isolation ".${extras:+[$extras]}"
-  echo "$sources $extras" > .venv/quadcore.sha256
+  pip_install --no-build-isolation ".${python_extras:+[$python_extras]}"
+  echo "$sources $python_extras" > .venv/quadcore.sha256
 }
 
 # A Python of somebody else's (conda, pyenv) must not lend its packages.
