@@ -14,8 +14,8 @@ namespace quadcore::node {
 
 /// Waits for SIGINT, SIGTERM and SIGHUP. Make one before any other thread starts, so that all of
 /// them leave these signals alone. A process that has not ended by itself within most of a second
-/// after the signal, because a master or a name server hangs, is ended here: well if the flight's
-/// log was closed by then, with status 2 if not.
+/// after the signal, because a master or a name server hangs, is ended here: with the flight's
+/// status if its log was closed by then, with status 2 if not.
 class EndSignal {
  public:
   EndSignal() {
@@ -28,23 +28,24 @@ class EndSignal {
       sigwait(&signals, &signal);
       state->came = true;
       std::this_thread::sleep_for(std::chrono::milliseconds(800));
-      if (!state->flight_is_kept) {
+      if (state->status == kFlying) {
         std::fputs("error: the flight could not be ended in time; its log may be cut short\n",
                    stderr);
         std::_Exit(2);
       }
-      std::_Exit(0);
+      std::_Exit(state->status);
     }).detach();
   }
 
   bool has_come() const { return state_->came; }
-  /// What a flight leaves behind is written.
-  void flight_is_kept() const { state_->flight_is_kept = true; }
+  /// What a flight leaves behind is written as far as it could be, and what is wrong was said.
+  void flight_ended_with(int status) const { state_->status = status; }
 
  private:
+  static constexpr int kFlying = -1;
   struct State {
     std::atomic<bool> came{false};
-    std::atomic<bool> flight_is_kept{false};
+    std::atomic<int> status{kFlying};  // with which to exit
   };
   std::shared_ptr<State> state_ = std::make_shared<State>();
 };

@@ -45,7 +45,13 @@ MasterWatch::Parameters public_parameters(const ros::NodeHandle& nh, const Setti
   return parameters;
 }
 
-void run(const EndSignal& end_signal) {
+void say_error(const std::string& error) {
+  std::fprintf(stderr, "error: %s\n", error.c_str());
+  std::fflush(stderr);
+}
+
+/// Exit status.
+int run(const EndSignal& end_signal) {
   ros::NodeHandle nh;
   send_without_delay();
   const Settings settings = read_settings(nh);
@@ -104,11 +110,13 @@ void run(const EndSignal& end_signal) {
   flight.end();
   // Before anything that may take longer than there is time.
   const std::string log_error = listener.close_log();
-  end_signal.flight_is_kept();
+  if (!log_error.empty()) say_error(log_error);
+  const int status = log_error.empty() ? 0 : 2;
+  end_signal.flight_ended_with(status);
   spinner.stop();
   master_watch.end();
   ros::shutdown();
-  if (!log_error.empty()) throw InputError(log_error);
+  return status;
 }
 
 }  // namespace
@@ -120,11 +128,9 @@ int main(int argc, char** argv) {
     quadcore::node::check_master_uri();
     ros::init(argc, argv, "quadcore", ros::init_options::NoSigintHandler);
     quadcore::node::check_master();
-    quadcore::node::run(end_signal);
+    return quadcore::node::run(end_signal);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
-    std::fflush(nullptr);
+    quadcore::node::say_error(error.what());
     std::_Exit(2);  // a master that is mute may still be waited for
   }
-  return 0;
 }

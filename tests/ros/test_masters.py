@@ -141,22 +141,28 @@ class TestMasters(unittest.TestCase):
                 self.assertIs(again.getParam("/use_sim_time"), True)
                 self.assertEqual(again.getParam("/robot_description"), text)
 
-    def test_signals_end_it_even_if_the_master_hangs(self):
+    @contextlib.contextmanager
+    def under_a_master_that_hangs(self, *arguments):
         model = harness.folder_of(self) / "model.urdf"
         model.write_text(description())
+        port = free_port()
+        uri = f"http://localhost:{port}"
+        command = ("quadcore_node", f"_model:={model}", *arguments)
+        with master(port) as hanging, Process(*command, ROS_MASTER_URI=uri) as node:
+            harness.wait_until(lambda: "/odom" in self.shell(port, "rostopic", "list"))
+            hanging.send_signal(signal.SIGSTOP)
+            time.sleep(1.5)
+            yield node
 
-        @contextlib.contextmanager
-        def under_a_master_that_hangs():
-            port = free_port()
-            uri = f"http://localhost:{port}"
-            command = ("quadcore_node", f"_model:={model}")
-            with master(port) as hanging, Process(*command, ROS_MASTER_URI=uri) as node:
-                harness.wait_until(lambda: "/odom" in self.shell(port, "rostopic", "list"))
-                hanging.send_signal(signal.SIGSTOP)
-                time.sleep(1.5)
-                yield node
+    def test_signals_end_it_even_if_the_master_hangs(self):
+        harness.ends_within_a_second(self.under_a_master_that_hangs, signal.SIGTERM)
 
-        harness.ends_within_a_second(under_a_master_that_hangs, signal.SIGTERM)
+    def test_a_log_that_is_cut_is_no_success_though_the_master_hangs(self):
+        with self.under_a_master_that_hangs("_log:=/dev/full") as node:
+            node.end()
+        self.assertEqual(node.process.returncode, 2)
+        cut = "error: /dev/full: the log is cut short: No space left on device"
+        self.assertEqual(node.error.splitlines()[-1], cut)
 
 
 if __name__ == "__main__":
