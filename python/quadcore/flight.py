@@ -23,6 +23,7 @@ Progress = Callable[[int, int], None]
 _LONGEST = 1e9  # s
 _ROUNDING = 1e-6  # of a pilot's period
 _PIECE = 0.02  # s, at least; what is flown between two looks at progress and Ctrl-C
+_ROWS = 10_000  # of a piece, at most: they are in memory beside the log that takes them
 
 
 class Pilot(Protocol):
@@ -99,7 +100,7 @@ def fly(
     try:
         while done < total:
             hand_over()
-            steps = min(steps, total - done)
+            steps = min(steps, total - done, _ROWS * log_every)
             started = time.perf_counter()
             advance(steps)
             done += steps

@@ -106,3 +106,12 @@ def relays(toy, folder_of_relay, monkeypatch):
 
     monkeypatch.setenv("QUADCORE_PLUGIN_PATH", str(folder_of_relay))
     return toy_with
+
+
+@pytest.fixture
+def alarm():
+    """A function that interrupts this process after some seconds of processor time."""
+    before = signal.signal(signal.SIGPROF, signal.default_int_handler)
+    yield lambda seconds: signal.setitimer(signal.ITIMER_PROF, seconds)
+    signal.setitimer(signal.ITIMER_PROF, 0)
+    signal.signal(signal.SIGPROF, before)

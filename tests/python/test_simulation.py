@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 import threading
 import time
 
@@ -182,15 +181,6 @@ def test_a_failed_flight_keeps_its_log_and_can_be_taken_up_again(engine):
     simulation.command(HOVER)
     simulation.step(100)
     assert simulation.time == pytest.approx(0.1)
-
-
-@pytest.fixture
-def alarm():
-    """A function that interrupts this process after some seconds of processor time."""
-    before = signal.signal(signal.SIGPROF, signal.default_int_handler)
-    yield lambda seconds: signal.setitimer(signal.ITIMER_PROF, seconds)
-    signal.setitimer(signal.ITIMER_PROF, 0)
-    signal.signal(signal.SIGPROF, before)
 
 
 @pytest.mark.parametrize("rotors", [4, 60])
