@@ -10,6 +10,9 @@ its faults, driven from Python.
 >>> sim.step(1000)
 """
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, List
+
 from . import laws, references
 from ._core import (
     FlightError,
@@ -24,18 +27,21 @@ from ._core import (
     plugin_folders,
 )
 from .batch import BatchSimulation, BatchState
-from .comparison import Comparison, compare
 from .controller import Controller, Odometry
 from .description import read_model, read_world
-from .evaluation.evaluate import Evaluation, evaluate
-from .flight_plan import FlightPlan
+from .forks import LOCK
 from .inner_loop import AttitudeThrust, InnerLoop, RatesThrust
 from .log import Log
 from .resources import cmake_prefix
 from .simulation import Simulation
 from .state import State
-from .tuning import tune
 from .warning import QuadcoreWarning
+
+if TYPE_CHECKING:
+    from .comparison.compare import Comparison, compare
+    from .evaluation.evaluate import Evaluation, evaluate
+    from .flight_plan import FlightPlan
+    from .tuning.tune import tune
 
 __version__ = "0.1.0"
 
@@ -73,3 +79,26 @@ __all__ = [
     "references",
     "tune",
 ]
+
+_STUDIES = {
+    "Comparison": "comparison.compare",
+    "Evaluation": "evaluation.evaluate",
+    "FlightPlan": "flight_plan",
+    "compare": "comparison.compare",
+    "evaluate": "evaluation.evaluate",
+    "tune": "tuning.tune",
+}
+"""Where names lie that are brought in when they are first asked for: flying once needs none."""
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _STUDIES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    with LOCK:
+        value = getattr(import_module(f"{__name__}.{_STUDIES[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> List[str]:
+    return sorted({*globals(), *__all__})

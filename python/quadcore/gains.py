@@ -11,10 +11,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Dict, Mapping, Optional, Union
 
-import yaml
-
 from . import _core, resources
 from .files import atomic_write, is_file, text_bytes
+from .forks import LOCK
 from .law import Law
 from .timing import DELAY, RATE, checked
 
@@ -72,6 +71,9 @@ def write(gains: Gains, path: Union[str, Path]) -> None:
     told["parameters"] = {name: float(value) for name, value in gains.parameters.items()}
     if gains.history is not None:
         told["history"] = gains.history
+    with LOCK:
+        import yaml  # slow to import
+
     text = yaml.safe_dump(told, sort_keys=False, allow_unicode=True)
     with atomic_write(Path(path)) as stream:
         stream.write(text_bytes(text))

@@ -8,26 +8,34 @@ from __future__ import annotations
 
 import contextlib
 import difflib
+import glob
 import os
 import traceback
 from pathlib import Path
-from types import FrameType
-from typing import Any, Dict, Iterable, Iterator, Mapping
+from types import FrameType, SimpleNamespace
+from typing import Any, Dict, Iterable, Iterator, List, Mapping, Set, Tuple
 from warnings import warn
 
 import rospkg
 import xacro
 
-from . import resources, xml_source
+from . import resources, xml_origins, xml_source
 from ._core import InputError, QuadcoreError
 from .forks import LOCK
+from .kept_expansions import Kept, Outside, content
 from .warning import QuadcoreWarning
 
 _MOST_ELEMENTS = 20000  # a few lines of macros can ask for billions
 
 
-def expand(path: str, arguments: Mapping[str, str]) -> list[tuple[str, xml_source.Origin]]:
-    """Expand a xacro file.
+_Lines = List[Tuple[str, xml_source.Origin]]
+
+_KEPT: Kept[Tuple[_Lines, Set[str]]] = Kept()
+"""Lines, and the arguments that were asked for."""
+
+
+def expand(path: str, arguments: Mapping[str, str]) -> _Lines:
+    """Expand a xacro file, unless that was done and nothing has changed since.
 
     Parameters
     ----------
@@ -51,8 +59,19 @@ def expand(path: str, arguments: Mapping[str, str]) -> list[tuple[str, xml_sourc
     QuadcoreWarning
         What xacro itself warns of, and an argument that the file does not know.
     """
+    key = (path, tuple(sorted(arguments.items())))
+    with LOCK:
+        lines, asked = _KEPT.get(key, lambda outside: _expanded(path, arguments, outside))
+    for name in arguments:
+        if name not in asked:
+            what = f"there is no xacro argument {_named(name, asked)}: it has no effect"
+            warn(f"{path}: {what}", QuadcoreWarning, stacklevel=2)
+    return lines
+
+
+def _expanded(path: str, arguments: Mapping[str, str], outside: Outside) -> Tuple[_Lines, Set[str]]:
     table = _Arguments(arguments)
-    with LOCK, _replaced_hooks(table):
+    with _replaced_hooks(table, outside):
         try:
             document = xacro.process_file(path, mappings=table)
         except QuadcoreError:
@@ -61,11 +80,7 @@ def expand(path: str, arguments: Mapping[str, str]) -> list[tuple[str, xml_sourc
             frames = [frame for frame, _ in traceback.walk_tb(error.__traceback__)]
             place = _place(reversed(frames)) or path
             raise InputError(f"{place}: {_reason(error)}") from error
-    for name in arguments:
-        if name not in table.asked:
-            what = f"there is no xacro argument {_named(name, table.asked)}: it has no effect"
-            warn(f"{path}: {what}", QuadcoreWarning, stacklevel=2)
-    return xml_source.write(document)
+    return xml_origins.write(document), table.asked
 
 
 class _Arguments(Dict[str, str]):
@@ -85,16 +100,18 @@ class _Arguments(Dict[str, str]):
 
 
 @contextlib.contextmanager
-def _replaced_hooks(arguments: _Arguments) -> Iterator[None]:
+def _replaced_hooks(arguments: _Arguments, outside: Outside) -> Iterator[None]:
     old_parse, old_extension = xacro.parse, xacro.eval_extension
     old_all, old_text = xacro.eval_all, xacro.eval_text
 
     def parse(source: Any, filename: str | None = None) -> Any:
+        if filename is not None:
+            outside.ask(content, filename)
         if filename is None or not Path(filename).exists():
             return old_parse(source, filename)  # it raises what <xacro:include optional=""> expects
         if not Path(filename).is_file():  # a pipe could be waited for without end
             raise xacro.XacroException(f"{filename}: is no regular file; include a xacro file")
-        return xml_source.parse(filename, xml_source.read(Path(filename)))
+        return xml_origins.parse(filename, xml_source.read(Path(filename)))
 
     elements = 0
 
@@ -117,7 +134,11 @@ def _replaced_hooks(arguments: _Arguments) -> Iterator[None]:
     def eval_extension(text: str) -> str:
         command, *words = text[len("$(") : -len(")")].split() or [""]
         if command == "find" and len(words) == 1:
-            return _package_folder(words[0])
+            return outside.ask(_package_folder, words[0])
+        if command in ("env", "optenv") and words:
+            outside.ask(os.environ.get, words[0])
+        elif command not in ("arg", "cwd", "dirname"):  # eval; anon, which is another each time
+            outside.may_be_kept = False
         if command == "arg" and len(words) == 1 and words[0] not in arguments:
             raise xacro.XacroException(
                 f"undefined xacro argument '{words[0]}'; declare it: "
@@ -125,7 +146,12 @@ def _replaced_hooks(arguments: _Arguments) -> Iterator[None]:
             )
         return str(old_extension(text))
 
+    def opened(filename: str, *how: Any) -> Any:
+        outside.ask(content, filename)
+        return open(filename, *how)
+
     def warning(message: str) -> None:
+        outside.may_be_kept = False  # it would not be told again
         place = _place(frame for frame, _ in traceback.walk_stack(None))
         warn(f"{place}: {message}" if place else message, QuadcoreWarning, stacklevel=2)
 
@@ -136,12 +162,16 @@ def _replaced_hooks(arguments: _Arguments) -> Iterator[None]:
         "eval_extension": eval_extension,
         "warning": warning,
         "print_location": lambda *_: None,
+        "glob": SimpleNamespace(glob=lambda pattern: outside.ask(glob.glob, pattern)),
+        "open": opened,
     }
-    old = {name: getattr(xacro, name) for name in new}
+    old = {name: value for name, value in vars(xacro).items() if name in new}
     vars(xacro).update(new)
     try:
         yield
     finally:
+        for name in new:
+            del vars(xacro)[name]
         vars(xacro).update(old)
 
 
@@ -160,7 +190,7 @@ def _place(frames: Iterable[FrameType]) -> xml_source.Origin | None:
     """Origin of the element that xacro works at, from the first of `frames` that has one."""
     for frame in frames:
         for name in ("node", "elt", "tag"):  # what xacro calls it
-            found = xml_source.origin(frame.f_locals.get(name))
+            found = xml_origins.origin(frame.f_locals.get(name))
             if found is not None:
                 return found
     return None

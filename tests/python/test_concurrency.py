@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import itertools
 import multiprocessing
 import queue
 import sys
@@ -189,14 +190,18 @@ def test_a_fork_beside_a_thread_that_expands_a_xacro_can_expand_one_too():
     ending = threading.Event()
 
     def expand():
-        while not ending.is_set():
-            qc.Simulation("quadrotor")
+        for slow in itertools.count(1):  # another each time, as expansions are kept
+            qc.Simulation("quadrotor", xacro_args={"sim_slow": slow})
+            if ending.is_set():
+                return
 
     thread = threading.Thread(target=expand)
     thread.start()
     try:
         for _ in range(20):
-            child = multiprocessing.get_context("fork").Process(target=qc.Simulation)
+            child = multiprocessing.get_context("fork").Process(
+                target=qc.Simulation, kwargs={"xacro_args": {"sim_slow": 0.5}}
+            )
             child.start()
             child.join(10)
             assert child.exitcode == 0
@@ -215,5 +220,5 @@ def test_what_others_print_while_a_xacro_is_expanded_is_not_lost(monkeypatch):
         return expand(*arguments, **options)
 
     monkeypatch.setattr(xacro, "process_file", spied)
-    qc.Simulation("quadrotor")
+    qc.Simulation("quadrotor", xacro_args={"sim_slow": 0.7})
     assert swapped == [False]
