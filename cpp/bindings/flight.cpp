@@ -109,7 +109,7 @@ void bind_flight(py::module_& m) {
       "Names of the columns of a flight that logs these topics.");
   m.def("log_remark", &log_remark, py::arg("ignored"));
   m.def("csv_rows", &csv_rows, py::arg("table"),
-        "Rows of a table as CSV with 17 significant digits.");
+        "Rows of a table as CSV with the fewest digits that restore every bit.");
 }
 
 }  // namespace quadcore::bindings

@@ -23,7 +23,7 @@ Progress = Callable[[int, int], None]
 _LONGEST = 1e9  # s
 _ROUNDING = 1e-6  # of a pilot's period
 _PIECE = 0.02  # s, at least; what is flown between two looks at progress and Ctrl-C
-_ROWS = 10_000  # of a piece, at most: they are in memory beside the log that takes them
+_ROWS = 4096  # of a piece, at most; it stays in the cache until its rows are where they belong
 
 
 class Pilot(Protocol):
@@ -54,7 +54,7 @@ def fly(
     commands: Optional[CommandsLike],
     log_every: int,
     receive: Receive,
-    wrenches: bool,
+    wrenches: bool = False,
     progress: Optional[Progress] = None,
     pilot: Optional[Pilot] = None,
     topics: Sequence[str] = (),

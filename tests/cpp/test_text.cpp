@@ -1,6 +1,13 @@
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
 #include <locale>
+#include <random>
 
 #include "quadcore/text.hpp"
 
@@ -57,4 +64,66 @@ TEST_CASE("the nearest name is proposed, and none that is far") {
   CHECK(did_you_mean("kI", names) == " (did you mean 'ki'?)");
   CHECK(did_you_mean("propeller", names) == "");
   CHECK(did_you_mean("x", {}) == "");
+}
+
+namespace {
+
+std::string shortest(double number) {
+  std::string text;
+  append_shortest(number, text);
+  return text;
+}
+
+/// Digits without sign, point, leading zeros and exponent.
+std::size_t digits_of(const std::string& text) {
+  std::size_t count = 0;
+  for (const char c : text.substr(0, text.find('e'))) {
+    if (c >= '0' && c <= '9' && (c != '0' || count > 0)) ++count;
+  }
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("numbers are written with the fewest digits that restore every bit") {
+  CHECK(shortest(0) == "0");
+  CHECK(shortest(-0.0) == "-0");
+  CHECK(shortest(0.001) == "0.001");
+  CHECK(shortest(-480) == "-480");
+  CHECK(shortest(0.1 + 0.2) == "0.30000000000000004");
+  CHECK(shortest(1.0 / 3) == "0.3333333333333333");
+  CHECK(shortest(0.00012) == "0.00012");
+  CHECK(shortest(0.000012) == "1.2e-05");
+  CHECK(shortest(12345678.25) == "12345678.25");
+  CHECK(shortest(1e16) == "10000000000000000");
+  CHECK(shortest(1e17) == "1e+17");
+  CHECK(shortest(std::numeric_limits<double>::max()) == "1.7976931348623157e+308");
+  CHECK(shortest(std::numeric_limits<double>::denorm_min()) == "5e-324");
+  CHECK(shortest(std::nan("")) == "nan");
+  CHECK(shortest(-INFINITY) == "-inf");
+  std::mt19937_64 random(1);
+  for (int i = 0; i < 20000; ++i) {
+    const std::uint64_t bits = random();
+    double number = i % 2 ? static_cast<double>(bits) * 0x1p-60 : 0;  // of daily size, and of any
+    if (i % 2 == 0) std::memcpy(&number, &bits, sizeof number);
+    if (!std::isfinite(number)) continue;
+    const std::string text = shortest(number);
+    CAPTURE(text);
+    const double back = std::strtod(text.c_str(), nullptr);
+    CHECK(std::memcmp(&back, &number, sizeof number) == 0);
+    char fewer[32];
+    const int one_less = static_cast<int>(digits_of(text)) - 1;
+    if (one_less < 1) continue;
+    std::snprintf(fewer, sizeof fewer, "%.*e", one_less - 1, number);
+    CHECK(std::strtod(fewer, nullptr) != number);
+  }
+}
+
+TEST_CASE("a number comes back of so many digits as printf would have written it") {
+  CHECK(with_digits(1.0 / 3, 6) == 0.333333);
+  CHECK(with_digits(0.1 + 0.2, 16) == 0.3);
+  CHECK(with_digits(0.1 + 0.2, 17) == 0.1 + 0.2);
+  CHECK(with_digits(-1234567.8, 6) == -1234570);
+  CHECK(with_digits(0.5e-10 / 3, 3) == 1.67e-11);
+  CHECK(with_digits(0, 6) == 0);
 }

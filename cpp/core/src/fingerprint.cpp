@@ -1,8 +1,6 @@
 #include "quadcore/fingerprint.hpp"
 
 #include <algorithm>
-#include <locale>
-#include <sstream>
 #include <utility>
 
 #include "quadcore/error.hpp"
@@ -107,25 +105,14 @@ Facts parameters_of(const std::vector<LoadedPlugin>& plugins) {
   return facts;
 }
 
-/// With the fewest digits that read back exactly.
-std::string shortest(double number) {
-  std::string text;
-  for (int digits = 6; digits <= 17; ++digits) {
-    std::ostringstream stream;
-    stream.imbue(std::locale::classic());
-    stream.precision(digits);
-    stream << number;
-    text = stream.str();
-    if (parse_number(text) == number) break;
-  }
-  return text;
-}
-
 /// The i-th of the facts as a person reads it.
 std::string told(const Facts& facts, std::size_t i) {
   if (i >= facts.size()) return "nothing";
   std::string text = facts[i].what;
-  for (const double number : facts[i].numbers) text += " " + shortest(number);
+  for (const double number : facts[i].numbers) {
+    text += ' ';
+    append_shortest(number, text);
+  }
   return "'" + trimmed(text + " " + facts[i].text) + "'";
 }
 

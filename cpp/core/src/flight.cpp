@@ -1,11 +1,21 @@
 #include "quadcore/flight.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "quadcore/error.hpp"
 #include "quadcore/log.hpp"
 
 namespace quadcore {
+namespace {
+
+/// For so many numbers more, at once; of short pieces for as many again, or each would copy all.
+void make_room(std::vector<double>& numbers, std::size_t more) {
+  const std::size_t needed = numbers.size() + more;
+  if (needed > numbers.capacity()) numbers.reserve(std::max(needed, 2 * numbers.capacity()));
+}
+
+}  // namespace
 
 Flight::Flight(Simulation& simulation, std::optional<Commands> commands, std::int64_t log_every,
                bool wrenches, const std::vector<std::string>& topics)
@@ -18,9 +28,14 @@ Flight::Flight(Simulation& simulation, std::optional<Commands> commands, std::in
     throw InputError("log_every is " + std::to_string(log_every) + "; give a whole number >= 1");
   }
   log();
+  row_size_ = rows_.table.size();
+  wrenches_size_ = rows_.wrenches.size();
 }
 
 void Flight::advance(std::int64_t n) {
+  const auto rows = static_cast<std::size_t>(std::max<std::int64_t>(n, 0) / log_every_ + 1);
+  make_room(rows_.table, rows * row_size_);
+  make_room(rows_.wrenches, rows * wrenches_size_);
   for (; n > 0; --n) {
     if (commands_) {
       const double* speeds = commands_->at(simulation_.time());

@@ -1,10 +1,7 @@
 #include "quadcore/log.hpp"
 
-#include <locale.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "quadcore/text.hpp"
 
@@ -12,22 +9,6 @@ namespace quadcore {
 namespace {
 
 constexpr std::size_t fixed_columns = 14;
-
-/// The C locale for this thread: a host program may have chosen one with a decimal comma.
-class PlainNumbers {
- public:
-  PlainNumbers() : before_(uselocale(plain())) {}
-  ~PlainNumbers() { uselocale(before_); }
-  PlainNumbers(const PlainNumbers&) = delete;
-  PlainNumbers& operator=(const PlainNumbers&) = delete;
-
- private:
-  static locale_t plain() {
-    static const locale_t locale = newlocale(LC_ALL_MASK, "C", nullptr);
-    return locale;
-  }
-  const locale_t before_;
-};
 
 }  // namespace
 
@@ -52,13 +33,13 @@ std::string log_remark(const std::vector<std::string>& ignored) {
 }
 
 void append_log_row(const VehicleState& state, std::vector<double>& table) {
-  const std::size_t rotors = static_cast<std::size_t>(state.rotor_velocity.size());
-  const std::size_t needed = table.size() + fixed_columns + rotors;
-  if (table.capacity() < needed) table.reserve(std::max(needed, 2 * table.capacity()));
-  const auto append = [&table](const auto& vector) {
-    table.insert(table.end(), vector.data(), vector.data() + vector.size());
+  const std::size_t before = table.size();
+  table.resize(before + fixed_columns + static_cast<std::size_t>(state.rotor_velocity.size()));
+  double* to = table.data() + before;
+  const auto append = [&to](const auto& vector) {
+    to = std::copy_n(vector.data(), vector.size(), to);
   };
-  table.push_back(state.time);
+  *to++ = state.time;
   append(state.position);
   append(state.orientation.coeffs());
   append(state.linear_velocity);
@@ -76,11 +57,9 @@ void append_log_row(const Topic& topic, std::vector<double>& table) {
 }
 
 void append_csv(const double* row, std::size_t columns, std::string& text) {
-  const PlainNumbers plain;
-  char number[32];
   for (std::size_t i = 0; i < columns; ++i) {
-    text.append(number, static_cast<std::size_t>(
-                            std::snprintf(number, sizeof number, i ? ",%.17g" : "%.17g", row[i])));
+    if (i > 0) text += ',';
+    append_shortest(row[i], text);
   }
   text += '\n';
 }

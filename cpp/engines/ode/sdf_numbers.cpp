@@ -1,30 +1,24 @@
 #include "sdf_numbers.hpp"
 
 #include <cmath>
-#include <locale>
-#include <sstream>
 
 #include "quadcore/elementary.hpp"
+#include "quadcore/text.hpp"
 
 namespace quadcore {
 namespace {
 
+constexpr int urdf_digits = 16, sdf_digits = 6;
+
 double printed(double value, int digits) {
-  std::ostringstream out;
-  out.imbue(std::locale::classic());
-  out.precision(digits);
-  out << value;
-  std::istringstream in(out.str());
-  in.imbue(std::locale::classic());
-  in >> value;
-  return value;
+  // A whole number of so few digits comes back as it is, and most are whole: zeros and ones.
+  if (std::abs(value) < 1e6 && value == std::trunc(value)) return value;
+  return with_digits(value, digits);
 }
 
 Vector3d printed(const Vector3d& v, int digits) {
   return {printed(v.x(), digits), printed(v.y(), digits), printed(v.z(), digits)};
 }
-
-constexpr int urdf_digits = 16, sdf_digits = 6;
 
 double rounded_component(double value) {
   return printed(std::round(printed(value, urdf_digits) * 1e6) / 1e6, sdf_digits);

@@ -48,6 +48,7 @@ class Flight {
   std::int64_t log_every_;
   bool log_wrenches_;
   std::vector<std::size_t> topics_;
+  std::size_t row_size_ = 0, wrenches_size_ = 0;  ///< numbers of a row
   std::int64_t steps_ = 0;
   LogRows rows_;
 };

@@ -25,8 +25,7 @@ void append_log_row(const VehicleState& state, std::vector<double>& table);
 /// Appends the last message's stamp and numbers, NaN before the first.
 void append_log_row(const Topic& topic, std::vector<double>& table);
 
-/// Appends a row of numbers as CSV with 17 significant digits, so that reading restores every bit,
-/// whatever the locale.
+/// Appends a row of numbers as CSV with the fewest digits that restore every bit.
 void append_csv(const double* row, std::size_t columns, std::string& text);
 
 }  // namespace quadcore

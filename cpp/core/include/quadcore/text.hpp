@@ -8,7 +8,7 @@
 #include "quadcore/spatial.hpp"
 
 /// \file
-/// Reading numbers and names strictly, whatever the locale.
+/// Reading and writing numbers and names strictly, whatever the locale.
 
 namespace quadcore QUADCORE_EXPORT {
 
@@ -28,6 +28,10 @@ std::string did_you_mean(const std::string& name, const std::vector<std::string>
 bool is_slip(const std::string& a, const std::string& b);
 /// "1.250000 s", which std::to_string would write with a comma in some locales.
 std::string seconds(double time);
+/// What comes back of a number that is written with so many significant digits, 17 at most.
+double with_digits(double number, int digits);
+/// Appends a number with the fewest digits that read back exactly, laid out as by printf's %.17g.
+void append_shortest(double number, std::string& text);
 /// "a, b, c"
 std::string joined(const std::vector<std::string>& names);
 
