@@ -95,7 +95,7 @@ def draw_wrenches() -> None:
         xacro_args={"sim_slow": 1},
         parameters={"drone_plugin.dragModel": "chapter2"},
     )
-    log = sim.run(10.0, commands=DATA / "commands_S5.csv", log_every=10)
+    log = sim.run(10.0, commands=DATA / "commands_S5.csv", log_every=10, wrenches=True)
     with tempfile.TemporaryDirectory() as folder:
         log.plot(folder)
         shutil.copyfile(Path(folder) / "wrenches.png", IMAGES / "wrenches.png")

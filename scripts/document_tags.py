@@ -215,15 +215,16 @@ def log_section(simulation: qc.Simulation) -> str:
     terms = ", ".join(f"`{term}`" for term in simulation.wrench_terms)
     return (
         "\n## Logs\n\n"
-        "CSV with 17 significant digits, which restore every bit; `.mat` holds vectors of the\n"
+        "CSV with the fewest digits that restore every bit; `.mat` holds vectors of the\n"
         "same names.\n\n"
         + table(("columns", "unit", "meaning"), ((f"`{k}`", *v) for k, v in LOG.items()))
         + "\nTopics that were asked for follow (`--log-topics`, `sim.run(topics=...)`;\n"
         "`log.topics` in Python): `TOPIC.stamp` and `TOPIC.FIELD`, in `.mat` the fields of a\n"
         "struct `topic_TOPIC`; the last message at that time, NaN before the first.\n"
-        "\nWrenches (`log.wrenches` in Python, `wrench_NAME` in `.mat`): force (N), then torque\n"
-        "(N m) about the vehicle's centre of mass, frame axes, as they act from the logged state\n"
-        f"on. Those of the shipped plugins:\n{terms}.\n"
+        "\nWrenches, too, if they were asked for (`--wrenches`, `sim.run(wrenches=True)`;\n"
+        "`log.wrenches` in Python): `wrench_NAME.fx` to `wrench_NAME.tz`, in `.mat` the rows of\n"
+        "`wrench_NAME`; force (N), then torque (N m) about the vehicle's centre of mass, frame\n"
+        f"axes, as they act from the logged state on. Those of the shipped plugins:\n{terms}.\n"
     )
 
 

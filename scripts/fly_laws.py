@@ -88,7 +88,6 @@ def fly(flight: Tuple[Case, int]) -> float:
             log = simulation.run(
                 case.duration,
                 log_every=5,
-                wrenches=False,
                 controller=case.law(),
                 reference=reference,
             )

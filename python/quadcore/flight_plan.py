@@ -76,7 +76,7 @@ class FlightPlan:
     reference: Optional[ReferenceLike] = None
     on_reference: bool = False
     log_every: int = 1
-    wrenches: bool = True
+    wrenches: bool = False
     topics: Tuple[str, ...] = ()
 
     def __post_init__(self) -> None:

@@ -8,7 +8,6 @@ from typing import Mapping, Sequence, Union
 
 import numpy as np
 
-from . import _core
 from ._core import InputError
 from .files import check_writable
 from .forks import LOCK
@@ -23,7 +22,7 @@ _READ = "logs are read from"
 
 
 class Log(Trajectory):
-    """States of a flight and the wrenches that acted; see `Trajectory`. To be written and drawn."""
+    """States of a flight; see `Trajectory`. To be written and drawn."""
 
     @classmethod
     def of_rows(
@@ -42,8 +41,6 @@ class Log(Trajectory):
     def of_file(cls, path: PathLike) -> Log:
         """Read a ``.csv`` or ``.mat`` file that `to_file` wrote, every bit restored.
 
-        Wrenches are in MATLAB files only.
-
         Raises
         ------
         InputError
@@ -55,9 +52,10 @@ class Log(Trajectory):
         return cls.of_rows(read.rows, read.columns, read.wrenches, read.ignored)
 
     def to_csv(self, path: PathLike) -> None:
-        """Write `table` as text with 17 significant digits, so that reading restores every bit.
+        """Write `table` as text with the fewest digits that restore every bit.
 
-        Columns of topics follow, named ``TOPIC.FIELD``.
+        Columns of topics follow, named ``TOPIC.FIELD``, and six of each wrench, ``wrench_NAME.fx``
+        to ``wrench_NAME.tz``.
         What was `ignored`, if anything, stands in a comment below the names of the columns.
         """
         self._write(path, ".csv")
@@ -105,11 +103,20 @@ def check_log_path(path: PathLike) -> None:
     check_writable(Path(path))
 
 
-def log_file(path: Path, simulation: _core.Simulation, columns: Sequence[str]) -> LogFile:
-    """Make the recorder that a file's name asks for, of a flight with these columns."""
-    return format_of(path, _WRITTEN).log_file(
-        path,
-        columns,
-        simulation.wrench_terms,
-        simulation.ignored,
-    )
+def log_file(
+    path: Path, columns: Sequence[str], terms: Sequence[str], ignored: Sequence[str]
+) -> LogFile:
+    """Make the recorder that a file's name asks for.
+
+    Parameters
+    ----------
+    path
+        The file.
+    columns
+        Of the flight.
+    terms
+        Of the wrenches that are logged.
+    ignored
+        What was left out of model and world.
+    """
+    return format_of(path, _WRITTEN).log_file(path, columns, terms, ignored)

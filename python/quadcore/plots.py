@@ -52,6 +52,8 @@ def draw(log: Trajectory, directory: Path) -> list[Path]:
         "wrenches": _wrenches,
         "path": _path,
     }
+    if not log.wrenches:
+        del pictures["wrenches"]
     if "error" in log.topics:
         pictures["error"] = _error
     written = []

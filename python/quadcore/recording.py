@@ -25,11 +25,10 @@ _DRAWN = 20_000  # rows, more than a picture can show
 class Thinned:
     """Rows enough to draw: all, or each so many of a long flight, and the last."""
 
-    wrenches = True
-
-    def __init__(self, rows: int, simulation: Simulation, columns: Sequence[str]) -> None:
+    def __init__(self, rows: int, columns: Sequence[str], terms: Sequence[str]) -> None:
         self.every = -(-rows // _DRAWN)
-        self._terms = simulation.wrench_terms
+        self.wrenches = bool(terms)
+        self._terms = terms
         self._columns = columns
         self._seen = 0
         self._pieces: List[List[np.ndarray]] = [[], []]

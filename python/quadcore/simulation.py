@@ -158,7 +158,7 @@ class Simulation(_core.Simulation):
         commands: Union[np.ndarray, str, Path, None] = None,
         log_every: int = 1,
         progress: Optional[Progress] = None,
-        wrenches: bool = True,
+        wrenches: bool = False,
         topics: Sequence[str] = (),
         *,
         controller: Union[Controller, Callable[..., Any], str, None] = None,
@@ -179,7 +179,7 @@ class Simulation(_core.Simulation):
         progress : callable, optional
             Called as progress(steps_done, steps_total) every few hundredths of a second.
         wrenches : bool
-            Whether to log them, which takes most of the memory of a log.
+            Whether to log them, too, which takes three times the memory: `Log.wrenches`.
         topics : sequence of str
             Names of topics to log, too: `Log.topics`.
         controller : name, object or callable, optional

@@ -2,24 +2,34 @@
 
 from __future__ import annotations
 
-from typing import Mapping, Optional, Sequence
+from typing import Dict, Mapping, Optional, Sequence
 
 import numpy as np
 
-from ._core import log_columns
+from ._core import InputError, log_columns
 
 _STATE_SIZE = len(log_columns(0))
 
 
+class Wrenches(Dict[str, np.ndarray]):
+    """Of each term, by name."""
+
+    def __missing__(self, name: str) -> np.ndarray:
+        if self:
+            raise InputError(f"log.wrenches: '{name}' is none of {', '.join(self)}; name one")
+        raise InputError("log.wrenches: the log holds none; ask for them: wrenches=True")
+
+
 class Trajectory:
-    """States of a flight, one row per logged step, and the wrenches that act from each on.
+    """States of a flight, one row per logged step, and perhaps the wrenches from each on.
 
     Parameters
     ----------
     table : ndarray, shape (rows, 14 + n)
         Columns as `columns` names them.
     wrenches : mapping of str to ndarray, shape (rows, 6)
-        Force (N), then torque (N m), frame axes, about the vehicle's centre of mass.
+        Force (N), then torque (N m), frame axes, about the vehicle's centre of mass; empty unless
+        they were asked for.
     title : str
         What flew, for the plots.
     ignored : sequence of str
@@ -38,7 +48,7 @@ class Trajectory:
         topics: Optional[Mapping[str, Mapping[str, np.ndarray]]] = None,
     ) -> None:
         self.table = table
-        self.wrenches = dict(wrenches)
+        self.wrenches = Wrenches(wrenches)
         self.title = title
         self.ignored = list(ignored)
         self.topics = {name: dict(fields) for name, fields in (topics or {}).items()}

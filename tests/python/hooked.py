@@ -29,7 +29,7 @@ def motored(rotors=ODD, air=CHAPTER2, **options):
 
 def fly(simulation, steps, speeds=(471, -465, 480, -475), log_every=1):
     simulation.command(speeds[: simulation.rotor_count])
-    return simulation.run(steps * simulation.dt, log_every=log_every)
+    return simulation.run(steps * simulation.dt, log_every=log_every, wrenches=True)
 
 
 def assert_same_bytes(one, other, without=None):

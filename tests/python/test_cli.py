@@ -87,13 +87,26 @@ def test_quiet_prints_nothing(capsys):
 
 def test_out_holds_the_log_and_the_plots(capsys):
     assert main([*FALL, "--out", "a/b", "--log", "log.mat"]) == 0
-    plots = ["attitude", "path", "position", "rates", "rotors", "wrenches"]
+    plots = ["attitude", "path", "position", "rates", "rotors"]
     assert written() == sorted(["log.csv", "log.mat"] + [f"{name}.png" for name in plots])
     out = capsys.readouterr().out
     assert all(name in out for name in written())
     rows = np.loadtxt("a/b/log.csv", delimiter=",", skiprows=1)
     assert rows[:, 0] == pytest.approx(np.arange(51) * 1e-3)
     assert np.array_equal(scipy.io.loadmat("log.mat")["z"].ravel(), rows[:, 3])
+
+
+def test_wrenches_are_in_logs_and_pictures_when_asked_for():
+    assert main([*FALL, "--wrenches", "--out", ".", "--log", "log.mat"]) == 0
+    assert "wrenches.png" in written()
+    header = Path("log.csv").read_text().splitlines()[0]
+    assert ",wrench_thrust.fx,wrench_thrust.fy,wrench_thrust.fz,wrench_thrust.tx," in header
+    logs = [qc.Log.of_file(f"log{suffix}") for suffix in (".csv", ".mat")]
+    expected = qc.Simulation("quadrotor").run(0.05, wrenches=True).wrenches
+    for log in logs:
+        assert log.wrenches.keys() == expected.keys()
+        for name, rows in expected.items():
+            assert np.array_equal(log.wrenches[name], rows)
 
 
 def test_options_reach_the_flight():

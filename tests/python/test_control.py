@@ -45,9 +45,7 @@ def largest_at_the_end(log, reference, seconds=10):
 )
 def test_the_geometric_law_flies_the_spiral_of_the_thesis(engine, slow, bar):
     spiral = references.spiral()
-    log = on(spiral, engine, slow).run(
-        30, controller="geometric", reference=spiral, wrenches=False, log_every=5
-    )
+    log = on(spiral, engine, slow).run(30, controller="geometric", reference=spiral, log_every=5)
     assert largest_at_the_end(log, spiral) < bar
 
 
@@ -61,7 +59,7 @@ def test_the_geometric_law_flies_the_spiral_of_the_thesis(engine, slow, bar):
     ids=lambda value: value.name if isinstance(value, references.Shape) else "",
 )
 def test_the_geometric_law_flies_fast_references(reference, bar):
-    log = on(reference).run(12, controller="geometric", reference=reference, wrenches=False)
+    log = on(reference).run(12, controller="geometric", reference=reference)
     assert errors(log, reference).max() < bar
 
 
@@ -84,16 +82,13 @@ def test_the_printed_gains_lose_the_spiral(engine, slow):
 def test_every_law_settles_at_a_place_through_noise(engine, law):
     hover = references.hover(x=0.3, y=-0.2, height=10.02, yaw=0.2)
     simulation = quadrotor(engine, parameters=at_slow(1, **NOISE), seed=3)
-    log = simulation.run(30, controller=law, reference=hover, wrenches=False, log_every=10)
+    log = simulation.run(30, controller=law, reference=hover, log_every=10)
     assert largest_at_the_end(log, hover, 2) < 0.01
 
 
 def test_the_law_and_its_twin_in_numpy_fly_one_flight():
     spiral = references.spiral()
-    logs = [
-        on(spiral).run(5, controller=law, reference=spiral, wrenches=False)
-        for law in ("geometric", Twin())
-    ]
+    logs = [on(spiral).run(5, controller=law, reference=spiral) for law in ("geometric", Twin())]
     assert np.abs(logs[0].position - logs[1].position).max() < 1e-9
 
 
@@ -101,7 +96,7 @@ def test_the_law_and_its_twin_in_numpy_fly_one_flight():
 def test_a_thrust_believed_wrong_is_made_up_for(believed):
     spiral = references.spiral()
     law = laws.geometric(believed_thrust=believed)
-    log = on(spiral).run(30, controller=law, reference=spiral, wrenches=False, log_every=10)
+    log = on(spiral).run(30, controller=law, reference=spiral, log_every=10)
     assert largest_at_the_end(log, spiral) < 0.02
 
 
@@ -110,7 +105,7 @@ def test_the_geometric_law_recovers_from_upside_down(engine):
     hover = references.hover(height=50)
     simulation = quadrotor(engine, parameters=at_slow(1), spawn=(0, 0, 50, np.pi, 0, 0))
     law = laws.geometric(fastest=900)
-    log = simulation.run(6, controller=law, reference=hover, wrenches=False)
+    log = simulation.run(6, controller=law, reference=hover)
     assert errors(log, hover)[log.time > 3].max() < 0.1
     assert log.position[:, 2].min() > 48
 
@@ -125,7 +120,7 @@ def test_wind_is_made_up_for(law, engine, tmp_path):
     hover = references.hover()
     parameters = at_slow(1, **{"drone_plugin.dragModel": "chapter2"})
     simulation = quadrotor(engine, parameters=parameters, world=windy)
-    log = simulation.run(22, controller=law, reference=hover, wrenches=False, log_every=10)
+    log = simulation.run(22, controller=law, reference=hover, log_every=10)
     assert errors(log, hover).max() > 0.01
     assert largest_at_the_end(log, hover, 2) < 1e-3
 
@@ -136,9 +131,7 @@ def test_wind_is_made_up_for(law, engine, tmp_path):
 def test_the_geometric_law_takes_off_hovers_and_lands(engine, slow):
     flight = references.takeoff_land(stay=8)
     simulation = quadrotor(engine, parameters=at_slow(slow), world="default", spawn=(0, 0, 0.0125))
-    log = simulation.run(
-        flight.end + 2, controller="geometric", reference=flight, wrenches=False, log_every=10
-    )
+    log = simulation.run(flight.end + 2, controller="geometric", reference=flight, log_every=10)
     off = errors(log, flight)
     assert off[(log.time > 10) & (log.time < 13)].max() < 1e-3
     assert off[log.time > flight.end + 1].max() < 5e-3
@@ -165,9 +158,7 @@ def test_the_geometric_law_flies_fast_references_in_gazebo(reference, options, b
 )
 def test_the_compensated_cascade_flies_the_spiral(engine, bar):
     spiral = references.spiral()
-    log = on(spiral, engine).run(
-        12, controller="pd_compensated", reference=spiral, wrenches=False, log_every=5
-    )
+    log = on(spiral, engine).run(12, controller="pd_compensated", reference=spiral, log_every=5)
     assert largest_at_the_end(log, spiral, 6) < bar
 
 

@@ -46,8 +46,8 @@ def test_a_law_as_plugin_and_from_python_is_one_flight(engine, timing, hangar):
     for simulation in (plugged, called):
         simulation.set_state(references.start(simulation, circle()))
     law = laws.geometric(kp_xy=7, **timing)
-    one = plugged.run(1, wrenches=False)
-    other = called.run(1, controller=law, reference=circle(), wrenches=False)
+    one = plugged.run(1)
+    other = called.run(1, controller=law, reference=circle())
     assert one.table.tobytes() == other.table.tobytes()
 
 
@@ -57,12 +57,12 @@ def test_a_flight_goes_on_from_a_snapshot_bit_for_bit_with_every_law(law, hangar
     first, second = (hangar(urdf, G, engine="eigen", spawn=(1, 0, 10)) for _ in range(2))
     first.run(0.3)
     snapshot = first.snapshot()
-    expected = first.run(0.4, wrenches=False)
+    expected = first.run(0.4)
     second.restore(snapshot)
-    assert second.run(0.4, wrenches=False).table.tobytes() == expected.table.tobytes()
+    assert second.run(0.4).table.tobytes() == expected.table.tobytes()
     first.reset()
     first.run(0.3)
-    assert first.run(0.4, wrenches=False).table.tobytes() == expected.table.tobytes()
+    assert first.run(0.4).table.tobytes() == expected.table.tobytes()
 
 
 def test_velocities_in_the_body_are_understood(hangar):
@@ -71,7 +71,7 @@ def test_velocities_in_the_body_are_understood(hangar):
         tags = {"law": "geometric", "twistFrame": frame}
         simulation = hangar(guided(tags, odometry={"twistFrame": frame}), G, engine="eigen")
         simulation.set_state(references.start(simulation, circle()))
-        logs.append(simulation.run(2, wrenches=False))
+        logs.append(simulation.run(2))
     assert np.abs(logs[0].position - logs[1].position).max() < 1e-9
     with pytest.raises(qc.InputError, match="twistFrame"):
         hangar(guided({"law": "pd"}, odometry={"twistFrame": "body"}), G)
@@ -87,8 +87,8 @@ def test_a_law_believes_in_the_vehicle_of_a_second_file(tmp_path, hangar):
     plugged = hangar(guided({"law": "geometric", "belief": believed}), G, engine="ode")
     called = hangar(bare(), G, engine="ode")
     law = laws.geometric(belief=hangar(heavier, G, engine="eigen"))
-    one = plugged.run(0.5, wrenches=False)
-    other = called.run(0.5, controller=law, reference=circle(), wrenches=False)
+    one = plugged.run(0.5)
+    other = called.run(0.5, controller=law, reference=circle())
     assert one.table.tobytes() == other.table.tobytes()
     believed.write_text(vehicle(CROSS[:3], air=LIFT, motor=MOTOR))
     with pytest.raises(qc.InputError, match="has 3 rotors; the vehicle that flies has 4"):

@@ -65,7 +65,6 @@ def fly(reference, seed, seconds=10, **options):
     law = Watched(Geometric(), flown)
     log = flown.run(
         seconds, controller=law, reference=reference, on_reference=True, log_every=10,
-        wrenches=False,
     )  # fmt: skip
     wanted = np.array([reference(t).position for t in log.time])
     away = np.linalg.norm(log.position - wanted, axis=1)

@@ -45,7 +45,7 @@ def test_a_law_built_outside_the_tree_flies_a_circle(engine, urdf_with_law):
     circle = qc.references.circle(rate=0.7)
     sim = qc.Simulation(urdf_with_law, engine=engine)
     sim.set_state(qc.references.start(sim, circle))
-    log = sim.run(8.0, log_every=10, wrenches=False)
+    log = sim.run(8.0, log_every=10)
     assert 0 < away(log, circle).max() < 0.1
     assert np.abs(np.diff(log.orientation, axis=0)).max() < 0.01
 
@@ -54,10 +54,10 @@ def test_it_goes_on_from_a_snapshot_and_from_upside_down(urdf_with_law):
     sim = qc.Simulation(urdf_with_law, engine="eigen", spawn=(2, 0, 10, 3.1, 0, 0))
     sim.run(0.4)
     snapshot = sim.snapshot()
-    expected = sim.run(5.6, wrenches=False)
+    expected = sim.run(5.6)
     assert away(expected, qc.references.circle(rate=0.7))[-1] < 0.1
     sim.restore(snapshot)
-    assert sim.run(5.6, wrenches=False).table.tobytes() == expected.table.tobytes()
+    assert sim.run(5.6).table.tobytes() == expected.table.tobytes()
 
 
 @pytest.fixture
@@ -77,7 +77,7 @@ def test_the_learned_policy_hovers_within_2_cm(engine, sim_slow, in_folder_of_po
         "quadrotor", engine=engine, xacro_args={"sim_slow": sim_slow}, parameters=OPPOSING,
         spawn=(0.5, -0.4, 9.6, 0.3, -0.2, 0.1),
     )  # fmt: skip
-    log = sim.run(6.0, controller=Policy(), reference=hover, log_every=10, wrenches=False)
+    log = sim.run(6.0, controller=Policy(), reference=hover, log_every=10)
     assert away(log, hover)[0] > 0.7
     assert away(log, hover)[log.time > 3].max() < 0.02
 

@@ -33,11 +33,11 @@ def test_a_plan_flies_what_simulation_and_run_fly():
         world="default",
         **{key: PLAN[key] for key in ("engine", "xacro_args", "parameters", "spawn", "seed")},
     )
-    expected = simulation.run(0.5, MANOEUVRE, 5)
-    log = a_plan().fly()
+    expected = simulation.run(0.5, MANOEUVRE, 5, wrenches=True)
+    log = a_plan(wrenches=True).fly()
     assert log.table.tobytes() == expected.table.tobytes()
     assert log.wrenches.keys() == expected.wrenches.keys()
-    assert a_plan(wrenches=False).fly().wrenches == {}
+    assert a_plan().fly().wrenches == {}
     assert list(a_plan(topics=("odom",)).fly().topics) == ["odom"]
 
 
@@ -80,7 +80,7 @@ def test_the_fingerprint_is_of_what_flies_not_of_where_it_lies(toy, tmp_path):
         fingerprint(rotor_velocity=(1,)),
         fingerprint(duration=9),
         fingerprint(log_every=2),
-        fingerprint(wrenches=False),
+        fingerprint(wrenches=True),
         fingerprint(topics=("vel_cmd",)),
     ]
     assert len({fingerprint(), *others}) == 1 + len(others)

@@ -93,7 +93,7 @@ def test_the_plugin_flies_the_gains_of_a_file_and_what_tags_set_wins(tmp_path, h
     logs = []
     for controller in (tags, {"gains": path, "kp_z": 9}):
         simulation = hangar(guided(controller), G, engine="eigen", spawn=(1, 0, 10))
-        logs.append(simulation.run(0.5, wrenches=False))
+        logs.append(simulation.run(0.5))
     assert logs[0].table.tobytes() == logs[1].table.tobytes()
 
 

@@ -25,7 +25,7 @@ def attitude(axis, angle):
 def flown(engine, asked, seconds=3, **options):
     """A flight of what always asks for the same."""
     simulation = quadrotor(engine, parameters=SLOW, **options)
-    return simulation.run(seconds, controller=lambda t, state, reference: asked, wrenches=False)
+    return simulation.run(seconds, controller=lambda t, state, reference: asked)
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -70,7 +70,7 @@ class Outer:
 def test_an_outer_loop_of_ten_lines_hovers(engine, slow):
     parameters = dict.fromkeys(SLOW, slow)
     simulation = quadrotor(engine, parameters=parameters, spawn=(0, 0, 20))
-    log = simulation.run(12, controller=Outer(), wrenches=False)
+    log = simulation.run(12, controller=Outer())
     assert np.linalg.norm(log.position[-1] - Outer.goal) < 1e-3
 
 
@@ -100,7 +100,7 @@ def test_it_commands_what_the_geometric_law_does_inside():
 
     logs = [
         quadrotor("eigen", parameters=SLOW, spawn=(0, 0, 20)).run(
-            2, controller=law, reference=hover, wrenches=False
+            2, controller=law, reference=hover
         )
         for law in (inside, Same())
     ]
@@ -131,7 +131,7 @@ def test_a_controller_is_copied_with_its_inner_loop():
     for copied in (lambda law: law, copy.deepcopy, lambda law: pickle.loads(pickle.dumps(law))):
         flown_by = copied(law)  # after the first flight
         simulation = quadrotor("eigen", parameters=SLOW, spawn=(0, 0, 20))
-        tables.append(simulation.run(0.5, controller=flown_by, wrenches=False).table)
+        tables.append(simulation.run(0.5, controller=flown_by).table)
     np.testing.assert_array_equal(tables[0], tables[1])
     np.testing.assert_array_equal(tables[0], tables[2])
 

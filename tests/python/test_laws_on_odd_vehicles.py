@@ -48,8 +48,8 @@ def test_a_law_commands_the_rotors_that_are_driven_in_the_order_of_the_command(l
     plugged = hangar(guided(odd(), circle, law=law), G, engine="eigen")
     for simulation in (called, plugged):
         simulation.set_state(references.start(simulation, circle))
-    one = called.run(8, controller=law, reference=circle, wrenches=False)
-    other = plugged.run(8, wrenches=False)
+    one = called.run(8, controller=law, reference=circle)
+    other = plugged.run(8)
     assert one.position.tobytes() == other.position.tobytes()
     assert largest(one, circle) < 2e-3
     assert np.abs(one.rotor_velocity[:, 2]).max() < 10  # the fan
@@ -65,7 +65,7 @@ def test_a_belief_is_matched_by_the_names_of_the_joints(hangar, tmp_path):
     logs = []
     for simulation, options in ((plugged, {}), (called, {"controller": law, "reference": circle})):
         simulation.set_state(references.start(simulation, circle))
-        logs.append(simulation.run(6, wrenches=False, **options))
+        logs.append(simulation.run(6, **options))
         assert largest(logs[-1], circle) < 2e-3
     assert logs[0].position.tobytes() == logs[1].position.tobytes()
     file.write_text(odd().replace("rotor4", "fourth"))
@@ -105,7 +105,7 @@ def test_a_centre_of_mass_off_the_origin_is_made_up_for(law, reference, bar, han
     wanted = reference(0)
     assert np.allclose(start.position, wanted.position)
     assert np.allclose(start.linear_velocity, wanted.velocity)
-    log = simulation.run(12, controller=law, reference=reference, wrenches=False, log_every=5)
+    log = simulation.run(12, controller=law, reference=reference, log_every=5)
     assert largest(log, reference, 0) < bar
 
 
@@ -119,7 +119,7 @@ def test_a_cascade_follows_a_yaw_that_turns(law, hangar):
     )
     simulation = hangar(urdf, G, engine="eigen")
     simulation.set_state(references.start(simulation, hover))
-    log = simulation.run(10, controller=law, reference=hover, wrenches=False, log_every=10)
+    log = simulation.run(10, controller=law, reference=hover, log_every=10)
     x, y, z, w = log.orientation.T
     yaw = np.unwrap(np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)))
     assert np.abs(yaw - 0.5 * log.time)[log.time > 5].max() < 1e-3

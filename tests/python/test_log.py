@@ -14,6 +14,7 @@ from quadcore.log import check_log_path
 from quadcore.rotation import roll_pitch_yaw
 
 COLUMNS = "t,x,y,z,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz,j1,j2,j3,j4"
+WRENCH = ("fx", "fy", "fz", "tx", "ty", "tz")
 
 
 @pytest.fixture
@@ -37,13 +38,17 @@ def test_a_csv_log_comes_back_bit_for_bit(tmp_path_factory, table):
 
 
 def test_the_csv_header_names_the_columns(log, tmp_path):
-    log.to_csv(tmp_path / "log.csv")
-    assert (tmp_path / "log.csv").read_text().split("\n")[0] == COLUMNS == ",".join(log.columns)
+    header = COLUMNS
+    for wrenches in ({}, log.wrenches):
+        header += "".join(f",wrench_{name}.{field}" for name in wrenches for field in WRENCH)
+        Log(log.table, wrenches).to_csv(tmp_path / "log.csv")
+        assert (tmp_path / "log.csv").read_text().split("\n")[0] == header
+    assert ",".join(log.columns) == COLUMNS
 
 
 def test_equal_logs_make_equal_csv_bytes(log, tmp_path):
     log.to_csv(tmp_path / "a.csv")
-    Log(log.table.copy(), {}).to_csv(tmp_path / "b.csv")
+    Log(log.table.copy(), log.wrenches).to_csv(tmp_path / "b.csv")
     assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
 
 
@@ -145,9 +150,8 @@ def test_a_log_file_is_read_back_bit_for_bit(log, tmp_path, suffix):
     assert list(back.topics) == ["odom"]
     for field, values in stamped["odom"].items():
         assert np.array_equal(back.topics["odom"][field], values, equal_nan=True)
-    wrenches = log.wrenches if suffix == ".mat" else {}
-    assert set(back.wrenches) == set(wrenches)
-    for name, wrench in wrenches.items():
+    assert list(back.wrenches) == list(log.wrenches)
+    for name, wrench in log.wrenches.items():
         assert np.array_equal(back.wrenches[name], wrench)
 
 

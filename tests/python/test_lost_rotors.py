@@ -48,7 +48,6 @@ def flown(rotor, spins, engine="eigen", detection=0.0, event="weaken: {}, to: 0"
         controller=law,
         on_reference=True,
         log_every=10,
-        wrenches=False,
         **{**usual, **options},
     )
     log = plan.fly()
@@ -131,9 +130,9 @@ def test_the_plugin_is_told_as_the_law_from_python_is(engine):
     shape = qc.references.parse("hover")
     for simulation in (plugged, called):
         simulation.set_state(qc.references.start(simulation, shape, PAIRED))
-    one = plugged.run(1.2, wrenches=False, topics=["health"])
+    one = plugged.run(1.2, topics=["health"])
     geometric = qc.laws.geometric(spins=PAIRED)
-    other = called.run(1.2, controller=geometric, reference=shape, wrenches=False)
+    other = called.run(1.2, controller=geometric, reference=shape)
     assert one.table.tobytes() == other.table.tobytes()
     told, time = one.topics["health"], one.time
     for name, at, left in (("s2", 0.4, 0.0), ("s4", 0.8, 0.8)):

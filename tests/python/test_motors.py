@@ -139,7 +139,7 @@ def test_the_frame_feels_through_its_motor_what_brakes_a_rotor(hangar, engine):
     free = start(free, rotor_velocity=[300]).run(1)
     assert np.abs(free.angular_velocity).max() < 1e-12  # no motor, nothing felt
     driven.command([300])
-    log = driven.run(2)
+    log = driven.run(2, wrenches=True)
     momentum = driven.inertia[2, 2] * log.angular_velocity[:, 2] + MOMENT * log.rotor_velocity[:, 0]
     torque = log.wrenches["reaction"][:, 5]
     assert np.allclose(torque, -LIFT["rotorTorqueCoeff"] * log.rotor_velocity[:, 0] ** 2)

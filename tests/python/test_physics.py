@@ -35,7 +35,7 @@ def hovering(simulation, **members):
 def test_thrust_at_hover_speed_carries_the_weight(hangar, engine):
     simulation = hangar(vehicle(air=CHAPTER2, motor=MOTOR), GRAVITY, engine=engine)
     hovering(simulation).command(BALANCED)
-    log = simulation.run(2)
+    log = simulation.run(2, wrenches=True)
     assert log.wrenches["thrust"][0, 2] == pytest.approx(9.8 * simulation.mass, rel=1e-14)
     assert np.abs(log.position).max() < 1e-11
     assert angle_between(log.orientation[-1:], [[0, 0, 0, 1]]) < 1e-11
@@ -161,7 +161,7 @@ def test_the_logged_wrenches_sum_to_the_motion_that_is_seen(hangar, engine, exac
     urdf = vehicle(ODD, 1, SKEW, COM, {**FLAPPER, "dragModel": model}, MOTOR)
     simulation = hangar(urdf, GRAVITY, WIND, engine=engine, dt=1e-4)
     hovering(simulation, linear_velocity=[1, 2, -1], angular_velocity=[0.2, -0.1, 0.3])
-    log = simulation.run(0.5, DOUBLET)
+    log = simulation.run(0.5, DOUBLET, wrenches=True)
     true = Gyrostat(ODD, 1, SKEW, COM)
 
     turn = Rotation.from_quat(log.orientation)

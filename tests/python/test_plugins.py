@@ -55,7 +55,7 @@ def assert_pushed(engine: str, filename: str) -> None:
     """A vehicle that falls freely moves sideways with force / mass, and the log says why."""
     with_plugin(SIDE_FORCE.format(filename, 0.5))
     simulation = qc.Simulation("toy.urdf", engine=engine)
-    log = simulation.run(0.5)
+    log = simulation.run(0.5, wrenches=True)
     velocity = 0.5 / simulation.mass * log.time
     assert np.allclose(log.linear_velocity[:, 1], velocity, rtol=1e-12, atol=1e-15)
     assert not log.linear_velocity[:, 0].any()
@@ -86,7 +86,7 @@ def test_plugins_by_others_in_one_vehicle_keep_their_own_descriptors(
     monkeypatch.setenv("QUADCORE_PLUGIN_PATH", f"{side_force}:{faulty}")
     side = SIDE_FORCE.format("libside_force_plugin.so", 0.5)
     with_plugin(side + FAULTY.format("faulty", "none", 0))
-    wrenches = qc.Simulation("toy.urdf").run(0.01).wrenches
+    wrenches = qc.Simulation("toy.urdf").run(0.01, wrenches=True).wrenches
     assert {"side_force", "fault"} < set(wrenches)
     assert (wrenches["side_force"][:, 1] == 0.5).all() and not wrenches["fault"].any()
 
@@ -228,7 +228,7 @@ def test_a_plugin_whose_loads_make_no_sense_is_named_and_the_log_stays_whole(
     simulation = bad(fault, 0.0095, engine=engine)
     simulation.command([300])
     with pytest.raises(qc.FlightError) as failed:
-        simulation.run(1)
+        simulation.run(1, wrenches=True)
     assert f" s: plugin 'bad' ({faulty}/libfaulty_plugin.so): {says}" in str(failed.value)
     log = failed.value.log
     assert 10 <= len(log) <= 12

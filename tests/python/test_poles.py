@@ -59,7 +59,7 @@ def test_the_yaw_grows_in_flight_as_its_pole_says():
     state = simulation.state.copy()
     state.angular_velocity[:] = 0, 0, 1e-6
     simulation.set_state(state)
-    log = simulation.run(0.9, controller=law, reference=hover, wrenches=False)
+    log = simulation.run(0.9, controller=law, reference=hover)
     yaw = 2 * log.orientation[:, 2]
     growing = by_axis(law)["yaw"]["poles"][0]
     late = log.time > 0.4
@@ -94,9 +94,7 @@ def test_kd_2_5_alone_fails_at_sim_slow_1_by_its_yaw(slow, fails):
     assert by_axis(law, slow=slow)["yaw"]["stable"] != fails
     simulation = qc.Simulation(engine="eigen", xacro_args={"sim_slow": slow})
     spiral = qc.references.spiral()
-    log = simulation.run(
-        15, controller=law, reference=spiral, on_reference=True, log_every=10, wrenches=False
-    )
+    log = simulation.run(15, controller=law, reference=spiral, on_reference=True, log_every=10)
     away = np.linalg.norm([log.topics["error"][axis] for axis in "xyz"], axis=0)
     turn = np.abs(log.angular_velocity[:, 2])[log.time > 5]
     assert (away.max() > 0.5) == fails

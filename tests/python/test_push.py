@@ -106,7 +106,7 @@ def test_a_push_lasts_its_time_or_until_the_next(engine, hangar):
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_push_by_time_is_logged_from_the_row_on_from_which_it_moves_the_vehicle(engine, hangar):
     simulation = hangar(pushed(pushes=f"0.02 0.03 {text(FORCE)} {text(TORQUE)}"), engine=engine)
-    log = simulation.run(0.1)
+    log = simulation.run(0.1, wrenches=True)
     logged = log.wrenches["push"].any(axis=1)
     moves = np.diff(log.linear_velocity, axis=0).any(axis=1)
     assert list(np.flatnonzero(logged)) == list(range(20, 50))

@@ -100,7 +100,7 @@ simulation.run(0.1)
 pages = int(open("/proc/self/statm").read().split()[0])
 resource.setrlimit(resource.RLIMIT_AS, (pages * 4096 + {} * 2**20, -1))
 try:
-    simulation.run(1e6)
+    simulation.run(1e6, wrenches=True)
 except MemoryError as error:
     log = error.log
     resource.setrlimit(resource.RLIMIT_AS, (-1, -1))
@@ -129,15 +129,22 @@ def grown(*arguments):
     return peak(100) - peak(10)
 
 
-@pytest.mark.parametrize("arguments", [[], ["--log", "log.csv"]])
+@pytest.mark.parametrize("arguments", [[], ["--wrenches", "--log", "log.csv"]])
 def test_a_long_run_takes_no_more_memory_than_a_short_one(arguments):
     assert grown(*arguments) < 10  # 100 s with wrenches are 48 MB
 
 
-def test_a_run_can_leave_out_the_wrenches():
-    log = quadrotor().run(0.1, wrenches=False)
+def test_wrenches_are_logged_when_they_are_asked_for():
+    simulation = quadrotor()
+    log = simulation.run(0.1)
     assert log.wrenches == {}
-    assert np.array_equal(log.table, quadrotor().run(0.1).table)
+    with pytest.raises(qc.InputError, match="ask for them: wrenches=True"):
+        log.wrenches["thrust"]
+    asked = quadrotor().run(0.1, wrenches=True)
+    assert np.array_equal(log.table, asked.table)
+    assert list(asked.wrenches) == simulation.wrench_terms
+    with pytest.raises(qc.InputError, match="'lift' is none of thrust, reaction"):
+        asked.wrenches["lift"]
 
 
 @pytest.mark.parametrize("rows", [1, 2, 20_000, 20_001, 45_000])
@@ -146,7 +153,7 @@ def test_pictures_are_drawn_from_rows_evenly_taken_and_the_last(rows, piece):
     simulation = quadrotor()
     table = np.arange(rows)[:, None] * np.ones((1, 18))
     wrenches = np.arange(rows)[:, None, None] * np.ones((1, len(simulation.wrench_terms), 6))
-    thinned = Thinned(rows, simulation, _core.flight_columns(simulation, []))
+    thinned = Thinned(rows, _core.flight_columns(simulation, []), simulation.wrench_terms)
     for begin in range(0, rows, piece):
         thinned.receive(table[begin : begin + piece], wrenches[begin : begin + piece])
     log = thinned.log()

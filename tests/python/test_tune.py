@@ -32,7 +32,7 @@ def largest(law, reference):
     """Largest distance from a reference over 6 s, m."""
     sim = qc.Simulation("quadrotor", engine="eigen", xacro_args={"sim_slow": 1})
     sim.set_state(qc.references.start(sim, reference))
-    log = sim.run(6.0, controller=law, reference=reference, log_every=10, wrenches=False)
+    log = sim.run(6.0, controller=law, reference=reference, log_every=10)
     wanted = np.array([reference(t).position for t in log.time])
     return np.linalg.norm(log.position - wanted, axis=1).max()
 

@@ -19,9 +19,7 @@ LAWS = ("geometric", "indi", "lqr")
 
 def largest_error(simulation, reference, law, duration, since=0.0):
     simulation.set_state(references.start(simulation, reference))
-    log = simulation.run(
-        duration, controller=law, reference=reference, wrenches=False, log_every=10
-    )
+    log = simulation.run(duration, controller=law, reference=reference, log_every=10)
     wanted = np.array([reference(t).position for t in log.time])
     return np.linalg.norm(log.position - wanted, axis=1)[log.time > since].max()
 
@@ -78,7 +76,7 @@ def test_the_crazyflie_is_as_it_was_measured():
     state = simulation.state.copy()
     state.rotor_velocity = speed * np.array([1.0, -1, 1, -1])
     simulation.set_state(state)
-    log = simulation.run(0.001)
+    log = simulation.run(0.001, wrenches=True)
     assert log.wrenches["thrust"][0, 2] == pytest.approx(4 * thrust, rel=1e-4)
     assert 4 * thrust == pytest.approx(0.027 * 9.81, rel=1e-4)
     # A motor is 63 % of the way to another speed after 1/15.4666 s.
@@ -129,7 +127,7 @@ def test_the_drags_that_are_named_act(drag, acting, lined_up):
     state = simulation.state.copy()
     state.linear_velocity, state.rotor_velocity = [1, 2, 0.5], HOVER.astype(float)
     simulation.set_state(state)
-    wrenches = simulation.run(0.001).wrenches
+    wrenches = simulation.run(0.001, wrenches=True).wrenches
     names = ("induced", "translational", "profile", "parasitic")
     assert {name for name in names if np.abs(wrenches[name][0]).max() > 0} == acting
 

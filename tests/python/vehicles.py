@@ -121,7 +121,7 @@ def start(simulation, **members):
 
 def wrenches(simulation):
     """What each term exerts now: force, then torque about the centre of mass, frame axes."""
-    return {name: rows[0] for name, rows in simulation.run(0).wrenches.items()}
+    return {name: rows[0] for name, rows in simulation.run(0, wrenches=True).wrenches.items()}
 
 
 def upright(hangar, air, rotors=CROSS, spin=(0, 0, 0, 0), v=(0, 0, 0), w=(0, 0, 0), **options):

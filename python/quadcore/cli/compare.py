@@ -39,6 +39,7 @@ def register(commands: Any) -> None:
         type=Path,
         help=f"write report, table, plots and, of up to {_FEW} flights, logs here",
     )
+    options.add_wrenches(parser)
     parser.add_argument("--logs", action="store_true", help="every log in --out, however many")
     parser.add_argument("--no-plots", action="store_true", help="no plots in --out")
 
@@ -69,6 +70,8 @@ def _plan(arguments: argparse.Namespace) -> Plan:
         raise InputError("one model and nothing varied; name another model, or use --vary")
     if arguments.logs and arguments.out is None:
         raise InputError("--logs needs --out")
+    if arguments.wrenches and arguments.out is None:
+        raise InputError("--wrenches needs --out, where the logs are")
     model = options.model_arguments(arguments)
     return Plan(
         model.pop("model"),
@@ -76,7 +79,12 @@ def _plan(arguments: argparse.Namespace) -> Plan:
         arguments.commands,
         arguments.duration,
         arguments.log_every,
-        {**model, **options.flight_arguments(arguments), "scenario": arguments.scenario},
+        {
+            **model,
+            **options.flight_arguments(arguments),
+            "scenario": arguments.scenario,
+            "wrenches": arguments.wrenches,
+        },
     )
 
 

@@ -180,6 +180,13 @@ def add_scenario(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_wrenches(parser: argparse.ArgumentParser) -> None:
+    """Add the option that asks for wrenches."""
+    parser.add_argument(
+        "--wrenches", action="store_true", help="log each force and torque on the vehicle, too"
+    )
+
+
 def add_jobs(parser: argparse.ArgumentParser) -> None:
     """Add the option that limits the processes."""
     parser.add_argument(

@@ -51,6 +51,7 @@ def register(commands: Any) -> None:
         default=[],
         help="topics of plugins to log, too: columns NAME.FIELD",
     )
+    options.add_wrenches(parser)
     parser.add_argument("--no-plots", action="store_true", help="no plots in --out")
 
 
@@ -65,11 +66,13 @@ def run(arguments: argparse.Namespace) -> None:
     if pilot is not None:
         errors = Errors(columns)
         others.append(errors)
+    terms = simulation.wrench_terms if arguments.wrenches else []
     if arguments.out is not None and not arguments.no_plots:
         steps = steps_within(plan.duration, simulation.dt)
-        drawn = Thinned(1 + steps // plan.log_every, simulation, columns)
+        drawn = Thinned(1 + steps // plan.log_every, columns, terms)
         others.append(drawn)
-    logs = [log_file(file, simulation, columns) for file in _log_files(arguments)]
+    files = _log_files(arguments)
+    logs = [log_file(file, columns, terms, simulation.ignored) for file in files]
     recording = Recording(logs, others)
     started = time.perf_counter()
     try:

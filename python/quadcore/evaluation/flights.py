@@ -103,7 +103,6 @@ def flown(described: Callable[[], FlightPlan], most: float, keep: bool = False) 
                     None,
                     flight.log_every,
                     rows.receive,
-                    wrenches=False,
                     pilot=pilot,
                     topics=topics,
                 )

@@ -128,7 +128,7 @@ class Plan:
         )
         self.world = own.pop("world", None)
         world = read_world(self.world, self._ignore)
-        common = {**own, "duration": duration, "wrenches": False, "on_reference": spawn is None}
+        common = {**own, "duration": duration, "on_reference": spawn is None}
         if spawn is not None:
             common["spawn"] = spawn
         read = [self._read(i, ()) for i in range(len(models))]

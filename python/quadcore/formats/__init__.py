@@ -25,7 +25,8 @@ class Format(NamedTuple):
     read_log: Callable[[Path], LogRows]
     """read_log(path): what write_log wrote."""
     log_file: Callable[[Path, Sequence[str], Sequence[str], Sequence[str]], LogFile]
-    """log_file(path, columns, wrench_terms, ignored): a log that is written while it is flown."""
+    """log_file(path, columns, terms, ignored): a log that is written while it is flown, with these
+    wrench terms."""
 
 
 FORMATS: Dict[str, Format] = {

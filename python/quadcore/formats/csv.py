@@ -10,7 +10,15 @@ import numpy as np
 
 from .._core import InputError, csv_rows, log_remark
 from ..files import Appended, atomic_write, read_text
-from .rows import LogRows, Table, check_log_columns, check_log_rows
+from .rows import (
+    LogRows,
+    Table,
+    check_log_columns,
+    check_log_rows,
+    with_wrenches,
+    wrench_columns,
+    wrenches_at_the_end,
+)
 
 _LARGEST = 10**9  # bytes; of commands more than three hours at 1 kHz
 _PIECE = 4096  # rows
@@ -46,13 +54,16 @@ def read_log(path: Path) -> LogRows:
     header, *lines = read_text(path, _LARGEST).rstrip().splitlines() or [""]
     columns = header.split(",")
     of_state = check_log_columns(f"{path}:1", columns)
+    terms = wrenches_at_the_end(columns)
     ignored: Sequence[str] = ()
     if lines and lines[0].startswith(_REMARK):
         ignored = lines.pop(0)[len(_REMARK) :].split(", ")
     first = 3 if ignored else 2
     rows = _numbers(path, lines, first, len(columns))
     check_log_rows(lambda row: f"{path}:{first + row}", rows, of_state)
-    return LogRows(columns, rows, {}, ignored)
+    own = len(columns) - 6 * len(terms)
+    wrenches = {name: rows[:, own + 6 * i :][:, :6] for i, name in enumerate(terms)}
+    return LogRows(columns[:own], rows[:, :own], wrenches, ignored)
 
 
 def _numbers(path: Path, lines: Sequence[str], first: int, width: int) -> np.ndarray:
@@ -75,34 +86,35 @@ def write_log(
     path: Path,
     columns: Sequence[str],
     table: np.ndarray,
-    _: Mapping[str, np.ndarray],
+    wrenches: Mapping[str, np.ndarray],
     ignored: Sequence[str],
 ) -> None:
-    """Write a log with 17 significant digits, so that reading restores every bit."""
+    """Write a log with the fewest digits that restore every bit."""
     with atomic_write(path) as stream:
-        stream.write(_head(columns, ignored))
+        stream.write(_head(columns, list(wrenches), ignored))
         for begin in range(0, len(table), _PIECE):
-            stream.write(csv_rows(table[begin : begin + _PIECE]))
+            piece = slice(begin, begin + _PIECE)
+            acting = [wrench[piece] for wrench in wrenches.values()]
+            stream.write(csv_rows(np.hstack([table[piece], *acting]) if acting else table[piece]))
 
 
 class CsvFile:
     """A log that is written as it is flown, and complete up to its last row at any time."""
 
-    wrenches = False
-
     def __init__(
-        self, path: Path, columns: Sequence[str], _: Sequence[str], ignored: Sequence[str]
+        self, path: Path, columns: Sequence[str], terms: Sequence[str], ignored: Sequence[str]
     ) -> None:
         self.path = path
-        self._head = _head(columns, ignored)
+        self.wrenches = bool(terms)
+        self._head = _head(columns, terms, ignored)
         self._file: Optional[Appended] = None
 
-    def receive(self, table: np.ndarray, _: np.ndarray) -> None:
+    def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
         """Write a piece."""
         if self._file is None:  # not sooner: a flight that is refused leaves an older log alone
             self._file = Appended(self.path)
             self._file.write(self._head)
-        self._file.write(csv_rows(table))
+        self._file.write(csv_rows(with_wrenches(table, wrenches if self.wrenches else None)))
 
     def close(self) -> None:
         """Close the file."""
@@ -110,6 +122,6 @@ class CsvFile:
             self._file.close()
 
 
-def _head(columns: Sequence[str], ignored: Sequence[str]) -> bytes:
+def _head(columns: Sequence[str], terms: Sequence[str], ignored: Sequence[str]) -> bytes:
     """First line, and what was ignored."""
-    return (",".join(columns) + log_remark(ignored) + "\n").encode()
+    return (",".join([*columns, *wrench_columns(terms)]) + log_remark(ignored) + "\n").encode()

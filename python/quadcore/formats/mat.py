@@ -12,7 +12,7 @@ import numpy as np
 from .._core import InputError, QuadcoreError, log_columns
 from ..files import atomic_write, check_regular, unwritable
 from ..forks import LOCK
-from .rows import LogRows, Table, check_log_columns, check_log_rows, split_columns
+from .rows import LogRows, Table, check_log_columns, check_log_rows, split_columns, with_wrenches
 
 _OF_PATH = ("t", "x", "y", "z")
 _MOST_VALUES = 10**7  # of a variable; of commands more than three hours at 1 kHz
@@ -168,12 +168,11 @@ class MatFile:
     It lies beside the log, where there must be room for the log as well.
     """
 
-    wrenches = True
-
     def __init__(
         self, path: Path, columns: Sequence[str], terms: Sequence[str], ignored: Sequence[str]
     ) -> None:
         self.path = path
+        self.wrenches = bool(terms)
         self._columns, self._terms, self._ignored = columns, terms, ignored
         self._count = 0
         try:
@@ -183,7 +182,7 @@ class MatFile:
 
     def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
         """Keep a piece."""
-        rows = np.hstack([table, wrenches.reshape(len(table), 6 * len(self._terms))])
+        rows = with_wrenches(table, wrenches if self.wrenches else None)
         try:
             self._rows.write(rows.tobytes())
             self._rows.flush()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Callable, Dict, Mapping, NamedTuple, Protocol, Sequence, Tuple
+from typing import Callable, Dict, List, Mapping, NamedTuple, Optional, Protocol, Sequence, Tuple
 
 import numpy as np
 
@@ -11,6 +11,8 @@ from .._core import InputError, log_columns
 
 _ROUNDNESS = 1e-2
 """By which the length of a quaternion may differ from 1 in logs with few digits."""
+
+_WRENCH = ("fx", "fy", "fz", "tx", "ty", "tz")
 
 
 class Table(NamedTuple):
@@ -58,6 +60,30 @@ def split_columns(columns: Sequence[str], rows: np.ndarray) -> Tuple[Sequence[st
         if is_topic:
             topics.setdefault(topic, {})[field] = rows[:, i]
     return columns[: len(columns) - sum(map(len, topics.values()))], topics
+
+
+def wrench_columns(terms: Sequence[str]) -> List[str]:
+    """Name the columns of wrenches where they stand in rows: behind all others, six of each."""
+    return [f"wrench_{term}.{field}" for term in terms for field in _WRENCH]
+
+
+def wrenches_at_the_end(columns: Sequence[str]) -> List[str]:
+    """Name the wrenches whose columns are the last of these."""
+    terms: List[str] = []
+    for end in range(len(columns), len(_WRENCH) - 1, -len(_WRENCH)):
+        six = list(columns[end - len(_WRENCH) : end])
+        term = six[0].partition(".")[0][len("wrench_") :]
+        if six != wrench_columns([term]):
+            break
+        terms.insert(0, term)
+    return terms
+
+
+def with_wrenches(table: np.ndarray, wrenches: Optional[np.ndarray]) -> np.ndarray:
+    """Put wrenches (rows, terms, 6), if any, behind the columns of a table (rows, columns)."""
+    if wrenches is None:
+        return table
+    return np.hstack([table, wrenches.reshape(len(table), len(_WRENCH) * wrenches.shape[1])])
 
 
 def check_log_columns(place: str, columns: Sequence[str]) -> int:

@@ -89,7 +89,7 @@ class Problem:
             raise InputError("tuning needs a model, a reference, and a reference that is held out")
         where = {"on_reference": True} if spawn is None else {"spawn": spawn}
         self._plans = {
-            shown(model): FlightPlan.of(model, **options, **where, wrenches=False)
+            shown(model): FlightPlan.of(model, **options, **where)
             for model in [*models, *held_out_models]
         }
         self.vehicle = next(iter(self._plans.values())).model.name
@@ -166,7 +166,6 @@ class Problem:
         return simulation.run(
             plan.duration,
             log_every=plan.log_every,
-            wrenches=False,
             controller=plan.controller,
             reference=plan.reference,
         )

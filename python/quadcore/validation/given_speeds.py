@@ -115,5 +115,5 @@ def fly_given_speeds(
     """
     pilot = GivenSpeeds(vehicle, commands, lag, duration, simulation.dt)
     rows = Rows(simulation, columns_of(simulation))
-    fly(simulation, duration, None, log_every, rows.receive, wrenches=False, pilot=pilot)
+    fly(simulation, duration, None, log_every, rows.receive, pilot=pilot)
     return rows.log()
