@@ -259,4 +259,6 @@ class BatchSimulation(_core.Batch):
         seeds = np.asarray(seed)
         if seeds.shape != (self.n,):
             raise InputError(f"seed holds no {self.n} whole numbers; give one for each, or one")
+        if seeds.dtype == np.uint64:
+            return seeds
         return np.array([whole(number) for number in seeds], np.uint64)

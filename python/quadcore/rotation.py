@@ -25,6 +25,27 @@ def roll_pitch_yaw(orientation: np.ndarray) -> np.ndarray:
     return np.stack([roll, pitch, yaw], axis=-1)
 
 
+def matrix(orientation: np.ndarray) -> np.ndarray:
+    """Give the matrices R_WF that turn vectors from frame axes to world axes.
+
+    Parameters
+    ----------
+    orientation : ndarray, shape (..., 4)
+        Unit quaternions x, y, z, w of the frame in the world.
+
+    Returns
+    -------
+    ndarray, shape (..., 3, 3)
+    """
+    x, y, z, w = np.moveaxis(np.asarray(orientation, dtype=float), -1, 0)
+    entries = [
+        *[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        *[2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        *[2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.stack(entries, axis=-1).reshape((*x.shape, 3, 3))
+
+
 def turned(orientation: np.ndarray, angle: np.ndarray) -> np.ndarray:
     """Turn a body about an axis of its own.
 

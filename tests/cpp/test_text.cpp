@@ -74,13 +74,15 @@ std::string shortest(double number) {
   return text;
 }
 
-/// Digits without sign, point, leading zeros and exponent.
+/// Digits without sign, point, exponent, and the zeros around them.
 std::size_t digits_of(const std::string& text) {
-  std::size_t count = 0;
+  std::size_t count = 0, zeros = 0;
   for (const char c : text.substr(0, text.find('e'))) {
-    if (c >= '0' && c <= '9' && (c != '0' || count > 0)) ++count;
+    if (c < '0' || c > '9') continue;
+    zeros = c == '0' ? zeros + (count > 0) : 0;
+    count += c != '0' || count > 0;
   }
-  return count;
+  return count - zeros;
 }
 
 }  // namespace

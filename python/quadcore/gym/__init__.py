@@ -1,0 +1,32 @@
+"""Environments of Gymnasium: fly to a goal and stay there.
+
+`Env` is one `Simulation`, `VectorEnv` one `BatchSimulation`; both are registered as
+``quadcore/Hover-v0`` when this module is imported. What is observed and rewarded is chosen by name
+from `OBSERVATIONS` and `REWARDS`.
+"""
+
+from .._core import InputError
+
+try:
+    from gymnasium.vector import AutoresetMode  # noqa: F401  (1.1 was the first to have it)
+except ImportError:
+    raise InputError(
+        "quadcore.gym needs the package gymnasium, 1.1 or newer; install it: "
+        "pip install 'quadcore[gym]'"
+    ) from None
+
+import gymnasium
+
+from .env import Env
+from .observations import OBSERVATIONS
+from .rewards import REWARDS
+from .vector_env import VectorEnv
+
+NAME = "quadcore/Hover-v0"
+"""For `gymnasium.make` and `gymnasium.make_vec`."""
+
+gymnasium.register(
+    NAME, entry_point="quadcore.gym:Env", vector_entry_point="quadcore.gym:VectorEnv"
+)
+
+__all__ = ["NAME", "OBSERVATIONS", "REWARDS", "Env", "VectorEnv"]

@@ -1,0 +1,44 @@
+"""What can be observed, by name."""
+
+from __future__ import annotations
+
+from typing import Callable, Dict, NamedTuple
+
+import numpy as np
+
+from .situation import Situation
+
+
+class Observation(NamedTuple):
+    """Numbers about each vehicle."""
+
+    meaning: str
+    """With axes and units."""
+    of: Callable[[Situation], np.ndarray]
+    """Rows of numbers, (n, count)."""
+    bound: float = float(np.finfo(np.float32).max)
+    """That none exceeds; finite, as Gymnasium wants it."""
+
+
+OBSERVATIONS: Dict[str, Observation] = {
+    "error": Observation("from the goal to the vehicle, world axes, m", lambda s: s.error),
+    "body_error": Observation(
+        "the same in body axes, m", lambda s: np.einsum("nji,nj->ni", s.R_WF, s.error)
+    ),
+    "rotation": Observation(
+        "matrix that turns vectors from body to world axes, row by row",
+        lambda s: s.R_WF.reshape(len(s.R_WF), 9),
+        1.0,
+    ),
+    "up": Observation("the world's z axis, body axes", lambda s: s.R_WF[:, 2], 1.0),
+    "velocity": Observation("of the frame's origin, world axes, m/s", lambda s: s.linear_velocity),
+    "body_velocity": Observation(
+        "the same in body axes, m/s",
+        lambda s: np.einsum("nji,nj->ni", s.R_WF, s.linear_velocity),
+    ),
+    "rates": Observation("angular velocity, body axes, rad/s", lambda s: s.angular_velocity),
+    "rotors": Observation(
+        "joint velocities as the engine has them, rad/s", lambda s: s.rotor_velocity
+    ),
+    "action": Observation("the last action", lambda s: s.action, 1.0),
+}
