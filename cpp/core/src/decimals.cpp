@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 
 #include "quadcore/text.hpp"
 
@@ -43,7 +44,9 @@ void write_scientific(double number, char (&text)[longest]) {
 #else
   // Standard libraries before GCC 11's: slower, and of some powers of two a digit longer.
   const PlainNumbers plain;
-  for (const int digits : {15, 16, 17}) {
+  // Every number of 15 digits reads back, but for those that are no longer normal.
+  const bool normal = number == 0 || std::abs(number) >= std::numeric_limits<double>::min();
+  for (int digits = normal ? 15 : 1; digits <= 17; ++digits) {
     std::snprintf(text, longest, "%.*e", digits - 1, number);
     if (std::strtod(text, nullptr) == number) break;
   }
