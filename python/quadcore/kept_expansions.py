@@ -42,6 +42,13 @@ def content(path: str) -> Optional[bytes]:
         return None
 
 
+def _working_folder() -> str:
+    try:
+        return os.getcwd()
+    except OSError:  # it was removed
+        return ""
+
+
 class _Entry(NamedTuple):
     outside: Outside
     expansion: Any
@@ -55,7 +62,7 @@ class Kept(Generic[Expansion]):
 
     def get(self, key: Any, expand: Callable[[Outside], Expansion]) -> Expansion:
         """Give what is kept, if all that it asked outside is as it was; else expand(outside)."""
-        key = (os.getcwd(), key)
+        key = (_working_folder(), key)
         entry = self._entries.pop(key, None)
         if entry is None or not entry.outside.is_the_same():
             outside = Outside()

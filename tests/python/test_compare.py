@@ -117,10 +117,11 @@ def test_numbers_written_otherwise_and_order_are_no_difference_but_that_of_joint
 # What is flown
 
 
+@pytest.mark.parametrize("wrenches", [[], ["--wrenches"]], ids=["bare", "wrenches"])
 @pytest.mark.parametrize("engine", [name for name, _ in qc.engines()])
-def test_an_edit_and_vary_and_run_give_the_same_bytes(engine):
+def test_an_edit_and_vary_and_run_give_the_same_bytes(engine, wrenches):
     edited("b.urdf", "<kp>5e-4</kp>", "<kp>0.00123</kp>")
-    flight = ["--engine", engine, *FLIGHT[2:], "--quiet", "--no-plots"]
+    flight = ["--engine", engine, *FLIGHT[2:], "--quiet", "--no-plots", *wrenches]
     assert main(["compare", "toy.urdf", "b.urdf", *flight, "--out", "e"]) == 0
     vary = ["--vary", "motor.kp=5e-4,0.00123"]
     assert main(["compare", "toy.urdf", *vary, *flight, "--out", "v"]) == 0
@@ -131,6 +132,7 @@ def test_an_edit_and_vary_and_run_give_the_same_bytes(engine):
         )
     assert Path("v/logs/2.csv").read_bytes() == Path("r/log.csv").read_bytes()
     assert Path("v/logs/1.csv").read_bytes() != Path("v/logs/2.csv").read_bytes()
+    assert bool(qc.Log.of_file("v/logs/2.csv").wrenches) == bool(wrenches)
 
 
 def test_a_grid_of_tags_engines_and_worlds_in_the_order_given():

@@ -44,6 +44,7 @@ from quadcore.cli import main
         ("toy.urdf quadrotor --commands c.csv", "quadrotor: has 4 rotors, toy.urdf has 1"),
         ("toy.urdf --vary motor.kp=1 --commands nope.csv", "nope.csv: cannot be read"),
         ("toy.urdf --vary motor.kp=1 --logs", "--logs needs --out"),
+        ("toy.urdf --vary motor.kp=1 --wrenches", "--wrenches needs --out"),
         ("toy.urdf --vary motor.kp=1 --out c.csv", "c.csv: cannot be made"),
         ("toy.urdf --vary motor.kp=1 --jobs 0", "--jobs: '0' is not a whole number"),
         ("toy.urdf --vary motor.kp", "is not of the form"),
