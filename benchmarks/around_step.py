@@ -12,7 +12,7 @@ from quadcore import resources
 from quadcore.description import load_description
 
 STEPS = 20_000
-BARS = {  # as the issue of speed set them
+BARS = {
     "import quadcore, with numpy, ms": 120,
     "a xacro that has not changed : expanded": 0.1,
     "a Simulation of a model already read, ms": 0.3,

@@ -96,7 +96,7 @@ def fly(
             table, wrenches = flight.take()
             receive(table if pilot is None else pilot.beside(table), wrenches)
 
-    done, steps = 0, 1
+    done, steps, told = 0, 1, 0.0
     try:
         while done < total:
             hand_over()
@@ -104,10 +104,12 @@ def fly(
             started = time.perf_counter()
             advance(steps)
             done += steps
-            if time.perf_counter() - started < _PIECE:
+            now = time.perf_counter()
+            if now - started < _PIECE:
                 steps *= 2
-            if progress is not None:
+            if progress is not None and (now - told >= _PIECE or done == total):
                 progress(done, total)
+                told = now
     finally:
         hand_over()
 
