@@ -86,6 +86,7 @@ def main():
     sim = qc.Simulation("quadrotor", engine="eigen", xacro_args={"sim_slow": 1})
     with tempfile.TemporaryDirectory() as folder:
         found["import quadcore, with numpy, ms"] = median(whole for _, whole in imports)
+        found["the same : import numpy"] = median(whole / alone for alone, whole in imports)
         found["a xacro that has not changed : expanded"] = median(
             again / first for again, first in expansions(folder, rounds)
         )
@@ -103,7 +104,6 @@ def main():
     for what, measured in found.items():
         bar = next((bar for name, bar in BARS.items() if what.startswith(name)), None)
         print(f"{what:52s} {measured:8.3f}" + (f"   at most {bar}" if bar else ""))
-    print(f"of the import, numpy's, ms {median(alone for alone, _ in imports):34.3f}")
 
 
 main()

@@ -216,6 +216,8 @@ def test_wrong_actions_and_options_are_told(make):
     with pytest.raises(qc.InputError, match="no option 'wind'"):
         env.reset(options={"wind": 1})
     env.reset(seed=0)
+    with pytest.raises(qc.InputError, match=r"array of \("):
+        env.step(zero[..., 1:])
     for wrong in (zero + 1.01, zero + np.nan):
         with pytest.raises(qc.InputError, match="clip it"):
             env.step(wrong)

@@ -99,8 +99,12 @@ class Task:
         Raises
         ------
         InputError
-            One outside of [-1, 1]: nothing is clamped unasked.
+            Others than one for each rotor, or one outside of [-1, 1]: nothing is clamped unasked.
         """
+        if actions.ndim != 2 or actions.shape[1] != len(self.hover):
+            raise InputError(
+                f"an action is an array of {actions.shape[1:]}; give {self.hover.shape}"
+            )
         if not (np.abs(actions) <= 1).all():
             raise InputError(
                 "an action is not within [-1, 1]; clip it, as gymnasium.wrappers.ClipAction does"
