@@ -73,9 +73,12 @@ def add_flight(
     several_engines: bool = False,
     log_every: int | None = 1,
     flown: Sequence[tuple[str, str]] = tuple(engines()),
-    seconds: float = 10.0,
+    seconds: float | None = 10.0,
 ) -> None:
-    """Add the options of everything that flies; some differ between commands."""
+    """Add the options of everything that flies; some differ between commands.
+
+    Without `seconds` there is no --duration.
+    """
     names = [name for name, _ in flown]
     summaries = "; ".join(f"{name}: {summary}" for name, summary in flown)
     if several_engines:
@@ -86,13 +89,14 @@ def add_flight(
         parser.add_argument("--engine", choices=names, default="gazebo11", help=summaries)
     parser.add_argument("--world", metavar="FILE", help="world file or shipped world (empty)")
     parser.add_argument("--dt", metavar="S", type=values.positive, help="step in s (the world's)")
-    parser.add_argument(
-        "--duration",
-        metavar="S",
-        type=values.positive,
-        default=seconds,
-        help=f"time to fly in s ({seconds:g})",
-    )
+    if seconds is not None:
+        parser.add_argument(
+            "--duration",
+            metavar="S",
+            type=values.positive,
+            default=seconds,
+            help=f"time to fly in s ({seconds:g})",
+        )
     parser.add_argument(
         "--seed",
         metavar="N",
@@ -184,6 +188,17 @@ def add_wrenches(parser: argparse.ArgumentParser) -> None:
     """Add the option that asks for wrenches."""
     parser.add_argument(
         "--wrenches", action="store_true", help="log each force and torque on the vehicle, too"
+    )
+
+
+def add_log_topics(parser: argparse.ArgumentParser) -> None:
+    """Add the option that names topics to log."""
+    parser.add_argument(
+        "--log-topics",
+        metavar="NAME,NAME",
+        type=values.names,
+        default=[],
+        help="topics of plugins to log, too: columns NAME.FIELD",
     )
 
 

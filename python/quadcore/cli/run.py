@@ -22,7 +22,7 @@ from ..plants import plants
 from ..recording import TAIL, Errors, Fastest, Recording, Thinned
 from ..rotation import roll_pitch_yaw
 from ..simulation import Simulation
-from . import options, terminal, values
+from . import options, terminal
 
 
 def register(commands: Any) -> None:
@@ -44,13 +44,7 @@ def register(commands: Any) -> None:
         default=[],
         help="write the log here, .csv or .mat; repeatable",
     )
-    parser.add_argument(
-        "--log-topics",
-        metavar="NAME,NAME",
-        type=values.names,
-        default=[],
-        help="topics of plugins to log, too: columns NAME.FIELD",
-    )
+    options.add_log_topics(parser)
     options.add_wrenches(parser)
     parser.add_argument("--no-plots", action="store_true", help="no plots in --out")
 

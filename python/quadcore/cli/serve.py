@@ -1,0 +1,78 @@
+"""``quadcore serve``: flights driven from outside."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any, Sequence
+
+from ..flight import columns_of
+from ..flight_plan import FlightPlan
+from ..formats.rows import LogFile
+from ..log import check_log_path, log_file
+from ..serve import Server
+from ..simulation import Simulation
+from . import options, terminal, values
+
+
+def register(commands: Any) -> None:
+    """Add the command to the command line."""
+    parser = options.subparser(
+        commands, "serve", "Let a program drive a flight over a local socket, in lockstep.", serve
+    )
+    options.add_model(parser)
+    options.add_flight(parser, seconds=None)
+    options.add_scenario(parser)
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument(
+        "--port",
+        metavar="N",
+        type=values.integer(0, 65535),
+        default=0,
+        help="port of 127.0.0.1 (any that is free)",
+    )
+    where.add_argument("--socket", metavar="PATH", help="path of a unix socket to make")
+    parser.add_argument(
+        "--log",
+        metavar="FILE",
+        type=Path,
+        help="write the log of the first flight here, .csv or .mat, and of others to NAME-2 ...",
+    )
+    options.add_log_topics(parser)
+
+
+def serve(arguments: argparse.Namespace) -> None:
+    """Serve clients until a signal comes."""
+    plan = FlightPlan.of(
+        **options.model_arguments(arguments),
+        **options.flight_arguments(arguments),
+        scenario=arguments.scenario,
+    )
+    simulation = plan.simulation()
+    address = arguments.port if arguments.socket is None else arguments.socket
+    topics = arguments.log_topics
+    record = None
+    if arguments.log is not None:
+        check_log_path(arguments.log)
+        record = _Logs(arguments.log, simulation, columns_of(simulation, topics)).begin
+    with Server(simulation, address, topics, record, arguments.log_every) as server:
+        if not arguments.quiet:
+            print(f"serving {simulation.model.name} at {server.address}", flush=True)
+        server.serve(terminal.say)
+
+
+class _Logs:
+    """A file for each flight: NAME.csv, NAME-2.csv ..."""
+
+    def __init__(self, first: Path, simulation: Simulation, columns: Sequence[str]) -> None:
+        self._first, self._simulation, self._columns = first, simulation, columns
+        self._begun = 0
+
+    def begin(self) -> LogFile:
+        """Open the next."""
+        self._begun += 1
+        name = self._first.name if self._begun == 1 else self._numbered()
+        return log_file(self._first.with_name(name), self._simulation, self._columns)
+
+    def _numbered(self) -> str:
+        return f"{self._first.stem}-{self._begun}{self._first.suffix}"

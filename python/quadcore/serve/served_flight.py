@@ -1,0 +1,122 @@
+"""A flight that goes on as it is asked to."""
+
+from __future__ import annotations
+
+from typing import Callable, List, Optional, Sequence
+
+import numpy as np
+
+from .. import _core
+from ..formats.rows import Recorder
+from ..simulation import Simulation
+
+_PIECE = 1000  # steps whose rows are held at once
+_MOST_STEPS = 1_000_000_000
+
+
+class ServedFlight:
+    """The flights of a client, one after the other, each from the start of the simulation.
+
+    Parameters
+    ----------
+    simulation, topics, record, log_every
+        As of `Server`.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        topics: Sequence[str],
+        record: Optional[Callable[[], Recorder]],
+        log_every: int,
+    ) -> None:
+        self._simulation, self._topics = simulation, topics
+        self._record, self._log_every = record, log_every
+        self._recorder: Optional[Recorder] = None
+        self._failure: Optional[_core.FlightError] = None
+        self._begin(None)
+
+    def step(self, numbers: Sequence[float]) -> List[float]:
+        """Fly on; gives the row at the end.
+
+        Parameters
+        ----------
+        numbers
+            How many steps, and a command (rad/s) or none.
+
+        Raises
+        ------
+        InputError
+            They are at fault; nothing has changed.
+        FlightError
+            The flight failed, now or before.
+        """
+        if not numbers:
+            raise _core.InputError("a step needs the number of steps, and a command or none")
+        steps = _whole(numbers[0], "the number of steps", _MOST_STEPS)
+        if self._failure is not None:
+            raise self._failure
+        if len(numbers) > 1:
+            self._simulation.command(numbers[1:])
+        try:
+            for done in range(0, steps, _PIECE):
+                self._flight.advance(min(_PIECE, steps - done))
+                self._take()
+        except _core.FlightError as error:
+            self._failure = error
+            self._take()
+            raise
+        return self._row
+
+    def reset(self, numbers: Sequence[float]) -> List[float]:
+        """Begin another flight; gives its first row.
+
+        Parameters
+        ----------
+        numbers
+            A seed, or nothing: that of the flight before.
+        """
+        if len(numbers) > 1:
+            raise _core.InputError(f"a reset takes a seed or nothing, not {len(numbers)} numbers")
+        seed = _whole(numbers[0], "the seed", 2**53) if numbers else None
+        self.close()
+        self._begin(seed)
+        return self._row
+
+    def close(self) -> None:
+        """Finish what is recorded."""
+        recorder, self._recorder = self._recorder, None
+        if recorder is not None:
+            recorder.close()
+
+    def _begin(self, seed: Optional[int]) -> None:
+        self._simulation.reset(seed)
+        self._flight = _core.Flight(self._simulation, None, 1, False, self._topics)
+        self._failure = None
+        self._rows = 0
+        self._take()
+
+    def _take(self) -> None:
+        table, wrenches = self._flight.take()
+        if len(table) == 0:
+            return
+        self._row: List[float] = table[-1].tolist()
+        begins = self._rows == 0
+        logged = table[-self._rows % self._log_every :: self._log_every]
+        self._rows += len(table)
+        if self._record is None:
+            return
+        if begins:
+            self._first = logged, wrenches
+            return
+        if self._recorder is None:  # a flight that was not flown leaves nothing
+            self._recorder = self._record()
+            self._recorder.receive(*self._first)
+        if len(logged):
+            self._recorder.receive(logged, wrenches)
+
+
+def _whole(number: float, what: str, largest: int) -> int:
+    if not (np.isfinite(number) and 0 <= number <= largest and number == int(number)):
+        raise _core.InputError(f"{what} is {number:g}; give a whole number from 0 to {largest}")
+    return int(number)

@@ -1,0 +1,162 @@
+"""Serves flights of one simulation, to one client after the other."""
+
+from __future__ import annotations
+
+import os
+import socket
+import stat
+from typing import Callable, List, Optional, Sequence, Tuple, Union
+
+from .. import _core
+from ..flight import columns_of
+from ..formats.rows import Recorder
+from ..simulation import Simulation
+from . import protocol
+from .protocol import ProtocolError, Reply, Request
+from .served_flight import ServedFlight
+
+
+class Server:
+    """A socket on this machine, behind which a vehicle flies in lockstep with its client.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        What flies; each client finds it at its start.
+    address : int or str
+        Port of 127.0.0.1, 0 for any that is free, or the path of a unix socket to make.
+    topics : sequence of str
+        Names of topics whose columns follow those of the state in each row.
+    record : callable, optional
+        Called as each flight begins; returns what takes its rows.
+    log_every : int
+        Steps between recorded rows.
+
+    Attributes
+    ----------
+    address : str
+        Where it listens.
+
+    Raises
+    ------
+    InputError
+        The address is taken, or a topic is none.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        address: Union[int, str] = 0,
+        topics: Sequence[str] = (),
+        record: Optional[Callable[[], Recorder]] = None,
+        log_every: int = 1,
+    ) -> None:
+        self._simulation, self._topics = simulation, list(topics)
+        self._record, self._log_every = record, log_every
+        self.columns = columns_of(simulation, topics)
+        self._socket, self._path = _listen(address)
+        if self._path is None:
+            self.address = "{}:{}".format(*self._socket.getsockname())
+        else:
+            self.address = self._path
+
+    def serve(self, tell: Callable[[str], None], clients: Optional[int] = None) -> None:
+        """Serve so many clients, or whoever comes, one after the other.
+
+        Parameters
+        ----------
+        tell
+            Called with a line about each client whose messages are none.
+        """
+        served = 0
+        while served != clients:
+            connection, _ = self._socket.accept()
+            served += 1
+            with connection:
+                try:
+                    self._serve(connection)
+                except (ProtocolError, ConnectionError) as error:
+                    tell(f"client {served}: {error}")
+
+    def close(self) -> None:
+        """Listen no longer."""
+        self._socket.close()
+        if self._path is not None:
+            os.unlink(self._path)
+            self._path = None
+
+    def __enter__(self) -> Server:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def _serve(self, connection: socket.socket) -> None:
+        if connection.family != socket.AF_UNIX:
+            connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        flown = ServedFlight(self._simulation, self._topics, self._record, self._log_every)
+        try:
+            while True:
+                try:
+                    kind, numbers = protocol.read(connection.recv)
+                except EOFError:
+                    return
+                except ProtocolError as error:
+                    connection.sendall(_text(Reply.REFUSED, str(error)))
+                    raise
+                connection.sendall(self._answer(flown, Request(kind), numbers))
+        finally:
+            flown.close()
+
+    def _answer(self, flown: ServedFlight, kind: Request, numbers: Sequence[float]) -> bytes:
+        try:
+            if kind == Request.HELLO:
+                return protocol.pack(Reply.DONE, self._greet(numbers))
+            if kind == Request.COLUMNS:
+                return _text(Reply.DONE, ",".join(self.columns))
+            if kind == Request.STEP:
+                return protocol.pack(Reply.DONE, flown.step(numbers))
+            return protocol.pack(Reply.DONE, flown.reset(numbers))
+        except _core.InputError as error:
+            return _text(Reply.REFUSED, str(error))
+        except _core.FlightError as error:
+            return _text(Reply.FAILED, str(error))
+
+    def _greet(self, numbers: Sequence[float]) -> List[float]:
+        if list(numbers) != [protocol.VERSION]:
+            said = ", ".join(f"{number:g}" for number in numbers) or "nothing"
+            raise _core.InputError(
+                f"the client speaks version {said} of the protocol; this is {protocol.VERSION}"
+            )
+        simulation = self._simulation
+        return [protocol.VERSION, simulation.dt, simulation.command_width, len(self.columns)]
+
+
+def _text(reply: Reply, text: str) -> bytes:
+    return protocol.pack(reply, protocol.numbers_of(text))
+
+
+def _listen(address: Union[int, str]) -> Tuple[socket.socket, Optional[str]]:
+    """Open a socket; returns it and the path that it made."""
+    listening = socket.socket(socket.AF_INET if isinstance(address, int) else socket.AF_UNIX)
+    try:
+        if isinstance(address, int):
+            listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            listening.bind(("127.0.0.1", address))
+        else:
+            _remove_dead(address)
+            listening.bind(address)
+        listening.listen()
+    except (OSError, OverflowError) as error:
+        listening.close()
+        raise _core.InputError(f"cannot listen at {address}: {error}; give another") from None
+    return listening, None if isinstance(address, int) else address
+
+
+def _remove_dead(path: str) -> None:
+    """Remove the socket of a server that was killed."""
+    if not (os.path.exists(path) and stat.S_ISSOCK(os.stat(path).st_mode)):
+        return
+    with socket.socket(socket.AF_UNIX) as probe:
+        if probe.connect_ex(path) != 0:
+            os.unlink(path)

@@ -1,0 +1,227 @@
+"""Flights that a client drives over a socket."""
+
+import os
+import re
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import threading
+
+import numpy as np
+import pytest
+
+import quadcore as qc
+from quadcore.serve import Client, Server, ServerError
+
+SPEEDS = ([480.0, -470.0, 490.0, -475.0], [470.0, -480.0, 480.0, -490.0])
+NOISY = {"odometry.positionNoise": "0.01"}
+FAST = {"max_velocity": "1e6"}
+
+
+@pytest.fixture
+def served():
+    """An address, and what the server says of its clients."""
+    simulation = qc.Simulation("quadrotor", engine="eigen", parameters=NOISY, xacro_args=FAST)
+    said = []
+    with Server(simulation, topics=["odom"]) as server:
+        thread = threading.Thread(target=server.serve, args=(said.append,), daemon=True)
+        thread.start()
+        yield int(server.address.rpartition(":")[2]), said
+
+
+def ends(said):
+    """Whether the server has said something."""
+    for _ in range(2000):
+        if said:
+            return True
+        threading.Event().wait(0.01)
+    return False
+
+
+def in_process(seed=0, steps=(3, 7)):
+    sim = qc.Simulation("quadrotor", engine="eigen", parameters=NOISY, seed=seed)
+    rows = []
+    for speeds, count in zip(SPEEDS, steps):
+        sim.command(speeds)
+        log = sim.run(count * sim.dt, topics=["odom"])
+        odometry = [column[-1] for column in log.topics["odom"].values()]
+        rows.append([*log.table[-1], *odometry])
+    return rows
+
+
+def test_a_served_flight_is_the_one_in_the_process_to_the_last_bit(served):
+    port, _ = served
+    with Client(port) as client:
+        rows = [client.step(speeds, steps) for speeds, steps in zip(SPEEDS, (3, 7))]
+        assert (client.dt, client.rotors) == (0.001, 4)
+        names = client.columns
+    np.testing.assert_array_equal(rows, in_process())
+    assert names[:4] == ["t", "x", "y", "z"] and "odom.x" in names
+
+
+def test_each_client_and_each_reset_begins_anew(served):
+    port, _ = served
+    with Client(port) as client:
+        first = client.step(SPEEDS[0], 50)
+        client.reset()
+        assert client.step(SPEEDS[0], 50) == first
+        client.reset(seed=3)
+        other = client.step(SPEEDS[0], 50)
+    with Client(port) as client:
+        assert client.step(SPEEDS[0], 50) == other  # the seed stays
+        client.reset(seed=0)
+        assert client.step(SPEEDS[0], 50) == first
+
+
+def test_no_command_keeps_the_one_before_and_no_step_shows_the_row(served):
+    port, _ = served
+    with Client(port) as client:
+        client.step(SPEEDS[0], 5)
+        apart = client.step(None, 5)
+        assert client.step(steps=0) == apart
+        client.reset()
+        assert client.step(SPEEDS[0], 10) == apart
+
+
+@pytest.mark.parametrize(
+    ("ask", "what"),
+    [
+        (lambda client: client.step([1.0, 2.0]), "command holds 2 rotor speeds"),
+        (lambda client: client.step([float("nan")] * 4), "not a finite number"),
+        (lambda client: client.step(SPEEDS[0], 1.5), "the number of steps is 1.5"),
+        (lambda client: client.step(SPEEDS[0], -1), "the number of steps is -1"),
+        (lambda client: client.step(SPEEDS[0], float("nan")), "the number of steps is nan"),
+        (lambda client: client.reset(0.5), "the seed is 0.5"),
+    ],
+)
+def test_a_wrong_request_is_refused_and_changes_nothing(served, ask, what):
+    port, _ = served
+    with Client(port) as client:
+        before = client.step(SPEEDS[0], 5)
+        with pytest.raises(ServerError, match=re.escape(what)) as refused:
+            ask(client)
+        assert not refused.value.failed
+        assert client.step(steps=0) == before
+
+
+def message(*numbers):
+    return struct.pack(f"<{len(numbers)}d", *numbers)
+
+
+@pytest.mark.parametrize(
+    ("sent", "what"),
+    [
+        (message(0, 1, 2), "the client speaks version 2 of the protocol; this is 1"),
+        (message(9, 0), "a message of kind 9"),
+        (message(float("nan"), 0), "a message of kind nan"),
+        (message(2, 1e9), "a message of length 1e+09"),
+        (message(2, -1), "a message of length -1"),
+        (message(2, 0), "a step needs the number of steps"),
+    ],
+)
+def test_what_is_no_request_is_answered_with_why(served, sent, what):
+    port, _ = served
+    with socket.create_connection(("127.0.0.1", port)) as other:
+        other.sendall(sent)
+        other.shutdown(socket.SHUT_WR)
+        answer = b"".join(iter(lambda: other.recv(4096), b""))
+    numbers = struct.unpack(f"<{len(answer) // 8}d", answer)
+    assert numbers[0] == 1 and numbers[1] == len(numbers) - 2
+    assert what in bytes(map(int, numbers[2:])).decode()
+    with Client(port) as client:  # the next is served
+        client.step(SPEEDS[0])
+
+
+@pytest.mark.parametrize(
+    ("sent", "what"),
+    [
+        (b"half", "ended within a message, after 4 bytes"),
+        (message(2, 5, 1, 400), "ended within a message, after 16 of 40 bytes"),
+    ],
+)
+def test_a_client_that_dies_within_a_message_is_told_of(served, sent, what):
+    port, said = served
+    with socket.create_connection(("127.0.0.1", port)) as other:
+        other.sendall(sent)
+    assert ends(said)
+    assert said[0].startswith("client 1: ") and what in said[0]
+    with Client(port) as client:
+        client.step(SPEEDS[0])
+
+
+def test_a_flight_that_fails_stands_until_a_reset(served):
+    port, _ = served
+    with Client(port) as client:
+        start = client.step(steps=0)
+        for _ in range(2):
+            with pytest.raises(ServerError, match="the flight failed at t = ") as failed:
+                client.step([1e5] * 4, 1000)
+            assert failed.value.failed
+        assert client.reset() == start
+
+
+def test_a_served_flight_may_fly_at_the_end_of_a_unix_socket(tmp_path):
+    path = str(tmp_path / "socket")
+    simulation = qc.Simulation("quadrotor", engine="eigen")
+    with Server(simulation, path) as server:
+        thread = threading.Thread(target=server.serve, args=(print, 1))
+        thread.start()
+        with Client(path) as client:
+            client.step(SPEEDS[0])
+        thread.join()
+    assert not os.path.exists(path)
+
+
+def test_an_address_that_is_taken_is_refused(served, tmp_path):
+    port, _ = served
+    taken = tmp_path / "file"
+    taken.write_text("not a socket")
+    for address in (port, str(taken)):
+        with pytest.raises(qc.InputError, match="cannot listen at"):
+            Server(qc.Simulation("quadrotor"), address)
+    assert taken.read_text() == "not a socket"
+
+
+def test_a_socket_that_a_killed_server_left_is_taken_over(tmp_path):
+    path = str(tmp_path / "socket")
+    left = socket.socket(socket.AF_UNIX)
+    left.bind(path)
+    left.close()
+    with Server(qc.Simulation("quadrotor"), path):
+        pass
+
+
+def test_the_command_serves_logs_and_ends_at_a_signal(tmp_path):
+    command = [sys.executable, "-m", "quadcore", "serve", "quadrotor", "--engine", "eigen"]
+    options = ["--log", str(tmp_path / "flown.csv"), "--log-every", "5"]
+    server = subprocess.Popen([*command, *options], stdout=subprocess.PIPE, text=True)
+    port = int(server.stdout.readline().rpartition(":")[2])
+    rows = []
+    for speeds in SPEEDS:
+        with Client(port) as client:
+            rows.append(client.step(speeds, 20))
+            client.reset()  # nothing is flown, and nothing written
+    with Client(port):
+        pass
+    server.send_signal(signal.SIGTERM)
+    assert server.wait() == 143
+    assert sorted(os.listdir(tmp_path)) == ["flown-2.csv", "flown.csv"]
+    for name, row in zip(("flown.csv", "flown-2.csv"), rows):
+        log = qc.Log.of_file(tmp_path / name)
+        np.testing.assert_allclose(log.time, np.arange(5) * 0.005, atol=1e-15)
+        assert tuple(log.table[-1]) == row
+
+
+def test_a_client_needs_the_standard_library_alone():
+    code = (
+        "import sys, types; package = types.ModuleType('serve'); package.__path__ = [sys.argv[1]]; "
+        "sys.modules['serve'] = package; import serve.client; "
+        "print([name for name in sys.modules if name.partition('.')[0] in ('numpy', 'quadcore')])"
+    )
+    folder = os.path.dirname(sys.modules["quadcore.serve"].__file__)
+    run = subprocess.run(
+        [sys.executable, "-c", code, folder], stdout=subprocess.PIPE, text=True, check=True
+    )
+    assert run.stdout.strip() == "[]"
