@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
+from pathlib import Path
 from typing import Dict, List, Sequence
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from .._core import InputError, PluginInfo
+from ..formats.mat import write_variables
 from ..simulation import Simulation
 from .kinematics import skew
 
@@ -118,6 +120,10 @@ class Vehicle:
             fastest=np.inf if motor["maxVelocity"] == "none" else float(motor["maxVelocity"]),
             slow=float(motor["sim_slow"]),
         )
+
+    def to_mat(self, path: Path) -> None:
+        """Write a MATLAB file of each number under its name: what `matlab/` takes for a vehicle."""
+        write_variables(path, {field.name: getattr(self, field.name) for field in fields(self)})
 
     @cached_property
     def levers(self) -> np.ndarray:

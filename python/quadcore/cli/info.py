@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import argparse
 import os
+from pathlib import Path
 from typing import Any
 
 from rich.table import Table
 
 from .. import resources
+from .._core import InputError
+from ..chapter2.vehicle import Vehicle
 from ..simulation import Simulation
 from . import options, terminal
 
@@ -21,6 +24,12 @@ def register(commands: Any) -> None:
         commands, "info", "Show a model's links, rotors, plugins and every parameter.", info
     )
     options.add_model(parser)
+    parser.add_argument(
+        "--vehicle",
+        metavar="FILE.mat",
+        type=Path,
+        help="also write what the mathematical model and the functions in matlab/ know of it",
+    )
 
 
 def info(arguments: argparse.Namespace) -> None:
@@ -44,6 +53,11 @@ def info(arguments: argparse.Namespace) -> None:
         # Lines that are searched stand alone; on a terminal the heading is in sight.
         prefix = "" if console.is_terminal else f"{plugin.name}."
         console.print(_parameters(plugin, prefix, console.width >= _WIDE), "")
+    if arguments.vehicle is not None:
+        if arguments.vehicle.suffix.lower() != ".mat":
+            raise InputError(f"--vehicle {arguments.vehicle}: name a .mat file")
+        Vehicle.of(simulation).to_mat(arguments.vehicle)
+        console.print(f"written {arguments.vehicle}")
     if console.width < _WIDE:
         console.print("A wider terminal shows range, meaning and equation, too.")
 

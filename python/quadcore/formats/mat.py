@@ -149,17 +149,22 @@ def write_log(
     Each topic is a struct ``topic_NAME`` of a vector for each field.
     What was ignored, if anything, is the cell array ``ignored``.
     """
-    with LOCK:
-        import scipy.io
-
     of_state, topics = split_columns(columns, table)
     variables: Dict[str, Any] = {name: table[:, i] for i, name in enumerate(of_state)}
     variables.update((f"wrench_{name}", value) for name, value in wrenches.items())
     variables.update((f"topic_{name}", fields) for name, fields in topics.items())
     if ignored:
         variables["ignored"] = np.array(ignored, dtype=object)
+    write_variables(path, variables)
+
+
+def write_variables(path: Path, variables: Mapping[str, Any]) -> None:
+    """Write arrays, and mappings of them as structs; vectors as columns."""
+    with LOCK:
+        import scipy.io
+
     with atomic_write(path) as stream:
-        scipy.io.savemat(stream, variables, oned_as="column", long_field_names=True)
+        scipy.io.savemat(stream, dict(variables), oned_as="column", long_field_names=True)
 
 
 class MatFile:
