@@ -193,9 +193,10 @@ def test_a_socket_that_a_killed_server_left_is_taken_over(tmp_path):
         pass
 
 
-def test_the_command_serves_logs_and_ends_at_a_signal(tmp_path):
+@pytest.mark.parametrize("suffix", ["csv", "mat"])
+def test_the_command_serves_logs_and_ends_at_a_signal(suffix, tmp_path):
     command = [sys.executable, "-m", "quadcore", "serve", "quadrotor", "--engine", "eigen"]
-    options = ["--log", str(tmp_path / "flown.csv"), "--log-every", "5"]
+    options = ["--log", str(tmp_path / f"flown.{suffix}"), "--log-every", "5"]
     server = subprocess.Popen([*command, *options], stdout=subprocess.PIPE, text=True)
     port = int(server.stdout.readline().rpartition(":")[2])
     rows = []
@@ -207,8 +208,9 @@ def test_the_command_serves_logs_and_ends_at_a_signal(tmp_path):
         pass
     server.send_signal(signal.SIGTERM)
     assert server.wait() == 143
-    assert sorted(os.listdir(tmp_path)) == ["flown-2.csv", "flown.csv"]
-    for name, row in zip(("flown.csv", "flown-2.csv"), rows):
+    names = [f"flown.{suffix}", f"flown-2.{suffix}"]
+    assert sorted(os.listdir(tmp_path)) == sorted(names)
+    for name, row in zip(names, rows):
         log = qc.Log.of_file(tmp_path / name)
         np.testing.assert_allclose(log.time, np.arange(5) * 0.005, atol=1e-15)
         assert tuple(log.table[-1]) == row

@@ -11,7 +11,6 @@ from ..flight_plan import FlightPlan
 from ..formats.rows import LogFile
 from ..log import check_log_path, log_file
 from ..serve import Server
-from ..simulation import Simulation
 from . import options, terminal, values
 
 
@@ -54,7 +53,7 @@ def serve(arguments: argparse.Namespace) -> None:
     record = None
     if arguments.log is not None:
         check_log_path(arguments.log)
-        record = _Logs(arguments.log, simulation, columns_of(simulation, topics)).begin
+        record = _Logs(arguments.log, columns_of(simulation, topics), simulation.ignored).begin
     with Server(simulation, address, topics, record, arguments.log_every) as server:
         if not arguments.quiet:
             print(f"serving {simulation.model.name} at {server.address}", flush=True)
@@ -64,15 +63,15 @@ def serve(arguments: argparse.Namespace) -> None:
 class _Logs:
     """A file for each flight: NAME.csv, NAME-2.csv ..."""
 
-    def __init__(self, first: Path, simulation: Simulation, columns: Sequence[str]) -> None:
-        self._first, self._simulation, self._columns = first, simulation, columns
+    def __init__(self, first: Path, columns: Sequence[str], ignored: Sequence[str]) -> None:
+        self._first, self._columns, self._ignored = first, columns, ignored
         self._begun = 0
 
     def begin(self) -> LogFile:
         """Open the next."""
         self._begun += 1
         name = self._first.name if self._begun == 1 else self._numbered()
-        return log_file(self._first.with_name(name), self._simulation, self._columns)
+        return log_file(self._first.with_name(name), self._columns, (), self._ignored)
 
     def _numbered(self) -> str:
         return f"{self._first.stem}-{self._begun}{self._first.suffix}"
