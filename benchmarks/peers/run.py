@@ -115,7 +115,7 @@ def fly(python, program, numbers):
         **os.environ,
         "OMP_NUM_THREADS": "1",
     }  # threads that wait by spinning take time, too
-    done = subprocess.run(command, env=one_core, capture_output=True, text=True)
+    done = subprocess.run(command, cwd=BUILD, env=one_core, capture_output=True, text=True)
     if done.returncode:
         print(f"{program}: {last_line(done.stderr)}", file=sys.stderr)
         return []
