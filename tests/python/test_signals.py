@@ -28,8 +28,11 @@ def test_a_signal_that_is_sent_twice_is_heard_once(number):
     assert interrupts.exit_status(stop.value) == 128 + number
 
 
-def test_an_interrupt_that_others_take_for_a_fault_is_an_interrupt(capsys, monkeypatch):
+def test_an_interrupt_that_others_take_for_a_fault_is_an_interrupt(capsys, monkeypatch, tmp_path):
     import xacro
+
+    model = tmp_path / "new.urdf.xacro"  # of which no expansion is kept
+    model.write_text('<robot name="new" xmlns:xacro="http://www.ros.org/wiki/xacro"/>')
 
     def expand(*_, **__):
         try:
@@ -38,7 +41,7 @@ def test_an_interrupt_that_others_take_for_a_fault_is_an_interrupt(capsys, monke
             raise NameError("name 'x' is not defined") from None
 
     monkeypatch.setattr(xacro, "process_file", expand)
-    assert main(["info", "quadrotor"]) == 143
+    assert main(["info", str(model)]) == 143
     assert capsys.readouterr().err == "interrupted\n"
 
 
