@@ -81,6 +81,17 @@ std::vector<double> alternating(const VehicleDescription& vehicle,
   return spins;
 }
 
+/// As those who drive the rotors say, or else by turns.
+std::vector<double> told_spins(const VehicleDescription& vehicle,
+                               const std::vector<std::size_t>& driven) {
+  std::vector<double> spins;
+  for (const std::size_t joint : driven) {
+    if (vehicle.rotors[joint].spin == 0) return alternating(vehicle, driven);
+    spins.push_back(vehicle.rotors[joint].spin);
+  }
+  return spins;
+}
+
 void check_spins(const std::vector<double>& spins, std::size_t rotors) {
   const bool are_signs =
       std::all_of(spins.begin(), spins.end(), [](double s) { return s == 1 || s == -1; });
@@ -105,7 +116,7 @@ Belief Belief::of(const VehicleDescription& vehicle, std::vector<double> spins,
     throw InputError("gravity is not along -z of the world, which these laws need");
   }
   const std::vector<std::size_t> driven = vehicle.driven();
-  if (spins.empty()) spins = alternating(vehicle, driven);
+  if (spins.empty()) spins = told_spins(vehicle, driven);
   check_spins(spins, driven.size());
 
   Belief belief;
@@ -129,7 +140,8 @@ Belief Belief::of(const VehicleDescription& vehicle, std::vector<double> spins,
     if (!(doubts.slowest < fastest)) {
       throw InputError("'slowest' is not below the fastest speed of rotor '" + told.joint + "'");
     }
-    belief.rotors.push_back({told.axis_F, spins[i], told.moment * ratio, doubts.lag * told.lag,
+    const double of_command = std::copysign(spins[i], spins[i] * ratio);
+    belief.rotors.push_back({told.axis_F, of_command, told.moment * ratio, doubts.lag * told.lag,
                              doubts.slowest, fastest});
     const Wrench& wrench = wrench_of(told, spins[i]);
     belief.effectiveness.col(static_cast<Eigen::Index>(i))

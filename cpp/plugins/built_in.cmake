@@ -6,10 +6,10 @@ if(NOT BUILD_SHARED_LIBS)
   foreach(plugin ${QUADCORE_PLUGINS})
     set(symbol quadcore_${plugin}_plugin)
     quadcore_add_plugin_sources(quadcore ${plugin})
-    set_source_files_properties(${PROJECT_SOURCE_DIR}/cpp/plugins/${plugin}/${plugin}_plugin.cpp
+    set_source_files_properties(${PROJECT_SOURCE_DIR}/cpp/plugins/${${plugin}_source}
       PROPERTIES COMPILE_DEFINITIONS QUADCORE_PLUGIN_SYMBOL=${symbol})
     string(APPEND declarations "extern \"C\" const quadcore::PluginModule ${symbol};\n")
-    string(APPEND entries "\n      {\"lib${plugin}_plugin.so\", &${symbol}},")
+    string(APPEND entries "\n      {\"lib${${plugin}_module}.so\", &${symbol}},")
   endforeach()
 endif()
 configure_file(../plugins/built_in_plugins.cpp.in built_in_plugins.cpp @ONLY)

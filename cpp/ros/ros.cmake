@@ -83,6 +83,10 @@ export(TARGETS quadcore NAMESPACE quadcore::
 get_property(plugins DIRECTORY cpp/plugins PROPERTY BUILDSYSTEM_TARGETS)
 set_target_properties(quadcore ${plugins} PROPERTIES
   LIBRARY_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/lib)
+set(named_as_others ${plugins})
+list(FILTER named_as_others INCLUDE REGEX "^rotors_")
+set_target_properties(${named_as_others} PROPERTIES
+  LIBRARY_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/lib/quadcore)
 
 function(add_ros_node name)
   add_executable(${name} ${ARGN})

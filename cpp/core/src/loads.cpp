@@ -1,5 +1,6 @@
 #include "quadcore/loads.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -15,8 +16,14 @@ Wrench Loads::frame() const {
 }
 
 void Loads::clear() {
-  frame_ = Wrench{};
+  clear_rest();
   rotors_.clear();
+}
+
+void Loads::clear_rest() {
+  frame_ = Wrench{};
+  if (any_rate_) std::fill(rates_.begin(), rates_.end(), std::nullopt);
+  any_rate_ = false;
 }
 
 bool Loads::all_finite() const {
@@ -25,12 +32,20 @@ bool Loads::all_finite() const {
   for (std::size_t row = 0; row < LoadRow::count; ++row) {
     for (std::size_t i = 0; i < rotors_.rotors(); ++i) sum += rotors_.number(row, i);
   }
+  for (const auto& rate : rates_) {
+    if (rate) sum += rate->at_end + rate->slope;
+  }
   return std::isfinite(sum);
 }
 
 void Loads::refuse_rotor(std::size_t i) const {
   throw Error("a load on rotor " + std::to_string(i) + ", but rotors count from 0 and there are " +
               std::to_string(rotors_.rotors()));
+}
+
+void Loads::refuse_second_rate(std::size_t i) const {
+  throw Error("the rate of joint " + std::to_string(i) +
+              ", counted from 0, is prescribed a second time; let one plugin drive each joint");
 }
 
 Wrench& Loads::recorded(std::size_t term) {

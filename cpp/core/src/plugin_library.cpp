@@ -103,7 +103,10 @@ std::vector<std::string> plugin_folders() {
       if (!folder.empty()) folders.push_back(folder);
     }
   }
-  if (built_in_plugins().empty()) folders.push_back(own_folder());
+  if (built_in_plugins().empty()) {
+    folders.push_back(own_folder() + "/quadcore");  // of modules named as those of others
+    folders.push_back(own_folder());
+  }
   return folders;
 }
 

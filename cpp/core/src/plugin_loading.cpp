@@ -66,6 +66,9 @@ std::map<std::string, std::map<std::string, std::string>> by_plugin(
   return result;
 }
 
+/// FILE:LINE of a plugin's tag.
+std::string where_of(const LoadedPlugin& p) { return p.who.substr(0, p.who.find(": plugin '")); }
+
 /// A shared tag must mean the same in every plugin that has it.
 void check_shared_tags(const std::vector<LoadedPlugin>& plugins) {
   std::map<std::string, std::pair<const LoadedPlugin*, const Parameter*>> first;
@@ -122,8 +125,12 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
         nullptr};
     const std::string who = element.where + ": plugin '" + element.name + "'";
     loaded.who = who;
+    const auto alike = std::find_if(
+        plugins_.begin(), plugins_.end(),
+        [&](const LoadedPlugin& other) { return other.descriptor == library.descriptor; });
     for (const std::string& term : library.descriptor->wrenches) {
-      if (std::find(wrench_terms_.begin(), wrench_terms_.end(), term) != wrench_terms_.end()) {
+      if (alike == plugins_.end() &&
+          std::find(wrench_terms_.begin(), wrench_terms_.end(), term) != wrench_terms_.end()) {
         throw InputError(who + " reports the wrench '" + term +
                          "', which another plugin reports already; load only one of them");
       }
@@ -149,14 +156,44 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
     }
     state_size += loaded.state_size;
     loaded.term_begin = wrench_terms_.size();
-    wrench_terms_.insert(wrench_terms_.end(), library.descriptor->wrenches.begin(),
-                         library.descriptor->wrenches.end());
+    if (alike != plugins_.end()) {  // plugins of one module report sums
+      loaded.term_begin = alike->term_begin;
+    } else {
+      wrench_terms_.insert(wrench_terms_.end(), library.descriptor->wrenches.begin(),
+                           library.descriptor->wrenches.end());
+    }
     plugins_.push_back(std::move(loaded));
   }
   check_shared_tags(plugins_);
   warn(describe_idle(model));
   plugin_state_ = VectorXd::Zero(state_size);
   wrenches_.resize(wrench_terms_.size());
+}
+
+void Simulation::check_drivers() {
+  const std::size_t joints = model_.joints.size();
+  struct Driver {
+    const LoadedPlugin* plugin = nullptr;
+    bool prescribes = false;
+  };
+  std::vector<Driver> drivers(joints);
+  for (const LoadedPlugin& p : plugins_) {
+    std::vector<RotorDescription> rotors(joints);
+    active_ = &p;
+    p.plugin->describe_rotors(rotors);
+    active_ = nullptr;
+    for (std::size_t i = 0; i < joints; ++i) {
+      const bool prescribes = rotors[i].prescribed;
+      if (!prescribes && rotors[i].place == not_driven) continue;
+      const Driver& first = drivers[i];
+      if (first.plugin && (prescribes || first.prescribes)) {
+        throw InputError(p.who + " turns joint '" + model_.joints[i].name + "', as '" +
+                         first.plugin->name + "' (" + where_of(*first.plugin) +
+                         ") does already; let one plugin drive each joint");
+      }
+      drivers[i] = {&p, prescribes};
+    }
+  }
 }
 
 }  // namespace quadcore

@@ -44,6 +44,7 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
   start.position = options.spawn.xyz;
   start.orientation = options.spawn.rotation();
   try {
+    check_drivers();
     take_along();
     prepare_plugins();
     gather_laws();

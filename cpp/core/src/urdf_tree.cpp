@@ -184,14 +184,21 @@ UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::st
   return joint;
 }
 
-void read_plugin_tags(const Xml& xml, const Element& element, PluginElement& plugin) {
+/// A tag of tags stands for these, which go by both names: outer/inner.
+void read_plugin_tags(const Xml& xml, const Element& element, const std::string& outer,
+                      PluginElement& plugin) {
   for (const auto* node = element.FirstChild(); node; node = node->NextSibling()) {
     if (node->ToText()) {
       xml.fail(element, "stray text '" + trimmed(node->Value()) + "' in <plugin name=\"" +
                             plugin.name + "\">; write <tag>value</tag>");
     }
-    if (const Element* tag = node->ToElement()) {
-      plugin.tags.push_back({tag->Name(), xml.text(*tag), xml.where(*tag)});
+    const Element* tag = node->ToElement();
+    if (!tag) continue;
+    const std::string name = outer + tag->Name();
+    if (tag->FirstChildElement()) {
+      read_plugin_tags(xml, *tag, name + "/", plugin);
+    } else {
+      plugin.tags.push_back({name, xml.text(*tag), xml.where(*tag)});
     }
   }
 }
@@ -201,7 +208,7 @@ PluginElement read_plugin(const Xml& xml, const Element& element) {
   PluginElement plugin{
       xml.attribute(element, "name"), xml.attribute(element, "filename"), {}, xml.where(element)};
   try {
-    read_plugin_tags(xml, element, plugin);
+    read_plugin_tags(xml, element, "", plugin);
   } catch (const InputError& error) {
     plugin.fault = error.what();  // of a module that is not loaded it does not matter
   }

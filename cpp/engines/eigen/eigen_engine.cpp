@@ -34,8 +34,8 @@ constexpr int parts_at_ground = 4;
 }  // namespace
 
 EigenEngine::EigenEngine(const Model& model, const World& world)
-    : model_(model),
-      body_(model),
+    : model_(with_round_rotors(model, warnings_)),
+      body_(model_),
       gravity_W_(world.gravity_W),
       kinematics_(model.joints.size(), false),
       loads_(model.joints.size()),
@@ -44,7 +44,9 @@ EigenEngine::EigenEngine(const Model& model, const World& world)
       stage_(state_),
       sum_(state_),
       joint_torques_(RotorRows<1>::size_of(model.joints.size())),
-      turns_(RotorRows<TurnRow::count>::size_of(model.joints.size())) {
+      turns_(RotorRows<TurnRow::count>::size_of(model.joints.size())),
+      given_rates_(model.joints.size()),
+      reacting_(model.joints.size()) {
   refuse_tags(model_);
   if (world.ground_plane) ground_.emplace(model_, body_);
   kinematics_.p_FCcm_F = body_.p_FCcm_F;
@@ -101,6 +103,7 @@ GyrostatStep EigenEngine::view() {
   g.loads = loads_.rotors().data();
   g.frame_force_F = loads_.on_frame().force_F.data();
   g.frame_torque_F = loads_.on_frame().torque_F.data();
+  g.given_rates = nullptr;
   g.laws_turn = false;
   g.rotor_forces = {};
   g.frame_drags = {};
@@ -129,6 +132,7 @@ void EigenEngine::step(double time, double dt, const ForceField& forces) {
   } else {
     advance_(step_, time, dt);
   }
+  if (loads_.any_rate()) end_given_rates();
 }
 
 bool EigenEngine::is_at_ground(double dt) const {
@@ -145,7 +149,7 @@ void EigenEngine::step_at_ground(double time, double dt) {
   step_.evaluate_rest = [](void* engine) {
     EigenEngine& self = *static_cast<EigenEngine*>(engine);
     if (self.forces_->laws().complete) {
-      self.loads_.clear_frame();
+      self.loads_.clear_rest();
     } else {
       self.evaluate_rest();
     }
@@ -159,8 +163,43 @@ void EigenEngine::step_at_ground(double time, double dt) {
 }
 
 void EigenEngine::evaluate_rest() {
-  loads_.clear_frame();
+  loads_.clear_rest();
   forces_->evaluate_rest(kinematics_, loads_);
+  take_given_rates();
+}
+
+/// A rotor whose rate is given turns with the frame, and the torque that this takes is the frame's
+/// to bear only if the rate reacts: then the rotor is, about its axis, a part of the frame.
+void EigenEngine::take_given_rates() {
+  step_.given_rates = loads_.any_rate() ? given_rates_.data() : nullptr;
+  if (!loads_.any_rate()) return;
+  bool changed = false;
+  for (std::size_t i = 0; i < reacting_.size(); ++i) {
+    const auto& rate = loads_.joint_rate(i);
+    const bool reacts = rate && rate->reacts;
+    given_rates_.number(GivenRateRow::free, i) = rate ? 0 : 1;
+    given_rates_.number(GivenRateRow::slope, i) = rate ? rate->slope : 0;
+    given_rates_.number(GivenRateRow::torque, i) =
+        reacts ? body_.rotors.number(RotorConstant::moment, i) * rate->slope : 0;
+    changed |= reacts != reacting_[i];
+    reacting_[i] = reacts;
+  }
+  if (!changed) return;
+  const Matrix3d inverse_I_F = body_.inverse_inertia_with(reacting_);
+  for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i < 3; ++i) step_.inverse_reduced_I_F[j][i] = inverse_I_F(i, j);
+  }
+}
+
+/// At the end of a step a given rate is what it is said to be, not what its slopes add up to.
+void EigenEngine::end_given_rates() {
+  for (std::size_t i = 0; i < reacting_.size(); ++i) {
+    const auto& rate = loads_.joint_rate(i);
+    if (!rate) continue;
+    state_[GyrostatState::joints + rotor_offset(GyrostatState::joint_rows, i) +
+           GyrostatState::joint_rate * widest_lanes] = rate->at_end;
+    kinematics_.rotors.number(MotionRow::rate, i) = rate->at_end;
+  }
 }
 
 void EigenEngine::refuse() { forces_->refuse(kinematics_, loads_); }
@@ -214,7 +253,11 @@ std::string EigenEngine::method() const {
 }
 
 std::vector<std::string> EigenEngine::warnings() const {
-  return ground_ ? ground_->warnings() : std::vector<std::string>{};
+  std::vector<std::string> warnings = warnings_;
+  if (!ground_) return warnings;
+  const std::vector<std::string> of_ground = ground_->warnings();
+  warnings.insert(warnings.end(), of_ground.begin(), of_ground.end());
+  return warnings;
 }
 
 std::vector<double> EigenEngine::save() const {

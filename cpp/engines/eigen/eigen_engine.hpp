@@ -32,9 +32,12 @@ class EigenEngine final : public Engine {
   void show();
   void evaluate_rest();
   void refuse();
+  void take_given_rates();
+  void end_given_rates();
   bool is_at_ground(double dt) const;
   void step_at_ground(double time, double dt);
 
+  std::vector<std::string> warnings_;  ///< of how the model is taken
   Model model_;
   Gyrostat body_;
   Vector3d gravity_W_;
@@ -44,6 +47,8 @@ class EigenEngine final : public Engine {
   Loads loads_;
   LaneNumbers state_, stage_, sum_;
   LaneNumbers joint_torques_, turns_;
+  RotorRows<GivenRateRow::count> given_rates_;
+  std::vector<bool> reacting_;  ///< joints of given rates whose rotors the frame turns with it
   GyrostatStep step_;
   void (*show_)(const GyrostatStep&, const double*);
   void (*advance_)(const GyrostatStep&, double, double);

@@ -1,6 +1,7 @@
 #include "gyrostat.hpp"
 
 #include "quadcore/error.hpp"
+#include "quadcore/text.hpp"
 
 namespace quadcore {
 namespace {
@@ -13,6 +14,16 @@ constexpr double inertia_tolerance = 1e-6;   // relative
                    ", which the engine eigen cannot represent; use the engine ode");
 }
 
+/// An inertia's mean over the turns of its body about an axis, if that is a principal one.
+Matrix3d averaged(const Matrix3d& I, const Vector3d& axis) {
+  const double axial = axis.dot(I * axis), transverse = (I.trace() - axial) / 2;
+  return transverse * Matrix3d::Identity() + (axial - transverse) * axis * axis.transpose();
+}
+
+bool are_close(const Matrix3d& a, const Matrix3d& b) {
+  return (a - b).norm() <= inertia_tolerance * a.norm();
+}
+
 void check(const Model& model, std::size_t i) {
   const Joint& joint = model.joints[i];
   const Link& link = model.links[i + 1];
@@ -23,11 +34,7 @@ void check(const Model& model, std::size_t i) {
     refuse(joint, "the centre of mass of '" + link.name + "' lies off the axis");
   }
   const Matrix3d I = link.inertial.inertia_in_link_axes();
-  const double axial = joint.axis.dot(I * joint.axis);
-  const double transverse = (I.trace() - axial) / 2;
-  const Matrix3d symmetric = transverse * Matrix3d::Identity() +
-                             (axial - transverse) * joint.axis * joint.axis.transpose();
-  if ((I - symmetric).norm() > inertia_tolerance * I.norm()) {
+  if (!are_close(I, averaged(I, joint.axis))) {
     refuse(joint, "the inertia of '" + link.name + "' is not symmetric about the axis");
   }
 }
@@ -35,6 +42,16 @@ void check(const Model& model, std::size_t i) {
 bool is_along_z(const Vector3d& v) { return v.x() == 0 && v.y() == 0; }
 
 }  // namespace
+
+Matrix3d Gyrostat::inverse_inertia_with(const std::vector<bool>& rotors_of_frame) const {
+  Matrix3d reduced = I_Ccm_F;
+  for (std::size_t i = 0; i < rotors_of_frame.size(); ++i) {
+    if (rotors_of_frame[i]) continue;
+    const Vector3d axis_F = rotors.vector(RotorConstant::axis_F, i);
+    reduced -= rotors.number(RotorConstant::moment, i) * axis_F * axis_F.transpose();
+  }
+  return reduced.inverse();
+}
 
 Gyrostat::Gyrostat(const Model& model) : rotors(model.joints.size()) {
   const MassProperties total = mass_properties(model);
@@ -63,6 +80,29 @@ Gyrostat::Gyrostat(const Model& model) : rotors(model.joints.size()) {
     upright &= is_along_z(axis_F) && is_along_z(R_FR.col(2)) && is_along_z(R_FR.row(2));
   }
   inverse_reduced_I_F = reduced.inverse();
+}
+
+Model with_round_rotors(const Model& model, std::vector<std::string>& warnings) {
+  Model round = model;
+  std::vector<std::string> links;
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    const Vector3d& axis = model.joints[i].axis;
+    Inertial& inertial = round.links[i + 1].inertial;
+    const Matrix3d I = inertial.inertia_in_link_axes(), mean = averaged(I, axis);
+    const double axial = axis.dot(I * axis);
+    const bool is_principal = (I * axis - axial * axis).norm() <= inertia_tolerance * I.norm();
+    if (are_close(I, mean) || !is_principal) continue;
+    inertial.pose.rpy.setZero();
+    inertial.inertia = mean;
+    links.push_back(round.links[i + 1].name);
+  }
+  if (!links.empty()) {
+    warnings.push_back(model.links[model.body_of_link.at(links.front())].where +
+                       ": the inertia of " + joined(links) +
+                       " is taken as its mean over a turn about the joint; the engine ode flies it "
+                       "as it is written");
+  }
+  return round;
 }
 
 }  // namespace quadcore

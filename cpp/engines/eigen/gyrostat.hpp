@@ -18,8 +18,16 @@ struct Gyrostat {
   bool normals_turn = false;           ///< some rotor's link has its z off the joint's axis
   bool upright = true;  ///< each rotor's axis and its link's z lie along the frame's z
 
+  /// The inverse of the reduced inertia if some rotors turned with the frame.
+  Matrix3d inverse_inertia_with(const std::vector<bool>& rotors_of_frame) const;
+
   /// Throws InputError on a model that is no gyrostat: why, and which engine to use instead.
   explicit Gyrostat(const Model& model);
 };
+
+/// The model with the inertia of each rotor averaged over its turns. Such as has its axis for a
+/// principal one is then symmetric about it.
+/// \param warnings  are told which rotors were not
+Model with_round_rotors(const Model& model, std::vector<std::string>& warnings);
 
 }  // namespace quadcore

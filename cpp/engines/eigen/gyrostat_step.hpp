@@ -20,6 +20,16 @@ struct TurnRow {
   enum : std::size_t { sine, cosine, count };
 };
 
+/// Rows of rotors some of whose joints' rates are given.
+struct GivenRateRow {
+  enum : std::size_t {
+    free,    ///< 1 for a joint that turns as torques make it, else 0
+    slope,   ///< derivative of a given rate [rad/s^2]
+    torque,  ///< of a given rate's joint: what its carrier bears [N m]
+    count
+  };
+};
+
 /// Rows of what is constant of each rotor.
 struct RotorConstant {
   enum : std::size_t {
@@ -69,6 +79,7 @@ struct GyrostatStep {
   double* motion;                                ///< table of MotionRow
   double* loads;                                 ///< table of LoadRow
   const double *frame_force_F, *frame_torque_F;  ///< about F's origin
+  const double* given_rates;  ///< table of GivenRateRow; null while no joint's rate is given
 
   bool laws_turn;  ///< some law or normal needs the turns
   Laws<RotorForces> rotor_forces;

@@ -72,6 +72,12 @@ QUADCORE_LAW laws::RotorLoads<T> loads_of(const GyrostatStep& g, const Rotors& r
     loads.joint_torque = loads.joint_torque + laws::motor_torque<T>(law, rotors.i, rotors.rate());
   });
   loads.joint_torque = loads.joint_torque - rotors.constant(RotorConstant::damping) * rotors.rate();
+  if (rest && g.given_rates) {
+    const double* given = g.given_rates + rotor_offset(GivenRateRow::count, rotors.i);
+    loads.joint_torque = laws::load<T>(given + GivenRateRow::free * widest_lanes) *
+                             loads.joint_torque +
+                         laws::load<T>(given + GivenRateRow::torque * widest_lanes);
+  }
   return loads;
 }
 
@@ -132,10 +138,14 @@ QUADCORE_LAW void differentiate(const GyrostatStep& g, const double* state, cons
   Vec3<T> angular = laws::broadcast<T>(angular_F);
   laws::for_each_pack<W>(g.rotors, [&](std::size_t i) QUADCORE_INLINED {
     const Rotors rotors{g, frame, state, i};
-    share_out<stage>(
-        g, share, joint(At::joint_rate, i),
-        laws::load<T>(g.joint_torques + i) * rotors.constant(RotorConstant::inverse_moment) -
-            laws::dot(rotors.axis_F(), angular));
+    T slope = laws::load<T>(g.joint_torques + i) * rotors.constant(RotorConstant::inverse_moment) -
+              laws::dot(rotors.axis_F(), angular);
+    if (rest && g.given_rates) {
+      const double* given = g.given_rates + rotor_offset(GivenRateRow::count, i);
+      slope = laws::load<T>(given + GivenRateRow::free * widest_lanes) * slope +
+              laws::load<T>(given + GivenRateRow::slope * widest_lanes);
+    }
+    share_out<stage>(g, share, joint(At::joint_rate, i), slope);
   });
   share_out<stage>(g, share, At::position, frame.v_WCcm_W);
   share_out<stage>(g, share, At::orientation, laws::quaternion_rate(frame.q_WF, frame.w_WF_F));

@@ -124,7 +124,8 @@ void OdeEngine::step(double time, double dt, const ForceField& forces) {
   loads_.clear();
   forces.evaluate(kinematics_, loads_);
   if (!loads_.all_finite()) forces.refuse(kinematics_, loads_);  // ODE ends the process for less
-  vehicle_->apply(loads_, kinematics_);
+  vehicle_->apply(loads_, kinematics_, dt);
+  if (loads_.any_rate()) vehicle_->turn(loads_);
   recipe_.add_gyroscopic(*gyroscopic_, dt);
   static const std::vector<Contact> none;
   const std::vector<Contact>& contacts = ground_ ? ground_->find() : none;

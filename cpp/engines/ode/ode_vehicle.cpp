@@ -121,7 +121,7 @@ void OdeVehicle::place(const VehicleState& state) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) place(i, X_WL[i], v_W[i], w_W[i]);
 }
 
-void OdeVehicle::apply(const Loads& loads, const Kinematics& k) {
+void OdeVehicle::apply(const Loads& loads, const Kinematics& k, double dt) {
   const Matrix3d& R_WF = k.R_WF;
   const Wrench frame = loads.frame();
   const Vector3d f_W = R_WF * frame.force_F;
@@ -133,8 +133,37 @@ void OdeVehicle::apply(const Loads& loads, const Kinematics& k) {
     const Vector3d f_R_W = R_WF * loads.rotor_force_F(i);
     dBodyAddForce(bodies_[i + 1], f_R_W.x(), f_R_W.y(), f_R_W.z());
     const Joint& joint = model_.joints[i];
+    if (const auto& rate = loads.joint_rate(i)) {
+      if (!rate->reacts) continue;
+      const Vector3d tau_W = moment_about_joint(model_, i) *
+                             (k.rotors.number(MotionRow::rate, i) - rate->at_end) / dt *
+                             (R_WF * k.rotors.vector(MotionRow::axis, i));
+      dBodyAddTorque(bodies_[joint.parent], tau_W.x(), tau_W.y(), tau_W.z());
+      continue;
+    }
     const double damping = joint.implicit_damping ? 0 : -joint.damping * k.rotors[i].rate;
     dJointAddHingeTorque(hinges_[i], damping + loads.joint_torque(i));
+  }
+}
+
+void OdeVehicle::turn(const Loads& loads) {
+  for (std::size_t i = 0; i < hinges_.size(); ++i) {
+    const auto& rate = loads.joint_rate(i);
+    if (!rate) continue;
+    const Joint& joint = model_.joints[i];
+    const dBodyID child = bodies_[i + 1], parent = bodies_[joint.parent];
+    const Matrix3d R_WC = rotation(dBodyGetRotation(child));
+    const Matrix3d R_WP = rotation(dBodyGetRotation(parent));
+    const Vector3d w_WP_W = vec(dBodyGetAngularVel(parent));
+    const Vector3d w_W = w_WP_W + rate->at_end * (R_WC * joint.axis);
+    // Each body has its own anchor, between which a step leaves a gap.
+    const Vector3d arm_P_W =
+        R_WP * (joint.pose.xyz - model_.links[joint.parent].inertial.pose.xyz);
+    const Vector3d arm_C_W = R_WC * model_.links[i + 1].inertial.pose.xyz;
+    const Vector3d v_W =
+        vec(dBodyGetLinearVel(parent)) + w_WP_W.cross(arm_P_W) + w_W.cross(arm_C_W);
+    dBodySetLinearVel(child, v_W.x(), v_W.y(), v_W.z());
+    dBodySetAngularVel(child, w_W.x(), w_W.y(), w_W.z());
   }
 }
 

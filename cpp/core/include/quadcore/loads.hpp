@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <vector>
 
 #include "quadcore/export.hpp"
 #include "quadcore/kinematics.hpp"
@@ -16,13 +18,20 @@ struct Wrench {
   alignas(2 * sizeof(double)) Vector3d torque_F = Vector3d::Zero();
 };
 
+/// The rate of a joint that is not left to torques: it is what it is said to be.
+struct PrescribedRate {
+  double at_end;        ///< of the step [rad/s]
+  double slope;         ///< its derivative at the time of the motion [rad/s^2]
+  bool reacts = false;  ///< whether what carries the rotor bears the torque that turns it
+};
+
 /// Collects what the force laws exert on the vehicle at one instant. All vectors are in the frame's
 /// axes F. `term` is the index of the plugin's wrench term that the load belongs to (see
 /// PluginDescriptor::wrenches); it matters only while a log records the terms one by one. An index
 /// of a rotor or a term that is not there is an Error.
 class Loads {
  public:
-  explicit Loads(std::size_t rotor_count) : rotors_(rotor_count) {}
+  explicit Loads(std::size_t rotor_count) : rotors_(rotor_count), rates_(rotor_count) {}
 
   /// A force on the frame at the point Q, p_FQ_F from the frame's origin.
   void add_frame_force(std::size_t term, const Vector3d& f_F, const Vector3d& p_FQ_F) {
@@ -47,6 +56,15 @@ class Loads {
     rotors_.number(LoadRow::joint_torque, i) += torque;
   }
 
+  /// Gives joint i its rate; torques about it have no effect then. Throws Error if it has one
+  /// already.
+  void prescribe_joint_rate(std::size_t i, const PrescribedRate& rate) {
+    check_rotor(i);
+    if (rates_[i]) refuse_second_rate(i);
+    rates_[i] = rate;
+    any_rate_ = true;
+  }
+
   /// What was put on the frame by itself, without the rotors' reactions; the torque is about the
   /// frame's origin.
   const Wrench& on_frame() const { return frame_; }
@@ -55,14 +73,18 @@ class Loads {
   Vector3d rotor_force_F(std::size_t i) const { return rotors_.vector(LoadRow::force, i); }
   double joint_torque(std::size_t i) const { return rotors_.number(LoadRow::joint_torque, i); }
 
+  /// Whether any joint was given its rate.
+  bool any_rate() const { return any_rate_; }
+  const std::optional<PrescribedRate>& joint_rate(std::size_t i) const { return rates_[i]; }
+
   /// The rotors' loads for laws that take several rotors at once; what they add here belongs to no
   /// term.
   RotorRows<LoadRow::count>& rotors() { return rotors_; }
   const RotorRows<LoadRow::count>& rotors() const { return rotors_; }
 
   void clear();
-  /// Clears what acts on the frame only.
-  void clear_frame() { frame_ = Wrench{}; }
+  /// Clears all but rotors().
+  void clear_rest();
   bool all_finite() const;
   /// While set, each load is also added to terms[term], about the vehicle's centre of mass.
   void record_terms(Wrench* terms, std::size_t count, const Kinematics* kinematics) {
@@ -78,11 +100,14 @@ class Loads {
     if (i >= rotors_.rotors()) refuse_rotor(i);
   }
   [[noreturn]] void refuse_rotor(std::size_t i) const;
+  [[noreturn]] void refuse_second_rate(std::size_t i) const;
   Wrench& recorded(std::size_t term);
   void record(std::size_t term, const Vector3d& f_F, const Vector3d& p_FQ_F);
 
   Wrench frame_;
   RotorRows<LoadRow::count> rotors_;
+  std::vector<std::optional<PrescribedRate>> rates_;
+  bool any_rate_ = false;
   Wrench* terms_ = nullptr;
   std::size_t term_count_ = 0;
   const Kinematics* kinematics_ = nullptr;

@@ -27,7 +27,9 @@ struct RotorDescription {
   double rate_per_command = 1;  ///< joint rate in the long run per commanded speed
   double lag = 0;  ///< time constant with which the joint follows [s]; 0: at once, or not known
   double fastest = std::numeric_limits<double>::infinity();  ///< command that is followed [rad/s]
-  int place = not_driven;  ///< of its number in the command, from 0 on
+  int place = not_driven;   ///< of its number in the command, from 0 on
+  double spin = 0;          ///< sense about its axis in which alone it is driven, 1, -1; 0: either
+  bool prescribed = false;  ///< it turns as Loads::prescribe_joint_rate() says, not by torques
   /// @}
 };
 

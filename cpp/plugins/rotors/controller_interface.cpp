@@ -1,0 +1,58 @@
+#include <algorithm>
+
+#include "naming.hpp"
+#include "quadcore/plugin.hpp"
+
+namespace quadcore::rotors {
+namespace {
+
+/// Forwards speeds from controllers to the motors, where they arrive with the next step.
+class ControllerInterface final : public Plugin {
+ public:
+  explicit ControllerInterface(const PluginSetup& setup)
+      : in_(setup.topics.takes(
+            topic_word(setup.parameters.text("commandMotorSpeedSubTopic")),
+            messages::speeds(motor_count(setup.model)))),
+        out_(setup.topics.publishes(
+            topic_word(setup.parameters.text("motorSpeedCommandPubTopic")),
+            messages::speeds(motor_count(setup.model)))) {}
+
+  std::size_t state_size() const override { return 1; }
+
+  void update(const Sample& sample, PluginState heard) const override {
+    const Topic& command = sample.topics[in_];
+    if (command.count == heard[0]) return;
+    heard[0] = command.count;
+    const std::vector<double>& speeds = command.values;
+    std::copy(speeds.begin(), speeds.end(), sample.topics.publish(out_, sample.time));
+  }
+
+ private:
+  std::size_t in_, out_;  ///< topics
+};
+
+PluginDescriptor describe() {
+  using T = TagSpec;
+  return {
+      "RotorS' way from controllers to motors: speeds arrive a step later",
+      {
+          T::text("commandMotorSpeedSubTopic", "command/motor_speed",
+                  "where controllers publish speeds, rad/s, in the motors' order, / being _")
+              .from("RotorS"),
+          T::text("motorSpeedCommandPubTopic", "gazebo/command/motor_speed",
+                  "where they are forwarded, / being _")
+              .from("RotorS"),
+          idle("commandAttitudeThrustSubTopic", "nothing listens to it in RotorS, either"),
+          idle("commandRateThrustSubTopic", "nothing listens to it in RotorS, either"),
+          idle("imuSubTopic", "nothing listens to it in RotorS, either"),
+          namespace_tag(),
+      },
+      {},
+      create<ControllerInterface>,
+  };
+}
+
+}  // namespace
+}  // namespace quadcore::rotors
+
+QUADCORE_REGISTER_PLUGIN(quadcore::rotors::describe)

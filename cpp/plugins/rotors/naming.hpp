@@ -1,0 +1,63 @@
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "quadcore/plugin.hpp"
+
+/// \file
+/// What RotorS' modules have in common: names of topics, and tags that mean nothing here.
+
+namespace quadcore::rotors {
+
+constexpr const char* motor_model_file = "librotors_gazebo_motor_model.so";
+constexpr const char* controller_interface_file = "librotors_gazebo_controller_interface.so";
+
+/// A name of ROS as one of quadcore: gazebo/command/motor_speed is gazebo_command_motor_speed.
+inline std::string topic_word(std::string name) {
+  name.erase(0, name.find_first_not_of('/'));
+  const auto is_plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  };
+  std::replace_if(name.begin(), name.end(), [&](char c) { return !is_plain(c); }, '_');
+  return name;
+}
+
+/// Motors of a model: numbers that a command carries.
+inline std::size_t motor_count(const Model& model) {
+  return static_cast<std::size_t>(
+      std::count_if(model.plugins.begin(), model.plugins.end(),
+                    [](const PluginElement& p) { return p.filename == motor_model_file; }));
+}
+
+/// A tag that RotorS knows and that has no effect here.
+inline TagSpec idle(const std::string& name, const std::string& why) {
+  return TagSpec::text(name, "", "without effect: " + why).or_absent("none");
+}
+inline TagSpec namespace_tag() {
+  return idle("robotNamespace",
+              "one simulation holds one vehicle; a ROS node's namespace is its own");
+}
+
+/// The body that carries a link of any part of the model, and the link's place in it. Throws
+/// InputError unless the frame does.
+struct Mount {
+  Pose X_FS;
+  double mass_share = 0;
+
+  Mount(const PluginSetup& setup, const std::string& tag) {
+    const std::string& link = setup.parameters.text(tag);
+    const auto body = setup.model.body_of_link.find(link);
+    if (body == setup.model.body_of_link.end()) {
+      throw InputError("<" + tag + "> '" + link + "' is not a link of the model; name one");
+    }
+    if (body->second != 0) {
+      throw InputError("<" + tag + "> '" + link +
+                       "' is not part of the frame; name a link that is fixed to it");
+    }
+    X_FS = setup.model.pose_of_link.at(link);
+  }
+};
+
+}  // namespace quadcore::rotors

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "quadcore/plugin.hpp"
+
+namespace quadcore::rotors {
+
+/// The controller of a motor that holds an angle, as Gazebo's class PID: sampled once per step,
+///   torque = -p e - clamp(i sum(e dt), iMin, iMax) - d (e - e_last)/dt,
+/// e being the angle less the one that is wanted, between -pi and pi.
+class PositionControl {
+ public:
+  enum Memory { kSum, kLast, kMemorySize };
+
+  explicit PositionControl(const Parameters& p)
+      : p_(p.number(name("p"))),
+        i_(p.number(name("i"))),
+        d_(p.number(name("d"))),
+        i_max_(p.number(name("iMax"))),
+        i_min_(p.number(name("iMin"))),
+        largest_(p.number(name("cmdMax"))),
+        smallest_(p.number(name("cmdMin"))) {
+    if (i_min_ > i_max_ || smallest_ > largest_) {
+      throw InputError("<joint_control_pid> has a minimum above its maximum; swap them");
+    }
+  }
+
+  double torque(double angle, double wanted, double dt, Eigen::Ref<VectorXd> memory) const {
+    const double error = std::remainder(std::remainder(angle, 2 * M_PI) -
+                                            std::remainder(wanted, 2 * M_PI),
+                                        2 * M_PI);
+    memory[kSum] = std::clamp(memory[kSum] + dt * i_ * error, i_min_, i_max_);
+    const double torque = -p_ * error - memory[kSum] - d_ * (error - memory[kLast]) / dt;
+    memory[kLast] = error;
+    return largest_ == 0 && smallest_ == 0 ? torque : std::clamp(torque, smallest_, largest_);
+  }
+
+  static void add_tags(std::vector<TagSpec>& tags) {
+    const auto add = [&](const char* gain, const char* unit, const std::string& meaning) {
+      tags.push_back(TagSpec::number(name(gain), unit, "0", meaning).from("Gazebo's PID"));
+    };
+    add("p", "N m/rad", "of motorType position: proportional gain");
+    add("i", "N m/(rad s)", "its integral gain");
+    add("d", "N m s/rad", "its derivative gain");
+    add("iMax", "N m", "largest integral torque");
+    add("iMin", "N m", "smallest integral torque");
+    add("cmdMax", "N m", "largest torque; 0 and 0: no bounds");
+    add("cmdMin", "N m", "smallest torque");
+  }
+
+ private:
+  static std::string name(const char* gain) { return std::string("joint_control_pid/") + gain; }
+
+  double p_, i_, d_, i_max_, i_min_, largest_, smallest_;
+};
+
+}  // namespace quadcore::rotors
