@@ -1,17 +1,28 @@
+#include <optional>
+
 #include "naming.hpp"
 #include "quadcore/plugin.hpp"
 
 namespace quadcore::rotors {
 namespace {
 
-/// Tells how fast the rotors turn, as they do before this step's motors act.
+/// Tells how fast the rotors turn, as they do before this step's motors act; and, for the laws of
+/// quadcore, how the frame moves, unless an odometry of quadcore does.
 class MultirotorBase final : public Plugin {
  public:
   explicit MultirotorBase(const PluginSetup& setup)
       : rotors_(setup.model.joints.size()),
         slowdown_(setup.parameters.number("rotorVelocitySlowdownSim")),
         topic_(setup.topics.publishes(topic_word(setup.parameters.text("motorPubTopic")),
-                                      messages::speeds(rotors_))) {}
+                                      messages::speeds(rotors_))) {
+    const auto& plugins = setup.model.plugins;
+    const bool is_told = std::any_of(plugins.begin(), plugins.end(), [](const PluginElement& p) {
+      return p.filename == "libodometry_plugin.so";
+    });
+    if (is_told) return;
+    odometry_ = setup.topics.publishes(setup.parameters.text("truth"),
+                                       messages::kind_of<messages::Odometry>());
+  }
 
   void update(const Sample& sample, PluginState) const override {
     double* speeds = sample.topics.publish(topic_, sample.time);
@@ -20,10 +31,22 @@ class MultirotorBase final : public Plugin {
     }
   }
 
+  void sense(const Sample& sample, PluginState) const override {
+    if (!odometry_) return;
+    const Kinematics& k = sample.kinematics;
+    messages::Odometry message;
+    message.position = k.p_WF;
+    message.orientation = k.q_WF;
+    message.linear_velocity = k.R_WF * k.v_WF_F;
+    message.angular_velocity = k.w_WF_F;
+    sample.topics.publish(*odometry_, sample.time, message);
+  }
+
  private:
   std::size_t rotors_;
   double slowdown_;
   std::size_t topic_;
+  std::optional<std::size_t> odometry_;  ///< topic
 };
 
 PluginDescriptor describe() {
@@ -37,6 +60,10 @@ PluginDescriptor describe() {
           T::text("motorPubTopic", "motor_speed",
                   "where the rotors' speeds are published, signed, in the joints' order, / being _")
               .from("RotorS"),
+          T::text("truth", "odom",
+                  "quadcore's own: where pose and velocity of the frame are published without "
+                  "error, the linear velocity along the world's axes, for quadcore's laws; nowhere "
+                  "if the model has a libodometry_plugin.so"),
           idle("jointStatePubTopic", "a ROS node publishes joint_states by itself"),
           idle("linkName", "every continuous joint of the model is told"),
           idle("frameId", "speeds have no frame"),
