@@ -8,12 +8,14 @@ foreach(plugin ${QUADCORE_PLUGINS})
   set(${plugin}_module ${plugin}_plugin)
 endforeach()
 # Those that do what RotorS' modules do have their names.
-foreach(source motor_model controller_interface multirotor_base)
+foreach(source motor_model controller_interface multirotor_base imu odometry wind)
   list(APPEND QUADCORE_PLUGINS rotors_${source})
   set(rotors_${source}_source rotors/${source}.cpp)
   set(rotors_${source}_module rotors_gazebo_${source})
 endforeach()
-set(rotors_multirotor_base_module rotors_gazebo_multirotor_base_plugin)
+foreach(source multirotor_base imu odometry wind)
+  set(rotors_${source}_module rotors_gazebo_${source}_plugin)
+endforeach()
 
 # quadcore_add_plugin_sources(TARGET PLUGIN): a module is made of them, or a static core.
 function(quadcore_add_plugin_sources target plugin)

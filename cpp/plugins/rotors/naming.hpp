@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "quadcore/plugin.hpp"
+#include "quadcore/text.hpp"
 
 /// \file
 /// What RotorS' modules have in common: names of topics, and tags that mean nothing here.
@@ -40,24 +41,21 @@ inline TagSpec namespace_tag() {
               "one simulation holds one vehicle; a ROS node's namespace is its own");
 }
 
-/// The body that carries a link of any part of the model, and the link's place in it. Throws
-/// InputError unless the frame does.
-struct Mount {
-  Pose X_FS;
-  double mass_share = 0;
-
-  Mount(const PluginSetup& setup, const std::string& tag) {
-    const std::string& link = setup.parameters.text(tag);
-    const auto body = setup.model.body_of_link.find(link);
-    if (body == setup.model.body_of_link.end()) {
-      throw InputError("<" + tag + "> '" + link + "' is not a link of the model; name one");
-    }
-    if (body->second != 0) {
-      throw InputError("<" + tag + "> '" + link +
-                       "' is not part of the frame; name a link that is fixed to it");
-    }
-    X_FS = setup.model.pose_of_link.at(link);
+/// Where a link that a tag names sits in the frame. Throws InputError if it is no part of it.
+inline Pose place_of(const PluginSetup& setup, const std::string& tag) {
+  const std::string& link = setup.parameters.text(tag);
+  const auto body = setup.model.body_of_link.find(link);
+  if (body == setup.model.body_of_link.end()) {
+    std::vector<std::string> names;
+    for (const auto& entry : setup.model.body_of_link) names.push_back(entry.first);
+    throw InputError("<" + tag + "> '" + link + "' is not a link of the model" +
+                     did_you_mean(link, names) + "; its links are " + joined(names));
   }
-};
+  if (body->second != 0) {
+    throw InputError("<" + tag + "> '" + link +
+                     "' is not part of the frame; name a link that is fixed to it");
+  }
+  return setup.model.pose_of_link.at(link);
+}
 
 }  // namespace quadcore::rotors

@@ -1,0 +1,186 @@
+#include <algorithm>
+#include <cmath>
+
+#include "center_of_mass.hpp"
+#include "naming.hpp"
+#include "quadcore/elementary.hpp"
+#include "quadcore/plugin.hpp"
+#include "quadcore/random.hpp"
+
+namespace quadcore::rotors {
+namespace {
+
+/// Normal noise beside uniform noise, on three numbers.
+struct Noise {
+  Vector3d normal, uniform;  ///< standard deviation, and bound
+
+  Noise(const Parameters& p, const std::string& of)
+      : normal(vector(p, "noiseNormal" + of)), uniform(vector(p, "noiseUniform" + of)) {}
+  static Vector3d vector(const Parameters& p, const std::string& tag) {
+    return Vector3d(p.numbers(tag).data());
+  }
+  Vector3d draw(std::uint64_t seed, double& draws) const {
+    Vector3d error = Vector3d::Zero();
+    for (int i = 0; i < 3; ++i) {
+      if (normal[i] > 0) error[i] += normal[i] * random_normal(seed, draws);
+      if (uniform[i] == 0) continue;
+      const std::uint64_t bits = random_bits(seed, static_cast<std::uint64_t>(draws));
+      draws += 1;
+      error[i] += uniform[i] * (static_cast<double>(bits >> 11) / 4503599627370496.0 - 1);  // 2^52
+    }
+    return error;
+  }
+  double variance() const { return normal.cwiseAbs2().maxCoeff(); }
+};
+
+/// What it remembers: steps so far, numbers of chance drawn; then the messages that wait, in a
+/// ring.
+enum Memory { kSteps, kDraws, kRing };
+
+/// Pose of a link's centre of mass in the world and velocity of its origin along its own axes, at
+/// the start of a step.
+class Odometry final : public Plugin {
+ public:
+  explicit Odometry(const PluginSetup& setup)
+      : X_FS_(place_of(setup, "linkName")),
+        p_SScm_S_(center_of_mass(setup.model, setup.parameters.text("linkName"))),
+        divisor_(setup.parameters.number("measurementDivisor")),
+        delay_(setup.parameters.number("measurementDelay")),
+        unknown_delay_(std::trunc(setup.parameters.number("unknownDelay"))),
+        own_seed_(setup.parameters.has("randomEngineSeed")),
+        seed_(own_seed_ ? static_cast<std::uint64_t>(setup.parameters.number("randomEngineSeed"))
+                        : 0),
+        position_(setup.parameters, "Position"),
+        turn_(setup.parameters, "Quaternion"),
+        linear_(setup.parameters, "LinearVelocity"),
+        angular_(setup.parameters, "AngularVelocity"),
+        topic_(setup.topics.publishes(topic_word(setup.parameters.text("odometryTopic")),
+                                      messages::kind_of<messages::Odometry>())),
+        row_(static_cast<Eigen::Index>(messages::kind_of<messages::Odometry>().fields.size()) + 1) {
+    for (const char* tag : {"measurementDivisor", "measurementDelay"}) {
+      if (setup.parameters.number(tag) != std::floor(setup.parameters.number(tag))) {
+        throw InputError(std::string("<") + tag + "> is no whole number of steps; write one");
+      }
+    }
+  }
+
+  std::size_t state_size() const override {
+    return static_cast<std::size_t>(kRing + (static_cast<Eigen::Index>(delay_) + 1) * row_);
+  }
+
+  void update(const Sample& sample, PluginState state) const override {
+    const double step = state[kSteps];
+    state[kSteps] += 1;
+    const double stamp = sample.time + sample.dt + unknown_delay_;
+    auto now = slot(state, step);
+    now[0] = std::fmod(step, divisor_) == 0 ? 1 : 0;
+    if (now[0] != 0) {
+      messages::Odometry message = truth(sample.kinematics);
+      message.position_variance = stamp;  // until it is due
+      messages::write(message, now.data() + 1);
+    }
+    if (step < delay_) return;
+    const auto due = slot(state, step - delay_);
+    if (due[0] == 0) return;
+    auto message = messages::read<messages::Odometry>(due.data() + 1);
+    const double stamped = message.position_variance;
+    spoil(message, own_seed_ ? seed_ : sample.seed, state[kDraws]);
+    sample.topics.publish(topic_, stamped, message);
+  }
+
+  void sense(const Sample& sample, PluginState state) const override {
+    if (sample.jumped) state[kSteps] = 0;  // what waits is of another motion
+  }
+
+ private:
+  messages::Odometry truth(const Kinematics& k) const {
+    const Quaterniond q_FS = X_FS_.rotation();
+    const Matrix3d R_SF = q_FS.toRotationMatrix().transpose();
+    messages::Odometry message;
+    message.position = k.p_WF + k.R_WF * (X_FS_.xyz + R_SF.transpose() * p_SScm_S_);
+    message.orientation = k.q_WF * q_FS;
+    message.linear_velocity = R_SF * (k.v_WF_F + k.w_WF_F.cross(X_FS_.xyz));
+    message.angular_velocity = R_SF * k.w_WF_F;
+    return message;
+  }
+
+  void spoil(messages::Odometry& message, std::uint64_t seed, double& draws) const {
+    message.position += position_.draw(seed, draws);
+    const Vector3d half = turn_.draw(seed, draws) / 2;
+    const double square = half.squaredNorm();
+    const Quaterniond small = square < 1
+                                  ? Quaterniond(std::sqrt(1 - square), half.x(), half.y(), half.z())
+                                  : Quaterniond(1, half.x(), half.y(), half.z()).normalized();
+    message.orientation = message.orientation * small;
+    message.linear_velocity += linear_.draw(seed, draws);
+    message.angular_velocity += angular_.draw(seed, draws);
+    message.position_variance = position_.variance();
+    message.orientation_variance = turn_.variance();
+    message.linear_velocity_variance = linear_.variance();
+    message.angular_velocity_variance = angular_.variance();
+  }
+
+  Eigen::Map<VectorXd> slot(PluginState& state, double step) const {
+    const auto place = static_cast<Eigen::Index>(std::fmod(step, delay_ + 1));
+    return {state.data() + kRing + place * row_, row_};
+  }
+
+  Pose X_FS_;
+  Vector3d p_SScm_S_;
+  double divisor_, delay_;  ///< steps
+  double unknown_delay_;    ///< s
+  bool own_seed_;
+  std::uint64_t seed_;
+  Noise position_, turn_, linear_, angular_;
+  std::size_t topic_;
+  Eigen::Index row_;  ///< numbers of a message that waits
+};
+
+PluginDescriptor describe() {
+  using T = TagSpec;
+  std::vector<TagSpec> tags = {
+      T::text("linkName", "", "the link that it tells of").must(),
+      T::text("odometryTopic", "odometry", "where the messages are published, / being _"),
+      T::number("measurementDivisor", "", "1", "steps from one measurement to the next")
+          .at_least(1)
+          .at_most(1e9),
+      T::number("measurementDelay", "", "0", "steps that a measurement is held back")
+          .at_least(0)
+          .at_most(10000),
+      T::number("unknownDelay", "s", "0", "added to the stamps; as in RotorS whole seconds count alone").at_least(-1e6).at_most(1e6),
+      T::number("randomEngineSeed", "", "", "seed of the noise, a whole number")
+          .at_least(0)
+          .at_most(4294967295.0)
+          .or_absent("the simulation's seed"),
+  };
+  const auto add = [&](const std::string& of, const char* unit, const char* what) {
+    tags.push_back(T::numbers("noiseNormal" + of, unit, "0 0 0",
+                              std::string("standard deviations of normal noise on ") + what)
+                       .of(3)
+                       .at_least(0));
+    tags.push_back(T::numbers("noiseUniform" + of, unit, "0 0 0",
+                              std::string("bounds of uniform noise on ") + what)
+                       .of(3)
+                       .at_least(0));
+  };
+  add("Position", "m", "the position");
+  add("Quaternion", "rad", "the orientation, a small turn about the link's axes");
+  add("LinearVelocity", "m/s", "the linear velocity, link axes");
+  add("AngularVelocity", "rad/s", "the angular velocity, link axes");
+  for (TagSpec& tag : tags) tag.equation = "RotorS";
+  const char* const same = "the odometry's message holds what it would";
+  for (const char* topic :
+       {"poseTopic", "poseWithCovarianceTopic", "positionTopic", "transformTopic"}) {
+    tags.push_back(idle(topic, same));
+  }
+  tags.push_back(idle("childFrameId", "names of frames are the node's"));
+  tags.push_back(T::choice("parentFrameId", {"world"}, "poses are told in the world"));
+  tags.push_back(namespace_tag());
+  return {"RotorS' odometry: of the state a step before its stamp, velocities along the link's axes",
+          tags, {}, create<Odometry>};
+}
+
+}  // namespace
+}  // namespace quadcore::rotors
+
+QUADCORE_REGISTER_PLUGIN(quadcore::rotors::describe)

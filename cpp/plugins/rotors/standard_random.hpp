@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cmath>
+
+#include "quadcore/elementary.hpp"
+#include "quadcore/spatial.hpp"
+
+namespace quadcore::rotors {
+
+/// The numbers of chance of a program that never seeds its generator: those of GCC's
+/// std::default_random_engine (Lewis, Goodman, Miller, 1969: x' = 16807 x mod 2^31 - 1, from 1 on)
+/// and of its std::normal_distribution, which is Marsaglia's polar method, two numbers at a time.
+/// The C++ standard leaves the latter open; here it is the same everywhere.
+class StandardRandom {
+ public:
+  enum Memory { kBegun, kEngine, kHasSpare, kSpare, kMemorySize };
+
+  explicit StandardRandom(Eigen::Ref<VectorXd> memory) : memory_(memory) {
+    if (memory_[kBegun] != 0) return;
+    memory_[kBegun] = memory_[kEngine] = 1;
+  }
+
+  /// Of mean 0 and standard deviation 1.
+  double normal() {
+    if (memory_[kHasSpare] != 0) {
+      memory_[kHasSpare] = 0;
+      return memory_[kSpare];
+    }
+    double x, y, square;
+    do {
+      x = 2 * uniform() - 1;
+      y = 2 * uniform() - 1;
+      square = x * x + y * y;
+    } while (square > 1 || square == 0);
+    const double factor = std::sqrt(-2 * elementary::log(square) / square);
+    memory_[kHasSpare] = 1;
+    memory_[kSpare] = x * factor;
+    return y * factor;
+  }
+
+ private:
+  /// One of 2^31 - 2 numbers from 0 on.
+  double next() {
+    memory_[kEngine] = std::fmod(16807 * memory_[kEngine], 2147483647.0);
+    return memory_[kEngine] - 1;
+  }
+  /// From 0 to below 1, of as many bits as a double has: two of the engine's.
+  double uniform() {
+    constexpr double range = 2147483646.0;
+    const double low = next(), high = next();
+    const double number = (low + high * range) / (range * range);
+    return number < 1 ? number : std::nextafter(1.0, 0.0);
+  }
+
+  Eigen::Ref<VectorXd> memory_;
+};
+
+}  // namespace quadcore::rotors

@@ -1,0 +1,104 @@
+#include <cmath>
+
+#include "center_of_mass.hpp"
+#include "naming.hpp"
+#include "quadcore/error.hpp"
+#include "quadcore/plugin.hpp"
+
+namespace quadcore::rotors {
+namespace {
+
+/// A force that stays and a gust that comes and goes, on the frame; and a wind that the rotors'
+/// drag feels.
+class Wind final : public Plugin {
+ public:
+  explicit Wind(const PluginSetup& setup)
+      : p_FQ_F_(point(setup)),
+        force_W_(along(setup, "windForceMean", "windDirection")),
+        gust_W_(along(setup, "windGustForceMean", "windGustDirection")),
+        begin_(setup.parameters.number("windGustStart")),
+        end_(begin_ + setup.parameters.number("windGustDuration")),
+        v_WA_W_(along(setup, "windSpeedMean", "windDirection")) {
+    if (setup.parameters.flag("useCustomStaticWindField")) {
+      throw InputError("<useCustomStaticWindField> is true, but fields of wind from files are not "
+                       "modelled; write false, or use libwind_plugin.so");
+    }
+  }
+
+  std::size_t state_size() const override { return 1; }
+
+  void update(const Sample& sample, PluginState gusty) const override {
+    const double now = sample.time + sample.dt;  // RotorS' clock has moved on already
+    gusty[0] = now >= begin_ - 1e-9 && now < end_ - 1e-9 ? 1 : 0;
+  }
+
+  void forces(const Kinematics& k, ConstPluginState gusty, Loads& loads) const override {
+    const Vector3d f_W = force_W_ + gusty[0] * gust_W_;
+    loads.add_frame_force(0, k.R_WF.transpose() * f_W, p_FQ_F_);
+  }
+
+  void air(const Kinematics&, ConstPluginState, Vector3d& v_WA_W) const override {
+    v_WA_W += v_WA_W_;
+  }
+
+ private:
+  static Vector3d point(const PluginSetup& setup) {
+    const Pose X_FS = place_of(setup, "linkName");
+    const Vector3d offset_S(setup.parameters.numbers("xyzOffset").data());
+    return X_FS.xyz + X_FS.rotation() * (center_of_mass(setup.model,
+                                                        setup.parameters.text("linkName")) +
+                                         offset_S);
+  }
+
+  static Vector3d along(const PluginSetup& setup, const char* strength, const char* direction) {
+    const Vector3d axis(setup.parameters.numbers(direction).data());
+    const double length = axis.norm();
+    if (!(length > 0)) {
+      throw InputError(std::string("<") + direction + "> has no direction; write such as 1 0 0");
+    }
+    return setup.parameters.number(strength) / length * axis;
+  }
+
+  Vector3d p_FQ_F_;            ///< where the forces act [m]
+  Vector3d force_W_, gust_W_;  ///< N
+  double begin_, end_;         ///< s
+  Vector3d v_WA_W_;            ///< m/s
+};
+
+PluginDescriptor describe() {
+  using T = TagSpec;
+  const char* const unused = "RotorS reads it and never uses it, either";
+  std::vector<TagSpec> tags = {
+      T::text("linkName", "", "the link that the forces act on").must(),
+      T::numbers("xyzOffset", "m", "0 0 0",
+                 "where they act, from the link's centre of mass, along its axes")
+          .of(3),
+      T::numbers("windDirection", "", "1 0 0", "of the force and of the wind, world axes, of any "
+                                               "length")
+          .of(3),
+      T::number("windForceMean", "N", "0", "the force that stays"),
+      T::number("windSpeedMean", "m/s", "0", "speed of the wind that the rotors' drag feels"),
+      T::numbers("windGustDirection", "", "0 1 0", "of the gust, world axes, of any length").of(3),
+      T::number("windGustForceMean", "N", "0", "force of the gust"),
+      T::number("windGustStart", "s", "10", "when it begins"),
+      T::number("windGustDuration", "s", "0", "how long it lasts").at_least(0),
+      T::flag("useCustomStaticWindField", "false", "a field of wind from a file; not modelled"),
+  };
+  for (TagSpec& tag : tags) tag.equation = "RotorS";
+  for (const char* name :
+       {"windForceVariance", "windGustForceVariance", "windSpeedVariance"}) {
+    tags.push_back(idle(name, unused));
+  }
+  tags.push_back(idle("customWindFieldPath", "fields of wind are not modelled"));
+  tags.push_back(idle("windForcePubTopic", "wrenches hold the force"));
+  tags.push_back(idle("windSpeedPubTopic", "all that feels the air feels this wind"));
+  tags.push_back(idle("frameId", "forces have no frame"));
+  tags.push_back(namespace_tag());
+  return {"RotorS' wind: a force, a gust, and a wind on the rotors", tags, {"wind_force"},
+          create<Wind>};
+}
+
+}  // namespace
+}  // namespace quadcore::rotors
+
+QUADCORE_REGISTER_PLUGIN(quadcore::rotors::describe)
