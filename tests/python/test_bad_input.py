@@ -40,7 +40,7 @@ def k(value):
         fault(K, K + "\n" + k(2), "<rotorThrustCoeff>", "toy.urdf:31", "keep one", at=k(2)),
         fault(K, "<rotorTrustCoeff>1</rotorTrustCoeff>", "'air'", "mean 'rotorThrustCoeff'?"),
         fault(KP, f"{KP}<kI>1</kI>", "'motor': unknown tag <kI>", "did you mean 'ki'?"),
-        fault(K, k("<b>1</b>"), "<b> inside <rotorThrustCoeff>", "plain text"),
+        fault(K, k("<b>1</b>"), "unknown tag <rotorThrustCoeff/b>", "mean 'rotorThrustCoeff'"),
         fault(K, f"{K}1", "stray text '1'", 'name="air"', "<tag>value</tag>", at=AIR),
         fault(AIR_SLOW, "<sim_slow>0</sim_slow>", "'air': <sim_slow> '0'", "write a number > 0"),
         fault(K, f"{K}<rotorRadius>0</rotorRadius>", "<rotorRadius> '0'", "a number > 0"),

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "center_of_mass.hpp"
 #include "naming.hpp"
 #include "quadcore/elementary.hpp"
 #include "quadcore/plugin.hpp"
@@ -46,13 +47,15 @@ enum Memory {
   kMemorySize = kAccelerometer + Errors::kMemorySize
 };
 
-/// Rates and specific force at the start of each step, the latter from the change of velocity since
-/// the step before, both with RotorS' errors.
+/// Rates and specific force at the start of each step, the latter from the change of the velocity of
+/// the link's centre of mass since the step before, both with RotorS' errors.
 class Imu final : public Plugin {
  public:
   explicit Imu(const PluginSetup& setup)
-      : X_FS_(place_of(setup, "linkName")),
-        R_SF_(X_FS_.rotation().toRotationMatrix().transpose()),
+      : R_SF_(place_of(setup, "linkName").rotation().toRotationMatrix().transpose()),
+        p_FScm_F_(place_of(setup, "linkName").xyz +
+                  R_SF_.transpose() *
+                      center_of_mass(setup.model, setup.parameters.text("linkName"))),
         gyroscope_(setup.parameters, "gyroscope", "gyroscopeBiasRandomWalk"),
         accelerometer_(setup.parameters, "accelerometer", "accelerometerRandomWalk"),
         as_rotors_(setup.parameters.choice("noise") == "rotors"),
@@ -62,7 +65,7 @@ class Imu final : public Plugin {
   std::size_t state_size() const override { return kMemorySize; }
 
   void sense(const Sample& sample, PluginState state) const override {
-    if (sample.jumped) state.segment<3>(kVelocity) = sample.kinematics.v_WS_W(X_FS_.xyz);
+    if (sample.jumped) state.segment<3>(kVelocity) = sample.kinematics.v_WS_W(p_FScm_F_);
   }
 
   void update(const Sample& sample, PluginState state) const override {
@@ -80,9 +83,9 @@ class Imu final : public Plugin {
         accelerometer[Errors::kTurnOn + i] = accelerometer_.turn_on * draw();
       }
     }
-    const Vector3d v_WS_W = k.v_WS_W(X_FS_.xyz);
-    const Vector3d a_W = (v_WS_W - state.segment<3>(kVelocity)) / sample.dt;
-    state.segment<3>(kVelocity) = v_WS_W;
+    const Vector3d v_WScm_W = k.v_WS_W(p_FScm_F_);
+    const Vector3d a_W = (v_WScm_W - state.segment<3>(kVelocity)) / sample.dt;
+    state.segment<3>(kVelocity) = v_WScm_W;
     messages::Imu message;
     message.angular_velocity = R_SF_ * k.w_WF_F;
     message.specific_force = R_SF_ * (k.R_WF.transpose() * (a_W - sample.world.gravity_W));
@@ -99,8 +102,8 @@ class Imu final : public Plugin {
   }
 
  private:
-  Pose X_FS_;
   Matrix3d R_SF_;
+  Vector3d p_FScm_F_;  ///< of the link's centre of mass [m]
   Errors gyroscope_, accelerometer_;
   bool as_rotors_;
   std::size_t topic_;
