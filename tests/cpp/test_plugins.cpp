@@ -123,6 +123,6 @@ TEST_CASE("folders are searched newest first, then the environment's, then the c
   unsetenv("QUADCORE_PLUGIN_PATH");
   REQUIRE(folders.size() >= 4);
   CHECK(folders.front() == TEST_DATA);
-  CHECK(folders[folders.size() - 4] == "/nowhere");
-  CHECK(folders[folders.size() - 3] == "/elsewhere");
+  CHECK(folders[folders.size() - 3] == "/nowhere");
+  CHECK(folders[folders.size() - 2] == "/elsewhere");
 }

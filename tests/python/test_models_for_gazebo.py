@@ -109,7 +109,7 @@ def test_a_misspelt_library_names_the_right_one(toy):
     (toy / "toy.urdf").write_text(MODEL.replace("libodometry_", "libodometri_"))
     message = refusal(qc.Simulation, "toy.urdf")
     assert " (did you mean 'libodometry_plugin.so'?); correct the filename" in message
-    (toy / "toy.urdf").write_text(MODEL.replace("libodometry_plugin", "librotors_gazebo_motor"))
+    (toy / "toy.urdf").write_text(MODEL.replace("libodometry_plugin", "librotors_gazebo_thruster"))
     assert "did you mean" not in refusal(qc.Simulation, "toy.urdf")
 
 

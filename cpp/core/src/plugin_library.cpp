@@ -24,6 +24,9 @@ std::string own_folder() {
   return std::filesystem::canonical(info.dli_fname).parent_path().string();
 }
 
+/// Folder of the shipped modules that have the names of another program's, which must not find them.
+std::string named_as_others() { return own_folder() + "/quadcore"; }
+
 std::string who_is(const PluginElement& element) {
   return element.where + ": plugin '" + element.name + "': " + element.filename;
 }
@@ -34,7 +37,9 @@ std::string misspelt(const std::string& filename) {
   for (const auto& [name, module] : built_in_plugins()) {
     if (is_slip(filename, name)) modules.push_back(name);
   }
-  for (const std::string& folder : plugin_folders()) {
+  std::vector<std::string> folders = plugin_folders();
+  if (built_in_plugins().empty()) folders.push_back(named_as_others());
+  for (const std::string& folder : folders) {
     std::error_code unreachable;
     for (const auto& file : std::filesystem::directory_iterator(folder, unreachable)) {
       const std::string name = file.path().filename().string();
@@ -103,10 +108,7 @@ std::vector<std::string> plugin_folders() {
       if (!folder.empty()) folders.push_back(folder);
     }
   }
-  if (built_in_plugins().empty()) {
-    folders.push_back(own_folder() + "/quadcore");  // of modules named as those of others
-    folders.push_back(own_folder());
-  }
+  if (built_in_plugins().empty()) folders.push_back(own_folder());
   return folders;
 }
 
@@ -118,6 +120,9 @@ std::optional<std::string> find_plugin(const std::string& filename) {
     if (std::filesystem::exists(path, unreachable)) return path;
   }
   if (built_in_plugins().count(filename)) return filename;
+  const std::string own = named_as_others() + "/" + filename;
+  std::error_code unreachable;
+  if (std::filesystem::exists(own, unreachable)) return own;
   return std::nullopt;
 }
 

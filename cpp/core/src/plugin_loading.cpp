@@ -127,7 +127,9 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
     loaded.who = who;
     const auto alike = std::find_if(
         plugins_.begin(), plugins_.end(),
-        [&](const LoadedPlugin& other) { return other.descriptor == library.descriptor; });
+        [&](const LoadedPlugin& other) {
+          return library.descriptor->adds_up && other.descriptor == library.descriptor;
+        });
     for (const std::string& term : library.descriptor->wrenches) {
       if (alike == plugins_.end() &&
           std::find(wrench_terms_.begin(), wrench_terms_.end(), term) != wrench_terms_.end()) {
@@ -156,7 +158,7 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
     }
     state_size += loaded.state_size;
     loaded.term_begin = wrench_terms_.size();
-    if (alike != plugins_.end()) {  // plugins of one module report sums
+    if (alike != plugins_.end()) {  // it reports to the same sums
       loaded.term_begin = alike->term_begin;
     } else {
       wrench_terms_.insert(wrench_terms_.end(), library.descriptor->wrenches.begin(),

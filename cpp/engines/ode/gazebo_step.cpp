@@ -23,7 +23,9 @@ GazeboStep::GazeboStep(const std::vector<dBodyID>& bodies, std::vector<Hinge> hi
       ode_bodies_(bodies),
       constraints_(bodies, std::move(hinges), order, options.rows),
       options_(options),
-      bodies_(bodies.size()) {}
+      bodies_(bodies.size()) {
+  hinge_sweeps_.hinges.resize(warm_start.size());
+}
 
 void GazeboStep::reserve(std::size_t contacts) {
   constraints_.reserve(contacts);
@@ -36,9 +38,14 @@ void GazeboStep::step(const std::vector<Contact>& contacts, double dt) {
   rows_ = &constraints_.build(contacts, dt);
   order_rows();
   prepare_rows();
+  const bool once = is_solved_once();
   solve(&WarmStart::pose, false, 0, dt);
   for (Body& b : bodies_) b.moving = b.velocity + dt * (b.free_acceleration + b.constraint);
-  solve(&WarmStart::velocity, true, contact_smoothing, dt);
+  if (once) {
+    for (WarmStart& start : warm_start) start.velocity = start.pose;
+  } else {
+    solve(&WarmStart::velocity, true, contact_smoothing, dt);
+  }
   for (Body& b : bodies_) b.velocity += dt * (b.free_acceleration + b.constraint);
   move(dt);
 }
@@ -111,14 +118,65 @@ void GazeboStep::solve(Multipliers WarmStart::* start, bool cap, double smoothin
       body.constraint += sweep.multiplier * sweep.inverse_mass_J[side];
     }
   }
-  for (int n = 0; n < options_.iterations; ++n) {
-    for (const std::size_t row : order_) relax(row, smoothing);
-  }
-  for (int n = 0; n < friction_sweeps; ++n) {
-    for (std::size_t k = friction_begin_; k < order_.size(); ++k) relax(order_[k], smoothing);
+  if (are_hinges_alone()) {
+    sweep_hinges();
+  } else {
+    for (int n = 0; n < options_.iterations; ++n) {
+      for (const std::size_t row : order_) relax(row, smoothing);
+    }
+    for (int n = 0; n < friction_sweeps; ++n) {
+      for (std::size_t k = friction_begin_; k < order_.size(); ++k) relax(order_[k], smoothing);
+    }
   }
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows[i].hinge >= 0) remembered(rows[i]) = sweeps_[i].multiplier;
+  }
+}
+
+/// Whether HingeSweeps may take the place of the sweeps.
+bool GazeboStep::are_hinges_alone() const {
+  return options_.rows.cfm == 0 &&
+         rows_->size() == HingeSweeps::rows_of_hinge * warm_start.size();
+}
+
+/// Whether poses and velocities have one solution: there is nothing but hinges, no correction is
+/// capped, and both start from the same multipliers.
+bool GazeboStep::is_solved_once() const {
+  return are_hinges_alone() &&
+         std::all_of(rows_->begin(), rows_->end(),
+                     [](const ConstraintRow& row) {
+                       return std::abs(row.correction) <= row.max_correction;
+                     }) &&
+         std::all_of(warm_start.begin(), warm_start.end(),
+                     [](const WarmStart& start) { return start.pose == start.velocity; });
+}
+
+void GazeboStep::sweep_hinges() {
+  const auto& rows = *rows_;
+  std::size_t i = 0;
+  for (HingeSweeps::HingeRows& hinge : hinge_sweeps_.hinges) {
+    hinge.child = &bodies_[static_cast<std::size_t>(rows[i].body[0])].constraint;
+    hinge.parent = &bodies_[static_cast<std::size_t>(rows[i].body[1])].constraint;
+    for (HingeSweeps::Row& to : hinge.rows) {
+      const ConstraintRow& row = rows[i];
+      const Sweep& from = sweeps_[i++];
+      to.turn_C = row.J[0].tail<3>();
+      to.turn_P = row.J[1].tail<3>();
+      to.angular_C = from.inverse_mass_J[0].tail<3>();
+      to.angular_P = from.inverse_mass_J[1].tail<3>();
+      if (row.hinge_row < 3) {
+        to.linear_C = from.inverse_mass_J[0][row.hinge_row];
+        to.linear_P = from.inverse_mass_J[1][row.hinge_row];
+      }
+      to.relaxation = from.relaxation;
+      to.wanted = from.wanted;
+      to.multiplier = from.multiplier;
+    }
+  }
+  hinge_sweeps_.sweep(options_.iterations);
+  i = 0;
+  for (const HingeSweeps::HingeRows& hinge : hinge_sweeps_.hinges) {
+    for (const HingeSweeps::Row& from : hinge.rows) sweeps_[i++].multiplier = from.multiplier;
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "constraint_rows.hpp"
+#include "hinge_sweeps.hpp"
 
 namespace quadcore {
 
@@ -74,6 +75,9 @@ class GazeboStep {
   void prepare_rows();
   void solve(Multipliers WarmStart::* start, bool cap, double smoothing, double dt);
   void relax(std::size_t row, double smoothing);
+  bool are_hinges_alone() const;
+  bool is_solved_once() const;
+  void sweep_hinges();
   void move(double dt);
 
   const std::vector<dBodyID>& ode_bodies_;
@@ -82,6 +86,7 @@ class GazeboStep {
   std::vector<Body> bodies_;
   const std::vector<ConstraintRow>* rows_ = nullptr;
   std::vector<Sweep> sweeps_;
+  HingeSweeps hinge_sweeps_;
   std::vector<std::size_t> order_;  ///< rows as they are swept: hinges, normals, friction
   std::size_t friction_begin_ = 0;  ///< in order_
 };

@@ -230,6 +230,7 @@ PluginDescriptor describe() {
       tags,
       {"thrust", "rotor_drag", "reaction", "rolling"},
       create<MotorModel>,
+      true,
   };
 }
 

@@ -121,6 +121,7 @@ struct PluginDescriptor {
   std::vector<TagSpec> tags;          ///< every parameter
   std::vector<std::string> wrenches;  ///< names of the wrench terms that forces() reports
   PluginMaker create;                 ///< create<P>, P being the class of the plugin
+  bool adds_up = false;  ///< several of them may fly, whose wrenches of one name are summed
 };
 
 /// What a library holds: the first that is read of it, so it stays as it is for ever.
