@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 import sys
+import warnings
 from pathlib import Path
 from typing import Iterable, Iterator, Sequence
 
@@ -78,8 +79,12 @@ def _cell(text: str) -> str:
 
 
 def plugin_sections(simulation: qc.Simulation) -> Iterator[str]:
-    """One section for each plugin of the simulation."""
+    """One section for each module of the simulation's plugins."""
+    told = set()
     for plugin in simulation.plugins:
+        if plugin.filename in told:
+            continue
+        told.add(plugin.filename)
         yield f"\n## {plugin.filename}\n\n{_sentence(plugin.summary)}\n\n"
         yield table(
             ("tag", "unit", "default", "range", "meaning", "equation"),
@@ -267,24 +272,38 @@ FURTHER = {
 }
 
 
-def quadrotor_with(further: dict[str, str]) -> qc.Simulation:
-    """Make the shipped quadrotor with further plugins."""
-    document = load_description("quadrotor", {})
+def vehicle_with(name: str, prefix: str, further: dict[str, str]) -> qc.Simulation:
+    """Make a shipped vehicle with further plugins."""
+    document = load_description(name, {})
     plugins = "".join(
-        f'<gazebo><plugin name="{name}" filename="lib{name}_plugin.so">{tags}</plugin></gazebo>'
-        for name, tags in further.items()
+        f'<gazebo><plugin name="{plugin}" filename="{prefix}{plugin}_plugin.so">{tags}</plugin>'
+        "</gazebo>"
+        for plugin, tags in further.items()
     )
     text = document.text.replace("</robot>", f"{plugins}</robot>")
     return qc.Simulation(_core.read_model(_core.Document(document.name, text, document.lines), []))
 
 
+def rotors_sections() -> Iterator[str]:
+    """Sections of the modules that do what RotorS' do."""
+    yield (
+        "\n# Modules of RotorS\n\nThey have the names and the tags of RotorS' own:\n"
+        "[rotors.md](rotors.md).\n"
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # its frame has an inertia that no body can have
+        wind = {"wind": "<linkName>firefly/base_link</linkName>"}
+        yield from plugin_sections(vehicle_with("firefly", "librotors_gazebo_", wind))
+
+
 def page() -> str:
     """Write out the whole page."""
-    simulation = quadrotor_with(FURTHER)
+    simulation = vehicle_with("quadrotor", "lib", FURTHER)
     return "".join(
         [
             INTRODUCTION,
             *plugin_sections(simulation),
+            *rotors_sections(),
             reference_section(),
             world_section(),
             unfelt_section(),

@@ -164,6 +164,23 @@ TEST_CASE("loads are finite only if those on every rotor are") {
   }
 }
 
+TEST_CASE("a joint takes one rate at a time, which must be finite") {
+  Loads loads(rotor_count);
+  loads.prescribe_joint_rate(1, {3, 0});
+  CHECK(loads.any_rate());
+  CHECK(loads.all_finite());
+  CHECK_THROWS_WITH_AS(loads.prescribe_joint_rate(1, {3, 0}),
+                       "the rate of joint 1, counted from 0, is prescribed a second time; let one "
+                       "plugin drive each joint",
+                       Error);
+  CHECK_THROWS_AS(loads.prescribe_joint_rate(rotor_count, {3, 0}), Error);
+  loads.clear();
+  CHECK_FALSE(loads.any_rate());
+  CHECK_FALSE(loads.joint_rate(1));
+  loads.prescribe_joint_rate(1, {3, NAN});
+  CHECK_FALSE(loads.all_finite());
+}
+
 TEST_CASE("each flapping coefficient alone flaps") {
   const Kinematics motion = any_motion(1, 1);
   for (const char* name : {"flappingA1c", "flappingA1s", "flappingB1", "flappingB2"}) {

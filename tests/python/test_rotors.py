@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 
@@ -296,3 +297,26 @@ def test_a_motor_may_hold_an_angle(edited):
     simulation.command([0.5, 0, 0, 0, 0, 0])
     simulation.step(3000)
     assert simulation.state.rotor_angle[0] == pytest.approx(0.5, abs=1e-3)
+
+
+def checkout():
+    """Where ROS_PACKAGE_PATH has rotors_description, or None."""
+    folders = map(Path, os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep))
+    found = (p for f in folders if f.is_dir() for p in f.rglob("rotors_description/package.xml"))
+    return next((path.parent for path in found), None)
+
+
+@pytest.mark.parametrize("model", VEHICLES)
+def test_a_file_of_rotors_own_flies_as_it_is(model):
+    folder = checkout()
+    if folder is None:
+        pytest.skip("ROS_PACKAGE_PATH names no checkout of RotorS")
+    path = folder / "urdf" / "mav_generic_odometry_sensor.gazebo"
+    arguments = {"mav_name": model, "namespace": model, "log_file": model}
+    arguments.update(enable_logging="false", enable_ground_truth="true")
+    arguments.update(enable_mavlink_interface="false", wait_to_record_bag="false")
+    simulation = qc.Simulation(path, world="basic", spawn=(0, 0, 10), xacro_args=arguments)
+    simulation.set_state(references.start(simulation, references.hover()))
+    log = simulation.run(3, controller="geometric", reference="hover", log_every=10)
+    assert np.abs(log.position - log.position[0]).max() < 1e-3
+    assert {"imu", "ground_truth_odometry", "odometry_sensor1_odometry"} <= set(simulation.topics)

@@ -18,7 +18,8 @@ ENGINES = [name for name, _ in qc.engines()]
 
 def plugin(name, module, **tags):
     inner = "".join(f"<{tag}>{value}</{tag}>" for tag, value in tags.items())
-    return f'<gazebo><plugin name="{name}" filename="librotors_gazebo_{module}.so">{inner}</plugin></gazebo>'
+    opening = f'<gazebo><plugin name="{name}" filename="librotors_gazebo_{module}.so">'
+    return f"{opening}{inner}</plugin></gazebo>"
 
 
 MAST = (
@@ -240,7 +241,10 @@ def test_a_field_of_wind_from_a_file_is_refused(fitted):
 
 
 def test_a_sensor_on_a_link_that_turns_or_is_not_there_is_refused(fitted):
-    for link, says in (("firefly/rotor_0", "not part of the frame"), ("mats", "did you mean 'mast'")):
+    for link, says in (
+        ("firefly/rotor_0", "not part of the frame"),
+        ("mats", "did you mean 'mast'"),
+    ):
         unit = plugin("unit", "imu_plugin", linkName=link, imuTopic="unit")
         with pytest.raises(qc.InputError, match=says):
             fitted(unit)

@@ -24,7 +24,8 @@ std::string own_folder() {
   return std::filesystem::canonical(info.dli_fname).parent_path().string();
 }
 
-/// Folder of the shipped modules that have the names of another program's, which must not find them.
+/// Folder of the shipped modules that have the names of another program's, which must not find
+/// them.
 std::string named_as_others() { return own_folder() + "/quadcore"; }
 
 std::string who_is(const PluginElement& element) {
@@ -124,6 +125,12 @@ std::optional<std::string> find_plugin(const std::string& filename) {
   std::error_code unreachable;
   if (std::filesystem::exists(own, unreachable)) return own;
   return std::nullopt;
+}
+
+bool is_named_as_others(const std::string& path) {
+  const std::filesystem::path file = path;
+  return file.parent_path() == named_as_others() ||
+         (built_in_plugins().count(path) && path.rfind("librotors_gazebo_", 0) == 0);
 }
 
 PluginLibrary open_plugin(const PluginElement& element, const std::string& path) {

@@ -12,18 +12,27 @@ namespace {
 /// Numbers of state that a plugin may ask for.
 constexpr std::size_t max_plugin_state = 1000000;
 
-/// A plugin tag and the path of its module.
+/// A plugin tag, by the name that the plugin goes by, and the path of its module.
 struct Found {
-  const PluginElement* element;
+  PluginElement element;
   std::string path;
 };
 
+/// A name for a plugin whose own is taken.
+std::string another_name(const std::string& name, const std::map<std::string, std::string>& taken) {
+  int number = 2;
+  while (taken.count(name + "_" + std::to_string(number))) ++number;
+  return name + "_" + std::to_string(number);
+}
+
 /// The plugins to load. A module that is not there is passed over if it only senses; otherwise it
-/// is refused, as are two plugins of one name and one whose tags cannot be read. They come by name:
-/// where a document has them must not matter.
-std::vector<Found> find_plugins(const Model& model, PassedOver& passed_over) {
+/// is refused, as are two plugins of one name (but for modules that are named as another program's,
+/// which minds that less) and one whose tags cannot be read. They come by name: where a document
+/// has them must not matter.
+std::vector<Found> find_plugins(const Model& model, PassedOver& passed_over,
+                                std::vector<std::string>& warnings) {
   std::vector<Found> plugins;
-  std::map<std::string, const PluginElement*> by_name;
+  std::map<std::string, std::string> by_name;
   for (const PluginElement& element : model.plugins) {
     const auto path = find_plugin(element.filename);
     if (!path && verdict_on_module(element.filename) == Verdict::unfelt) {
@@ -32,15 +41,20 @@ std::vector<Found> find_plugins(const Model& model, PassedOver& passed_over) {
     }
     if (!path) throw InputError(describe_missing(element));
     if (!element.fault.empty()) throw InputError(element.fault);
-    const auto [first, added] = by_name.emplace(element.name, &element);
-    if (!added) {
-      throw InputError(element.where + ": a second plugin named '" + element.name + "' (first at " +
-                       first->second->where + "); give it another name");
+    Found found{element, *path};
+    const auto first = by_name.find(element.name);
+    if (first != by_name.end()) {
+      const std::string second = element.where + ": a second plugin named '" + element.name +
+                                 "' (first at " + first->second + ")";
+      if (!is_named_as_others(*path)) throw InputError(second + "; give it another name");
+      found.element.name = another_name(element.name, by_name);
+      warnings.push_back(second + " goes by the name '" + found.element.name + "'");
     }
-    plugins.push_back({&element, *path});
+    by_name[found.element.name] = element.where;
+    plugins.push_back(found);
   }
   std::sort(plugins.begin(), plugins.end(),
-            [](const Found& a, const Found& b) { return a.element->name < b.element->name; });
+            [](const Found& a, const Found& b) { return a.element.name < b.element.name; });
   return plugins;
 }
 
@@ -48,7 +62,7 @@ std::vector<Found> find_plugins(const Model& model, PassedOver& passed_over) {
 std::map<std::string, std::map<std::string, std::string>> by_plugin(
     const std::map<std::string, std::string>& parameters, const std::vector<Found>& plugins) {
   std::vector<std::string> names;
-  for (const Found& found : plugins) names.push_back(found.element->name);
+  for (const Found& found : plugins) names.push_back(found.element.name);
   std::map<std::string, std::map<std::string, std::string>> result;
   for (const auto& [key, value] : parameters) {
     const auto dot = key.rfind('.');
@@ -106,13 +120,13 @@ std::string Simulation::describe_idle(const Model& model) const {
 
 void Simulation::load_plugins(const Model& model, const SimulationOptions& options) {
   PassedOver passed_over = model.passed_over;
-  const std::vector<Found> found_plugins = find_plugins(model, passed_over);
+  const std::vector<Found> found_plugins = find_plugins(model, passed_over, warnings_);
   warn(passed_over.warning());
   const auto overrides = by_plugin(options.parameters, found_plugins);
   const double fastest_decay = engine_info(options.engine).largest_decay_per_step / dt_;
   Eigen::Index state_size = 0;
   for (const Found& found : found_plugins) {
-    const PluginElement& element = *found.element;
+    const PluginElement& element = found.element;
     const PluginLibrary library = open_plugin(element, found.path);
     const auto given = overrides.find(element.name);
     LoadedPlugin loaded{
@@ -125,9 +139,8 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
         nullptr};
     const std::string who = element.where + ": plugin '" + element.name + "'";
     loaded.who = who;
-    const auto alike = std::find_if(
-        plugins_.begin(), plugins_.end(),
-        [&](const LoadedPlugin& other) {
+    const auto alike =
+        std::find_if(plugins_.begin(), plugins_.end(), [&](const LoadedPlugin& other) {
           return library.descriptor->adds_up && other.descriptor == library.descriptor;
         });
     for (const std::string& term : library.descriptor->wrenches) {

@@ -74,9 +74,9 @@ QUADCORE_LAW laws::RotorLoads<T> loads_of(const GyrostatStep& g, const Rotors& r
   loads.joint_torque = loads.joint_torque - rotors.constant(RotorConstant::damping) * rotors.rate();
   if (rest && g.given_rates) {
     const double* given = g.given_rates + rotor_offset(GivenRateRow::count, rotors.i);
-    loads.joint_torque = laws::load<T>(given + GivenRateRow::free * widest_lanes) *
-                             loads.joint_torque +
-                         laws::load<T>(given + GivenRateRow::torque * widest_lanes);
+    loads.joint_torque =
+        laws::load<T>(given + GivenRateRow::free * widest_lanes) * loads.joint_torque +
+        laws::load<T>(given + GivenRateRow::torque * widest_lanes);
   }
   return loads;
 }

@@ -135,8 +135,7 @@ void GazeboStep::solve(Multipliers WarmStart::* start, bool cap, double smoothin
 
 /// Whether HingeSweeps may take the place of the sweeps.
 bool GazeboStep::are_hinges_alone() const {
-  return options_.rows.cfm == 0 &&
-         rows_->size() == HingeSweeps::rows_of_hinge * warm_start.size();
+  return options_.rows.cfm == 0 && rows_->size() == HingeSweeps::rows_of_hinge * warm_start.size();
 }
 
 /// Whether poses and velocities have one solution: there is nothing but hinges, no correction is

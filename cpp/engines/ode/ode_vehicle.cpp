@@ -157,8 +157,7 @@ void OdeVehicle::turn(const Loads& loads) {
     const Vector3d w_WP_W = vec(dBodyGetAngularVel(parent));
     const Vector3d w_W = w_WP_W + rate->at_end * (R_WC * joint.axis);
     // Each body has its own anchor, between which a step leaves a gap.
-    const Vector3d arm_P_W =
-        R_WP * (joint.pose.xyz - model_.links[joint.parent].inertial.pose.xyz);
+    const Vector3d arm_P_W = R_WP * (joint.pose.xyz - model_.links[joint.parent].inertial.pose.xyz);
     const Vector3d arm_C_W = R_WC * model_.links[i + 1].inertial.pose.xyz;
     const Vector3d v_W =
         vec(dBodyGetLinearVel(parent)) + w_WP_W.cross(arm_P_W) + w_W.cross(arm_C_W);

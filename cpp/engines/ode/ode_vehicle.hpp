@@ -28,8 +28,8 @@ class OdeVehicle {
   std::vector<Hinge> hinge_rows() const;
 
   void place(const VehicleState& state);
-  /// Adds the loads, the joints' damping, and over a step of dt what prescribed rates react with, to
-  /// the forces on the bodies.
+  /// Adds the loads, the joints' damping, and over a step of dt what prescribed rates react with,
+  /// to the forces on the bodies.
   void apply(const Loads& loads, const Kinematics& kinematics, double dt);
   /// Gives joints the rates that loads prescribe as Gazebo's SetVelocity() does: overwrites the
   /// whole velocity of each such rotor by what its carrier's is at the start of the step.

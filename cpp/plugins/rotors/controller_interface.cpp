@@ -10,12 +10,10 @@ namespace {
 class ControllerInterface final : public Plugin {
  public:
   explicit ControllerInterface(const PluginSetup& setup)
-      : in_(setup.topics.takes(
-            topic_word(setup.parameters.text("commandMotorSpeedSubTopic")),
-            messages::speeds(motor_count(setup.model)))),
-        out_(setup.topics.publishes(
-            topic_word(setup.parameters.text("motorSpeedCommandPubTopic")),
-            messages::speeds(motor_count(setup.model)))) {}
+      : in_(setup.topics.takes(topic_word(setup.parameters.text("commandMotorSpeedSubTopic")),
+                               messages::speeds(motor_count(setup.model)))),
+        out_(setup.topics.publishes(topic_word(setup.parameters.text("motorSpeedCommandPubTopic")),
+                                    messages::speeds(motor_count(setup.model)))) {}
 
   std::size_t state_size() const override { return 1; }
 

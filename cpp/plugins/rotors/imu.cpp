@@ -47,8 +47,8 @@ enum Memory {
   kMemorySize = kAccelerometer + Errors::kMemorySize
 };
 
-/// Rates and specific force at the start of each step, the latter from the change of the velocity of
-/// the link's centre of mass since the step before, both with RotorS' errors.
+/// Rates and specific force at the start of each step, the latter from the change of the velocity
+/// of the link's centre of mass since the step before, both with RotorS' errors.
 class Imu final : public Plugin {
  public:
   explicit Imu(const PluginSetup& setup)

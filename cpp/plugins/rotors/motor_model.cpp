@@ -91,8 +91,7 @@ class MotorModel final : public Plugin {
 
   void sense(const Sample& sample, PluginState state) const override {
     if (!sample.jumped) return;  // the motor goes on from a speed that was set
-    state[kNext] =
-        sense_ * sample.kinematics.rotors.number(MotionRow::rate, joint_) * slowdown_;
+    state[kNext] = sense_ * sample.kinematics.rotors.number(MotionRow::rate, joint_) * slowdown_;
   }
 
   void forces(const Kinematics& k, ConstPluginState state, Loads& loads) const override {
@@ -169,7 +168,7 @@ class MotorModel final : public Plugin {
 
   std::size_t joint_;
   Type type_;
-  double sense_;      ///< 1 or -1: of a positive command about the joint's axis
+  double sense_;  ///< 1 or -1: of a positive command about the joint's axis
   std::size_t number_;
   double fastest_;                           ///< rad/s
   double motor_constant_, moment_constant_;  ///< N s^2/rad^2, m
@@ -194,11 +193,14 @@ PluginDescriptor describe() {
       T::number("motorNumber", "", "", "its place in a command, from 0 on").must().at_least(0),
       T::choice("motorType", {"velocity", "position", "force"},
                 "what a command is: a speed, rad/s; an angle, rad; a torque, N m"),
-      T::number("motorConstant", "N s^2/rad^2", "8.54858e-06", "thrust is this times the square of "
-                "the speed").at_least(0),
+      T::number("motorConstant", "N s^2/rad^2", "8.54858e-06",
+                "thrust is this times the square of "
+                "the speed")
+          .at_least(0),
       T::number("momentConstant", "m", "0.016", "reaction torque by thrust"),
-      T::number("rotorDragCoefficient", "N s^2/(rad m)", "1e-4",
-                "drag is this times the speed and the velocity of the link's origin across the axis")
+      T::number(
+          "rotorDragCoefficient", "N s^2/(rad m)", "1e-4",
+          "drag is this times the speed and the velocity of the link's origin across the axis")
           .at_least(0),
       T::number("rollingMomentCoefficient", "N s^2/rad", "1e-6",
                 "the like torque on the frame, along that velocity")

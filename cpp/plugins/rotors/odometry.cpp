@@ -147,7 +147,10 @@ PluginDescriptor describe() {
       T::number("measurementDelay", "", "0", "steps that a measurement is held back")
           .at_least(0)
           .at_most(10000),
-      T::number("unknownDelay", "s", "0", "added to the stamps; as in RotorS whole seconds count alone").at_least(-1e6).at_most(1e6),
+      T::number("unknownDelay", "s", "0",
+                "added to the stamps; as in RotorS whole seconds count alone")
+          .at_least(-1e6)
+          .at_most(1e6),
       T::number("randomEngineSeed", "", "", "seed of the noise, a whole number")
           .at_least(0)
           .at_most(4294967295.0)
@@ -173,11 +176,17 @@ PluginDescriptor describe() {
        {"poseTopic", "poseWithCovarianceTopic", "positionTopic", "transformTopic"}) {
     tags.push_back(idle(topic, same));
   }
+  for (const char* image : {"covarianceImage", "covarianceImageScale"}) {
+    tags.push_back(idle(image, "messages come everywhere, not only where a picture is white"));
+  }
   tags.push_back(idle("childFrameId", "names of frames are the node's"));
   tags.push_back(T::choice("parentFrameId", {"world"}, "poses are told in the world"));
   tags.push_back(namespace_tag());
-  return {"RotorS' odometry: of the state a step before its stamp, velocities along the link's axes",
-          tags, {}, create<Odometry>};
+  return {
+      "RotorS' odometry: of the state a step before its stamp, velocities along the link's axes",
+      tags,
+      {},
+      create<Odometry>};
 }
 
 }  // namespace

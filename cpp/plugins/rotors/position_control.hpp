@@ -28,9 +28,8 @@ class PositionControl {
   }
 
   double torque(double angle, double wanted, double dt, Eigen::Ref<VectorXd> memory) const {
-    const double error = std::remainder(std::remainder(angle, 2 * M_PI) -
-                                            std::remainder(wanted, 2 * M_PI),
-                                        2 * M_PI);
+    const double error = std::remainder(
+        std::remainder(angle, 2 * M_PI) - std::remainder(wanted, 2 * M_PI), 2 * M_PI);
     memory[kSum] = std::clamp(memory[kSum] + dt * i_ * error, i_min_, i_max_);
     const double torque = -p_ * error - memory[kSum] - d_ * (error - memory[kLast]) / dt;
     memory[kLast] = error;

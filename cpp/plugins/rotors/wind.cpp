@@ -20,8 +20,9 @@ class Wind final : public Plugin {
         end_(begin_ + setup.parameters.number("windGustDuration")),
         v_WA_W_(along(setup, "windSpeedMean", "windDirection")) {
     if (setup.parameters.flag("useCustomStaticWindField")) {
-      throw InputError("<useCustomStaticWindField> is true, but fields of wind from files are not "
-                       "modelled; write false, or use libwind_plugin.so");
+      throw InputError(
+          "<useCustomStaticWindField> is true, but fields of wind from files are not "
+          "modelled; write false, or use libwind_plugin.so");
     }
   }
 
@@ -45,9 +46,9 @@ class Wind final : public Plugin {
   static Vector3d point(const PluginSetup& setup) {
     const Pose X_FS = place_of(setup, "linkName");
     const Vector3d offset_S(setup.parameters.numbers("xyzOffset").data());
-    return X_FS.xyz + X_FS.rotation() * (center_of_mass(setup.model,
-                                                        setup.parameters.text("linkName")) +
-                                         offset_S);
+    return X_FS.xyz +
+           X_FS.rotation() *
+               (center_of_mass(setup.model, setup.parameters.text("linkName")) + offset_S);
   }
 
   static Vector3d along(const PluginSetup& setup, const char* strength, const char* direction) {
@@ -73,8 +74,9 @@ PluginDescriptor describe() {
       T::numbers("xyzOffset", "m", "0 0 0",
                  "where they act, from the link's centre of mass, along its axes")
           .of(3),
-      T::numbers("windDirection", "", "1 0 0", "of the force and of the wind, world axes, of any "
-                                               "length")
+      T::numbers("windDirection", "", "1 0 0",
+                 "of the force and of the wind, world axes, of any "
+                 "length")
           .of(3),
       T::number("windForceMean", "N", "0", "the force that stays"),
       T::number("windSpeedMean", "m/s", "0", "speed of the wind that the rotors' drag feels"),
@@ -85,8 +87,7 @@ PluginDescriptor describe() {
       T::flag("useCustomStaticWindField", "false", "a field of wind from a file; not modelled"),
   };
   for (TagSpec& tag : tags) tag.equation = "RotorS";
-  for (const char* name :
-       {"windForceVariance", "windGustForceVariance", "windSpeedVariance"}) {
+  for (const char* name : {"windForceVariance", "windGustForceVariance", "windSpeedVariance"}) {
     tags.push_back(idle(name, unused));
   }
   tags.push_back(idle("customWindFieldPath", "fields of wind are not modelled"));
@@ -94,7 +95,9 @@ PluginDescriptor describe() {
   tags.push_back(idle("windSpeedPubTopic", "all that feels the air feels this wind"));
   tags.push_back(idle("frameId", "forces have no frame"));
   tags.push_back(namespace_tag());
-  return {"RotorS' wind: a force, a gust, and a wind on the rotors", tags, {"wind_force"},
+  return {"RotorS' wind: a force, a gust, and a wind on the rotors",
+          tags,
+          {"wind_force"},
           create<Wind>};
 }
 

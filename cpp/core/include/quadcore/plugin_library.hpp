@@ -23,6 +23,9 @@ void load_plugin_path(const std::string& folder);
 /// plugins inside, where they are looked for last.
 std::vector<std::string> plugin_folders();
 
+/// Whether this is a shipped module that has the name of one of another program's.
+bool is_named_as_others(const std::string& path);
+
 /// The path of a module in the first of the folders that holds it; of one that is built in, its
 /// name alone.
 /// \param filename  of a plugin tag, without folder.
