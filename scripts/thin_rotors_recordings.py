@@ -22,6 +22,7 @@ STRIDE = 20  # of the recorded rows
 FIRST = 4  # rows kept besides: the first steps show what every later one builds upon
 DURATION = 3.0  # s, but of flights from the ground, whose landing is theirs
 WHOLE = ("G1_firefly_takeoff_rotorsworld", "G4_iris_takeoff_plain")
+DRAWN = "F3_firefly_multisine"  # whose commands a picture of the docs flies to their end
 UNIT = "IMU_firefly_base_world"
 SAMPLES = 200  # of the unit, from its first on
 
@@ -43,7 +44,7 @@ def thin(source: Path, target: Path) -> None:
     target.mkdir(parents=True, exist_ok=True)
     shutil.copyfile(source / "params.txt", target / "params.txt")
     end = np.inf if source.name in WHOLE else DURATION
-    commands = cut((source / "commands.csv").read_text(), end)
+    commands = cut((source / "commands.csv").read_text(), np.inf if source.name == DRAWN else end)
     write(target / "commands.csv.gz", "\n".join(commands) + "\n")
     with gzip.open(source / "record.csv.gz", "rt") as stream:
         header, *rows = cut(stream.read(), end)

@@ -18,6 +18,7 @@ from quadcore.cli import main
 pytestmark = pytest.mark.filterwarnings("ignore::quadcore.QuadcoreWarning")
 
 ENGINES = [name for name, _ in qc.engines()]
+DATA = Path(__file__).resolve().parents[1] / "data"
 VEHICLES = ("firefly", "hummingbird", "pelican", "iris", "ardrone", "neo11")
 BARE = {"sensors": "false"}
 HOVER = 540.6748120114936  # rad/s, of the bare firefly
@@ -191,14 +192,17 @@ def test_in_eigen_flights_converge_with_the_fourth_order_of_the_step():
 
 
 def test_eigen_is_what_rotors_approaches_with_small_steps_and_far_nearer_at_its_own():
-    def places(engine, dt):
-        log = spinning(engine, dt).run(3, commands=SINES, log_every=round(0.1 / dt))
-        return log.position
+    recorded = DATA / "rotors" / "F3_firefly_multisine" / "commands.csv.gz"
+    commands = np.loadtxt(recorded, delimiter=",", skiprows=1)
 
-    limit = places("eigen", 0.001)
-    gazebo = [np.abs(places("gazebo11", dt) - limit).max() for dt in (0.01, 0.002, 0.001)]
-    assert gazebo[2] < gazebo[1] / 1.7 < gazebo[0] / 1.7 / 4
-    assert np.abs(places("eigen", 0.01) - limit).max() < gazebo[0] / 100
+    def place(engine, dt):
+        return firefly(engine, dt=dt).run(10, commands=commands, log_every=100).position[-1]
+
+    limit = place("eigen", 0.001)
+    gazebo = [np.linalg.norm(place("gazebo11", dt) - limit) for dt in (0.01, 0.002, 0.001)]
+    assert gazebo[0] > 30
+    assert 1.5 < gazebo[1] / gazebo[2] < 3  # of first order
+    assert np.linalg.norm(place("eigen", 0.01) - limit) < gazebo[0] / 1000
 
 
 def test_eigen_averages_blades_over_their_turns_and_says_so(edited):

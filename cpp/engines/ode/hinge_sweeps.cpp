@@ -39,8 +39,8 @@ double of_turn(const Vector3d& turn, const Acceleration& a) {
   return turn.y() * a.turn_y + (turn.x() * a.turn_x + turn.z() * a.turn_z);
 }
 
-void relax(HingeSweeps::HingeRows& hinge) {
-  Acceleration c(*hinge.child), p(*hinge.parent);
+void relax(HingeSweeps::HingeRows& hinge, Acceleration& p) {
+  Acceleration c(*hinge.child);
   HingeSweeps::Row* row = hinge.rows.data();
   const auto turn = [&](double by) {
     c.turn(by, row->angular_C);
@@ -62,15 +62,26 @@ void relax(HingeSweeps::HingeRows& hinge) {
   turn(relax(*row, of_turn(row->turn_C, c), of_turn(row->turn_P, p)));
   turn(relax(*row, of_turn(row->turn_C, c), of_turn(row->turn_P, p)));
   c.store(*hinge.child);
-  p.store(*hinge.parent);
 }
 
 }  // namespace
 
 void HingeSweeps::sweep(int times) {
+  if (hinges.empty()) return;
+  // What the hinges meet in stays in registers for as long as it is the same.
+  Vector6* carrier = hinges.front().parent;
+  Acceleration p(*carrier);
   for (int n = 0; n < times; ++n) {
-    for (HingeRows& hinge : hinges) relax(hinge);
+    for (HingeRows& hinge : hinges) {
+      if (hinge.parent != carrier) {
+        p.store(*carrier);
+        carrier = hinge.parent;
+        p = Acceleration(*carrier);
+      }
+      relax(hinge, p);
+    }
   }
+  p.store(*carrier);
 }
 
 }  // namespace quadcore

@@ -14,24 +14,27 @@ namespace {
 struct Errors {
   enum Memory { kTurnOn, kDrift = 3, kMemorySize = kDrift + 3 };
 
-  double density, walk, correlation_time, turn_on;
+  double density, turn_on;
+  double white;         ///< standard deviation of a sample's noise
+  double kept, spread;  ///< of the drift in a step: what stays, and what comes to it
 
-  Errors(const Parameters& p, const std::string& name, const std::string& walk_name)
-      : density(p.number(name + "NoiseDensity")),
-        walk(p.number(walk_name)),
-        correlation_time(p.number(name + "BiasCorrelationTime")),
-        turn_on(p.number(name + "TurnOnBiasSigma")) {}
+  Errors(const PluginSetup& setup, const std::string& name, const std::string& walk_name)
+      : density(setup.parameters.number(name + "NoiseDensity")),
+        turn_on(setup.parameters.number(name + "TurnOnBiasSigma")),
+        white(density / std::sqrt(setup.dt)) {
+    // The exact discretisation (Maybeck, 1979, eq. (4-114)).
+    const double walk = setup.parameters.number(walk_name);
+    const double time = setup.parameters.number(name + "BiasCorrelationTime");
+    kept = elementary::exp(-setup.dt / time);
+    spread = std::sqrt(walk * walk * time / 2 * (1 - elementary::exp(-2 * setup.dt / time)));
+  }
 
-  /// Adds what one axis has after a period, the exact discretisation of the drift (Maybeck, 1979,
-  /// eq. (4-114)).
+  /// What one axis has at the end of a step.
   template <class Draw>
-  double of_axis(int axis, double dt, Eigen::Ref<VectorXd> memory, const Draw& draw) const {
-    const double kept = elementary::exp(-dt / correlation_time);
-    const double spread = std::sqrt(walk * walk * correlation_time / 2 *
-                                    (1 - elementary::exp(-2 * dt / correlation_time)));
+  double of_axis(int axis, Eigen::Ref<VectorXd> memory, const Draw& draw) const {
     double& drift = memory[kDrift + axis];
     drift = kept * drift + spread * draw();
-    return drift + density / std::sqrt(dt) * draw() + memory[kTurnOn + axis];
+    return drift + white * draw() + memory[kTurnOn + axis];
   }
 };
 
@@ -56,8 +59,8 @@ class Imu final : public Plugin {
         p_FScm_F_(place_of(setup, "linkName").xyz +
                   R_SF_.transpose() *
                       center_of_mass(setup.model, setup.parameters.text("linkName"))),
-        gyroscope_(setup.parameters, "gyroscope", "gyroscopeBiasRandomWalk"),
-        accelerometer_(setup.parameters, "accelerometer", "accelerometerRandomWalk"),
+        gyroscope_(setup, "gyroscope", "gyroscopeBiasRandomWalk"),
+        accelerometer_(setup, "accelerometer", "accelerometerRandomWalk"),
         as_rotors_(setup.parameters.choice("noise") == "rotors"),
         topic_(setup.topics.publishes(topic_word(setup.parameters.text("imuTopic")),
                                       messages::kind_of<messages::Imu>())) {}
@@ -90,10 +93,10 @@ class Imu final : public Plugin {
     message.angular_velocity = R_SF_ * k.w_WF_F;
     message.specific_force = R_SF_ * (k.R_WF.transpose() * (a_W - sample.world.gravity_W));
     for (int i = 0; i < 3; ++i) {
-      message.angular_velocity[i] += gyroscope_.of_axis(i, sample.dt, gyroscope, draw);
+      message.angular_velocity[i] += gyroscope_.of_axis(i, gyroscope, draw);
     }
     for (int i = 0; i < 3; ++i) {
-      message.specific_force[i] += accelerometer_.of_axis(i, sample.dt, accelerometer, draw);
+      message.specific_force[i] += accelerometer_.of_axis(i, accelerometer, draw);
     }
     // As RotorS tells them, of the densities and not of the samples.
     message.angular_velocity_variance = gyroscope_.density * gyroscope_.density;

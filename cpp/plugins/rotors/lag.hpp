@@ -11,6 +11,7 @@ struct Lag {
   double constant(double from, double to) const { return to > from ? up : down; }
   /// What follows `to` from `from` on, after a time [s].
   double after(double time, double from, double to) const {
+    if (time == 0) return from;
     const double kept = elementary::exp(-time / constant(from, to));
     return kept * from + (1 - kept) * to;
   }

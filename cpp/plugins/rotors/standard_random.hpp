@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 
 #include "quadcore/elementary.hpp"
 #include "quadcore/spatial.hpp"
@@ -41,7 +42,8 @@ class StandardRandom {
  private:
   /// One of 2^31 - 2 numbers from 0 on.
   double next() {
-    memory_[kEngine] = std::fmod(16807 * memory_[kEngine], 2147483647.0);
+    const auto engine = static_cast<std::uint64_t>(memory_[kEngine]);
+    memory_[kEngine] = static_cast<double>(16807 * engine % 2147483647);
     return memory_[kEngine] - 1;
   }
   /// From 0 to below 1, of as many bits as a double has: two of the engine's.
