@@ -248,3 +248,48 @@ def test_a_sensor_on_a_link_that_turns_or_is_not_there_is_refused(fitted):
         unit = plugin("unit", "imu_plugin", linkName=link, imuTopic="unit")
         with pytest.raises(qc.InputError, match=says):
             fitted(unit)
+
+
+def test_two_sensors_of_one_name_both_tell(fitted):
+    pair = [plugin("unit", "imu_plugin", linkName="mast", imuTopic=topic) for topic in "ab"]
+    simulation = fitted(*pair)
+    (said,) = [w for w in simulation.warnings if "goes by" in w]
+    assert "a second plugin named 'unit' (first at " in said
+    assert said.endswith("goes by the name 'unit_2'")
+    log = simulation.run(0.01, topics=["a", "b"])
+    assert np.array_equal(log.topics["a"]["ax"][1:], log.topics["b"]["ax"][1:])  # as in RotorS
+
+
+def test_the_magnetometer_turns_the_field_with_its_link(fitted):
+    bias = {"noiseUniformInitialBias": "1e-6 0 2e-6", "noiseNormal": "0 3e-7 0"}
+    field = plugin("field", "magnetometer_plugin", linkName="mast", magnetometerTopic="field")
+    noisy = plugin("n", "magnetometer_plugin", linkName="mast", magnetometerTopic="noisy", **bias)
+    log = fitted(field, noisy).run(1, commands=TUMBLE, topics=["field", "noisy"])
+    turn = Rotation.from_quat(log.orientation[:-1]) * R_FS
+
+    def told(topic):
+        return turn.apply(np.array([log.topics[topic][f][1:] for f in "xyz"]).T)
+
+    earth = [0.000021493, 0.000000815, 0.000042795]
+    assert np.allclose(told("field"), earth, rtol=0, atol=1e-17)
+    error = told("noisy") - earth
+    assert np.ptp(error[:, [0, 2]], axis=0).max() < 1e-17
+    assert 0 < np.abs(error[0, 0]) < 1e-6
+    assert 0 < np.abs(error[0, 2]) < 2e-6
+    assert error[:, 1].std() == pytest.approx(3e-7, rel=0.1)
+
+
+def test_the_pressure_is_that_of_the_standard_atmosphere(fitted):
+    sea = plugin(
+        "sea", "pressure_plugin", linkName="mast", referenceAltitude=0, pressureTopic="sea"
+    )
+    high = plugin("high", "pressure_plugin", linkName="mast", pressureTopic="high")
+    noisy = plugin("n", "pressure_plugin", linkName="mast", pressureTopic="n", pressureVariance=25)
+    topics = ["sea", "high", "n"]
+    log = fitted(sea, high, noisy, spawn=(0, 0, 0)).run(1, topics=topics)
+    assert log.topics["sea"]["pressure"][1] == pytest.approx(101325, rel=1e-12)
+    # Of the tables: 95461 Pa at a geometric height of 500 m.
+    assert log.topics["high"]["pressure"][1] == pytest.approx(95461, abs=1)
+    error = log.topics["n"]["pressure"] - log.topics["high"]["pressure"]
+    assert error[1:].std() == pytest.approx(5, rel=0.1)
+    assert log.topics["n"]["variance"][-1] == 25

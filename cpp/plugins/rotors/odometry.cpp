@@ -1,37 +1,12 @@
-#include <algorithm>
 #include <cmath>
 
 #include "center_of_mass.hpp"
 #include "naming.hpp"
-#include "quadcore/elementary.hpp"
+#include "noise.hpp"
 #include "quadcore/plugin.hpp"
-#include "quadcore/random.hpp"
 
 namespace quadcore::rotors {
 namespace {
-
-/// Normal noise beside uniform noise, on three numbers.
-struct Noise {
-  Vector3d normal, uniform;  ///< standard deviation, and bound
-
-  Noise(const Parameters& p, const std::string& of)
-      : normal(vector(p, "noiseNormal" + of)), uniform(vector(p, "noiseUniform" + of)) {}
-  static Vector3d vector(const Parameters& p, const std::string& tag) {
-    return Vector3d(p.numbers(tag).data());
-  }
-  Vector3d draw(std::uint64_t seed, double& draws) const {
-    Vector3d error = Vector3d::Zero();
-    for (int i = 0; i < 3; ++i) {
-      if (normal[i] > 0) error[i] += normal[i] * random_normal(seed, draws);
-      if (uniform[i] == 0) continue;
-      const std::uint64_t bits = random_bits(seed, static_cast<std::uint64_t>(draws));
-      draws += 1;
-      error[i] += uniform[i] * (static_cast<double>(bits >> 11) / 4503599627370496.0 - 1);  // 2^52
-    }
-    return error;
-  }
-  double variance() const { return normal.cwiseAbs2().maxCoeff(); }
-};
 
 /// What it remembers: steps so far, numbers of chance drawn; then the messages that wait, in a
 /// ring.

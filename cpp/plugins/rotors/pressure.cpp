@@ -1,0 +1,79 @@
+#include <cmath>
+
+#include "naming.hpp"
+#include "noise.hpp"
+#include "quadcore/elementary.hpp"
+#include "quadcore/error.hpp"
+#include "quadcore/plugin.hpp"
+
+namespace quadcore::rotors {
+namespace {
+
+/// Of the air at a height above the sea [m], up to 11 km (U.S. Standard Atmosphere, 1976, eqs.
+/// (18), (23), (33a)) [Pa].
+double standard_pressure(double height) {
+  constexpr double earth_radius = 6356766;                        // m
+  constexpr double temperature_0 = 288.15, lapse = 0.0065;        // K, K/m
+  constexpr double gravity = 9.80665;                             // m/s^2
+  constexpr double molar_mass = 28.9644, gas_constant = 8314.32;  // kg/kmol, N m/(kmol K)
+  constexpr double pressure_0 = 101325;                           // Pa
+  const double geopotential = earth_radius * height / (earth_radius + height);
+  const double temperature = temperature_0 - lapse * geopotential;
+  return pressure_0 * elementary::exp(gravity * molar_mass / (gas_constant * lapse) *
+                                      elementary::log(temperature / temperature_0));
+}
+
+/// The pressure of the air at the frame's origin at the start of each step. Its memory: numbers of
+/// chance drawn.
+class Pressure final : public Plugin {
+ public:
+  explicit Pressure(const PluginSetup& setup)
+      : altitude_(setup.parameters.number("referenceAltitude")),
+        variance_(setup.parameters.number("pressureVariance")),
+        topic_(setup.topics.publishes(topic_word(setup.parameters.text("pressureTopic")),
+                                      messages::kind_of<messages::Pressure>())) {
+    place_of(setup, "linkName");  // RotorS takes the vehicle's height, but wants the link
+  }
+
+  std::size_t state_size() const override { return 1; }
+
+  void update(const Sample& sample, PluginState draws) const override {
+    messages::Pressure message;
+    message.pressure = standard_pressure(altitude_ + sample.kinematics.p_WF.z()) +
+                       normal_of(std::sqrt(variance_), sample.seed, draws[0]);
+    message.variance = variance_;
+    sample.topics.publish(topic_, sample.time + sample.dt, message);
+  }
+
+ private:
+  double altitude_;  ///< m
+  double variance_;  ///< Pa^2
+  std::size_t topic_;
+};
+
+PluginDescriptor describe() {
+  using T = TagSpec;
+  return {
+      "RotorS' sensor of the air's pressure: of the state a step before its stamp, each step",
+      {
+          T::text("linkName", "", "a link of the frame").must().from("RotorS"),
+          T::text("pressureTopic", "air_pressure", "where the messages are published, / being _")
+              .from("RotorS"),
+          T::number("referenceAltitude", "m", "500", "of the world's origin above the sea")
+              .at_least(-1000)
+              .at_most(10000)
+              .from("RotorS"),
+          T::number("pressureVariance", "Pa^2", "0", "variance of the noise")
+              .at_least(0)
+              .from("RotorS"),
+          namespace_tag(),
+      },
+      {},
+      create<Pressure>,
+  };
+}
+
+}  // namespace
+}  // namespace quadcore::rotors
+
+QUADCORE_REGISTER_PLUGIN(quadcore::rotors::describe)
