@@ -292,8 +292,9 @@ def rotors_sections() -> Iterator[str]:
     )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # its frame has an inertia that no body can have
-        wind = {"wind": "<linkName>firefly/base_link</linkName>"}
-        yield from plugin_sections(vehicle_with("firefly", "librotors_gazebo_", wind))
+        link = "<linkName>firefly/base_link</linkName>"
+        further = {"magnetometer": link, "pressure": link, "wind": link}
+        yield from plugin_sections(vehicle_with("firefly", "librotors_gazebo_", further))
 
 
 def page() -> str:

@@ -293,3 +293,19 @@ def test_the_pressure_is_that_of_the_standard_atmosphere(fitted):
     error = log.topics["n"]["pressure"] - log.topics["high"]["pressure"]
     assert error[1:].std() == pytest.approx(5, rel=0.1)
     assert log.topics["n"]["variance"][-1] == 25
+
+
+def test_topics_tell_what_a_namespace_has_beyond_the_vehicles_own(fitted):
+    space = "<robotNamespace>uav{}</robotNamespace>"
+    own = plugin("own", "imu_plugin", linkName="mast", imuTopic="sense", robotNamespace="uav")
+    camera = own.replace("own", "camera").replace(space.format(""), space.format("/vi_sensor"))
+    assert {"sense", "vi_sensor_sense"} <= set(fitted(own, camera).topics)
+
+
+def test_a_tag_that_a_fork_has_added_to_a_sensor_is_refused_with_the_option_that_leaves_it_out(
+    fitted,
+):
+    forked = plugin("unit", "imu_plugin", linkName="mast", imuTopic="unit", measurementDivisor=3)
+    says = r"unknown tag <measurementDivisor>.*--ignore librotors_gazebo_imu_plugin\.so"
+    with pytest.raises(qc.InputError, match=says):
+        fitted(forked)

@@ -80,6 +80,17 @@ std::map<std::string, std::map<std::string, std::string>> by_plugin(
   return result;
 }
 
+/// Others extend modules that they share the names of. What only senses may be left out then.
+Parameters parameters_of(const Found& found, const PluginDescriptor& descriptor, const Model& model,
+                         const std::map<std::string, std::string>& overrides) {
+  try {
+    return {descriptor.tags, found.element, model, overrides};
+  } catch (const InputError& error) {
+    if (descriptor.create.hooks.forces || !is_named_as_others(found.path)) throw;
+    throw InputError(error.what() + ignoring(found.element.filename));
+  }
+}
+
 /// FILE:LINE of a plugin's tag.
 std::string where_of(const LoadedPlugin& p) { return p.who.substr(0, p.who.find(": plugin '")); }
 
@@ -134,8 +145,9 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
         element.filename,
         library.path,
         library.descriptor,
-        Parameters(library.descriptor->tags, element, model,
-                   given == overrides.end() ? std::map<std::string, std::string>{} : given->second),
+        parameters_of(
+            found, *library.descriptor, model,
+            given == overrides.end() ? std::map<std::string, std::string>{} : given->second),
         nullptr};
     const std::string who = element.where + ": plugin '" + element.name + "'";
     loaded.who = who;

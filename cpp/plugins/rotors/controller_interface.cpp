@@ -10,9 +10,9 @@ namespace {
 class ControllerInterface final : public Plugin {
  public:
   explicit ControllerInterface(const PluginSetup& setup)
-      : in_(setup.topics.takes(topic_word(setup.parameters.text("commandMotorSpeedSubTopic")),
+      : in_(setup.topics.takes(topic_of(setup, "commandMotorSpeedSubTopic"),
                                messages::speeds(motor_count(setup.model)))),
-        out_(setup.topics.publishes(topic_word(setup.parameters.text("motorSpeedCommandPubTopic")),
+        out_(setup.topics.publishes(topic_of(setup, "motorSpeedCommandPubTopic"),
                                     messages::speeds(motor_count(setup.model)))) {}
 
   std::size_t state_size() const override { return 1; }

@@ -62,7 +62,7 @@ class Imu final : public Plugin {
         gyroscope_(setup, "gyroscope", "gyroscopeBiasRandomWalk"),
         accelerometer_(setup, "accelerometer", "accelerometerRandomWalk"),
         as_rotors_(setup.parameters.choice("noise") == "rotors"),
-        topic_(setup.topics.publishes(topic_word(setup.parameters.text("imuTopic")),
+        topic_(setup.topics.publishes(topic_of(setup, "imuTopic"),
                                       messages::kind_of<messages::Imu>())) {}
 
   std::size_t state_size() const override { return kMemorySize; }

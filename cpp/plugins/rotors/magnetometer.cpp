@@ -18,7 +18,7 @@ class Magnetometer final : public Plugin {
                  setup.parameters.number("refMagDown")),
         noise_(vector_of(setup.parameters, "noiseNormal")),
         bias_(vector_of(setup.parameters, "noiseUniformInitialBias")),
-        topic_(setup.topics.publishes(topic_word(setup.parameters.text("magnetometerTopic")),
+        topic_(setup.topics.publishes(topic_of(setup, "magnetometerTopic"),
                                       messages::kind_of<messages::Field>())) {}
 
   std::size_t state_size() const override { return kMemorySize; }

@@ -51,7 +51,7 @@ class MotorModel final : public Plugin {
     for (const PluginElement& other : setup.model.plugins) {
       if (other.filename != controller_interface_file) continue;
       // As RotorS' own messages do, what it forwards arrives with the next step.
-      forwarded_ = setup.topics.takes(topic_word(setup.parameters.text("commandSubTopic")),
+      forwarded_ = setup.topics.takes(topic_of(setup, "commandSubTopic"),
                                       messages::speeds(motor_count(setup.model)), true);
       break;
     }
@@ -146,8 +146,7 @@ class MotorModel final : public Plugin {
 
   static std::optional<std::size_t> speed_topic(const PluginSetup& setup) {
     if (!setup.parameters.has("motorSpeedPubTopic")) return std::nullopt;
-    return setup.topics.publishes(topic_word(setup.parameters.text("motorSpeedPubTopic")),
-                                  {"motor_speed", {"w"}});
+    return setup.topics.publishes(topic_of(setup, "motorSpeedPubTopic"), {"motor_speed", {"w"}});
   }
 
   bool turns() const { return type_ == Type::velocity; }

@@ -13,8 +13,8 @@ class MultirotorBase final : public Plugin {
   explicit MultirotorBase(const PluginSetup& setup)
       : rotors_(setup.model.joints.size()),
         slowdown_(setup.parameters.number("rotorVelocitySlowdownSim")),
-        topic_(setup.topics.publishes(topic_word(setup.parameters.text("motorPubTopic")),
-                                      messages::speeds(rotors_))) {
+        topic_(
+            setup.topics.publishes(topic_of(setup, "motorPubTopic"), messages::speeds(rotors_))) {
     const auto& plugins = setup.model.plugins;
     const bool is_told = std::any_of(plugins.begin(), plugins.end(), [](const PluginElement& p) {
       return p.filename == "libodometry_plugin.so";

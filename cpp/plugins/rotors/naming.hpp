@@ -25,6 +25,28 @@ inline std::string topic_word(std::string name) {
   return name;
 }
 
+/// The vehicle's own namespace: the shortest that its plugins name, the first of several.
+inline std::string vehicle_namespace(const Model& model) {
+  std::string shortest;
+  for (const PluginElement& plugin : model.plugins) {
+    if (plugin.filename.rfind("librotors_gazebo_", 0) != 0) continue;
+    for (const PluginTag& tag : plugin.tags) {
+      if (tag.name != "robotNamespace" || tag.text.empty()) continue;
+      if (shortest.empty() || tag.text.size() < shortest.size()) shortest = tag.text;
+    }
+  }
+  return shortest;
+}
+
+/// The topic that a tag names, with what the plugin's namespace has beyond the vehicle's.
+inline std::string topic_of(const PluginSetup& setup, const std::string& tag) {
+  const std::string& own = setup.parameters.text("robotNamespace");
+  const std::string vehicle = vehicle_namespace(setup.model);
+  std::string beyond = own == vehicle ? "" : own;
+  if (own.rfind(vehicle + "/", 0) == 0) beyond = own.substr(vehicle.size() + 1);
+  return topic_word((beyond.empty() ? "" : beyond + "/") + setup.parameters.text(tag));
+}
+
 /// Motors of a model: numbers that a command carries.
 inline std::size_t motor_count(const Model& model) {
   return static_cast<std::size_t>(
@@ -37,8 +59,11 @@ inline TagSpec idle(const std::string& name, const std::string& why) {
   return TagSpec::text(name, "", "without effect: " + why).or_absent("none");
 }
 inline TagSpec namespace_tag() {
-  return idle("robotNamespace",
-              "one simulation holds one vehicle; a ROS node's namespace is its own");
+  return TagSpec::text("robotNamespace", "",
+                       "what it has beyond the shortest of the model's stands before the names of "
+                       "topics")
+      .from("RotorS")
+      .or_absent("the vehicle's");
 }
 
 /// Where a link that a tag names sits in the frame. Throws InputError if it is no part of it.

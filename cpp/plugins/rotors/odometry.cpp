@@ -29,7 +29,7 @@ class Odometry final : public Plugin {
         turn_(setup.parameters, "Quaternion"),
         linear_(setup.parameters, "LinearVelocity"),
         angular_(setup.parameters, "AngularVelocity"),
-        topic_(setup.topics.publishes(topic_word(setup.parameters.text("odometryTopic")),
+        topic_(setup.topics.publishes(topic_of(setup, "odometryTopic"),
                                       messages::kind_of<messages::Odometry>())),
         row_(static_cast<Eigen::Index>(messages::kind_of<messages::Odometry>().fields.size()) + 1) {
     for (const char* tag : {"measurementDivisor", "measurementDelay"}) {

@@ -30,7 +30,7 @@ class Pressure final : public Plugin {
   explicit Pressure(const PluginSetup& setup)
       : altitude_(setup.parameters.number("referenceAltitude")),
         variance_(setup.parameters.number("pressureVariance")),
-        topic_(setup.topics.publishes(topic_word(setup.parameters.text("pressureTopic")),
+        topic_(setup.topics.publishes(topic_of(setup, "pressureTopic"),
                                       messages::kind_of<messages::Pressure>())) {
     place_of(setup, "linkName");  // RotorS takes the vehicle's height, but wants the link
   }
