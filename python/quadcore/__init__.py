@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from .comparison.compare import Comparison, compare
     from .evaluation.evaluate import Evaluation, evaluate
     from .flight_plan import FlightPlan
+    from .sweeps.sweep import Sweep, sweep
     from .tuning.tune import tune
 
 __version__ = "0.1.0"
@@ -66,6 +67,7 @@ __all__ = [
     "Simulation",
     "Snapshot",
     "State",
+    "Sweep",
     "World",
     "cmake_prefix",
     "compare",
@@ -77,6 +79,7 @@ __all__ = [
     "read_model",
     "read_world",
     "references",
+    "sweep",
     "tune",
 ]
 
@@ -84,8 +87,10 @@ _STUDIES = {
     "Comparison": "comparison.compare",
     "Evaluation": "evaluation.evaluate",
     "FlightPlan": "flight_plan",
+    "Sweep": "sweeps.sweep",
     "compare": "comparison.compare",
     "evaluate": "evaluation.evaluate",
+    "sweep": "sweeps.sweep",
     "tune": "tuning.tune",
 }
 """Where names lie that are brought in when they are first asked for: flying once needs none."""

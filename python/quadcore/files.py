@@ -111,6 +111,8 @@ class Appended:
     ----------
     path
         Emptied if it exists.
+    keep
+        Bytes of an older file that stay.
 
     Raises
     ------
@@ -118,10 +120,12 @@ class Appended:
         It cannot be written.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, keep: int = 0) -> None:
         self._path = path
         try:
-            self._stream = path.open("wb", buffering=0)
+            self._stream = path.open("r+b" if keep else "wb", buffering=0)
+            self._stream.truncate(keep)
+            self._stream.seek(keep)
         except OSError as error:
             raise unwritable(path, error) from error
 
@@ -142,6 +146,10 @@ class Appended:
                 rest = written - (lines.rfind(b"\n", 0, written) + 1)
                 self._stream.truncate(self._stream.tell() - rest)
             raise unwritable(self._path, error) from error
+
+    def fileno(self) -> int:
+        """Number of the open file, for locks."""
+        return self._stream.fileno()
 
     def close(self) -> None:
         """Close the file."""

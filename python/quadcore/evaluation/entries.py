@@ -7,12 +7,11 @@ from contextlib import contextmanager
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Sequence, Tuple, Union
 
 from .. import laws, references
-from .._core import InputError, parse_number
+from .._core import InputError
 from ..controller import check_callable
 from ..plants import plants
 from ..study.axes import Values, axes_of
-
-OF_CONTROLLER = "controller."
+from ..study.variation import OF_CONTROLLER
 
 Named = Union[str, Any, Mapping[str, Any], Sequence[Any]]
 
@@ -121,14 +120,6 @@ def check_labels(sides: Sequence[Sequence[str]]) -> None:
                 raise InputError(f"{kind} '{name}' is named twice; keep one, or label them")
         if not names:
             raise InputError(f"no {kind} is named; name at least one")
-
-
-def number(name: str, text: str) -> float:
-    """Read a value of an axis that has numbers alone."""
-    value = parse_number(text)
-    if value is None:
-        raise InputError(f"vary {name}: '{text}' is not a finite number")
-    return value
 
 
 def _name(thing: Any) -> str:

@@ -16,11 +16,11 @@ from ..log import Log
 from ..simulation import Simulation
 from ..study.sampling import thinned
 from ..study.table import NOT_FLOWN
+from ..study.time_limit import time_limit
 from ..warning import unheard
 from .clock import Clocked, ClockedPilot, clocked, typical_and_slow
 from .measures import UNITS, drag_power, loss, measure, slow_down
 from .step_response import step_response
-from .time_limit import time_limit
 
 NAN = dict.fromkeys(UNITS, float("nan"))
 
@@ -66,7 +66,9 @@ class Outcome(NamedTuple):
         return self.failure != NOT_FLOWN
 
 
-def flown(described: Callable[[], FlightPlan], most: float, keep: bool = False) -> Outcome:
+def flown(
+    described: Callable[[], FlightPlan], most: float, keep: bool = False, timed: bool = True
+) -> Outcome:
     """Fly and measure.
 
     Parameters
@@ -77,6 +79,8 @@ def flown(described: Callable[[], FlightPlan], most: float, keep: bool = False) 
         Of the wall clock, s.
     keep
         Whether to keep enough of the log to draw it.
+    timed
+        Whether to clock each update of the controller, which takes a while itself.
 
     Raises
     ------
@@ -87,12 +91,13 @@ def flown(described: Callable[[], FlightPlan], most: float, keep: bool = False) 
     failure = ""
     with time_limit(most), unheard():
         flight = described()
-        flight = replace(flight, controller=clocked(flight.controller))
+        if timed:
+            flight = replace(flight, controller=clocked(flight.controller))
         simulation = flight.simulation()
         pilot: Any = flight.pilot(simulation)
-        timed = flight.controller
-        if not isinstance(timed, Clocked):
-            timed = pilot = ClockedPilot(pilot)
+        clock = flight.controller
+        if timed and not isinstance(clock, Clocked):
+            clock = pilot = ClockedPilot(pilot)
         topics = _watched(simulation) if keep else []
         rows = Rows(simulation, columns_of(simulation, topics, pilot))
         try:
@@ -119,7 +124,7 @@ def flown(described: Callable[[], FlightPlan], most: float, keep: bool = False) 
         measures,
         time.perf_counter() - started,
         pilot.updates,
-        *typical_and_slow(timed.seconds),
+        *typical_and_slow(clock.seconds if timed else []),
         pilot.rate,
         pilot.delay,
         list(simulation.warnings),

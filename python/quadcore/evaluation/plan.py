@@ -5,23 +5,21 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import replace
-from functools import lru_cache
 from pathlib import Path
 from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 from .. import laws, references
 from .._core import InputError, check_ignored
-from ..controller import Guided, give
-from ..description import list_of_names, read_model, read_world
+from ..controller import Guided
+from ..description import list_of_names, read_world
 from ..files import shown
 from ..flight import check_logged
 from ..flight_plan import FlightPlan
-from ..overrides import check_names, without_xacro
 from ..plants import LAGRANGE
 from ..scenario_events import Event
-from ..scenarios import read as read_scenario
-from ..simulation import text_of, whole
+from ..simulation import whole
 from ..study.axes import LARGEST, Values
+from ..study.variation import Variation, give_all, of_controller
 from ..warning import unheard
 from . import entries, trial
 from .entries import Named
@@ -29,7 +27,7 @@ from .entries import Named
 LOG_RATE = 100.0
 """Rows per second that a flight is measured by."""
 
-_READ = 16  # models that are kept as they were read
+_NAMED = ("world", "scenario")
 
 
 class Case(NamedTuple):
@@ -119,28 +117,23 @@ class Plan:
         if len(self) > LARGEST:
             raise InputError(f"these are {len(self)} flights; at most {LARGEST} are evaluated")
         self._ignore = own.pop("ignore", ())
-        arguments, given = without_xacro(
-            own.pop("parameters", None) or {}, own.pop("xacro_args", None)
-        )
-        self._arguments, self._set = arguments, {k: text_of(v) for k, v in given.items()}
-        self._read = lru_cache(_READ)(
-            lambda i, varied: read_model(models[i], {**arguments, **dict(varied)}, self._ignore)
+        self._variation = Variation(
+            models, own.pop("parameters", None), own.pop("xacro_args", None), self._ignore
         )
         self.world = own.pop("world", None)
         world = read_world(self.world, self._ignore)
         common = {**own, "duration": duration, "on_reference": spawn is None}
         if spawn is not None:
             common["spawn"] = spawn
-        read = [self._read(i, ()) for i in range(len(models))]
+        read = [self._variation.read(i) for i in range(len(models))]
         passed_over = [*(model.passed_over for model in read), world.passed_over]
         check_ignored(list_of_names("ignore", self._ignore), passed_over)
         self._plans = [FlightPlan.of(model, world, **common) for model in read]
         vehicles = [plan.model.name for plan in self._plans]
         self._makers = [[entries.maker(thing, name) for name in vehicles] for _, thing in things]
-        worlds = [scenario["world"] for scenario in self._scenarios if "world" in scenario]
-        self._worlds = {name: read_world(name, self._ignore) for name in worlds}
-        befalling = dict.fromkeys(each.get("scenario") for each in self._scenarios)
-        self._befalls = {name: read_scenario(name) for name in befalling}
+        self._variation.provide(
+            *([each[name] for each in self._scenarios if name in each] for name in _NAMED)
+        )
         begun = [self._begun(model) for model in range(len(models))]
         self.lacking = trial.lacking(begun[0])
         self._check_logs()
@@ -178,7 +171,7 @@ class Plan:
             controller=self._controller(case.controller, case.model, scenario),
             reference=self._shapes[case.reference],
         )
-        varied = self._varied(plan, case.model, scenario)
+        varied = self._variation.applied(plan, case.model, scenario)
         return replace(varied, log_every=self.rows_every(varied.step))
 
     def first_of(self, controller: int) -> FlightPlan:
@@ -210,7 +203,8 @@ class Plan:
     def events(self) -> Dict[str, Sequence[Event]]:
         """Give what happens in time, by scenario."""
         named = zip(self.scenarios, self._scenarios)
-        befall = {label: self._befalls[each.get("scenario")] for label, each in named}
+        read = self._variation.scenarios
+        befall = {label: read[each.get("scenario")] for label, each in named}
         return {label: each.events for label, each in befall.items() if each is not None}
 
     def told(self) -> Dict[str, Any]:
@@ -230,52 +224,27 @@ class Plan:
             "spawn": None if self.spawn is None else [float(value) for value in self.spawn],
             "controller_rate": self._timing["rate"],
             "delay": self._timing["delay"],
-            "set": dict(self._set),
-            "xacro": {name: str(value) for name, value in self._arguments.items()},
+            "set": dict(self._variation.set),
+            "xacro": {name: str(value) for name, value in self._variation.arguments.items()},
             "ignore": list(self._ignore),
         }
 
-    def _changed(self, model: int, scenario: Mapping[str, str]) -> Dict[str, Any]:
-        """Tell what a scenario changes in a plan."""
-        changed: Dict[str, Any] = {}
-        parameters = dict(self._set)
-        for name, value in scenario.items():
-            if name == "world":
-                changed["world"] = self._worlds[value]
-            elif name != "scenario" and not name.startswith(entries.OF_CONTROLLER):
-                parameters.update(dict.fromkeys(name.split(","), value))
-        varied, tags = without_xacro(parameters, None)
-        read = self._read(model, tuple(varied.items()))
-        check_names(read, parameters)
-        return {**changed, "model": read, "parameters": tags}
-
     def _controller(self, row: int, model: int, scenario: Mapping[str, str]) -> Any:
         """Make a controller with what a scenario changes in it."""
-        controller = self._makers[row][model]()
-        values = {name: value for name, value in self._timing.items() if value is not None}
-        for name, text in scenario.items():
-            if name.startswith(entries.OF_CONTROLLER):
-                values[name[len(entries.OF_CONTROLLER) :]] = entries.number(name, text)
-        for name, value in values.items():
-            give(controller, name, value)
-        return controller
+        values = {**self._timing, **of_controller(scenario)}
+        return give_all(self._makers[row][model](), values.items())
 
     def _sides(self) -> Tuple[Sequence[str], ...]:
         return self.controllers, self.references, self.engines, self.models, self.scenarios
 
     def _built(self, model: int, scenario: Mapping[str, str]) -> Any:
         plan = replace(self._plans[model], engine=self.engines[0], on_reference=False)
-        return self._varied(plan, model, scenario).simulation()
-
-    def _varied(self, plan: FlightPlan, model: int, scenario: Mapping[str, str]) -> FlightPlan:
-        """Make a plan for a model as a scenario has it."""
-        varied = replace(plan, **self._changed(model, scenario))
-        return varied.befallen(self._befalls[scenario.get("scenario")])
+        return self._variation.applied(plan, model, scenario).simulation()
 
     def _check_logs(self) -> None:
         """Refuse flights of which nothing would be measured but the start."""
         for plan in self._plans:
-            for world in [plan.world, *self._worlds.values()]:
+            for world in [plan.world, *self._variation.worlds.values()]:
                 dt = replace(plan, world=world).step
                 check_logged(self.duration, dt, self.rows_every(dt))
 

@@ -130,6 +130,15 @@ def contained(function: Callable[[Case], Result]) -> Callable[[Case], Result]:
     return call
 
 
+class Died(QuadcoreError):
+    """The process of a case died."""
+
+    def __init__(self, exit_code: int) -> None:
+        super().__init__(_death(exit_code))
+        self.was_killed = exit_code < 0
+        """Whether by a signal, which may well have had nothing to do with the case."""
+
+
 class _Crew:
     """Processes that work on cases."""
 
@@ -162,7 +171,7 @@ class _Crew:
             connection.close()
             process.join()
             self._replace()
-            return index, QuadcoreError(_death(process.exitcode))
+            return index, Died(process.exitcode)
         if fault is not None:
             self.busy[connection] = index, process  # to be ended
             raise RuntimeError(fault)

@@ -7,6 +7,7 @@ from typing import Any, Optional, Sequence, Union
 
 from .. import laws
 from .._core import FlightError, InputError
+from ..extras import needed
 from ..study import arguments
 from ..study.arguments import several
 from .problem import Problem
@@ -125,10 +126,6 @@ def tune(
 
 
 def _cma() -> Any:
-    try:
+    with needed("tuning", "cma", "tune"):
         import cma
-    except ImportError:
-        raise InputError(
-            "tuning needs the package cma; install it: pip install 'quadcore[tune]'"
-        ) from None
     return cma

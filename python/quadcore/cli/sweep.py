@@ -1,0 +1,205 @@
+"""``quadcore sweep``: thousands of flights, resumable, on whatever executes them."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .. import laws, references, resources
+from .._core import FlightError
+from ..files import prepare_folder
+from ..plants import plants
+from ..scenarios import NONE
+from ..sweeps.distributions import DESIGNS, forms
+from . import options, terminal, values
+from .options_file import OptionsFile
+
+if TYPE_CHECKING:
+    from ..sweeps.plan import Plan
+
+
+def register(commands: Any) -> None:
+    """Add the command to the command line."""
+    parser = options.subparser(
+        commands, "sweep", "Fly thousands of flights, and tell what they depend on.", sweep
+    )
+    parser.add_argument(
+        "file", metavar="FILE.yaml", nargs="?", help="options by name; those given besides win"
+    )
+    parser.add_argument(
+        "--controller",
+        metavar="A,B",
+        type=values.several_calls,
+        help=f"{', '.join(laws.NAMES)}, perhaps with parameters, LAW:KEY=VALUE,...; files of "
+        "gains; MODULE:CLASS",
+    )
+    parser.add_argument(
+        "--reference",
+        metavar="A,B",
+        type=values.several_calls,
+        help=f"{', '.join(references.NAMES)}, NAME:KEY=VALUE,..., or files",
+    )
+    options.add_commands(parser)
+    parser.add_argument(
+        "--model", metavar="A,B", type=values.names, default=["quadrotor"], help="(quadrotor)"
+    )
+    options.add_changes(parser)
+    parser.add_argument(
+        "--seeds", metavar="N", type=values.integer(1), default=1, help="from --seed on (1)"
+    )
+    parser.add_argument(
+        "--scenario",
+        metavar="A,B",
+        type=values.names,
+        help="what befalls the vehicle, files or shipped: "
+        + ", ".join([NONE, *resources.shipped("config/scenarios")]),
+    )
+    options.add_vary(
+        parser,
+        " and controller.KEY, its rate, delay or a parameter of the laws; or drawn from "
+        + ", ".join(forms()),
+    )
+    parser.add_argument(
+        "--points", metavar="FILE.csv", help="rows are points of the axes that its header names"
+    )
+    parser.add_argument(
+        "--samples", metavar="N", type=values.integer(1), help="points of the axes that are drawn"
+    )
+    parser.add_argument(
+        "--design",
+        choices=list(DESIGNS),
+        default="latin",
+        help="; ".join(f"{name}: {meaning}" for name, (meaning, _) in DESIGNS.items()),
+    )
+    options.add_flight(parser, several_engines=True, log_every=None, flown=plants())
+    options.add_timing(parser)
+    parser.add_argument(
+        "--time-limit",
+        metavar="S",
+        type=values.positive,
+        default=300.0,
+        help="of the wall clock for one flight, s (300)",
+    )
+    options.add_jobs(parser)
+    parser.add_argument(
+        "--dask", metavar="ADDRESS", help="fly on the cluster of this scheduler, tcp://HOST:PORT"
+    )
+    parser.add_argument(
+        "--out", metavar="DIR", type=Path, help="write rows, sums, pictures and a page here"
+    )
+    parser.add_argument(
+        "--resume", action="store_true", help="go on with the rows that are in --out"
+    )
+    parser.add_argument(
+        "--parquet", action="store_true", help="write the rows as table.parquet, too"
+    )
+    parser.add_argument(
+        "--measure", metavar="NAME", help="what is drawn, and what the worst rows are worst in"
+    )
+    parser.add_argument("--no-plots", action="store_true", help="no pictures in --out")
+    parser.set_defaults(engine=["eigen"], parser=parser)
+
+
+def sweep(arguments: argparse.Namespace) -> None:
+    """Fly what is missing, and tell what came of it."""
+    from ..sweeps.output import FILES, main_measure, write
+    from ..sweeps.rows import table
+    from ..sweeps.sweep import TABLE, conduct
+
+    if arguments.file is None:
+        plan = _plan(arguments)
+    else:
+        file = OptionsFile(Path(arguments.file), arguments.parser)
+        arguments = file.beneath(arguments)
+        with file.blamed():
+            plan = _plan(arguments)
+    measure = main_measure(plan, arguments.measure)
+    out = arguments.out or Path("out/sweep")
+    prepare_folder(out, FILES)  # after the flights would be too late
+    try:
+        with terminal.progress(arguments.quiet) as progress:
+            rows = conduct(
+                plan,
+                out,
+                arguments.resume,
+                arguments.parquet,
+                arguments.jobs,
+                dask=arguments.dask,
+                progress=progress,
+            )
+    except KeyboardInterrupt:
+        terminal.say(f"rows so far: {out / TABLE}; --resume flies the rest")
+        raise
+    columns = table(rows)
+    files = write(plan, columns, out, measure, not arguments.no_plots)
+    if not arguments.quiet:
+        _show(plan, columns, measure, files)
+    _report_failures(columns)
+
+
+def _plan(arguments: argparse.Namespace) -> Plan:
+    from ..sweeps.design import Design
+    from ..sweeps.plan import Plan
+
+    shared = {**options.model_arguments(arguments), **options.flight_arguments(arguments)}
+    for name in ("model", "engine", "spawn"):  # of which there are several, or none
+        shared.pop(name)
+    vary: dict[str, Any] = dict(options.unique("--vary", arguments.vary))
+    if arguments.scenario is not None:
+        vary = {"scenario": arguments.scenario, **vary}
+    design = Design(
+        vary, arguments.points, arguments.design, arguments.samples, arguments.seed
+    )
+    return Plan(
+        design,
+        arguments.controller,
+        arguments.reference,
+        arguments.commands,
+        arguments.engine,
+        arguments.model,
+        arguments.seeds,
+        arguments.duration,
+        arguments.log_every,
+        arguments.spawn,
+        arguments.controller_rate,
+        arguments.delay,
+        arguments.time_limit,
+        shared,
+    )
+
+
+def _show(plan: Plan, columns: Any, measure: str, files: list[Path]) -> None:
+    from ..study.table import number_text
+    from ..sweeps.output import summaries, told
+    from ..sweeps.sensitivity import sensitivities
+
+    console = terminal.console()
+    lines = [row for row in summaries(plan, columns) if row["measure"] == measure]
+    if lines:
+        table = terminal.table(*lines[0], numbers=True)
+        for row in lines:
+            table.add_row(*(_cell(value, number_text) for value in row.values()))
+        console.print(table, "")
+    found = [row for row in sensitivities(plan, columns) if row["measure"] == measure]
+    if found:
+        table = terminal.table("axis", "rank", "first", "total", numbers=True)
+        for row in found:
+            table.add_row(row["axis"], *(number_text(row[key]) for key in ("rank", "first", "total")))
+        console.print(table, "")
+    console.print(told(plan, columns))
+    for file in files:
+        console.print(f"written {file}")
+
+
+def _cell(value: Any, number_text: Any) -> str:
+    return number_text(value) if isinstance(value, float) else str(value)
+
+
+def _report_failures(columns: Any) -> None:
+    failed = [i for i, failure in enumerate(columns["failure"]) if failure]
+    if failed:
+        raise FlightError(
+            f"{len(failed)} of {len(columns['row'])} flights failed; the first, row "
+            f"{int(columns['row'][failed[0]])}: {columns['failure'][failed[0]]}"
+        )

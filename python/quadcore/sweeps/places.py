@@ -1,0 +1,203 @@
+"""Where rows are flown: processes of this machine, or whatever executes futures."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import queue
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Union
+
+from .. import interrupts
+from .._core import QuadcoreError
+from ..study.executor import Died, each
+from .plan import AnyPlan
+from .rows import fingerprint
+from .spec import Row, Spec, done
+
+Take = Callable[[Row], None]
+
+_ATTEMPTS = 3
+"""Of a row whose process was killed: by the system, perhaps, for want of memory."""
+
+_AHEAD = 64
+"""Tasks that are handed out before the first of them is done, besides those under way."""
+
+_LOOK = 1.0  # s; between two looks at whether an executor still lives
+
+
+def fly_here(plan: AnyPlan, rows: Iterable[int], take: Take, processes: Optional[int]) -> None:
+    """Fly rows in processes of this machine.
+
+    Parameters
+    ----------
+    plan, rows
+        What to fly.
+    take
+        Called with each row as it ends.
+    processes
+        How many; None takes one per core.
+    """
+
+    def fly(numbers: Sequence[int]) -> List[Row]:
+        return [_described(plan, number) for number in numbers]
+
+    for attempt in range(1, 1 + _ATTEMPTS):
+        again: List[int] = []
+        under_way: Dict[int, Sequence[int]] = {}
+
+        def noted(cases: Iterable[Sequence[int]]) -> Iterator[Sequence[int]]:
+            for index, numbers in enumerate(cases):
+                under_way[index] = numbers
+                yield numbers
+
+        def took(index: int, outcome: Union[List[Row], QuadcoreError]) -> None:
+            numbers = under_way.pop(index)
+            if not isinstance(outcome, QuadcoreError):
+                for row in outcome:
+                    take(row)
+            elif len(numbers) > 1 or (_may_be_chance(outcome) and attempt < _ATTEMPTS):
+                again.extend(numbers)
+            else:
+                told = f"{outcome}, {attempt} times" if attempt > 1 else str(outcome)
+                take(Row(numbers[0], told, None, fingerprint(plan, numbers[0])))
+
+        at_once = plan.at_once if attempt == 1 else 1
+        # What was killed for want of memory has all of it when it flies alone.
+        each(fly, noted(_several(rows, at_once)), took, processes if attempt == 1 else 1, apart=plan.apart)
+        if not again:
+            return
+        rows = sorted(again)
+
+
+def fly_over(
+    executor: concurrent.futures.Executor,
+    plan: AnyPlan,
+    rows: Iterable[int],
+    take: Take,
+    check: Callable[[], None] = lambda: None,
+) -> None:
+    """Fly rows by an executor of futures.
+
+    Parameters
+    ----------
+    executor
+        Whatever its processes are, they have quadcore.
+    plan, rows, take
+        As for `fly_here`.
+    check
+        Called every now and then; raises if the executor is gone.
+
+    Raises
+    ------
+    QuadcoreError
+        The executor failed; the rows that it gave were taken.
+    """
+    waiting = _several(rows, plan.at_once)
+    under_way: Dict[Any, Sequence[int]] = {}
+    ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
+
+    def hand_out(numbers: Sequence[int]) -> None:
+        specs = [_spec(plan, number) for number in numbers]
+        future = executor.submit(fly_all, specs, plan.apart)
+        under_way[future] = numbers
+        future.add_done_callback(ended.put)
+
+    try:
+        for numbers in waiting:
+            hand_out(numbers)
+            if len(under_way) >= _AHEAD:
+                break
+        while under_way:
+            try:
+                future = ended.get(timeout=_LOOK)
+            except queue.Empty:
+                check()
+                continue
+            numbers = under_way.pop(future)
+            with interrupts.held():
+                for row in _outcome(plan, future, numbers):
+                    if isinstance(row, Row):
+                        take(row)
+                    else:
+                        hand_out([row])
+            for following in waiting:
+                hand_out(following)
+                break
+    except (QuadcoreError, KeyboardInterrupt, MemoryError):
+        raise
+    except Exception as error:
+        raise QuadcoreError(_gone(error)) from error
+    finally:
+        for future in under_way:
+            future.cancel()
+
+
+def fly_all(specs: Sequence[Union[Spec, Row]], apart: bool) -> List[Row]:
+    """Fly several rows where they were sent to."""
+    flown: List[Row] = []
+    if apart:  # what one's own controller remembers of a flight, no other knows
+
+        def took(index: int, outcome: Union[Row, QuadcoreError]) -> None:
+            if isinstance(outcome, QuadcoreError):
+                spec = specs[index]
+                outcome = Row(spec.row, str(outcome), None, _fingerprint(spec))
+            flown.append(outcome)
+
+        each(_done, specs, took, 1, apart=True)
+        return flown
+    return [_done(spec) for spec in specs]
+
+
+def _done(spec: Union[Spec, Row]) -> Row:
+    return spec if isinstance(spec, Row) else done(spec)
+
+
+def _fingerprint(spec: Union[Spec, Row]) -> str:
+    return spec.fingerprint if isinstance(spec, Row) else spec.fingerprint()
+
+
+def _described(plan: AnyPlan, number: int) -> Row:
+    return _done(_spec(plan, number))
+
+
+def _spec(plan: AnyPlan, number: int) -> Union[Spec, Row]:
+    """Describe a row, or say why it cannot be flown."""
+    try:
+        return plan.spec(number)
+    except QuadcoreError as error:
+        return Row(number, str(error), None, "")
+
+
+def _several(rows: Iterable[int], count: int) -> Iterator[List[int]]:
+    piece: List[int] = []
+    for row in rows:
+        piece.append(row)
+        if len(piece) == count:
+            yield piece
+            piece = []
+    if piece:
+        yield piece
+
+
+def _may_be_chance(outcome: QuadcoreError) -> bool:
+    return isinstance(outcome, Died) and outcome.was_killed
+
+
+def _outcome(plan: AnyPlan, future: Any, numbers: Sequence[int]) -> Iterator[Union[Row, int]]:
+    """Give the rows of a task; of one that took its worker with it the numbers, each alone."""
+    try:
+        yield from future.result()
+        return
+    except Exception as error:
+        # Dask's, when a task has ended several workers: it is the task then.
+        if type(error).__name__ != "KilledWorker":
+            raise
+    if len(numbers) > 1:
+        yield from numbers
+    else:
+        told = "its worker died, several times"
+        yield Row(numbers[0], told, None, fingerprint(plan, numbers[0]))
+
+
+def _gone(error: Exception) -> str:
+    reason = " ".join(f"{type(error).__name__}: {error}".split())
+    return f"the executor failed ({reason[:200]}); the rows so far are kept, --resume flies the rest"

@@ -1,0 +1,288 @@
+"""The file that a sweep's rows are kept in, whole at any time."""
+
+from __future__ import annotations
+
+import array
+import csv
+import fcntl
+import io
+import sys
+import time
+from pathlib import Path
+from typing import Any, BinaryIO, Collection, Dict, Iterator, List, Sequence
+
+import numpy as np
+
+from .._core import InputError, QuadcoreError, parse_number
+from ..files import Appended, atomic_write, cell, check_writable, text_bytes, unwritable
+from .plan import AnyPlan
+from .spec import Row
+
+_PATIENCE = 10.0  # s; for one that was killed a moment ago and has not let go yet
+_WHOLE = ("row", "seed")
+_TEXTS = ("failure", "fingerprint")
+_MANY = 10_000  # rows that are held at once when they are read
+
+
+class Rows:
+    """A CSV file with a row for each flight, in the order in which they end.
+
+    The columns are ``row``, what flies, ``failure``, the measures and ``fingerprint``. Once all are
+    there the file is put in order.
+
+    Parameters
+    ----------
+    path
+        Of the file.
+    plan
+        What is flown.
+    resume
+        Whether rows that are there already stay; they must be the plan's.
+
+    Raises
+    ------
+    InputError
+        There are rows and `resume` does not ask for them; or they were flown with other inputs, are
+        damaged, or are being written.
+    """
+
+    def __init__(self, path: Path, plan: AnyPlan, resume: bool) -> None:
+        self.path, self._plan = path, plan
+        self.columns = ["row", *plan.names, "failure", *plan.measures, "fingerprint"]
+        self._where = np.full((len(plan), 2), -1, dtype=np.int64)  # begin and length of each
+        self._head = _line(self.columns)
+        kept = 0
+        check_writable(path)
+        is_there = path.exists() and path.stat().st_size > 0
+        if is_there and not resume:
+            raise InputError(
+                f"{path}: holds rows already; go on with --resume, or name another folder"
+            )
+        self.is_resumed = is_there
+        if is_there:
+            kept = self._read()
+        self._file = Appended(path, kept)
+        self._lock()
+        self._end = kept
+        if not kept:
+            self._append(self._head)
+
+    @property
+    def missing(self) -> Iterator[int]:
+        """Rows that are not there."""
+        return (int(row) for row in np.flatnonzero(self._where[:, 0] < 0))
+
+    @property
+    def count(self) -> int:
+        """Rows that are there."""
+        return int((self._where[:, 0] >= 0).sum())
+
+    def take(self, row: Row) -> None:
+        """Append a row; raises `InputError` if it does not fit, the others being whole."""
+        line = _line(self._cells(row))
+        begin = self._end
+        self._append(line)
+        self._where[row.row] = begin, len(line)
+
+    def close(self) -> None:
+        """Put the rows in order if they are all there, and close the file."""
+        if self.count == len(self._plan) and (np.diff(self._where[:, 0]) < 0).any():
+            with self.path.open("rb") as stream, atomic_write(self.path) as ordered:
+                ordered.write(self._head)
+                for line in self._lines(stream):
+                    ordered.write(line)
+            lengths = self._where[:, 1]
+            self._where[:, 0] = len(self._head) + np.cumsum(lengths) - lengths
+        self._file.close()
+
+    def read(self) -> Iterator[Dict[str, str]]:
+        """Give the rows that are there, by number."""
+        with self.path.open("rb") as stream:
+            for line in self._lines(stream):
+                yield dict(zip(self.columns, _split(line)))
+
+    def _lines(self, stream: BinaryIO) -> Iterator[bytes]:
+        for begin, length in self._where.tolist():
+            if begin >= 0:
+                stream.seek(begin)
+                yield stream.read(length)
+
+    def _cells(self, row: Row) -> List[Any]:
+        measured = row.measures or {}
+        return [
+            row.row,
+            *self._plan.cells(row.row).values(),
+            row.failure,
+            *(measured.get(name, np.nan) for name in self._plan.measures),
+            row.fingerprint,
+        ]
+
+    def _append(self, line: bytes) -> None:
+        self._file.write(line)
+        self._end += len(line)
+
+    def _lock(self) -> None:
+        """Keep others from writing; what forked processes inherit does not hold the lock."""
+        end = time.monotonic() + _PATIENCE
+        while True:
+            try:
+                fcntl.lockf(self._file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
+                return
+            except OSError:
+                if time.monotonic() > end:
+                    raise InputError(f"{self.path}: another sweep is writing it; wait") from None
+            time.sleep(0.1)
+
+    def _read(self) -> int:
+        """Note where rows are, and give the bytes that stay: what a kill cut off does not."""
+        try:
+            with self.path.open("rb") as stream:
+                return self._note(stream)
+        except OSError as error:
+            raise unwritable(self.path, error) from error
+
+    def _note(self, stream: BinaryIO) -> int:
+        head = stream.readline()
+        if head != self._head:
+            if not head.endswith(b"\n") and self._head.startswith(head):
+                return 0
+            raise InputError(
+                f"{self.path}:1: other columns than this sweep's; name another folder, or fly what "
+                "was flown"
+            )
+        end = len(head)
+        for number, line in enumerate(stream, start=2):
+            if not line.endswith(b"\n"):
+                break
+            row = self._checked(number, _split(line))
+            self._where[row] = end, len(line)
+            end += len(line)
+        return end
+
+    def _checked(self, number: int, cells: Sequence[str]) -> int:
+        """Give the number of a row; raise `InputError` unless it is the plan's."""
+        place = f"{self.path}:{number}"
+        if len(cells) != len(self.columns) or not cells[0].isdigit():
+            raise InputError(f"{place}: is no row of a sweep; take the line out")
+        row = int(cells[0])
+        if row >= len(self._plan):
+            raise InputError(f"{place}: row {row} of a sweep that has {len(self._plan)}")
+        if self._where[row, 0] >= 0:
+            raise InputError(f"{place}: row {row} is there twice; take one out")
+        known, planned = dict(zip(self.columns, cells)), self._plan.cells(row)
+        for name, value in planned.items():
+            if known[name] != _split(_line([value]))[0]:
+                raise InputError(
+                    f"{place}: was flown with {name} {known[name]}, now it is {value}; name "
+                    "another folder, or fly what was flown"
+                )
+        if known["fingerprint"] != fingerprint(self._plan, row):
+            raise InputError(
+                f"{place}: was flown with other inputs than these: a model, a world, a file or an "
+                "option has changed; name another folder, or fly what was flown"
+            )
+        if not known["fingerprint"]:
+            raise InputError(f"{place}: nobody can tell whether this is what flies; see the docs")
+        return row
+
+
+def fingerprint(plan: AnyPlan, row: int) -> str:
+    """Digest of what a row depends on; "" if it cannot be flown or told."""
+    try:
+        return plan.spec(row).fingerprint()
+    except QuadcoreError:
+        return ""
+
+
+def table(rows: Rows) -> Dict[str, np.ndarray]:
+    """Hold all rows that are there, by column: numbers where all are numbers, else texts."""
+    texts = _texts(rows)
+    columns: Dict[str, Any] = {
+        name: [] if name in texts else array.array("Q" if name in _WHOLE else "d")
+        for name in rows.columns
+    }
+    for row in rows.read():
+        for name, value in row.items():
+            columns[name].append(_made(name, value, texts))
+    return {name: np.array(values) for name, values in columns.items()}
+
+
+def write_parquet(rows: Rows, path: Path) -> None:
+    """Write the rows that are there as Parquet, whole or not at all, few of them held at a time.
+
+    Raises
+    ------
+    InputError
+        There is no pyarrow, or the file cannot be written.
+    """
+    from ..extras import needed
+
+    with needed("Parquet", "pyarrow", "sweep"):
+        import pyarrow as arrow
+        from pyarrow import parquet
+
+    texts = _texts(rows)
+    kinds = {name: arrow.float64() for name in rows.columns}
+    kinds.update(dict.fromkeys(texts, arrow.string()))
+    kinds.update((name, arrow.uint64()) for name in _WHOLE if name in kinds)
+    schema = arrow.schema(list(kinds.items()))
+    with atomic_write(path) as stream, parquet.ParquetWriter(stream, schema) as writer:
+        for several in _pieces(rows.read()):
+            arrays = []
+            for name, kind in kinds.items():
+                made = [_made(name, row[name], texts) for row in several]
+                arrays.append(arrow.array(made, kind))
+            writer.write_table(arrow.Table.from_arrays(arrays, schema=schema))
+
+
+def _texts(rows: Rows) -> List[str]:
+    """Columns that hold more than numbers."""
+    found = list(_TEXTS)
+    for row in rows.read():
+        found += [
+            name
+            for name, value in row.items()
+            if name not in found and value and parse_number(value) is None and not _is_inf(value)
+        ]
+    return found
+
+
+def _pieces(rows: Iterator[Dict[str, str]]) -> Iterator[List[Dict[str, str]]]:
+    piece: List[Dict[str, str]] = []
+    for row in rows:
+        piece.append(row)
+        if len(piece) == _MANY:
+            yield piece
+            piece = []
+    if piece:
+        yield piece
+
+
+def _made(name: str, text: str, texts: Collection[str]) -> Any:
+    if name in texts:
+        return sys.intern(text)
+    return int(text) if name in _WHOLE else _value(text)
+
+
+def _value(text: str) -> float:
+    return float(text) if text else float("nan")
+
+
+def _is_inf(text: str) -> bool:
+    return text in ("inf", "-inf")
+
+
+def _line(cells: Sequence[Any]) -> bytes:
+    stream = io.StringIO()
+    csv.writer(stream, lineterminator="\n").writerow([_plain(value) for value in cells])
+    return text_bytes(stream.getvalue())
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, str):
+        return value if parse_number(value) is not None else cell(value)
+    return "" if value != value else value
+
+
+def _split(line: bytes) -> List[str]:
+    return next(csv.reader([line.decode("utf-8", "replace")]), [])

@@ -1,0 +1,201 @@
+"""One row of a sweep: a description that can be pickled, flown anywhere, and told from others."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import sys
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Callable, Dict, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+
+from .. import laws
+from .._core import FlightError, InputError, QuadcoreError
+from ..evaluation import measures as of_guided
+from ..evaluation.flights import flown
+from ..flight_plan import FlightPlan
+from ..imported import told
+from ..study.time_limit import time_limit
+from ..study.variation import give_all
+from ..warning import unheard
+from . import motion
+
+Measures = Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Own:
+    """A controller of the user's own, made where it flies."""
+
+    text: str
+    """``MODULE:CLASS``."""
+    values: Tuple[Tuple[str, float], ...]
+    """What it is given: rate, delay."""
+    source: str
+    """Digest of its module's text; that of what it imports is not looked at."""
+
+    @classmethod
+    def of(cls, text: str, values: Mapping[str, Any]) -> Own:
+        """Look the module up, without running it."""
+        given = tuple((name, value) for name, value in values.items() if value is not None)
+        return cls(text, given, _digest(_source(text.partition(":")[0])))
+
+    def make(self, vehicle: str) -> Any:
+        """Bring it in; raises `InputError`."""
+        return give_all(laws.parse(self.text, vehicle), self.values)
+
+
+@dataclass(frozen=True)
+class Flight:
+    """A row that is flown."""
+
+    row: int
+    names: Mapping[str, Any]
+    """Its first columns."""
+    plan: FlightPlan
+    """Without its controller if that is `own`."""
+    own: Optional[Own]
+    limit: float
+    """Of the wall clock, s."""
+
+    @property
+    def apart(self) -> bool:
+        """Whether what flies may remember it when it flies another."""
+        given = self.plan.controller
+        return self.own is not None or not (given is None or isinstance(given, laws.Law))
+
+    def fingerprint(self) -> str:
+        """Digest of all that it depends on; "" if nobody can tell."""
+        try:
+            known = self.plan.fingerprint()
+        except InputError:  # a controller or a reference that is an object of one's own
+            return ""
+        return known if self.own is None else _digest(f"{known} {self.own}".encode())
+
+    def measured(self) -> Measures:
+        """Fly and measure it.
+
+        Raises
+        ------
+        QuadcoreError
+            It failed.
+        """
+        if self.own is None and self.plan.controller is None:
+            with time_limit(self.limit), unheard():
+                return motion.measure(self.plan.fly())
+        outcome = flown(self._guided, self.limit, timed=False)
+        if outcome.failure:
+            raise FlightError(outcome.failure)
+        return outcome.measures
+
+    def _guided(self) -> FlightPlan:
+        if self.own is None:
+            return self.plan
+        return replace(self.plan, controller=self.own.make(self.plan.model.name))
+
+
+def columns(is_guided: bool) -> Sequence[str]:
+    """Name the measures of a flight."""
+    return list(of_guided.UNITS if is_guided else motion.UNITS)
+
+
+@dataclass(frozen=True)
+class Call:
+    """A row that a function gives."""
+
+    row: int
+    names: Mapping[str, Any]
+    function: Callable[[Dict[str, Any]], Any]
+    wanted: Sequence[str]
+    """Names of what it returns."""
+    limit: float
+
+    @property
+    def apart(self) -> bool:
+        """Whether it must have a process of its own."""
+        return False
+
+    def fingerprint(self) -> str:
+        """Digest of its name, its module's text, and what it is called with."""
+        module = getattr(self.function, "__module__", "")
+        name = getattr(self.function, "__qualname__", type(self.function).__qualname__)
+        called = f"{module} {name} {dict(self.names)} {_digest(_source(module))}"
+        return _digest(called.encode())
+
+    def measured(self) -> Measures:
+        """Call it.
+
+        Raises
+        ------
+        QuadcoreError
+            It raised something, or did not return the numbers that were told.
+        """
+        with time_limit(self.limit):
+            found = self.function({name: _number(value) for name, value in self.names.items()})
+        values = found if isinstance(found, Mapping) else {self.wanted[0]: found}
+        try:
+            return {name: float(values[name]) for name in self.wanted}
+        except (KeyError, TypeError, ValueError) as error:
+            raise QuadcoreError(
+                f"the function returned {found!r}; give a number, or a mapping of "
+                f"{', '.join(self.wanted)} to numbers"
+            ) from error
+
+
+Spec = Union[Flight, Call]
+
+
+class Row(NamedTuple):
+    """What became of a row."""
+
+    row: int
+    failure: str
+    """Why there are no measures; "" if there are."""
+    measures: Optional[Measures]
+    fingerprint: str
+
+
+def done(spec: Spec) -> Row:
+    """Fly a row, whatever becomes of it."""
+    fingerprint = spec.fingerprint()
+    try:
+        return Row(spec.row, "", spec.measured(), fingerprint)
+    except QuadcoreError as error:
+        failure = str(error)
+    except MemoryError:
+        failure = "no memory left"
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # SystemExit, too: it is not for code that flies to end all
+        failure = told(error)
+    return Row(spec.row, " ".join(failure.split()), None, fingerprint)
+
+
+def _number(value: Any) -> Any:
+    try:
+        return float(value)
+    except ValueError:
+        return value
+
+
+def _digest(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
+
+
+def _source(module: str) -> bytes:
+    """Text of a module, which is not imported; empty if nobody can tell."""
+    loaded = sys.modules.get(module)
+    origin = getattr(loaded, "__file__", None)
+    if origin is None:
+        sys.path.insert(0, "")
+        try:
+            found = importlib.util.find_spec(module) if module else None
+        except (ImportError, ValueError):
+            found = None
+        finally:
+            sys.path.remove("")
+        origin = getattr(found, "origin", None)
+    try:
+        return Path(origin).read_bytes() if origin else b""
+    except OSError:
+        return b""
