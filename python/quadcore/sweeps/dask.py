@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from contextlib import contextmanager
 from typing import Any, Callable, Iterator, Tuple
 
@@ -33,8 +34,13 @@ def cluster(address: str) -> Iterator[Tuple[Any, Callable[[], None]]]:
     with needed("--dask", "distributed", "dask"):
         from distributed import Client
 
+    with _quiet():
+        yield from _of(Client, address)
+
+
+def _of(make: Any, address: str) -> Iterator[Tuple[Any, Callable[[], None]]]:
     try:
-        client = Client(address, timeout=_PATIENCE, set_as_default=False)
+        client = make(address, timeout=_PATIENCE, set_as_default=False)
     except (OSError, ValueError) as error:
         reason = " ".join(str(error).split())
         raise QuadcoreError(f"{address}: no scheduler answers: {reason[:200]}") from error
@@ -50,3 +56,19 @@ def cluster(address: str) -> Iterator[Tuple[Any, Callable[[], None]]]:
         yield client.get_executor(pure=False), check
     finally:
         client.close(timeout=1)
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Let what the client says of a lost scheduler be told once, by us."""
+    known = logging.root.manager.loggerDict
+    names = [name for name in known if name.partition(".")[0] in ("distributed", "tornado")]
+    loggers = [logging.getLogger(name) for name in names]
+    before = [logger.level for logger in loggers]
+    try:
+        for logger in loggers:
+            logger.setLevel(logging.CRITICAL)
+        yield
+    finally:
+        for logger, level in zip(loggers, before):
+            logger.setLevel(level)

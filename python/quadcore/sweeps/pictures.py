@@ -10,7 +10,7 @@ from ..colours import PALETTE
 from ..plots import dress, panels, png, titled
 from ..study.sampling import evenly
 from .plan import AnyPlan
-from .sensitivity import axes_of_numbers, combinations
+from .sensitivity import COMBINATION, axes_of_numbers, combinations
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -20,6 +20,7 @@ NAMES = ("measure", "sensitivity", "surface", "parallel")
 _COMBINATIONS = 4  # that are drawn
 _AXES = 12
 _LINES = 600
+_WIDE = 30  # times the least, from which on a logarithm shows more
 _SCALE = "viridis"
 
 Columns = Mapping[str, np.ndarray]
@@ -37,9 +38,10 @@ def draw(
     measure
         The one that is drawn.
     """
+    found = list(combinations(columns))
     parts = [
-        (", ".join(names.values()), chosen[np.isfinite(columns[measure][chosen])])
-        for names, chosen in combinations(columns)
+        (_label(names, [other for other, _ in found]), chosen[np.isfinite(columns[measure][chosen])])
+        for names, chosen in found
     ]
     parts = [part for part in parts if len(part[1]) > 1][:_COMBINATIONS]
     if not parts:
@@ -57,6 +59,17 @@ def draw(
 
 
 Parts = List[Tuple[str, np.ndarray]]
+
+
+def _label(names: Mapping[str, str], among: Sequence[Mapping[str, str]]) -> str:
+    """Name a combination by what sets it apart from the others."""
+    return ", ".join(v for k, v in names.items() if len({other[k] for other in among}) > 1)
+
+
+def _scaled(values: np.ndarray) -> np.ndarray:
+    """Take the logarithm of what spans magnitudes, where colours are concerned."""
+    is_wide = values.min() > 0 and values.max() > _WIDE * values.min()
+    return np.log(values) if is_wide else values
 
 
 def _spread(parts: Parts, values: np.ndarray, label: str) -> Figure:
@@ -95,11 +108,9 @@ def _sensitivity(told: Sequence[Mapping[str, Any]], measure: str) -> Figure:
         axes.set_xlim(-1, 1)
     axes.axvline(0, color="black", linewidth=0.8)
     axes.set_yticks(places)
-    several = len({row.get("controller", "") for row in told}) > 1
-    axes.set_yticklabels(
-        [f"{row['controller']}: {row['axis']}" if several else row["axis"] for row in told],
-        fontsize="small",
-    )
+    named = [{name: row[name] for name in COMBINATION if name in row} for row in told]
+    labels = [(_label(names, named), row["axis"]) for names, row in zip(named, told)]
+    axes.set_yticklabels([": ".join(filter(None, each)) for each in labels], fontsize="small")
     return figure
 
 
@@ -153,7 +164,7 @@ def _surface(
 
 
 def _unit(values: np.ndarray, ends: Tuple[float, float]) -> np.ndarray:
-    return (values - ends[0]) / (ends[1] - ends[0])
+    return (values - ends[0]) / ((ends[1] - ends[0]) or 1.0)
 
 
 def _terms(x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -188,10 +199,12 @@ def _parallel(
     picked = chosen[evenly(len(chosen), _LINES)]
     picked = picked[np.argsort(columns[measure][picked])]  # the largest on top
     heights = np.stack([_unit(columns[name][picked], ends[name]) for name in names], axis=1)
+    shades = _scaled(columns[measure][picked])
+    heights[:, -1] = _unit(shades, (shades.min(), shades.max()))
     places = np.broadcast_to(np.arange(len(names)), heights.shape)
     lines = LineCollection(
         np.stack([places, heights], axis=2),
-        colors=colormaps[_SCALE](heights[:, -1]),
+        colors=colormaps[_SCALE](_unit(shades, (shades.min(), shades.max()))),
         linewidths=0.6,
         alpha=0.7,
     )

@@ -125,6 +125,7 @@ def fly_over(
     except (QuadcoreError, KeyboardInterrupt, MemoryError):
         raise
     except Exception as error:
+        check()
         raise QuadcoreError(_gone(error)) from error
     finally:
         for future in under_way:

@@ -1,0 +1,225 @@
+"""The rows of a sweep survive what happens to it."""
+
+from __future__ import annotations
+
+import os
+import random
+import resource
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from processes import LONG, QUADCORE, ran, refused, script
+from sweeps import lines, rows, sweep
+
+import quadcore as qc
+
+FLY = ["sweep", "--controller=geometric", "--reference=circle", "--xacro=sim_slow:=1", "--quiet"]
+SMALL = [*FLY, "--vary=frame.mass=uniform:0.9:1.1", "--samples=40", "--duration=1", "--no-plots"]
+
+pytestmark = pytest.mark.usefixtures("in_empty_folder")
+
+
+def test_rows_are_in_order_whatever_the_processes_are():
+    sweep(out="one", processes=1, seeds=3)
+    sweep(out="three", processes=3, seeds=3)
+    assert lines("one") == lines("three")
+    assert [int(row["row"]) for row in rows("one")] == list(range(36))
+
+
+def test_whatever_kills_a_sweep_it_goes_on_where_it_was():
+    assert ran(*SMALL, "--out=whole").returncode == 0
+    chance = random.Random(7)
+    for _ in range(3):
+        process = subprocess.Popen([*QUADCORE, *SMALL, "--out=killed", "--resume"])
+        end, wanted = time.monotonic() + LONG, len_of("killed") + chance.randrange(1, 8)
+        while len_of("killed") < wanted and process.poll() is None and time.monotonic() < end:
+            time.sleep(0.005)
+        time.sleep(chance.random() * 0.05)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+    before = len_of("killed")
+    assert 3 < before
+    assert ran(*SMALL, "--out=killed", "--resume").returncode == 0
+    assert lines("killed") == lines("whole")
+
+
+def len_of(folder):
+    file = Path(folder) / "table.csv"
+    return file.read_bytes().count(b"\n") if file.exists() else 0
+
+
+def _counted(point):
+    with open("calls", "a") as stream:
+        stream.write(f"{point['a']:g}\n")
+    return point["a"]
+
+
+def test_nothing_is_flown_twice():
+    vary = {"a": list(range(40))}
+    qc.sweep(function=_counted, vary=vary, out="out")
+    table = Path("out/table.csv")
+    whole = table.read_bytes()
+    head, *body = whole.splitlines(keepends=True)
+    kept = [body[i] for i in (7, 3, 30)]
+    table.write_bytes(head + b"".join(kept) + body[9][:-5])  # cut off as it was written
+    Path("calls").unlink()
+    qc.sweep(function=_counted, vary=vary, out="out", resume=True)
+    calls = sorted(map(int, Path("calls").read_text().split()))
+    assert calls == [i for i in range(40) if i not in (7, 3, 30)]
+    assert table.read_bytes() == whole
+    qc.sweep(function=_counted, vary=vary, out="out", resume=True)
+    assert len(Path("calls").read_text().split()) == 37
+
+
+def test_rows_that_are_there_are_not_overwritten_unasked():
+    sweep(out="out")
+    before = lines("out")
+    with pytest.raises(qc.InputError, match=r"holds rows already; go on with --resume, or name"):
+        sweep(out="out")
+    assert lines("out") == before
+
+
+@pytest.mark.parametrize(
+    ("changed", "told"),
+    [
+        ({"duration": 0.6}, "table.csv:2: was flown with other inputs than these"),
+        ({"parameters": {"odometry.positionNoise": 1e-3}}, "table.csv:2: was flown with other"),
+        ({"seed": 4}, "table.csv:2: was flown with frame.mass"),
+        ({"seeds": 2}, r"table.csv:3: was flown with frame.mass .*, now it is"),
+        ({"samples": 11}, "table.csv:2: was flown with frame.mass"),
+        ({"vary": {"frame.mass": "uniform:0.9:1.1", "frame.ixx": [0.007, 0.008]}}, ":1: other columns"),
+    ],
+)
+def test_changed_inputs_are_noticed(changed, told):
+    sweep(out="out")
+    with pytest.raises(qc.InputError, match=told):
+        sweep(out="out", resume=True, **changed)
+    assert len(lines("out")) == 13
+
+
+def test_a_changed_file_is_noticed():
+    Path("law.yaml").write_text("law: pd\nparameters: {kp_xy: 2.4}\n")
+    Path("own.py").write_text("def law(t, state, reference):\n    return [500, -500, 500, -500]\n")
+
+    def fly(**options):
+        return qc.sweep(["law.yaml", "own:law"], "hover", duration=0.1, out="out", **options)
+
+    fly()
+    fly(resume=True)
+    own = Path("own.py").read_text()
+    Path("own.py").write_text(own.replace("500", "501"))
+    with pytest.raises(qc.InputError, match=r"table.csv:3: was flown with other inputs"):
+        fly(resume=True)
+    Path("own.py").write_text(own)
+    Path("law.yaml").write_text("law: pd\nparameters: {kp_xy: 2.5}\n")
+    with pytest.raises(qc.InputError, match=r"table.csv:2: was flown with other inputs"):
+        fly(resume=True)
+
+
+def test_a_disk_that_fills_up_keeps_whole_rows():
+    def limit():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))
+
+    error = refused(*SMALL, "--out=out", preexec_fn=limit)
+    assert "table.csv: cannot be written: File too large" in error
+    text = Path("out/table.csv").read_text()
+    assert text.endswith("\n") and 2000 < len(text) <= 3000
+    assert ran(*SMALL, "--out=out", "--resume").returncode == 0
+    assert [int(row["row"]) for row in rows("out")] == list(range(40))
+
+
+def _deadly(point):
+    mark = Path(f"killed_{point['a']:g}")
+    if point["a"] == 3 and not mark.exists():
+        mark.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    if point["a"] == 5:
+        os.kill(os.getpid(), signal.SIGKILL)
+    if point["a"] == 6:
+        return [0] * 2**40
+    if point["a"] == 7:
+        while True:
+            pass
+    return point["a"]
+
+
+def test_what_kills_its_process_or_never_ends_is_one_row():
+    """A worker that somebody kills once does not count against the row."""
+    found = qc.sweep(function=_deadly, vary={"a": list(range(9))}, time_limit=1.0, processes=2)
+    failures = dict(zip(found.columns["a"], found.columns["failure"]))
+    assert [a for a, failure in failures.items() if not failure] == [0, 1, 2, 3, 4, 8]
+    assert failures[5] == "its process was ended by SIGKILL, 3 times"
+    assert failures[6] == "no memory left"
+    assert failures[7] == "not done within the time limit of 1 s"
+    assert all(found.columns["fingerprint"])
+    assert np.isnan(found.columns["value"][5])
+
+
+def test_a_flight_that_never_ends_is_one_row():
+    Path("endless.py").write_text(
+        "def law(t, state, reference):\n    while t > 0.05:\n        pass\n    return [500] * 4\n"
+    )
+    found = qc.sweep(["pd", "endless:law"], "hover", duration=0.2, time_limit=2)
+    assert found.columns["failure"].tolist() == ["", "not done within the time limit of 2 s"]
+
+
+def test_two_sweeps_do_not_write_one_file(monkeypatch):
+    monkeypatch.setattr("quadcore.sweeps.rows._PATIENCE", 0.0)
+    sweep(out="out")
+    holder = """
+import fcntl, sys, time
+stream = open("out/table.csv", "r+b")
+fcntl.lockf(stream, fcntl.LOCK_EX)
+print("held", flush=True)
+sys.stdin.read()
+"""
+    with subprocess.Popen(
+        [sys.executable, "-c", holder], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as process:
+        process.stdout.readline()
+        with pytest.raises(qc.InputError, match="another sweep is writing it; wait"):
+            sweep(out="out", resume=True)
+        process.stdin.close()
+
+
+def test_ctrl_c_keeps_the_rows_and_says_how_to_go_on():
+    process = subprocess.Popen(
+        [*QUADCORE, *SMALL, "--out=out"], stderr=subprocess.PIPE, text=True
+    )
+    end = time.monotonic() + LONG
+    while len_of("out") < 4 and time.monotonic() < end:
+        time.sleep(0.005)
+    process.send_signal(signal.SIGINT)
+    _, error = process.communicate(timeout=LONG)
+    assert process.returncode == 130
+    assert "rows so far: out/table.csv; --resume flies the rest" in error
+    assert Path("out/table.csv").read_bytes().endswith(b"\n")
+
+
+def test_the_parent_needs_no_more_memory_for_more_rows():
+    measured = script(
+        """
+import resource
+import quadcore as qc
+from quadcore.sweeps.design import Design
+from quadcore.sweeps.plan import Calls
+from quadcore.sweeps.sweep import conduct
+from pathlib import Path
+
+def most(count, folder):
+    Path(folder).mkdir()
+    design = Design({"a": f"0:1:{count}"})
+    conduct(Calls(design, lambda point: point["a"], ["a"], 9.0), Path(folder), processes=1)
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+few = most(2000, "few")
+print(few, most(10000, "many"))
+"""
+    )
+    few, many = map(int, measured.stdout.split())
+    assert many - few < 3000, measured.stderr  # kB; the rows are 1 MB
