@@ -148,7 +148,7 @@ class Appended:
             raise unwritable(self._path, error) from error
 
     def fileno(self) -> int:
-        """Number of the open file, for locks."""
+        """Give the number of the open file, for locks."""
         return self._stream.fileno()
 
     def close(self) -> None:

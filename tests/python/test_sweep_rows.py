@@ -43,7 +43,7 @@ def test_whatever_kills_a_sweep_it_goes_on_where_it_was():
         process.send_signal(signal.SIGKILL)
         process.wait()
     before = len_of("killed")
-    assert 3 < before
+    assert before > 3
     assert ran(*SMALL, "--out=killed", "--resume").returncode == 0
     assert lines("killed") == lines("whole")
 
@@ -92,7 +92,10 @@ def test_rows_that_are_there_are_not_overwritten_unasked():
         ({"seed": 4}, "table.csv:2: was flown with frame.mass"),
         ({"seeds": 2}, r"table.csv:3: was flown with frame.mass .*, now it is"),
         ({"samples": 11}, "table.csv:2: was flown with frame.mass"),
-        ({"vary": {"frame.mass": "uniform:0.9:1.1", "frame.ixx": [0.007, 0.008]}}, ":1: other columns"),
+        (
+            {"vary": {"frame.mass": "uniform:0.9:1.1", "frame.ixx": [0.007, 0.008]}},
+            ":1: other columns",
+        ),
     ],
 )
 def test_changed_inputs_are_noticed(changed, told):
@@ -188,9 +191,7 @@ sys.stdin.read()
 
 
 def test_ctrl_c_keeps_the_rows_and_says_how_to_go_on():
-    process = subprocess.Popen(
-        [*QUADCORE, *SMALL, "--out=out"], stderr=subprocess.PIPE, text=True
-    )
+    process = subprocess.Popen([*QUADCORE, *SMALL, "--out=out"], stderr=subprocess.PIPE, text=True)
     end = time.monotonic() + LONG
     while len_of("out") < 4 and time.monotonic() < end:
         time.sleep(0.005)

@@ -21,7 +21,9 @@ SHORT = [*FLY, "--duration", "0.5", "--no-plots", "--quiet"]
 
 
 def test_a_row_is_what_the_flight_by_itself_is():
-    found = sweep({"drone_plugin.rotorThrustCoeff": [1.1e-5], "frame.mass": [1.05, 1.2]}, samples=None)
+    found = sweep(
+        {"drone_plugin.rotorThrustCoeff": [1.1e-5], "frame.mass": [1.05, 1.2]}, samples=None
+    )
     circle = qc.references.circle()
     simulation = qc.Simulation(
         engine="eigen",
@@ -80,10 +82,8 @@ def test_axes_are_lists_ranges_distributions_and_rows_of_a_file(tmp_path):
     assert len(design) == 2 * 3 * 1 * 2 * 2
     assert design.names == ["a.b", "c.d", "world", "frame.ixx", "frame.iyy", "e.f"]
     last = design[len(design) - 1]
-    assert {**last, "e.f": ""} == {
-        "a.b": "2", "c.d": "100", "world": "empty", "frame.ixx": "0.3", "frame.iyy": "0.4", "e.f": ""
-    }  # fmt: skip
-    assert abs(float(last["e.f"]) - 5) < 1
+    assert abs(float(last.pop("e.f")) - 5) < 1
+    assert list(last.values()) == ["2", "100", "empty", "0.3", "0.4"]
 
 
 @pytest.mark.parametrize("kind", ["latin", "sobol", "random", "saltelli"])
@@ -197,16 +197,16 @@ def test_parquet_holds_what_the_csv_holds(tmp_path):
     [
         (["--reference", "circle"], "nothing to fly: name --controller, or --commands"),
         ([*SHORT, "--vary", "a.b=uniform:1:2"], "vary a.b: is drawn; say how many --samples"),
-        ([*SHORT, "--samples", "3"], "samples is 3 but no axis is drawn; vary one as uniform:LOW:HIGH"),
+        ([*SHORT, "--samples", "3"], "samples is 3 but no axis is drawn; vary one as uniform:"),
         ([*SHORT, "--vary", "a.b=normal:1", "--samples", "3"],
          "vary a.b: 'normal:1' is no distribution; write normal:MEAN:DEVIATION, all numbers"),
-        ([*SHORT, "--vary", "a.b=uniform:2:1", "--samples", "3"], "vary a.b: there is no uniform:2:1"),
+        ([*SHORT, "--vary", "a.b=uniform:2:1", "--samples", "3"], "there is no uniform:2:1"),
         ([*SHORT, "--vary", "a.b=uniform:1:2", "--samples", "3", "--design", "sobol"],
          "samples is 3; design sobol takes a power of two: 2 or 4"),
         ([*SHORT, "--vary", "drone_plugin.k=1,2"], "drone_plugin"),
         ([*SHORT, "--vary", "engine=eigen,ode"], "vary engine: name the engines by themselves"),
-        ([*SHORT, "--vary", "frame.mass=1,2", "--measure", "x"], "there is no measure 'x'; give one of"),
-        ([*SHORT, "--vary", "frame.mass=1:2:2000000"], "these are 2000000 flights; at most 1000000"),
+        ([*SHORT, "--vary", "frame.mass=1,2", "--measure", "x"], "there is no measure 'x'"),
+        ([*SHORT, "--vary", "frame.mass=1:2:2000000"], "these are 2000000 flights"),
         (["nowhere.yaml"], "nowhere.yaml: cannot be read"),
     ],
 )  # fmt: skip

@@ -148,9 +148,7 @@ def _plan(arguments: argparse.Namespace) -> Plan:
     vary: dict[str, Any] = dict(options.unique("--vary", arguments.vary))
     if arguments.scenario is not None:
         vary = {"scenario": arguments.scenario, **vary}
-    design = Design(
-        vary, arguments.points, arguments.design, arguments.samples, arguments.seed
-    )
+    design = Design(vary, arguments.points, arguments.design, arguments.samples, arguments.seed)
     return Plan(
         design,
         arguments.controller,
@@ -185,7 +183,9 @@ def _show(plan: Plan, columns: Any, measure: str, files: list[Path]) -> None:
     if found:
         table = terminal.table("axis", "rank", "first", "total", numbers=True)
         for row in found:
-            table.add_row(row["axis"], *(number_text(row[key]) for key in ("rank", "first", "total")))
+            table.add_row(
+                row["axis"], *(number_text(row[key]) for key in ("rank", "first", "total"))
+            )
         console.print(table, "")
     console.print(told(plan, columns))
     for file in files:

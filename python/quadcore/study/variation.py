@@ -84,7 +84,7 @@ def give_all(controller: Any, values: Iterable[Tuple[str, Any]]) -> Any:
 
 
 def of_controller(point: Mapping[str, str]) -> Dict[str, float]:
-    """What a point changes in a controller.
+    """Tell what a point changes in a controller.
 
     Raises
     ------

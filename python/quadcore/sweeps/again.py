@@ -57,7 +57,7 @@ def _with_values(plan: Plan, row: int, text: str, point: Mapping[str, str]) -> s
     keys = [name[len(OF_CONTROLLER) :] for name in point if name.startswith(OF_CONTROLLER)]
     if not set(keys) - {"rate", "delay"}:
         return text
-    law: Any = plan.flight(row).plan.controller
+    law: Any = plan.spec(row).plan.controller
     assert isinstance(law, laws.Law)  # else it was refused
     values: List[str] = [f"{name}={value!r}" for name, value in law.parameters.items()]
     return f"{law.name}:{','.join(values)}"

@@ -11,6 +11,9 @@ from ..files import read_text
 from ..study.axes import Axis, axes_of, parse_axis
 from . import distributions
 
+LARGEST = 1_000_000
+"""Rows of one sweep."""
+
 _LARGEST = 10**8  # bytes of a table of points
 
 Point = Dict[str, str]

@@ -124,7 +124,10 @@ DESIGNS: Dict[str, Tuple[str, Callable[[int, int, int], np.ndarray]]] = {
     "latin": ("a Latin hypercube", _latin),
     "sobol": ("a scrambled Sobol set", _sobol),
     "random": ("independent points", _random),
-    "saltelli": ("the sets of Saltelli, for Sobol indices: samples x (axes + 2) flights", _saltelli),
+    "saltelli": (
+        "the sets of Saltelli, for Sobol indices: samples x (axes + 2) flights",
+        _saltelli,
+    ),
 }
 """Sets of points in the unit cube, by name, with what they are."""
 

@@ -31,9 +31,7 @@ def main_measure(plan: AnyPlan, asked: Optional[str] = None) -> str:
     return asked or plan.measures[0]
 
 
-def write(
-    plan: AnyPlan, columns: Columns, folder: Path, measure: str, plots: bool
-) -> List[Path]:
+def write(plan: AnyPlan, columns: Columns, folder: Path, measure: str, plots: bool) -> List[Path]:
     """Write `FILES` but the table, which is there, and pictures.
 
     Parameters
@@ -116,8 +114,8 @@ def worst(plan: AnyPlan, columns: Columns, measure: str) -> List[Dict[str, Any]]
     """Tell rows that failed, and those with the largest measure, with what flies them again."""
     values = columns[measure].astype(float)
     failed = np.flatnonzero(columns["failure"] != "")[:WORST]
-    largest = np.argsort(-np.where(np.isfinite(values), values, -np.inf), kind="stable")
-    largest = [i for i in largest[:WORST] if np.isfinite(values[i])]
+    order = np.argsort(-np.where(np.isfinite(values), values, -np.inf), kind="stable")
+    largest = [i for i in order[:WORST] if np.isfinite(values[i])]
     return [
         {
             "row": int(columns["row"][i]),
@@ -132,7 +130,9 @@ def worst(plan: AnyPlan, columns: Columns, measure: str) -> List[Dict[str, Any]]
 def _line(row: Mapping[str, Any]) -> Dict[str, str]:
     """Write a row for people."""
     return {
-        name: number_text(value) if isinstance(value, float) else str("" if value is None else value)
+        name: number_text(value)
+        if isinstance(value, float)
+        else str("" if value is None else value)
         for name, value in row.items()
     }
 

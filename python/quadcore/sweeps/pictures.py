@@ -40,7 +40,10 @@ def draw(
     """
     found = list(combinations(columns))
     parts = [
-        (_label(names, [other for other, _ in found]), chosen[np.isfinite(columns[measure][chosen])])
+        (
+            _label(names, [other for other, _ in found]),
+            chosen[np.isfinite(columns[measure][chosen])],
+        )
         for names, chosen in found
     ]
     parts = [part for part in parts if len(part[1]) > 1][:_COMBINATIONS]
@@ -186,13 +189,12 @@ def _quadratic(
 def _parallel(
     parts: Parts, columns: Columns, axes_shown: Sequence[str], measure: str, label: str
 ) -> Figure:
-    from matplotlib import colormaps
     from matplotlib.collections import LineCollection
 
     names = [*axes_shown, measure]
-    height = 3.4
+    height = 3.0
     figure = titled(f"Parallel coordinates, coloured by {measure}", 8, height)
-    axes = figure.add_axes((0.06, 0.32, 0.9, 0.53))
+    axes = figure.add_axes((0.07, 0.2, 0.84, 0.66))
     dress(axes)
     chosen = np.concatenate([rows for _, rows in parts])
     ends = {name: (columns[name][chosen].min(), columns[name][chosen].max()) for name in names}
@@ -203,8 +205,9 @@ def _parallel(
     heights[:, -1] = _unit(shades, (shades.min(), shades.max()))
     places = np.broadcast_to(np.arange(len(names)), heights.shape)
     lines = LineCollection(
-        np.stack([places, heights], axis=2),
-        colors=colormaps[_SCALE](_unit(shades, (shades.min(), shades.max()))),
+        list(np.stack([places, heights], axis=2)),
+        array=heights[:, -1],
+        cmap=_SCALE,
         linewidths=0.6,
         alpha=0.7,
     )

@@ -36,36 +36,47 @@ def fly_here(plan: AnyPlan, rows: Iterable[int], take: Take, processes: Optional
     processes
         How many; None takes one per core.
     """
-
-    def fly(numbers: Sequence[int]) -> List[Row]:
-        return [_described(plan, number) for number in numbers]
-
     for attempt in range(1, 1 + _ATTEMPTS):
-        again: List[int] = []
-        under_way: Dict[int, Sequence[int]] = {}
-
-        def noted(cases: Iterable[Sequence[int]]) -> Iterator[Sequence[int]]:
-            for index, numbers in enumerate(cases):
-                under_way[index] = numbers
-                yield numbers
-
-        def took(index: int, outcome: Union[List[Row], QuadcoreError]) -> None:
-            numbers = under_way.pop(index)
-            if not isinstance(outcome, QuadcoreError):
-                for row in outcome:
-                    take(row)
-            elif len(numbers) > 1 or (_may_be_chance(outcome) and attempt < _ATTEMPTS):
-                again.extend(numbers)
-            else:
-                told = f"{outcome}, {attempt} times" if attempt > 1 else str(outcome)
-                take(Row(numbers[0], told, None, fingerprint(plan, numbers[0])))
-
-        at_once = plan.at_once if attempt == 1 else 1
-        # What was killed for want of memory has all of it when it flies alone.
-        each(fly, noted(_several(rows, at_once)), took, processes if attempt == 1 else 1, apart=plan.apart)
-        if not again:
+        crew = _Attempt(plan, take, attempt)
+        crew.fly(rows, processes)
+        if not crew.again:
             return
-        rows = sorted(again)
+        rows = sorted(crew.again)
+
+
+class _Attempt:
+    """Rows that fly, and those that are to fly once more."""
+
+    def __init__(self, plan: AnyPlan, take: Take, number: int) -> None:
+        self.again: List[int] = []
+        self._plan, self._take, self._number = plan, take, number
+        self._under_way: Dict[int, Sequence[int]] = {}
+
+    def fly(self, rows: Iterable[int], processes: Optional[int]) -> None:
+        if self._number == 1:
+            tasks = _several(rows, self._plan.at_once)
+        else:  # what was killed for want of memory has all of it when it flies alone
+            tasks, processes = _several(rows, 1), 1
+        each(self._flown, self._noted(tasks), self._took, processes, apart=self._plan.apart)
+
+    def _flown(self, numbers: Sequence[int]) -> List[Row]:
+        return [_done(_spec(self._plan, number)) for number in numbers]
+
+    def _noted(self, tasks: Iterable[Sequence[int]]) -> Iterator[Sequence[int]]:
+        for index, numbers in enumerate(tasks):
+            self._under_way[index] = numbers
+            yield numbers
+
+    def _took(self, index: int, outcome: Union[List[Row], QuadcoreError]) -> None:
+        numbers = self._under_way.pop(index)
+        if not isinstance(outcome, QuadcoreError):
+            for row in outcome:
+                self._take(row)
+        elif len(numbers) > 1 or (_may_be_chance(outcome) and self._number < _ATTEMPTS):
+            self.again.extend(numbers)
+        else:
+            told = f"{outcome}, {self._number} times" if self._number > 1 else str(outcome)
+            self._take(Row(numbers[0], told, None, fingerprint(self._plan, numbers[0])))
 
 
 def fly_over(
@@ -156,10 +167,6 @@ def _fingerprint(spec: Union[Spec, Row]) -> str:
     return spec.fingerprint if isinstance(spec, Row) else spec.fingerprint()
 
 
-def _described(plan: AnyPlan, number: int) -> Row:
-    return _done(_spec(plan, number))
-
-
 def _spec(plan: AnyPlan, number: int) -> Union[Spec, Row]:
     """Describe a row, or say why it cannot be flown."""
     try:
@@ -168,7 +175,7 @@ def _spec(plan: AnyPlan, number: int) -> Union[Spec, Row]:
         return Row(number, str(error), None, "")
 
 
-def _several(rows: Iterable[int], count: int) -> Iterator[List[int]]:
+def _several(rows: Iterable[int], count: int) -> Iterator[Sequence[int]]:
     piece: List[int] = []
     for row in rows:
         piece.append(row)
@@ -201,4 +208,6 @@ def _outcome(plan: AnyPlan, future: Any, numbers: Sequence[int]) -> Iterator[Uni
 
 def _gone(error: Exception) -> str:
     reason = " ".join(f"{type(error).__name__}: {error}".split())
-    return f"the executor failed ({reason[:200]}); the rows so far are kept, --resume flies the rest"
+    return (
+        f"the executor failed ({reason[:200]}); the rows so far are kept, --resume flies the rest"
+    )

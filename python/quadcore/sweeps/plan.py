@@ -23,11 +23,9 @@ from ..simulation import whole
 from ..study.variation import OF_CONTROLLER, Variation, give_all, of_controller
 from ..warning import unheard
 from . import motion
-from .design import Design, Point
-from .spec import Call, Flight, Own, Spec, columns
-
-LARGEST = 1_000_000
-"""Rows of one sweep."""
+from .calls import Calls as Calls
+from .design import LARGEST, Design, Point
+from .spec import Flight, Own, columns
 
 _NAMED = ("world", "scenario")
 
@@ -120,7 +118,9 @@ class Plan:
         if spawn is not None:
             common["spawn"] = spawn
         self._plans = [FlightPlan.of(model, world, **common) for model in read]
-        self._makers = [[_maker(thing, plan.model.name) for plan in self._plans] for _, thing in things]
+        self._makers = [
+            [_maker(thing, plan.model.name) for plan in self._plans] for _, thing in things
+        ]
         self._own = [thing if entries.names_own(thing) else "" for _, thing in things]
         self._check()
 
@@ -131,7 +131,9 @@ class Plan:
     def apart(self) -> bool:
         """Whether flights call what others wrote, which may remember one when it flies another."""
         own = any(map(entries.is_own, self._things)) if self.is_guided else False
-        return own or not all(isinstance(one, (references.Shape, type(None))) for one in self._shapes)
+        return own or not all(
+            isinstance(one, (references.Shape, type(None))) for one in self._shapes
+        )
 
     def __len__(self) -> int:
         return math.prod(self._sizes)
@@ -183,15 +185,11 @@ class Plan:
         return {**flown, **told}
 
     def thing(self, controller: int) -> Any:
-        """What was given for a controller: a text, or an object."""
+        """Give what was named as a controller: a text, or an object."""
         return self._things[controller]
 
-    def spec(self, row: int) -> Spec:
+    def spec(self, row: int) -> Flight:
         """Describe a row; raises what making it raises."""
-        return self.flight(row)
-
-    def flight(self, row: int) -> Flight:
-        """Do as `spec` does."""
         controller, reference, engine, model, at, seed = self.place(row)
         point = self.design[at]
         plan = replace(
@@ -275,71 +273,8 @@ class Plan:
                     Guided(give_all(controller, values.items()), vehicle).reset(vehicle)
 
 
-class Calls:
-    """Rows that a function gives, in the place of a `Plan`.
-
-    Parameters
-    ----------
-    design
-        The points.
-    function
-        Called with a dictionary of a point's values, numbers where they are; returns a number, or a
-        mapping.
-    measures
-        Names of what it returns.
-    time_limit
-        Of the wall clock for one row, s.
-    """
-
-    def __init__(
-        self,
-        design: Design,
-        function: Callable[[Dict[str, Any]], Any],
-        measures: Sequence[str],
-        time_limit: float,
-    ) -> None:
-        if not callable(function):
-            raise InputError(f"function is {function!r}; give what is called with a point")
-        if not measures or len(set(measures)) < len(measures):
-            raise InputError(f"measures is {measures!r}; name what the function returns")
-        self.design, self.measures = design, list(measures)
-        self.units = dict.fromkeys(self.measures, "")
-        self.meanings = dict.fromkeys(self.measures, "what the function returned")
-        self._function, self._limit = function, time_limit
-        if len(design) > LARGEST:
-            raise InputError(f"these are {len(design)} points; at most {LARGEST} are swept")
-
-    at_once = 32
-    """Rows of a task."""
-    apart = False
-
-    def __len__(self) -> int:
-        return len(self.design)
-
-    @property
-    def names(self) -> List[str]:
-        """Of the first columns."""
-        return self.design.names
-
-    def cells(self, row: int) -> Dict[str, Any]:
-        """Tell a row's point."""
-        return dict(self.design[row])
-
-    def spec(self, row: int) -> Spec:
-        """Describe a row."""
-        return Call(row, self.cells(row), self._function, self.measures, self._limit)
-
-    def told(self) -> Dict[str, Any]:
-        """Say what is called."""
-        return {
-            "function": getattr(self._function, "__qualname__", repr(self._function)),
-            "axes": {name: len(set(self.design.values(name))) for name in self.names},
-            "design": self.design.kind if self.design.drawn else None,
-            "samples": self.design.samples,
-        }
-
-
 AnyPlan = Union[Plan, Calls]
+"""Says what the rows of a sweep are."""
 
 
 def _is_guided(controllers: Any, references_: Any, commands: Any) -> bool:

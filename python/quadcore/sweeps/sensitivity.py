@@ -1,8 +1,8 @@
 """What the measures of a sweep are sensitive to.
 
 Rank correlations (Spearman) tell of any design whether a measure grows with an axis. Sobol indices
-(Saltelli et al., Computer Physics Communications 181, 2010) tell of design "saltelli" which part of a
-measure's variance an axis brings about, alone (first) and with others (total).
+(Saltelli et al., Computer Physics Communications 181, 2010) tell of design "saltelli" which part of
+a measure's variance an axis brings about, alone (first) and with others (total).
 """
 
 from __future__ import annotations

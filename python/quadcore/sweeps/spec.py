@@ -7,7 +7,7 @@ import importlib.util
 import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Callable, Dict, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, Mapping, NamedTuple, Optional, Protocol, Sequence, Tuple
 
 from .. import laws
 from .._core import FlightError, InputError, QuadcoreError
@@ -38,7 +38,7 @@ class Own:
     def of(cls, text: str, values: Mapping[str, Any]) -> Own:
         """Look the module up, without running it."""
         given = tuple((name, value) for name, value in values.items() if value is not None)
-        return cls(text, given, _digest(_source(text.partition(":")[0])))
+        return cls(text, given, digest(source_of(text.partition(":")[0])))
 
     def make(self, vehicle: str) -> Any:
         """Bring it in; raises `InputError`."""
@@ -58,19 +58,13 @@ class Flight:
     limit: float
     """Of the wall clock, s."""
 
-    @property
-    def apart(self) -> bool:
-        """Whether what flies may remember it when it flies another."""
-        given = self.plan.controller
-        return self.own is not None or not (given is None or isinstance(given, laws.Law))
-
     def fingerprint(self) -> str:
         """Digest of all that it depends on; "" if nobody can tell."""
         try:
             known = self.plan.fingerprint()
         except InputError:  # a controller or a reference that is an object of one's own
             return ""
-        return known if self.own is None else _digest(f"{known} {self.own}".encode())
+        return known if self.own is None else digest(f"{known} {self.own}".encode())
 
     def measured(self) -> Measures:
         """Fly and measure it.
@@ -99,50 +93,18 @@ def columns(is_guided: bool) -> Sequence[str]:
     return list(of_guided.UNITS if is_guided else motion.UNITS)
 
 
-@dataclass(frozen=True)
-class Call:
-    """A row that a function gives."""
-
-    row: int
-    names: Mapping[str, Any]
-    function: Callable[[Dict[str, Any]], Any]
-    wanted: Sequence[str]
-    """Names of what it returns."""
-    limit: float
+class Spec(Protocol):
+    """One row, wherever it is flown."""
 
     @property
-    def apart(self) -> bool:
-        """Whether it must have a process of its own."""
-        return False
+    def row(self) -> int:
+        """Its number."""
 
     def fingerprint(self) -> str:
-        """Digest of its name, its module's text, and what it is called with."""
-        module = getattr(self.function, "__module__", "")
-        name = getattr(self.function, "__qualname__", type(self.function).__qualname__)
-        called = f"{module} {name} {dict(self.names)} {_digest(_source(module))}"
-        return _digest(called.encode())
+        """Digest of all that it depends on; "" if nobody can tell."""
 
     def measured(self) -> Measures:
-        """Call it.
-
-        Raises
-        ------
-        QuadcoreError
-            It raised something, or did not return the numbers that were told.
-        """
-        with time_limit(self.limit):
-            found = self.function({name: _number(value) for name, value in self.names.items()})
-        values = found if isinstance(found, Mapping) else {self.wanted[0]: found}
-        try:
-            return {name: float(values[name]) for name in self.wanted}
-        except (KeyError, TypeError, ValueError) as error:
-            raise QuadcoreError(
-                f"the function returned {found!r}; give a number, or a mapping of "
-                f"{', '.join(self.wanted)} to numbers"
-            ) from error
-
-
-Spec = Union[Flight, Call]
+        """Give what is measured; raises `QuadcoreError`."""
 
 
 class Row(NamedTuple):
@@ -171,18 +133,12 @@ def done(spec: Spec) -> Row:
     return Row(spec.row, " ".join(failure.split()), None, fingerprint)
 
 
-def _number(value: Any) -> Any:
-    try:
-        return float(value)
-    except ValueError:
-        return value
-
-
-def _digest(data: bytes) -> str:
+def digest(data: bytes) -> str:
+    """Hexadecimal SHA-256."""
     return hashlib.sha256(data).hexdigest()
 
 
-def _source(module: str) -> bytes:
+def source_of(module: str) -> bytes:
     """Text of a module, which is not imported; empty if nobody can tell."""
     loaded = sys.modules.get(module)
     origin = getattr(loaded, "__file__", None)

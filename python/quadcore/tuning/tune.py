@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, Optional, Sequence, Union
 
 from .. import laws
-from .._core import FlightError, InputError
+from .._core import FlightError
 from ..extras import needed
 from ..study import arguments
 from ..study.arguments import several
