@@ -10,7 +10,7 @@ from contextlib import contextmanager, suppress
 from typing import Any, Callable, Iterator
 
 from rich.console import Console
-from rich.progress import Progress
+from rich.progress import BarColumn, Progress, TimeRemainingColumn
 from rich.table import Table
 
 from ..warning import QuadcoreWarning
@@ -102,13 +102,25 @@ def progress(quiet: bool, what: str = "flying") -> Iterator[Callable[[int, int],
         yield None
         return
     started = time.monotonic()
-    with_bar = Progress(console=Console(stderr=True), transient=True)
-    task = with_bar.add_task(what)
+    columns = (
+        "{task.description}",
+        BarColumn(),
+        "{task.percentage:>3.0f}%",
+        TimeRemainingColumn(),
+        "{task.fields[rate]}",
+    )
+    with_bar = Progress(*columns, console=Console(stderr=True), transient=True)
+    task = with_bar.add_task(what, rate="")
+    first: int | None = None  # what was there before, of a sweep that goes on
 
     def report(done: int, total: int) -> None:
-        if time.monotonic() - started > _LONG:
+        nonlocal first
+        first = done if first is None else first
+        taken = time.monotonic() - started
+        if taken > _LONG:
             with_bar.start()
-        with_bar.update(task, completed=done, total=total)
+        rate = f"{(done - first) / taken:.3g}/s" if done > first else ""
+        with_bar.update(task, completed=done, total=total, rate=rate)
 
     try:
         yield report
