@@ -86,9 +86,35 @@ class Batch::Implementation {
       lanes_->show(block, end - first, work, rows + first * state_width());
       for (std::size_t i = first; i < end; ++i) {
         if (!is_apart_[i] || (members_[i].in_lanes && failures_[i].empty())) continue;
-        put(members_[i].apart->state(), rows + i * state_width());
+        batch::put(members_[i].apart->state(), rows + i * state_width());
       }
     });
+  }
+
+  void set_state(const double* rows) {
+    const auto rotors = static_cast<Eigen::Index>(common_.rotors());
+    std::vector<VehicleState> states;
+    for (std::size_t i = 0; i < size(); ++i) {
+      states.push_back(batch::taken(rows + i * state_width(), rotors));
+      batch::check(states.back(), i);
+    }
+    std::unique_ptr<Simulation> alike;  // of the vehicle before
+    for (std::size_t i = 0; i < size(); ++i) {
+      Member& member = members_[i];
+      failures_[i].clear();
+      steps_[i] = 0;
+      if (!member.in_lanes) {
+        go_apart(i).set_state(states[i]);
+        continue;
+      }
+      come_back(i);
+      if (!alike || !batch::are_built_alike(member.made_of, members_[i - 1].made_of)) {
+        alike = common_.simulate(member.made_of);
+      }
+      alike->set_state(states[i]);
+      lanes_->set_engine_state(i, alike->snapshot().engine);
+      lanes_->let_fly(i, true);
+    }
   }
 
   void reset(const bool* mask, const std::uint64_t* seeds) {
@@ -201,15 +227,6 @@ class Batch::Implementation {
     lanes_->let_tilt(i, !flown.warnings.empty());
   }
 
-  static void put(const VehicleState& state, double* row) {
-    row = std::copy_n(state.position.data(), 3, row);
-    row = std::copy_n(state.orientation.coeffs().data(), 4, row);
-    row = std::copy_n(state.linear_velocity.data(), 3, row);
-    row = std::copy_n(state.angular_velocity.data(), 3, row);
-    row = std::copy_n(state.rotor_velocity.data(), state.rotor_velocity.size(), row);
-    std::copy_n(state.rotor_angle.data(), state.rotor_angle.size(), row);
-  }
-
   const std::shared_ptr<const void> identity_ = std::make_shared<int>();
   batch::Common common_;
   unsigned threads_;
@@ -237,6 +254,7 @@ void Batch::step(const double* commands, std::int64_t count) {
   implementation_->step(commands, count);
 }
 void Batch::get_state(double* rows) const { implementation_->get_state(rows); }
+void Batch::set_state(const double* rows) { implementation_->set_state(rows); }
 double Batch::time(std::size_t vehicle) const { return implementation_->time(vehicle); }
 const std::vector<std::string>& Batch::failures() const { return implementation_->failures(); }
 const std::vector<std::string>& Batch::warnings(std::size_t vehicle) const {

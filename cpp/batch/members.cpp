@@ -4,14 +4,11 @@
 #include <cmath>
 #include <sstream>
 
+#include "flight_checks.hpp"
 #include "quadcore/error.hpp"
 
 namespace quadcore::batch {
 namespace {
-
-bool are_built_alike(const BatchVehicle& a, const BatchVehicle& b) {
-  return a.model == b.model && a.parameters == b.parameters;
-}
 
 VehicleState at_rest(const Pose& spawn, std::size_t rotors) {
   VehicleState state;
@@ -22,6 +19,38 @@ VehicleState at_rest(const Pose& spawn, std::size_t rotors) {
 }
 
 }  // namespace
+
+bool are_built_alike(const BatchVehicle& a, const BatchVehicle& b) {
+  return a.model == b.model && a.parameters == b.parameters;
+}
+
+void put(const VehicleState& state, double* row) {
+  row = std::copy_n(state.position.data(), 3, row);
+  row = std::copy_n(state.orientation.coeffs().data(), 4, row);
+  row = std::copy_n(state.linear_velocity.data(), 3, row);
+  row = std::copy_n(state.angular_velocity.data(), 3, row);
+  row = std::copy_n(state.rotor_velocity.data(), state.rotor_velocity.size(), row);
+  std::copy_n(state.rotor_angle.data(), state.rotor_angle.size(), row);
+}
+
+VehicleState taken(const double* row, Eigen::Index rotors) {
+  VehicleState state;
+  state.position = Eigen::Map<const Vector3d>(row);
+  state.orientation.coeffs() = Eigen::Map<const Eigen::Vector4d>(row + 3);
+  state.linear_velocity = Eigen::Map<const Vector3d>(row + 7);
+  state.angular_velocity = Eigen::Map<const Vector3d>(row + 10);
+  state.rotor_velocity = Eigen::Map<const VectorXd>(row + 13, rotors);
+  state.rotor_angle = Eigen::Map<const VectorXd>(row + 13 + rotors, rotors);
+  return state;
+}
+
+void check(const VehicleState& state, std::size_t vehicle) {
+  try {
+    check_state(state, state.rotor_velocity.size());
+  } catch (const InputError& error) {
+    throw InputError("vehicle " + std::to_string(vehicle) + ": " + error.what());
+  }
+}
 
 void Member::hear(const std::vector<std::string>& said) {
   const auto what = [](const std::string& warning) { return warning.substr(warning.find(':')); };

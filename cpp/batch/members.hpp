@@ -46,6 +46,14 @@ class Common {
   std::string refused_;  ///< why there can be no commands; "" if there can
 };
 
+bool are_built_alike(const BatchVehicle& a, const BatchVehicle& b);
+
+/// To and from a row as Batch::get_state() has it.
+void put(const VehicleState& state, double* row);
+VehicleState taken(const double* row, Eigen::Index rotors);
+/// Throws InputError unless a vehicle can be in this state.
+void check(const VehicleState& state, std::size_t vehicle);
+
 /// Members, and of each its kind in the lanes, null for one that is not in them.
 struct Crew {
   std::vector<Member> members;

@@ -99,6 +99,11 @@ void write_state(GuardedBatch& self, py::array_t<double, py::array::c_style>& ro
   without_gil([&] { self.batch.get_state(to); });
 }
 
+void take_state(GuardedBatch& self, const Numbers& rows) {
+  const BatchLock lock(self);
+  without_gil([&] { self.batch.set_state(rows.data()); });
+}
+
 template <class Get>
 auto of_each(const GuardedBatch& self, const Get& get) {
   py::array_t<decltype(get(std::size_t{0}))> values(static_cast<py::ssize_t>(self.batch.size()));
@@ -116,6 +121,7 @@ void bind_batch(py::module_& m) {
            py::arg("threads"))
       .def("step", &step, py::arg("commands"), py::arg("steps"))
       .def("_write_state", &write_state, py::arg("rows"))
+      .def("_take_state", &take_state, py::arg("rows"))
       .def(
           "reset",
           [](GuardedBatch& self, const Flags& mask, const std::optional<Seeds>& seeds) {

@@ -40,6 +40,7 @@ from .warning import QuadcoreWarning
 if TYPE_CHECKING:
     from .comparison.compare import Comparison, compare
     from .evaluation.evaluate import Evaluation, evaluate
+    from .fitting.fit import Fit, fit
     from .flight_plan import FlightPlan
     from .sweeps.sweep import Sweep, sweep
     from .tuning.tune import tune
@@ -53,6 +54,7 @@ __all__ = [
     "Comparison",
     "Controller",
     "Evaluation",
+    "Fit",
     "FlightError",
     "FlightPlan",
     "InnerLoop",
@@ -73,6 +75,7 @@ __all__ = [
     "compare",
     "engines",
     "evaluate",
+    "fit",
     "laws",
     "load_plugin_path",
     "plugin_folders",
@@ -86,10 +89,12 @@ __all__ = [
 _STUDIES = {
     "Comparison": "comparison.compare",
     "Evaluation": "evaluation.evaluate",
+    "Fit": "fitting.fit",
     "FlightPlan": "flight_plan",
     "Sweep": "sweeps.sweep",
     "compare": "comparison.compare",
     "evaluate": "evaluation.evaluate",
+    "fit": "fitting.fit",
     "sweep": "sweeps.sweep",
     "tune": "tuning.tune",
 }

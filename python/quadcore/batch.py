@@ -177,6 +177,27 @@ class BatchSimulation(_core.Batch):
         self._write_state(out)
         return out
 
+    def set_state(self, rows: npt.ArrayLike) -> None:
+        """Take all vehicles to other states, at time 0; flights that failed go on.
+
+        Parameters
+        ----------
+        rows : array_like (n, 13 + 2 rotors)
+            As `read_state` has them; commands stay as they were.
+
+        Raises
+        ------
+        InputError
+            Another shape, a number that is not finite, or a quaternion that is none; nothing has
+            changed then.
+        """
+        given = np.ascontiguousarray(rows, dtype=float)
+        if given.shape != (self.n, self.state_width):
+            raise InputError(
+                f"states are an array of shape {given.shape}; give {(self.n, self.state_width)}"
+            )
+        self._take_state(given)
+
     def step(self, commands: Optional[npt.ArrayLike] = None, steps: int = 1) -> None:
         """Advance all vehicles that have not failed.
 

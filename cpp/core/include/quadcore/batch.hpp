@@ -54,6 +54,10 @@ class Batch {
   /// Writes a row for each vehicle: p_WF [m], the quaternion of F in W (x, y, z, w), v_WF_W [m/s],
   /// w_WF_F [rad/s], then all joint rates [rad/s], then all joint angles [rad].
   void get_state(double* rows) const;
+  /// Takes all vehicles to such states at time 0, as Simulation::set_state() does one; a flight
+  /// that failed goes on. Commands stay. Throws InputError, nothing changed, on a number that is
+  /// not finite or a quaternion that is none.
+  void set_state(const double* rows);
   double time(std::size_t vehicle) const;  ///< s
   /// Why each flight ended; "" while it goes on. One that ended stays where it did.
   const std::vector<std::string>& failures() const;

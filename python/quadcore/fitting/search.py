@@ -1,0 +1,61 @@
+"""The search for the parameters that leave least over."""
+
+from __future__ import annotations
+
+from typing import Any, Callable, Optional
+
+import numpy as np
+
+from .problem import Problem, bounds_of
+
+_ROUNDS = 12
+"""In each, parameters are sought from given starts and noise, and these are corrected then."""
+
+_STILL = 1e-3
+"""Change of a round, of what the noise leaves open, with which the search ends."""
+
+Progress = Callable[[int, int], None]
+
+
+def search(
+    problem: Problem, rounds: int = _ROUNDS, progress: Optional[Progress] = None
+) -> np.ndarray:
+    """Find the parameters; starts and noise of the problem are those that go with them.
+
+    Parameters
+    ----------
+    problem
+        What is free.
+    rounds
+        At most.
+    progress
+        Called as progress(rounds done, at most).
+    """
+    from scipy.optimize import least_squares
+
+    values = np.array([p.start for p in problem.parameters])
+    sizes = np.array([p.size for p in problem.parameters])
+    for done in range(rounds):
+        if done:  # first with the starts as measured: far from the parameters others mislead
+            problem.look(values)
+        else:
+            problem.learn_noise(values)
+        found: Any = least_squares(
+            problem.left,
+            values,
+            problem.derivative,
+            bounds=bounds_of(problem.parameters),
+            x_scale=sizes,
+            xtol=1e-9,
+            max_nfev=8,
+        )
+        if done:
+            problem.correct(found.x)
+        problem.learn_noise(found.x)
+        moved = np.linalg.norm(found.jac @ (found.x - values)) if done > 1 else np.inf
+        values = found.x
+        if progress is not None:
+            progress(done + 1, rounds)
+        if moved < _STILL:
+            break
+    return values
