@@ -135,6 +135,7 @@ def test_the_reference_is_what_the_generator_writes():
         ("README.md", "flight.csv"),
         ("docs/python.md", "flight.csv"),
         ("docs/play.md", "climb.html"),
+        ("docs/fit.md", "fitted.urdf"),
         ("docs/sweep.md", "sweep/table.csv"),
         ("docs/tune.md", "pd.yaml"),
     ],

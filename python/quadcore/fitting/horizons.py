@@ -10,6 +10,7 @@ from .._core import InputError
 from ..batch import BatchSimulation, BatchState
 from .record import CHANNELS, Record
 
+_FEW = 1024  # vehicles that one thread steps as fast as several
 _SETTLED = 40
 """Steps that hinges of ODE take to give way as they do under load, which a state does not tell."""
 
@@ -94,7 +95,7 @@ class Horizons:
         """Steps by which what was measured lags behind the commands."""
 
     def channel_of_each(self) -> np.ndarray:
-        """Number the channels, for each number that is compared."""
+        """Give the number of the channel of each number that is compared."""
         one = np.repeat(np.arange(len(self.sizes)), self.sizes)
         return np.tile(one, self.width // len(one))
 
@@ -117,7 +118,8 @@ class Horizons:
         given: Dict[str, Any] = dict(self._fixed)
         for name in parameters[0]:
             given[name] = np.repeat([each[name] for each in parameters], self.count)
-        batch = BatchSimulation(n=n, parameters=given, dt=self._dt, **self._make)
+        threads = 1 if n < _FEW else None
+        batch = BatchSimulation(n=n, parameters=given, dt=self._dt, threads=threads, **self._make)
         batch.set_state(self._states(starts.reshape(n, self.corrections), groups))
         found = np.empty((self.width // sum(self.sizes), n, sum(self.sizes)))
         begin, offsets = np.tile(self._begin, groups), np.tile(self._offsets, (groups, 1))
@@ -165,7 +167,8 @@ class Horizons:
 
     def _command_at(self, steps: np.ndarray) -> np.ndarray:
         row = np.searchsorted(self._command_steps, steps - self.shift, "right") - 1
-        return self._commands[np.maximum(row, 0)]
+        commands: np.ndarray = self._commands[np.maximum(row, 0)]
+        return commands
 
     def _states(self, corrections: np.ndarray, groups: int) -> np.ndarray:
         r, rows = self._record, np.tile(self._first, groups)
@@ -185,7 +188,7 @@ class Horizons:
     def _compared(self, state: BatchState, rows: np.ndarray) -> np.ndarray:
         """Flown less measured, of rows that may be a little off the grid of steps."""
         r, late = self._record, self._late[rows, None]
-        parts = {
+        parts: Dict[str, Callable[[], np.ndarray]] = {
             "position": lambda: state.position + late * state.linear_velocity - r.position[rows],
             "attitude": lambda: _between(
                 r.orientation[rows], _turned(state.orientation, late * state.angular_velocity)

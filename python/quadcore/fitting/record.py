@@ -83,7 +83,7 @@ def read(
     else:
         table = None
     if sensed is None:
-        parts = (
+        parts: Tuple[np.ndarray, ...] = (
             flown.position,
             flown.orientation,
             flown.linear_velocity,
@@ -91,7 +91,10 @@ def read(
         )
     else:
         parts = _sensed(flown, where, sensed)
-    return Record(flown.time.copy(), *parts, flown.rotor_velocity, table)
+    position, orientation, velocity, rates = parts
+    return Record(
+        flown.time.copy(), position, orientation, velocity, rates, flown.rotor_velocity, table
+    )
 
 
 def _sensed(log: Log, where: str, topic: str) -> Tuple[np.ndarray, ...]:

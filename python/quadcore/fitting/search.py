@@ -11,7 +11,9 @@ from .problem import Problem, bounds_of
 _ROUNDS = 12
 """In each, parameters are sought from given starts and noise, and these are corrected then."""
 
-_STILL = 1e-3
+_TRIALS, _LATER = 12, 3  # in the first round, from far; in others
+
+_STILL = 0.03
 """Change of a round, of what the noise leaves open, with which the search ends."""
 
 Progress = Callable[[int, int], None]
@@ -47,7 +49,7 @@ def search(
             bounds=bounds_of(problem.parameters),
             x_scale=sizes,
             xtol=1e-9,
-            max_nfev=8,
+            max_nfev=_TRIALS if done == 0 else _LATER,
         )
         if done:
             problem.correct(found.x)
