@@ -71,6 +71,32 @@ def test_commands_fly_open_loop_and_their_motion_is_measured(tmp_path):
     assert found.columns["largest_tilt"][1] == pytest.approx(np.arccos(z).max(), rel=1e-6)
 
 
+def test_rows_that_fly_together_are_what_they_are_alone(tmp_path, monkeypatch):
+    """One of them spins up until its flight fails; others land."""
+    commands = tmp_path / "c.csv"
+    commands.write_text("t,w1,w2,w3,w4\n0.0125,480,-480,480,-480\n0.2,300,-300,300,-301\n")
+
+    def fly():
+        return qc.sweep(
+            commands=commands,
+            vary={"frame.mass": "uniform:0.9:1.3", "motorpid_plugin.kp": [5e-4, 9.0]},
+            samples=10,
+            xacro_args={"sim_slow": 1},
+            world="default",
+            spawn=(0, 0, 0.3),
+            duration=1.0,
+            log_every=7,
+            processes=1,
+        )
+
+    together = fly()
+    monkeypatch.setattr("quadcore.sweeps.places.fly_together", lambda specs: None)
+    alone = fly()
+    for name, column in together.columns.items():
+        np.testing.assert_array_equal(column, alone.columns[name])
+    assert (together.columns["failure"] != "").sum() == 10
+
+
 def test_axes_are_lists_ranges_distributions_and_rows_of_a_file(tmp_path):
     points = tmp_path / "points.csv"
     points.write_text("frame.ixx,frame.iyy\n0.1,0.2\n0.3,0.4\n")

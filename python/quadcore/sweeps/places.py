@@ -9,6 +9,7 @@ from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Sequ
 from .. import interrupts
 from .._core import QuadcoreError
 from ..study.executor import Died, each
+from .batches import fly_together
 from .plan import AnyPlan
 from .rows import fingerprint
 from .spec import Row, Spec, done
@@ -60,7 +61,7 @@ class _Attempt:
         each(self._flown, self._noted(tasks), self._took, processes, apart=self._plan.apart)
 
     def _flown(self, numbers: Sequence[int]) -> List[Row]:
-        return [_done(_spec(self._plan, number)) for number in numbers]
+        return _all_done([_spec(self._plan, number) for number in numbers])
 
     def _noted(self, tasks: Iterable[Sequence[int]]) -> Iterator[Sequence[int]]:
         for index, numbers in enumerate(tasks):
@@ -156,6 +157,15 @@ def fly_all(specs: Sequence[Union[Spec, Row]], apart: bool) -> List[Row]:
 
         each(_done, specs, took, 1, apart=True)
         return flown
+    return _all_done(specs)
+
+
+def _all_done(specs: Sequence[Union[Spec, Row]]) -> List[Row]:
+    """Fly rows together if they can be, or else one by one."""
+    if len(specs) > 1:
+        together = fly_together([spec for spec in specs if not isinstance(spec, Row)])
+        if together is not None and len(together) == len(specs):
+            return together
     return [_done(spec) for spec in specs]
 
 

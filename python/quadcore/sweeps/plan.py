@@ -23,11 +23,14 @@ from ..simulation import whole
 from ..study.variation import OF_CONTROLLER, Variation, give_all, of_controller
 from ..warning import unheard
 from . import motion
+from .batches import ENGINE
 from .calls import Calls as Calls
 from .design import LARGEST, Design, Point
 from .spec import Flight, Own, columns
 
 _NAMED = ("world", "scenario")
+
+_TOGETHER = 32  # rows: four times as many as share an instruction, and few to lose
 
 
 class Plan:
@@ -124,8 +127,10 @@ class Plan:
         self._own = [thing if entries.names_own(thing) else "" for _, thing in things]
         self._check()
 
-    at_once = 1
-    """Rows of a task."""
+    @property
+    def at_once(self) -> int:
+        """Rows of a task: several where they can fly on one batch."""
+        return 1 if self.is_guided or self.engines != [ENGINE] else _TOGETHER
 
     @property
     def apart(self) -> bool:
