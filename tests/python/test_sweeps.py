@@ -252,6 +252,28 @@ def test_drawn_axes_may_be_any_distribution_with_quantiles():
     assert 0.9 < found.columns["frame.mass"].min() < found.columns["frame.mass"].max() < 1.1
 
 
+def test_the_description_in_the_docs_flies(in_empty_folder):
+    page = Path(__file__).resolve().parents[2] / "docs" / "sweep.md"
+    text = page.read_text().split("```yaml\n")[1].split("```")[0]
+    Path("mass.yaml").write_text(text)
+    done = ran("sweep", "mass.yaml", "--samples=3", "--duration=0.1", "--no-plots", "--out=out")
+    assert done.returncode == 0, done.stderr
+    assert len(rows("out")) == 2 * 2 * 3
+
+
+def test_pandas_reads_what_is_written(tmp_path):
+    pandas = pytest.importorskip("pandas")
+    found = sweep(samples=4, out=tmp_path, parquet=True)
+    frames = [
+        pandas.DataFrame(found.columns),
+        pandas.read_csv(tmp_path / "table.csv"),
+        pandas.read_parquet(tmp_path / "table.parquet"),
+    ]
+    for frame in frames:
+        assert frame["rms_position"].tolist() == found.columns["rms_position"].tolist()
+        assert frame["row"].tolist() == [0, 1, 2, 3]
+
+
 def test_one_sample_set_serves_every_law():
     found = qc.sweep(["pd", "geometric"], "hover", MASS, samples=3, duration=0.1)
     masses = found.columns["frame.mass"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from contextlib import contextmanager
 from typing import Any, Callable, Iterator, Tuple
 
@@ -61,6 +60,8 @@ def _of(make: Any, address: str) -> Iterator[Tuple[Any, Callable[[], None]]]:
 @contextmanager
 def _quiet() -> Iterator[None]:
     """Let what the client says of a lost scheduler be told once, by us."""
+    import logging
+
     known = logging.root.manager.loggerDict
     names = [name for name in known if name.partition(".")[0] in ("distributed", "tornado")]
     loggers = [logging.getLogger(name) for name in names]

@@ -2,9 +2,19 @@
 
 from __future__ import annotations
 
-import concurrent.futures
 import queue
-from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Union
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Callable,
+    Dict,
+    Iterable,
+    Iterator,
+    List,
+    Optional,
+    Sequence,
+    Union,
+)
 
 from .. import interrupts
 from .._core import QuadcoreError
@@ -14,13 +24,16 @@ from .plan import AnyPlan
 from .rows import fingerprint
 from .spec import Row, Spec, done
 
+if TYPE_CHECKING:
+    import concurrent.futures
+
 Take = Callable[[Row], None]
 
 _ATTEMPTS = 3
 """Of a row whose process was killed: by the system, perhaps, for want of memory."""
 
-_AHEAD = 64
-"""Tasks that are handed out before the first of them is done, besides those under way."""
+_AHEAD = 1024
+"""Tasks that are handed out at a time: enough for many workers, and few to hold, 25 kB each."""
 
 _LOOK = 1.0  # s; between two looks at whether an executor still lives
 

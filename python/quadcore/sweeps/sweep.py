@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
-import concurrent.futures
 import tempfile
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Union
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Callable,
+    Dict,
+    List,
+    Mapping,
+    NamedTuple,
+    Optional,
+    Sequence,
+    Union,
+)
 
 import numpy as np
 
@@ -22,6 +32,9 @@ from .plan import AnyPlan, Calls, Plan
 from .rows import Rows, table, write_parquet
 from .sensitivity import sensitivities
 from .spec import Row
+
+if TYPE_CHECKING:
+    import concurrent.futures
 
 Progress = Callable[[int, int], None]
 
