@@ -124,8 +124,9 @@ class Appended:
         self._path = path
         try:
             self._stream = path.open("r+b" if keep else "wb", buffering=0)
-            self._stream.truncate(keep)
-            self._stream.seek(keep)
+            if keep:
+                self._stream.truncate(keep)
+                self._stream.seek(keep)
         except OSError as error:
             raise unwritable(path, error) from error
 
