@@ -76,6 +76,20 @@ def test_nothing_is_flown_twice():
     assert len(Path("calls").read_text().split()) == 37
 
 
+def test_rows_that_cannot_be_flown_are_gone_on_with_too():
+    masses = [f"{1 + 0.01 * i:.2f}" for i in range(20)]
+    masses[10] = "heavy"  # between the first and the last, which are tried before anything flies
+    options = {"vary": {"frame.mass": masses}, "samples": None, "duration": 0.05, "out": "out"}
+    found = sweep(**options)
+    assert "'heavy' is not a finite number" in found.columns["failure"][10]
+    assert (found.columns["failure"] != "").sum() == 1
+    table = Path("out/table.csv")
+    whole = table.read_bytes()
+    table.write_bytes(b"".join(whole.splitlines(keepends=True)[:15]))
+    sweep(resume=True, **options)
+    assert table.read_bytes() == whole
+
+
 def test_rows_that_are_there_are_not_overwritten_unasked():
     sweep(out="out")
     before = lines("out")

@@ -22,7 +22,7 @@ from ..study.executor import Died, each
 from .batches import fly_together
 from .plan import AnyPlan
 from .rows import fingerprint
-from .spec import Row, Spec, done
+from .spec import Row, Spec, digest, done
 
 if TYPE_CHECKING:
     import concurrent.futures
@@ -195,7 +195,7 @@ def _spec(plan: AnyPlan, number: int) -> Union[Spec, Row]:
     try:
         return plan.spec(number)
     except QuadcoreError as error:
-        return Row(number, str(error), None, "")
+        return Row(number, str(error), None, digest(str(error).encode()))
 
 
 def _several(rows: Iterable[int], count: int) -> Iterator[Sequence[int]]:

@@ -16,7 +16,7 @@ import numpy as np
 from .._core import InputError, QuadcoreError, parse_number
 from ..files import Appended, atomic_write, cell, check_writable, text_bytes, unwritable
 from .plan import AnyPlan
-from .spec import Row
+from .spec import Row, digest
 
 _PATIENCE = 10.0  # s; for one that was killed a moment ago and has not let go yet
 _WHOLE = ("row", "seed")
@@ -187,11 +187,11 @@ class Rows:
 
 
 def fingerprint(plan: AnyPlan, row: int) -> str:
-    """Digest of what a row depends on; "" if it cannot be flown or told."""
+    """Digest of what a row depends on; "" if nobody can tell, and of why if it cannot be flown."""
     try:
         return plan.spec(row).fingerprint()
-    except QuadcoreError:
-        return ""
+    except QuadcoreError as error:
+        return digest(str(error).encode())
 
 
 def table(rows: Rows) -> Dict[str, np.ndarray]:
