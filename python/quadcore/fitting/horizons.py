@@ -121,30 +121,26 @@ class Horizons:
         threads = 1 if n < _FEW else None
         batch = BatchSimulation(n=n, parameters=given, dt=self._dt, threads=threads, **self._make)
         batch.set_state(self._states(starts.reshape(n, self.corrections), groups))
-        found = np.empty((self.width // sum(self.sizes), n, sum(self.sizes)))
-        begin, offsets = np.tile(self._begin, groups), np.tile(self._offsets, (groups, 1))
-        rows = np.tile(np.array(self._rows), (groups, 1))
-        taken = np.zeros(n, dtype=int)
-        flown, state = 0, np.empty((n, batch.state_width))
-        end = int(self._offsets.max())
-        changes = self._changes(end)
-        stops = sorted(set(np.unique(self._offsets).tolist()) | set(changes))
-        for stop in stops:
+        rows = np.array(self._rows)
+        state = np.empty((n, batch.state_width))
+        states = np.empty((groups, *rows.shape, batch.state_width))
+        begin, flown = np.tile(self._begin, groups), 0
+        changes = self._changes(int(self._offsets.max()))
+        for stop in sorted({*np.unique(self._offsets).tolist(), *changes}):
             if flown in changes:
                 batch.step(self._command_at(begin + flown), 0)
             batch.step(None, stop - flown)
             flown = stop
-            due = np.flatnonzero(
-                (taken < offsets.shape[1])
-                & (offsets[np.arange(n), np.minimum(taken, offsets.shape[1] - 1)] == stop)
-            )
-            if len(due):
+            piece, row = np.nonzero(self._offsets == stop)
+            if len(piece):
                 batch.read_state(state)
-                compared = self._compared(BatchState.of(state[due]), rows[due, taken[due]])
-                found[taken[due], due] = compared
-                taken[due] += 1
-        found[:, batch.failed] = np.nan
-        return found.transpose(1, 0, 2).reshape(groups, self.count, self.width)
+                states[:, piece, row] = state.reshape(groups, self.count, -1)[:, piece]
+        compared = self._compared(
+            BatchState.of(states.reshape(-1, batch.state_width)), np.tile(rows.ravel(), groups)
+        )
+        compared = compared.reshape(n, self.width)
+        compared[batch.failed] = np.nan
+        return compared.reshape(groups, self.count, self.width)
 
     def _starts(self, steps: np.ndarray, length: int) -> List[Any]:
         """Rows in which pieces begin and end."""
