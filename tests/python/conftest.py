@@ -57,6 +57,14 @@ def hangar(tmp_path):
     return Hangar(tmp_path)
 
 
+@pytest.fixture
+def fitted(tmp_path):
+    """Maker of fireflies that carry more; see fitted.firefly_with."""
+    from fitted import firefly_with
+
+    return lambda *parts, **options: firefly_with(tmp_path, *parts, **options)
+
+
 @pytest.fixture(scope="session")
 def thesis():
     """The thesis' quadrotor as its mathematical model needs it."""
