@@ -64,6 +64,8 @@ PluginDescriptor describe() {
                   "quadcore's own: where pose and velocity of the frame are published without "
                   "error, the linear velocity along the world's axes, for quadcore's laws; nowhere "
                   "if the model has a libodometry_plugin.so"),
+          T::flag("publishTf", "true",
+                  "quadcore's own: whether a ROS node sends tf of the frame with that topic"),
           idle("jointStatePubTopic", "a ROS node publishes joint_states by itself"),
           idle("linkName", "every continuous joint of the model is told"),
           idle("frameId", "speeds have no frame"),
