@@ -206,6 +206,21 @@ def test_values_are_written_where_they_stand_and_added_where_they_do_not():
     )
 
 
+def test_an_interrupted_fit_has_the_best_so_far(flown):
+    log, commands = flown
+
+    def interrupt(done, _):
+        if done == 2:
+            raise KeyboardInterrupt
+
+    name = "drone_plugin.rotorThrustCoeff"
+    with pytest.raises(KeyboardInterrupt) as stop:
+        fit(log, (name,), commands=commands, progress=interrupt)
+    simulation = qc.Simulation(stop.value.model)
+    tags = {tag.name: tag.value for tag in simulation.plugins[0].parameters}
+    assert float(tags["rotorThrustCoeff"]) == pytest.approx(TRUE[name], rel=0.01)
+
+
 def test_the_command_writes_the_model_and_tells_what_is_known(flown, in_empty_folder):
     log, commands = flown
     log.to_csv("log.csv")

@@ -11,6 +11,7 @@ from .._core import InputError, engines, parse_number
 from ..files import atomic_write, check_writable, text_bytes
 from ..fitting.record import CHANNELS
 from . import options, terminal, values
+from .kept import kept
 
 if TYPE_CHECKING:
     from ..fitting.fit import Fit
@@ -81,7 +82,14 @@ def fit(arguments: argparse.Namespace) -> None:
         raise InputError(f"{out}: name a file that ends in .urdf, which it would hold")
     check_writable(out)
     shared = options.model_arguments(arguments)
-    with terminal.progress(arguments.quiet, "fitting") as progress:
+
+    def put(model: Any) -> None:
+        with atomic_write(out) as stream:
+            stream.write(text_bytes(model.document.text))
+
+    with kept("model", out, put, "the best so far"), terminal.progress(
+        arguments.quiet, "fitting"
+    ) as progress:
         found = search(
             shared.pop("model"),
             arguments.log,
@@ -98,8 +106,7 @@ def fit(arguments: argparse.Namespace) -> None:
             progress=progress,
             **shared,
         )
-    with atomic_write(out) as stream:
-        stream.write(text_bytes(found.model.document.text))
+    put(found.model)
     if not arguments.quiet:
         _show(found, out)
 

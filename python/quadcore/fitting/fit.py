@@ -129,6 +129,8 @@ def fit(
         Something is at fault; nothing was fitted.
     FlightError
         Flights from measured states fail.
+    KeyboardInterrupt
+        Its attribute `model` has the values of the last round.
     """
     arguments, given = without_xacro(parameters or {}, xacro_args)
     read, read_world = read_both(model, world, arguments, ignore)
@@ -156,7 +158,12 @@ def fit(
     with unheard():
         train = problem(False)
         train.horizons.shift = _best_shift(train, round(shift / simulation.dt))
-        found = search(train, progress=progress)
+        try:
+            found = search(train, progress=progress)
+        except KeyboardInterrupt as stop:
+            best = dict(zip([p.name for p in wanted], stop.values.tolist()))  # type: ignore[attr-defined]
+            stop.model = with_values(read, best)  # type: ignore[attr-defined]
+            raise
         return _told(train, problem, found, read, simulation.dt)
 
 

@@ -110,7 +110,8 @@ class Problem:
     def _orient(self) -> None:
         weighted = self._by_starts / self._weights[None, :, None]
         size = np.linalg.norm(weighted, axis=1, keepdims=True)
-        self._along = np.linalg.qr(weighted / np.where(size > 0, size, 1))[0]
+        unit = weighted / np.where(size > 0, size, 1)
+        self._along = np.stack([np.linalg.qr(each)[0] for each in unit])
 
     @property
     def _weights(self) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, Optional
+from typing import Any, Callable, Optional, Tuple
 
 import numpy as np
 
@@ -32,32 +32,45 @@ def search(
         At most.
     progress
         Called as progress(rounds done, at most).
+
+    Raises
+    ------
+    KeyboardInterrupt
+        Its attribute `values` has what the last round ended with.
     """
+    values = np.array([p.start for p in problem.parameters])
+    try:
+        for done in range(rounds):
+            values, is_still = _round(problem, values, done)
+            if progress is not None:
+                progress(done + 1, rounds)
+            if is_still:
+                break
+    except KeyboardInterrupt as stop:
+        stop.values = values  # type: ignore[attr-defined]
+        raise
+    return values
+
+
+def _round(problem: Problem, values: np.ndarray, done: int) -> Tuple[np.ndarray, bool]:
+    """Seek once more, and tell whether that still moved anything."""
     from scipy.optimize import least_squares
 
-    values = np.array([p.start for p in problem.parameters])
-    sizes = np.array([p.size for p in problem.parameters])
-    for done in range(rounds):
-        if done:  # first with the starts as measured: far from the parameters others mislead
-            problem.look(values)
-        else:
-            problem.learn_noise(values)
-        found: Any = least_squares(
-            problem.left,
-            values,
-            problem.derivative,
-            bounds=bounds_of(problem.parameters),
-            x_scale=sizes,
-            xtol=1e-9,
-            max_nfev=_TRIALS if done == 0 else _LATER,
-        )
-        if done:
-            problem.correct(found.x)
-        problem.learn_noise(found.x)
-        moved = np.linalg.norm(found.jac @ (found.x - values)) if done > 1 else np.inf
-        values = found.x
-        if progress is not None:
-            progress(done + 1, rounds)
-        if moved < _STILL:
-            break
-    return values
+    if done:  # first with the starts as measured: far from the parameters others mislead
+        problem.look(values)
+    else:
+        problem.learn_noise(values)
+    found: Any = least_squares(
+        problem.left,
+        values,
+        problem.derivative,
+        bounds=bounds_of(problem.parameters),
+        x_scale=np.array([p.size for p in problem.parameters]),
+        xtol=1e-9,
+        max_nfev=_LATER if done else _TRIALS,
+    )
+    if done:
+        problem.correct(found.x)
+    problem.learn_noise(found.x)
+    moved = np.linalg.norm(found.jac @ (found.x - values))
+    return found.x, bool(done > 1 and moved < _STILL)
