@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from ..sweeps.plan import Plan
 
 
+_UNTOLD = ("measure", "first_interval", "total_interval")
+
+
 def register(commands: Any) -> None:
     """Add the command to the command line."""
     parser = options.subparser(
@@ -181,11 +184,10 @@ def _show(plan: Plan, columns: Any, measure: str, files: list[Path]) -> None:
         console.print(table, "")
     found = [row for row in sensitivities(plan, columns) if row["measure"] == measure]
     if found:
-        table = terminal.table("axis", "rank", "first", "total", numbers=True)
+        shown = [name for name in found[0] if name not in _UNTOLD]
+        table = terminal.table(*shown, numbers=True)
         for row in found:
-            table.add_row(
-                row["axis"], *(number_text(row[key]) for key in ("rank", "first", "total"))
-            )
+            table.add_row(*(_cell(row[name], number_text) for name in shown))
         console.print(table, "")
     console.print(told(plan, columns))
     for file in files:

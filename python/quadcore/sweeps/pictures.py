@@ -50,7 +50,8 @@ def draw(
     if not parts:
         return {}
     label = f"{measure} ({plan.units[measure]})" if plan.units[measure] else measure
-    figures: Dict[str, Figure] = {"measure": _spread(parts, columns[measure], label)}
+    rows = {_label(names, [other for other, _ in found]): len(at) for names, at in found}
+    figures: Dict[str, Figure] = {"measure": _spread(parts, rows, columns[measure], label)}
     axes = axes_of_numbers(plan, columns)[:_AXES]
     told = [row for row in sensitivities if row["measure"] == measure and row["axis"] in axes]
     if told:
@@ -75,12 +76,13 @@ def _scaled(values: np.ndarray) -> np.ndarray:
     return np.log(values) if is_wide else values
 
 
-def _spread(parts: Parts, values: np.ndarray, label: str) -> Figure:
+def _spread(parts: Parts, rows: Mapping[str, int], values: np.ndarray, label: str) -> Figure:
+    """Draw shares of all rows; one that failed stays below nothing."""
     figure, grid = panels("Which share of the rows stays below", 1, height=2.8, above=0.7)
     axes = grid[0, 0]
     for i, (named, chosen) in enumerate(parts):
         found = np.sort(values[chosen])
-        share = np.arange(1, 1 + len(found)) / len(found)
+        share = np.arange(1, 1 + len(found)) / rows[named]
         axes.step(found, share, where="post", label=named, color=PALETTE[i])
     if values[np.concatenate([chosen for _, chosen in parts])].min() > 0:
         axes.set_xscale("log")
@@ -179,6 +181,8 @@ def _quadratic(
 ) -> Optional[np.ndarray]:
     """Least squares over the unit square; None if the rows are too few."""
     terms = _terms(*axes)
+    if len(terms) < 3 * terms.shape[1]:
+        return None
     found, _, rank, _ = np.linalg.lstsq(terms, values, rcond=None)
     if rank < terms.shape[1]:
         return None
