@@ -8,7 +8,7 @@ import shutil
 import stat
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, Iterable, Iterator, Optional, Union
+from typing import IO, Iterable, Iterator, Optional, Tuple, Union
 
 from . import interrupts
 from ._core import InputError
@@ -110,9 +110,9 @@ class Appended:
     Parameters
     ----------
     path
-        Emptied if it exists.
-    keep
-        Bytes of an older file that stay.
+        Made if there is none.
+    older
+        Whether what it holds stays for now; else it is emptied.
 
     Raises
     ------
@@ -120,15 +120,40 @@ class Appended:
         It cannot be written.
     """
 
-    def __init__(self, path: Path, keep: int = 0) -> None:
+    def __init__(self, path: Path, older: bool = False) -> None:
         self._path = path
         try:
-            self._stream = path.open("r+b" if keep else "wb", buffering=0)
-            if keep:
-                self._stream.truncate(keep)
-                self._stream.seek(keep)
+            how = os.O_RDWR | os.O_CREAT | (0 if older else os.O_TRUNC)
+            self._stream = open(os.open(path, how, 0o666), "r+b", buffering=0)  # noqa: SIM115
         except OSError as error:
             raise unwritable(path, error) from error
+
+    def keep(self, size: int) -> None:
+        """Cut what is there to so many bytes, and go on behind them."""
+        try:
+            self._stream.truncate(size)
+            self._stream.seek(size)
+        except OSError as error:
+            raise unwritable(self._path, error) from error
+
+    def is_at(self, path: Path) -> bool:
+        """Whether this is the file that has the name now."""
+        try:
+            return os.path.samestat(os.fstat(self.fileno()), path.stat())
+        except OSError:
+            return False
+
+    def lines(self) -> Iterator[bytes]:
+        """Give its lines from the start."""
+        self._stream.seek(0)
+        # Another descriptor's end would let go of a lock.
+        with open(self.fileno(), "rb", closefd=False) as stream:
+            yield from stream
+
+    def parts(self, places: Iterable[Tuple[int, int]]) -> Iterator[bytes]:
+        """Give the bytes at places, each a begin and a length; writing goes on where it was."""
+        for begin, length in places:
+            yield os.pread(self.fileno(), length, begin)
 
     def write(self, lines: bytes) -> None:
         """Append lines; of those that do not fit, the whole ones stay.
@@ -151,6 +176,11 @@ class Appended:
     def fileno(self) -> int:
         """Give the number of the open file, for locks."""
         return self._stream.fileno()
+
+    @property
+    def closed(self) -> bool:
+        """Whether it was closed."""
+        return self._stream.closed
 
     def close(self) -> None:
         """Close the file."""

@@ -69,10 +69,10 @@ def test_each_client_and_each_reset_begins_anew(served):
         assert client.step(SPEEDS[0], 50) == first
         client.reset(seed=3)
         other = client.step(SPEEDS[0], 50)
-    with Client(port) as client:
+        client.reset()
         assert client.step(SPEEDS[0], 50) == other  # the seed stays
-        client.reset(seed=0)
-        assert client.step(SPEEDS[0], 50) == first
+    with Client(port) as client:
+        assert client.step(SPEEDS[0], 50) == first  # but not for others
 
 
 def test_no_command_keeps_the_one_before_and_no_step_shows_the_row(served):
@@ -182,6 +182,29 @@ def test_an_address_that_is_taken_is_refused(served, tmp_path):
         with pytest.raises(qc.InputError, match="cannot listen at"):
             Server(qc.Simulation("quadrotor"), address)
     assert taken.read_text() == "not a socket"
+
+
+def test_a_log_that_cannot_be_written_is_told_before_anything_flies(tmp_path):
+    def unwritable():
+        raise qc.InputError("the log cannot be written")
+
+    with Server(qc.Simulation("quadrotor"), record=unwritable) as server:
+        thread = threading.Thread(target=server.serve, args=(print, 1))
+        thread.start()
+        with Client(int(server.address.rpartition(":")[2])) as client:
+            with pytest.raises(ServerError, match="cannot be written") as refused:
+                client.step(SPEEDS[0])
+            assert not refused.value.failed and client.step(steps=0)[0] == 0
+        thread.join()
+
+
+def test_a_socket_of_another_kind_is_left_alone(tmp_path):
+    path = str(tmp_path / "socket")
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as other:
+        other.bind(path)
+        with pytest.raises(qc.InputError, match="cannot listen at"):
+            Server(qc.Simulation("quadrotor"), path)
+        assert os.path.exists(path)
 
 
 def test_a_socket_that_a_killed_server_left_is_taken_over(tmp_path):

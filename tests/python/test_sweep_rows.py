@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import functools
 import os
 import random
 import resource
@@ -238,3 +240,69 @@ print(few, most(10000, "many"))
     )
     few, many = map(int, measured.stdout.split())
     assert many - few < 3000, measured.stderr  # kB; the rows are 1 MB
+
+
+WAITS = """
+import os, sys, time
+import quadcore as qc
+
+def waits(point):
+    with open("calls", "a") as stream:
+        stream.write("x")
+    while point["a"] == 3 and not os.path.exists("go"):
+        time.sleep(0.01)
+    return point["a"]
+
+if __name__ == "__main__":
+    order = {"a": [3, 1, 2, 4]}
+    qc.sweep(function=waits, vary=order, out="swept", resume=True, processes=2)
+"""
+
+
+def test_a_sweep_that_waited_for_another_finds_what_that_one_left():
+    """It may have put the file in order meanwhile: another file has the name then."""
+    Path("waits.py").write_text(WAITS)
+
+    def begun():
+        return subprocess.Popen([sys.executable, "waits.py"])
+
+    def until(wanted):
+        end = time.monotonic() + LONG
+        while not wanted() and time.monotonic() < end:
+            time.sleep(0.01)
+
+    first = begun()
+    until(lambda: len_of("swept") == 4)  # the head, and all rows but that which waits
+    second = begun()
+    until(lambda: open_files(second.pid) & {os.path.abspath("swept/table.csv")})
+    Path("go").touch()
+    assert (first.wait(), second.wait()) == (0, 0)
+    assert Path("calls").read_text() == "xxxx"
+    assert [row["a"] for row in rows("swept")] == ["3", "1", "2", "4"]
+
+
+def open_files(pid):
+    found = set()
+    for link in Path(f"/proc/{pid}/fd").glob("*"):
+        with contextlib.suppress(OSError):
+            found.add(os.readlink(link))
+    return found
+
+
+@pytest.mark.parametrize("held", ["partial", "closure"])
+def test_nobody_can_tell_what_a_function_holds_besides_its_text(held):
+    def bound(value):
+        return lambda point: value
+
+    for value in (1.0, 2.0):
+        function = functools.partial(_second, value) if held == "partial" else bound(value)
+        call = functools.partial(qc.sweep, function=function, vary={"a": [1, 2]}, out="swept")
+        if value == 1.0:
+            call(processes=1)
+        else:
+            with pytest.raises(qc.InputError, match="nobody can tell"):
+                call(processes=1, resume=True)
+
+
+def _second(value, point):
+    return value

@@ -144,13 +144,14 @@ class Horizons:
 
     def _starts(self, steps: np.ndarray, length: int) -> List[Any]:
         """Rows in which pieces begin and end."""
+        if length < 1:
+            raise InputError("a horizon is shorter than a step; make it longer")
         found, first = [], 0
-        while True:
+        while steps[-1] >= steps[first] + length:
             last = int(np.searchsorted(steps, steps[first] + length, "right")) - 1
-            if steps[-1] < steps[first] + length:
-                break
-            found.append((first, last))
-            first = last
+            if last > first:
+                found.append((first, last))
+            first = max(last, first + 1)  # a gap of the log may be longer than a horizon
         if not found:
             raise InputError("the log is shorter than a horizon; make that shorter")
         return found

@@ -56,6 +56,8 @@ class ServedFlight:
         steps = _whole(numbers[0], "the number of steps", _MOST_STEPS)
         if self._failure is not None:
             raise self._failure
+        if steps > 0:
+            self._record_from_the_start()
         if len(numbers) > 1:
             self._simulation.command(numbers[1:])
         try:
@@ -104,16 +106,18 @@ class ServedFlight:
         begins = self._rows == 0
         logged = table[-self._rows % self._log_every :: self._log_every]
         self._rows += len(table)
-        if self._record is None:
-            return
         if begins:
             self._first = logged, wrenches
             return
-        if self._recorder is None:  # a flight that was not flown leaves nothing
-            self._recorder = self._record()
-            self._recorder.receive(*self._first)
-        if len(logged):
+        if self._recorder is not None and len(logged):
             self._recorder.receive(logged, wrenches)
+
+    def _record_from_the_start(self) -> None:
+        """Open what records, unless it is open: a flight that is not flown leaves nothing."""
+        if self._record is None or self._recorder is not None:
+            return
+        self._recorder = self._record()
+        self._recorder.receive(*self._first)
 
 
 def _whole(number: float, what: str, largest: int) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import socket
 import stat
@@ -53,6 +54,7 @@ class Server:
     ) -> None:
         self._simulation, self._topics = simulation, list(topics)
         self._record, self._log_every = record, log_every
+        self._start = simulation.snapshot()  # whose seed is each client's, whatever others asked
         self.columns = columns_of(simulation, topics)
         self._socket, self._path = _listen(address)
         if self._path is None:
@@ -75,7 +77,7 @@ class Server:
             with connection:
                 try:
                     self._serve(connection)
-                except (ProtocolError, ConnectionError) as error:
+                except (ProtocolError, ConnectionError, _core.InputError) as error:
                     tell(f"client {served}: {error}")
 
     def close(self) -> None:
@@ -94,6 +96,7 @@ class Server:
     def _serve(self, connection: socket.socket) -> None:
         if connection.family != socket.AF_UNIX:
             connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._simulation.restore(self._start)
         flown = ServedFlight(self._simulation, self._topics, self._record, self._log_every)
         try:
             while True:
@@ -144,6 +147,8 @@ def _listen(address: Union[int, str]) -> Tuple[socket.socket, Optional[str]]:
             listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             listening.bind(("127.0.0.1", address))
         else:
+            if not address:
+                raise _core.InputError("the path of the socket is empty; name one")
             _remove_dead(address)
             listening.bind(address)
         listening.listen()
@@ -158,5 +163,5 @@ def _remove_dead(path: str) -> None:
     if not (os.path.exists(path) and stat.S_ISSOCK(os.stat(path).st_mode)):
         return
     with socket.socket(socket.AF_UNIX) as probe:
-        if probe.connect_ex(path) != 0:
+        if probe.connect_ex(path) == errno.ECONNREFUSED:
             os.unlink(path)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from types import FunctionType
 from typing import Any, Callable, Dict, List, Mapping, Sequence
 
 from .._core import InputError, QuadcoreError
@@ -87,10 +88,16 @@ class Call:
     limit: float
 
     def fingerprint(self) -> str:
-        """Digest of its name, its module's text, and what it is called with."""
-        module = getattr(self.function, "__module__", "")
-        name = getattr(self.function, "__qualname__", type(self.function).__qualname__)
-        called = f"{module} {name} {dict(self.names)} {digest(source_of(module))}"
+        """Digest of its name, its module's text, and what it is called with.
+
+        "" of what holds more than its text tells: closures, partial functions, objects.
+        """
+        function, text = self.function, b""
+        if isinstance(function, FunctionType) and not function.__closure__:
+            text = source_of(function.__module__)
+        if not text:
+            return ""
+        called = f"{function.__module__} {function.__qualname__} {dict(self.names)} {digest(text)}"
         return digest(called.encode())
 
     def measured(self) -> Measures:

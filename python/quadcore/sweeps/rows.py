@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import array
+import contextlib
 import csv
 import fcntl
 import io
+import os
 import sys
 import time
 from pathlib import Path
-from typing import Any, BinaryIO, Collection, Dict, Iterator, List, Sequence
+from typing import Any, Collection, Dict, Iterator, List, Sequence, Tuple
 
 import numpy as np
 
 from .._core import InputError, QuadcoreError, parse_number
-from ..files import Appended, atomic_write, cell, check_writable, text_bytes, unwritable
+from ..files import Appended, atomic_write, cell, check_writable, text_bytes
 from .plan import AnyPlan
 from .spec import Row, digest
 
@@ -51,20 +53,20 @@ class Rows:
         self.columns = ["row", *plan.names, "failure", *plan.measures, "fingerprint"]
         self._where = np.full((len(plan), 2), -1, dtype=np.int64)  # begin and length of each
         self._head = _line(self.columns)
-        kept = 0
         check_writable(path)
-        is_there = path.exists() and path.stat().st_size > 0
-        if is_there and not resume:
-            raise InputError(
-                f"{path}: holds rows already; go on with --resume, or name another folder"
-            )
-        self.is_resumed = is_there
-        if is_there:
-            kept = self._read()
-        self._file = Appended(path, kept)
-        self._lock()
-        self._end = kept
-        if not kept:
+        if path.exists() and path.stat().st_size > 0 and not resume:
+            raise self._taken()
+        self._file = self._locked()
+        try:
+            self.is_resumed = os.fstat(self._file.fileno()).st_size > 0
+            if self.is_resumed and not resume:
+                raise self._taken()
+            self._end = self._note() if self.is_resumed else 0
+        except InputError:
+            self._file.close()
+            raise
+        self._file.keep(self._end)
+        if not self._end:
             self._append(self._head)
 
     @property
@@ -87,9 +89,9 @@ class Rows:
     def close(self) -> None:
         """Put the rows in order if they are all there, and close the file."""
         if self.count == len(self._plan) and (np.diff(self._where[:, 0]) < 0).any():
-            with self.path.open("rb") as stream, atomic_write(self.path) as ordered:
+            with atomic_write(self.path) as ordered:
                 ordered.write(self._head)
-                for line in self._lines(stream):
+                for line in self._file.parts(self._places()):
                     ordered.write(line)
             lengths = self._where[:, 1]
             self._where[:, 0] = len(self._head) + np.cumsum(lengths) - lengths
@@ -97,15 +99,23 @@ class Rows:
 
     def read(self) -> Iterator[Dict[str, str]]:
         """Give the rows that are there, by number."""
-        with self.path.open("rb") as stream:
-            for line in self._lines(stream):
+        # While it is written, by its own descriptor: closing another one would drop the lock.
+        file = Appended(self.path, older=True) if self._file.closed else self._file
+        try:
+            for line in file.parts(self._places()):
                 yield dict(zip(self.columns, _split(line)))
+        finally:
+            if file is not self._file:
+                file.close()
 
-    def _lines(self, stream: BinaryIO) -> Iterator[bytes]:
-        for begin, length in self._where.tolist():
-            if begin >= 0:
-                stream.seek(begin)
-                yield stream.read(length)
+    def _places(self) -> Iterator[Tuple[int, int]]:
+        """Begin and length of each row that is there."""
+        return ((begin, length) for begin, length in self._where.tolist() if begin >= 0)
+
+    def _taken(self) -> InputError:
+        return InputError(
+            f"{self.path}: holds rows already; go on with --resume, or name another folder"
+        )
 
     def _cells(self, row: Row) -> List[Any]:
         measured = row.measures or {}
@@ -121,28 +131,27 @@ class Rows:
         self._file.write(line)
         self._end += len(line)
 
-    def _lock(self) -> None:
-        """Keep others from writing; what forked processes inherit does not hold the lock."""
+    def _locked(self) -> Appended:
+        """Open the file and keep others from it; what forked processes inherit does not hold that.
+
+        One that ended in the meantime may have put another in its place.
+        """
         end = time.monotonic() + _PATIENCE
         while True:
-            try:
-                fcntl.lockf(self._file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
-                return
-            except OSError:
-                if time.monotonic() > end:
-                    raise InputError(f"{self.path}: another sweep is writing it; wait") from None
+            file = Appended(self.path, older=True)
+            with contextlib.suppress(OSError):
+                fcntl.lockf(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
+                if file.is_at(self.path):
+                    return file
+            file.close()
+            if time.monotonic() > end:
+                raise InputError(f"{self.path}: another sweep is writing it; wait")
             time.sleep(0.1)
 
-    def _read(self) -> int:
+    def _note(self) -> int:
         """Note where rows are, and give the bytes that stay: what a kill cut off does not."""
-        try:
-            with self.path.open("rb") as stream:
-                return self._note(stream)
-        except OSError as error:
-            raise unwritable(self.path, error) from error
-
-    def _note(self, stream: BinaryIO) -> int:
-        head = stream.readline()
+        lines = self._file.lines()
+        head = next(lines, b"")
         if head != self._head:
             if not head.endswith(b"\n") and self._head.startswith(head):
                 return 0
@@ -151,7 +160,7 @@ class Rows:
                 "was flown"
             )
         end = len(head)
-        for number, line in enumerate(stream, start=2):
+        for number, line in enumerate(lines, start=2):
             if not line.endswith(b"\n"):
                 break
             row = self._checked(number, _split(line))
@@ -285,4 +294,7 @@ def _plain(value: Any) -> Any:
 
 
 def _split(line: bytes) -> List[str]:
-    return next(csv.reader([line.decode("utf-8", "replace")]), [])
+    try:
+        return next(csv.reader([line.decode("utf-8", "replace")]), [])
+    except csv.Error:  # of a damaged file
+        return []
