@@ -172,7 +172,8 @@ void EigenEngine::evaluate_rest() {
 /// to bear only if the rate reacts: then the rotor is, about its axis, a part of the frame.
 void EigenEngine::take_given_rates() {
   step_.given_rates = loads_.any_rate() ? given_rates_.data() : nullptr;
-  if (!loads_.any_rate()) return;
+  const bool any_reacted = std::find(reacting_.begin(), reacting_.end(), true) != reacting_.end();
+  if (!loads_.any_rate() && !any_reacted) return;
   bool changed = false;
   for (std::size_t i = 0; i < reacting_.size(); ++i) {
     const auto& rate = loads_.joint_rate(i);

@@ -125,7 +125,13 @@ void OdeEngine::step(double time, double dt, const ForceField& forces) {
   forces.evaluate(kinematics_, loads_);
   if (!loads_.all_finite()) forces.refuse(kinematics_, loads_);  // ODE ends the process for less
   vehicle_->apply(loads_, kinematics_, dt);
-  if (loads_.any_rate()) vehicle_->turn(loads_);
+  if (loads_.any_rate()) {
+    if (recipe_.like_gazebo) {
+      vehicle_->turn_like_gazebo(loads_);
+    } else {
+      vehicle_->turn(loads_);
+    }
+  }
   recipe_.add_gyroscopic(*gyroscopic_, dt);
   static const std::vector<Contact> none;
   const std::vector<Contact>& contacts = ground_ ? ground_->find() : none;

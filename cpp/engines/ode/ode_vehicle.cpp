@@ -150,6 +150,23 @@ void OdeVehicle::turn(const Loads& loads) {
   for (std::size_t i = 0; i < hinges_.size(); ++i) {
     const auto& rate = loads.joint_rate(i);
     if (!rate) continue;
+    const dBodyID child = bodies_[i + 1], parent = bodies_[model_.joints[i].parent];
+    const Matrix3d R_WC = rotation(dBodyGetRotation(child));
+    const Vector3d axis_W = R_WC * model_.joints[i].axis;
+    const Vector3d w_WC_W = vec(dBodyGetAngularVel(child)), v_WC_W = vec(dBodyGetLinearVel(child));
+    const double now = axis_W.dot(w_WC_W - vec(dBodyGetAngularVel(parent)));
+    const Vector3d more_W = (rate->at_end - now) * axis_W;
+    const Vector3d w_W = w_WC_W + more_W;
+    const Vector3d v_W = v_WC_W + more_W.cross(R_WC * model_.links[i + 1].inertial.pose.xyz);
+    dBodySetLinearVel(child, v_W.x(), v_W.y(), v_W.z());
+    dBodySetAngularVel(child, w_W.x(), w_W.y(), w_W.z());
+  }
+}
+
+void OdeVehicle::turn_like_gazebo(const Loads& loads) {
+  for (std::size_t i = 0; i < hinges_.size(); ++i) {
+    const auto& rate = loads.joint_rate(i);
+    if (!rate) continue;
     const Joint& joint = model_.joints[i];
     const dBodyID child = bodies_[i + 1], parent = bodies_[joint.parent];
     const Matrix3d R_WC = rotation(dBodyGetRotation(child));

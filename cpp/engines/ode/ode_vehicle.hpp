@@ -31,9 +31,12 @@ class OdeVehicle {
   /// Adds the loads, the joints' damping, and over a step of dt what prescribed rates react with,
   /// to the forces on the bodies.
   void apply(const Loads& loads, const Kinematics& kinematics, double dt);
-  /// Gives joints the rates that loads prescribe as Gazebo's SetVelocity() does: overwrites the
-  /// whole velocity of each such rotor by what its carrier's is at the start of the step.
+  /// Gives joints the rates that loads prescribe, about their axes alone.
   void turn(const Loads& loads);
+  /// The same as Gazebo's SetVelocity() does it: overwrites the whole velocity of each such rotor
+  /// by what its carrier's is at the start of the step, so that the carrier bears nothing of what
+  /// turns the rotor along with it.
+  void turn_like_gazebo(const Loads& loads);
   /// <dampingFactor>: ODE's damping of bodies, after the poses have moved.
   void damp();
   /// Writes how the vehicle moves.

@@ -7,6 +7,7 @@
 #include "position_control.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
+#include "quadcore/rotor_shares.hpp"
 
 namespace quadcore::rotors {
 namespace {
@@ -21,8 +22,21 @@ Type type_of(const std::string& name) {
 enum Term { kThrust, kRotorDrag, kReaction, kRolling };
 
 /// What it remembers: its input, the messages that it has heard, the speed at the start of the step
-/// and at its end [rad/s], the time of the start [s], and what the position's controller holds.
-enum Memory { kInput, kDirect, kForwarded, kSpeed, kNext, kTime, kTorque, kControl };
+/// and at its end [rad/s], the time of the start [s], the share of the thrust that is lost, the
+/// speed that it is driven to [rad/s] or its torque [N m], and what the position's controller
+/// holds.
+enum Memory {
+  kInput,
+  kDirect,
+  kForwarded,
+  kSpeed,
+  kNext,
+  kTime,
+  kLost,
+  kDriven,
+  kTorque,
+  kControl
+};
 
 /// A rotor and its motor as RotorS has them (Furrer, Burri, Achtelik, Siegwart, "RotorS - a modular
 /// Gazebo MAV simulator framework", 2016, eqs. (1)-(4); drag and rolling moment after Martin,
@@ -47,6 +61,10 @@ class MotorModel final : public Plugin {
         reacts_(setup.parameters.flag("reactionTorque")),
         control_(setup.parameters),
         command_(setup.topics.takes("vel_cmd", messages::speeds(motor_count(setup.model)))),
+        effectiveness_(setup.topics.takes(setup.parameters.text("effectiveness"),
+                                          shares(setup.model.joints.size()))),
+        power_(
+            setup.topics.takes(setup.parameters.text("power"), shares(setup.model.joints.size()))),
         speed_(speed_topic(setup)) {
     for (const PluginElement& other : setup.model.plugins) {
       if (other.filename != controller_interface_file) continue;
@@ -72,15 +90,22 @@ class MotorModel final : public Plugin {
 
   void update(const Sample& sample, PluginState state) const override {
     listen(sample, state);
-    const double input = state[kInput];
+    const Topic &effectiveness = sample.topics[effectiveness_], &power = sample.topics[power_];
+    check_shares(effectiveness, sample.time);
+    check_shares(power, sample.time);
+    state[kLost] = 1 - share_of(effectiveness, joint_);
+    const double input = state[kInput], left = share_of(power, joint_);
     if (type_ == Type::force) {
-      state[kTorque] = input;
+      state[kTorque] = left * input;
     } else if (type_ == Type::position) {
-      state[kTorque] = control_.torque(sample.kinematics.angle(joint_), input, sample.dt,
-                                       state.segment<PositionControl::kMemorySize>(kControl));
+      state[kTorque] =
+          left * control_.torque(sample.kinematics.angle(joint_), input, sample.dt,
+                                 state.segment<PositionControl::kMemorySize>(kControl));
     } else {
+      // The air's torque, which the motor's balances, grows with the square of the speed.
+      state[kDriven] = std::sqrt(left) * input;
       state[kSpeed] = state[kNext];
-      state[kNext] = lag_.after(sample.dt, state[kSpeed], input);
+      state[kNext] = lag_.after(sample.dt, state[kSpeed], state[kDriven]);
       state[kTime] = sample.time;
     }
     if (!speed_) return;
@@ -98,7 +123,8 @@ class MotorModel final : public Plugin {
     if (!turns()) return loads.add_joint_torque(joint_, state[kTorque]);
     const RotorKinematics rotor = k.rotors[joint_];
     const double speed = rotor.rate * slowdown_;
-    const double thrust = sense_ * std::copysign(motor_constant_ * speed * speed, speed);
+    const double thrust =
+        (1 - state[kLost]) * sense_ * std::copysign(motor_constant_ * speed * speed, speed);
     loads.add_rotor_force(kThrust, joint_, thrust * rotor.normal_F);
     const Vector3d v_AR_F = rotor.v_WR_F - k.v_WA_F;
     const Vector3d across_F = v_AR_F - v_AR_F.dot(rotor.axis_F) * rotor.axis_F;
@@ -106,8 +132,7 @@ class MotorModel final : public Plugin {
     loads.add_frame_torque(kReaction, -sense_ * thrust * moment_constant_ * rotor.normal_F);
     loads.add_frame_torque(kRolling, -std::abs(speed) * rolling_ * across_F);
 
-    const double input = state[kInput];
-    const double slope = lag_.slope(k.time - state[kTime], state[kSpeed], input);
+    const double slope = lag_.slope(k.time - state[kTime], state[kSpeed], state[kDriven]);
     const double unit = sense_ / slowdown_;
     loads.prescribe_joint_rate(joint_, {unit * state[kNext], unit * slope, reacts_});
   }
@@ -177,6 +202,7 @@ class MotorModel final : public Plugin {
   bool reacts_;
   PositionControl control_;
   std::size_t command_;                   ///< topic
+  std::size_t effectiveness_, power_;     ///< topics
   std::optional<std::size_t> forwarded_;  ///< of the controller's interface, if there is one
   std::optional<std::size_t> speed_;      ///< topic
 };
@@ -212,6 +238,13 @@ PluginDescriptor describe() {
       T::flag("reactionTorque", "false",
               "quadcore's own: whether the frame bears the torque that speeds the rotor up; not so "
               "in RotorS"),
+      T::text("effectiveness", "effectiveness",
+              "quadcore's own: topic of each joint's share of thrust and reaction torque that is "
+              "left; 1 before the first message"),
+      T::text(
+          "power", "power",
+          "quadcore's own: topic of each joint's share of the motor's torque that is left, 0 to "
+          "1; it reaches that share of the commanded speed's square; 1 before the first message"),
       T::text("commandSubTopic", "gazebo/command/motor_speed",
               "where the controller's interface forwards commands, if the model has one; else "
               "commands come on vel_cmd alone"),

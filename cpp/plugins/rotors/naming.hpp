@@ -25,22 +25,35 @@ inline std::string topic_word(std::string name) {
   return name;
 }
 
-/// The vehicle's own namespace: the shortest that its plugins name, the first of several.
+/// A namespace without the slashes around it.
+inline std::string namespace_word(const std::string& name) {
+  const std::size_t first = name.find_first_not_of('/');
+  if (first == std::string::npos) return "";
+  return name.substr(first, name.find_last_not_of('/') - first + 1);
+}
+
+/// The vehicle's own namespace: the shortest that its motors name, the first of several; of a model
+/// whose motors name none, that its other plugins do.
 inline std::string vehicle_namespace(const Model& model) {
-  std::string shortest;
+  std::string of_motors, of_any;
+  const auto shorten = [](std::string& shortest, const std::string& name) {
+    if (name.empty() || (!shortest.empty() && shortest.size() <= name.size())) return;
+    shortest = name;
+  };
   for (const PluginElement& plugin : model.plugins) {
     if (plugin.filename.rfind("librotors_gazebo_", 0) != 0) continue;
     for (const PluginTag& tag : plugin.tags) {
-      if (tag.name != "robotNamespace" || tag.text.empty()) continue;
-      if (shortest.empty() || tag.text.size() < shortest.size()) shortest = tag.text;
+      if (tag.name != "robotNamespace") continue;
+      shorten(of_any, namespace_word(tag.text));
+      if (plugin.filename == motor_model_file) shorten(of_motors, namespace_word(tag.text));
     }
   }
-  return shortest;
+  return of_motors.empty() ? of_any : of_motors;
 }
 
 /// The topic that a tag names, with what the plugin's namespace has beyond the vehicle's.
 inline std::string topic_of(const PluginSetup& setup, const std::string& tag) {
-  const std::string& own = setup.parameters.text("robotNamespace");
+  const std::string own = namespace_word(setup.parameters.text("robotNamespace"));
   const std::string vehicle = vehicle_namespace(setup.model);
   std::string beyond = own == vehicle ? "" : own;
   if (own.rfind(vehicle + "/", 0) == 0) beyond = own.substr(vehicle.size() + 1);
