@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from processes import outcomes
+from processes import outcomes, script
 
 import quadcore as qc
 from quadcore import interrupts
@@ -235,14 +235,19 @@ def test_a_foreign_exception_in_a_case_is_that_case_alone():
     assert str(results[1]).startswith("ZeroDivisionError: division by zero (")
 
 
-def test_fewer_processes_than_asked_for_do_all_cases():
-    """A limit of open files that a few processes reach; the first alone takes ten for a moment."""
-    import resource
+FEW_FILES = """
+import os, resource
+from quadcore.study import executor
 
-    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    open_now = max(int(name) for name in os.listdir("/proc/self/fd"))
-    resource.setrlimit(resource.RLIMIT_NOFILE, (open_now + 16, hard))
-    try:
-        assert outcomes(lambda number: -number, range(20), 16) == {i: -i for i in range(20)}
-    finally:
-        resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+found = {}
+most = 16 + max(int(name) for name in os.listdir("/proc/self/fd"))
+resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
+executor.each(lambda number: -number, range(20), found.__setitem__, 16)
+print(found == {i: -i for i in range(20)})
+"""
+
+
+def test_fewer_processes_than_asked_for_do_all_cases():
+    """A limit of open files that a few processes reach."""
+    done = script(FEW_FILES)
+    assert done.stdout == "True\n", done.stderr

@@ -123,18 +123,20 @@ def test_changed_inputs_are_noticed(changed, told):
 
 def test_a_changed_file_is_noticed():
     Path("law.yaml").write_text("law: pd\nparameters: {kp_xy: 2.4}\n")
-    Path("own.py").write_text("def law(t, state, reference):\n    return [500, -500, 500, -500]\n")
+    Path("noticed.py").write_text(
+        "def law(t, state, reference):\n    return [500, -500, 500, -500]\n"
+    )
 
     def fly(**options):
-        return qc.sweep(["law.yaml", "own:law"], "hover", duration=0.1, out="out", **options)
+        return qc.sweep(["law.yaml", "noticed:law"], "hover", duration=0.1, out="out", **options)
 
     fly()
     fly(resume=True)
-    own = Path("own.py").read_text()
-    Path("own.py").write_text(own.replace("500", "501"))
+    text = Path("noticed.py").read_text()
+    Path("noticed.py").write_text(text.replace("500", "501"))
     with pytest.raises(qc.InputError, match=r"table.csv:3: was flown with other inputs"):
         fly(resume=True)
-    Path("own.py").write_text(own)
+    Path("noticed.py").write_text(text)
     Path("law.yaml").write_text("law: pd\nparameters: {kp_xy: 2.5}\n")
     with pytest.raises(qc.InputError, match=r"table.csv:2: was flown with other inputs"):
         fly(resume=True)
