@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+_FIELD = ("T", "`5.5645e-6 22.8758e-6 -42.3884e-6`")
+
 # Every element a world may hold: unit, default, meaning. Which there are, and the range of each, is
 # asked of the reader itself; one that is missing here or there fails the generator.
 WORLD = {
@@ -20,8 +22,7 @@ WORLD = {
     "atmosphere/temperature_gradient": ("K/m", "-0.0065", "its change with height"),
     "atmosphere/pressure": ("Pa", "101325", "of the air at z = 0"),
     "magnetic_field": (
-        "T",
-        "`5.5645e-6 22.8758e-6 -42.3884e-6`",
+        *_FIELD,
         "of the Earth in world axes, x east, y north, z up; for magnetometers",
     ),
     "include/uri": (
@@ -38,8 +39,7 @@ WORLD = {
     "physics": ("", "", "attribute `type`, if given, must be `ode`; also written `physics:ode`"),
     "physics/gravity": ("m/s^2", "`0 0 -9.8`", "the same as `gravity`; only one of them"),
     "physics/magnetic_field": (
-        "T",
-        "`5.5645e-6 22.8758e-6 -42.3884e-6`",
+        *_FIELD,
         "the same as `magnetic_field`; only one of them",
     ),
     "physics/max_step_size": ("s", "0.001", "the step, unless `--dt` or `dt=` is given"),

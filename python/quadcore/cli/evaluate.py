@@ -6,12 +6,10 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .. import laws, references, resources
 from .._core import FlightError, InputError
 from ..files import prepare_folder
 from ..plants import plants
-from ..scenarios import NONE
-from . import options, terminal, values
+from . import combinations, options, terminal, values
 from .kept import kept
 from .options_file import OptionsFile
 
@@ -27,36 +25,7 @@ def register(commands: Any) -> None:
     parser = options.subparser(
         commands, "evaluate", "Fly controllers along references, and measure them.", evaluate
     )
-    parser.add_argument(
-        "file", metavar="FILE.yaml", nargs="?", help="options by name; those given besides win"
-    )
-    parser.add_argument(
-        "--controller",
-        metavar="A,B",
-        type=values.several_calls,
-        help=f"{', '.join(laws.NAMES)}, perhaps with parameters, LAW:KEY=VALUE,...; files of "
-        "gains; MODULE:CLASS",
-    )
-    parser.add_argument(
-        "--reference",
-        metavar="A,B",
-        type=values.several_calls,
-        help=f"{', '.join(references.NAMES)}, NAME:KEY=VALUE,..., or files",
-    )
-    parser.add_argument(
-        "--model", metavar="A,B", type=values.names, default=["quadrotor"], help="(quadrotor)"
-    )
-    options.add_changes(parser)
-    parser.add_argument(
-        "--seeds", metavar="N", type=values.integer(1), default=1, help="from --seed on (1)"
-    )
-    parser.add_argument(
-        "--scenario",
-        metavar="A,B",
-        type=values.names,
-        help="what befalls the vehicle, files or shipped: "
-        + ", ".join([NONE, *resources.shipped("config/scenarios")]),
-    )
+    combinations.add(parser)
     options.add_vary(parser, " and controller.KEY, its rate, delay or a parameter of the laws")
     options.add_flight(parser, several_engines=True, log_every=None, flown=plants(), seconds=30.0)
     options.add_timing(parser)

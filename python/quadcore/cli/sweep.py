@@ -6,13 +6,11 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .. import laws, references, resources
 from .._core import FlightError
 from ..files import prepare_folder
 from ..plants import plants
-from ..scenarios import NONE
 from ..sweeps.distributions import DESIGNS, forms
-from . import options, terminal, values
+from . import combinations, options, terminal, values
 from .options_file import OptionsFile
 
 if TYPE_CHECKING:
@@ -27,37 +25,8 @@ def register(commands: Any) -> None:
     parser = options.subparser(
         commands, "sweep", "Fly thousands of flights, and tell what they depend on.", sweep
     )
-    parser.add_argument(
-        "file", metavar="FILE.yaml", nargs="?", help="options by name; those given besides win"
-    )
-    parser.add_argument(
-        "--controller",
-        metavar="A,B",
-        type=values.several_calls,
-        help=f"{', '.join(laws.NAMES)}, perhaps with parameters, LAW:KEY=VALUE,...; files of "
-        "gains; MODULE:CLASS",
-    )
-    parser.add_argument(
-        "--reference",
-        metavar="A,B",
-        type=values.several_calls,
-        help=f"{', '.join(references.NAMES)}, NAME:KEY=VALUE,..., or files",
-    )
+    combinations.add(parser)
     options.add_commands(parser)
-    parser.add_argument(
-        "--model", metavar="A,B", type=values.names, default=["quadrotor"], help="(quadrotor)"
-    )
-    options.add_changes(parser)
-    parser.add_argument(
-        "--seeds", metavar="N", type=values.integer(1), default=1, help="from --seed on (1)"
-    )
-    parser.add_argument(
-        "--scenario",
-        metavar="A,B",
-        type=values.names,
-        help="what befalls the vehicle, files or shipped: "
-        + ", ".join([NONE, *resources.shipped("config/scenarios")]),
-    )
     options.add_vary(
         parser,
         " and controller.KEY, its rate, delay or a parameter of the laws; or drawn from "
