@@ -233,7 +233,7 @@ from pathlib import Path
 def most(count, folder):
     Path(folder).mkdir()
     design = Design({"a": f"0:1:{count}"})
-    conduct(Calls(design, lambda point: point["a"], ["a"], 9.0), Path(folder), processes=1)
+    conduct(Calls(design, lambda point: point["a"], ["value"], 9.0), Path(folder), processes=1)
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 few = most(2000, "few")

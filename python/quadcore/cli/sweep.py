@@ -76,8 +76,8 @@ def register(commands: Any) -> None:
 def sweep(arguments: argparse.Namespace) -> None:
     """Fly what is missing, and tell what came of it."""
     from ..sweeps.output import FILES, main_measure, write
-    from ..sweeps.rows import table
     from ..sweeps.sweep import TABLE, conduct
+    from ..sweeps.table import table
 
     if arguments.file is None:
         plan = _plan(arguments)

@@ -10,8 +10,9 @@ import numpy as np
 from .._core import FlightError, InputError, Model
 from ..description import read_both
 from ..log import Log
-from ..overrides import check_names, with_links, without_xacro
+from ..overrides import XACRO, check_names, with_links, without_xacro
 from ..simulation import Simulation, text_of
+from ..study import arguments
 from ..warning import unheard
 from . import record as records
 from .document import with_values
@@ -21,6 +22,18 @@ from .problem import Parameter, Problem
 from .search import search
 
 Progress = Callable[[int, int], None]
+
+_KINDS = {
+    "log": ((lambda log: isinstance(log, (Log, str, Path))), "a log, or its file"),
+    "free": arguments.NAMES,
+    "engine": arguments.NAME,
+    "horizon": arguments.POSITIVE,
+    "channels": arguments.or_none(arguments.NAMES),
+    "sensed": arguments.or_none(arguments.NAME),
+    "bounds": arguments.or_none(arguments.BOUNDS),
+    "shift": arguments.LAG,
+    "progress": arguments.or_none(arguments.PROGRESS),
+}
 
 _HELD_OUT = 4  # each so many horizons one is not fitted to
 
@@ -132,8 +145,11 @@ def fit(
     KeyboardInterrupt
         Its attribute `model` has the values of the last round.
     """
-    arguments, given = without_xacro(parameters or {}, xacro_args)
-    read, read_world = read_both(model, world, arguments, ignore)
+    told = dict(locals())
+    options = ("parameters", "world", "dt", "xacro_args", "ignore")
+    arguments.check({name: told[name] for name in (*_KINDS, *options)}, _KINDS)
+    of_xacro, given = without_xacro(parameters or {}, xacro_args)
+    read, read_world = read_both(model, world, of_xacro, ignore)
     check_names(read, parameters or {})
     read, tags = with_links(read, {name: text_of(value) for name, value in given.items()})
     simulation = Simulation(read, engine=engine, world=read_world, dt=dt, parameters=tags)
@@ -244,8 +260,13 @@ def _best_shift(problem: Problem, most: int) -> int:
 
 
 def _names(free: Sequence[str]) -> List[str]:
-    names = [free] if isinstance(free, str) else list(free)
+    names = [str(name) for name in arguments.several(free)]
     for name in names:
+        if name.partition(".")[0] == XACRO:
+            raise InputError(
+                f"free {name}: arguments of xacro are given, not found; name PLUGIN.TAG, "
+                "LINK.mass, LINK.ixx or the like"
+            )
         if names.count(name) > 1:
             raise InputError(f"free {name}: it is named twice; keep one")
     if not names:
@@ -267,6 +288,9 @@ def _parameter(
 def _channels(given: Optional[Sequence[str]], flown: records.Record) -> List[str]:
     if given is None:
         return ["position", "attitude", "rates"] + ["rotors"] * (flown.commands is not None)
+    given = arguments.several(given)
+    if not given:
+        raise InputError(f"channels is {given}; give some of {', '.join(records.CHANNELS)}")
     for name in given:
         if name not in records.CHANNELS:
             known = ", ".join(records.CHANNELS)

@@ -67,6 +67,8 @@ class Horizons:
         record = _evenly(record, dt)
         steps = np.rint((record.time - record.time[0]) / dt).astype(int)
         self._late = record.time - record.time[0] - steps * dt
+        if length > record.time[-1] - record.time[0]:
+            raise InputError("the log is shorter than a horizon; make that shorter")
         pieces = self._starts(steps, round(length / dt))
         starts = [piece for i, piece in enumerate(pieces) if part(i)]
         if not starts:
@@ -152,8 +154,6 @@ class Horizons:
             if last > first:
                 found.append((first, last))
             first = max(last, first + 1)  # a gap of the log may be longer than a horizon
-        if not found:
-            raise InputError("the log is shorter than a horizon; make that shorter")
         return found
 
     def _changes(self, end: int) -> List[int]:

@@ -68,10 +68,12 @@ def read(
     Raises
     ------
     InputError
-        Another number of rotors, no such topic, or commands that are none.
+        Fewer than two rows, another number of rotors, no such topic, or commands that are none.
     """
     where = "log" if isinstance(log, Log) else str(log)
     flown = log if isinstance(log, Log) else Log.of_file(log)
+    if len(flown.time) < 2:
+        raise InputError(f"{where}: has {len(flown.time)} rows; a flight has at least 2")
     if flown.rotor_velocity.shape[1] != rotors:
         raise InputError(
             f"{where}: has {flown.rotor_velocity.shape[1]} rotors, the model has {rotors}"

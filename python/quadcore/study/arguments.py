@@ -69,6 +69,21 @@ def _are_axes(value: Any) -> bool:
     )
 
 
+def _are_values(value: Any) -> bool:
+    return _are_named(value) and all(
+        isinstance(one, Iterable) or hasattr(one, "ppf") for one in value.values()
+    )
+
+
+def _are_pairs(value: Any) -> bool:
+    return _are_named(value) and all(
+        isinstance(pair, (list, tuple))
+        and len(pair) == 2
+        and all(isinstance(x, Real) for x in pair)
+        for pair in value.values()
+    )
+
+
 def _is_whole(value: Any) -> bool:
     return isinstance(value, Integral) and not isinstance(value, bool)
 
@@ -86,7 +101,17 @@ NAMES: Kind = (_are_names, "a name, or several")
 GUIDES: Kind = (_are_guides, "names, or functions that are called as reference(t)")
 NAMED: Kind = (_are_named, "a mapping of names to values")
 AXES: Kind = (_are_axes, "a mapping of names to lists of values")
+VALUES: Kind = (_are_values, "a mapping of names to lists of values, texts, or distributions")
+BOUNDS: Kind = (_are_pairs, "a mapping of names to (lowest, highest)")
 SECONDS: Kind = (lambda value: isinstance(value, Real) and math.isfinite(value), "seconds")
+POSITIVE: Kind = (
+    lambda value: isinstance(value, Real) and 0 < float(value) < math.inf,
+    "seconds, more than 0",
+)
+LAG: Kind = (
+    lambda value: isinstance(value, Real) and 0 <= float(value) <= 10,
+    "seconds, from 0 to 10",
+)
 LIMIT: Kind = (_is_limit, f"seconds, more than 0 and at most {_LONGEST:g}")
 WHOLE: Kind = (_is_whole, "a whole number")
 COUNT: Kind = (_is_count, "a whole number from 1 on")

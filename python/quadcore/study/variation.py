@@ -83,6 +83,11 @@ def give_all(controller: Any, values: Iterable[Tuple[str, Any]]) -> Any:
     return controller
 
 
+def is_of_controller(name: str) -> bool:
+    """Tell whether an axis, perhaps of several names, varies a controller."""
+    return any(part.startswith(OF_CONTROLLER) for part in name.split(","))
+
+
 def of_controller(point: Mapping[str, str]) -> Dict[str, float]:
     """Tell what a point changes in a controller.
 

@@ -49,6 +49,8 @@ class Calls:
     at_once = 32
     """Rows of a task."""
     apart = False
+    whole = ()
+    """Columns that hold whole numbers, besides ``row``."""
 
     def __len__(self) -> int:
         return len(self.design)

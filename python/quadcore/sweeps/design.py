@@ -10,9 +10,7 @@ from .._core import InputError
 from ..files import read_text
 from ..study.axes import Axis, axes_of, parse_axis
 from . import distributions
-
-LARGEST = 1_000_000
-"""Rows of one sweep."""
+from .distributions import LARGEST as LARGEST
 
 _LARGEST = 10**8  # bytes of a table of points
 

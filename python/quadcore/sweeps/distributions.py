@@ -11,6 +11,9 @@ import numpy as np
 from .._core import InputError, parse_number
 from ..extras import needed
 
+LARGEST = 1_000_000
+"""Rows of one sweep."""
+
 DIGITS = 12
 """Of what is drawn, as text: fewer than a double has, so that every machine writes the same."""
 
@@ -112,6 +115,8 @@ def _sobol(dimensions: int, count: int, seed: int) -> np.ndarray:
 
 def _saltelli(dimensions: int, count: int, seed: int) -> np.ndarray:
     _check_power("saltelli", count)
+    if count < 2:
+        raise InputError("samples is 1; design saltelli tells nothing of one; give at least 2")
     with needed("design saltelli", "SALib", "sweep"):
         from SALib.sample import sobol
     points: np.ndarray = sobol.sample(
@@ -169,6 +174,8 @@ def drawn(
     """
     if design not in DESIGNS:
         raise InputError(f"there is no design '{design}'; give one of {', '.join(DESIGNS)}")
+    if samples > LARGEST:
+        raise InputError(f"samples is {samples}; at most {LARGEST} rows are swept")
     cube = DESIGNS[design][1](len(names), samples, seed)
     columns = []
     for name, distribution, part in zip(names, distributions, cube.T):

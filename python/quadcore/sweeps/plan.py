@@ -20,7 +20,7 @@ from ..files import shown
 from ..flight import check_logged
 from ..flight_plan import FlightPlan
 from ..simulation import whole
-from ..study.variation import OF_CONTROLLER, Variation, give_all, of_controller
+from ..study.variation import Variation, give_all, is_of_controller, of_controller
 from ..warning import unheard
 from . import motion
 from .batches import ENGINE
@@ -126,6 +126,9 @@ class Plan:
         ]
         self._own = [thing if entries.names_own(thing) else "" for _, thing in things]
         self._check()
+
+    whole = ("seed",)
+    """Columns that hold whole numbers, besides ``row``."""
 
     @property
     def at_once(self) -> int:
@@ -252,7 +255,7 @@ class Plan:
             raise InputError("seeds is 0; give at least 1")
         if "engine" in self.design.names:
             raise InputError("vary engine: name the engines by themselves")
-        if not self.is_guided and any(map(_is_of_controller, self.design.names)):
+        if not self.is_guided and any(map(is_of_controller, self.design.names)):
             raise InputError("vary controller: commands are flown; name a --controller")
         sizes = [*map(len, sides), len(self.design), self.seeds]
         if math.prod(sizes) > LARGEST:
@@ -290,10 +293,6 @@ def _is_guided(controllers: Any, references_: Any, commands: Any) -> bool:
     elif controllers is not None or references_ is not None:
         raise InputError("a flight takes --commands or a --controller; give one of them")
     return commands is None
-
-
-def _is_of_controller(name: str) -> bool:
-    return any(part.startswith(OF_CONTROLLER) for part in name.split(","))
 
 
 def _maker(thing: Any, vehicle: str) -> Callable[[], Any]:

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import array
 import contextlib
 import csv
 import fcntl
 import io
 import os
-import sys
 import time
 from pathlib import Path
-from typing import Any, Collection, Dict, Iterator, List, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, Sequence, Tuple
 
 import numpy as np
 
@@ -21,9 +19,6 @@ from .plan import AnyPlan
 from .spec import Row, digest
 
 _PATIENCE = 10.0  # s; for one that was killed a moment ago and has not let go yet
-_WHOLE = ("row", "seed")
-_TEXTS = ("failure", "fingerprint")
-_MANY = 10_000  # rows that are held at once when they are read
 
 
 class Rows:
@@ -51,7 +46,14 @@ class Rows:
     def __init__(self, path: Path, plan: AnyPlan, resume: bool) -> None:
         self.path, self._plan = path, plan
         self.columns = ["row", *plan.names, "failure", *plan.measures, "fingerprint"]
+        for name in self.columns:
+            if self.columns.count(name) > 1:
+                raise InputError(
+                    f"the table would have two columns '{name}'; give an axis or a measure another "
+                    "name"
+                )
         self._where = np.full((len(plan), 2), -1, dtype=np.int64)  # begin and length of each
+        self.whole = ("row", *plan.whole)
         self._head = _line(self.columns)
         check_writable(path)
         if path.exists() and path.stat().st_size > 0 and not resume:
@@ -201,84 +203,6 @@ def fingerprint(plan: AnyPlan, row: int) -> str:
         return plan.spec(row).fingerprint()
     except QuadcoreError as error:
         return digest(str(error).encode())
-
-
-def table(rows: Rows) -> Dict[str, np.ndarray]:
-    """Hold all rows that are there, by column: numbers where all are numbers, else texts."""
-    texts = _texts(rows)
-    columns: Dict[str, Any] = {
-        name: [] if name in texts else array.array("Q" if name in _WHOLE else "d")
-        for name in rows.columns
-    }
-    for row in rows.read():
-        for name, value in row.items():
-            columns[name].append(_made(name, value, texts))
-    return {name: np.array(values) for name, values in columns.items()}
-
-
-def write_parquet(rows: Rows, path: Path) -> None:
-    """Write the rows that are there as Parquet, whole or not at all, few of them held at a time.
-
-    Raises
-    ------
-    InputError
-        There is no pyarrow, or the file cannot be written.
-    """
-    from ..extras import needed
-
-    with needed("Parquet", "pyarrow", "sweep"):
-        import pyarrow as arrow
-        from pyarrow import parquet
-
-    texts = _texts(rows)
-    kinds = {name: arrow.float64() for name in rows.columns}
-    kinds.update(dict.fromkeys(texts, arrow.string()))
-    kinds.update((name, arrow.uint64()) for name in _WHOLE if name in kinds)
-    schema = arrow.schema(list(kinds.items()))
-    with atomic_write(path) as stream, parquet.ParquetWriter(stream, schema) as writer:
-        for several in _pieces(rows.read()):
-            arrays = []
-            for name, kind in kinds.items():
-                made = [_made(name, row[name], texts) for row in several]
-                arrays.append(arrow.array(made, kind))
-            writer.write_table(arrow.Table.from_arrays(arrays, schema=schema))
-
-
-def _texts(rows: Rows) -> List[str]:
-    """Columns that hold more than numbers."""
-    found = list(_TEXTS)
-    for row in rows.read():
-        found += [
-            name
-            for name, value in row.items()
-            if name not in found and value and parse_number(value) is None and not _is_inf(value)
-        ]
-    return found
-
-
-def _pieces(rows: Iterator[Dict[str, str]]) -> Iterator[List[Dict[str, str]]]:
-    piece: List[Dict[str, str]] = []
-    for row in rows:
-        piece.append(row)
-        if len(piece) == _MANY:
-            yield piece
-            piece = []
-    if piece:
-        yield piece
-
-
-def _made(name: str, text: str, texts: Collection[str]) -> Any:
-    if name in texts:
-        return sys.intern(text)
-    return int(text) if name in _WHOLE else _value(text)
-
-
-def _value(text: str) -> float:
-    return float(text) if text else float("nan")
-
-
-def _is_inf(text: str) -> bool:
-    return text in ("inf", "-inf")
 
 
 def _line(cells: Sequence[Any]) -> bytes:

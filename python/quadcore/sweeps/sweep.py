@@ -24,14 +24,16 @@ from .. import interrupts
 from .._core import InputError
 from ..commands import CommandsLike
 from ..files import make_folder
+from ..simulation import whole
 from ..study import arguments
 from .dask import cluster
 from .design import Design
 from .places import fly_here, fly_over
 from .plan import AnyPlan, Calls, Plan
-from .rows import Rows, table, write_parquet
+from .rows import Rows
 from .sensitivity import sensitivities
 from .spec import Row
+from .table import table, write_parquet
 
 if TYPE_CHECKING:
     import concurrent.futures
@@ -44,7 +46,13 @@ PARQUET = "table.parquet"
 _KINDS = {
     "engines": arguments.NAMES,
     "models": arguments.NAMES,
-    "vary": arguments.or_none(arguments.NAMED),
+    "vary": arguments.or_none(arguments.VALUES),
+    "points": arguments.or_none(arguments.NAME),
+    "design": arguments.NAME,
+    "measures": arguments.NAMES,
+    "out": arguments.or_none(arguments.NAME),
+    "executor": arguments.or_none((lambda value: hasattr(value, "submit"), "what has submit()")),
+    "dask": arguments.or_none((lambda value: isinstance(value, str), "tcp://HOST:PORT")),
     "samples": arguments.or_none(arguments.COUNT),
     "seeds": arguments.COUNT,
     "duration": arguments.SECONDS,
@@ -73,7 +81,7 @@ def sweep(
     *,
     commands: Optional[CommandsLike] = None,
     function: Optional[Callable[[Dict[str, Any]], Any]] = None,
-    measures: Sequence[str] = ("value",),
+    measures: Union[str, Sequence[str]] = "value",
     points: Optional[Union[str, Path]] = None,
     design: str = "latin",
     samples: Optional[int] = None,
@@ -150,10 +158,12 @@ def sweep(
     """
     given = dict(locals())
     arguments.check({**{name: given[name] for name in _KINDS}, **options}, _KINDS)
-    made = Design(vary or {}, points, design, samples, int(options.get("seed", 0)))
+    made = Design(vary or {}, points, design, samples, whole(options.get("seed", 0)))
     plan: AnyPlan
     if function is not None:
-        plan = Calls(made, function, measures, time_limit)
+        if (controllers, references, commands) != (None, None, None):
+            raise InputError("a function is called in the place of flights; give it, or these")
+        plan = Calls(made, function, arguments.several(measures), time_limit)
     else:
         plan = Plan(
             made,
