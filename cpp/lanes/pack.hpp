@@ -23,13 +23,11 @@ template <int W>
 struct PackOf {
   typedef double Numbers __attribute__((vector_size(8 * W)));
   typedef std::int64_t Bits __attribute__((vector_size(8 * W)));
-  typedef double InMemory __attribute__((vector_size(8 * W), aligned(8), may_alias));
 };
 template <>
 struct PackOf<1> {
   using Numbers = double;
   using Bits = std::int64_t;
-  using InMemory = double;
 };
 /// W doubles; one is a plain double.
 template <int W>
@@ -39,17 +37,17 @@ using Pack = typename PackOf<W>::Numbers;
 template <class T>
 using BitsOf = typename PackOf<sizeof(T) / sizeof(double)>::Bits;
 
-template <class T>
-using InMemory = typename PackOf<sizeof(T) / sizeof(double)>::InMemory;
-
+/// From memory of any alignment. Through a type of a lower one GCC 10 reads as if it had that of T.
 template <class T>
 QUADCORE_LAW T load(const double* from) {
-  return *reinterpret_cast<const InMemory<T>*>(from);
+  T pack;
+  __builtin_memcpy(&pack, from, sizeof pack);
+  return pack;
 }
 
 template <class T>
 QUADCORE_LAW void store(double* to, T pack) {
-  *reinterpret_cast<InMemory<T>*>(to) = pack;
+  __builtin_memcpy(to, &pack, sizeof pack);
 }
 
 template <class T>
