@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "ode_math.hpp"
+
 namespace quadcore {
 namespace {
 
@@ -30,6 +32,17 @@ void save_velocity(dBodyID body, double* to) {
 void restore_velocity(dBodyID body, const double* from) {
   dBodySetLinearVel(body, from[0], from[1], from[2]);
   dBodySetAngularVel(body, from[3], from[4], from[5]);
+}
+
+void move_pose(dBodyID body, const Vector3d& v_W, const Vector3d& w_W, double dt) {
+  const Vector3d p_W = vec(dBodyGetPosition(body)) + dt * v_W;
+  const Vector3d half_turn = dt / 2 * w_W;
+  const dReal* old = dBodyGetQuaternion(body);
+  const Quaterniond q(old[0], old[1], old[2], old[3]);
+  const Quaterniond dq = Quaterniond(0, half_turn.x(), half_turn.y(), half_turn.z()) * q;
+  const dQuaternion next = {q.w() + dq.w(), q.x() + dq.x(), q.y() + dq.y(), q.z() + dq.z()};
+  dBodySetPosition(body, p_W.x(), p_W.y(), p_W.z());
+  dBodySetQuaternion(body, next);
 }
 
 void forget_forces(dBodyID body) {

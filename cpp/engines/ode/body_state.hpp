@@ -2,6 +2,8 @@
 
 #include <ode/ode.h>
 
+#include "quadcore/spatial.hpp"
+
 namespace quadcore {
 
 /// Numbers of a body's pose in ODE: position 3, quaternion 4, rotation matrix 3 x 4.
@@ -18,6 +20,10 @@ void restore_pose(dBodyID body, const double* from);
 void save_velocity(dBodyID body, double* to);
 void restore_velocity(dBodyID body, const double* from);
 /// @}
+
+/// Moves a body's pose as ODE's step does: position + dt v, and the quaternion of the body, q, to
+/// q + dt/2 w q, normalised.
+void move_pose(dBodyID body, const Vector3d& v_W, const Vector3d& w_W, double dt);
 
 /// Drops the forces and torques added since the last step, as a step does; one that failed did not.
 void forget_forces(dBodyID body);

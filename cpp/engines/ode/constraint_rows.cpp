@@ -11,6 +11,14 @@ constexpr std::size_t rows_per_contact = 3;  // normal, and friction in two dire
 
 }  // namespace
 
+HingePlace::HingePlace(const Hinge& hinge, const Vector3d& p_WC, const Matrix3d& R_WC,
+                       const Vector3d& p_WP, const Matrix3d& R_WP)
+    : anchor_C_W(R_WC * hinge.anchor_C),
+      anchor_P_W(R_WP * hinge.anchor_P),
+      axis_W(R_WC * hinge.axis_C),
+      gap_W(anchor_P_W + p_WP - anchor_C_W - p_WC),
+      tilt_W(axis_W.cross(R_WP * hinge.axis_P)) {}
+
 ConstraintRows::ConstraintRows(const std::vector<dBodyID>& bodies, std::vector<Hinge> hinges,
                                const std::vector<std::size_t>& order, const Options& options)
     : bodies_(bodies),
@@ -65,8 +73,8 @@ void ConstraintRows::visit(std::size_t body, const std::vector<Contact>& contact
 void ConstraintRows::add_hinge(std::size_t index, double dt) {
   const Hinge& hinge = hinges_[index];
   const dBodyID child = bodies_[hinge.child], parent = bodies_[hinge.parent];
-  const Matrix3d R_WC = rotation(dBodyGetRotation(child));
-  const Matrix3d R_WP = rotation(dBodyGetRotation(parent));
+  const HingePlace place(hinge, vec(dBodyGetPosition(child)), rotation(dBodyGetRotation(child)),
+                         vec(dBodyGetPosition(parent)), rotation(dBodyGetRotation(parent)));
   const double rate = options_.erp / dt;
   ConstraintRow row;
   row.body[0] = static_cast<int>(hinge.child);
@@ -78,30 +86,25 @@ void ConstraintRows::add_hinge(std::size_t index, double dt) {
   row.hinge = static_cast<int>(index);
 
   // The anchors coincide.
-  const Vector3d a_C_W = R_WC * hinge.anchor_C, a_P_W = R_WP * hinge.anchor_P;
-  const Vector3d gap_W =
-      a_P_W + vec(dBodyGetPosition(parent)) - a_C_W - vec(dBodyGetPosition(child));
   for (int j = 0; j < 3; ++j) {
     const Vector3d along_W = Vector3d::Unit(j);
-    row.J[0] << along_W, a_C_W.cross(along_W);
-    row.J[1] << -along_W, -a_P_W.cross(along_W);
-    row.correction = rate * gap_W[j];
+    row.J[0] << along_W, place.anchor_C_W.cross(along_W);
+    row.J[1] << -along_W, -place.anchor_P_W.cross(along_W);
+    row.correction = rate * place.gap_W[j];
     row.hinge_row = j;
     rows_.push_back(row);
   }
   // The axes are parallel.
-  const Vector3d axis_W = R_WC * hinge.axis_C;
-  const Vector3d tilt_W = axis_W.cross(R_WP * hinge.axis_P);
-  for (const Vector3d& across_W : plane_space(axis_W)) {
+  for (const Vector3d& across_W : plane_space(place.axis_W)) {
     row.J[0] << Vector3d::Zero(), across_W;
     row.J[1] = -row.J[0];
-    row.correction = rate * tilt_W.dot(across_W);
+    row.correction = rate * place.tilt_W.dot(across_W);
     ++row.hinge_row;
     rows_.push_back(row);
   }
   if (hinge.friction == 0 && hinge.implicit_damping == 0) return;
   // The joint stands still, as far as friction can hold it or damping is stiff.
-  row.J[0] << Vector3d::Zero(), axis_W;
+  row.J[0] << Vector3d::Zero(), place.axis_W;
   row.J[1] = -row.J[0];
   row.correction = 0;
   ++row.hinge_row;

@@ -17,6 +17,17 @@ struct Hinge {
   double implicit_damping = 0;  ///< about the axis [N m s/rad]
 };
 
+/// Where a hinge is; vectors in W.
+struct HingePlace {
+  Vector3d anchor_C_W, anchor_P_W;  ///< from each body's centre of mass [m]
+  Vector3d axis_W;                  ///< the child's
+  Vector3d gap_W;                   ///< the parent's anchor from the child's [m]
+  Vector3d tilt_W;                  ///< rotation that lays the child's axis on the parent's [rad]
+
+  HingePlace(const Hinge& hinge, const Vector3d& p_WC, const Matrix3d& R_WC, const Vector3d& p_WP,
+             const Matrix3d& R_WP);
+};
+
 /// How a shape and the ground feel each other.
 struct SurfacePair {
   double stiffness, damping;  ///< N/m, N s/m

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "body_state.hpp"
 #include "ode_math.hpp"
 #include "quadcore/random.hpp"
 
@@ -245,20 +246,10 @@ void GazeboStep::relax(std::size_t index, double smoothing) {
 void GazeboStep::move(double dt) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const dBodyID ode = ode_bodies_[i];
-    const Vector6& v = bodies_[i].velocity;
-    const Vector3d p_W = vec(dBodyGetPosition(ode)) + dt * bodies_[i].moving.head<3>();
-    // ODE's rotation step: q + dt/2 w q, normalised as it is set.
-    const Vector3d half_turn = dt / 2 * bodies_[i].moving.tail<3>();
-    const dReal* old = dBodyGetQuaternion(ode);
-    const Quaterniond q(old[0], old[1], old[2], old[3]);
-    const Quaterniond dq = Quaterniond(0, half_turn.x(), half_turn.y(), half_turn.z()) * q;
-    const dQuaternion next = {q.w() + dq.w(), q.x() + dq.x(), q.y() + dq.y(), q.z() + dq.z()};
-    dBodySetPosition(ode, p_W.x(), p_W.y(), p_W.z());
-    dBodySetQuaternion(ode, next);
-    dBodySetLinearVel(ode, v[0], v[1], v[2]);
-    dBodySetAngularVel(ode, v[3], v[4], v[5]);
-    dBodySetForce(ode, 0, 0, 0);
-    dBodySetTorque(ode, 0, 0, 0);
+    const Body& body = bodies_[i];
+    move_pose(ode, body.moving.head<3>(), body.moving.tail<3>(), dt);
+    restore_velocity(ode, body.velocity.data());
+    forget_forces(ode);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "articulated_step.hpp"
 #include "gazebo_step.hpp"
 #include "ground_contact.hpp"
 #include "gyroscopic.hpp"
@@ -26,7 +27,7 @@ extern const OdeRecipe gazebo11_recipe;
 /// The same world without Gazebo's faults.
 extern const OdeRecipe ode_recipe;
 
-/// Rigid bodies on hinges in upstream ODE.
+/// Rigid bodies on hinges in a world of upstream ODE.
 class OdeEngine final : public Engine {
  public:
   OdeEngine(const Model& model, const World& world, const OdeRecipe& recipe);
@@ -66,8 +67,9 @@ class OdeEngine final : public Engine {
   std::string method_;
   std::vector<std::string> warnings_;
   std::unique_ptr<OdeVehicle> vehicle_;
-  std::unique_ptr<GroundContact> ground_;  ///< null in a world without ground
-  int steps_since_contact_;                ///< counted no further than it matters
+  std::unique_ptr<GroundContact> ground_;              ///< null in a world without ground
+  int steps_since_contact_;                            ///< counted no further than it matters
+  std::unique_ptr<ArticulatedStep> articulated_step_;  ///< null where hinges have dry friction
   std::unique_ptr<GazeboStep> gazebo_step_;
   std::unique_ptr<GyroscopicVehicle> gyroscopic_;
   double gravity_z_ = 0;
