@@ -2,6 +2,7 @@
 
 #include "block.hpp"
 #include "lanes/four.hpp"
+#include "lanes/table.hpp"
 #include "lanes/turn.hpp"
 #include "laws/angles.hpp"
 #include "laws/rotor_forces.hpp"
@@ -9,39 +10,12 @@
 namespace quadcore::batch {
 
 using laws::Matrix3;
+using laws::Quaternion;
 using laws::Vec3;
 
 /// The numbers of some vehicles of a block, from one of them on.
 template <class T>
-struct Table {
-  const double* first;
-
-  QUADCORE_LAW T number(std::size_t row) const { return laws::load<T>(first + row * widest_lanes); }
-  QUADCORE_LAW Vec3<T> vector(std::size_t row) const {
-    return {number(row), number(row + 1), number(row + 2)};
-  }
-  QUADCORE_LAW Matrix3<T> matrix(std::size_t row) const {
-    return {number(row),     number(row + 3), number(row + 6), number(row + 1), number(row + 4),
-            number(row + 7), number(row + 2), number(row + 5), number(row + 8)};
-  }
-};
-
-/// A quaternion, or its rate.
-template <class T>
-struct Quaternion {
-  T x, y, z, w;
-};
-
-/// As laws::rotation().
-template <class T>
-QUADCORE_LAW Matrix3<T> rotation(const Quaternion<T>& q) {
-  const T x2 = q.x + q.x, y2 = q.y + q.y, z2 = q.z + q.z;
-  const T xx = x2 * q.x, yy = y2 * q.y, zz = z2 * q.z;
-  const T xy = x2 * q.y, yz = y2 * q.z, zx = z2 * q.x;
-  const T wx = q.w * x2, wy = q.w * y2, wz = q.w * z2;
-  return {1 - (yy + zz), xy - wz, zx + wy, xy + wz,      1 - (zz + xx),
-          yz - wx,       zx - wy, yz + wx, 1 - (xx + yy)};
-}
+using Table = laws::Table<T, widest_lanes>;
 
 /// As laws::quaternion_rate().
 template <class T>
@@ -49,13 +23,6 @@ QUADCORE_LAW Quaternion<T> quaternion_rate(const Quaternion<T>& q, const Vec3<T>
   const Vec3<T> h = 0.5 * w_F;
   return {q.w * h.x + (q.y * h.z - q.z * h.y), q.z * h.x + (q.w * h.y - q.x * h.z),
           (q.x * h.y + q.w * h.z) - q.y * h.x, -q.x * h.x - (q.y * h.y + q.z * h.z)};
-}
-
-/// The inverse rotation of a vector.
-template <class T>
-QUADCORE_LAW Vec3<T> inversely(const Matrix3<T>& R, const Vec3<T>& a) {
-  return {R.xx * a.x + (R.yx * a.y + R.zx * a.z), R.xy * a.x + (R.yy * a.y + R.zy * a.z),
-          R.xz * a.x + (R.yz * a.y + R.zz * a.z)};
 }
 
 /// The motion of the frames of a pack of vehicles.

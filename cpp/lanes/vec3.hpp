@@ -72,4 +72,23 @@ QUADCORE_LAW Vec3<T> operator*(const Matrix3<T>& R, const Vec3<T>& a) {
           R.zx * a.x + (R.zy * a.y + R.zz * a.z)};
 }
 
+/// The transpose of a matrix times a vector: the inverse rotation.
+template <class T>
+QUADCORE_LAW Vec3<T> inversely(const Matrix3<T>& R, const Vec3<T>& a) {
+  return {R.xx * a.x + (R.yx * a.y + R.zx * a.z), R.xy * a.x + (R.yy * a.y + R.zy * a.z),
+          R.xz * a.x + (R.yz * a.y + R.zz * a.z)};
+}
+
+/// A matrix that is its own transpose.
+template <class T>
+struct Symmetric3 {
+  T xx, xy, xz, yy, yz, zz;
+};
+
+template <class T>
+QUADCORE_LAW Vec3<T> operator*(const Symmetric3<T>& M, const Vec3<T>& a) {
+  return {M.xx * a.x + (M.xy * a.y + M.xz * a.z), M.xy * a.x + (M.yy * a.y + M.yz * a.z),
+          M.xz * a.x + (M.yz * a.y + M.zz * a.z)};
+}
+
 }  // namespace quadcore::laws

@@ -35,6 +35,19 @@ dGeomID create_shape(const Collision& collision) {
       "fly in empty.world");
 }
 
+/// Of a shape's points from its centre, or more.
+double radius(const Collision& collision) {
+  const Vector3d& size = collision.size;
+  switch (collision.kind) {
+    case ShapeKind::box:
+      return size.norm() / 2;
+    case ShapeKind::cylinder:
+      return size.x() + size.y() / 2;
+    default:
+      return size.x();
+  }
+}
+
 }  // namespace
 
 GroundContact::GroundContact(const Model& model, const std::vector<dBodyID>& bodies,
@@ -52,6 +65,7 @@ GroundContact::GroundContact(const Model& model, const std::vector<dBodyID>& bod
       const Vector3d p_cm = collision.pose.xyz - model.links[i].inertial.pose.xyz;
       const Quaterniond q = collision.pose.rotation();
       const dQuaternion ode_q = {q.w(), q.x(), q.y(), q.z()};
+      reaches_.push_back({i, p_cm.norm() + radius(collision)});
       dGeomSetBody(geom, bodies[i]);
       dGeomSetOffsetPosition(geom, p_cm.x(), p_cm.y(), p_cm.z());
       dGeomSetOffsetQuaternion(geom, ode_q);

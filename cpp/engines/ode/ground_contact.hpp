@@ -10,6 +10,12 @@
 
 namespace quadcore {
 
+/// How far the shapes of a body reach from its centre of mass [m], at most.
+struct Reach {
+  std::size_t body;
+  double length;
+};
+
 /// Finds where a vehicle's collision shapes touch the ground plane z = 0. Links of one model do not
 /// collide with each other.
 class GroundContact {
@@ -21,6 +27,9 @@ class GroundContact {
 
   /// As many contacts as there can be.
   std::size_t most() const { return contacts_.capacity(); }
+
+  /// Of each shape.
+  const std::vector<Reach>& reaches() const { return reaches_; }
 
   /// The contacts of the present poses, at most ten for each shape.
   const std::vector<Contact>& find();
@@ -46,6 +55,7 @@ class GroundContact {
   const std::vector<dBodyID>& bodies_;
   Geom plane_;
   std::vector<Shape> shapes_;
+  std::vector<Reach> reaches_;
   std::vector<Contact> contacts_;
 };
 

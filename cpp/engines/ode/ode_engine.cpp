@@ -32,6 +32,7 @@ constexpr std::uint64_t tried_attitudes = 8;
 OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& recipe)
     : model_(recipe.like_gazebo ? converted_to_sdf(model) : model),
       recipe_(recipe),
+      hinged_(model_, world),
       steps_since_contact_(steps_beside_contact),
       kinematics_(model.joints.size(), true),
       loads_(model.joints.size()) {
@@ -52,14 +53,11 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
                           world.solver_sor,
                           world.gravity_W,
                           {world.erp, world.cfm, recipe.like_gazebo ? max_correction : dInfinity}});
-  if (std::all_of(hinges.begin(), hinges.end(), [](const Hinge& h) { return h.friction == 0; })) {
-    articulated_step_ = std::make_unique<ArticulatedStep>(
-        bodies, hinges, ArticulatedStep::Options{world.gravity_W, world.erp, world.cfm});
-  }
+  for (const Hinge& hinge : hinges) rubs_ |= hinge.friction > 0;
   if (world.ground_plane) {
     ground_ = std::make_unique<GroundContact>(model_, bodies, max_correction);
     gazebo_step_->reserve(ground_->most());
-    vehicle_->report_hinge_forces();
+    if (rubs_) vehicle_->report_hinge_forces();
   }
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     kinematics_.rotors.set_matrix(MotionRow::R_FR_at_zero, i,
@@ -90,6 +88,8 @@ void OdeEngine::choose_method(const World& world) {
   }
   if (ground_) method << "; on the ground " << world.solver_iterations << " of Gazebo's sweeps";
   method_ = method.str();
+  may_float_ = recipe_.like_gazebo && !iterate_ && !rubs_;
+  for (const Link& link : model_.links) may_float_ &= link.tags.damping_factor == 0;
   if (ground_ && !quick) {
     warnings_.push_back(world.solver_type_where +
                         ": on the ground the solver type world is flown as quick; Gazebo's ends in "
@@ -124,11 +124,41 @@ void OdeEngine::take_threading() {
 }
 
 void OdeEngine::step(double time, double dt, const ForceField& forces) {
-  start_ode();
   kinematics_.time = time;
   loads_.clear();
   forces.evaluate(kinematics_, loads_);
   if (!loads_.all_finite()) forces.refuse(kinematics_, loads_);  // ODE ends the process for less
+  if (is_afloat(dt)) {
+    behind_ = true;
+    hinged_.push(loads_);
+    hinged_.advance(dt, true);
+  } else {
+    step_in_ode(dt);
+  }
+  hinged_.show(kinematics_);
+}
+
+/// Whether nothing in this step needs the bodies in ODE.
+bool OdeEngine::is_afloat(double dt) const {
+  if (!may_float_ || loads_.any_rate()) return false;
+  if (!ground_) return true;
+  if (steps_since_contact_ < steps_beside_contact) return false;
+  return std::all_of(ground_->reaches().begin(), ground_->reaches().end(), [&](const Reach& reach) {
+    return hinged_.is_high(reach.body, reach.length, steps_beside_contact * dt, gravity_z_);
+  });
+}
+
+/// Lets the bodies in ODE catch up.
+void OdeEngine::settle() const {
+  if (!behind_) return;
+  hinged_.give(vehicle_->bodies());
+  if (ground_) remember_hinge_forces();
+  behind_ = false;
+}
+
+void OdeEngine::step_in_ode(double dt) {
+  start_ode();
+  settle();
   vehicle_->apply(loads_, kinematics_, dt);
   if (loads_.any_rate()) {
     if (recipe_.like_gazebo) {
@@ -147,7 +177,7 @@ void OdeEngine::step(double time, double dt, const ForceField& forces) {
     if (ground_) remember_hinge_forces();
   }
   vehicle_->damp();
-  vehicle_->show(kinematics_);
+  hinged_.take(vehicle_->bodies());
 }
 
 /// Whether this step is one on the ground or, as Gazebo's sweeps go, beside one.
@@ -162,7 +192,13 @@ bool OdeEngine::is_near_contact(double dt, bool touching) {
 /// A step in flight. Where ODE gives up (see start_ode), it leaves the step half done: jobs and
 /// memory.
 void OdeEngine::solve(double dt) {
-  if (articulated_step_) return articulated_step_->step(dt);
+  if (!rubs_) {
+    const std::vector<dBodyID>& bodies = vehicle_->bodies();
+    hinged_.take(bodies);  // whose rates may have been prescribed
+    hinged_.take_forces(bodies);
+    hinged_.advance(dt, false);
+    return hinged_.give(bodies);
+  }
   try {
     dWorldStep(world_.get(), dt);
   } catch (...) {
@@ -174,12 +210,19 @@ void OdeEngine::solve(double dt) {
 }
 
 /// A step with contacts starts from the hinge forces of the step before.
-void OdeEngine::remember_hinge_forces() {
+void OdeEngine::remember_hinge_forces() const {
   for (std::size_t i = 0; i < vehicle_->hinges(); ++i) {
     const GazeboStep::Multipliers multipliers =
-        articulated_step_ ? articulated_step_->multipliers(i) : vehicle_->multipliers(i);
+        rubs_ ? vehicle_->multipliers(i) : hinged_.multipliers(i);
     gazebo_step_->warm_start[i] = {multipliers, multipliers};
   }
+}
+
+/// Shows the motion of the bodies in ODE.
+void OdeEngine::show() {
+  behind_ = false;
+  hinged_.take(vehicle_->bodies());
+  hinged_.show(kinematics_);
 }
 
 void OdeEngine::get_state(VehicleState& state) const {
@@ -199,7 +242,7 @@ void OdeEngine::set_state(const VehicleState& state) {
   std::fill(gazebo_step_->warm_start.begin(), gazebo_step_->warm_start.end(),
             GazeboStep::WarmStart{});
   steps_since_contact_ = steps_beside_contact;
-  vehicle_->show(kinematics_);
+  show();
 }
 
 std::size_t OdeEngine::saved_size() const {
@@ -208,6 +251,7 @@ std::size_t OdeEngine::saved_size() const {
 }
 
 std::vector<double> OdeEngine::save() const {
+  settle();
   std::vector<double> saved(saved_size());
   double* to = saved.data();
   for (const dBodyID body : vehicle_->bodies()) {
@@ -241,7 +285,7 @@ void OdeEngine::restore(const std::vector<double>& saved) {
   }
   steps_since_contact_ =
       *from >= 0 && *from < steps_beside_contact ? static_cast<int>(*from) : steps_beside_contact;
-  vehicle_->show(kinematics_);
+  show();
 }
 
 }  // namespace quadcore

@@ -5,10 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include "articulated_step.hpp"
 #include "gazebo_step.hpp"
 #include "ground_contact.hpp"
 #include "gyroscopic.hpp"
+#include "hinged_vehicle.hpp"
 #include "ode_vehicle.hpp"
 #include "quadcore/engine.hpp"
 
@@ -53,9 +53,13 @@ class OdeEngine final : public Engine {
   void choose_method(const World& world);
   double remaining_error(double dt);
   void take_threading();
+  bool is_afloat(double dt) const;
+  void settle() const;
+  void step_in_ode(double dt);
   void solve(double dt);
   bool is_near_contact(double dt, bool touching);
-  void remember_hinge_forces();
+  void remember_hinge_forces() const;
+  void show();
   std::size_t saved_size() const;
 
   Model model_;
@@ -67,9 +71,12 @@ class OdeEngine final : public Engine {
   std::string method_;
   std::vector<std::string> warnings_;
   std::unique_ptr<OdeVehicle> vehicle_;
-  std::unique_ptr<GroundContact> ground_;              ///< null in a world without ground
-  int steps_since_contact_;                            ///< counted no further than it matters
-  std::unique_ptr<ArticulatedStep> articulated_step_;  ///< null where hinges have dry friction
+  bool rubs_ = false;         ///< some hinge has dry friction, whose bounds are inequalities
+  bool may_float_ = false;    ///< what acts in flight is known to `hinged_` as well
+  HingedVehicle hinged_;      ///< moves as the bodies in ODE, or before them
+  mutable bool behind_ = false;  ///< the bodies in ODE are
+  std::unique_ptr<GroundContact> ground_;  ///< null in a world without ground
+  int steps_since_contact_;                ///< counted no further than it matters
   std::unique_ptr<GazeboStep> gazebo_step_;
   std::unique_ptr<GyroscopicVehicle> gyroscopic_;
   double gravity_z_ = 0;

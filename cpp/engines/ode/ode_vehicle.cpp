@@ -11,7 +11,7 @@ double implicit_damping(const Joint& joint) { return joint.implicit_damping ? jo
 }  // namespace
 
 OdeVehicle::OdeVehicle(const Model& model, dWorldID world)
-    : model_(model), mass_(mass_properties(model).mass) {
+    : model_(model) {
   create_bodies(world);
   create_hinges(world);
 }
@@ -194,46 +194,6 @@ void OdeVehicle::damp() {
     dBodySetLinearVel(bodies_[i], keep_v * v.x(), keep_v * v.y(), keep_v * v.z());
     dBodySetAngularVel(bodies_[i], keep_w * w.x(), keep_w * w.y(), keep_w * w.z());
   }
-}
-
-void OdeVehicle::show(Kinematics& k) const {
-  const Vector3d& p_FFcm_F = model_.links[0].inertial.pose.xyz;
-  const dReal* q = dBodyGetQuaternion(bodies_[0]);
-  k.q_WF = Quaterniond(q[0], q[1], q[2], q[3]);
-  k.R_WF = rotation(dBodyGetRotation(bodies_[0]));
-  const Matrix3d R_FW = k.R_WF.transpose();
-  k.w_WF_F = R_FW * vec(dBodyGetAngularVel(bodies_[0]));
-  const Vector3d v_WFcm_F = R_FW * vec(dBodyGetLinearVel(bodies_[0]));
-  k.v_WF_F = v_WFcm_F - k.w_WF_F.cross(p_FFcm_F);
-  k.p_WF = vec(dBodyGetPosition(bodies_[0])) - k.R_WF * p_FFcm_F;
-  k.p_FCcm_F = model_.links[0].inertial.mass * p_FFcm_F;
-  k.v_WCcm_F = model_.links[0].inertial.mass * v_WFcm_F;
-  for (std::size_t i = 0; i < hinges_.size(); ++i) {
-    const Joint& joint = model_.joints[i];
-    const dBodyID body = bodies_[i + 1];
-    const Inertial& inertial = model_.links[i + 1].inertial;
-    const Matrix3d R_FR = R_FW * rotation(dBodyGetRotation(body));
-    const Vector3d w_WR_F = R_FW * vec(dBodyGetAngularVel(body));
-    Vector3d w_WP_F = k.w_WF_F;
-    if (joint.parent != 0) {  // the carrier turns as well
-      w_WP_F = R_FW * vec(dBodyGetAngularVel(bodies_[joint.parent]));
-      k.rotors.set_matrix(MotionRow::R_FR_at_zero, i,
-                          k.R_FR(joint.parent - 1) * joint.pose.rotation().toRotationMatrix());
-    }
-    RotorKinematics rotor;
-    rotor.axis_F = R_FR * joint.axis;
-    rotor.normal_F = R_FR.col(2);
-    rotor.p_FRcm_F = R_FW * (vec(dBodyGetPosition(body)) - k.p_WF);
-    rotor.v_WRcm_F = R_FW * vec(dBodyGetLinearVel(body));
-    rotor.v_WR_F = rotor.v_WRcm_F - w_WR_F.cross(R_FR * inertial.pose.xyz);
-    rotor.rate = rotor.axis_F.dot(w_WR_F - w_WP_F);
-    k.rotors.set(i, rotor);
-    k.rotors.set_matrix(MotionRow::R_FR, i, R_FR);
-    k.p_FCcm_F += inertial.mass * rotor.p_FRcm_F;
-    k.v_WCcm_F += inertial.mass * rotor.v_WRcm_F;
-  }
-  k.p_FCcm_F /= mass_;
-  k.v_WCcm_F /= mass_;
 }
 
 }  // namespace quadcore

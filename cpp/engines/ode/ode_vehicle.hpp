@@ -39,8 +39,6 @@ class OdeVehicle {
   void turn_like_gazebo(const Loads& loads);
   /// <dampingFactor>: ODE's damping of bodies, after the poses have moved.
   void damp();
-  /// Writes how the vehicle moves.
-  void show(Kinematics& kinematics) const;
 
   /// ODE's direct solver is to report the forces of the hinges.
   void report_hinge_forces();
@@ -54,7 +52,6 @@ class OdeVehicle {
              const Vector3d& w_WL_W);
 
   const Model& model_;
-  const double mass_;
   std::vector<dBodyID> bodies_;
   std::vector<dJointID> hinges_;
   std::vector<dJointFeedback> feedback_;

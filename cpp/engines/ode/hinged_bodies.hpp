@@ -1,0 +1,284 @@
+#pragma once
+
+#include "hinged_tree.hpp"
+#include "lanes/table.hpp"
+#include "laws/articulated.hpp"
+
+namespace quadcore {
+
+using laws::Matrix3;
+using laws::Spatial;
+using laws::Vec3;
+
+/// What a step finds out of a body, on the way. Vectors are in W. O is where the frame's centre of
+/// mass is, and other places follow from the arms of the hinges: as in ODE's rows, no gap of a
+/// hinge lengthens them.
+template <class T>
+struct BodyWork {
+  Matrix3<T> R_WB;
+  Vec3<T> p_OBcm_W;
+  Spatial<T> force;  ///< without gravity; about the centre of mass
+  laws::Symmetric3<T> I_Bcm_W;
+  laws::SpatialInertia<T> carried;  ///< by hinges, as the body feels it
+  Spatial<T> borne;                 ///< force by what it carries, at O
+  Spatial<T> acceleration;          ///< at O
+  // Of the hinge:
+  Vec3<T> axis_W, p_OA_W;
+  Spatial<T> wanted;  ///< acceleration beyond the carrier's that the rows ask for
+  laws::Freedom<T> turn;
+};
+
+/// The rows of a hinge that give way: three of the anchor, two of the axis.
+template <class T>
+struct SoftRows {
+  laws::Freedom<T> rows[5];
+};
+
+/// A step as ODE's direct solver (dWorldStep) takes it, in time linear in the number of bodies. ODE
+/// asks of the accelerations a and the multipliers l
+///   M a = f + J^T l,   J a + (cfm/dt) l = (ERP/dt error - J v)/dt,
+/// and moves with the velocities at the end of the step. On hinges that form a tree, a child's
+/// acceleration is its carrier's, and what its hinge's rows ask for beyond that, and some turn
+/// about the axis, which no row resists. Each child, from the leaves on, hands its carrier the
+/// inertia and the force of which that turn is eliminated (cpp/laws/articulated.hpp), instead of
+/// all multipliers being solved for at once. Where cfm lets the rows give way, each of them is
+/// eliminated as a turn is.
+template <class T, std::size_t stride>
+class HingedBodies {
+ public:
+  using Table = laws::Table<T, stride>;
+
+  /// Tables of BodyConstant and BodyRow, and room for each body, for its hinge's rows only if these
+  /// give way.
+  QUADCORE_LAW HingedBodies(const HingedTree& tree, const double* constants, double* state,
+                            BodyWork<T>* work, SoftRows<T>* soft)
+      : tree_(tree), constants_(constants), state_(state), work_(work), soft_(soft) {}
+
+  QUADCORE_LAW std::size_t size() const { return tree_.bodies; }
+  QUADCORE_LAW Table constants(std::size_t body) const {
+    return {constants_ + body * BodyConstant::count * stride};
+  }
+  QUADCORE_LAW Table state(std::size_t body) const {
+    return {state_ + body * BodyRow::count * stride};
+  }
+  QUADCORE_LAW BodyWork<T>& work(std::size_t body) const { return work_[body]; }
+  QUADCORE_LAW std::size_t carrier(std::size_t body) const { return tree_.carriers[body]; }
+
+  /// Finds how the bodies stand.
+  QUADCORE_LAW void read() {
+    for (std::size_t i = 0; i < size(); ++i) {
+      BodyWork<T>& body = work(i);
+      const Table state = this->state(i);
+      body.R_WB = laws::rotation(laws::Quaternion<T>{
+          state.number(BodyRow::orientation), state.number(BodyRow::orientation + 1),
+          state.number(BodyRow::orientation + 2), state.number(BodyRow::orientation + 3)});
+      if (i > 0) body.axis_W = body.R_WB * constants(i).vector(BodyConstant::axis_C);
+    }
+  }
+
+  /// Takes the forces off the bodies.
+  QUADCORE_LAW void clear_forces() {
+    for (std::size_t i = 0; i < size(); ++i) {
+      work(i).force = none();
+      if (!tree_.carries[i]) continue;
+      work(i).carried = {};
+      work(i).borne = none();
+    }
+  }
+
+  /// The torque -w x (I w) of each body with its own rate: see add_gyroscopic_per_body().
+  QUADCORE_LAW void turn_inertias(bool gyroscopic) {
+    for (std::size_t i = 0; i < size(); ++i) {
+      BodyWork<T>& body = work(i);
+      body.I_Bcm_W = turned(body.R_WB, constants(i).symmetric(BodyConstant::inertia));
+      if (!gyroscopic) continue;
+      const Vec3<T> w_W = state(i).vector(BodyRow::rate);
+      body.force.angular = body.force.angular - laws::cross(w_W, body.I_Bcm_W * w_W);
+    }
+  }
+
+  /// Advances by dt under the forces that have been added.
+  QUADCORE_LAW void advance(double dt) {
+    work(0).p_OBcm_W = {T{}, T{}, T{}};
+    for (std::size_t i = 1; i < size(); ++i) read_hinge(i, dt);
+    for (std::size_t i = size(); i-- > 1;) eliminate(i, dt);
+    work(0).acceleration = laws::solve(felt(0), at_O(0));
+    move(0, dt);
+    for (std::size_t i = 1; i < size(); ++i) {
+      accelerate(i);
+      move(i, dt);
+    }
+  }
+
+  /// Of the hinge of a body, about its axis [rad/s].
+  QUADCORE_LAW T joint_rate(std::size_t i) const {
+    return laws::dot(work(i).axis_W,
+                     state(i).vector(BodyRow::rate) - state(carrier(i)).vector(BodyRow::rate));
+  }
+
+  /// What the hinge of a body has exerted on it and on what it carries, at O, in the last step.
+  QUADCORE_LAW Spatial<T> load_of_hinge(std::size_t i) const {
+    const Spatial<T>& a = work(i).acceleration;
+    Spatial<T> load = body_load(i, a) - at_O(i);
+    if (tree_.carries[i]) load = load + work(i).carried * a;
+    return load;
+  }
+
+ private:
+  QUADCORE_LAW static Spatial<T> none() {
+    return {Vec3<T>{T{}, T{}, T{}}, Vec3<T>{T{}, T{}, T{}}};
+  }
+
+  /// R I R^T
+  QUADCORE_LAW static laws::Symmetric3<T> turned(const Matrix3<T>& R,
+                                                 const laws::Symmetric3<T>& I) {
+    const Vec3<T> x{R.xx, R.xy, R.xz}, y{R.yx, R.yy, R.yz}, z{R.zx, R.zy, R.zz};
+    const Vec3<T> I_x = I * x, I_y = I * y, I_z = I * z;
+    return {laws::dot(x, I_x), laws::dot(x, I_y), laws::dot(x, I_z),
+            laws::dot(y, I_y), laws::dot(y, I_z), laws::dot(z, I_z)};
+  }
+
+  QUADCORE_LAW void read_hinge(std::size_t i, double dt) {
+    const Table at = constants(i), child = state(i), parent = state(carrier(i));
+    BodyWork<T>& body = work(i);
+    const BodyWork<T>& of_parent = work(carrier(i));
+    const Vec3<T> anchor_C_W = body.R_WB * at.vector(BodyConstant::origin);
+    const Vec3<T> anchor_P_W = of_parent.R_WB * at.vector(BodyConstant::anchor_P);
+    body.p_OA_W = of_parent.p_OBcm_W + anchor_P_W;
+    body.p_OBcm_W = body.p_OA_W - anchor_C_W;
+    // The rows: anchors coincide, axes are parallel.
+    const Vec3<T> gap_W = (anchor_P_W + parent.vector(BodyRow::position)) -
+                          (anchor_C_W + child.vector(BodyRow::position));
+    const Vec3<T> tilt_W =
+        laws::cross(body.axis_W, of_parent.R_WB * at.vector(BodyConstant::axis_P));
+    const Vec3<T> w_WC_W = child.vector(BodyRow::rate), w_WP_W = parent.vector(BodyRow::rate);
+    const Vec3<T> slip_W = (child.vector(BodyRow::velocity) + laws::cross(w_WC_W, anchor_C_W)) -
+                           (parent.vector(BodyRow::velocity) + laws::cross(w_WP_W, anchor_P_W));
+    const Vec3<T> turn_W = w_WC_W - w_WP_W;
+    const Vec3<T> bent_W = turn_W - laws::dot(body.axis_W, turn_W) * body.axis_W;
+    const double per_step = 1 / dt, rate = tree_.erp / dt;
+    body.wanted.angular = per_step * (rate * tilt_W - bent_W);
+    body.wanted.linear =
+        per_step * (rate * gap_W - slip_W) + laws::cross(body.p_OA_W, body.wanted.angular);
+  }
+
+  /// Forces on a body itself and by what it carries, at O.
+  QUADCORE_LAW Spatial<T> at_O(std::size_t i) const {
+    const BodyWork<T>& body = work(i);
+    const T weight = constants(i).number(BodyConstant::weight);
+    const double* g_W = tree_.gravity_W;
+    const Vec3<T> f_W =
+        body.force.linear + Vec3<T>{weight * g_W[0], weight * g_W[1], weight * g_W[2]};
+    const Spatial<T> sum{f_W, body.force.angular + laws::cross(body.p_OBcm_W, f_W)};
+    return tree_.carries[i] ? sum + body.borne : sum;
+  }
+
+  QUADCORE_LAW Spatial<T> body_load(std::size_t i, const Spatial<T>& a) const {
+    return laws::body_load(constants(i).number(BodyConstant::mass), work(i).p_OBcm_W,
+                           work(i).I_Bcm_W, a);
+  }
+
+  QUADCORE_LAW laws::SpatialInertia<T> felt(std::size_t i) const {
+    laws::SpatialInertia<T> sum = laws::body_inertia(constants(i).number(BodyConstant::mass),
+                                                     work(i).p_OBcm_W, work(i).I_Bcm_W);
+    if (tree_.carries[i]) laws::add(sum, work(i).carried);
+    return sum;
+  }
+
+  QUADCORE_LAW void eliminate(std::size_t i, double dt) {
+    BodyWork<T>& body = work(i);
+    laws::SpatialInertia<T> felt = this->felt(i);
+    Spatial<T> force = at_O(i);
+    const Spatial<T> turn{laws::cross(body.p_OA_W, body.axis_W), body.axis_W};
+    Spatial<T> load = body_load(i, turn);
+    if (tree_.carries[i]) load = load + body.carried * turn;
+    if (tree_.brakes[i]) {
+      // At the end of the step, rate + torque of the hinge/damping = 0.
+      const T softness = 1 / (dt * constants(i).number(BodyConstant::implicit_damping));
+      body.turn = laws::soft_to(turn, load, force, -joint_rate(i) / dt, softness);
+    } else {
+      body.turn = laws::free_to(turn, load, force);
+    }
+    laws::eliminate(body.turn, felt, force);
+    if (soft_) {
+      eliminate_rows(i, dt, felt, force);
+    } else {
+      force = force - felt * body.wanted;
+    }
+    BodyWork<T>& parent = work(carrier(i));
+    laws::add(parent.carried, felt);
+    parent.borne = parent.borne + force;
+  }
+
+  QUADCORE_LAW void eliminate_rows(std::size_t i, double dt, laws::SpatialInertia<T>& felt,
+                                   Spatial<T>& force) {
+    const BodyWork<T>& body = work(i);
+    const T none{}, one = none + 1, softness = none + tree_.cfm / dt;
+    const Vec3<T>& bent_W = body.wanted.angular;
+    const Vec3<T> slipped_W = body.wanted.linear - laws::cross(body.p_OA_W, bent_W);
+    laws::Freedom<T>* row = soft_[i].rows;
+    const auto give_way = [&](const Spatial<T>& direction, T wanted) QUADCORE_INLINED {
+      *row = laws::soft_to(direction, felt * direction, force, wanted, softness);
+      laws::eliminate(*row++, felt, force);
+    };
+    const Vec3<T> zero{none, none, none};
+    give_way({{one, none, none}, zero}, slipped_W.x);
+    give_way({{none, one, none}, zero}, slipped_W.y);
+    give_way({{none, none, one}, zero}, slipped_W.z);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Vec3<T> across_W =
+          body.R_WB * constants(i).vector(BodyConstant::across_C + 3 * k);
+      give_way({laws::cross(body.p_OA_W, across_W), across_W}, laws::dot(across_W, bent_W));
+    }
+  }
+
+  QUADCORE_LAW void accelerate(std::size_t i) {
+    BodyWork<T>& body = work(i);
+    Spatial<T> a = work(carrier(i)).acceleration;
+    if (soft_) {
+      for (std::size_t k = 5; k-- > 0;) soft_[i].rows[k].add_to(a);
+    } else {
+      a = a + body.wanted;
+    }
+    body.turn.add_to(a);
+    body.acceleration = a;
+  }
+
+  /// ODE's: new velocities, with which the poses move; q + dt/2 w q, normalised.
+  QUADCORE_LAW void move(std::size_t i, double dt) {
+    const BodyWork<T>& body = work(i);
+    const Table from = state(i);
+    double* const to = state_ + i * BodyRow::count * stride;
+    const auto put = [to](std::size_t row, T number) QUADCORE_INLINED {
+      laws::store(to + row * stride, number);
+    };
+    const auto put3 = [&](std::size_t row, const Vec3<T>& a) QUADCORE_INLINED {
+      put(row, a.x), put(row + 1, a.y), put(row + 2, a.z);
+    };
+    const Spatial<T>& a = body.acceleration;
+    const Vec3<T> v_W = from.vector(BodyRow::velocity) +
+                        dt * (a.linear + laws::cross(a.angular, body.p_OBcm_W));
+    const Vec3<T> w_W = from.vector(BodyRow::rate) + dt * a.angular;
+    put3(BodyRow::velocity, v_W);
+    put3(BodyRow::rate, w_W);
+    put3(BodyRow::position, from.vector(BodyRow::position) + dt * v_W);
+    const Vec3<T> h = (dt / 2) * w_W;
+    const T x = from.number(BodyRow::orientation), y = from.number(BodyRow::orientation + 1),
+            z = from.number(BodyRow::orientation + 2), w = from.number(BodyRow::orientation + 3);
+    const T qx = x + (h.x * w + (h.y * z - h.z * y)), qy = y + (h.y * w + (h.z * x - h.x * z)),
+            qz = z + (h.z * w + (h.x * y - h.y * x)), qw = w - (h.x * x + (h.y * y + h.z * z));
+    const T by = 1 / laws::square_root((qx * qx + qy * qy) + (qz * qz + qw * qw));
+    put(BodyRow::orientation, by * qx);
+    put(BodyRow::orientation + 1, by * qy);
+    put(BodyRow::orientation + 2, by * qz);
+    put(BodyRow::orientation + 3, by * qw);
+  }
+
+  const HingedTree& tree_;
+  const double* constants_;
+  double* state_;
+  BodyWork<T>* work_;
+  SoftRows<T>* soft_;
+};
+
+}  // namespace quadcore

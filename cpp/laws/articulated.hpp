@@ -1,0 +1,197 @@
+#pragma once
+
+#include "lanes/vec3.hpp"
+
+/// \file
+/// Bodies on joints in time linear in their number: R. Featherstone, "Rigid Body Dynamics
+/// Algorithms", 2008, ch. 7. All vectors are in W and belong to one point O, the same for all
+/// bodies.
+
+namespace quadcore::laws {
+
+/// Two vectors that belong together: the acceleration at O of whatever moves with a body and its
+/// angular acceleration, or a force and its torque about O.
+template <class T>
+struct Spatial {
+  Vec3<T> linear, angular;
+};
+
+template <class T>
+QUADCORE_LAW Spatial<T> operator+(const Spatial<T>& a, const Spatial<T>& b) {
+  return {a.linear + b.linear, a.angular + b.angular};
+}
+template <class T>
+QUADCORE_LAW Spatial<T> operator-(const Spatial<T>& a, const Spatial<T>& b) {
+  return {a.linear - b.linear, a.angular - b.angular};
+}
+template <class T>
+QUADCORE_LAW Spatial<T> operator*(T factor, const Spatial<T>& a) {
+  return {factor * a.linear, factor * a.angular};
+}
+/// An acceleration times a load.
+template <class T>
+QUADCORE_LAW T dot(const Spatial<T>& a, const Spatial<T>& b) {
+  return dot(a.linear, b.linear) + dot(a.angular, b.angular);
+}
+
+/// The load that an acceleration asks for:
+///   force = mass a + coupling alpha, torque = coupling^T a + inertia alpha.
+template <class T>
+struct SpatialInertia {
+  Symmetric3<T> mass;
+  Matrix3<T> coupling;
+  Symmetric3<T> inertia;
+};
+
+template <class T>
+QUADCORE_LAW Spatial<T> operator*(const SpatialInertia<T>& I, const Spatial<T>& a) {
+  return {I.mass * a.linear + I.coupling * a.angular,
+          inversely(I.coupling, a.linear) + I.inertia * a.angular};
+}
+
+/// sum += factor a a^T
+template <class T>
+QUADCORE_LAW void add_product(Symmetric3<T>& sum, T factor, const Vec3<T>& a) {
+  const Vec3<T> b = factor * a;
+  sum.xx = sum.xx + b.x * a.x;
+  sum.xy = sum.xy + b.x * a.y;
+  sum.xz = sum.xz + b.x * a.z;
+  sum.yy = sum.yy + b.y * a.y;
+  sum.yz = sum.yz + b.y * a.z;
+  sum.zz = sum.zz + b.z * a.z;
+}
+
+/// sum += factor a b^T
+template <class T>
+QUADCORE_LAW void add_product(Matrix3<T>& sum, T factor, const Vec3<T>& a, const Vec3<T>& b) {
+  const Vec3<T> c = factor * a;
+  sum.xx = sum.xx + c.x * b.x;
+  sum.xy = sum.xy + c.x * b.y;
+  sum.xz = sum.xz + c.x * b.z;
+  sum.yx = sum.yx + c.y * b.x;
+  sum.yy = sum.yy + c.y * b.y;
+  sum.yz = sum.yz + c.y * b.z;
+  sum.zx = sum.zx + c.z * b.x;
+  sum.zy = sum.zy + c.z * b.y;
+  sum.zz = sum.zz + c.z * b.z;
+}
+
+template <class T>
+QUADCORE_LAW void add(Symmetric3<T>& sum, const Symmetric3<T>& m) {
+  sum.xx = sum.xx + m.xx;
+  sum.xy = sum.xy + m.xy;
+  sum.xz = sum.xz + m.xz;
+  sum.yy = sum.yy + m.yy;
+  sum.yz = sum.yz + m.yz;
+  sum.zz = sum.zz + m.zz;
+}
+
+template <class T>
+QUADCORE_LAW void add(SpatialInertia<T>& sum, const SpatialInertia<T>& I) {
+  add(sum.mass, I.mass);
+  sum.coupling.xx = sum.coupling.xx + I.coupling.xx;
+  sum.coupling.xy = sum.coupling.xy + I.coupling.xy;
+  sum.coupling.xz = sum.coupling.xz + I.coupling.xz;
+  sum.coupling.yx = sum.coupling.yx + I.coupling.yx;
+  sum.coupling.yy = sum.coupling.yy + I.coupling.yy;
+  sum.coupling.yz = sum.coupling.yz + I.coupling.yz;
+  sum.coupling.zx = sum.coupling.zx + I.coupling.zx;
+  sum.coupling.zy = sum.coupling.zy + I.coupling.zy;
+  sum.coupling.zz = sum.coupling.zz + I.coupling.zz;
+  add(sum.inertia, I.inertia);
+}
+
+/// A body's: its centre of mass is p from O, I about that.
+template <class T>
+QUADCORE_LAW SpatialInertia<T> body_inertia(T mass, const Vec3<T>& p, const Symmetric3<T>& I) {
+  const T none{};
+  const Vec3<T> mp = mass * p;
+  SpatialInertia<T> sum{{mass, none, none, mass, none, mass},
+                        {none, mp.z, -mp.y, -mp.z, none, mp.x, mp.y, -mp.x, none},
+                        I};
+  const T all = dot(mp, p);
+  sum.inertia.xx = sum.inertia.xx + all;
+  sum.inertia.yy = sum.inertia.yy + all;
+  sum.inertia.zz = sum.inertia.zz + all;
+  add_product(sum.inertia, -mass, p);
+  return sum;
+}
+
+/// The same body's load.
+template <class T>
+QUADCORE_LAW Spatial<T> body_load(T mass, const Vec3<T>& p, const Symmetric3<T>& I,
+                                  const Spatial<T>& a) {
+  const Vec3<T> f = mass * (a.linear + cross(a.angular, p));
+  return {f, I * a.angular + cross(p, f)};
+}
+
+template <class T>
+QUADCORE_LAW Symmetric3<T> inverse(const Symmetric3<T>& m) {
+  const T xx = m.yy * m.zz - m.yz * m.yz, xy = m.xz * m.yz - m.xy * m.zz,
+          xz = m.xy * m.yz - m.xz * m.yy;
+  const T by = 1 / (m.xx * xx + (m.xy * xy + m.xz * xz));
+  return {by * xx,
+          by * xy,
+          by * xz,
+          by * (m.xx * m.zz - m.xz * m.xz),
+          by * (m.xy * m.xz - m.xx * m.yz),
+          by * (m.xx * m.yy - m.xy * m.xy)};
+}
+
+/// Acceleration under a load: the Schur complement of the masses.
+template <class T>
+QUADCORE_LAW Spatial<T> solve(const SpatialInertia<T>& I, const Spatial<T>& load) {
+  const Symmetric3<T> inverse_mass = inverse(I.mass);
+  const Matrix3<T>& C = I.coupling;
+  const Vec3<T> x{C.xx, C.yx, C.zx}, y{C.xy, C.yy, C.zy}, z{C.xz, C.yz, C.zz};
+  const Vec3<T> of_x = inverse_mass * x, of_y = inverse_mass * y, of_z = inverse_mass * z;
+  const Symmetric3<T> felt{I.inertia.xx - dot(x, of_x), I.inertia.xy - dot(x, of_y),
+                           I.inertia.xz - dot(x, of_z), I.inertia.yy - dot(y, of_y),
+                           I.inertia.yz - dot(y, of_z), I.inertia.zz - dot(z, of_z)};
+  const Vec3<T>& f = load.linear;
+  const Vec3<T> tau = load.angular - Vec3<T>{dot(of_x, f), dot(of_y, f), dot(of_z, f)};
+  const Vec3<T> angular = inverse(felt) * tau;
+  return {inverse_mass * (f - C * angular), angular};
+}
+
+/// What a body may do besides what carries it does: an acceleration x in one direction, which
+/// follows from the acceleration a of its carrier, x = start - give (load . a).
+template <class T>
+struct Freedom {
+  Spatial<T> direction;
+  Spatial<T> load;  ///< that the direction asks for, of the body and of what it carries
+  T give, start;
+
+  QUADCORE_LAW void add_to(Spatial<T>& a) const {
+    a = a + (start - give * dot(load, a)) * direction;
+  }
+};
+
+/// A freedom that nothing resists: the load along it is `force`'s.
+template <class T>
+QUADCORE_LAW Freedom<T> free_to(const Spatial<T>& direction, const Spatial<T>& load,
+                                const Spatial<T>& force) {
+  const T give = 1 / dot(direction, load);
+  return {direction, load, give, give * dot(direction, force)};
+}
+
+/// One that gives way to the load l along it: x = wanted - softness l.
+template <class T>
+QUADCORE_LAW Freedom<T> soft_to(const Spatial<T>& direction, const Spatial<T>& load,
+                                const Spatial<T>& force, T wanted, T softness) {
+  const T share = 1 / (1 + softness * dot(direction, load));
+  return {direction, load, share * softness,
+          share * (wanted + softness * dot(direction, force))};
+}
+
+/// Leaves of what a body asks for, and of the force on it, what its carrier feels.
+template <class T>
+QUADCORE_LAW void eliminate(const Freedom<T>& freedom, SpatialInertia<T>& felt, Spatial<T>& force) {
+  const Vec3<T>&f = freedom.load.linear, &tau = freedom.load.angular;
+  add_product(felt.mass, -freedom.give, f);
+  add_product(felt.coupling, -freedom.give, f, tau);
+  add_product(felt.inertia, -freedom.give, tau);
+  force = force - freedom.start * freedom.load;
+}
+
+}  // namespace quadcore::laws
