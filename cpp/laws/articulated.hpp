@@ -76,29 +76,24 @@ QUADCORE_LAW void add_product(Matrix3<T>& sum, T factor, const Vec3<T>& a, const
   sum.zz = sum.zz + c.z * b.z;
 }
 
-template <class T>
-QUADCORE_LAW void add(Symmetric3<T>& sum, const Symmetric3<T>& m) {
-  sum.xx = sum.xx + m.xx;
-  sum.xy = sum.xy + m.xy;
-  sum.xz = sum.xz + m.xz;
-  sum.yy = sum.yy + m.yy;
-  sum.yz = sum.yz + m.yz;
-  sum.zz = sum.zz + m.zz;
+/// Calls f(of a, of b) for each number of two loads, and of two inertias.
+template <class T, class Function>
+QUADCORE_LAW void for_each(Spatial<T>& a, const Spatial<T>& b, const Function& f) {
+  f(a.linear.x, b.linear.x), f(a.linear.y, b.linear.y), f(a.linear.z, b.linear.z);
+  f(a.angular.x, b.angular.x), f(a.angular.y, b.angular.y), f(a.angular.z, b.angular.z);
 }
-
-template <class T>
-QUADCORE_LAW void add(SpatialInertia<T>& sum, const SpatialInertia<T>& I) {
-  add(sum.mass, I.mass);
-  sum.coupling.xx = sum.coupling.xx + I.coupling.xx;
-  sum.coupling.xy = sum.coupling.xy + I.coupling.xy;
-  sum.coupling.xz = sum.coupling.xz + I.coupling.xz;
-  sum.coupling.yx = sum.coupling.yx + I.coupling.yx;
-  sum.coupling.yy = sum.coupling.yy + I.coupling.yy;
-  sum.coupling.yz = sum.coupling.yz + I.coupling.yz;
-  sum.coupling.zx = sum.coupling.zx + I.coupling.zx;
-  sum.coupling.zy = sum.coupling.zy + I.coupling.zy;
-  sum.coupling.zz = sum.coupling.zz + I.coupling.zz;
-  add(sum.inertia, I.inertia);
+template <class T, class Function>
+QUADCORE_LAW void for_each(Symmetric3<T>& a, const Symmetric3<T>& b, const Function& f) {
+  f(a.xx, b.xx), f(a.xy, b.xy), f(a.xz, b.xz), f(a.yy, b.yy), f(a.yz, b.yz), f(a.zz, b.zz);
+}
+template <class T, class Function>
+QUADCORE_LAW void for_each(SpatialInertia<T>& a, const SpatialInertia<T>& b, const Function& f) {
+  for_each(a.mass, b.mass, f);
+  Matrix3<T>& c = a.coupling;
+  const Matrix3<T>& d = b.coupling;
+  f(c.xx, d.xx), f(c.xy, d.xy), f(c.xz, d.xz), f(c.yx, d.yx), f(c.yy, d.yy), f(c.yz, d.yz);
+  f(c.zx, d.zx), f(c.zy, d.zy), f(c.zz, d.zz);
+  for_each(a.inertia, b.inertia, f);
 }
 
 /// A body's: its centre of mass is p from O, I about that.

@@ -95,12 +95,11 @@ void check_against_ode(const Model& model, double erp, double cfm, double dt) {
     if (n > 0) continue;
     CHECK(distance(direct, found, &dBodyGetLinearVel) < 1e-12);
     CHECK(distance(direct, found, &dBodyGetAngularVel) < 1e-10);
-    for (std::size_t i = 0; i < direct.vehicle.hinges(); ++i) {
+    hinged.for_each_hinge([&](std::size_t i, const GazeboStep::Multipliers& multipliers) {
       const GazeboStep::Multipliers of_ode = direct.vehicle.multipliers(i);
-      const GazeboStep::Multipliers multipliers = hinged.multipliers(i);
       CAPTURE(i);
       for (std::size_t k = 0; k < 3; ++k) CHECK(multipliers[k] == doctest::Approx(of_ode[k]));
-    }
+    });
   }
   CHECK(distance(direct, found, &dBodyGetPosition) < 2e-12);
   CHECK(distance(direct, found, &dBodyGetLinearVel) < 1e-10);

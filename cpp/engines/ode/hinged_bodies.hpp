@@ -3,6 +3,7 @@
 #include "hinged_tree.hpp"
 #include "lanes/table.hpp"
 #include "laws/articulated.hpp"
+#include "quadcore/rotor_layout.hpp"
 
 namespace quadcore {
 
@@ -17,7 +18,8 @@ template <class T>
 struct BodyWork {
   Matrix3<T> R_WB;
   Vec3<T> p_OBcm_W;
-  Spatial<T> force;  ///< without gravity; about the centre of mass
+  Spatial<T> force;  ///< about the centre of mass; without gravity and the next
+  T torque;          ///< of the hinge's joint on the body, and against it on the carrier
   laws::Symmetric3<T> I_Bcm_W;
   laws::SpatialInertia<T> carried;  ///< by hinges, as the body feels it
   Spatial<T> borne;                 ///< force by what it carries, at O
@@ -26,6 +28,7 @@ struct BodyWork {
   Vec3<T> axis_W, p_OA_W;
   Spatial<T> wanted;  ///< acceleration beyond the carrier's that the rows ask for
   laws::Freedom<T> turn;
+  Spatial<T> load_of_hinge;  ///< what it has exerted in the last step, at O, if that was asked for
 };
 
 /// The rows of a hinge that give way: three of the anchor, two of the axis.
@@ -33,6 +36,9 @@ template <class T>
 struct SoftRows {
   laws::Freedom<T> rows[5];
 };
+
+/// What stands side by side.
+enum class Lanes { vehicles, rotors };
 
 /// A step as ODE's direct solver (dWorldStep) takes it, in time linear in the number of bodies. ODE
 /// asks of the accelerations a and the multipliers l
@@ -43,26 +49,49 @@ struct SoftRows {
 /// inertia and the force of which that turn is eliminated (cpp/laws/articulated.hpp), instead of
 /// all multipliers being solved for at once. Where cfm lets the rows give way, each of them is
 /// eliminated as a turn is.
-template <class T, std::size_t stride>
+///
+/// Lanes are vehicles, or the rotors of one vehicle whose hinges are all on its frame: then the
+/// frame is the same in all lanes, and what rotors hand it is summed in their order.
+template <class T, Lanes lanes>
 class HingedBodies {
  public:
-  using Table = laws::Table<T, stride>;
+  using Table = laws::Table<T, widest_lanes>;
+  static constexpr bool are_rotors = lanes == Lanes::rotors;
 
   /// Tables of BodyConstant and BodyRow, and room for each body, for its hinge's rows only if these
   /// give way.
   QUADCORE_LAW HingedBodies(const HingedTree& tree, const double* constants, double* state,
                             BodyWork<T>* work, SoftRows<T>* soft)
-      : tree_(tree), constants_(constants), state_(state), work_(work), soft_(soft) {}
+      : tree_(tree), constants_(constants), state_(state), work_(work), soft_(soft) {
+    if constexpr (are_rotors) bodies_ = 1 + (tree.bodies + laws::lanes_of<T> - 2) / laws::lanes_of<T>;
+  }
 
-  QUADCORE_LAW std::size_t size() const { return tree_.bodies; }
+  /// Bodies of each vehicle, or packs of them.
+  QUADCORE_LAW std::size_t size() const {
+    if constexpr (are_rotors) return bodies_;
+    return tree_.bodies;
+  }
   QUADCORE_LAW Table constants(std::size_t body) const {
-    return {constants_ + body * BodyConstant::count * stride};
+    return {constants_ + place(BodyConstant::count, body)};
   }
   QUADCORE_LAW Table state(std::size_t body) const {
-    return {state_ + body * BodyRow::count * stride};
+    return {state_ + place(BodyRow::count, body)};
   }
   QUADCORE_LAW BodyWork<T>& work(std::size_t body) const { return work_[body]; }
-  QUADCORE_LAW std::size_t carrier(std::size_t body) const { return tree_.carriers[body]; }
+  QUADCORE_LAW std::size_t carrier(std::size_t body) const {
+    if constexpr (are_rotors && laws::lanes_of<T> > 1) return 0;
+    return tree_.carriers[body];
+  }
+  /// Adds numbers of the bodies of a pack to what their carrier has.
+  QUADCORE_LAW void add_to_carrier(std::size_t body, T& sum, T numbers) const {
+    if constexpr (are_rotors && laws::lanes_of<T> > 1) {
+      double total = sum[0];
+      for (std::size_t lane = used_lanes(body); lane-- > 0;) total += numbers[lane];
+      sum = laws::broadcast<T>(total);
+    } else {
+      sum = sum + numbers;
+    }
+  }
 
   /// Finds how the bodies stand.
   QUADCORE_LAW void read() {
@@ -80,8 +109,10 @@ class HingedBodies {
   QUADCORE_LAW void clear_forces() {
     for (std::size_t i = 0; i < size(); ++i) {
       work(i).force = none();
+      work(i).torque = T{};
       if (!tree_.carries[i]) continue;
-      work(i).carried = {};
+      laws::for_each(work(i).carried, work(i).carried,
+                     [](T& number, const T&) QUADCORE_INLINED { number = T{}; });
       work(i).borne = none();
     }
   }
@@ -169,7 +200,8 @@ class HingedBodies {
     const double* g_W = tree_.gravity_W;
     const Vec3<T> f_W =
         body.force.linear + Vec3<T>{weight * g_W[0], weight * g_W[1], weight * g_W[2]};
-    const Spatial<T> sum{f_W, body.force.angular + laws::cross(body.p_OBcm_W, f_W)};
+    Spatial<T> sum{f_W, body.force.angular + laws::cross(body.p_OBcm_W, f_W)};
+    if (i > 0) sum.angular = sum.angular + body.torque * body.axis_W;
     return tree_.carries[i] ? sum + body.borne : sum;
   }
 
@@ -181,7 +213,10 @@ class HingedBodies {
   QUADCORE_LAW laws::SpatialInertia<T> felt(std::size_t i) const {
     laws::SpatialInertia<T> sum = laws::body_inertia(constants(i).number(BodyConstant::mass),
                                                      work(i).p_OBcm_W, work(i).I_Bcm_W);
-    if (tree_.carries[i]) laws::add(sum, work(i).carried);
+    if (tree_.carries[i]) {
+      laws::for_each(sum, work(i).carried,
+                     [](T& a, const T& b) QUADCORE_INLINED { a = a + b; });
+    }
     return sum;
   }
 
@@ -205,9 +240,13 @@ class HingedBodies {
     } else {
       force = force - felt * body.wanted;
     }
+    force.angular = force.angular - body.torque * body.axis_W;
     BodyWork<T>& parent = work(carrier(i));
-    laws::add(parent.carried, felt);
-    parent.borne = parent.borne + force;
+    const auto add = [&](T& sum, const T& number) QUADCORE_INLINED {
+      add_to_carrier(i, sum, number);
+    };
+    laws::for_each(parent.carried, felt, add);
+    laws::for_each(parent.borne, force, add);
   }
 
   QUADCORE_LAW void eliminate_rows(std::size_t i, double dt, laws::SpatialInertia<T>& felt,
@@ -248,9 +287,9 @@ class HingedBodies {
   QUADCORE_LAW void move(std::size_t i, double dt) {
     const BodyWork<T>& body = work(i);
     const Table from = state(i);
-    double* const to = state_ + i * BodyRow::count * stride;
+    double* const to = state_ + place(BodyRow::count, i);
     const auto put = [to](std::size_t row, T number) QUADCORE_INLINED {
-      laws::store(to + row * stride, number);
+      laws::store(to + row * widest_lanes, number);
     };
     const auto put3 = [&](std::size_t row, const Vec3<T>& a) QUADCORE_INLINED {
       put(row, a.x), put(row + 1, a.y), put(row + 2, a.z);
@@ -274,7 +313,20 @@ class HingedBodies {
     put(BodyRow::orientation + 3, by * qw);
   }
 
+  /// Where a table of so many rows has a body's.
+  QUADCORE_LAW static std::size_t place(std::size_t rows, std::size_t body) {
+    if constexpr (!are_rotors) return body * rows * widest_lanes;
+    if (body == 0) return 0;
+    return rows * widest_lanes + rotor_offset(rows, (body - 1) * laws::lanes_of<T>);
+  }
+  QUADCORE_LAW std::size_t used_lanes(std::size_t body) const {
+    constexpr std::size_t all = laws::lanes_of<T>;
+    const std::size_t left = tree_.bodies - 1 - (body - 1) * all;
+    return left < all ? left : all;
+  }
+
   const HingedTree& tree_;
+  std::size_t bodies_ = 0;
   const double* constants_;
   double* state_;
   BodyWork<T>* work_;

@@ -10,8 +10,8 @@ struct HingedFrame {
   Matrix3<T> R_WF;
   Vec3<T> p_FFcm_F, w_WF_F, v_WFcm_F, v_WF_F, p_WF;
 
-  template <std::size_t stride>
-  QUADCORE_LAW explicit HingedFrame(const HingedBodies<T, stride>& bodies)
+  template <Lanes lanes>
+  QUADCORE_LAW explicit HingedFrame(const HingedBodies<T, lanes>& bodies)
       : R_WF(bodies.work(0).R_WB),
         p_FFcm_F(-1.0 * bodies.constants(0).vector(BodyConstant::origin)),
         w_WF_F(laws::inversely(R_WF, bodies.state(0).vector(BodyRow::rate))),
@@ -21,9 +21,9 @@ struct HingedFrame {
 };
 
 /// The motion of the i-th rotors, which are the bodies after the frame; vectors in its axes.
-template <class T, std::size_t stride>
+template <class T, Lanes lanes>
 struct HingedRotor {
-  const HingedBodies<T, stride>& bodies;
+  const HingedBodies<T, lanes>& bodies;
   const HingedFrame<T>& frame;
   std::size_t i;
 
@@ -56,16 +56,21 @@ template <class T>
 struct HingedCenter {
   Vec3<T> p_FCcm_F, v_WCcm_F;
 
-  template <std::size_t stride>
-  QUADCORE_LAW HingedCenter(const HingedBodies<T, stride>& bodies, const HingedFrame<T>& frame) {
+  template <Lanes lanes>
+  QUADCORE_LAW HingedCenter(const HingedBodies<T, lanes>& bodies, const HingedFrame<T>& frame) {
     T mass = bodies.constants(0).number(BodyConstant::mass);
     Vec3<T> p_F = mass * frame.p_FFcm_F, v_F = mass * frame.v_WFcm_F;
-    for (std::size_t i = 1; i < bodies.size(); ++i) {
-      const HingedRotor<T, stride> rotor{bodies, frame, i - 1};
+    for (std::size_t i = bodies.size(); i-- > 1;) {
+      const HingedRotor<T, lanes> rotor{bodies, frame, i - 1};
       const T of_rotor = bodies.constants(i).number(BodyConstant::mass);
-      mass = mass + of_rotor;
-      p_F = p_F + of_rotor * rotor.p_FRcm_F();
-      v_F = v_F + of_rotor * rotor.velocity_F(false);
+      const auto add = [&](Vec3<T>& sum, const Vec3<T>& a) QUADCORE_INLINED {
+        bodies.add_to_carrier(i, sum.x, of_rotor * a.x);
+        bodies.add_to_carrier(i, sum.y, of_rotor * a.y);
+        bodies.add_to_carrier(i, sum.z, of_rotor * a.z);
+      };
+      bodies.add_to_carrier(i, mass, of_rotor);
+      add(p_F, rotor.p_FRcm_F());
+      add(v_F, rotor.velocity_F(false));
     }
     const T by = 1 / mass;
     p_FCcm_F = by * p_F;
@@ -74,8 +79,8 @@ struct HingedCenter {
 };
 
 /// Adds loads on the frames, the torque about the origin.
-template <class T, std::size_t stride>
-QUADCORE_LAW void push_frame(const HingedBodies<T, stride>& bodies, const HingedFrame<T>& frame,
+template <class T, Lanes lanes>
+QUADCORE_LAW void push_frame(const HingedBodies<T, lanes>& bodies, const HingedFrame<T>& frame,
                              const Vec3<T>& f_F, const Vec3<T>& tau_F) {
   Spatial<T>& force = bodies.work(0).force;
   force.linear = force.linear + frame.R_WF * f_F;
@@ -83,17 +88,13 @@ QUADCORE_LAW void push_frame(const HingedBodies<T, stride>& bodies, const Hinged
 }
 
 /// Adds forces on the i-th rotors, and the torques of their joints.
-template <class T, std::size_t stride>
-QUADCORE_LAW void push_rotor(const HingedBodies<T, stride>& bodies, const HingedFrame<T>& frame,
+template <class T, Lanes lanes>
+QUADCORE_LAW void push_rotor(const HingedBodies<T, lanes>& bodies, const HingedFrame<T>& frame,
                              std::size_t i, const Vec3<T>& f_F, T joint_torque, T rate) {
   const T damping = bodies.constants(i + 1).number(BodyConstant::damping);
-  const T torque = joint_torque - damping * rate;
   BodyWork<T>& rotor = bodies.work(i + 1);
-  BodyWork<T>& carrier = bodies.work(bodies.carrier(i + 1));
-  const Vec3<T> tau_W = torque * rotor.axis_W;
   rotor.force.linear = rotor.force.linear + frame.R_WF * f_F;
-  rotor.force.angular = rotor.force.angular + tau_W;
-  carrier.force.angular = carrier.force.angular - tau_W;
+  rotor.torque = rotor.torque + (joint_torque - damping * rate);
 }
 
 }  // namespace quadcore

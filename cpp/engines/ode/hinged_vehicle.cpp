@@ -1,103 +1,193 @@
 #include "hinged_vehicle.hpp"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "body_state.hpp"
-#include "hinged_motion.hpp"
+#include "hinged_bodies.hpp"
 #include "ode_math.hpp"
+#include "quadcore/lane_width.hpp"
 
 namespace quadcore {
 namespace {
 
-Vec3<double> components(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-Vector3d vector(const Vec3<double>& v) { return {v.x, v.y, v.z}; }
+using Work = BodyWork<double>;
+
+/// Numbers that tables of so many rows have for a vehicle of so many bodies.
+std::size_t table_size(std::size_t rows, std::size_t bodies) {
+  return rows * widest_lanes + rotor_offset(rows, bodies + widest_lanes);
+}
+
+/// Where a body's column begins; the frame's are all alike.
+std::size_t column(std::size_t rows, std::size_t body) {
+  return body == 0 ? 0 : rows * widest_lanes + rotor_offset(rows, body - 1);
+}
+
+/// Writes a row of a body, and fills up the columns that have no body of their own.
+void put(LaneNumbers& table, std::size_t rows, std::size_t row, std::size_t body,
+         std::size_t bodies, double number) {
+  const std::size_t lane = body == 0 ? 0 : (body - 1) % widest_lanes;
+  const bool is_last = body == 0 || body + 1 == bodies;
+  double* to = &table[column(rows, body) + row * widest_lanes];
+  std::fill_n(to, is_last ? widest_lanes - lane : 1, number);
+}
+
+template <class Member>
+constexpr std::size_t numbers = sizeof(Member) / sizeof(double);
 
 }  // namespace
 
+#define QUADCORE_NUMBER_OF(member) (offsetof(Work, member) / sizeof(double))
+
+std::vector<double> body_constants(const Model& model, std::size_t body) {
+  using Row = BodyConstant;
+  std::vector<double> rows(Row::count);
+  const auto put = [&rows](std::size_t row, const Vector3d& v) {
+    std::copy_n(v.data(), 3, &rows[row]);
+  };
+  const Link& link = model.links[body];
+  rows[Row::mass] = link.inertial.mass;
+  rows[Row::weight] = link.tags.gravity ? link.inertial.mass : 0;
+  const Matrix3d I = link.inertial.inertia_in_link_axes();
+  put(Row::inertia, {I(0, 0), I(0, 1), I(0, 2)});
+  put(Row::inertia + 3, {I(1, 1), I(1, 2), I(2, 2)});
+  put(Row::origin, -link.inertial.pose.xyz);
+  if (body == 0) return rows;
+  const Joint& joint = model.joints[body - 1];
+  put(Row::anchor_P, joint.pose.xyz - model.links[joint.parent].inertial.pose.xyz);
+  put(Row::axis_C, joint.axis);
+  put(Row::axis_P, joint.pose.rotation() * joint.axis);
+  rows[joint.implicit_damping ? Row::implicit_damping : Row::damping] = joint.damping;
+  const auto across_C = plane_space(joint.axis);
+  put(Row::across_C, across_C[0]);
+  put(Row::across_C + 3, across_C[1]);
+  return rows;
+}
+
 HingedModel::HingedModel(const Model& model)
-    : carriers(model.links.size()),
-      carries(model.links.size()),
-      brakes(model.links.size()),
-      constants(model.links.size() * BodyConstant::count) {
-  for (std::size_t i = 0; i < model.links.size(); ++i) {
-    using Row = BodyConstant;
-    double* const rows = &constants[i * Row::count];
-    const auto put = [rows](std::size_t row, const Vector3d& v) {
-      std::copy_n(v.data(), 3, rows + row);
-    };
-    const Link& link = model.links[i];
-    rows[Row::mass] = link.inertial.mass;
-    rows[Row::weight] = link.tags.gravity ? link.inertial.mass : 0;
-    const Matrix3d I = link.inertial.inertia_in_link_axes();
-    put(Row::inertia, {I(0, 0), I(0, 1), I(0, 2)});
-    put(Row::inertia + 3, {I(1, 1), I(1, 2), I(2, 2)});
-    put(Row::origin, -link.inertial.pose.xyz);
-    if (i == 0) continue;
-    const Joint& joint = model.joints[i - 1];
-    put(Row::anchor_P, joint.pose.xyz - model.links[joint.parent].inertial.pose.xyz);
-    put(Row::axis_C, joint.axis);
-    put(Row::axis_P, joint.pose.rotation() * joint.axis);
-    rows[joint.implicit_damping ? Row::implicit_damping : Row::damping] = joint.damping;
-    const auto across_C = plane_space(joint.axis);
-    put(Row::across_C, across_C[0]);
-    put(Row::across_C + 3, across_C[1]);
-    carriers[i] = joint.parent;
+    : carriers(model.links.size()), carries(model.links.size()), brakes(model.links.size()) {
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    const Joint& joint = model.joints[i];
+    carriers[i + 1] = joint.parent;
     carries[joint.parent] = true;
-    brakes[i] = rows[Row::implicit_damping] > 0;
+    brakes[i + 1] = joint.implicit_damping && joint.damping > 0;
   }
 }
 
 HingedTree HingedModel::tree(const World& world) const {
   const Vector3d& g_W = world.gravity_W;
-  return {carriers.size(), carriers.data(),          carries.data(), brakes.data(),
-          {g_W.x(), g_W.y(), g_W.z()}, world.erp, world.cfm};
+  return {carriers.size(),
+          carriers.data(),
+          carries.data(),
+          brakes.data(),
+          {g_W.x(), g_W.y(), g_W.z()},
+          world.erp,
+          world.cfm};
+}
+
+bool HingedModel::is_star() const {
+  const auto is_zero = [](auto number) { return number == 0; };
+  return std::all_of(carriers.begin(), carriers.end(), is_zero) &&
+         std::all_of(brakes.begin(), brakes.end(), is_zero);
 }
 
 HingedVehicle::HingedVehicle(const Model& model, const World& world)
     : model_(model),
-      tree_(model_.tree(world)),
-      state_(model.links.size() * BodyRow::count),
-      work_(model.links.size()),
-      soft_(world.cfm > 0 ? model.links.size() : 0) {
+      constants_(table_size(BodyConstant::count, model.links.size())),
+      state_(table_size(BodyRow::count, model.links.size())),
+      work_(numbers<Work> * (model.links.size() + 2 * widest_lanes)),
+      soft_(world.cfm > 0 ? numbers<SoftRows<double>> * (model.links.size() + 2 * widest_lanes)
+                          : 0),
+      flight_{model_.tree(world), constants_.data(), state_.data(), work_.data(),
+              soft_.empty() ? nullptr : soft_.data()},
+      calls_(calls(model_.is_star() ? lane_width(model.joints.size()) : 1)) {
   for (const Joint& joint : model.joints) {
     R_PC_at_zero_.push_back(joint.pose.rotation().toRotationMatrix());
   }
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    const std::vector<double> rows = body_constants(model, i);
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      put(constants_, rows.size(), row, i, model.links.size(), rows[row]);
+    }
+  }
 }
 
-HingedVehicle::Bodies HingedVehicle::bodies() const {
-  return {tree_, model_.constants.data(), const_cast<double*>(state_.data()), work_.data(),
-          soft_.empty() ? nullptr : soft_.data()};
+HingedVehicle::Calls HingedVehicle::calls(int width) {
+  const auto of = [](auto lanes) -> Calls {
+    constexpr int W = lanes();
+    return {W,
+            &read_hinged<W>,
+            &clear_hinged<W>,
+            &push_hinged<W>,
+            &advance_hinged<W>,
+            &show_hinged<W>,
+            &find_hinge_loads<W>};
+  };
+  switch (width) {
+    case 8:
+      return of(std::integral_constant<int, 8>());
+    case 4:
+      return of(std::integral_constant<int, 4>());
+    case 2:
+      return of(std::integral_constant<int, 2>());
+    default:
+      return of(std::integral_constant<int, 1>());
+  }
+}
+
+double* HingedVehicle::state_of(std::size_t body) const {
+  return flight_.state + column(BodyRow::count, body);
+}
+
+double* HingedVehicle::work_of(std::size_t body, std::size_t number) const {
+  const auto width = static_cast<std::size_t>(calls_.width);
+  const std::size_t pack = body == 0 ? 0 : 1 + (body - 1) / width;
+  const std::size_t lane = body == 0 ? 0 : (body - 1) % width;
+  return flight_.work + (pack * numbers<Work> + number) * width + lane;
 }
 
 void HingedVehicle::take(const std::vector<dBodyID>& bodies) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    double* const rows = &state_[i * BodyRow::count];
     const dReal* const q = dBodyGetQuaternion(bodies[i]);
+    double rows[BodyRow::count];
     std::copy_n(dBodyGetPosition(bodies[i]), 3, rows + BodyRow::position);
     std::copy_n(q + 1, 3, rows + BodyRow::orientation);
     rows[BodyRow::orientation + 3] = q[0];
     std::copy_n(dBodyGetLinearVel(bodies[i]), 3, rows + BodyRow::velocity);
     std::copy_n(dBodyGetAngularVel(bodies[i]), 3, rows + BodyRow::rate);
+    for (std::size_t row = 0; row < BodyRow::count; ++row) {
+      put(state_, BodyRow::count, row, i, bodies.size(), rows[row]);
+    }
   }
-  this->bodies().read();
+  calls_.read(flight_);
 }
 
 void HingedVehicle::take_forces(const std::vector<dBodyID>& bodies) {
-  this->bodies().clear_forces();
+  calls_.clear(flight_);
+  const auto width = static_cast<std::size_t>(calls_.width);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    work_[i].force = {components(vec(dBodyGetForce(bodies[i]))),
-                      components(vec(dBodyGetTorque(bodies[i])))};
+    double* const to = work_of(i, QUADCORE_NUMBER_OF(force));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t lanes = i == 0 ? width : 1;
+      std::fill_n(to + k * width, lanes, dBodyGetForce(bodies[i])[k]);
+      std::fill_n(to + (k + 3) * width, lanes, dBodyGetTorque(bodies[i])[k]);
+    }
   }
 }
 
 void HingedVehicle::give(const std::vector<dBodyID>& bodies) const {
+  const auto width = static_cast<std::size_t>(calls_.width);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const double* const rows = &state_[i * BodyRow::count];
-    const double* const q = rows + BodyRow::orientation;
-    const Matrix3<double>& R = work_[i].R_WB;
-    double pose[pose_size] = {rows[0], rows[1], rows[2], q[3], q[0], q[1], q[2],
-                              R.xx,    R.xy,    R.xz,    0,    R.yx, R.yy, R.yz,
-                              0,       R.zx,    R.zy,    R.zz, 0};
+    double rows[BodyRow::count];
+    for (std::size_t row = 0; row < BodyRow::count; ++row) {
+      rows[row] = state_of(i)[row * widest_lanes];
+    }
+    const double* const R = work_of(i, QUADCORE_NUMBER_OF(R_WB));
+    double pose[pose_size] = {};
+    std::copy_n(rows + BodyRow::position, 3, pose);
+    pose[3] = rows[BodyRow::orientation + 3];
+    std::copy_n(rows + BodyRow::orientation, 3, pose + 4);
+    for (std::size_t k = 0; k < 9; ++k) pose[7 + k / 3 * 4 + k % 3] = R[k * width];
     restore_pose(bodies[i], pose);
     restore_velocity(bodies[i], rows + BodyRow::velocity);
     forget_forces(bodies[i]);
@@ -105,83 +195,44 @@ void HingedVehicle::give(const std::vector<dBodyID>& bodies) const {
 }
 
 void HingedVehicle::push(const Loads& loads) {
-  Bodies bodies = this->bodies();
-  bodies.clear_forces();
-  const HingedFrame<double> frame(bodies);
-  const Wrench on_frame = loads.frame();
-  push_frame(bodies, frame, components(on_frame.force_F), components(on_frame.torque_F));
-  for (std::size_t i = 0; i + 1 < bodies.size(); ++i) {
-    push_rotor(bodies, frame, i, components(loads.rotor_force_F(i)), loads.joint_torque(i),
-               bodies.joint_rate(i + 1));
-  }
-}
-
-void HingedVehicle::advance(double dt, bool gyroscopic) {
-  Bodies bodies = this->bodies();
-  bodies.turn_inertias(gyroscopic);
-  bodies.advance(dt);
-  bodies.read();
+  const Wrench frame = loads.frame();
+  calls_.clear(flight_);
+  calls_.push(flight_, {frame.force_F.data(), frame.torque_F.data(), loads.rotors().data()});
 }
 
 void HingedVehicle::show(Kinematics& k) const {
-  const Bodies bodies = this->bodies();
-  const HingedFrame<double> frame(bodies);
-  const Matrix3<double>& R = frame.R_WF;
-  const double* const q = &state_[BodyRow::orientation];
-  k.q_WF = Quaterniond(q[3], q[0], q[1], q[2]);
-  k.R_WF << R.xx, R.xy, R.xz, R.yx, R.yy, R.yz, R.zx, R.zy, R.zz;
-  k.w_WF_F = vector(frame.w_WF_F);
-  k.v_WF_F = vector(frame.v_WF_F);
-  k.p_WF = vector(frame.p_WF);
+  calls_.show(flight_, {k.numbers(), k.rotors.data()});
   for (std::size_t i = 0; i < k.rotors.size(); ++i) {
-    const HingedRotor<double, 1> rotor{bodies, frame, i};
-    double* const to = k.rotors.data() + rotor_offset(MotionRow::count, i);
-    const auto put = [to](std::size_t row, const Vec3<double>& v) {
-      to[row * widest_lanes] = v.x;
-      to[(row + 1) * widest_lanes] = v.y;
-      to[(row + 2) * widest_lanes] = v.z;
-    };
-    const Vec3<double> z_F = rotor.normal_F();
-    put(MotionRow::axis, rotor.axis_F());
-    put(MotionRow::normal, z_F);
-    put(MotionRow::p_FRcm, rotor.p_FRcm_F());
-    put(MotionRow::v_WR, rotor.velocity_F(true));
-    put(MotionRow::v_WRcm, rotor.velocity_F(false));
-    to[MotionRow::rate * widest_lanes] = rotor.rate();
-    put(MotionRow::R_FR, rotor.x_F());
-    put(MotionRow::R_FR + 3, rotor.y_F());
-    put(MotionRow::R_FR + 6, z_F);
-    const std::size_t carrier = bodies.carrier(i + 1);
+    const std::size_t carrier = model_.carriers[i + 1];
     if (carrier == 0) continue;  // the carrier turns as well
     k.rotors.set_matrix(MotionRow::R_FR_at_zero, i, k.R_FR(carrier - 1) * R_PC_at_zero_[i]);
   }
-  const HingedCenter<double> center(bodies, frame);
-  k.p_FCcm_F = vector(center.p_FCcm_F);
-  k.v_WCcm_F = vector(center.v_WCcm_F);
 }
 
 GazeboStep::Multipliers HingedVehicle::multipliers(std::size_t hinge) const {
-  const Spatial<double> load = bodies().load_of_hinge(hinge + 1);
-  const BodyWork<double>& body = work_[hinge + 1];
-  const Vec3<double>& f_W = load.linear;
-  const Vector3d tau_W = vector(load.angular - laws::cross(body.p_OA_W, f_W));
-  const Vector3d axis_W = vector(body.turn.direction.angular);
-  const auto across_W = plane_space(axis_W);  // as in the step, whose end has turned the axis
-  return {f_W.x,
-          f_W.y,
-          f_W.z,
-          tau_W.dot(across_W[0]),
-          tau_W.dot(across_W[1]),
+  const auto width = static_cast<std::size_t>(calls_.width);
+  const auto vector = [&](std::size_t number) {
+    const double* from = work_of(hinge + 1, number);
+    return Vector3d(from[0], from[width], from[2 * width]);
+  };
+  const Vector3d f_W = vector(QUADCORE_NUMBER_OF(load_of_hinge));
+  const Vector3d tau_W =
+      vector(QUADCORE_NUMBER_OF(load_of_hinge) + 3) - vector(QUADCORE_NUMBER_OF(p_OA_W)).cross(f_W);
+  // As it was in the step, whose end has turned it since.
+  const Vector3d axis_W = vector(QUADCORE_NUMBER_OF(turn.direction.angular));
+  const auto across_W = plane_space(axis_W);
+  return {f_W.x(),          f_W.y(), f_W.z(), tau_W.dot(across_W[0]), tau_W.dot(across_W[1]),
           tau_W.dot(axis_W)};
 }
 
 bool HingedVehicle::is_high(std::size_t i, double reach, double time, double gravity_z) const {
-  const double* const rows = &state_[i * BodyRow::count];
-  const double lowest = rows[BodyRow::position + 2] - reach;
-  const double rate_F = vector(bodies().state(0).vector(BodyRow::rate)).norm();
+  const double* const rows = state_of(i);
+  const double lowest = rows[(BodyRow::position + 2) * widest_lanes] - reach;
+  const double* const w_WF = &state_[BodyRow::rate * widest_lanes];
+  const double rate_F = Vector3d(w_WF[0], w_WF[widest_lanes], w_WF[2 * widest_lanes]).norm();
   const double fallen = std::min(0.0, gravity_z) * time * time / 2;
   // A shape moves with the body's centre of mass, and about that with the frame.
-  const double sinks = rows[BodyRow::velocity + 2] - 3 * rate_F * reach;
+  const double sinks = rows[(BodyRow::velocity + 2) * widest_lanes] - 3 * rate_F * reach;
   return lowest > 0 && lowest + fallen + time * sinks > 0;
 }
 

@@ -4,9 +4,8 @@
 
 #include <vector>
 
-#include "constraint_rows.hpp"
 #include "gazebo_step.hpp"
-#include "hinged_bodies.hpp"
+#include "hinged_flight.hpp"
 #include "quadcore/kinematics.hpp"
 #include "quadcore/loads.hpp"
 #include "quadcore/model.hpp"
@@ -14,17 +13,21 @@
 
 namespace quadcore {
 
-/// What HingedBodies take of models.
+/// What a HingedTree takes of a model.
 struct HingedModel {
   std::vector<std::size_t> carriers;
   std::vector<char> carries, brakes;
-  std::vector<double> constants;  ///< rows of BodyConstant, body by body
 
   explicit HingedModel(const Model& model);
   HingedTree tree(const World& world) const;
+  /// Whether all hinges are on the frame, and none brakes.
+  bool is_star() const;
 };
 
-/// A vehicle's bodies as HingedBodies, beside those in an ODE world.
+/// Rows of BodyConstant of a body of a model.
+std::vector<double> body_constants(const Model& model, std::size_t body);
+
+/// A vehicle's bodies as HingedFlight takes them, beside those in an ODE world.
 class HingedVehicle {
  public:
   HingedVehicle(const Model& model, const World& world);
@@ -36,29 +39,44 @@ class HingedVehicle {
   /// Gives them this state, and no forces.
   void give(const std::vector<dBodyID>& bodies) const;
 
-  /// Adds the loads on the vehicle and the damping of its joints.
+  /// Puts loads on the vehicle in place of all forces; joints damp themselves.
   void push(const Loads& loads);
   /// Advances by dt, with the gyroscopic torque of each body by itself or without.
-  void advance(double dt, bool gyroscopic);
+  void advance(double dt, bool gyroscopic) { calls_.advance(flight_, dt, gyroscopic); }
   /// Writes how the vehicle moves.
   void show(Kinematics& kinematics) const;
 
-  /// What a hinge has exerted in the last step.
-  GazeboStep::Multipliers multipliers(std::size_t hinge) const;
+  /// Calls work(i, what hinge i has exerted in the last step) for each hinge.
+  template <class Work>
+  void for_each_hinge(const Work& work) const {
+    calls_.find_hinge_loads(flight_);
+    for (std::size_t i = 0; i + 1 < flight_.tree.bodies; ++i) work(i, multipliers(i));
+  }
 
   /// Whether body i keeps further than `reach` [m] above the ground for a time [s], falling freely.
   bool is_high(std::size_t i, double reach, double time, double gravity_z) const;
 
  private:
-  using Bodies = HingedBodies<double, 1>;
-  Bodies bodies() const;
+  struct Calls {
+    int width;
+    void (*read)(const HingedFlight&);
+    void (*clear)(const HingedFlight&);
+    void (*push)(const HingedFlight&, const FlightLoads&);
+    void (*advance)(const HingedFlight&, double, bool);
+    void (*show)(const HingedFlight&, const ShownFlight&);
+    void (*find_hinge_loads)(const HingedFlight&);
+  };
+  static Calls calls(int width);
+
+  GazeboStep::Multipliers multipliers(std::size_t hinge) const;
+  double* state_of(std::size_t body) const;
+  double* work_of(std::size_t body, std::size_t number) const;
 
   HingedModel model_;
-  HingedTree tree_;
   std::vector<Matrix3d> R_PC_at_zero_;  ///< of each hinge
-  std::vector<double> state_;
-  mutable std::vector<BodyWork<double>> work_;
-  mutable std::vector<SoftRows<double>> soft_;
+  LaneNumbers constants_, state_, work_, soft_;
+  HingedFlight flight_;  ///< points into the members above
+  Calls calls_;
 };
 
 }  // namespace quadcore

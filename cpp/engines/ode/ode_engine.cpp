@@ -211,11 +211,11 @@ void OdeEngine::solve(double dt) {
 
 /// A step with contacts starts from the hinge forces of the step before.
 void OdeEngine::remember_hinge_forces() const {
-  for (std::size_t i = 0; i < vehicle_->hinges(); ++i) {
-    const GazeboStep::Multipliers multipliers =
-        rubs_ ? vehicle_->multipliers(i) : hinged_.multipliers(i);
+  const auto remember = [this](std::size_t i, const GazeboStep::Multipliers& multipliers) {
     gazebo_step_->warm_start[i] = {multipliers, multipliers};
-  }
+  };
+  if (!rubs_) return hinged_.for_each_hinge(remember);
+  for (std::size_t i = 0; i < vehicle_->hinges(); ++i) remember(i, vehicle_->multipliers(i));
 }
 
 /// Shows the motion of the bodies in ODE.
