@@ -20,15 +20,26 @@
 namespace quadcore::laws {
 
 template <int W>
-struct PackOf {
-  typedef double Numbers __attribute__((vector_size(8 * W)));
-  typedef std::int64_t Bits __attribute__((vector_size(8 * W)));
-};
+struct PackOf;
 template <>
 struct PackOf<1> {
   using Numbers = double;
   using Bits = std::int64_t;
+  using InMemory = double;
 };
+// Each by itself: of a size that is a parameter, GCC 10 forgets how an InMemory is aligned.
+#define QUADCORE_PACK_OF(width)                                                             \
+  template <>                                                                               \
+  struct PackOf<width> {                                                                    \
+    typedef double Numbers __attribute__((vector_size(8 * width)));                         \
+    typedef std::int64_t Bits __attribute__((vector_size(8 * width)));                      \
+    typedef double InMemory __attribute__((vector_size(8 * width), aligned(8), may_alias)); \
+  };
+QUADCORE_PACK_OF(2)
+QUADCORE_PACK_OF(4)
+QUADCORE_PACK_OF(8)
+#undef QUADCORE_PACK_OF
+
 /// W doubles; one is a plain double.
 template <int W>
 using Pack = typename PackOf<W>::Numbers;
@@ -37,17 +48,17 @@ using Pack = typename PackOf<W>::Numbers;
 template <class T>
 using BitsOf = typename PackOf<sizeof(T) / sizeof(double)>::Bits;
 
-/// From memory of any alignment. Through a type of a lower one GCC 10 reads as if it had that of T.
+template <class T>
+using InMemory = typename PackOf<sizeof(T) / sizeof(double)>::InMemory;
+
 template <class T>
 QUADCORE_LAW T load(const double* from) {
-  T pack;
-  __builtin_memcpy(&pack, from, sizeof pack);
-  return pack;
+  return *reinterpret_cast<const InMemory<T>*>(from);
 }
 
 template <class T>
 QUADCORE_LAW void store(double* to, T pack) {
-  __builtin_memcpy(to, &pack, sizeof pack);
+  *reinterpret_cast<InMemory<T>*>(to) = pack;
 }
 
 template <class T>
