@@ -29,7 +29,7 @@ class Law:
     spins : list of float
         1 or -1 for each rotor; empty: neighbours around the vehicle turn against each other.
     belief : Simulation, optional
-        What is flown, as the law believes; None: what is flown. Parameters named believed_...
+        What is flown, as the law believes; None: what is flown. Parameters named ``believed_...``
         make it wrong.
     """
 

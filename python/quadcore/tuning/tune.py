@@ -66,7 +66,7 @@ def tune(
         Fly everything, to judge only.
     only
         Parameters to tune; without, all gains that are not zero at the start: those named k._...,
-        q_... and r_....
+        ``q_...`` and ``r_...``.
     engine, duration
         Of each flight; s.
     budget

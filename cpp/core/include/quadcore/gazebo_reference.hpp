@@ -8,7 +8,7 @@
 
 namespace quadcore QUADCORE_EXPORT {
 
-/// What a <gazebo reference="LINK or JOINT"> may hold. Parsing, errors and the docs come from here.
+/// What a `<gazebo reference="LINK or JOINT">` may hold. Parsing, errors and the docs come from here.
 struct GazeboTag {
   std::string name;
   std::string of;        ///< what the reference must name: link | joint
@@ -29,7 +29,7 @@ struct GivenTag {
   std::string where;
 };
 
-/// One <gazebo reference="...">, with the tags that are felt.
+/// One `<gazebo reference="...">`, with the tags that are felt.
 struct GazeboReference {
   std::string name;  ///< of a link or a joint
   std::string where;

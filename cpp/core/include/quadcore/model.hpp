@@ -52,7 +52,7 @@ struct Collision {
   Surface surface = {};
 };
 
-/// What a <gazebo reference> says of how a whole body moves.
+/// What a `<gazebo reference>` says of how a whole body moves.
 struct BodyTags {
   bool gravity = true;
   double damping_factor = 0;  ///< part of its velocity that a body loses in each step

@@ -1,0 +1,75 @@
+"""The pages as a site: `scripts/docs` builds it."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import quadcore
+
+ROOT = Path(__file__).resolve().parent.parent
+BUILD = ROOT / "build" / "docs"
+MADE = BUILD / "made"
+
+project = "quadcore"
+author = "the quadcore authors"
+copyright = f"2026, {author}"  # noqa: A001
+release = version = quadcore.__version__
+
+extensions = [
+    "breathe",
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx-mathjax-offline",
+    "sphinxarg.ext",
+]
+html_theme = "furo"
+html_title = f"quadcore {release}"
+html_copy_source = False
+html_extra_path = [str(MADE / "extra")]
+
+myst_enable_extensions = ["dollarmath"]
+myst_fence_as_directive = ["math"]
+myst_heading_anchors = 4
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "description"
+napoleon_google_docstring = False
+napoleon_use_ivar = True
+breathe_projects = {"quadcore": str(MADE / "xml")}
+breathe_default_project = "quadcore"
+
+
+def _as_sphinx_reads_it(app, docname, source):
+    """Files of the checkout become their paths, as the site is read without it; anchors labels.
+
+    And formulas lose the backquotes that one reader of the pages wants.
+    """
+    source[0] = re.sub(r"\[([^\]]+)\]\((?:\.\./)+([^)#]+)(?:#[^)]*)?\)", r"\1 (`\2`)", source[0])
+    source[0] = re.sub(r"\$`([^`]+)`\$", r"$\1$", source[0])
+    source[0] = re.sub(r'^<a id="([^"]+)"></a>$', r"(\1)=", source[0], flags=re.MULTILINE)
+
+
+def _make_flights(page):
+    """Fly the spiral under three laws, to watch on the first page."""
+    quadcore_ = [sys.executable, "-m", "quadcore"]
+    logs = []
+    for law in ("pid_thesis", "pd", "geometric"):
+        folder = MADE / "flights" / law
+        flown = subprocess.run(
+            [*quadcore_, "run", "quadrotor", "--engine", "eigen", "--xacro", "sim_slow:=1"]
+            + ["--controller", law, "--reference", "spiral", "--duration", "20", "--quiet"]
+            + ["--log-every", "20", "--no-plots", "--out", str(folder)],
+        )
+        assert flown.returncode in (0, 3)  # the printed gains lose the vehicle
+        logs.append(str(folder / "log.csv"))
+    subprocess.run([*quadcore_, "play", *logs, "--model", "quadrotor", "-o", str(page)], check=True)
+
+
+def setup(app):
+    """Make what the pages are made of: the headers' comments, and flights."""
+    (MADE / "extra").mkdir(parents=True, exist_ok=True)
+    subprocess.run(["doxygen", "docs/Doxyfile"], cwd=ROOT, check=True)
+    _make_flights(MADE / "extra" / "flights.html")
+    app.connect("source-read", _as_sphinx_reads_it)
