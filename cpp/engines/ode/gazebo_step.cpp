@@ -16,6 +16,8 @@ constexpr double friction_relaxation = 0.25;  ///< of a friction row, on top of 
 constexpr int friction_sweeps = 10;           ///< over the friction rows alone, at the end
 constexpr double contact_smoothing = 0.01;  ///< of contact multipliers, where velocities are solved
 
+constexpr int pose = 0, velocity = 1;  ///< which of the two solves
+
 }  // namespace
 
 GazeboStep::GazeboStep(const std::vector<dBodyID>& bodies, std::vector<Hinge> hinges,
@@ -25,29 +27,41 @@ GazeboStep::GazeboStep(const std::vector<dBodyID>& bodies, std::vector<Hinge> hi
       constraints_(bodies, std::move(hinges), order, options.rows),
       options_(options),
       bodies_(bodies.size()) {
-  hinge_sweeps_.hinges.resize(warm_start.size());
+  sweeps_.bodies.resize(bodies.size());
+  sweeps_.smoothing = Sweeps::Two{0, contact_smoothing};
+  reserve(0);
 }
 
 void GazeboStep::reserve(std::size_t contacts) {
   constraints_.reserve(contacts);
-  sweeps_.reserve(constraints_.most_rows());
-  order_.reserve(constraints_.most_rows());
+  sweeps_.hinges.reserve(warm_start.size());
+  sweeps_.rows.reserve(constraints_.most_rows());
+  sweeps_.order.reserve(constraints_.most_rows());
+  solved_.reserve(constraints_.most_rows());
+  place_.reserve(constraints_.most_rows());
+  relaxation_.reserve(constraints_.most_rows());
 }
 
 void GazeboStep::step(const std::vector<Contact>& contacts, double dt) {
   read_bodies();
   rows_ = &constraints_.build(contacts, dt);
-  order_rows();
   prepare_rows();
-  const bool once = is_solved_once();
-  solve(&WarmStart::pose, false, 0, dt);
-  for (Body& b : bodies_) b.moving = b.velocity + dt * (b.free_acceleration + b.constraint);
-  if (once) {
-    for (WarmStart& start : warm_start) start.velocity = start.pose;
-  } else {
-    solve(&WarmStart::velocity, true, contact_smoothing, dt);
+  begin(dt);
+  sweeps_.sweep(options_.iterations);
+  sweeps_.sweep_rows(friction_sweeps, friction_begin_);
+  for (std::size_t i = 0; i < rows_->size(); ++i) {
+    const ConstraintRow& row = (*rows_)[i];
+    if (row.hinge < 0) continue;
+    WarmStart& start = warm_start[static_cast<std::size_t>(row.hinge)];
+    const auto k = static_cast<std::size_t>(row.hinge_row);
+    start.pose[k] = solved_[i]->multiplier[pose];
+    start.velocity[k] = solved_[i]->multiplier[velocity];
   }
-  for (Body& b : bodies_) b.velocity += dt * (b.free_acceleration + b.constraint);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    Body& b = bodies_[i];
+    b.moving = b.velocity + dt * (b.free_acceleration + constraint(i, pose));
+    b.velocity += dt * (b.free_acceleration + constraint(i, velocity));
+  }
   move(dt);
 }
 
@@ -67,180 +81,178 @@ void GazeboStep::read_bodies() {
   }
 }
 
+GazeboStep::Vector6 GazeboStep::inverse_mass_J(const ConstraintRow& row, int side) const {
+  const Body& body = bodies_[static_cast<std::size_t>(row.body[side])];
+  Vector6 result;
+  result << body.inverse_mass * row.J[side].head<3>(),
+      body.inverse_inertia_W * row.J[side].tail<3>();
+  return result;
+}
+
+/// Fills the sweeps with the rows.
+void GazeboStep::prepare_rows() {
+  sweeps_.hinges.clear();
+  sweeps_.rows.clear();
+  solved_.clear();
+  place_.clear();
+  relaxation_.clear();
+  const auto of_hinges = std::count_if(rows_->begin(), rows_->end(),
+                                       [](const ConstraintRow& row) { return row.hinge >= 0; });
+  const bool simple = options_.rows.cfm == 0 && static_cast<std::size_t>(of_hinges) ==
+                                                    Sweeps::rows_of_hinge * warm_start.size();
+  for (std::size_t i = 0; i < rows_->size(); ++i) {
+    const ConstraintRow& row = (*rows_)[i];
+    double diagonal = row.cfm;
+    for (int side = 0; side < 2 && row.body[side] >= 0; ++side) {
+      diagonal += row.J[side].dot(inverse_mass_J(row, side));
+    }
+    const double relaxation =
+        options_.sor * (row.normal >= 0 ? friction_relaxation : 1.0) / diagonal;
+    relaxation_.push_back(relaxation);
+    if (simple && row.hinge >= 0) {
+      put_hinge(i, relaxation);
+    } else {
+      put_row(i, relaxation);
+    }
+  }
+  order_rows();
+}
+
+void GazeboStep::put_hinge(std::size_t index, double relaxation) {
+  const ConstraintRow& row = (*rows_)[index];
+  if (row.hinge_row == 0) sweeps_.hinges.push_back({row.body[0], row.body[1], {}});
+  const auto k = static_cast<std::size_t>(row.hinge_row);
+  Sweeps::HingeRow& to = sweeps_.hinges.back().rows[k];
+  const Vector6 of_C = inverse_mass_J(row, 0), of_P = inverse_mass_J(row, 1);
+  for (int j = 0; j < 3; ++j) {
+    to.turn_C[j] = row.J[0][3 + j];
+    to.turn_P[j] = row.J[1][3 + j];
+    to.angular_C[j] = of_C[3 + j];
+    to.angular_P[j] = of_P[3 + j];
+  }
+  to.linear_C = row.hinge_row < 3 ? of_C[row.hinge_row] : 0;
+  to.linear_P = row.hinge_row < 3 ? of_P[row.hinge_row] : 0;
+  to.relaxation = relaxation;
+  solved_.push_back(&to);
+  place_.push_back(-1);
+}
+
+void GazeboStep::put_row(std::size_t index, double relaxation) {
+  const ConstraintRow& row = (*rows_)[index];
+  Sweeps::Row to;
+  for (int side = 0; side < 2; ++side) {
+    to.body[side] = row.body[side];
+    if (row.body[side] < 0) continue;
+    Eigen::Map<Vector6>(to.J[side]) = row.J[side];
+    Eigen::Map<Vector6>(to.inverse_mass_J[side]) = inverse_mass_J(row, side);
+  }
+  to.relaxation = relaxation;
+  to.cfm = row.cfm;
+  to.low = row.low;
+  to.high = row.high;
+  to.friction = row.friction;
+  to.normal = row.normal < 0 ? -1 : place_[static_cast<std::size_t>(row.normal)];
+  to.smooth = row.hinge < 0;
+  place_.push_back(static_cast<int>(sweeps_.rows.size()));
+  sweeps_.rows.push_back(to);
+  solved_.push_back(&sweeps_.rows.back());
+}
+
 /// Hinges in row order, normals in reverse, friction in row order.
 void GazeboStep::order_rows() {
   const auto& rows = *rows_;
-  order_.clear();
+  std::vector<std::size_t>& order = sweeps_.order;
+  const auto put = [&](std::size_t i) { order.push_back(static_cast<std::size_t>(place_[i])); };
+  order.clear();
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i].hinge >= 0) order_.push_back(i);
+    if (rows[i].hinge >= 0 && place_[i] >= 0) put(i);
   }
   for (std::size_t i = rows.size(); i-- > 0;) {
-    if (rows[i].hinge < 0 && rows[i].normal < 0) order_.push_back(i);
+    if (rows[i].hinge < 0 && rows[i].normal < 0) put(i);
   }
-  friction_begin_ = order_.size();
+  friction_begin_ = order.size();
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i].normal >= 0) order_.push_back(i);
+    if (rows[i].normal >= 0) put(i);
   }
 }
 
-void GazeboStep::prepare_rows() {
-  sweeps_.resize(rows_->size());
+void GazeboStep::add_multiplier(std::size_t index, const Sweeps::Two& multiplier) {
+  const ConstraintRow& row = (*rows_)[index];
+  for (int side = 0; side < 2 && row.body[side] >= 0; ++side) {
+    const Vector6 by = inverse_mass_J(row, side);
+    Sweeps::Acceleration& sum = sweeps_.bodies[static_cast<std::size_t>(row.body[side])];
+    for (std::size_t k = 0; k < 6; ++k) sum[k] += multiplier * by[static_cast<int>(k)];
+  }
+}
+
+/// Begins both solves.
+void GazeboStep::begin(double dt) {
+  for (Sweeps::Acceleration& body : sweeps_.bodies) body.fill(Sweeps::Two{});
   for (std::size_t i = 0; i < rows_->size(); ++i) {
     const ConstraintRow& row = (*rows_)[i];
-    Sweep& sweep = sweeps_[i];
-    double diagonal = row.cfm;
+    Sweeps::Two multiplier{};
+    if (row.hinge >= 0) {
+      const WarmStart& start = warm_start[static_cast<std::size_t>(row.hinge)];
+      const auto k = static_cast<std::size_t>(row.hinge_row);
+      multiplier = Sweeps::Two{warm_start_factor * start.pose[k],
+                               warm_start_factor * start.velocity[k]};
+    }
+    // Gazebo forgets the sign of what it caps.
+    const bool capped = std::abs(row.correction) > row.max_correction;
+    Sweeps::Two wanted{row.correction / dt,
+                       (capped ? row.max_correction : row.correction) / dt};
     for (int side = 0; side < 2 && row.body[side] >= 0; ++side) {
       const Body& body = bodies_[static_cast<std::size_t>(row.body[side])];
-      sweep.inverse_mass_J[side] << body.inverse_mass * row.J[side].head<3>(),
-          body.inverse_inertia_W * row.J[side].tail<3>();
-      diagonal += row.J[side].dot(sweep.inverse_mass_J[side]);
+      wanted -= row.J[side].dot(body.velocity / dt + body.free_acceleration);
     }
-    sweep.relaxation = options_.sor * (row.normal >= 0 ? friction_relaxation : 1.0) / diagonal;
+    solved_[i]->multiplier = multiplier;
+    solved_[i]->wanted = wanted;
+    add_multiplier(i, multiplier);
   }
 }
 
-void GazeboStep::solve(Multipliers WarmStart::* start, bool cap, double smoothing, double dt) {
-  const auto& rows = *rows_;
-  const auto remembered = [&](const ConstraintRow& row) -> double& {
-    return (warm_start[static_cast<std::size_t>(row.hinge)].*
-            start)[static_cast<std::size_t>(row.hinge_row)];
-  };
-  for (Body& body : bodies_) body.constraint.setZero();
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const ConstraintRow& row = rows[i];
-    Sweep& sweep = sweeps_[i];
-    sweep.multiplier = row.hinge < 0 ? 0 : warm_start_factor * remembered(row);
-    // Gazebo forgets the sign of what it caps.
-    const bool capped = cap && std::abs(row.correction) > row.max_correction;
-    sweep.wanted = (capped ? row.max_correction : row.correction) / dt;
-    for (int side = 0; side < 2 && row.body[side] >= 0; ++side) {
-      Body& body = bodies_[static_cast<std::size_t>(row.body[side])];
-      sweep.wanted -= row.J[side].dot(body.velocity / dt + body.free_acceleration);
-      body.constraint += sweep.multiplier * sweep.inverse_mass_J[side];
-    }
-  }
-  if (are_hinges_alone()) {
-    sweep_hinges();
-  } else {
-    for (int n = 0; n < options_.iterations; ++n) {
-      for (const std::size_t row : order_) relax(row, smoothing);
-    }
-    for (int n = 0; n < friction_sweeps; ++n) {
-      for (std::size_t k = friction_begin_; k < order_.size(); ++k) relax(order_[k], smoothing);
-    }
-  }
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i].hinge >= 0) remembered(rows[i]) = sweeps_[i].multiplier;
-  }
-}
-
-/// Whether HingeSweeps may take the place of the sweeps.
-bool GazeboStep::are_hinges_alone() const {
-  return options_.rows.cfm == 0 && rows_->size() == HingeSweeps::rows_of_hinge * warm_start.size();
-}
-
-/// Whether poses and velocities have one solution: there is nothing but hinges, no correction is
-/// capped, and both start from the same multipliers.
-bool GazeboStep::is_solved_once() const {
-  return are_hinges_alone() &&
-         std::all_of(rows_->begin(), rows_->end(),
-                     [](const ConstraintRow& row) {
-                       return std::abs(row.correction) <= row.max_correction;
-                     }) &&
-         std::all_of(warm_start.begin(), warm_start.end(),
-                     [](const WarmStart& start) { return start.pose == start.velocity; });
-}
-
-void GazeboStep::sweep_hinges() {
-  const auto& rows = *rows_;
-  std::size_t i = 0;
-  for (HingeSweeps::HingeRows& hinge : hinge_sweeps_.hinges) {
-    hinge.child = &bodies_[static_cast<std::size_t>(rows[i].body[0])].constraint;
-    hinge.parent = &bodies_[static_cast<std::size_t>(rows[i].body[1])].constraint;
-    for (HingeSweeps::Row& to : hinge.rows) {
-      const ConstraintRow& row = rows[i];
-      const Sweep& from = sweeps_[i++];
-      to.turn_C = row.J[0].tail<3>();
-      to.turn_P = row.J[1].tail<3>();
-      to.angular_C = from.inverse_mass_J[0].tail<3>();
-      to.angular_P = from.inverse_mass_J[1].tail<3>();
-      if (row.hinge_row < 3) {
-        to.linear_C = from.inverse_mass_J[0][row.hinge_row];
-        to.linear_P = from.inverse_mass_J[1][row.hinge_row];
-      }
-      to.relaxation = from.relaxation;
-      to.wanted = from.wanted;
-      to.multiplier = from.multiplier;
-    }
-  }
-  hinge_sweeps_.sweep(options_.iterations);
-  i = 0;
-  for (const HingeSweeps::HingeRows& hinge : hinge_sweeps_.hinges) {
-    for (const HingeSweeps::Row& from : hinge.rows) sweeps_[i++].multiplier = from.multiplier;
-  }
+/// Acceleration of a body by the constraints.
+GazeboStep::Vector6 GazeboStep::constraint(std::size_t body, int solve) const {
+  Vector6 a;
+  for (std::size_t k = 0; k < 6; ++k) a[static_cast<int>(k)] = sweeps_.bodies[body][k][solve];
+  return a;
 }
 
 double GazeboStep::remaining_error(double dt, std::uint64_t seed) {
   static const std::vector<Contact> none;
   read_bodies();
   rows_ = &constraints_.build(none, dt);
-  order_rows();
   prepare_rows();
-  for (Body& body : bodies_) body.constraint.setZero();
+  for (Sweeps::Acceleration& body : sweeps_.bodies) body.fill(Sweeps::Two{});
   double count = 0;
   for (std::size_t i = 0; i < rows_->size(); ++i) {
-    const ConstraintRow& row = (*rows_)[i];
-    Sweep& sweep = sweeps_[i];
     // In units of the multiplier that would stop the row's bodies by itself.
-    sweep.multiplier = random_normal(seed, count) * std::sqrt(sweep.relaxation);
-    sweep.wanted = 0;
-    for (int side = 0; side < 2 && row.body[side] >= 0; ++side) {
-      bodies_[static_cast<std::size_t>(row.body[side])].constraint +=
-          sweep.multiplier * sweep.inverse_mass_J[side];
-    }
+    const double multiplier = random_normal(seed, count) * std::sqrt(relaxation_[i]);
+    solved_[i]->multiplier = Sweeps::Two{multiplier, multiplier};
+    solved_[i]->wanted = Sweeps::Two{};
+    add_multiplier(i, solved_[i]->multiplier);
   }
   const auto energy = [this] {
     double sum = 0;
     for (std::size_t i = 0; i < rows_->size(); ++i) {
       const ConstraintRow& row = (*rows_)[i];
-      double acceleration = row.cfm * sweeps_[i].multiplier;
+      const double multiplier = solved_[i]->multiplier[pose];
+      double acceleration = row.cfm * multiplier;
       for (int side = 0; side < 2 && row.body[side] >= 0; ++side) {
         acceleration +=
-            row.J[side].dot(bodies_[static_cast<std::size_t>(row.body[side])].constraint);
+            row.J[side].dot(constraint(static_cast<std::size_t>(row.body[side]), pose));
       }
-      sum += sweeps_[i].multiplier * acceleration;
+      sum += multiplier * acceleration;
     }
     return sum;
   };
   const double first = energy();
   double part = 1;
   for (int n = 0; n < options_.iterations && part > 1e-16; ++n) {
-    for (const std::size_t row : order_) relax(row, 0);
+    sweeps_.sweep(1);
     part = std::sqrt(std::abs(energy() / first));
   }
   return part;
-}
-
-void GazeboStep::relax(std::size_t index, double smoothing) {
-  const ConstraintRow& row = (*rows_)[index];
-  Sweep& sweep = sweeps_[index];
-  double residual = sweep.wanted - row.cfm * sweep.multiplier;
-  for (int side = 0; side < 2 && row.body[side] >= 0; ++side) {
-    residual -= row.J[side].dot(bodies_[static_cast<std::size_t>(row.body[side])].constraint);
-  }
-  double low = row.low, high = row.high;
-  if (row.normal >= 0) {
-    high = row.friction * sweeps_[static_cast<std::size_t>(row.normal)].multiplier;
-    low = -high;
-  }
-  const double old = sweep.multiplier;
-  const double next = std::clamp(old + sweep.relaxation * residual, low, high);
-  for (int side = 0; side < 2 && row.body[side] >= 0; ++side) {
-    bodies_[static_cast<std::size_t>(row.body[side])].constraint +=
-        (next - old) * sweep.inverse_mass_J[side];
-  }
-  // Gazebo smooths contact multipliers after it has applied them.
-  sweep.multiplier = row.hinge < 0 ? (1 - smoothing) * next + smoothing * old : next;
 }
 
 void GazeboStep::move(double dt) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "constraint_rows.hpp"
-#include "hinge_sweeps.hpp"
+#include "sweeps.hpp"
 
 namespace quadcore {
 
@@ -59,25 +59,18 @@ class GazeboStep {
     Matrix3d inverse_inertia_W;
     Vector6 velocity;           ///< linear, angular
     Vector6 free_acceleration;  ///< without constraints
-    Vector6 constraint;         ///< acceleration by the constraints, while it is solved for
     Vector6 moving;             ///< velocity with which the pose moves
-  };
-  /// A row as the sweeps use it.
-  struct Sweep {
-    Vector6 inverse_mass_J[2];
-    double relaxation;  ///< over the row's diagonal
-    double wanted;      ///< acceleration that the row asks for
-    double multiplier;
   };
 
   void read_bodies();
-  void order_rows();
   void prepare_rows();
-  void solve(Multipliers WarmStart::* start, bool cap, double smoothing, double dt);
-  void relax(std::size_t row, double smoothing);
-  bool are_hinges_alone() const;
-  bool is_solved_once() const;
-  void sweep_hinges();
+  void order_rows();
+  void put_hinge(std::size_t row, double relaxation);
+  void put_row(std::size_t row, double relaxation);
+  void begin(double dt);
+  Vector6 inverse_mass_J(const ConstraintRow& row, int side) const;
+  Vector6 constraint(std::size_t body, int solve) const;
+  void add_multiplier(std::size_t row, const Sweeps::Two& multiplier);
   void move(double dt);
 
   const std::vector<dBodyID>& ode_bodies_;
@@ -85,10 +78,11 @@ class GazeboStep {
   Options options_;
   std::vector<Body> bodies_;
   const std::vector<ConstraintRow>* rows_ = nullptr;
-  std::vector<Sweep> sweeps_;
-  HingeSweeps hinge_sweeps_;
-  std::vector<std::size_t> order_;  ///< rows as they are swept: hinges, normals, friction
-  std::size_t friction_begin_ = 0;  ///< in order_
+  Sweeps sweeps_;
+  std::vector<Sweeps::Solved*> solved_;  ///< of each row, in sweeps_
+  std::vector<int> place_;               ///< of each row, among the rows of sweeps_
+  std::vector<double> relaxation_;       ///< of each row
+  std::size_t friction_begin_ = 0;       ///< in the order of sweeps_
 };
 
 }  // namespace quadcore
