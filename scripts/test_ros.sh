@@ -54,6 +54,12 @@ copy_sources() {
   cp -rp CMakeLists.txt LICENSE README.md package.xml pyproject.toml setup.py cpp python launch msg srv \
     urdf worlds config scripts $workspace/src/quadcore
   cp -rp tests/ros $workspace/src/quadcore/tests
+  # Messages of others that the distribution lacks.
+  local package
+  for package in cpp/ros/packages/*/; do
+    rm -rf $workspace/src/$(basename $package)
+    [ -d /opt/ros/noetic/share/$(basename $package) ] || cp -rp $package $workspace/src
+  done
 }
 
 build() {
@@ -131,7 +137,7 @@ say "running the ROS tests"
 SECONDS=0
 (run_in devel topics services lockstep playing clock several parameters faults masters fly_from_python \
   controller controller_faults set_points pid joystick launch plugin_by_others plugin_topics sensors \
-  disturbances)
+  disturbances rotors rotors_topics rotors_hover)
 (run_in install launch playing fly_from_python plugin_by_others)
 [ ! -e $workspace/failed ]
 say "the ROS tests passed in $SECONDS s"

@@ -1,11 +1,13 @@
 #include "broadcast.hpp"
 
 #include "messages.hpp"
+#include "plant.hpp"
 
 namespace quadcore::node {
 namespace {
 
 constexpr bool kept = true;  ///< the last message, for those who subscribe later
+constexpr const char* truth = "ground_truth/odometry";
 
 geometry_msgs::TransformStamped same_place(const std::string& parent, const std::string& child) {
   geometry_msgs::TransformStamped same;
@@ -25,7 +27,7 @@ Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
   const Model& model = simulation.model();
   joint_states_.name = model.joint_names();
   if (odometry_topic_.exists()) {
-    advertise_odometry(nh, frame_prefix, model, rotor_tf);
+    advertise_odometry(nh, frame_prefix, simulation, rotor_tf);
   } else {
     ROS_WARN("no plugin of the model publishes odometry on topic odom: odom and tf are not sent");
   }
@@ -34,9 +36,11 @@ Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
 }
 
 void Broadcast::advertise_odometry(ros::NodeHandle& nh, const std::string& frame_prefix,
-                                   const Model& model, bool rotor_tf) {
+                                   const Simulation& simulation, bool rotor_tf) {
+  const Model& model = simulation.model();
+  const bool of_plugin = simulation.topics().find(truth) >= 0;  // as RotorS' vehicles have it
   odometry_publisher_ = nh.advertise<nav_msgs::Odometry>(OdometryTopic::name, 1000, kept);
-  truth_publisher_ = nh.advertise<nav_msgs::Odometry>("ground_truth/odometry", 1000, kept);
+  if (!of_plugin) truth_publisher_ = nh.advertise<nav_msgs::Odometry>(truth, 1000, kept);
   const std::string vehicle_frame = frame_prefix + vehicle_name;
   set_frames(odometry_, vehicle_frame);
   set_frames(truth_, vehicle_frame);
@@ -44,7 +48,7 @@ void Broadcast::advertise_odometry(ros::NodeHandle& nh, const std::string& frame
   tf_publisher_ = nh.advertise<tf2_msgs::TFMessage>("/tf", 100, kept);
   transforms_.transforms.push_back(same_place(world_frame, vehicle_frame));
   if (rotor_tf) add_rotor_frames(model, frame_prefix);
-  const std::string root_frame = frame_prefix + model.links.front().name;
+  const std::string root_frame = frame_of(frame_prefix, model.links.front().name);
   if (root_frame == vehicle_frame) return;
   // robot_state_publisher begins at the URDF's root link, tf at the thesis' "drone".
   static_tf_publisher_ = nh.advertise<tf2_msgs::TFMessage>("/tf_static", 100, kept);
@@ -79,15 +83,15 @@ void Broadcast::send_odometry(const Simulation& simulation, const Topic& topic) 
   to_ros(messages::read<messages::Odometry>(topic.values.data()), odometry_);
   odometry_publisher_.publish(odometry_);
   to_ros(odometry_topic_.truth(simulation.state()), truth_);
-  truth_publisher_.publish(truth_);
+  if (truth_publisher_) truth_publisher_.publish(truth_);
   if (tf_publisher_) send_transforms(simulation);
 }
 
 void Broadcast::add_rotor_frames(const Model& model, const std::string& frame_prefix) {
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint& joint = model.joints[i];
-    transforms_.transforms.push_back(same_place(frame_prefix + model.links[joint.parent].name,
-                                                frame_prefix + model.links[i + 1].name));
+    transforms_.transforms.push_back(same_place(frame_of(frame_prefix, model.links[joint.parent].name),
+                                                frame_of(frame_prefix, model.links[i + 1].name)));
     set_vector(transforms_.transforms.back().transform.translation, joint.pose.xyz.data());
   }
 }

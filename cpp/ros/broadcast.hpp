@@ -39,8 +39,8 @@ class Broadcast {
   void show(const Simulation& simulation);
 
  private:
-  void advertise_odometry(ros::NodeHandle& nh, const std::string& frame_prefix, const Model& model,
-                          bool rotor_tf);
+  void advertise_odometry(ros::NodeHandle& nh, const std::string& frame_prefix,
+                          const Simulation& simulation, bool rotor_tf);
   void send_odometry(const Simulation& simulation, const Topic& topic);
   void add_rotor_frames(const Model& model, const std::string& frame_prefix);
   void send_transforms(const Simulation& simulation);

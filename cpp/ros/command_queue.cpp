@@ -11,7 +11,7 @@ namespace quadcore::node {
 
 void CommandQueue::take(const Command& command) {
   if (width_ == 0) throw InputError("the model takes no commands; add libmotorpid_plugin.so");
-  check_command(command.data(), command.size(), width_, Simulation::max_rate);
+  check_command(command.speeds.data(), command.speeds.size(), width_, Simulation::max_rate);
   if (!lockstep_ || (owed_ == 0 && awaited_)) {
     awaited_ = false;
     fly(command);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace quadcore::node {
@@ -20,7 +21,10 @@ namespace quadcore::node {
 /// Not synchronised: the owner's lock guards it.
 class CommandQueue {
  public:
-  using Command = std::vector<double>;
+  struct Command {
+    std::string topic;  ///< of the simulation
+    std::vector<double> speeds;
+  };
 
   /// Commands that wait for their message, at most: ten seconds at 1 kHz.
   static constexpr std::size_t most_waiting = 10000;

@@ -1,5 +1,8 @@
 #include "command_subscriber.hpp"
 
+#include <mav_msgs/Actuators.h>
+#include <std_msgs/Float64MultiArray.h>
+
 #include <algorithm>
 
 #include "quadcore/error.hpp"
@@ -9,16 +12,41 @@ namespace {
 
 constexpr std::uint32_t queue_of_original = 1000;
 
+const std::vector<double>& speeds_of(const std_msgs::Float64MultiArray& message) {
+  return message.data;
+}
+const std::vector<double>& speeds_of(const mav_msgs::Actuators& message) {
+  return message.angular_velocities;
+}
+
+template <class Message, class Take>
+ros::Subscriber subscribe(ros::NodeHandle& nh, const std::string& topic, std::uint32_t queue,
+                          const Take& take) {
+  const boost::function<void(const ros::MessageEvent<Message const>&)> callback =
+      [take](const ros::MessageEvent<Message const>& event) {
+        take(event.getPublisherName(), speeds_of(*event.getConstMessage()));
+      };
+  // No delay, lest a command waits for the next one.
+  return nh.subscribe<Message>(topic, queue, callback, ros::VoidConstPtr(),
+                               ros::TransportHints().tcpNoDelay());
+}
+
 }  // namespace
 
-CommandSubscriber::CommandSubscriber(ros::NodeHandle& nh, const std::string& topic, bool lockstep,
-                                     FlightThread& flight)
-    : flight_(flight) {
+CommandSubscriber::CommandSubscriber(ros::NodeHandle& nh, const std::vector<CommandTopic>& topics,
+                                     bool lockstep, FlightThread& flight)
+    : flight_(flight), topics_(topics) {
   // In lockstep roscpp's queue, which drops in silence, must not be the shorter one.
   const std::uint32_t queue = lockstep ? CommandQueue::most_waiting : queue_of_original;
-  // No delay, lest a command waits for the next one.
-  subscriber_ = nh.subscribe(topic, queue, &CommandSubscriber::take, this,
-                             ros::TransportHints().tcpNoDelay());
+  for (const CommandTopic& topic : topics_) {
+    const auto take_from = [this, &topic](const std::string& who, const std::vector<double>& w) {
+      take(topic, who, w);
+    };
+    subscribers_.push_back(
+        topic.actuators
+            ? subscribe<mav_msgs::Actuators>(nh, topic.name, queue, take_from)
+            : subscribe<std_msgs::Float64MultiArray>(nh, topic.name, queue, take_from));
+  }
 }
 
 Refusals CommandSubscriber::refusals() const {
@@ -26,23 +54,24 @@ Refusals CommandSubscriber::refusals() const {
   return refusals_;
 }
 
-void CommandSubscriber::take(const ros::MessageEvent<std_msgs::Float64MultiArray const>& event) {
-  const std::string& commander = event.getPublisherName();
-  if (commander != commander_ && !commander_.empty() && subscriber_.getNumPublishers() > 1) {
+void CommandSubscriber::take(const CommandTopic& topic, const std::string& commander,
+                             const std::vector<double>& speeds) {
+  if (commander == ros::this_node::getName()) return;  // what a plugin forwards
+  if (commander != commander_ && !commander_.empty() && commanders(topics_) > 1) {
     const auto [one, other] = std::minmax(commander, commander_);
-    sayer_.warn(subscriber_.getTopic() + ": commands of " + one + " and of " + other +
+    sayer_.warn(topic.name + ": commands of " + one + " and of " + other +
                 " come in turn; end one of them");
   }
   commander_ = commander;
   try {
-    flight_.command(event.getConstMessage()->data);
+    flight_.command({topic.simulated, speeds});
   } catch (const InputError& error) {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
       ++refusals_.count;
       refusals_.last = error.what();
     }
-    sayer_.warn(subscriber_.getTopic() + ": " + error.what());
+    sayer_.warn(topic.name + ": " + error.what());
   }
 }
 

@@ -28,6 +28,15 @@ std::string cannot_be_sent(const Simulation& simulation) {
   return text + what_was_thrown();
 }
 
+void fly_command(const CommandQueue::Command& command, Simulation& simulation) {
+  const std::vector<double>& speeds = command.speeds;
+  if (command.topic == Simulation::command_topic) {
+    simulation.command(speeds.data(), speeds.size());
+  } else {
+    simulation.publish(command.topic, speeds.data(), speeds.size());
+  }
+}
+
 }  // namespace
 
 void FlightThread::fly() {
@@ -135,7 +144,7 @@ void FlightThread::observe_jump() {
     const Lock lock(mutex_);
     commands_.begin();
     jump_observed_ = observe;
-    if (observe) commands_.message_sent();
+    if (observe && asked() > 0) commands_.message_sent();
   }
   if (observe) {
     listener_.observe(simulation_, true);
@@ -211,18 +220,18 @@ std::string FlightThread::try_step() {
     command = commands_.next();
   }
   try {
-    if (command) simulation_.command(command->data(), command->size());
+    if (command) fly_command(*command, simulation_);
   } catch (const InputError& error) {  // a plugin commands: it goes on
     listener_.warn(error.what());
   }
-  const double odometry_before = odometry_topic_.count(simulation_);
+  const double asked_before = asked();
   try {
     listener_.feed(simulation_);
     simulation_.step();
   } catch (...) {
     return what_was_thrown();
   }
-  if (odometry_topic_.count(simulation_) != odometry_before) {
+  if (asked() != asked_before) {
     const Lock lock(mutex_);
     commands_.message_sent();  // before it goes out: its answer may come at once
   }

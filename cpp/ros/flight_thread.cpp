@@ -17,21 +17,26 @@ FlightThread::FlightThread(Simulation& simulation, const FlightSettings& setting
     : simulation_(simulation),
       settings_(settings),
       listener_(listener),
-      odometry_topic_(simulation),
+      answered_(simulation.topics().find(settings.answered)),
       paused_(settings.paused),
       commands_(command_width(simulation), settings.lockstep),
       real_time_factor_(settings.real_time_factor),
       pacer_(simulation.dt(), settings.follows_clock ? 0 : settings.real_time_factor) {
-  if (settings.lockstep && !(simulation.takes_commands() && odometry_topic_.exists())) {
+  if (settings.lockstep && !(simulation.takes_commands() && answered_ >= 0)) {
     throw InputError(
-        "lockstep needs a model that takes commands on topic vel_cmd and sends odometry on topic "
-        "odom; add libmotorpid_plugin.so and libodometry_plugin.so, or leave lockstep off");
+        "lockstep needs a model that takes commands on topic vel_cmd and sends odometry on topic " +
+        settings.answered +
+        "; add libmotorpid_plugin.so and libodometry_plugin.so, or leave lockstep off");
   }
   report_.time = simulation.time();
   thread_ = std::thread(&FlightThread::fly, this);
 }
 
 FlightThread::~FlightThread() { end(); }
+
+double FlightThread::asked() const {
+  return answered_ < 0 ? 0 : simulation_.topics()[static_cast<std::size_t>(answered_)].count;
+}
 
 void FlightThread::end() {
   {
@@ -42,9 +47,9 @@ void FlightThread::end() {
   if (thread_.joinable()) thread_.join();
 }
 
-void FlightThread::command(const std::vector<double>& speeds) {
+void FlightThread::command(const CommandQueue::Command& command) {
   const Lock lock(mutex_);
-  commands_.take(speeds);
+  commands_.take(command);
   if (settings_.lockstep) changed_.notify_all();
 }
 

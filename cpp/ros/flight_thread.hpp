@@ -25,6 +25,7 @@ struct FlightSettings {
   bool paused = false;          ///< at the start
   bool lockstep = false;        ///< wait for one command per odometry message
   double lockstep_timeout = 1;  ///< s; a command later than this is done without
+  std::string answered = OdometryTopic::name;  ///< topic of the simulation that commands answer
 };
 
 /// Follows a flight. All calls come from the flight's own thread, which holds no lock then.
@@ -71,7 +72,7 @@ class FlightThread {
 
   /// Rotor speeds for the next step and all later ones, in lockstep for those after the message
   /// they answer. Throws what CommandQueue::take() throws; the last good command stays.
-  void command(const std::vector<double>& speeds);
+  void command(const CommandQueue::Command& command);
   /// Of a flight that follows the clock: its vehicle stands still, and goes on at the clock's time.
   void set_paused(bool paused);
   void set_real_time_factor(double factor);
@@ -117,12 +118,14 @@ class FlightThread {
   void between_steps(const std::function<void()>& action);
   void jump(const std::function<void(Simulation&)>& change, bool forget_commands);
   bool may_step() const { return failure_.empty() && (!paused_ || steps_allowed_ > 0); }
+  /// Messages so far that a command is to answer.
+  double asked() const;
   bool disturbed() const { return ending_ || !changes_.empty() || !may_step(); }
 
   Simulation& simulation_;
   const FlightSettings settings_;
   FlightListener& listener_;
-  const OdometryTopic odometry_topic_;
+  const int answered_;  ///< topic, or -1
 
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;

@@ -1,18 +1,16 @@
 #include "listener.hpp"
 
-#include <ros/topic_manager.h>
-
 #include <algorithm>
 #include <utility>
 
 namespace quadcore::node {
 
 Listener::Listener(Broadcast& broadcast, TopicInlets& inlets, const Simulation& simulation,
-                   const std::string& command_topic, std::unique_ptr<CsvLog> log,
+                   std::vector<CommandTopic> command_topics, std::unique_ptr<CsvLog> log,
                    ClockFollower* follower)
     : broadcast_(broadcast),
       inlets_(inlets),
-      command_topic_(command_topic),
+      command_topics_(std::move(command_topics)),
       log_(std::move(log)),
       follower_(follower),
       warnings_told_(simulation.warnings().size()) {}
@@ -29,9 +27,7 @@ void Listener::observe(const Simulation& simulation, bool jumped) {
   }
 }
 
-bool Listener::has_commander() const {
-  return ros::TopicManager::instance()->getNumPublishers(command_topic_) > 0;
-}
+bool Listener::has_commander() const { return commanders(command_topics_) > 0; }
 
 std::string Listener::close_log() {
   if (!log_) return "";

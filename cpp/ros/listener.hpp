@@ -2,9 +2,11 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "broadcast.hpp"
 #include "clock.hpp"
+#include "command_topics.hpp"
 #include "csv_log.hpp"
 #include "flight_thread.hpp"
 #include "sayer.hpp"
@@ -18,7 +20,8 @@ class Listener final : public FlightListener {
   /// \param log       CSV log to write; null = none
   /// \param follower  to be told of each step; null = this node leads the clock
   Listener(Broadcast& broadcast, TopicInlets& inlets, const Simulation& simulation,
-           const std::string& command_topic, std::unique_ptr<CsvLog> log, ClockFollower* follower);
+           std::vector<CommandTopic> command_topics, std::unique_ptr<CsvLog> log,
+           ClockFollower* follower);
 
   void feed(Simulation& simulation) override { inlets_.take(simulation); }
   void observe(const Simulation& simulation, bool jumped) override;
@@ -32,7 +35,7 @@ class Listener final : public FlightListener {
  private:
   Broadcast& broadcast_;
   TopicInlets& inlets_;
-  const std::string command_topic_;
+  const std::vector<CommandTopic> command_topics_;
   const std::unique_ptr<CsvLog> log_;
   ClockFollower* const follower_;
   std::size_t warnings_told_;  ///< of the simulation

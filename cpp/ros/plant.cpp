@@ -125,4 +125,8 @@ std::string frame_prefix(const ros::NodeHandle& nh) {
   return space.empty() ? "" : space + "/";
 }
 
+std::string frame_of(const std::string& prefix, const std::string& link) {
+  return link.rfind(prefix, 0) == 0 ? link : prefix + link;
+}
+
 }  // namespace quadcore::node

@@ -45,5 +45,7 @@ Simulation make_simulation(const Plant& plant, const World& world,
 std::string command_topic(const ros::NodeHandle& nh, const Plant& plant, const Model& model);
 /// What a vehicle's frames begin with: "uav1/" in the namespace uav1.
 std::string frame_prefix(const ros::NodeHandle& nh);
+/// tf's name of a link; RotorS' links have the namespace in their names already.
+std::string frame_of(const std::string& prefix, const std::string& link);
 
 }  // namespace quadcore::node

@@ -62,7 +62,6 @@ int run(const EndSignal& end_signal) {
   const World world = read_world_of(settings.plant);
   Simulation simulation = make_simulation(settings.plant, world);
   describe(simulation);
-  const std::string topic = command_topic(nh, settings.plant, simulation.model());
 
   const KeptPublisher<rosgraph_msgs::Clock> clock = take_part_in_clock(nh, settings.clock);
   FlightSettings flight_settings = settings.flight;
@@ -74,27 +73,27 @@ int run(const EndSignal& end_signal) {
   std::optional<ClockFollower> follower;
   if (!clock) follower.emplace(nh, simulation.dt());
   Broadcast broadcast(nh, simulation, clock, prefix, settings.rotor_tf);
-  TopicInlets inlets(nh, simulation, Simulation::command_topic, flight_settings.lockstep);
+  const std::vector<CommandTopic> topics = command_topics(nh, settings.plant, simulation);
+  TopicInlets inlets(nh, simulation, simulated(topics), flight_settings.lockstep);
   std::unique_ptr<CsvLog> log;
   if (!settings.log.empty()) {
     log = std::make_unique<CsvLog>(settings.log, simulation, settings.log_topics);
   }
-  Listener listener(broadcast, inlets, simulation, topic, std::move(log),
+  Listener listener(broadcast, inlets, simulation, topics, std::move(log),
                     follower ? &*follower : nullptr);
   ROS_INFO("flying %s with engine %s, commands on %s%s", simulation.model().name.c_str(),
-           simulation.engine_name().c_str(), topic.c_str(),
+           simulation.engine_name().c_str(), described(topics).c_str(),
            flight_settings.lockstep ? ", one for each odometry message" : "");
   FlightThread flight(simulation, flight_settings, listener);
   std::optional<ClockLeader> leader;
   if (clock) leader.emplace(nh, flight, clock);
   if (follower) follower->follow(flight);
-  const CommandSubscriber commands(nh, topic, flight_settings.lockstep, flight);
-  // In a namespace the clock is not this vehicle's alone.
-  const Services services(nh, simulation, flight, clock && prefix.empty());
+  const CommandSubscriber commands(nh, topics, flight_settings.lockstep, flight);
+  const Services services(nh, simulation, flight, !!clock);
   ParameterWatch parameters(flight, !clock);
   MasterWatch master_watch(services.names(), public_parameters(nh, settings, !!clock),
                            [&parameters] { parameters.look(); });
-  Diagnostics diagnostics(nh, flight.report(), topic);
+  Diagnostics diagnostics(nh, flight.report(), described(topics));
   ros::AsyncSpinner spinner(1);
   spinner.start();
 

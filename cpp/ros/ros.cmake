@@ -61,6 +61,8 @@ endif()
 
 find_package(catkin REQUIRED COMPONENTS ${ros_packages})
 
+include(cpp/ros/foreign_messages.cmake)
+
 # The Python package, the services in it.
 set(QUADCORE_PYTHONDIR ${PYTHON_INSTALL_DIR}/quadcore)
 add_subdirectory(cpp/bindings)
@@ -91,10 +93,11 @@ set_target_properties(${named_as_others} PROPERTIES
 function(add_ros_node name)
   add_executable(${name} ${ARGN})
   target_include_directories(${name} SYSTEM PRIVATE ${catkin_INCLUDE_DIRS}
-                             ${CATKIN_DEVEL_PREFIX}/include)
+                             ${CATKIN_DEVEL_PREFIX}/include ${foreign_dir})
   target_compile_definitions(${name} PRIVATE BOOST_BIND_GLOBAL_PLACEHOLDERS)
   target_link_libraries(${name} PRIVATE ${catkin_LIBRARIES})
-  add_dependencies(${name} ${catkin_EXPORTED_TARGETS} quadcore_generate_messages_cpp)
+  add_dependencies(${name} ${catkin_EXPORTED_TARGETS} quadcore_generate_messages_cpp
+                   foreign_messages)
   set_target_properties(${name} PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/lib/quadcore
     INSTALL_RPATH $ORIGIN/..)
@@ -103,11 +106,12 @@ endfunction()
 
 add_ros_node(quadcore_node
   cpp/ros/broadcast.cpp cpp/ros/clock.cpp cpp/ros/command_queue.cpp cpp/ros/command_subscriber.cpp
+  cpp/ros/command_topics.cpp
   cpp/ros/csv_log.cpp cpp/ros/diagnostics.cpp cpp/ros/drag_choice.cpp cpp/ros/flight_loop.cpp
   cpp/ros/flight_thread.cpp cpp/ros/listener.cpp cpp/ros/master_api.cpp cpp/ros/master_check.cpp
   cpp/ros/master_watch.cpp cpp/ros/odometry_topic.cpp cpp/ros/parameter_watch.cpp cpp/ros/path.cpp
   cpp/ros/plant.cpp cpp/ros/private_parameters.cpp cpp/ros/quadcore_node.cpp cpp/ros/ros_types.cpp
-  cpp/ros/services.cpp cpp/ros/settings.cpp cpp/ros/topic_broadcast.cpp cpp/ros/topic_inlets.cpp
+  cpp/ros/rotors_types.cpp cpp/ros/services.cpp cpp/ros/settings.cpp cpp/ros/topic_broadcast.cpp cpp/ros/topic_inlets.cpp
   cpp/ros/topic_services.cpp)
 target_link_libraries(quadcore_node PRIVATE quadcore)
 add_ros_node(controller_node
@@ -132,7 +136,7 @@ if(CATKIN_ENABLE_TESTING)
   if(rostest_FOUND)
     foreach(test topics services lockstep playing clock several parameters faults masters launch
                  fly_from_python controller controller_faults set_points pid joystick sensors
-                 disturbances)
+                 disturbances rotors rotors_topics rotors_hover)
       add_rostest(tests/ros/${test}.test)
     endforeach()
   endif()

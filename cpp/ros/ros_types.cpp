@@ -81,7 +81,7 @@ class FixOutlet final : public Outlet {
 /// Of a kind that has no type of its own: the numbers, with their names as the label.
 class ArrayOutlet final : public Outlet {
  public:
-  ArrayOutlet(ros::NodeHandle& nh, const Topic& topic) : publisher_(nh, topic.name, queue_size) {
+  ArrayOutlet(ros::NodeHandle& nh, const Topic& topic) : publisher_(nh, topic.path, queue_size) {
     std_msgs::MultiArrayDimension fields;
     fields.label = joined(topic.kind.fields);
     fields.size = fields.stride = static_cast<std::uint32_t>(topic.kind.fields.size());
@@ -151,6 +151,8 @@ const Carriage* carriage_of(const MessageKind& kind) {
   return found == table.end() ? nullptr : &*found;
 }
 
+}  // namespace
+
 void check_free(ros::NodeHandle& nh, const std::string& name) {
   std::vector<std::string> published, subscribed;
   ros::this_node::getAdvertisedTopics(published);
@@ -161,8 +163,6 @@ void check_free(ros::NodeHandle& nh, const std::string& name) {
                      "give it another");
   }
 }
-
-}  // namespace
 
 void set_frames(nav_msgs::Odometry& message, const std::string& vehicle_frame) {
   message.header.frame_id = world_frame;
@@ -196,22 +196,21 @@ messages::Odometry from_ros(const nav_msgs::Odometry& message) {
 
 std::unique_ptr<Outlet> make_outlet(ros::NodeHandle& nh, const Topic& topic,
                                     const std::string& frame) {
-  check_free(nh, topic.name);
   const Carriage* const carriage = carriage_of(topic.kind);
-  if (carriage) return carriage->outlet(nh, topic.name, frame);
+  if (carriage) return carriage->outlet(nh, topic.path, frame);
   return std::make_unique<ArrayOutlet>(nh, topic);
 }
 
 ros::Subscriber make_inlet(ros::NodeHandle& nh, const Topic& topic, const Take& take) {
-  check_free(nh, topic.name);
+  check_free(nh, topic.path);
   const Carriage* const carriage = carriage_of(topic.kind);
   if (carriage && !carriage->inlet) {
-    throw InputError("topic '" + topic.name + "': no type of ROS holds all of a " +
+    throw InputError("topic '" + topic.path + "': no type of ROS holds all of a " +
                      topic.kind.name + "; let a plugin publish it");
   }
-  if (carriage) return carriage->inlet(nh, topic.name, take);
+  if (carriage) return carriage->inlet(nh, topic.path, take);
   return subscribe<std_msgs::Float64MultiArray>(
-      nh, topic.name, [take](const std_msgs::Float64MultiArray& message) { take(message.data); });
+      nh, topic.path, [take](const std_msgs::Float64MultiArray& message) { take(message.data); });
 }
 
 }  // namespace quadcore::node

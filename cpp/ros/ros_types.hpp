@@ -25,9 +25,10 @@ class Outlet {
 /// What is done with the numbers that come in.
 using Take = std::function<void(const std::vector<double>&)>;
 
+/// Throws InputError if the node has a topic of that name already.
+void check_free(ros::NodeHandle& nh, const std::string& name);
 /// Advertises a topic under its own name.
 /// \param frame  tf's name of what its numbers are in, or of the vehicle that an odometry is of
-/// Throws InputError if the node has a topic of that name already.
 std::unique_ptr<Outlet> make_outlet(ros::NodeHandle& nh, const Topic& topic,
                                     const std::string& frame);
 /// Subscribes to a topic under its own name; `take` runs where the callbacks of `nh` do.

@@ -54,9 +54,11 @@ void set_state(const SetState::Request& request, Simulation& simulation) {
 }  // namespace
 
 Services::Services(ros::NodeHandle nh, const Simulation& simulation, FlightThread& flight,
-                   bool own_clock)
+                   bool leads_clock)
     : spinner_(2, &queue_) {
   nh.setCallbackQueue(&queue_);
+  // In a namespace the clock is not this vehicle's alone.
+  const bool own_clock = leads_clock && nh.getNamespace() == "/";
   using Empty = std_srvs::Empty;
   // std_srvs/Empty cannot say what went wrong: a call that returns false fails.
   const auto offer = [&](const std::string& name, const std::function<void()>& action) {
@@ -73,6 +75,10 @@ Services::Services(ros::NodeHandle nh, const Simulation& simulation, FlightThrea
   };
   offer("gazebo/pause_physics", [&flight] { flight.set_paused(true); });
   offer("gazebo/unpause_physics", [&flight] { flight.set_paused(false); });
+  if (leads_clock && nh.getNamespace() != "/") {  // which stands for all who follow
+    offer("/gazebo/pause_physics", [&flight] { flight.set_paused(true); });
+    offer("/gazebo/unpause_physics", [&flight] { flight.set_paused(false); });
+  }
   offer("gazebo/reset_simulation",
         [&flight, own_clock] { flight.reset(own_clock ? reset_simulation : reset_world); });
   offer("gazebo/reset_world", [&flight] { flight.reset(reset_world); });

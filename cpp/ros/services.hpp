@@ -15,8 +15,10 @@ namespace quadcore::node {
 /// commands nor the others.
 class Services {
  public:
-  /// \param own_clock  whether a reset of the simulation sets the clock back; else time goes on
-  Services(ros::NodeHandle nh, const Simulation& simulation, FlightThread& flight, bool own_clock);
+  /// \param leads_clock  whether others fly by this vehicle's clock: it offers /gazebo/pause_physics
+  ///                     for all, and, without a namespace, a reset sets the clock back
+  Services(ros::NodeHandle nh, const Simulation& simulation, FlightThread& flight,
+           bool leads_clock);
 
   /// Resolved names.
   std::vector<std::string> names() const;

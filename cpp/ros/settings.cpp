@@ -31,6 +31,7 @@ Settings read_settings(const ros::NodeHandle& nh) {
   s.flight.paused = p.flag("paused", false);
   s.flight.lockstep = p.flag("lockstep", false);
   s.flight.lockstep_timeout = p.no_negative("lockstep_timeout").value_or(s.flight.lockstep_timeout);
+  s.flight.answered = p.text("lockstep_topic", s.flight.answered);
   p.check_all_known();
   read_description(nh, s.plant);
   return s;

@@ -1,18 +1,27 @@
 #include "topic_broadcast.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "messages.hpp"
+#include "plant.hpp"
+#include "rotors_types.hpp"
 
 namespace quadcore::node {
 namespace {
 
-/// tf's name of the link that a plugin is mounted on, or of the vehicle if it is on none.
+/// tf's name of what a plugin's messages are in: what a tag of RotorS says, the link that it is
+/// mounted on, or the vehicle if it is on none.
 std::string frame_of(const LoadedPlugin& plugin, const std::string& prefix) {
   const std::vector<Parameter>& all = plugin.parameters.all();
+  for (const char* tag : {"childFrameId", "frameId"}) {
+    for (const Parameter& parameter : all) {
+      if (parameter.spec.name == tag && !parameter.text.empty()) return parameter.text;
+    }
+  }
   const auto link = std::find_if(all.begin(), all.end(),
                                  [](const Parameter& p) { return p.spec.kind == TagKind::link; });
-  return prefix + (link == all.end() ? vehicle_name : link->text);
+  return link == all.end() ? prefix + vehicle_name : node::frame_of(prefix, link->text);
 }
 
 }  // namespace
@@ -20,12 +29,18 @@ std::string frame_of(const LoadedPlugin& plugin, const std::string& prefix) {
 TopicBroadcast::TopicBroadcast(ros::NodeHandle& nh, const Simulation& simulation,
                                const std::string& frame_prefix, const std::string& but) {
   const Topics& topics = simulation.topics();
+  const std::string root_frame =
+      node::frame_of(frame_prefix, simulation.model().links.front().name);
   for (const std::string& name : topics.names()) {
     const std::size_t index = topics.at(name);
     if (name == but || topics[index].writer == the_caller) continue;
     const LoadedPlugin& writer =
         simulation.plugins()[static_cast<std::size_t>(topics[index].writer)];
-    topics_.push_back({index, make_outlet(nh, topics[index], frame_of(writer, frame_prefix))});
+    check_free(nh, topics[index].path);
+    const std::string frame = frame_of(writer, frame_prefix);
+    auto outlet = make_rotors_outlet(nh, topics[index], writer, frame, root_frame);
+    if (!outlet) outlet = make_outlet(nh, topics[index], frame);
+    topics_.push_back({index, std::move(outlet)});
   }
 }
 

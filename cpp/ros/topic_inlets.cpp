@@ -2,20 +2,22 @@
 
 #include <ros/poll_manager.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "quadcore/error.hpp"
 
 namespace quadcore::node {
 
-TopicInlets::TopicInlets(ros::NodeHandle nh, const Simulation& simulation, const std::string& but,
+TopicInlets::TopicInlets(ros::NodeHandle nh, const Simulation& simulation, const std::vector<std::string>& but,
                          bool lockstep)
     : lockstep_(lockstep) {
   nh.setCallbackQueue(&queue_);
   const Topics& topics = simulation.topics();
   for (const std::string& name : topics.names()) {
     const Topic& topic = topics[topics.at(name)];
-    if (name == but || topic.writer != the_caller) continue;
+    const bool taken = std::find(but.begin(), but.end(), name) != but.end();
+    if (taken || topic.writer != the_caller) continue;
     subscribers_.push_back(make_inlet(nh, topic, [this, name](const std::vector<double>& values) {
       try {
         simulation_->publish(name, values.data(), values.size());

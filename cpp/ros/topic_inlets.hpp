@@ -19,10 +19,10 @@ namespace quadcore::node {
 /// Messages wait in a queue of their own until the flight takes them.
 class TopicInlets {
  public:
-  /// \param but  a topic that somebody else takes
+  /// \param but  topics that somebody else takes
   /// \param lockstep  whether the flight waits for commands: then what was sent before a command
   ///                  is there before its step
-  TopicInlets(ros::NodeHandle nh, const Simulation& simulation, const std::string& but,
+  TopicInlets(ros::NodeHandle nh, const Simulation& simulation, const std::vector<std::string>& but,
               bool lockstep);
   ~TopicInlets();
   TopicInlets(const TopicInlets&) = delete;

@@ -37,11 +37,11 @@ ros::ServiceServer offer(ros::NodeHandle& nh, const std::string& name, FlightThr
 }
 
 ros::ServiceServer offer(ros::NodeHandle& nh, const Topic& topic, FlightThread& flight) {
-  if (is_switch(topic.kind)) return offer<std_srvs::SetBool>(nh, topic.name, flight);
+  if (is_switch(topic.kind)) return offer<std_srvs::SetBool>(nh, topic.path, flight);
   if (topic.kind == messages::kind_of<messages::Wrench>()) {
-    return offer<ApplyWrench>(nh, topic.name, flight);
+    return offer<ApplyWrench>(nh, topic.path, flight);
   }
-  return offer<Publish>(nh, topic.name, flight);
+  return offer<Publish>(nh, topic.path, flight);
 }
 
 }  // namespace

@@ -6,15 +6,18 @@ set -euo pipefail
 frames=${ROS_NAMESPACE:-}
 frames=${frames#/}
 [ -n "$frames" ] || exec "$@"
+# The links of RotorS' vehicles have the namespace in their names already.
+links=$frames
+if rosparam get robot_description | grep -q "<link name=.\{1,2\}$frames/"; then links=""; fi
 case $1 in
-  *robot_state_publisher) exec "$@" "_tf_prefix:=$frames" ;;
+  *robot_state_publisher) exec "$@" "_tf_prefix:=$links" ;;
   *)
     copy=$(mktemp --suffix .rviz)
     trap 'rm -f "$copy"' EXIT
     arguments=()
     for argument in "$@"; do
       if [[ $argument = *.rviz ]]; then
-        sed -e "s|TF Prefix: .*|TF Prefix: $frames|" -e "s|Target Frame: |&$frames/|" \
+        sed -e "s|TF Prefix: .*|TF Prefix: $links|" -e "s|Target Frame: |&$frames/|" \
           -e "/world:/!s|[a-z0-9]*: {Value: |$frames/&|" "$argument" >"$copy"
         argument=$copy
       fi

@@ -20,6 +20,14 @@ void check_word(const std::string& what, const std::string& name) {
                    "' is no plain word; write letters, digits and _, a letter first");
 }
 
+/// The plain word that a path is.
+std::string word_of(std::string path) {
+  for (std::size_t i = 1; i + 1 < path.size(); ++i) {
+    if (path[i] == '/' && path[i - 1] != '/') path[i] = '_';
+  }
+  return path;
+}
+
 }  // namespace
 
 std::size_t Topics::publishes(const std::string& name, const MessageKind& kind) {
@@ -42,19 +50,22 @@ std::size_t Topics::takes(const std::string& name, const MessageKind& kind, bool
   return late_.back().copy;
 }
 
-std::size_t Topics::declare(const std::string& name, const MessageKind& kind, bool writes,
+std::size_t Topics::declare(const std::string& path, const MessageKind& kind, bool writes,
                             bool late) {
+  const std::string name = word_of(path);
   check_word("topic", name);
   for (const std::string& field : kind.fields) check_word("topic '" + name + "': field", field);
   const int known = find(name);
-  const std::size_t index = known < 0 ? add(name, kind) : static_cast<std::size_t>(known);
+  const std::size_t index = known < 0 ? add(path, kind) : static_cast<std::size_t>(known);
+  if (path != name) topics_[index].path = path;
   declarations_.push_back({static_cast<int>(plugins_.size()) - 1, index, kind, writes, late});
   return index;
 }
 
-std::size_t Topics::add(const std::string& name, const MessageKind& kind) {
+std::size_t Topics::add(const std::string& path, const MessageKind& kind) {
   Topic topic;
-  topic.name = name;
+  topic.name = word_of(path);
+  topic.path = path;
   topic.kind = kind;
   topic.values.assign(kind.fields.size(), 0.0);
   topics_.push_back(topic);
@@ -67,8 +78,9 @@ bool Topics::is_copy(std::size_t index) const {
 }
 
 int Topics::find(const std::string& name) const {
+  const std::string word = word_of(name);
   for (std::size_t i = 0; i < topics_.size(); ++i) {
-    if (topics_[i].name == name && !is_copy(i)) return static_cast<int>(i);
+    if (topics_[i].name == word && !is_copy(i)) return static_cast<int>(i);
   }
   return -1;
 }

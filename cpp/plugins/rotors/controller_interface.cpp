@@ -35,10 +35,10 @@ PluginDescriptor describe() {
       "RotorS' way from controllers to motors: speeds arrive a step later",
       {
           T::text("commandMotorSpeedSubTopic", "command/motor_speed",
-                  "where controllers publish speeds, rad/s, in the motors' order, / being _")
+                  "where controllers publish speeds, rad/s, in the motors' order")
               .from("RotorS"),
           T::text("motorSpeedCommandPubTopic", "gazebo/command/motor_speed",
-                  "where they are forwarded, / being _")
+                  "where they are forwarded")
               .from("RotorS"),
           idle("commandAttitudeThrustSubTopic", "nothing listens to it in RotorS, either"),
           idle("commandRateThrustSubTopic", "nothing listens to it in RotorS, either"),

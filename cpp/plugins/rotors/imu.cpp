@@ -121,8 +121,8 @@ PluginDescriptor describe() {
   return {
       "RotorS' inertial measurement unit: of the state a step before its stamp, each step",
       {
-          T::text("linkName", "", "the link that it sits on; its axes are the unit's").must(),
-          T::text("imuTopic", "imu", "where the messages are published, / being _").from("RotorS"),
+          T::link("linkName", "the link that it sits on; its axes are the unit's").must(),
+          T::text("imuTopic", "imu", "where the messages are published").from("RotorS"),
           add("gyroscopeNoiseDensity", "rad/s/sqrt(Hz)", "0.0003393695767766752",
               "density of the white noise of the rates"),
           add("gyroscopeBiasRandomWalk", "rad/s^2/sqrt(Hz)", "3.8785094488762879e-05",

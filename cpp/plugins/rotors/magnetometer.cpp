@@ -47,8 +47,8 @@ class Magnetometer final : public Plugin {
 PluginDescriptor describe() {
   using T = TagSpec;
   std::vector<TagSpec> tags = {
-      T::text("linkName", "", "the link that it sits on").must(),
-      T::text("magnetometerTopic", "magnetic_field", "where the messages are published, / being _"),
+      T::link("linkName", "the link that it sits on").must(),
+      T::text("magnetometerTopic", "magnetic_field", "where the messages are published"),
       T::number("refMagNorth", "T", "0.000021493", "the field's component along the world's x"),
       T::number("refMagEast", "T", "0.000000815",
                 "along y; the world's y points west where x points north, but so RotorS has it"),

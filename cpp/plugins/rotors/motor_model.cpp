@@ -171,7 +171,7 @@ class MotorModel final : public Plugin {
 
   static std::optional<std::size_t> speed_topic(const PluginSetup& setup) {
     if (!setup.parameters.has("motorSpeedPubTopic")) return std::nullopt;
-    return setup.topics.publishes(topic_of(setup, "motorSpeedPubTopic"), {"motor_speed", {"w"}});
+    return setup.topics.publishes(topic_of(setup, "motorSpeedPubTopic"), messages::motor_speed());
   }
 
   bool turns() const { return type_ == Type::velocity; }
@@ -248,7 +248,7 @@ PluginDescriptor describe() {
       T::text("commandSubTopic", "gazebo/command/motor_speed",
               "where the controller's interface forwards commands, if the model has one; else "
               "commands come on vel_cmd alone"),
-      T::text("motorSpeedPubTopic", "", "where the joint's rate is published, / being _")
+      T::text("motorSpeedPubTopic", "", "where the joint's rate is published")
           .or_absent("not published"),
       idle("motorPositionPubTopic", "the log and the state hold the angles"),
       idle("motorForcePubTopic", "wrenches hold the forces"),

@@ -58,7 +58,7 @@ PluginDescriptor describe() {
               .above(0)
               .from("RotorS"),
           T::text("motorPubTopic", "motor_speed",
-                  "where the rotors' speeds are published, signed, in the joints' order, / being _")
+                  "where the rotors' speeds are published, signed, in the joints' order")
               .from("RotorS"),
           T::text("truth", "odom",
                   "quadcore's own: where pose and velocity of the frame are published without "
@@ -67,7 +67,7 @@ PluginDescriptor describe() {
           T::flag("publishTf", "true",
                   "quadcore's own: whether a ROS node sends tf of the frame with that topic"),
           idle("jointStatePubTopic", "a ROS node publishes joint_states by itself"),
-          idle("linkName", "every continuous joint of the model is told"),
+          T::link("linkName", "the frame that a ROS node names with the speeds").from("RotorS"),
           idle("frameId", "speeds have no frame"),
           namespace_tag(),
       },

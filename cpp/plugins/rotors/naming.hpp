@@ -15,11 +15,13 @@ namespace quadcore::rotors {
 constexpr const char* motor_model_file = "librotors_gazebo_motor_model.so";
 constexpr const char* controller_interface_file = "librotors_gazebo_controller_interface.so";
 
-/// A name of ROS as one of quadcore: gazebo/command/motor_speed is gazebo_command_motor_speed.
-inline std::string topic_word(std::string name) {
+/// A name of ROS as one of quadcore, which knows parts of names, but no signs beyond letters, digits
+/// and _.
+inline std::string topic_path(std::string name) {
   name.erase(0, name.find_first_not_of('/'));
   const auto is_plain = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '/';
   };
   std::replace_if(name.begin(), name.end(), [&](char c) { return !is_plain(c); }, '_');
   return name;
@@ -57,7 +59,7 @@ inline std::string topic_of(const PluginSetup& setup, const std::string& tag) {
   const std::string vehicle = vehicle_namespace(setup.model);
   std::string beyond = own == vehicle ? "" : own;
   if (own.rfind(vehicle + "/", 0) == 0) beyond = own.substr(vehicle.size() + 1);
-  return topic_word((beyond.empty() ? "" : beyond + "/") + setup.parameters.text(tag));
+  return topic_path((beyond.empty() ? "" : beyond + "/") + setup.parameters.text(tag));
 }
 
 /// Motors of a model: numbers that a command carries.
@@ -79,21 +81,9 @@ inline TagSpec namespace_tag() {
       .or_absent("the vehicle's");
 }
 
-/// Where a link that a tag names sits in the frame. Throws InputError if it is no part of it.
+/// Where a link of the frame that a tag names sits in it.
 inline Pose place_of(const PluginSetup& setup, const std::string& tag) {
-  const std::string& link = setup.parameters.text(tag);
-  const auto body = setup.model.body_of_link.find(link);
-  if (body == setup.model.body_of_link.end()) {
-    std::vector<std::string> names;
-    for (const auto& entry : setup.model.body_of_link) names.push_back(entry.first);
-    throw InputError("<" + tag + "> '" + link + "' is not a link of the model" +
-                     did_you_mean(link, names) + "; its links are " + joined(names));
-  }
-  if (body->second != 0) {
-    throw InputError("<" + tag + "> '" + link +
-                     "' is not part of the frame; name a link that is fixed to it");
-  }
-  return setup.model.pose_of_link.at(link);
+  return setup.model.pose_of_link.at(setup.parameters.text(tag));
 }
 
 }  // namespace quadcore::rotors

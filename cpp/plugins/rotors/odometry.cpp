@@ -114,8 +114,13 @@ class Odometry final : public Plugin {
 PluginDescriptor describe() {
   using T = TagSpec;
   std::vector<TagSpec> tags = {
-      T::text("linkName", "", "the link that it tells of").must(),
-      T::text("odometryTopic", "odometry", "where the messages are published, / being _"),
+      T::link("linkName", "the link that it tells of").must(),
+      T::text("odometryTopic", "odometry", "where the messages are published"),
+      T::text("poseTopic", "pose", "where a ROS node publishes its pose alone"),
+      T::text("poseWithCovarianceTopic", "pose_with_covariance", "the same with its variances"),
+      T::text("positionTopic", "position", "where a ROS node publishes its place"),
+      T::text("transformTopic", "transform", "where a ROS node publishes it as a transform"),
+      T::text("childFrameId", "odometry_sensor", "tf's name of what a ROS node tells the pose of"),
       T::number("measurementDivisor", "", "1", "steps from one measurement to the next")
           .at_least(1)
           .at_most(1e9),
@@ -146,15 +151,9 @@ PluginDescriptor describe() {
   add("LinearVelocity", "m/s", "the linear velocity, link axes");
   add("AngularVelocity", "rad/s", "the angular velocity, link axes");
   for (TagSpec& tag : tags) tag.equation = "RotorS";
-  const char* const same = "the odometry's message holds what it would";
-  for (const char* topic :
-       {"poseTopic", "poseWithCovarianceTopic", "positionTopic", "transformTopic"}) {
-    tags.push_back(idle(topic, same));
-  }
   for (const char* image : {"covarianceImage", "covarianceImageScale"}) {
     tags.push_back(idle(image, "messages come everywhere, not only where a picture is white"));
   }
-  tags.push_back(idle("childFrameId", "names of frames are the node's"));
   tags.push_back(T::choice("parentFrameId", {"world"}, "poses are told in the world"));
   tags.push_back(namespace_tag());
   return {

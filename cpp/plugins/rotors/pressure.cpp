@@ -56,8 +56,8 @@ PluginDescriptor describe() {
   return {
       "RotorS' sensor of the air's pressure: of the state a step before its stamp, each step",
       {
-          T::text("linkName", "", "a link of the frame").must().from("RotorS"),
-          T::text("pressureTopic", "air_pressure", "where the messages are published, / being _")
+          T::link("linkName", "a link of the frame").must().from("RotorS"),
+          T::text("pressureTopic", "air_pressure", "where the messages are published")
               .from("RotorS"),
           T::number("referenceAltitude", "m", "500", "of the world's origin above the sea")
               .at_least(-1000)

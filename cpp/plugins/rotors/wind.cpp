@@ -18,7 +18,11 @@ class Wind final : public Plugin {
         gust_W_(along(setup, "windGustForceMean", "windGustDirection")),
         begin_(setup.parameters.number("windGustStart")),
         end_(begin_ + setup.parameters.number("windGustDuration")),
-        v_WA_W_(along(setup, "windSpeedMean", "windDirection")) {
+        v_WA_W_(along(setup, "windSpeedMean", "windDirection")),
+        force_topic_(setup.topics.publishes(topic_of(setup, "windForcePubTopic"),
+                                            messages::kind_of<messages::Wrench>())),
+        speed_topic_(setup.topics.publishes(topic_of(setup, "windSpeedPubTopic"),
+                                            messages::kind_of<messages::WindSpeed>())) {
     if (setup.parameters.flag("useCustomStaticWindField")) {
       throw InputError(
           "<useCustomStaticWindField> is true, but fields of wind from files are not "
@@ -31,11 +35,12 @@ class Wind final : public Plugin {
   void update(const Sample& sample, PluginState gusty) const override {
     const double now = sample.time + sample.dt;  // RotorS' clock has moved on already
     gusty[0] = now >= begin_ - 1e-9 && now < end_ - 1e-9 ? 1 : 0;
+    sample.topics.publish(force_topic_, now, messages::Wrench{force(gusty[0]), Vector3d::Zero()});
+    sample.topics.publish(speed_topic_, now, messages::WindSpeed{v_WA_W_});
   }
 
   void forces(const Kinematics& k, ConstPluginState gusty, Loads& loads) const override {
-    const Vector3d f_W = force_W_ + gusty[0] * gust_W_;
-    loads.add_frame_force(0, k.R_WF.transpose() * f_W, p_FQ_F_);
+    loads.add_frame_force(0, k.R_WF.transpose() * force(gusty[0]), p_FQ_F_);
   }
 
   void air(const Kinematics&, ConstPluginState, Vector3d& v_WA_W) const override {
@@ -43,6 +48,8 @@ class Wind final : public Plugin {
   }
 
  private:
+  Vector3d force(double gusty) const { return force_W_ + gusty * gust_W_; }
+
   static Vector3d point(const PluginSetup& setup) {
     const Pose X_FS = place_of(setup, "linkName");
     const Vector3d offset_S(setup.parameters.numbers("xyzOffset").data());
@@ -64,13 +71,14 @@ class Wind final : public Plugin {
   Vector3d force_W_, gust_W_;  ///< N
   double begin_, end_;         ///< s
   Vector3d v_WA_W_;            ///< m/s
+  std::size_t force_topic_, speed_topic_;
 };
 
 PluginDescriptor describe() {
   using T = TagSpec;
   const char* const unused = "RotorS reads it and never uses it, either";
   std::vector<TagSpec> tags = {
-      T::text("linkName", "", "the link that the forces act on").must(),
+      T::link("linkName", "the link that the forces act on").must(),
       T::numbers("xyzOffset", "m", "0 0 0",
                  "where they act, from the link's centre of mass, along its axes")
           .of(3),
@@ -84,6 +92,10 @@ PluginDescriptor describe() {
       T::number("windGustForceMean", "N", "0", "force of the gust"),
       T::number("windGustStart", "s", "10", "when it begins"),
       T::number("windGustDuration", "s", "0", "how long it lasts").at_least(0),
+      T::text("windForcePubTopic", "external_force", "where force and gust are published, N"),
+      T::text("windSpeedPubTopic", "wind_speed",
+              "where the wind is published, m/s; all that feels the air feels it"),
+      T::text("frameId", "world", "tf's name of the axes that a ROS node names with both"),
       T::flag("useCustomStaticWindField", "false", "a field of wind from a file; not modelled"),
   };
   for (TagSpec& tag : tags) tag.equation = "RotorS";
@@ -91,9 +103,6 @@ PluginDescriptor describe() {
     tags.push_back(idle(name, unused));
   }
   tags.push_back(idle("customWindFieldPath", "fields of wind are not modelled"));
-  tags.push_back(idle("windForcePubTopic", "wrenches hold the force"));
-  tags.push_back(idle("windSpeedPubTopic", "all that feels the air feels this wind"));
-  tags.push_back(idle("frameId", "forces have no frame"));
   tags.push_back(namespace_tag());
   return {"RotorS' wind: a force, a gust, and a wind on the rotors",
           tags,

@@ -197,6 +197,20 @@ struct Vector {
   }
 };
 
+/// How the air moves, world axes.
+struct WindSpeed {
+  static constexpr const char* kind = "wind_speed";
+  Vector3d velocity = Vector3d::Zero();  ///< [m/s]
+
+  template <class M, class Visit>
+  static void for_each_field(M& m, const Visit& visit) {
+    visit("velocity", {"x", "y", "z"}, m.velocity.data());
+  }
+};
+
+/// The rate of one joint [rad/s].
+inline MessageKind motor_speed() { return {"motor_speed", {"w"}}; }
+
 /// Speeds of as many rotors as there are, signed [rad/s], before any division by sim_slow.
 inline MessageKind speeds(std::size_t rotors) {
   MessageKind kind{"speeds", {}};

@@ -23,6 +23,7 @@ struct Message {
 /// A named message inside the simulation: a row of numbers of one kind.
 struct Topic : Message {
   std::string name;
+  std::string path;  ///< the same where names may have parts, / between them
   MessageKind kind;
   int writer = the_caller;
   std::vector<int> readers = {};  ///< plugins
@@ -33,7 +34,9 @@ struct Topic : Message {
 class Topics {
  public:
   /// \name For the constructors of plugins
-  /// Both return the topic's index. Throw InputError on a name or a field that is no plain word.
+  /// All return the topic's index. A name may have parts, "motor_speed/0", which bridges that know
+  /// such names keep; elsewhere it is motor_speed_0. Throw InputError on a name or a field that is
+  /// no plain word then.
   /// @{
   /// Declares that the plugin writes the topic, which nobody else may then.
   std::size_t publishes(const std::string& name, const MessageKind& kind);
@@ -72,7 +75,7 @@ class Topics {
   std::string name_of(int writer) const;
   /// Throws InputError: `who` is a second writer.
   [[noreturn]] void refuse_second(const std::string& who, const Topic& topic) const;
-  /// Index of a declared topic, or -1.
+  /// Index of a declared topic, by name or path, or -1.
   int find(const std::string& name) const;
   /// Index of a declared topic. Throws InputError with the names of those there are.
   std::size_t at(const std::string& name) const;
@@ -119,8 +122,8 @@ class Topics {
     std::size_t copy, original;
   };
 
-  std::size_t declare(const std::string& name, const MessageKind& kind, bool writes, bool late);
-  std::size_t add(const std::string& name, const MessageKind& kind);
+  std::size_t declare(const std::string& path, const MessageKind& kind, bool writes, bool late);
+  std::size_t add(const std::string& path, const MessageKind& kind);
   bool is_copy(std::size_t index) const;
   [[noreturn]] void refuse_writer(const Topic& topic) const;
   [[noreturn]] void refuse_loop(const std::vector<bool>& placed) const;

@@ -1,0 +1,36 @@
+#!/usr/bin/env python3
+"""RotorS' six vehicles hover on one clock."""
+
+import unittest
+
+import harness
+from harness import Recording
+from mav_msgs.msg import Actuators
+from nav_msgs.msg import Odometry
+
+ROTORS = {"firefly": 6, "hummingbird": 4, "pelican": 4, "iris": 4, "ardrone": 4, "neo11": 6}
+
+
+def hovers(messages):
+    """Whether a vehicle has come to rest at 1 m."""
+    if not messages:
+        return False
+    pose, twist = messages[-1].pose.pose, messages[-1].twist.twist
+    return abs(pose.position.z - 1) < 0.05 and abs(twist.linear.z) < 0.02
+
+
+class TestRotorsHover(unittest.TestCase):
+    def test_six_vehicles_take_off_and_hover_on_one_clock(self):
+        flights = {name: Recording(f"/{name}/ground_truth/odometry", Odometry) for name in ROTORS}
+        speeds = {name: Recording(f"/{name}/motor_speed", Actuators) for name in ROTORS}
+        for i, (name, flight) in enumerate(flights.items()):
+            last = flight.wait(hovers, 5 * harness.LONG)[-1]
+            self.assertAlmostEqual(last.pose.pose.position.y, i, delta=0.1)
+            self.assertEqual(last.child_frame_id, f"{name}/base_link")
+            told = speeds[name].wait_for_count(1)[-1].angular_velocities
+            self.assertEqual(len(told), ROTORS[name])
+        self.assertEqual(len(harness.publishers("/clock")), 1)
+
+
+if __name__ == "__main__":
+    harness.run("rotors_hover", TestRotorsHover)
