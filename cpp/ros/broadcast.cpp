@@ -21,8 +21,11 @@ geometry_msgs::TransformStamped same_place(const std::string& parent, const std:
 
 Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
                      const KeptPublisher<rosgraph_msgs::Clock>& clock,
-                     const std::string& frame_prefix, bool rotor_tf)
-    : odometry_topic_(simulation), clock_publisher_(clock), path_(nh) {
+                     const std::string& model_name, const std::string& frame_prefix, bool rotor_tf)
+    : odometry_topic_(simulation),
+      clock_publisher_(clock),
+      path_(nh),
+      gazebo_states_(nh, simulation, model_name) {
   joint_states_publisher_ = nh.advertise<sensor_msgs::JointState>("joint_states", 100, kept);
   const Model& model = simulation.model();
   joint_states_.name = model.joint_names();
@@ -60,6 +63,7 @@ void Broadcast::advertise_odometry(ros::NodeHandle& nh, const std::string& frame
 void Broadcast::send(const Simulation& simulation, bool jumped) {
   clock_.clock = to_ros(simulation.time());
   if (clock_publisher_) clock_publisher_.publish(clock_);
+  gazebo_states_.send(simulation);
   others_->send(simulation, clock_.clock, jumped);
   if (odometry_topic_.exists()) {
     const Topic& topic = odometry_topic_.in(simulation);
@@ -74,6 +78,7 @@ void Broadcast::show(const Simulation& simulation) {
   if (clock_publisher_) clock_publisher_.publish(clock_);
   send_joint_states(simulation.state());
   if (tf_publisher_) send_transforms(simulation);
+  gazebo_states_.send(simulation);
 }
 
 void Broadcast::send_odometry(const Simulation& simulation, const Topic& topic) {

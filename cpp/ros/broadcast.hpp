@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "gazebo_states.hpp"
 #include "kept_publisher.hpp"
 #include "odometry_topic.hpp"
 #include "path.hpp"
@@ -26,12 +27,13 @@ namespace quadcore::node {
 class Broadcast {
  public:
   /// \param clock  where the clock is sent; an empty publisher = somebody else sends it
+  /// \param model  its name
   /// \param frame_prefix  of the vehicle's frames, "" or such as "uav1/"
   /// \param rotor_tf  whether tf holds the rotors' links, too. What robot_state_publisher says of
   ///                  them is not kept for those who come later.
   Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
-            const KeptPublisher<rosgraph_msgs::Clock>& clock, const std::string& frame_prefix,
-            bool rotor_tf);
+            const KeptPublisher<rosgraph_msgs::Clock>& clock, const std::string& model,
+            const std::string& frame_prefix, bool rotor_tf);
 
   /// After a step; `jumped`: after the start, a reset or a new state.
   void send(const Simulation& simulation, bool jumped);
@@ -57,6 +59,7 @@ class Broadcast {
   ros::Publisher static_tf_publisher_;
   ros::Publisher joint_states_publisher_;
   PathTopic path_;
+  GazeboStates gazebo_states_;
   std::optional<TopicBroadcast> others_;
 
   // Kept, so that sending them needs no new memory.

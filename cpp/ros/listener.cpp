@@ -5,11 +5,13 @@
 
 namespace quadcore::node {
 
-Listener::Listener(Broadcast& broadcast, TopicInlets& inlets, const Simulation& simulation,
+Listener::Listener(Broadcast& broadcast, TopicInlets& inlets, GazeboWrenches& wrenches,
+                   const Simulation& simulation,
                    std::vector<CommandTopic> command_topics, std::unique_ptr<CsvLog> log,
                    ClockFollower* follower)
     : broadcast_(broadcast),
       inlets_(inlets),
+      wrenches_(wrenches),
       command_topics_(std::move(command_topics)),
       log_(std::move(log)),
       follower_(follower),

@@ -9,6 +9,7 @@
 #include "command_topics.hpp"
 #include "csv_log.hpp"
 #include "flight_thread.hpp"
+#include "gazebo_wrenches.hpp"
 #include "sayer.hpp"
 #include "topic_inlets.hpp"
 
@@ -19,11 +20,15 @@ class Listener final : public FlightListener {
  public:
   /// \param log       CSV log to write; null = none
   /// \param follower  to be told of each step; null = this node leads the clock
-  Listener(Broadcast& broadcast, TopicInlets& inlets, const Simulation& simulation,
+  Listener(Broadcast& broadcast, TopicInlets& inlets, GazeboWrenches& wrenches,
+           const Simulation& simulation,
            std::vector<CommandTopic> command_topics, std::unique_ptr<CsvLog> log,
            ClockFollower* follower);
 
-  void feed(Simulation& simulation) override { inlets_.take(simulation); }
+  void feed(Simulation& simulation) override {
+    inlets_.take(simulation);
+    wrenches_.act(simulation);
+  }
   void observe(const Simulation& simulation, bool jumped) override;
   void show(const Simulation& simulation) override { broadcast_.show(simulation); }
   void repeat(const Simulation& simulation) override { broadcast_.send(simulation, true); }
@@ -35,6 +40,7 @@ class Listener final : public FlightListener {
  private:
   Broadcast& broadcast_;
   TopicInlets& inlets_;
+  GazeboWrenches& wrenches_;
   const std::vector<CommandTopic> command_topics_;
   const std::unique_ptr<CsvLog> log_;
   ClockFollower* const follower_;

@@ -101,18 +101,21 @@ World read_world_of(const Plant& plant) {
   return world;
 }
 
-Simulation make_simulation(const Plant& plant, const World& world,
-                           const std::vector<PluginElement>& guests) {
+Simulation make_simulation(const Plant& plant, const World& world, const Guests& guests) {
   Model model = read_model(plant.model, plant.ignore);
   check_ignored(plant.ignore, {&model.passed_over, &world.passed_over});
   SimulationOptions options = plant.simulation;
   choose_drag(plant.drag, model, options.parameters);
-  model.plugins.insert(model.plugins.end(), guests.begin(), guests.end());
+  for (const PluginElement& guest : guests(model)) model.plugins.push_back(guest);
   return {std::move(model), world, options};
 }
 
+std::string model_name(const Plant& plant, const Model& model) {
+  return plant.name.empty() ? model.name : plant.name;
+}
+
 std::string command_topic(const ros::NodeHandle& nh, const Plant& plant, const Model& model) {
-  const std::string name = plant.name.empty() ? model.name : plant.name;
+  const std::string name = model_name(plant, model);
   std::string why;
   if (!ros::names::validate(name, why)) {
     throw InputError("model name '" + name + "' cannot name a topic (" + why + "); set ~name");

@@ -2,6 +2,7 @@
 
 #include <ros/ros.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -34,13 +35,16 @@ void read_description(const ros::NodeHandle& nh, Plant& plant);
 /// A path that, if relative, is meant from `folder`.
 std::string path_from(std::string folder, const std::string& path);
 
+/// Plugins besides a model's own.
+using Guests = std::function<std::vector<PluginElement>(const Model&)>;
+
 /// The world that was asked for.
 World read_world_of(const Plant& plant);
 /// The simulation that was asked for.
-/// \param guests  plugins besides the model's own
-Simulation make_simulation(const Plant& plant, const World& world,
-                           const std::vector<PluginElement>& guests = {});
+Simulation make_simulation(const Plant& plant, const World& world, const Guests& guests);
 
+/// What the model is called in topics and services.
+std::string model_name(const Plant& plant, const Model& model);
 /// Where commands come in: below the model's name, as Gazebo has it.
 std::string command_topic(const ros::NodeHandle& nh, const Plant& plant, const Model& model);
 /// What a vehicle's frames begin with: "uav1/" in the namespace uav1.

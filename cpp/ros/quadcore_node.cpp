@@ -60,7 +60,10 @@ int run(const EndSignal& end_signal) {
     ros::console::notifyLoggerLevelsChanged();
   }
   const World world = read_world_of(settings.plant);
-  Simulation simulation = make_simulation(settings.plant, world);
+  Simulation simulation = make_simulation(settings.plant, world, [](const Model& model) {
+    return std::vector<PluginElement>{GazeboWrenches::plugin(model)};
+  });
+  const std::string model = model_name(settings.plant, simulation.model());
   describe(simulation);
 
   const KeptPublisher<rosgraph_msgs::Clock> clock = take_part_in_clock(nh, settings.clock);
@@ -72,14 +75,17 @@ int run(const EndSignal& end_signal) {
 
   std::optional<ClockFollower> follower;
   if (!clock) follower.emplace(nh, simulation.dt());
-  Broadcast broadcast(nh, simulation, clock, prefix, settings.rotor_tf);
+  Broadcast broadcast(nh, simulation, clock, model, prefix, settings.rotor_tf);
   const std::vector<CommandTopic> topics = command_topics(nh, settings.plant, simulation);
-  TopicInlets inlets(nh, simulation, simulated(topics), flight_settings.lockstep);
+  std::vector<std::string> taken = simulated(topics);
+  taken.push_back(GazeboWrenches::topic);
+  TopicInlets inlets(nh, simulation, taken, flight_settings.lockstep);
+  GazeboWrenches wrenches;
   std::unique_ptr<CsvLog> log;
   if (!settings.log.empty()) {
     log = std::make_unique<CsvLog>(settings.log, simulation, settings.log_topics);
   }
-  Listener listener(broadcast, inlets, simulation, topics, std::move(log),
+  Listener listener(broadcast, inlets, wrenches, simulation, topics, std::move(log),
                     follower ? &*follower : nullptr);
   ROS_INFO("flying %s with engine %s, commands on %s%s", simulation.model().name.c_str(),
            simulation.engine_name().c_str(), described(topics).c_str(),
@@ -89,7 +95,7 @@ int run(const EndSignal& end_signal) {
   if (clock) leader.emplace(nh, flight, clock);
   if (follower) follower->follow(flight);
   const CommandSubscriber commands(nh, topics, flight_settings.lockstep, flight);
-  const Services services(nh, simulation, flight, !!clock);
+  const Services services(nh, simulation, flight, model, wrenches, !!clock);
   ParameterWatch parameters(flight, !clock);
   MasterWatch master_watch(services.names(), public_parameters(nh, settings, !!clock),
                            [&parameters] { parameters.look(); });

@@ -53,16 +53,16 @@ void set_state(const SetState::Request& request, Simulation& simulation) {
 
 }  // namespace
 
-Services::Services(ros::NodeHandle nh, const Simulation& simulation, FlightThread& flight,
-                   bool leads_clock)
-    : spinner_(2, &queue_) {
-  nh.setCallbackQueue(&queue_);
+Services::Services(const ros::NodeHandle& nh, const Simulation& simulation, FlightThread& flight,
+                   const std::string& model, GazeboWrenches& wrenches, bool leads_clock)
+    : nh_(nh), spinner_(2, &queue_) {
+  nh_.setCallbackQueue(&queue_);
   // In a namespace the clock is not this vehicle's alone.
   const bool own_clock = leads_clock && nh.getNamespace() == "/";
   using Empty = std_srvs::Empty;
   // std_srvs/Empty cannot say what went wrong: a call that returns false fails.
   const auto offer = [&](const std::string& name, const std::function<void()>& action) {
-    servers_.push_back(nh.advertiseService<Empty::Request, Empty::Response>(
+    servers_.push_back(nh_.advertiseService<Empty::Request, Empty::Response>(
         name, [name, action](Empty::Request&, Empty::Response&) {
           try {
             action();
@@ -83,21 +83,24 @@ Services::Services(ros::NodeHandle nh, const Simulation& simulation, FlightThrea
         [&flight, own_clock] { flight.reset(own_clock ? reset_simulation : reset_world); });
   offer("gazebo/reset_world", [&flight] { flight.reset(reset_world); });
 
-  servers_.push_back(nh.advertiseService<Step::Request, Step::Response>(
+  servers_.push_back(nh_.advertiseService<Step::Request, Step::Response>(
       "quadcore/step", [&flight](Step::Request& request, Step::Response& response) {
         answer(response, [&] { flight.step(request.n); });
         response.stamp.fromSec(flight.report().time);
         return true;
       }));
-  servers_.push_back(nh.advertiseService<SetState::Request, SetState::Response>(
+  servers_.push_back(nh_.advertiseService<SetState::Request, SetState::Response>(
       "quadcore/set_state", [&flight](SetState::Request& request, SetState::Response& response) {
         answer(response, [&] {
           flight.change([&](Simulation& simulation) { set_state(request, simulation); });
         });
         return true;
       }));
-  const auto of_topics = offer_topics(nh, simulation.topics(), Simulation::command_topic, flight);
+  const auto of_topics = offer_topics(
+      nh_, simulation.topics(), {Simulation::command_topic, GazeboWrenches::topic}, flight);
   servers_.insert(servers_.end(), of_topics.begin(), of_topics.end());
+  gazebo_.emplace(nh_, model, flight, wrenches);
+  servers_.insert(servers_.end(), gazebo_->servers().begin(), gazebo_->servers().end());
   spinner_.start();
 }
 

@@ -3,10 +3,12 @@
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "flight_thread.hpp"
+#include "gazebo_services.hpp"
 
 namespace quadcore::node {
 
@@ -17,15 +19,18 @@ class Services {
  public:
   /// \param leads_clock  whether others fly by this vehicle's clock: it offers /gazebo/pause_physics
   ///                     for all, and, without a namespace, a reset sets the clock back
-  Services(ros::NodeHandle nh, const Simulation& simulation, FlightThread& flight,
-           bool leads_clock);
+  /// \param model  its name
+  Services(const ros::NodeHandle& nh, const Simulation& simulation, FlightThread& flight,
+           const std::string& model, GazeboWrenches& wrenches, bool leads_clock);
 
   /// Resolved names.
   std::vector<std::string> names() const;
 
  private:
   ros::CallbackQueue queue_;
+  ros::NodeHandle nh_;
   std::vector<ros::ServiceServer> servers_;
+  std::optional<GazeboServices> gazebo_;
   ros::AsyncSpinner spinner_;
 };
 

@@ -4,6 +4,8 @@
 #include <quadcore/Publish.h>
 #include <std_srvs/SetBool.h>
 
+#include <algorithm>
+
 #include "answer.hpp"
 #include "messages.hpp"
 #include "quadcore/switch.hpp"
@@ -47,11 +49,13 @@ ros::ServiceServer offer(ros::NodeHandle& nh, const Topic& topic, FlightThread& 
 }  // namespace
 
 std::vector<ros::ServiceServer> offer_topics(ros::NodeHandle& nh, const Topics& topics,
-                                             const std::string& but, FlightThread& flight) {
+                                             const std::vector<std::string>& but,
+                                             FlightThread& flight) {
   std::vector<ros::ServiceServer> servers;
   for (const std::string& name : topics.names()) {
     const Topic& topic = topics[topics.at(name)];
-    if (name != but && topic.writer == the_caller) servers.push_back(offer(nh, topic, flight));
+    const bool taken = std::find(but.begin(), but.end(), name) != but.end();
+    if (!taken && topic.writer == the_caller) servers.push_back(offer(nh, topic, flight));
   }
   return servers;
 }

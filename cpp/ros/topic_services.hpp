@@ -11,8 +11,9 @@ namespace quadcore::node {
 
 /// Offers each topic that plugins take and nobody in the simulation writes as a service of its
 /// name, in the type of its kind. It answers once the message is there for the next step.
-/// \param but  a topic that somebody else takes
+/// \param but  topics that somebody else takes
 std::vector<ros::ServiceServer> offer_topics(ros::NodeHandle& nh, const Topics& topics,
-                                             const std::string& but, FlightThread& flight);
+                                             const std::vector<std::string>& but,
+                                             FlightThread& flight);
 
 }  // namespace quadcore::node

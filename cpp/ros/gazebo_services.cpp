@@ -1,0 +1,191 @@
+#include "gazebo_services.hpp"
+
+#include <gazebo_msgs/ApplyBodyWrench.h>
+#include <gazebo_msgs/BodyRequest.h>
+#include <gazebo_msgs/GetLinkState.h>
+#include <gazebo_msgs/GetModelProperties.h>
+#include <gazebo_msgs/GetModelState.h>
+#include <gazebo_msgs/GetWorldProperties.h>
+#include <gazebo_msgs/SetModelState.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gazebo_bodies.hpp"
+#include "gazebo_physics.hpp"
+#include "messages.hpp"
+#include "quadcore/error.hpp"
+
+namespace quadcore::node {
+namespace {
+
+void check_model(const std::string& model, const std::string& asked) {
+  if (asked != model) {
+    throw InputError("model '" + asked + "' does not exist; there is " + model);
+  }
+}
+
+void set_model_state(Simulation& simulation, const std::string& model,
+                     const gazebo_msgs::ModelState& wanted) {
+  check_model(model, wanted.model_name);
+  const BodyMotion other = motion_of(simulation, model, wanted.reference_frame);
+  const BodyMotion motion = from_ros(other, wanted.pose, wanted.twist);
+  VehicleState state = simulation.state();
+  state.position = motion.position;
+  state.orientation = motion.orientation;
+  state.linear_velocity = motion.linear_velocity;
+  state.angular_velocity = motion.orientation.conjugate() * motion.angular_velocity;
+  simulation.set_state(state);
+}
+
+/// What a request means in the world, about the centre of mass.
+messages::Wrench wrench_of(const Simulation& simulation, const std::string& model,
+                           const gazebo_msgs::ApplyBodyWrench::Request& request) {
+  const BodyMotion other = motion_of(simulation, model, request.reference_frame);
+  messages::Wrench wrench;
+  wrench.force = other.orientation * vector_of(request.wrench.force);
+  wrench.torque = other.orientation * vector_of(request.wrench.torque);
+  // As gazebo_ros has it: a lever from the body's origin, though the force acts at its centre of
+  // mass; and in the world's axes the point is no place but that lever itself.
+  Vector3d lever = other.orientation * vector_of(request.reference_point);
+  const std::string& frame = request.reference_frame;
+  if (!frame.empty() && frame != "world" && frame != "map") {
+    lever += other.position - simulation.state().position;
+  }
+  wrench.torque += lever.cross(wrench.force);
+  return wrench;
+}
+
+void check_frame(const Simulation& simulation, const std::string& model,
+                 const std::string& body) {
+  const std::string& frame = simulation.model().links.front().name;
+  if (body == frame || body == model + "::" + frame) return;
+  motion_of(simulation, model, body);
+  throw InputError("'" + body + "' cannot be pushed; push the frame, " + model + "::" + frame);
+}
+
+}  // namespace
+
+GazeboServices::GazeboServices(ros::NodeHandle& nh, const std::string& model,
+                               FlightThread& flight, GazeboWrenches& wrenches)
+    : nh_(nh), model_(model), flight_(flight), wrenches_(wrenches) {
+  offer_states();
+  offer_wrenches();
+  offer_properties();
+}
+
+/// A service of gazebo_ros, which says in its own way what went wrong.
+template <class Service, class Act>
+void GazeboServices::offer(const std::string& name, const Act& act) {
+  const boost::function<bool(typename Service::Request&, typename Service::Response&)> callback =
+      [act](typename Service::Request& request, typename Service::Response& response) {
+        try {
+          act(request, response);
+          response.success = true;
+        } catch (const std::exception& error) {
+          response.success = false;
+          response.status_message = error.what();
+        }
+        return true;
+      };
+  servers_.push_back(nh_.advertiseService("gazebo/" + name, callback));
+}
+
+void GazeboServices::offer_states() {
+  offer<gazebo_msgs::GetModelState>("get_model_state", [this](auto& request, auto& response) {
+    flight_.tell([&](const Simulation& simulation) {
+      if (request.model_name.rfind("ground_plane", 0) != 0) check_model(model_, request.model_name);
+      const BodyMotion model = motion_of(simulation, model_, request.model_name);
+      const BodyMotion other = motion_of(simulation, model_, request.relative_entity_name);
+      to_ros(seen_from(other, model), response.pose, response.twist);
+      response.header.stamp = node::to_ros(simulation.time());
+      response.header.frame_id = request.relative_entity_name;
+    });
+  });
+  offer<gazebo_msgs::GetLinkState>("get_link_state", [this](auto& request, auto& response) {
+    flight_.tell([&](const Simulation& simulation) {
+      const BodyMotion link = motion_of(simulation, model_, request.link_name);
+      const BodyMotion other = motion_of(simulation, model_, request.reference_frame);
+      gazebo_msgs::LinkState& state = response.link_state;
+      to_ros(seen_from(other, link), state.pose, state.twist);
+      state.link_name = request.link_name;
+      state.reference_frame = request.reference_frame;
+    });
+  });
+  offer<gazebo_msgs::SetModelState>("set_model_state", [this](auto& request, auto&) {
+    flight_.change(
+        [&](Simulation& simulation) { set_model_state(simulation, model_, request.model_state); });
+  });
+  const boost::function<void(const gazebo_msgs::ModelState::ConstPtr&)> take =
+      [this](const gazebo_msgs::ModelState::ConstPtr& state) {
+        try {
+          flight_.change(
+              [&](Simulation& simulation) { set_model_state(simulation, model_, *state); });
+        } catch (const std::exception& error) {
+          sayer_.warn(subscriber_.getTopic() + ": " + error.what());
+        }
+      };
+  subscriber_ = nh_.subscribe<gazebo_msgs::ModelState>("gazebo/set_model_state", 1, take);
+}
+
+void GazeboServices::offer_wrenches() {
+  offer<gazebo_msgs::ApplyBodyWrench>("apply_body_wrench", [this](auto& request, auto&) {
+    flight_.tell([&](const Simulation& simulation) {
+      check_frame(simulation, model_, request.body_name);
+      const double duration = request.duration.toSec();
+      if (duration == 0) return;  // as gazebo_ros
+      const double begin = std::max(request.start_time.toSec(), simulation.time());
+      wrenches_.add(wrench_of(simulation, model_, request), begin,
+                    duration < 0 ? INFINITY : begin + duration);
+    });
+  });
+  const boost::function<bool(gazebo_msgs::BodyRequest::Request&,
+                             gazebo_msgs::BodyRequest::Response&)>
+      clear = [this](gazebo_msgs::BodyRequest::Request& request, auto&) {
+        try {
+          flight_.tell([&](const Simulation& simulation) {
+            check_frame(simulation, model_, request.body_name);
+            wrenches_.clear();
+          });
+        } catch (const std::exception& error) {
+          ROS_ERROR("gazebo/clear_body_wrenches: %s", error.what());
+          return false;
+        }
+        return true;
+      };
+  servers_.push_back(nh_.advertiseService("gazebo/clear_body_wrenches", clear));
+}
+
+void GazeboServices::offer_properties() {
+  offer<gazebo_msgs::GetPhysicsProperties>("get_physics_properties", [this](auto&, auto& response) {
+    flight_.tell([&](const Simulation& simulation) {
+      describe_physics(simulation, flight_.report(), response);
+    });
+  });
+  offer<gazebo_msgs::SetPhysicsProperties>("set_physics_properties", [this](auto& request, auto&) {
+    flight_.tell([&](const Simulation& simulation) {
+      check_physics(simulation, request);
+    });
+    flight_.set_real_time_factor(real_time_factor_of(request));
+  });
+  offer<gazebo_msgs::GetWorldProperties>("get_world_properties", [this](auto&, auto& response) {
+    flight_.tell([&](const Simulation& simulation) {
+      response.sim_time = simulation.time();
+      if (simulation.world().ground_plane) response.model_names.push_back("ground_plane");
+      response.model_names.push_back(model_);
+    });
+  });
+  offer<gazebo_msgs::GetModelProperties>(
+      "get_model_properties", [this](auto& request, auto& response) {
+        flight_.tell([&](const Simulation& simulation) {
+          check_model(model_, request.model_name);
+          for (const Link& link : simulation.model().links) {
+            response.body_names.push_back(link.name);
+          }
+          response.canonical_body_name = response.body_names.front();
+          response.joint_names = simulation.rotor_names();
+        });
+      });
+}
+
+}  // namespace quadcore::node

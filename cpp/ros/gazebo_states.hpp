@@ -1,0 +1,28 @@
+#pragma once
+
+#include <gazebo_msgs/LinkStates.h>
+#include <gazebo_msgs/ModelStates.h>
+#include <ros/ros.h>
+
+#include <string>
+
+#include "kept_publisher.hpp"
+#include "quadcore/simulation.hpp"
+
+namespace quadcore::node {
+
+/// Sends where model and links are, each step, as gazebo_ros does.
+class GazeboStates {
+ public:
+  /// \param model  its name
+  GazeboStates(ros::NodeHandle& nh, const Simulation& simulation, const std::string& model);
+  void send(const Simulation& simulation);
+
+ private:
+  KeptPublisher<gazebo_msgs::ModelStates> model_publisher_;
+  KeptPublisher<gazebo_msgs::LinkStates> link_publisher_;
+  gazebo_msgs::ModelStates models_;  ///< the ground first, as Gazebo has it
+  gazebo_msgs::LinkStates links_;
+};
+
+}  // namespace quadcore::node
