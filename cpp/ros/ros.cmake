@@ -129,16 +129,17 @@ endif()
 
 # Not catkin_install_python: it would fix the interpreter, and these want the one that has quadcore.
 install(PROGRAMS scripts/ros/bag_player.py scripts/ros/expand_model.py
-                 scripts/ros/fly_from_python.py scripts/ros/with_frames.sh
+                 scripts/ros/fly_from_python.py scripts/ros/spawn_model scripts/ros/with_frames.sh
         DESTINATION lib/quadcore)
 install(FILES scripts/ros/recorded_commands.py DESTINATION lib/quadcore)
 
 if(CATKIN_ENABLE_TESTING)
   find_package(rostest QUIET)
   if(rostest_FOUND)
+    add_ros_node(simulink_stand_in tests/ros/simulink_stand_in.cpp)
     foreach(test topics services lockstep playing clock several parameters faults masters launch
                  fly_from_python controller controller_faults set_points pid joystick sensors
-                 disturbances rotors rotors_topics rotors_hover gazebo)
+                 disturbances rotors rotors_topics rotors_hover gazebo gazebo_launch)
       add_rostest(tests/ros/${test}.test)
     endforeach()
   endif()

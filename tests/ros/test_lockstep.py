@@ -187,6 +187,20 @@ class TestLockstep(unittest.TestCase):
         core = simulation.run(len(table) * 0.001, table)
         self.assertEqual(row(final), list(core.table[-1, 1:14]))
 
+    def test_a_node_as_simulink_generates_them_loses_no_command(self):
+        steps = np.arange(2000)
+        speeds = [470 + 0.5 * ((steps * (rotor + 3)) % 11) for rotor in range(4)]
+        signed = np.array(speeds) * np.array([[1], [-1], [1], [-1]])
+        table = np.column_stack([steps * 0.001, signed.T])
+        with flight(*LOCKSTEP, "_paused:=false"), Recording("/odom", Odometry) as odometry:
+            with harness.Process("simulink_stand_in", str(len(table))):
+                final = odometry.wait(lambda m: m and tick(m[-1]) == len(table))[-1]
+            self.assertEqual(diagnostic("commands", lambda count: count >= len(table)), len(table))
+            self.assertEqual(diagnostic("rejected commands"), 0)
+        simulation = qc.Simulation("quadrotor", xacro_args={"sim_slow": 1})
+        core = simulation.run(len(table) * 0.001, table)
+        self.assertEqual(row(final), list(core.table[-1, 1:14]))
+
     def test_too_many_surplus_commands_are_refused_and_counted(self):
         with flight(*LOCKSTEP) as node, commander() as send:
             for _ in range(10003):  # a paused flight takes none of them

@@ -1,0 +1,45 @@
+#!/usr/bin/env python3
+"""A launch file that was written for gazebo_ros flies."""
+
+import math
+import subprocess
+import unittest
+
+import harness
+import rospy
+from gazebo_msgs.msg import ModelStates
+from gazebo_msgs.srv import GetPhysicsProperties
+from harness import Recording
+from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Clock
+
+
+class TestGazeboLaunch(unittest.TestCase):
+    def test_a_model_is_spawned_where_it_was_asked_for_and_waits(self):
+        with Recording("/gazebo/model_states", ModelStates) as states:
+            message = states.wait_for_count(1)[0]
+        self.assertEqual(message.name, ["ground_plane", "quad"])
+        pose = message.pose[1]
+        place = [pose.position.x, pose.position.y, pose.position.z]
+        self.assertEqual(place, [1, -2, 3])
+        self.assertAlmostEqual(pose.orientation.z, math.sin(0.25), places=12)
+        rospy.wait_for_service("/gazebo/get_physics_properties", harness.LONG)
+        physics = rospy.ServiceProxy("/gazebo/get_physics_properties", GetPhysicsProperties)
+        self.assertTrue(physics().pause)
+        with Recording("/clock", Clock) as clock:
+            harness.call("/gazebo/unpause_physics")
+            clock.wait(lambda m: m and m[-1].clock.to_sec() > 0.1)
+        with harness.commander("/quad/vel_cmd") as send, Recording("/odom", Odometry) as odometry:
+            send(harness.HOVER)
+            odometry.wait(lambda m: m and m[-1].twist.twist.linear.z > 0)
+
+    def test_what_gazebo_ros_knows_and_this_does_not_is_refused(self):
+        spawn = [harness.executable("spawn_model"), "-model", "quad"]
+        for words in (["-sdf", "-file", "a.sdf"], ["-urdf"], ["-urdf", "-database", "coke_can"]):
+            ended = subprocess.run([*spawn, *words], stderr=subprocess.PIPE, text=True, check=False)
+            self.assertEqual(ended.returncode, 2)
+            self.assertIn("spawn_model: error:", ended.stderr)
+
+
+if __name__ == "__main__":
+    harness.run("gazebo_launch", TestGazeboLaunch)
