@@ -21,11 +21,12 @@ geometry_msgs::TransformStamped same_place(const std::string& parent, const std:
 
 Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
                      const KeptPublisher<rosgraph_msgs::Clock>& clock,
-                     const std::string& model_name, const std::string& frame_prefix, bool rotor_tf)
+                     const std::string& model_name, const GazeboNeighbours* neighbours,
+                     const std::string& frame_prefix, bool rotor_tf)
     : odometry_topic_(simulation),
       clock_publisher_(clock),
       path_(nh),
-      gazebo_states_(nh, simulation, model_name) {
+      gazebo_states_(nh, simulation, model_name, neighbours) {
   joint_states_publisher_ = nh.advertise<sensor_msgs::JointState>("joint_states", 100, kept);
   const Model& model = simulation.model();
   joint_states_.name = model.joint_names();
@@ -95,8 +96,9 @@ void Broadcast::send_odometry(const Simulation& simulation, const Topic& topic) 
 void Broadcast::add_rotor_frames(const Model& model, const std::string& frame_prefix) {
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint& joint = model.joints[i];
-    transforms_.transforms.push_back(same_place(frame_of(frame_prefix, model.links[joint.parent].name),
-                                                frame_of(frame_prefix, model.links[i + 1].name)));
+    transforms_.transforms.push_back(
+        same_place(frame_of(frame_prefix, model.links[joint.parent].name),
+                   frame_of(frame_prefix, model.links[i + 1].name)));
     set_vector(transforms_.transforms.back().transform.translation, joint.pose.xyz.data());
   }
 }

@@ -28,12 +28,13 @@ class Broadcast {
  public:
   /// \param clock  where the clock is sent; an empty publisher = somebody else sends it
   /// \param model  its name
+  /// \param neighbours  whose models are of the same world; null = somebody else tells of them
   /// \param frame_prefix  of the vehicle's frames, "" or such as "uav1/"
   /// \param rotor_tf  whether tf holds the rotors' links, too. What robot_state_publisher says of
   ///                  them is not kept for those who come later.
   Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
             const KeptPublisher<rosgraph_msgs::Clock>& clock, const std::string& model,
-            const std::string& frame_prefix, bool rotor_tf);
+            const GazeboNeighbours* neighbours, const std::string& frame_prefix, bool rotor_tf);
 
   /// After a step; `jumped`: after the start, a reset or a new state.
   void send(const Simulation& simulation, bool jumped);

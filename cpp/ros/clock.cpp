@@ -86,6 +86,14 @@ void ClockLeader::look() {
   if (followers_.size() != before) hold();
 }
 
+std::vector<std::string> ClockLeader::spaces() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<std::string> spaces;
+  for (const auto& [name, follower] : followers_)
+    spaces.push_back(ros::names::parentNamespace(name));
+  return spaces;
+}
+
 void ClockLeader::hold() {
   double slowest = std::numeric_limits<double>::infinity();
   for (const auto& [name, follower] : followers_) slowest = std::min(slowest, follower.needs);

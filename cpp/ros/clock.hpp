@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "flight_thread.hpp"
 #include "kept_publisher.hpp"
@@ -41,6 +42,8 @@ class ClockLeader {
               const KeptPublisher<rosgraph_msgs::Clock>& clock);
   /// Forgets followers that have gone. To be called now and then.
   void look();
+  /// Namespaces of the nodes that follow now.
+  std::vector<std::string> spaces() const;
 
  private:
   struct Follower {
@@ -52,7 +55,7 @@ class ClockLeader {
 
   FlightThread& flight_;
   KeptPublisher<rosgraph_msgs::Clock> clock_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::map<std::string, Follower> followers_;
   ros::Subscriber subscriber_;
 };

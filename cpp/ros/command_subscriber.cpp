@@ -43,9 +43,8 @@ CommandSubscriber::CommandSubscriber(ros::NodeHandle& nh, const std::vector<Comm
       take(topic, who, w);
     };
     subscribers_.push_back(
-        topic.actuators
-            ? subscribe<mav_msgs::Actuators>(nh, topic.name, queue, take_from)
-            : subscribe<std_msgs::Float64MultiArray>(nh, topic.name, queue, take_from));
+        topic.actuators ? subscribe<mav_msgs::Actuators>(nh, topic.name, queue, take_from)
+                        : subscribe<std_msgs::Float64MultiArray>(nh, topic.name, queue, take_from));
   }
 }
 

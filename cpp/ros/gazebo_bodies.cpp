@@ -28,8 +28,7 @@ std::vector<BodyMotion> body_motions(const Simulation& simulation) {
     const Joint& joint = model.joints[i];
     const auto row = static_cast<Eigen::Index>(i);
     const Quaterniond turn =
-        joint.pose.rotation() *
-        Quaterniond(Eigen::AngleAxisd(state.rotor_angle[row], joint.axis));
+        joint.pose.rotation() * Quaterniond(Eigen::AngleAxisd(state.rotor_angle[row], joint.axis));
     BodyMotion body = carried(bodies[joint.parent], joint.pose.xyz, turn);
     body.angular_velocity += state.rotor_velocity[row] * (body.orientation * joint.axis);
     bodies.push_back(body);

@@ -56,39 +56,90 @@ messages::Wrench wrench_of(const Simulation& simulation, const std::string& mode
   return wrench;
 }
 
-void check_frame(const Simulation& simulation, const std::string& model,
-                 const std::string& body) {
+void check_frame(const Simulation& simulation, const std::string& model, const std::string& body) {
   const std::string& frame = simulation.model().links.front().name;
   if (body == frame || body == model + "::" + frame) return;
   motion_of(simulation, model, body);
   throw InputError("'" + body + "' cannot be pushed; push the frame, " + model + "::" + frame);
 }
 
+/// Whether the action goes well; the response says so.
+template <class Response, class Action>
+bool succeeds(Response& response, const Action& action) {
+  try {
+    action();
+    response.success = true;
+  } catch (const std::exception& error) {
+    response.success = false;
+    response.status_message = error.what();
+  }
+  return response.success;
+}
+template <class Response>
+bool succeeded(const Response& response) {
+  return response.success;
+}
+/// Whether the response has room for what went wrong; else the call fails.
+template <class Response>
+bool says_why(const Response&) {
+  return true;
+}
+
+using Cleared = gazebo_msgs::BodyRequest::Response;
+template <class Action>
+bool succeeds(Cleared&, const Action& action) {
+  try {
+    action();
+  } catch (const std::exception& error) {
+    ROS_ERROR("gazebo/clear_body_wrenches: %s", error.what());
+    return false;
+  }
+  return true;
+}
+bool succeeded(const Cleared&) { return true; }
+bool says_why(const Cleared&) { return false; }
+
 }  // namespace
 
-GazeboServices::GazeboServices(ros::NodeHandle& nh, const std::string& model,
-                               FlightThread& flight, GazeboWrenches& wrenches)
-    : nh_(nh), model_(model), flight_(flight), wrenches_(wrenches) {
+GazeboServices::GazeboServices(ros::NodeHandle& nh, const std::string& model, FlightThread& flight,
+                               GazeboWrenches& wrenches, const GazeboNeighbours* neighbours)
+    : nh_(nh), model_(model), flight_(flight), wrenches_(wrenches), neighbours_(neighbours) {
   offer_states();
   offer_wrenches();
   offer_properties();
 }
 
-/// A service of gazebo_ros, which says in its own way what went wrong.
+/// A service of gazebo_ros, which says in its own way what went wrong. In /gazebo it is for the
+/// neighbours' models, too: who does not know a model asks them.
 template <class Service, class Act>
 void GazeboServices::offer(const std::string& name, const Act& act) {
-  const boost::function<bool(typename Service::Request&, typename Service::Response&)> callback =
-      [act](typename Service::Request& request, typename Service::Response& response) {
-        try {
-          act(request, response);
-          response.success = true;
-        } catch (const std::exception& error) {
-          response.success = false;
-          response.status_message = error.what();
-        }
-        return true;
-      };
-  servers_.push_back(nh_.advertiseService("gazebo/" + name, callback));
+  using Request = typename Service::Request;
+  using Response = typename Service::Response;
+  const boost::function<bool(Request&, Response&)> own = [act](Request& request,
+                                                               Response& response) {
+    return succeeds(response, [&] { act(request, response); });
+  };
+  const auto answer = [own](Request& request, Response& response) {
+    return own(request, response) || says_why(response);
+  };
+  const auto answer_for_all = [this, own, name](Request& request, Response& response) {
+    if (own(request, response)) return true;
+    for (const std::string& space : neighbours_->spaces()) {
+      Response told;
+      if (!ros::service::call(space + "/gazebo/" + name, request, told) || !succeeded(told))
+        continue;
+      response = told;
+      return true;
+    }
+    return says_why(response);
+  };
+  const bool at_root = nh_.getNamespace() == "/";
+  if (neighbours_) {
+    servers_.push_back(nh_.advertiseService<Request, Response>("/gazebo/" + name, answer_for_all));
+  }
+  if (!neighbours_ || !at_root) {
+    servers_.push_back(nh_.advertiseService<Request, Response>("gazebo/" + name, answer));
+  }
 }
 
 void GazeboServices::offer_states() {
@@ -116,16 +167,21 @@ void GazeboServices::offer_states() {
     flight_.change(
         [&](Simulation& simulation) { set_model_state(simulation, model_, request.model_state); });
   });
+  if (neighbours_) take_states("/gazebo/set_model_state");
+  if (!neighbours_ || nh_.getNamespace() != "/") take_states("gazebo/set_model_state");
+}
+
+/// The service of the same name without an answer.
+void GazeboServices::take_states(const std::string& topic) {
+  const std::string service = nh_.resolveName(topic);
   const boost::function<void(const gazebo_msgs::ModelState::ConstPtr&)> take =
-      [this](const gazebo_msgs::ModelState::ConstPtr& state) {
-        try {
-          flight_.change(
-              [&](Simulation& simulation) { set_model_state(simulation, model_, *state); });
-        } catch (const std::exception& error) {
-          sayer_.warn(subscriber_.getTopic() + ": " + error.what());
-        }
+      [this, service](const gazebo_msgs::ModelState::ConstPtr& state) {
+        gazebo_msgs::SetModelState call;
+        call.request.model_state = *state;
+        if (!ros::service::call(service, call)) call.response.status_message = "the node is ending";
+        if (!call.response.success) sayer_.warn(service + ": " + call.response.status_message);
       };
-  subscriber_ = nh_.subscribe<gazebo_msgs::ModelState>("gazebo/set_model_state", 1, take);
+  subscribers_.push_back(nh_.subscribe<gazebo_msgs::ModelState>(topic, 1, take));
 }
 
 void GazeboServices::offer_wrenches() {
@@ -139,21 +195,12 @@ void GazeboServices::offer_wrenches() {
                     duration < 0 ? INFINITY : begin + duration);
     });
   });
-  const boost::function<bool(gazebo_msgs::BodyRequest::Request&,
-                             gazebo_msgs::BodyRequest::Response&)>
-      clear = [this](gazebo_msgs::BodyRequest::Request& request, auto&) {
-        try {
-          flight_.tell([&](const Simulation& simulation) {
-            check_frame(simulation, model_, request.body_name);
-            wrenches_.clear();
-          });
-        } catch (const std::exception& error) {
-          ROS_ERROR("gazebo/clear_body_wrenches: %s", error.what());
-          return false;
-        }
-        return true;
-      };
-  servers_.push_back(nh_.advertiseService("gazebo/clear_body_wrenches", clear));
+  offer<gazebo_msgs::BodyRequest>("clear_body_wrenches", [this](auto& request, auto&) {
+    flight_.tell([&](const Simulation& simulation) {
+      check_frame(simulation, model_, request.body_name);
+      wrenches_.clear();
+    });
+  });
 }
 
 void GazeboServices::offer_properties() {
@@ -163,9 +210,7 @@ void GazeboServices::offer_properties() {
     });
   });
   offer<gazebo_msgs::SetPhysicsProperties>("set_physics_properties", [this](auto& request, auto&) {
-    flight_.tell([&](const Simulation& simulation) {
-      check_physics(simulation, request);
-    });
+    flight_.tell([&](const Simulation& simulation) { check_physics(simulation, request); });
     flight_.set_real_time_factor(real_time_factor_of(request));
   });
   offer<gazebo_msgs::GetWorldProperties>("get_world_properties", [this](auto&, auto& response) {
@@ -174,6 +219,11 @@ void GazeboServices::offer_properties() {
       if (simulation.world().ground_plane) response.model_names.push_back("ground_plane");
       response.model_names.push_back(model_);
     });
+    gazebo_msgs::ModelStates others;
+    if (neighbours_) neighbours_->add_to(others);
+    for (const std::string& name : others.name) {
+      if (name != "ground_plane") response.model_names.push_back(name);
+    }
   });
   offer<gazebo_msgs::GetModelProperties>(
       "get_model_properties", [this](auto& request, auto& response) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "flight_thread.hpp"
+#include "gazebo_neighbours.hpp"
 #include "gazebo_wrenches.hpp"
 #include "sayer.hpp"
 
@@ -17,14 +18,17 @@ class GazeboServices {
  public:
   /// \param nh     of the queue that answers
   /// \param model  its name
+  /// \param neighbours  others whose models are asked for in /gazebo, too; null = somebody else
+  ///                    answers there
   GazeboServices(ros::NodeHandle& nh, const std::string& model, FlightThread& flight,
-                 GazeboWrenches& wrenches);
+                 GazeboWrenches& wrenches, const GazeboNeighbours* neighbours);
 
   const std::vector<ros::ServiceServer>& servers() const { return servers_; }
 
  private:
   template <class Service, class Act>
   void offer(const std::string& name, const Act& act);
+  void take_states(const std::string& topic);
   void offer_states();
   void offer_wrenches();
   void offer_properties();
@@ -33,9 +37,10 @@ class GazeboServices {
   const std::string model_;
   FlightThread& flight_;
   GazeboWrenches& wrenches_;
+  const GazeboNeighbours* const neighbours_;
   Sayer sayer_;
   std::vector<ros::ServiceServer> servers_;
-  ros::Subscriber subscriber_;
+  std::vector<ros::Subscriber> subscribers_;
 };
 
 }  // namespace quadcore::node

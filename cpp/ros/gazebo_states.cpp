@@ -25,9 +25,16 @@ void make_room(States& states) {
 }  // namespace
 
 GazeboStates::GazeboStates(ros::NodeHandle& nh, const Simulation& simulation,
-                           const std::string& model)
-    : model_publisher_(nh, "gazebo/model_states", queue_size),
-      link_publisher_(nh, "gazebo/link_states", queue_size) {
+                           const std::string& model, const GazeboNeighbours* neighbours)
+    : neighbours_(neighbours) {
+  if (neighbours) {
+    all_models_publisher_ = {nh, "/gazebo/model_states", queue_size};
+    all_links_publisher_ = {nh, "/gazebo/link_states", queue_size};
+  }
+  if (!neighbours || nh.getNamespace() != "/") {
+    model_publisher_ = {nh, "gazebo/model_states", queue_size};
+    link_publisher_ = {nh, "gazebo/link_states", queue_size};
+  }
   if (simulation.world().ground_plane) {
     models_.name.push_back("ground_plane");
     links_.name.push_back("ground_plane::link");
@@ -44,8 +51,15 @@ void GazeboStates::send(const Simulation& simulation) {
   const std::vector<BodyMotion> bodies = body_motions(simulation);
   fill(bodies, 1, models_);
   fill(bodies, bodies.size(), links_);
-  model_publisher_.publish(models_);
-  link_publisher_.publish(links_);
+  if (model_publisher_) model_publisher_.publish(models_);
+  if (link_publisher_) link_publisher_.publish(links_);
+  if (!neighbours_) return;
+  gazebo_msgs::ModelStates all_models = models_;
+  gazebo_msgs::LinkStates all_links = links_;
+  neighbours_->add_to(all_models);
+  neighbours_->add_to(all_links);
+  all_models_publisher_.publish(all_models);
+  all_links_publisher_.publish(all_links);
 }
 
 }  // namespace quadcore::node

@@ -43,7 +43,9 @@ void GazeboWrenches::act(Simulation& simulation) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (wrenches_.empty() && !acts_) return;
   const double now = simulation.time();
-  const auto is_over = [now](const Wrench& w) { return w.has_acted && now >= w.end - time_rounding; };
+  const auto is_over = [now](const Wrench& w) {
+    return w.has_acted && now >= w.end - time_rounding;
+  };
   wrenches_.erase(std::remove_if(wrenches_.begin(), wrenches_.end(), is_over), wrenches_.end());
   messages::Wrench sum;
   acts_ = false;

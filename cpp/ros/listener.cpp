@@ -6,9 +6,8 @@
 namespace quadcore::node {
 
 Listener::Listener(Broadcast& broadcast, TopicInlets& inlets, GazeboWrenches& wrenches,
-                   const Simulation& simulation,
-                   std::vector<CommandTopic> command_topics, std::unique_ptr<CsvLog> log,
-                   ClockFollower* follower)
+                   const Simulation& simulation, std::vector<CommandTopic> command_topics,
+                   std::unique_ptr<CsvLog> log, ClockFollower* follower)
     : broadcast_(broadcast),
       inlets_(inlets),
       wrenches_(wrenches),

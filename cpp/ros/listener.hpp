@@ -21,9 +21,8 @@ class Listener final : public FlightListener {
   /// \param log       CSV log to write; null = none
   /// \param follower  to be told of each step; null = this node leads the clock
   Listener(Broadcast& broadcast, TopicInlets& inlets, GazeboWrenches& wrenches,
-           const Simulation& simulation,
-           std::vector<CommandTopic> command_topics, std::unique_ptr<CsvLog> log,
-           ClockFollower* follower);
+           const Simulation& simulation, std::vector<CommandTopic> command_topics,
+           std::unique_ptr<CsvLog> log, ClockFollower* follower);
 
   void feed(Simulation& simulation) override {
     inlets_.take(simulation);

@@ -75,7 +75,10 @@ int run(const EndSignal& end_signal) {
 
   std::optional<ClockFollower> follower;
   if (!clock) follower.emplace(nh, simulation.dt());
-  Broadcast broadcast(nh, simulation, clock, model, prefix, settings.rotor_tf);
+  std::optional<GazeboNeighbours> neighbours;
+  if (clock) neighbours.emplace(nh);
+  const GazeboNeighbours* const known = neighbours ? &*neighbours : nullptr;
+  Broadcast broadcast(nh, simulation, clock, model, known, prefix, settings.rotor_tf);
   const std::vector<CommandTopic> topics = command_topics(nh, settings.plant, simulation);
   std::vector<std::string> taken = simulated(topics);
   taken.push_back(GazeboWrenches::topic);
@@ -95,7 +98,7 @@ int run(const EndSignal& end_signal) {
   if (clock) leader.emplace(nh, flight, clock);
   if (follower) follower->follow(flight);
   const CommandSubscriber commands(nh, topics, flight_settings.lockstep, flight);
-  const Services services(nh, simulation, flight, model, wrenches, !!clock);
+  const Services services(nh, simulation, flight, model, wrenches, known);
   ParameterWatch parameters(flight, !clock);
   MasterWatch master_watch(services.names(), public_parameters(nh, settings, !!clock),
                            [&parameters] { parameters.look(); });
@@ -107,6 +110,7 @@ int run(const EndSignal& end_signal) {
   while (ros::ok() && !end_signal.has_come()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     if (leader) leader->look();
+    if (leader) neighbours->look(leader->spaces());
     if (follower) follower->tell(flight.report());
     if (Wall::now() < due) continue;
     diagnostics.send(flight.report(), commands.refusals());

@@ -101,14 +101,14 @@ function(add_ros_node name)
   set_target_properties(${name} PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/lib/quadcore
     INSTALL_RPATH $ORIGIN/..)
-  install(TARGETS ${name} RUNTIME DESTINATION lib/quadcore)
 endfunction()
 
 add_ros_node(quadcore_node
   cpp/ros/broadcast.cpp cpp/ros/clock.cpp cpp/ros/command_queue.cpp cpp/ros/command_subscriber.cpp
   cpp/ros/command_topics.cpp
   cpp/ros/csv_log.cpp cpp/ros/diagnostics.cpp cpp/ros/drag_choice.cpp cpp/ros/flight_loop.cpp
-  cpp/ros/flight_thread.cpp cpp/ros/gazebo_bodies.cpp cpp/ros/gazebo_physics.cpp
+  cpp/ros/flight_thread.cpp cpp/ros/gazebo_bodies.cpp cpp/ros/gazebo_neighbours.cpp
+  cpp/ros/gazebo_physics.cpp
   cpp/ros/gazebo_services.cpp cpp/ros/gazebo_states.cpp cpp/ros/gazebo_wrenches.cpp
   cpp/ros/listener.cpp cpp/ros/master_api.cpp cpp/ros/master_check.cpp
   cpp/ros/master_watch.cpp cpp/ros/odometry_topic.cpp cpp/ros/parameter_watch.cpp cpp/ros/path.cpp
@@ -123,8 +123,10 @@ add_ros_node(controller_node
   cpp/ros/set_points.cpp)
 target_link_libraries(controller_node PRIVATE quadcore)
 target_include_directories(controller_node PRIVATE cpp)
+install(TARGETS quadcore_node controller_node RUNTIME DESTINATION lib/quadcore)
 if(QUADCORE_BUILD_BENCHMARKS)
   add_ros_node(ros_probe benchmarks/ros_probe.cpp)
+  install(TARGETS ros_probe RUNTIME DESTINATION lib/quadcore)
 endif()
 
 # Not catkin_install_python: it would fix the interpreter, and these want the one that has quadcore.

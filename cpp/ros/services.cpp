@@ -17,6 +17,9 @@ namespace {
 /// By so much a quaternion may miss unit length: typed with four digits, or in single precision.
 constexpr double unit_tolerance = 1e-3;
 
+/// One more than of topics that are answered by a call of a service, of which there are two.
+constexpr std::uint32_t threads = 3;
+
 void reset_simulation(Simulation& simulation) { simulation.reset(); }
 
 /// Everything back to the start but time, which goes on.
@@ -54,11 +57,13 @@ void set_state(const SetState::Request& request, Simulation& simulation) {
 }  // namespace
 
 Services::Services(const ros::NodeHandle& nh, const Simulation& simulation, FlightThread& flight,
-                   const std::string& model, GazeboWrenches& wrenches, bool leads_clock)
-    : nh_(nh), spinner_(2, &queue_) {
+                   const std::string& model, GazeboWrenches& wrenches,
+                   const GazeboNeighbours* neighbours)
+    : nh_(nh), spinner_(threads, &queue_) {
   nh_.setCallbackQueue(&queue_);
   // In a namespace the clock is not this vehicle's alone.
-  const bool own_clock = leads_clock && nh.getNamespace() == "/";
+  const bool at_root = nh.getNamespace() == "/";
+  const bool own_clock = neighbours && at_root;
   using Empty = std_srvs::Empty;
   // std_srvs/Empty cannot say what went wrong: a call that returns false fails.
   const auto offer = [&](const std::string& name, const std::function<void()>& action) {
@@ -75,9 +80,20 @@ Services::Services(const ros::NodeHandle& nh, const Simulation& simulation, Flig
   };
   offer("gazebo/pause_physics", [&flight] { flight.set_paused(true); });
   offer("gazebo/unpause_physics", [&flight] { flight.set_paused(false); });
-  if (leads_clock && nh.getNamespace() != "/") {  // which stands for all who follow
+  if (neighbours && !at_root) {  // the clock's leader stands for all who follow
     offer("/gazebo/pause_physics", [&flight] { flight.set_paused(true); });
     offer("/gazebo/unpause_physics", [&flight] { flight.set_paused(false); });
+    for (const char* const reset : {"gazebo/reset_simulation", "gazebo/reset_world"}) {
+      offer(std::string("/") + reset, [&flight, neighbours, reset] {
+        flight.reset(reset_world);
+        for (const std::string& space : neighbours->spaces()) {
+          std_srvs::Empty empty;
+          if (!ros::service::call(space + "/" + reset, empty)) {
+            throw InputError(space + " was not reset");
+          }
+        }
+      });
+    }
   }
   offer("gazebo/reset_simulation",
         [&flight, own_clock] { flight.reset(own_clock ? reset_simulation : reset_world); });
@@ -96,10 +112,10 @@ Services::Services(const ros::NodeHandle& nh, const Simulation& simulation, Flig
         });
         return true;
       }));
-  const auto of_topics = offer_topics(
-      nh_, simulation.topics(), {Simulation::command_topic, GazeboWrenches::topic}, flight);
+  const auto of_topics = offer_topics(nh_, simulation.topics(),
+                                      {Simulation::command_topic, GazeboWrenches::topic}, flight);
   servers_.insert(servers_.end(), of_topics.begin(), of_topics.end());
-  gazebo_.emplace(nh_, model, flight, wrenches);
+  gazebo_.emplace(nh_, model, flight, wrenches, neighbours);
   servers_.insert(servers_.end(), gazebo_->servers().begin(), gazebo_->servers().end());
   spinner_.start();
 }

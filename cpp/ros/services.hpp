@@ -17,11 +17,12 @@ namespace quadcore::node {
 /// commands nor the others.
 class Services {
  public:
-  /// \param leads_clock  whether others fly by this vehicle's clock: it offers /gazebo/pause_physics
-  ///                     for all, and, without a namespace, a reset sets the clock back
+  /// \param neighbours  who fly by this vehicle's clock, null = it follows itself: a leader answers
+  /// in
+  ///                    /gazebo for all, and, without a namespace, a reset sets the clock back
   /// \param model  its name
   Services(const ros::NodeHandle& nh, const Simulation& simulation, FlightThread& flight,
-           const std::string& model, GazeboWrenches& wrenches, bool leads_clock);
+           const std::string& model, GazeboWrenches& wrenches, const GazeboNeighbours* neighbours);
 
   /// Resolved names.
   std::vector<std::string> names() const;

@@ -9,8 +9,8 @@
 
 namespace quadcore::node {
 
-TopicInlets::TopicInlets(ros::NodeHandle nh, const Simulation& simulation, const std::vector<std::string>& but,
-                         bool lockstep)
+TopicInlets::TopicInlets(ros::NodeHandle nh, const Simulation& simulation,
+                         const std::vector<std::string>& but, bool lockstep)
     : lockstep_(lockstep) {
   nh.setCallbackQueue(&queue_);
   const Topics& topics = simulation.topics();

@@ -4,6 +4,9 @@
 import unittest
 
 import harness
+import rospy
+from gazebo_msgs.msg import ModelState, ModelStates
+from gazebo_msgs.srv import GetModelState, GetWorldProperties, SetModelState
 from harness import Recording
 from mav_msgs.msg import Actuators
 from nav_msgs.msg import Odometry
@@ -30,6 +33,27 @@ class TestRotorsHover(unittest.TestCase):
             told = speeds[name].wait_for_count(1)[-1].angular_velocities
             self.assertEqual(len(told), ROTORS[name])
         self.assertEqual(len(harness.publishers("/clock")), 1)
+
+        # To clients of gazebo_ros they are models of one world.
+        with Recording("/gazebo/model_states", ModelStates) as states:
+            known = states.wait(lambda m: m and len(m[-1].name) == 7)[-1]
+        self.assertEqual(set(known.name), {"ground_plane", *ROTORS})
+        world = rospy.ServiceProxy("/gazebo/get_world_properties", GetWorldProperties)()
+        self.assertEqual(set(world.model_names), {"ground_plane", *ROTORS})
+        get = rospy.ServiceProxy("/gazebo/get_model_state", GetModelState)
+        change = rospy.ServiceProxy("/gazebo/set_model_state", SetModelState)
+        for i, name in enumerate(ROTORS):
+            self.assertAlmostEqual(get(name, "").pose.position.y, i, delta=0.1)
+            moved = ModelState(model_name=name)
+            moved.pose.position.z = 20
+            self.assertTrue(change(moved).success)
+            self.assertAlmostEqual(get(name, "").pose.position.z, 20, delta=10)
+        self.assertFalse(get("solo", "").success)
+        harness.call("/gazebo/pause_physics")
+        harness.call("/gazebo/reset_world")
+        for i, name in enumerate(ROTORS):
+            place = get(name, "").pose.position
+            self.assertEqual([place.x, place.y, place.z], [0, i, 0.1])
 
 
 if __name__ == "__main__":

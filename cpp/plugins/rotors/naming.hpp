@@ -15,8 +15,8 @@ namespace quadcore::rotors {
 constexpr const char* motor_model_file = "librotors_gazebo_motor_model.so";
 constexpr const char* controller_interface_file = "librotors_gazebo_controller_interface.so";
 
-/// A name of ROS as one of quadcore, which knows parts of names, but no signs beyond letters, digits
-/// and _.
+/// A name of ROS as one of quadcore, which knows parts of names, but no signs beyond letters,
+/// digits and _.
 inline std::string topic_path(std::string name) {
   name.erase(0, name.find_first_not_of('/'));
   const auto is_plain = [](char c) {

@@ -1,0 +1,69 @@
+#include "gazebo_neighbours.hpp"
+
+#include <algorithm>
+
+namespace quadcore::node {
+namespace {
+
+template <class States>
+void add(const States& more, States& states) {
+  for (std::size_t i = 0; i < more.name.size(); ++i) {
+    if (std::count(states.name.begin(), states.name.end(), more.name[i]) > 0) continue;  // ground
+    states.name.push_back(more.name[i]);
+    states.pose.push_back(more.pose[i]);
+    states.twist.push_back(more.twist[i]);
+  }
+}
+
+}  // namespace
+
+void GazeboNeighbours::look(const std::vector<std::string>& spaces) {
+  std::map<std::string, Told> gone;  // subscribers end without the lock that their callbacks take
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (auto told = told_.begin(); told != told_.end();) {
+      const auto next = std::next(told);
+      if (std::count(spaces.begin(), spaces.end(), told->first) == 0) {
+        gone.insert(told_.extract(told));
+      }
+      told = next;
+    }
+  }
+  for (const std::string& space : spaces) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    if (told_.count(space) > 0) continue;
+    Told& told = told_[space];
+    lock.unlock();
+    told.models_subscriber = subscribe(space + "/gazebo/model_states", told.models);
+    told.links_subscriber = subscribe(space + "/gazebo/link_states", told.links);
+  }
+}
+
+template <class States>
+ros::Subscriber GazeboNeighbours::subscribe(const std::string& topic, States& newest) {
+  const boost::function<void(const boost::shared_ptr<const States>&)> take =
+      [this, &newest](const boost::shared_ptr<const States>& states) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        newest = *states;
+      };
+  return nh_.subscribe<States>(topic, 1, take);
+}
+
+std::vector<std::string> GazeboNeighbours::spaces() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<std::string> spaces;
+  for (const auto& [space, told] : told_) spaces.push_back(space);
+  return spaces;
+}
+
+void GazeboNeighbours::add_to(gazebo_msgs::ModelStates& states) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (const auto& [space, told] : told_) add(told.models, states);
+}
+
+void GazeboNeighbours::add_to(gazebo_msgs::LinkStates& states) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (const auto& [space, told] : told_) add(told.links, states);
+}
+
+}  // namespace quadcore::node
