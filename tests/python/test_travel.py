@@ -168,6 +168,31 @@ def test_another_world_or_parameter_is_taken_on_purpose(toy):
     assert bits(onto) != bits(taken)
 
 
+@pytest.mark.parametrize(
+    "tag",
+    ["drone_plugin.rotorThrustCoeff", "drone_plugin.inducedDragCoeff", "motorpid_plugin.kp"],
+)
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_parameter_taken_on_purpose_acts_from_then_on(engine, tag):
+    """As in a simulation that was put into the same state."""
+    taken, changed = quadrotor(engine), {tag: 7e-6}
+    taken.set_state(moving(taken))
+    onto, made = quadrotor(engine, parameters=changed), quadrotor(engine, parameters=changed)
+    onto.restore(taken.snapshot(), allow=["parameters"])
+    made.set_state(moving(made))
+    for simulation in (taken, onto, made):
+        simulation.command([480, -470, 490, -475])
+        simulation.step(50)
+    assert bits(onto) == bits(made) != bits(taken)
+
+
+def moving(simulation):
+    state = simulation.state.copy()
+    state.linear_velocity[:] = 3, -2, 1
+    state.rotor_velocity[:] = 47, -47, 47, -47
+    return state
+
+
 @pytest.mark.parametrize("name", ["engine", "model", "step", "plugins", "wordl", ""])
 def test_nothing_else_may_differ_on_purpose(name):
     simulation = quadrotor("eigen")
