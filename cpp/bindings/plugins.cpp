@@ -13,6 +13,29 @@ std::string path_of(const py::object& folder) {
   return py::cast<py::bytes>(py::module_::import("os").attr("fsencode")(folder));
 }
 
+/// Name of a tag's kind.
+const char* kind_of(const Parameter& parameter) {
+  switch (parameter.spec.kind) {
+    case TagKind::number:
+      return "number";
+    case TagKind::numbers:
+      return "numbers";
+    case TagKind::flag:
+      return "flag";
+    case TagKind::choice:
+      return "choice";
+    case TagKind::text:
+      return "text";
+    case TagKind::file:
+      return "file";
+    case TagKind::link:
+      return "link";
+    case TagKind::joints:
+      return "joints";
+  }
+  return "";
+}
+
 }  // namespace
 
 void bind_plugins(py::module_& m) {
@@ -20,6 +43,9 @@ void bind_plugins(py::module_& m) {
       .def_property_readonly("name", [](const Parameter& p) { return text(p.spec.name); })
       .def_property_readonly(
           "value", [](const Parameter& p) { return p.text.empty() ? p.spec.absent : p.text; })
+      .def_property_readonly("kind", &kind_of)
+      .def_property_readonly("text", [](const Parameter& p) { return text(p.text); })
+      .def_property_readonly("file", [](const Parameter& p) { return file_name(p.file); })
       .def_property_readonly("unit", [](const Parameter& p) { return text(p.spec.unit); })
       .def_property_readonly("default",
                              [](const Parameter& p) -> std::optional<std::string> {

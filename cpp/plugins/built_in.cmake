@@ -1,16 +1,16 @@
-# A static core has the shipped plugins inside, each under a symbol of its own, and a table of them;
-# the table of a shared core is empty. Included where the core is made.
-set(declarations "")
-set(entries "")
-if(NOT BUILD_SHARED_LIBS)
-  foreach(plugin ${QUADCORE_PLUGINS})
+# quadcore_build_in(TARGET PLUGIN...): gives a target the table of the plugins that it has inside, each
+# under its own symbol; a shared core has none.
+function(quadcore_build_in target)
+  set(declarations "")
+  set(entries "")
+  foreach(plugin ${ARGN})
     set(symbol quadcore_${plugin}_plugin)
-    quadcore_add_plugin_sources(quadcore ${plugin})
-    set_source_files_properties(${PROJECT_SOURCE_DIR}/cpp/plugins/${${plugin}_source}
-      PROPERTIES COMPILE_DEFINITIONS QUADCORE_PLUGIN_SYMBOL=${symbol})
     string(APPEND declarations "extern \"C\" const quadcore::PluginModule ${symbol};\n")
     string(APPEND entries "\n      {\"lib${${plugin}_module}.so\", &${symbol}},")
   endforeach()
-endif()
-configure_file(../plugins/built_in_plugins.cpp.in built_in_plugins.cpp @ONLY)
-target_sources(quadcore PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/built_in_plugins.cpp)
+  set(table ${CMAKE_CURRENT_BINARY_DIR}/${target}_built_in_plugins.cpp)
+  configure_file(${PROJECT_SOURCE_DIR}/cpp/plugins/built_in_plugins.cpp.in ${table} @ONLY)
+  target_sources(${target} PRIVATE ${table})
+  # Whoever takes the objects of a target brings a table of its own.
+  set_source_files_properties(${table} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()

@@ -20,9 +20,13 @@ endforeach()
 
 # quadcore_add_plugin_sources(TARGET PLUGIN): a module is made of them, or a static core.
 function(quadcore_add_plugin_sources target plugin)
-  set(folder ${PROJECT_SOURCE_DIR}/cpp/plugins)
-  target_sources(${target} PRIVATE ${folder}/${${plugin}_source})
+  set(source ${PROJECT_SOURCE_DIR}/cpp/plugins/${${plugin}_source})
+  target_sources(${target} PRIVATE ${source})
+  # Each under a symbol of its own, so that several can be linked together.
+  set_source_files_properties(${source} PROPERTIES
+    COMPILE_DEFINITIONS QUADCORE_PLUGIN_SYMBOL=quadcore_${plugin}_plugin)
   if(${plugin}_lanes)
-    quadcore_compile_lanes(${target} ${folder}/${plugin}/${${plugin}_lanes})
+    quadcore_compile_lanes(${target}
+      ${PROJECT_SOURCE_DIR}/cpp/plugins/${plugin}/${${plugin}_lanes})
   endif()
 endfunction()

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from .evaluation.evaluate import Evaluation, evaluate
     from .fitting.fit import Fit, fit
     from .flight_plan import FlightPlan
+    from .fmu.export import export_fmu
     from .sweeps.sweep import Sweep, sweep
     from .tuning.tune import tune
 
@@ -75,6 +76,7 @@ __all__ = [
     "compare",
     "engines",
     "evaluate",
+    "export_fmu",
     "fit",
     "laws",
     "load_plugin_path",
@@ -94,6 +96,7 @@ _STUDIES = {
     "Sweep": "sweeps.sweep",
     "compare": "comparison.compare",
     "evaluate": "evaluation.evaluate",
+    "export_fmu": "fmu.export",
     "fit": "fitting.fit",
     "sweep": "sweeps.sweep",
     "tune": "tuning.tune",

@@ -9,7 +9,36 @@ from typing import NoReturn, Sequence
 from .. import __version__, interrupts
 from .._core import FlightError, InputError, QuadcoreError
 from ..files import shown
-from . import compare, evaluate, fit, info, play, run, serve, sweep, terminal, tune, validate
+from . import (
+    compare,
+    convert,
+    evaluate,
+    export_fmu,
+    fit,
+    info,
+    play,
+    run,
+    serve,
+    sweep,
+    terminal,
+    tune,
+    validate,
+)
+
+_COMMANDS = (
+    info,
+    run,
+    validate,
+    compare,
+    evaluate,
+    sweep,
+    play,
+    tune,
+    fit,
+    convert,
+    serve,
+    export_fmu,
+)
 
 
 class _Parser(argparse.ArgumentParser):
@@ -78,6 +107,6 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"quadcore {__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
-    for command in (info, run, validate, compare, evaluate, sweep, play, tune, fit, serve):
+    for command in _COMMANDS:
         command.register(commands)
     return parser

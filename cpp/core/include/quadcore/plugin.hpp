@@ -132,10 +132,10 @@ struct PluginModule {
 
 }  // namespace quadcore
 
-/// The name of a library's PluginModule, which is exported whatever else is hidden. A static core,
-/// which holds several, gives each a name of its own and exports none.
+/// The name of a library's PluginModule, which is exported whatever else is hidden. Where several
+/// are linked together each has a name of its own, and a static core exports none.
 #ifdef QUADCORE_PLUGIN_SYMBOL
-#define QUADCORE_PLUGIN_EXPORT
+#define QUADCORE_PLUGIN_EXPORT QUADCORE_EXPORT
 #else
 #define QUADCORE_PLUGIN_SYMBOL quadcore_plugin
 #define QUADCORE_PLUGIN_EXPORT __attribute__((visibility("default")))

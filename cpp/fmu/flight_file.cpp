@@ -1,0 +1,75 @@
+#include "flight_file.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <array>
+
+#include "quadcore/error.hpp"
+
+namespace quadcore::fmu {
+namespace {
+
+constexpr int version = 1;
+
+/// In the order of Variable::Kind.
+constexpr std::array<const char*, 8> kinds = {"state",     "topic", "wrench", "input",
+                                              "parameter", "file",  "spawn",  "seed"};
+
+Variable::Kind kind_of(const std::string& name) {
+  const auto* const found = std::find(kinds.begin(), kinds.end(), name);
+  if (found == kinds.end()) throw InputError("no kind of variable is called " + name);
+  return static_cast<Variable::Kind>(found - kinds.begin());
+}
+
+Document document_of(const YAML::Node& node) {
+  Document document{node["name"].as<std::string>(), node["text"].as<std::string>()};
+  const auto files = node["files"].as<std::vector<std::string>>();
+  for (const auto& place : node["lines"].as<std::vector<std::pair<std::size_t, int>>>()) {
+    document.lines.emplace_back(files.at(place.first), place.second);
+  }
+  return document;
+}
+
+FlightFile read(const std::string& folder) {
+  const YAML::Node root = YAML::LoadFile(folder + "/flight.yaml");
+  if (root["version"].as<int>() != version) throw InputError("it is of another version");
+  FlightFile file;
+  file.folder = folder;
+  file.guid = root["guid"].as<std::string>();
+  using Names = std::vector<std::string>;
+  const YAML::Node model = root["model"], world = root["world"];
+  file.model = read_model(document_of(model), model["ignore"].as<Names>());
+  file.world = read_world(document_of(world), world["ignore"].as<Names>());
+  file.options.engine = root["engine"].as<std::string>();
+  file.options.dt = root["dt"].as<double>();
+  file.options.seed = root["seed"].as<std::uint64_t>();
+  using Texts = std::map<std::string, std::string>;
+  file.options.parameters = root["parameters"].as<Texts>();
+  file.tags = root["tags"].as<Texts>();
+  for (const auto& [tag, name] : root["files"].as<Texts>()) {
+    file.options.parameters[tag] = file.tags[tag] = folder + "/" + name;
+  }
+  const auto spawn = root["spawn"].as<std::vector<double>>();
+  std::copy_n(spawn.begin(), 3, file.options.spawn.xyz.data());
+  std::copy_n(spawn.begin() + 3, 3, file.options.spawn.rpy.data());
+  for (const YAML::Node& v : root["variables"]) {
+    file.variables.push_back(
+        {kind_of(v[0].as<std::string>()), v[1].as<std::string>(), v[2].as<std::size_t>()});
+  }
+  return file;
+}
+
+}  // namespace
+
+FlightFile read_flight_file(const std::string& resources) {
+  try {
+    return read(resources);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw InputError(resources + "/flight.yaml: " + error.what() + "; export the FMU anew");
+  }
+}
+
+}  // namespace quadcore::fmu

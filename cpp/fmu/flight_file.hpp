@@ -1,0 +1,44 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "quadcore/model.hpp"
+#include "quadcore/simulation.hpp"
+#include "quadcore/world.hpp"
+
+namespace quadcore::fmu {
+
+/// What a variable is; its value reference is its place in FlightFile::variables.
+struct Variable {
+  enum Kind {
+    state,      ///< `index` in a row of the log
+    topic,      ///< `index` in the row of topic `name`
+    wrench,     ///< `index` in the row of all wrenches
+    input,      ///< `index` among the fields of topic `name`
+    parameter,  ///< tag `name`
+    file,       ///< tag `name`, which names a file among the resources
+    spawn,      ///< `index` in the pose
+    seed,
+  };
+  Kind kind;
+  std::string name;
+  std::size_t index = 0;
+};
+
+/// What `quadcore export-fmu` writes for this library: resources/flight.yaml.
+struct FlightFile {
+  std::string guid;
+  Model model;
+  World world;
+  SimulationOptions options;
+  std::map<std::string, std::string> tags;  ///< PLUGIN.TAG -> text, of all that are variables
+  std::vector<Variable> variables;
+  std::string folder;  ///< of the resources
+};
+
+/// Throws InputError on a file that `quadcore export-fmu` of this version did not write.
+FlightFile read_flight_file(const std::string& resources);
+
+}  // namespace quadcore::fmu

@@ -1,0 +1,142 @@
+#include "instance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "quadcore/error.hpp"
+#include "quadcore/text.hpp"
+
+namespace quadcore::fmu {
+namespace {
+
+/// Of a step, by which a communication step may be no multiple of it.
+constexpr double roundness = 1e-6;
+
+}  // namespace
+
+Instance::Instance(const std::string& resources, const std::string& guid)
+    : file_(read_flight_file(resources)), settings_(file_) {
+  if (guid != file_.guid) {
+    throw InputError("the GUID is " + guid + ", this FMU's is " + file_.guid +
+                     "; read its modelDescription.xml anew");
+  }
+}
+
+void Instance::initialise() {
+  simulation_ = made();
+  tuned_ = false;
+  told_ = 0;
+}
+
+std::unique_ptr<Simulation> Instance::made() const {
+  return std::make_unique<Simulation>(file_.model, file_.world, options_of(file_, settings_));
+}
+
+void Instance::tune() {
+  if (!tuned_) return;
+  Allowed allowed;
+  allowed.parameters = true;
+  std::unique_ptr<Simulation> tuned = made();
+  tuned->restore(simulation_->snapshot(), allowed);
+  simulation_ = std::move(tuned);
+  tuned_ = false;
+}
+
+void Instance::step(double time, double length) {
+  if (!simulation_) throw InputError("a step before the initialisation; initialise first");
+  const double dt = simulation_->dt();
+  const double count = std::round(length / dt);
+  if (!(count >= 1) || std::abs(length - count * dt) > roundness * dt) {
+    std::string text = "a communication step of ";
+    append_shortest(length, text);
+    text += " s; give a whole multiple of the step of ";
+    append_shortest(dt, text);
+    throw InputError(text + " s");
+  }
+  if (!(std::abs(time - this->time()) < dt / 2)) {
+    throw InputError("a step from " + seconds(time) + ", but the flight is at " +
+                     seconds(this->time()) + "; go on from there");
+  }
+  tune();
+  for (auto& [topic, message] : settings_.inputs) {
+    if (!message.is_set) continue;
+    simulation_->publish(topic, message.values.data(), message.values.size());
+    message.is_set = false;
+  }
+  simulation_->step(static_cast<std::int64_t>(count));
+}
+
+void Instance::reset() {
+  simulation_.reset();
+  settings_ = Settings(file_);
+  start_time_ = 0;
+  tuned_ = false;
+  told_ = 0;
+}
+
+double Instance::time() const { return start_time_ + (simulation_ ? simulation_->time() : 0); }
+
+const Variable& Instance::variable(unsigned reference) const {
+  if (reference < file_.variables.size()) return file_.variables[reference];
+  throw InputError("no variable has the value reference " + std::to_string(reference));
+}
+
+double Instance::number(unsigned reference) {
+  const Variable& v = variable(reference);
+  if (!is_output(v)) return fmu::number(settings_, v);
+  if (!simulation_) throw InputError("an output before the initialisation; initialise first");
+  return output(*simulation_, v);
+}
+
+const std::string& Instance::text(unsigned reference) {
+  return fmu::text(settings_, variable(reference));
+}
+
+void Instance::set_number(unsigned reference, double value) {
+  const Variable& v = variable(reference);
+  fmu::set_number(settings_, v, value);
+  tuned_ = tuned_ || is_parameter(v);
+}
+
+void Instance::set_text(unsigned reference, const std::string& value) {
+  fmu::set_text(settings_, file_, variable(reference), value);
+  tuned_ = true;
+}
+
+SavedState Instance::save() const {
+  SavedState state{file_.guid, settings_, start_time_, nullptr};
+  if (simulation_) state.snapshot = std::make_shared<Snapshot>(simulation_->snapshot());
+  return state;
+}
+
+void Instance::restore(const SavedState& state) {
+  Settings before = std::exchange(settings_, state.settings);
+  try {
+    std::unique_ptr<Simulation> other;
+    if (state.snapshot) {
+      // Parameters that were set after the last step are not in the simulation yet.
+      const bool same = simulation_ && !tuned_ && before.tags == state.settings.tags;
+      if (!same) other = made();
+      Allowed allowed;
+      allowed.parameters = true;
+      (same ? *simulation_ : *other).restore(*state.snapshot, allowed);
+      if (same) other = std::move(simulation_);
+    }
+    simulation_ = std::move(other);
+  } catch (...) {
+    settings_ = std::move(before);
+    throw;
+  }
+  start_time_ = state.start_time;
+  tuned_ = false;
+  told_ = simulation_ ? simulation_->warnings().size() : 0;
+}
+
+std::vector<std::string> Instance::take_warnings() {
+  if (!simulation_) return {};
+  const std::vector<std::string>& all = simulation_->warnings();
+  const std::size_t first = std::min(std::exchange(told_, all.size()), all.size());
+  return {all.begin() + static_cast<std::ptrdiff_t>(first), all.end()};
+}
+
+}  // namespace quadcore::fmu

@@ -1,0 +1,128 @@
+#include "variables.hpp"
+
+#include <cmath>
+
+#include "quadcore/error.hpp"
+#include "quadcore/log.hpp"
+#include "quadcore/text.hpp"
+
+namespace quadcore::fmu {
+namespace {
+
+/// Of a pose.
+double& component(Pose& pose, std::size_t index) {
+  const auto i = static_cast<Eigen::Index>(index % 3);
+  return index < 3 ? pose.xyz[i] : pose.rpy[i];
+}
+
+[[noreturn]] void refuse(const Variable& variable, const char* what) {
+  throw InputError("variable " + variable.name + ": " + what);
+}
+
+}  // namespace
+
+Settings::Settings(const FlightFile& file)
+    : spawn(file.options.spawn), seed(file.options.seed), tags(file.tags) {
+  for (const Variable& v : file.variables) {
+    if (v.kind != Variable::input) continue;
+    std::vector<double>& values = inputs[v.name].values;
+    if (values.size() <= v.index) values.resize(v.index + 1);
+  }
+}
+
+bool is_output(const Variable& variable) { return variable.kind <= Variable::wrench; }
+
+bool is_parameter(const Variable& variable) { return variable.kind > Variable::input; }
+
+SimulationOptions options_of(const FlightFile& file, const Settings& settings) {
+  SimulationOptions options = file.options;
+  options.spawn = settings.spawn;
+  options.seed = settings.seed;
+  for (const auto& [tag, text] : settings.tags) {
+    if (text != file.tags.at(tag)) options.parameters[tag] = text;  // else as the model has it
+  }
+  return options;
+}
+
+double output(Simulation& simulation, const Variable& variable) {
+  if (variable.kind == Variable::wrench) {
+    const Wrench& wrench = simulation.wrenches().at(variable.index / 6);
+    const auto i = static_cast<Eigen::Index>(variable.index % 3);
+    return variable.index % 6 < 3 ? wrench.force_F[i] : wrench.torque_F[i];
+  }
+  std::vector<double> row;
+  if (variable.kind == Variable::state) {
+    append_log_row(simulation.state(), row);
+  } else {
+    append_log_row(simulation.topics()[simulation.topics().at(variable.name)], row);
+  }
+  return row.at(variable.index);
+}
+
+double number(const Settings& settings, const Variable& variable) {
+  switch (variable.kind) {
+    case Variable::input:
+      return settings.inputs.at(variable.name).values.at(variable.index);
+    case Variable::spawn: {
+      Pose pose = settings.spawn;
+      return component(pose, variable.index);
+    }
+    case Variable::seed:
+      return static_cast<double>(settings.seed);
+    default: {
+      const std::string& value = text(settings, variable);
+      if (const auto number = parse_number(value)) return *number;
+      if (value == "true" || value == "false") return value == "true" ? 1 : 0;
+      refuse(variable, "is a text; ask for a string");
+    }
+  }
+}
+
+const std::string& text(const Settings& settings, const Variable& variable) {
+  const auto found = settings.tags.find(variable.name);
+  if (found == settings.tags.end()) refuse(variable, "is a number; ask for one");
+  return found->second;
+}
+
+void set_number(Settings& settings, const Variable& variable, double value) {
+  if (!std::isfinite(value)) refuse(variable, "is to be no finite number; give one");
+  switch (variable.kind) {
+    case Variable::input: {
+      Waiting& message = settings.inputs.at(variable.name);
+      message.values.at(variable.index) = value;
+      message.is_set = true;
+      return;
+    }
+    case Variable::spawn:
+      component(settings.spawn, variable.index) = value;
+      return;
+    case Variable::seed:
+      if (value < 0) refuse(variable, "is negative; give a whole number from 0");
+      settings.seed = static_cast<std::uint64_t>(value);
+      return;
+    case Variable::parameter: {
+      std::string& kept = settings.tags.at(variable.name);
+      const bool is_flag = kept == "true" || kept == "false";
+      kept.clear();
+      if (is_flag) {
+        kept = value != 0 ? "true" : "false";
+      } else {
+        append_shortest(value, kept);
+      }
+      return;
+    }
+    default:
+      refuse(variable, "cannot be set to a number");
+  }
+}
+
+void set_text(Settings& settings, const FlightFile& file, const Variable& variable,
+              const std::string& value) {
+  if (variable.kind != Variable::parameter && variable.kind != Variable::file) {
+    refuse(variable, "is a number; set one");
+  }
+  const bool within = variable.kind == Variable::file && !value.empty() && value.front() != '/';
+  settings.tags.at(variable.name) = within ? file.folder + "/" + value : value;
+}
+
+}  // namespace quadcore::fmu

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "flight_file.hpp"
+
+namespace quadcore::fmu {
+
+/// A message that waits for the next step.
+struct Waiting {
+  std::vector<double> values;
+  bool is_set = false;  ///< since the last step
+};
+
+/// What can be set from outside: all that a flight has beside its file and its snapshot.
+struct Settings {
+  Pose spawn;
+  std::uint64_t seed;
+  std::map<std::string, std::string> tags;  ///< see FlightFile
+  std::map<std::string, Waiting> inputs;    ///< by topic
+
+  explicit Settings(const FlightFile& file);
+};
+
+/// \name Values of variables
+/// Throw InputError if the variable is no output, or no setting, or cannot have the value.
+/// @{
+/// Of an output, in the present state.
+double output(Simulation& simulation, const Variable& variable);
+double number(const Settings& settings, const Variable& variable);
+const std::string& text(const Settings& settings, const Variable& variable);
+void set_number(Settings& settings, const Variable& variable, double value);
+void set_text(Settings& settings, const FlightFile& file, const Variable& variable,
+              const std::string& value);
+/// @}
+
+bool is_output(const Variable& variable);
+/// Whether only another simulation has the changed value.
+bool is_parameter(const Variable& variable);
+/// Those of a simulation with the settings.
+SimulationOptions options_of(const FlightFile& file, const Settings& settings);
+
+}  // namespace quadcore::fmu

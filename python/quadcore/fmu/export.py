@@ -1,0 +1,146 @@
+"""Writing an FMU."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import uuid
+import zipfile
+from pathlib import Path
+from typing import Any, Dict, Iterator, List, Tuple, Union
+
+import yaml
+
+from .. import __version__, _core
+from .._core import Document, InputError
+from ..files import atomic_write
+from ..flight_plan import FlightPlan
+from ..simulation import Simulation
+from .description import description
+from .variables import Variable, spawn_and_seed, variables_of
+
+_VERSION = 1  # of flight.yaml, which cpp/fmu/flight_file.cpp reads
+_LIBRARY = "libquadcore_fmu.so"
+_LONG_AGO = (1980, 1, 1, 0, 0, 0)  # the same FMU, the same bytes
+
+
+def export_fmu(
+    path: Union[str, Path],
+    model: Union[str, Path, _core.Model] = "quadrotor",
+    **options: Any,
+) -> None:
+    """Write a vehicle in its world as an FMU for co-simulation, FMI 2.0.
+
+    It has inside whatever it needs to fly on Linux, and no path.
+
+    Parameters
+    ----------
+    path
+        A file that ends in ``.fmu``.
+    model
+        As for `Simulation`.
+    **options
+        As for `Simulation`; or a ``scenario``, as for `FlightPlan.of`.
+
+    Raises
+    ------
+    InputError
+        The model or an option is at fault, a plugin is not one of quadcore's own, or the file
+        cannot be written; nothing is left behind then.
+    """
+    file = Path(path)
+    if file.suffix.lower() != ".fmu":
+        raise InputError(f"{path}: name a file that ends in .fmu, which it would hold")
+    write_fmu(file, FlightPlan.of(model, **options))
+
+
+def write_fmu(path: Path, plan: FlightPlan) -> None:
+    """Write the vehicle of a plan; raises as `export_fmu` does."""
+    simulation = plan.simulation()
+    if plan.engine not in dict(_core.engines()):
+        raise InputError(f"an FMU flies on one of the engines, not on {plan.engine}; choose one")
+    libraries = _libraries(simulation)
+    variables = [*variables_of(simulation), *spawn_and_seed(plan.spawn, plan.seed)]
+    files = dict(_files(simulation))
+    flight = _flight(plan, simulation, variables, {tag: name for tag, (name, _) in files.items()})
+    contents = {f"resources/{name}": data for name, data in files.values()}
+    digest = hashlib.sha256(_yaml(flight))
+    for _, data in sorted([*contents.items(), *libraries]):
+        digest.update(data)
+    guid = str(uuid.UUID(bytes=digest.digest()[:16]))
+    name = simulation.model.name
+    identifier = re.sub(r"\W|^(?=\d)", "_", name, flags=re.ASCII)
+    contents["modelDescription.xml"] = description(
+        name, identifier, f"{{{guid}}}", f"quadcore {__version__}", simulation.dt, variables
+    )
+    contents["resources/flight.yaml"] = _yaml({**flight, "guid": f"{{{guid}}}"})
+    for library, data in libraries:
+        own = library == _LIBRARY
+        contents[f"binaries/linux64/{f'{identifier}.so' if own else library}"] = data
+    with atomic_write(path) as stream, zipfile.ZipFile(stream, "w") as archive:
+        for place, data in contents.items():
+            entry = zipfile.ZipInfo(place, _LONG_AGO)
+            entry.external_attr = 0o644 << 16
+            archive.writestr(entry, data, zipfile.ZIP_DEFLATED)
+
+
+def _libraries(simulation: Simulation) -> List[Tuple[str, bytes]]:
+    """Read what is to be inside: this library and what it needs."""
+    own = Path(_core.plugin_folders()[-1])
+    for plugin in simulation.plugins:
+        if Path(plugin.path).parent not in (own, own / "quadcore"):
+            raise InputError(
+                f"plugin '{plugin.name}': {plugin.filename} in {Path(plugin.path).parent} is none "
+                "of quadcore's own, which alone are inside an FMU; leave it out with --ignore"
+            )
+    found = sorted((own / "fmu").glob("*.so*"))
+    if not any(library.name == _LIBRARY for library in found):
+        raise InputError(
+            f"{own / 'fmu' / _LIBRARY}: is missing: quadcore was built where libode.a or libccd "
+            "was not found, or without QUADCORE_BUILD_FMU; build it anew"
+        )
+    return [(library.name, library.read_bytes()) for library in found]
+
+
+def _files(simulation: Simulation) -> Iterator[Tuple[str, Tuple[str, bytes]]]:
+    """Find the files that tags name: PLUGIN.TAG, name among the resources, and what it holds."""
+    for plugin in simulation.plugins:
+        for tag in plugin.parameters:
+            if tag.file:
+                key = f"{plugin.name}.{tag.name}"
+                yield key, (f"{key}{Path(tag.file).suffix}", Path(tag.file).read_bytes())
+
+
+def _flight(
+    plan: FlightPlan, simulation: Simulation, variables: List[Variable], files: Dict[str, str]
+) -> Dict[str, Any]:
+    tags = (variable for variable in variables if variable.kind in ("parameter", "file"))
+    return {
+        "version": _VERSION,
+        "engine": plan.engine,
+        "dt": simulation.dt,
+        "seed": plan.seed,
+        "spawn": [float(x) for x in plan.spawn],
+        "model": _document(plan.model.document, plan.model.passed_over.ignored),
+        "world": _document(plan.world.document, plan.world.passed_over.ignored),
+        "parameters": {key: value for key, value in plan.parameters.items() if key not in files},
+        "tags": {tag.key: str(tag.start) for tag in tags if tag.key not in files},
+        "files": files,
+        "variables": [[v.kind, v.key, v.place] for v in variables],
+    }
+
+
+def _document(document: Document, ignored: List[str]) -> Dict[str, Any]:
+    files = sorted({file for file, _ in document.lines})
+    return {
+        "name": document.name,
+        "text": document.text,
+        "files": files,
+        "lines": [[files.index(file), line] for file, line in document.lines],
+        "ignore": list(ignored),
+    }
+
+
+def _yaml(flight: Dict[str, Any]) -> bytes:
+    text: str = yaml.safe_dump(flight, default_flow_style=None, allow_unicode=True)
+    return text.encode()

@@ -1,0 +1,113 @@
+"""The variables of an FMU; the library inside knows each by its place in this list."""
+
+from __future__ import annotations
+
+from typing import Dict, Iterator, List, NamedTuple, Optional, Sequence
+
+from .. import _core
+from .._core import InputError
+from ..simulation import Simulation
+
+_WRENCH = (("fx", "N"), ("fy", "N"), ("fz", "N"), ("tx", "N.m"), ("ty", "N.m"), ("tz", "N.m"))
+_SPAWN = ("x", "y", "z", "roll", "pitch", "yaw")
+_STATE_UNITS = ("s", "m", "m", "m", "", "", "", "", *["m/s"] * 3, *["rad/s"] * 3)
+_LARGEST_SEED = 2**31 - 1  # of an Integer
+
+
+class Variable(NamedTuple):
+    """One of them: what importers see, and what the library makes of it."""
+
+    name: str
+    kind: str
+    """As cpp/fmu/flight_file.hpp has it."""
+    key: str
+    """Topic, or PLUGIN.TAG."""
+    place: int
+    """In a row, or among the fields."""
+    type: str
+    """Real, Integer, Boolean or String."""
+    causality: str
+    variability: str
+    start: Optional[str] = None
+    unit: str = ""
+    description: str = ""
+
+
+def variables_of(simulation: Simulation) -> List[Variable]:
+    """List all that can be set and read.
+
+    Raises
+    ------
+    InputError
+        Two have one name.
+    """
+    found = [*_outputs(simulation), *_inputs(simulation), *_parameters(simulation)]
+    known: Dict[str, Variable] = {}
+    for variable in found:
+        other = known.setdefault(variable.name, variable)
+        if other is not variable:
+            raise InputError(
+                f"an FMU would have two variables {variable.name}, a {other.kind} and a "
+                f"{variable.kind}; rename the plugin or the topic"
+            )
+    return found
+
+
+def _outputs(simulation: Simulation) -> Iterator[Variable]:
+    columns = _core.log_columns(simulation.rotor_count)
+    units = [*_STATE_UNITS, *["rad/s"] * simulation.rotor_count]
+    for i, (name, unit) in enumerate(zip(columns, units)):
+        if i > 0:  # time is the importer's
+            yield _output(name, "state", "", i, unit, "continuous")
+    for number, term in enumerate(simulation.wrench_terms):
+        for i, (component, unit) in enumerate(_WRENCH):
+            name = f"wrench_{term}.{component}"
+            yield _output(name, "wrench", term, 6 * number + i, unit, "continuous")
+    for topic in simulation.topics.values():
+        if topic.writer is not None:
+            for i, field in enumerate(["stamp", *topic.fields]):
+                yield _output(f"{topic.name}.{field}", "topic", topic.name, i, "", "discrete")
+
+
+def _output(name: str, kind: str, key: str, index: int, unit: str, variability: str) -> Variable:
+    return Variable(name, kind, key, index, "Real", "output", variability, unit=unit)
+
+
+def _inputs(simulation: Simulation) -> Iterator[Variable]:
+    for topic in simulation.topics.values():
+        if topic.writer is None:
+            is_command = topic.name == simulation.command_topic
+            for i, field in enumerate(topic.fields):
+                name = field if is_command else f"{topic.name}.{field}"
+                yield Variable(
+                    name, "input", topic.name, i, "Real", "input", "discrete", "0",
+                    "rad/s" if is_command else "",
+                )  # fmt: skip
+
+
+def _parameters(simulation: Simulation) -> Iterator[Variable]:
+    for plugin in simulation.plugins:
+        for tag in plugin.parameters:
+            key = f"{plugin.name}.{tag.name}"
+            is_number = tag.kind == "number" and tag.text != ""
+            kind = "file" if tag.kind == "file" else "parameter"
+            types = {"flag": "Boolean", "number": "Real"}  # absent ones are texts, of nothing
+            yield Variable(
+                key, kind, key, 0, types.get(tag.kind if tag.text else "", "String"), "parameter",
+                "tunable" if is_number else "fixed", tag.text, tag.unit if is_number else "",
+                tag.meaning,
+            )  # fmt: skip
+
+
+def spawn_and_seed(spawn: Sequence[float], seed: int) -> Iterator[Variable]:
+    """Give the parameters that are no plugin's."""
+    for i, (name, value) in enumerate(zip(_SPAWN, spawn)):
+        yield Variable(
+            f"spawn.{name}", "spawn", "", i, "Real", "parameter", "fixed", repr(value),
+            "m" if i < 3 else "rad", "where the flight begins",
+        )  # fmt: skip
+    if seed <= _LARGEST_SEED:
+        yield Variable(
+            "seed", "seed", "", 0, "Integer", "parameter", "fixed", str(seed),
+            description="of all random numbers",
+        )  # fmt: skip

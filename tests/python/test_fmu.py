@@ -1,0 +1,297 @@
+"""FMUs: a vehicle that others fly."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from flights import ENGINES, HOVER
+from imported import Imported, library
+from processes import ran, refused
+
+import quadcore as qc
+
+fmpy = pytest.importorskip("fmpy")
+from fmpy.validation import validate_fmu  # noqa: E402
+
+NOISY = {"odometry.positionNoise": 0.02, "motorpid_plugin.ki": 2e-4, "motorpid_plugin.iMax": 2e-3}
+SHORT = {"odometry.rate": 500, **NOISY}
+
+
+@pytest.fixture(scope="module")
+def fmus(tmp_path_factory):
+    """Maker of FMUs of the quadrotor, each kind once."""
+    folder = tmp_path_factory.mktemp("fmus")
+    made = {}
+
+    def make(engine="eigen", model="quadrotor", **options):
+        key = (engine, model, repr(options))
+        if key not in made:
+            made[key] = folder / f"{len(made)}.fmu"
+            qc.export_fmu(made[key], model, engine=engine, **options)
+        return made[key]
+
+    return make
+
+
+@pytest.fixture
+def imported(fmus, tmp_path):
+    """Maker of instances, which end with the test."""
+    open_ones = []
+
+    def make(*arguments, path=None, parameters=None, initialise=True, **options):
+        where = tmp_path / str(len(open_ones))
+        path = path or fmus(*arguments, **options)
+        instance = Imported(path, where, initialise=initialise, **(parameters or {}))
+        open_ones.append(instance)
+        return instance
+
+    yield make
+    for instance in open_ones:
+        instance.close()
+
+
+def logged_row(simulation):
+    s = simulation.state
+    return [*s.position, *s.orientation, *s.linear_velocity, *s.angular_velocity, *s.rotor_velocity]
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_an_importer_finds_nothing_wrong_and_every_variable_explained(fmus, engine):
+    path = fmus(engine)
+    assert validate_fmu(str(path)) == []
+    description = fmpy.read_model_description(str(path))
+    variables = {v.name: v for v in description.modelVariables}
+    inputs = [name for name, v in variables.items() if v.causality == "input"]
+    assert {"w1", "w2", "w3", "w4", "effectiveness.s1"} <= set(inputs)
+    assert variables["w1"].unit == "rad/s" and variables["wrench_thrust.fz"].unit == "N"
+    tag = variables["drone_plugin.rotorThrustCoeff"]
+    assert (tag.variability, tag.type) == ("tunable", "Real")
+    assert variables["drone_plugin.dragModel"].variability == "fixed"
+    assert variables["drone_plugin.dragModel"].start == "appendix"
+    assert variables["odom.x"].causality == variables["x"].causality == "output"
+
+
+@pytest.mark.parametrize("engine", ["gazebo11", "eigen"])
+def test_a_law_that_closes_the_loop_flies_the_spiral_as_on_the_simulation(engine, imported):
+    """Every bit of states, odometry and wrenches, at whole steps of the law's rate."""
+    fast = {"xacro_args": {"max_velocity": "1e6"}}
+    instance = imported(engine, **fast)
+    simulation = qc.Simulation("quadrotor", engine=engine, **fast)
+    reference = qc.references.spiral()
+    laws = [qc.laws.geometric() for _ in range(2)]
+    for law in laws:
+        law.reset(simulation)
+    parts = ["fx", "fy", "fz", "tx", "ty", "tz"]
+    terms = [f"wrench_{term}.{part}" for term in simulation.wrench_terms for part in parts]
+    for k in range(500):
+        t = k * 0.002
+        for law, fly in zip(laws, (instance, simulation)):
+            fly.command(law(t, qc.Odometry(fly), reference(t)))
+        instance.step(0.002)
+        simulation.step(2)
+    assert instance.row() == logged_row(simulation)
+    wrenches = simulation.run(0, wrenches=True).wrenches
+    assert instance.get(*terms) == [
+        x for name in simulation.wrench_terms for x in wrenches[name][0]
+    ]
+    assert np.linalg.norm(simulation.state.position - reference(1.0).position) < 0.5
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_state_saved_restored_and_serialised_flies_on_bit_for_bit(engine, imported):
+    instance = imported(engine, parameters=SHORT)
+
+    def on():
+        instance.command(HOVER * 1.02)
+        rows = []
+        for _ in range(20):
+            instance.step()
+            rows.append([*instance.row(), *instance.get("odom.x", "odom.stamp")])
+        return rows
+
+    on()
+    time, state = instance.time, instance.slave.getFMUstate()
+    data = instance.slave.serializeFMUstate(state)
+    expected = on()
+    for saved in (state, instance.slave.deSerializeFMUstate(data)):
+        instance.slave.setFMUstate(saved)
+        instance.time = time
+        assert on() == expected
+        instance.slave.freeFMUstate(saved)
+    other = imported(engine)  # another instance, whose parameters are those of the state afterwards
+    other.slave.setFMUstate(other.slave.deSerializeFMUstate(data))
+    assert other.slave.serializeFMUstate(other.slave.getFMUstate()) == data
+    instance, instance.time = other, time
+    assert on() == expected
+
+
+def test_a_damaged_or_foreign_state_is_refused(imported):
+    instance, other = imported("eigen"), imported("eigen", spawn=(0, 0, 3))
+    data = instance.slave.serializeFMUstate(instance.slave.getFMUstate())
+    for damaged in (data[:-3], data + b"1", data[:102] + b"\xff" * 8 + data[110:]):
+        with pytest.raises(Exception, match="fmi2DeSerializeFMUstate"):
+            instance.slave.deSerializeFMUstate(damaged)
+        assert "the saved state is damaged; save it anew" in instance.said[-1][1]
+    with pytest.raises(Exception, match="fmi2DeSerializeFMUstate"):
+        other.slave.deSerializeFMUstate(data)
+    assert "is of another FMU" in other.said[-1][1]
+
+
+def test_parameters_are_those_of_the_simulation(imported):
+    parameters = {**SHORT, "drone_plugin.dragModel": "chapter2", "odometry.publishTf": False}
+    instance = imported(
+        "ode", parameters={**parameters, "seed": 7, "spawn.z": 3.5, "spawn.yaw": 1.0}
+    )
+    simulation = qc.Simulation(
+        "quadrotor", "ode", parameters=parameters, seed=7, spawn=(0, 0, 3.5, 0, 0, 1)
+    )
+    for fly in (instance, simulation):
+        fly.command(HOVER * 1.1)
+    instance.step(0.1)
+    simulation.step(100)
+    assert instance.row() == logged_row(simulation)
+    assert instance.get("odom.x") == [simulation.topic("odom")["x"]]
+    assert instance.slave.getString([instance.reference("drone_plugin.dragModel")]) == [b"chapter2"]
+
+
+def test_a_tunable_parameter_changes_in_flight(imported):
+    instance, simulation = imported("eigen"), qc.Simulation("quadrotor", "eigen")
+    for fly in (instance, simulation):
+        fly.command(HOVER)
+    instance.step(0.01)
+    simulation.step(10)
+    instance.set("drone_plugin.rotorThrustCoeff", 5e-6)
+    tuned = qc.Simulation("quadrotor", "eigen", parameters={"drone_plugin.rotorThrustCoeff": 5e-6})
+    tuned.restore(simulation.snapshot(), allow=["parameters"])
+    instance.step(0.01)
+    tuned.step(10)
+    simulation.step(10)
+    assert instance.row() == logged_row(tuned) != logged_row(simulation)
+
+
+def test_what_is_wrong_is_told_through_the_logger(imported, fmus):
+    instance = imported("eigen", initialise=False, parameters={"motorpid_plugin.kp": -1.0})
+    with pytest.raises(Exception, match="fmi2EnterInitializationMode"):
+        instance.initialise()
+    status, text = instance.said[-1]
+    assert status == 3
+    assert re.search(r"plugin 'motorpid_plugin': <kp> '-1' is out of range", text)
+    assert "\n" not in text
+    instance.slave.reset()
+    instance.initialise()
+    for time, length, says in (
+        (0.0, 0.0015, "a communication step of 0.0015 s; give a whole multiple of the step of 0.0"),
+        (0.0, 0.0, "a communication step of 0 s"),
+        (0.5, 0.001, "a step from 0.500000 s, but the flight is at 0.000000 s; go on from there"),
+    ):
+        with pytest.raises(Exception, match="fmi2DoStep"):
+            instance.slave.doStep(time, length)
+        assert says in instance.said[-1][1]
+    with pytest.raises(Exception, match="fmi2SetReal"):
+        instance.command([float("nan")] * 4)
+    instance.command(HOVER)
+    instance.step()
+
+
+def test_a_flight_that_fails_says_when_and_why(imported):
+    instance = imported("eigen", parameters={"motorpid_plugin.kp": 1e9})
+    instance.command([1e300] * 4)
+    with pytest.raises(Exception, match="fmi2DoStep"):
+        instance.step(1.0)
+    assert "t = " in instance.said[-1][1]
+
+
+def test_different_fmus_fly_in_one_process_without_a_word_to_each_other(imported):
+    ground = {"world": "default", "spawn": (0, 0, 0.3)}
+    kinds = [("ode", {}), ("gazebo11", {}), ("ode", ground), ("eigen", {"model": "hexarotor"})]
+    flying = [imported(engine, **options) for engine, options in kinds]
+    twins = [qc.Simulation(engine=engine, **options) for engine, options in kinds]
+    for k in range(20):
+        for instance, twin in zip(flying, twins):
+            speeds = [300 + k] * twin.rotor_count
+            for fly in (instance, twin):
+                fly.command(speeds)
+            instance.step(0.01)
+            twin.step(10)
+    for instance, twin in zip(flying, twins):
+        assert instance.get("x", "y", "z", "wx", "wy", "wz") == [
+            *twin.state.position, *twin.state.angular_velocity
+        ]  # fmt: skip
+
+
+def test_files_that_tags_name_travel_inside(imported, tmp_path):
+    gains = tmp_path / "gains.yaml"
+    shutil.copy(qc.resources.root() / "config/gains/quadrotor/pid.yaml", gains)
+    text = (qc.resources.root() / "urdf/quadrotor.urdf.xacro").read_text()
+    pilot = (
+        '<gazebo><plugin name="pilot" filename="libcontroller_plugin.so"><law>pid</law>'
+        "<gains>gains.yaml</gains></plugin></gazebo></robot>"
+    )
+    model = tmp_path / "piloted.urdf.xacro"
+    model.write_text(text.replace("</robot>", pilot))
+    instance = imported("eigen", model=str(model))
+    gains.unlink()
+    instance.initialise()
+    instance.step(0.1)
+    assert "vel_cmd.w1" in instance.variables and "w1" not in instance.variables
+
+
+def test_the_same_vehicle_is_the_same_file(fmus, tmp_path):
+    qc.export_fmu(tmp_path / "again.fmu", "quadrotor", engine="eigen")
+    assert (tmp_path / "again.fmu").read_bytes() == fmus("eigen").read_bytes()
+
+
+HERE = os.path.dirname(__file__)
+BARE = """
+import ctypes, os, sys
+sys.path.insert(0, sys.argv[1])
+import fmpy
+from pathlib import Path
+from imported import Imported
+one = Imported(Path(sys.argv[2]), Path(sys.argv[3]))
+one.command([480.0, -470.0, 480.0, -470.0])
+for _ in range(10):
+    one.step()
+assert "quadcore" not in sys.modules
+loaded = {line.split()[-1] for line in open("/proc/self/maps") if ".so" in line}
+print(*(name for name in loaded if "ode" in name.split("/")[-1] or "libquadcore" in name))
+print(one.row())
+"""
+
+
+def test_it_flies_where_neither_quadcore_nor_ode_is(fmus, tmp_path):
+    """What the FMU needs lies in it, beside the C and C++ libraries that every machine has."""
+    instance_folder = tmp_path / "bare"
+    done = subprocess.run(
+        [sys.executable, "-c", BARE, HERE, str(fmus("ode")), str(instance_folder)],
+        env={}, capture_output=True, text=True, cwd="/", check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    others, row = done.stdout.splitlines()
+    assert others == ""
+    needed = subprocess.run(
+        ["/usr/bin/ldd", str(library(instance_folder))], env={}, capture_output=True, text=True
+    ).stdout
+    for name, where in re.findall(r"(\S+) => (\S+)", needed):
+        base = re.match(r"lib(c|m|stdc\+\+|gcc_s|dl|pthread)\.so", name)
+        assert base or where.startswith(str(instance_folder)), needed
+    simulation = qc.Simulation("quadrotor", "ode")
+    simulation.command([480.0, -470.0, 480.0, -470.0])
+    simulation.step(10)
+    assert eval(row) == logged_row(simulation)
+
+
+def test_the_command_line_writes_one(tmp_path):
+    path = tmp_path / "x.fmu"
+    done = ran("export-fmu", "quadrotor", "--engine", "eigen", "--set", "odometry.rate=100",
+               "-o", str(path))  # fmt: skip
+    assert done.returncode == 0 and done.stdout == f"written {path}\n"
+    variables = fmpy.read_model_description(str(path)).modelVariables
+    assert [v.start for v in variables if v.name == "odometry.rate"] == ["100"]
+    assert "name a file that ends in .fmu" in refused("export-fmu", "quadrotor", "-o", "x.zip")
+    assert "no shipped model" in refused("export-fmu", "nothing", "-o", str(tmp_path / "y.fmu"))
+    assert not (tmp_path / "y.fmu").exists()
