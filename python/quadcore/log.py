@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Mapping, Sequence, Union
+from typing import List, Mapping, Sequence, Tuple, Union
 
 import numpy as np
 
 from ._core import InputError
 from .files import check_writable
 from .forks import LOCK
-from .formats import format_of
+from .formats import format_of, mat
 from .formats.rows import LogFile, split_columns
 from .trajectory import Trajectory
 
@@ -39,7 +39,7 @@ class Log(Trajectory):
 
     @classmethod
     def of_file(cls, path: PathLike) -> Log:
-        """Read a ``.csv`` or ``.mat`` file that `to_file` wrote, every bit restored.
+        """Read a ``.csv``, ``.mat`` or ``.bag`` file that `to_file` wrote, every bit restored.
 
         Raises
         ------
@@ -58,18 +58,28 @@ class Log(Trajectory):
         to ``wrench_NAME.tz``.
         What was `ignored`, if anything, stands in a comment below the names of the columns.
         """
-        self._write(path, ".csv")
+        self._check_suffix(path, ".csv")
+        self.to_file(path)
 
-    def to_mat(self, path: PathLike) -> None:
+    def to_mat(self, path: PathLike, layout: str = "vectors") -> None:
         """Write a MATLAB file of each column as a vector and each wrench as ``wrench_NAME``.
 
         Each topic is a struct ``topic_NAME`` of a vector for each field.
         What was `ignored`, if anything, is the cell array ``ignored``.
+
+        Parameters
+        ----------
+        path
+            A file that ends in ``.mat``.
+        layout
+            "vectors"; or all that in the one variable ``log``: a "struct" of it, a "matrix" with
+            the names of its ``columns`` beside it, or time and "signals", as Simulink has them.
         """
-        self._write(path, ".mat")
+        self._check_suffix(path, ".mat")
+        mat.write_log(Path(path), *self._parts(), layout)
 
     def to_file(self, path: PathLike) -> None:
-        """Write a ``.csv`` or ``.mat`` file, as its name says.
+        """Write a ``.csv``, ``.mat`` or ``.bag`` file, as its name says.
 
         Raises
         ------
@@ -77,12 +87,16 @@ class Log(Trajectory):
             Another suffix, or a file that cannot be written; nothing is left behind then.
         """
         file = Path(path)
+        format_of(file, _WRITTEN).write_log(file, *self._parts())
+
+    def _parts(self) -> Tuple[List[str], np.ndarray, Mapping[str, np.ndarray], List[str]]:
+        """Give what files hold: columns, table, wrenches, and what was ignored."""
         columns, table = list(self.columns), self.table
         if self.topics:
             columns += [f"{topic}.{field}" for topic in self.topics for field in self.topics[topic]]
             of_topics = [column for fields in self.topics.values() for column in fields.values()]
             table = np.column_stack([table, *of_topics])
-        format_of(file, _WRITTEN).write_log(file, columns, table, self.wrenches, self.ignored)
+        return columns, table, self.wrenches, self.ignored
 
     def plot(self, directory: PathLike) -> list[Path]:
         """Draw the flight into PNG files in `directory` (made if missing); returns their paths."""
@@ -91,10 +105,9 @@ class Log(Trajectory):
 
         return draw(self, Path(directory))
 
-    def _write(self, path: PathLike, suffix: str) -> None:
+    def _check_suffix(self, path: PathLike, suffix: str) -> None:
         if Path(path).suffix.lower() != suffix:
             raise InputError(f"{path}: name a file that ends in {suffix}, which it would hold")
-        self.to_file(path)
 
 
 def check_log_path(path: PathLike) -> None:

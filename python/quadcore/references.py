@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Protocol,
 import numpy as np
 
 from . import _core, resources
-from .formats import mat
+from .formats import bag, mat
 from .parameters import did_you_mean, docstring, read_values, values
 from .state import State
 
@@ -126,7 +126,7 @@ def places(reference: ReferenceLike, times: np.ndarray) -> np.ndarray:
 
 
 _SHIPPED = resources.root() / "config" / "waypoints.yaml"
-_FILES = (".csv", ".mat", ".yaml", ".yml")
+_FILES = (".csv", ".mat", ".yaml", ".yml", ".bag")
 
 
 def parse(text: str) -> Shape:
@@ -135,8 +135,8 @@ def parse(text: str) -> Shape:
     Parameters
     ----------
     text
-        ``NAME[:KEY=VALUE,...]``, or the path of a .csv, .mat or .yaml file of waypoints, which
-        ``waypoints:FILE[,KEY=VALUE,...]`` names too; ``waypoints`` alone are those of
+        ``NAME[:KEY=VALUE,...]``, or the path of a .csv, .mat, .bag or .yaml file of waypoints,
+        which ``waypoints:FILE[,KEY=VALUE,...]`` names too; ``waypoints`` alone are those of
         config/waypoints.yaml. The rows of ``series:FILE`` neither begin nor end at rest.
 
     Raises
@@ -171,7 +171,7 @@ def read_rows(path: Path) -> npt.ArrayLike:
     ----------
     path
         A .csv file with columns t, x, y, z and perhaps yaw, or a log, a .yaml file with `columns`,
-        these, and `rows`, or a .mat file with t, x, y, z.
+        these, and `rows`, a .mat file with t, x, y, z, or a bag of a flight.
 
     Raises
     ------
@@ -182,6 +182,8 @@ def read_rows(path: Path) -> npt.ArrayLike:
         return _core.read_rows(str(path))
     if path.suffix.lower() == ".mat":
         return mat.read_path(path)
+    if path.suffix.lower() == ".bag":
+        return bag.read_path(path)
     raise _core.InputError(f"{path}: paths are read from {', '.join(_FILES)} files")
 
 
@@ -203,7 +205,7 @@ def _function(
         make = make_of_parameters
     make.__name__ = make.__qualname__ = name
     rows = (
-        "rows : array_like (n, 4 or 5), or path of a .csv, .mat or .yaml file\n"
+        "rows : array_like (n, 4 or 5), or path of a .csv, .mat, .bag or .yaml file\n"
         "    t, x, y, z[, yaw] in s, m, rad."
     )
     make.__doc__ = docstring(summary, table, rows if takes_rows else "")

@@ -171,7 +171,7 @@ class Simulation(_core.Simulation):
         ----------
         duration : float
             s; the last step is the last that ends within it.
-        commands : ndarray (rows, 1 + n), or path of a .csv or .mat file, optional
+        commands : ndarray (rows, 1 + n), or path of a .csv, .mat or .bag file, optional
             Open loop: columns t, w1..wn, signed rad/s; each row holds until the next. None keeps
             the present command.
         log_every : int

@@ -106,7 +106,7 @@ def test_files_that_are_missing_or_of_another_kind_are_refused(tmp_path):
         ("nope.csv", "cannot be read: No such file"),
         ("nope.mat", "cannot be read: No such file"),
         ("text.mat", "not a MATLAB file"),
-        ("c.txt", "read from .csv and .mat"),
+        ("c.txt", "read from .csv, .mat, .bag"),
     ):
         with pytest.raises(InputError, match=message):
             read_commands(tmp_path / name, 1)

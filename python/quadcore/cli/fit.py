@@ -24,7 +24,7 @@ def register(commands: Any) -> None:
     )
     options.add_model(parser)
     parser.add_argument(
-        "--log", metavar="FILE", required=True, help="what was measured, .csv or .mat"
+        "--log", metavar="FILE", required=True, help="what was measured, .csv, .mat or .bag"
     )
     parser.add_argument(
         "--free",

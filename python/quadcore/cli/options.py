@@ -123,7 +123,9 @@ def add_flight(
 def add_commands(parser: argparse.ArgumentParser) -> None:
     """Add the option that names an open-loop flight."""
     parser.add_argument(
-        "--commands", metavar="FILE", help="rotor speeds to fly, .csv or .mat: t,w1..wn (rad/s)"
+        "--commands",
+        metavar="FILE",
+        help="rotor speeds to fly, .csv, .mat or .bag: t,w1..wn (rad/s)",
     )
 
 

@@ -16,7 +16,7 @@ from . import options, terminal, values
 def register(commands: Any) -> None:
     """Add the command to the command line."""
     parser = options.subparser(commands, "play", "Make a page that plays logs.", play)
-    parser.add_argument("logs", metavar="LOG", nargs="+", type=Path, help="log, .csv or .mat")
+    parser.add_argument("logs", metavar="LOG", nargs="+", type=Path, help="log, .csv, .mat or .bag")
     parser.add_argument(
         "-o", "--out", metavar="PAGE.html", type=Path, required=True, help="the page to write"
     )

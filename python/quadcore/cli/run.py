@@ -42,7 +42,7 @@ def register(commands: Any) -> None:
         type=Path,
         action="append",
         default=[],
-        help="write the log here, .csv or .mat; repeatable",
+        help="write the log here, .csv, .mat or .bag; repeatable",
     )
     options.add_log_topics(parser)
     options.add_wrenches(parser)

@@ -35,7 +35,7 @@ def register(commands: Any) -> None:
         "--log",
         metavar="FILE",
         type=Path,
-        help="write the log of the first flight here, .csv or .mat, and of others to NAME-2 ...",
+        help="write the log of the first flight here, .csv, .mat or .bag, of others to NAME-2 ...",
     )
     options.add_log_topics(parser)
 

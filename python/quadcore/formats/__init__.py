@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Callable, Dict, Mapping, NamedTuple, Sequence
 
 import numpy as np
 
 from .._core import InputError
-from . import csv, mat
+from . import bag, csv, mat
+from .at_the_end import AtTheEnd
 from .rows import LogFile, LogRows, Table
 
 _Wrenches = Mapping[str, np.ndarray]
@@ -31,7 +33,10 @@ class Format(NamedTuple):
 
 FORMATS: Dict[str, Format] = {
     ".csv": Format(csv.read_commands, csv.write_log, csv.read_log, csv.CsvFile),
-    ".mat": Format(mat.read_commands, mat.write_log, mat.read_log, mat.MatFile),
+    ".mat": Format(
+        mat.read_commands, mat.write_log, mat.read_log, partial(AtTheEnd, mat.write_log)
+    ),
+    ".bag": Format(bag.read_commands, bag.write_log, bag.read_log, bag.log_file),
 }
 
 
@@ -52,5 +57,5 @@ def format_of(path: Path, what: str) -> Format:
     """
     found = FORMATS.get(path.suffix.lower())
     if found is None:
-        raise InputError(f"{path}: {what} {' and '.join(FORMATS)} files")
+        raise InputError(f"{path}: {what} {', '.join(FORMATS)} files")
     return found

@@ -1,0 +1,70 @@
+"""A log in a format that needs all rows at once."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import Callable, Mapping, Sequence
+
+import numpy as np
+
+from ..files import unwritable
+from .rows import with_wrenches
+
+Write = Callable[[Path, Sequence[str], np.ndarray, Mapping[str, np.ndarray], Sequence[str]], None]
+
+
+class AtTheEnd:
+    """Rows wait in a file without name until the flight ends.
+
+    It lies beside the log, where there must be room for the log as well.
+
+    Parameters
+    ----------
+    write
+        write(path, columns, table, wrenches, ignored): writes the log.
+    path, columns, terms, ignored
+        As of `Format.log_file`.
+    """
+
+    def __init__(
+        self,
+        write: Write,
+        path: Path,
+        columns: Sequence[str],
+        terms: Sequence[str],
+        ignored: Sequence[str],
+    ) -> None:
+        self.path = path
+        self.wrenches = bool(terms)
+        self._write = write
+        self._columns, self._terms, self._ignored = columns, terms, ignored
+        self._count = 0
+        try:
+            self._rows = tempfile.TemporaryFile(dir=str(path.parent))  # noqa: SIM115
+        except OSError as error:
+            raise unwritable(path, error) from error
+
+    def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
+        """Keep a piece."""
+        rows = with_wrenches(table, wrenches if self.wrenches else None)
+        try:
+            self._rows.write(rows.tobytes())
+            self._rows.flush()
+        except OSError as error:
+            raise unwritable(self.path, error) from error
+        self._count += len(table)
+
+    def close(self) -> None:
+        """Write the file."""
+        n = len(self._columns)
+        with self._rows as stream:
+            if self._count == 0:
+                return
+            rows = np.memmap(
+                stream, dtype=float, mode="r", shape=(self._count, n + 6 * len(self._terms))
+            )
+            wrenches = {
+                name: rows[:, n + 6 * i : n + 6 * (i + 1)] for i, name in enumerate(self._terms)
+            }
+            self._write(self.path, self._columns, rows[:, :n], wrenches, self._ignored)

@@ -1,0 +1,205 @@
+"""Bags of ROS 1 with the topics of the node, and a row of the log with each step."""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+import tempfile
+from pathlib import Path
+from typing import Any, Dict, Iterator, List, Mapping, Sequence, Tuple
+
+import numpy as np
+
+from .._core import InputError, QuadcoreError, log_columns
+from ..extras import needed
+from ..files import atomic_write, check_regular
+from ..rotation import roll_pitch_yaw
+from .at_the_end import AtTheEnd
+from .bag_messages import ARRAY, Messages
+from .rows import (
+    LogRows,
+    Table,
+    check_log_columns,
+    check_log_rows,
+    wrench_columns,
+    wrenches_at_the_end,
+)
+
+LOG = "/quadcore/log"
+"""Whole rows; the label of the first dimension names the columns, further ones what was ignored."""
+
+_ON_A_WALL = 1e6  # s; times beyond are of a clock on the wall, and counted from the bag's first
+
+
+def read_commands(path: Path, names: Sequence[str]) -> Table:
+    """Read the messages of the only topic that ends in vel_cmd.
+
+    Raises
+    ------
+    InputError
+        No such topic or several, or messages of another length.
+    """
+    with _opened(path) as bag:
+        found = [c for c in bag.connections if c.topic.endswith("vel_cmd") and c.msgtype == ARRAY]
+        topics = sorted({connection.topic for connection in found})
+        if len(topics) != 1:
+            raise InputError(
+                f"{path}: topics of commands: {', '.join(topics) or 'none'}; a bag of commands has "
+                "one that ends in vel_cmd, std_msgs/Float64MultiArray"
+            )
+        start = bag.start_time if bag.start_time > _ON_A_WALL * 1e9 else 0
+        rows: Dict[int, np.ndarray] = {}  # of those of one time the last counts
+        for time, message in _messages(bag, found):
+            speeds = np.asarray(message.data, dtype=float)
+            if len(speeds) != len(names) - 1:
+                raise InputError(
+                    f"{path}: {topics[0]}: a message of {len(speeds)} numbers; this model with "
+                    f"{len(names) - 1} rotors takes {', '.join(names[1:])}"
+                )
+            # The first message may lie a nanosecond late, see write_log.
+            rows[max(0, time - start - (time == 1))] = speeds
+        table = np.array([[time / 1e9, *speeds] for time, speeds in sorted(rows.items())])
+    return Table(table.reshape(-1, len(names)), lambda row: f"{path}: message {1 + row}", "")
+
+
+def read_path(path: Path) -> np.ndarray:
+    """Read where a vehicle was: t, x, y, z and yaw; shape (rows, 5)."""
+    rows = read_log(path).rows
+    yaw = np.unwrap(roll_pitch_yaw(rows[:, 4:8])[:, 2])
+    return np.column_stack([rows[:, :4], yaw])
+
+
+def read_log(path: Path) -> LogRows:
+    """Read what `write_log` wrote, or what the node published.
+
+    Of a bag of the node there is a row for each time at which both the true odometry and the
+    speeds of the rotors were published.
+
+    Raises
+    ------
+    InputError
+        No log, or a broken one.
+    """
+    with _opened(path) as bag:
+        whole = [c for c in bag.connections if c.topic == LOG and c.msgtype == ARRAY]
+        columns, rows, ignored = _whole_rows(bag, whole) if whole else _rows_of_the_node(path, bag)
+    of_state = check_log_columns(f"{path}", columns)
+    check_log_rows(lambda row: f"{path}: row {1 + row}", rows, of_state)
+    terms = wrenches_at_the_end(columns)
+    own = len(columns) - 6 * len(terms)
+    wrenches = {name: rows[:, own + 6 * i :][:, :6] for i, name in enumerate(terms)}
+    return LogRows(columns[:own], rows[:, :own], wrenches, ignored)
+
+
+def _whole_rows(bag: Any, found: Sequence[Any]) -> Tuple[List[str], np.ndarray, List[str]]:
+    messages = [message for _, message in _messages(bag, found)]
+    labels = [dimension.label for dimension in messages[0].layout.dim]
+    return labels[0].split(","), np.array([m.data for m in messages], dtype=float), labels[1:]
+
+
+def _rows_of_the_node(path: Path, bag: Any) -> Tuple[List[str], np.ndarray, List[str]]:
+    odometry = _stamped(bag, _only(path, bag, "nav_msgs/msg/Odometry", "ground_truth/odometry"))
+    joints = _stamped(bag, _only(path, bag, "sensor_msgs/msg/JointState", "joint_states"))
+    stamps = sorted(set(odometry) & set(joints))
+    if not stamps:
+        raise InputError(f"{path}: no time has both a ground_truth/odometry and a joint_states")
+    step = int(np.gcd.reduce([*_stamps_of_clock(bag), *stamps])) or 1
+    rows = []
+    for stamp in stamps:
+        pose, twist = odometry[stamp].pose.pose, odometry[stamp].twist.twist
+        q = pose.orientation
+        rows.append([
+            stamp // step * (step / 1e9),  # as simulations count it
+            *_xyz(pose.position), *_xyz(q), q.w, *_xyz(twist.linear), *_xyz(twist.angular),
+            *joints[stamp].velocity,
+        ])  # fmt: skip
+    return log_columns(len(joints[stamps[0]].velocity)), np.array(rows), []
+
+
+def _xyz(vector: Any) -> Tuple[float, float, float]:
+    return vector.x, vector.y, vector.z
+
+
+def _only(path: Path, bag: Any, kind: str, name: str) -> List[Any]:
+    found = [c for c in bag.connections if c.topic.endswith(name) and c.msgtype == kind]
+    topics = sorted({connection.topic for connection in found})
+    if len(topics) != 1:
+        raise InputError(
+            f"{path}: topics that end in {name}: {', '.join(topics) or 'none'}; a bag of a flight "
+            "has one, and joint_states"
+        )
+    return found
+
+
+def _stamped(bag: Any, found: Sequence[Any]) -> Dict[int, Any]:
+    messages = (message for _, message in _messages(bag, found))
+    return {m.header.stamp.sec * 10**9 + m.header.stamp.nanosec: m for m in messages}
+
+
+def _stamps_of_clock(bag: Any) -> List[int]:
+    found = [c for c in bag.connections if c.msgtype == "rosgraph_msgs/msg/Clock"]
+    return [m.clock.sec * 10**9 + m.clock.nanosec for _, m in _messages(bag, found)] or [0]
+
+
+def _messages(bag: Any, found: Sequence[Any]) -> Iterator[Tuple[int, Any]]:
+    if not found:  # which would be all
+        return
+    store = Messages().store
+    for connection, time, data in bag.messages(found):
+        yield time, store.deserialize_ros1(data, connection.msgtype)
+
+
+@contextlib.contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    with needed("a bag", "rosbags", "bag"):
+        from rosbags.rosbag1 import Reader
+    try:
+        check_regular(path)
+        with Reader(path) as bag:
+            yield bag
+    except QuadcoreError:
+        raise
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
+    except Exception as error:  # a broken file makes anything
+        raise InputError(f"{path}: is no bag that can be read: {error}") from error
+
+
+def write_log(
+    path: Path,
+    columns: Sequence[str],
+    table: np.ndarray,
+    wrenches: Mapping[str, np.ndarray],
+    ignored: Sequence[str],
+) -> None:
+    """Write what the node would have published, and each row of the log on `LOG`."""
+    with needed("a bag", "rosbags", "bag"):
+        from rosbags.rosbag1 import Writer
+    messages = Messages()
+    names = [*columns, *wrench_columns(list(wrenches))]
+    layout = messages.layout([",".join(names), *ignored], len(names))
+    of_node = messages.of_node(columns)
+    with tempfile.TemporaryDirectory(dir=str(path.parent)) as folder, atomic_write(path) as stream:
+        part = Path(folder) / "log.bag"  # the library writes to a name only
+        with Writer(part) as bag:
+            connections = {
+                topic: bag.add_connection(topic, kind, typestore=messages.store)
+                for topic, kind in [*of_node.kinds.items(), (LOG, ARRAY)]
+            }
+            for i, state in enumerate(table):
+                acting = [wrench[i : i + 1] for wrench in wrenches.values()]
+                row = np.hstack([table[i : i + 1], *acting])[0] if acting else state
+                whole = (LOG, state[0], messages.array(row, layout))
+                for topic, time, data in [*of_node.at(state), whole]:
+                    # A bag has no message at time 0.
+                    bag.write(connections[topic], max(1, round(time * 1e9)), data)
+        with part.open("rb") as written:
+            shutil.copyfileobj(written, stream)
+
+
+def log_file(
+    path: Path, columns: Sequence[str], terms: Sequence[str], ignored: Sequence[str]
+) -> AtTheEnd:
+    """Make what records a flight; raises `InputError` without the package rosbags."""
+    Messages()
+    return AtTheEnd(write_log, path, columns, terms, ignored)

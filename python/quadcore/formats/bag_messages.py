@@ -1,0 +1,158 @@
+"""Messages of ROS 1 as bytes, made from rows of a log."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, Iterator, List, NamedTuple, Sequence, Tuple
+
+import numpy as np
+
+from .._core import log_columns
+from ..extras import needed
+
+ARRAY = "std_msgs/msg/Float64MultiArray"
+_CLOCK = "rosgraph_msgs/msg/Clock"
+_ODOMETRY = "nav_msgs/msg/Odometry"
+_JOINTS = "sensor_msgs/msg/JointState"
+_TF = "tf2_msgs/msg/TFMessage"
+_LEAST_VARIANCE = 1e-12  # as the node has it
+
+
+class OfNode(NamedTuple):
+    """What the node would publish: types by topic, and at(row) -> topic, time in s and bytes."""
+
+    kinds: Dict[str, str]
+    at: Any
+
+
+class Messages:
+    """Maker of messages; raises `InputError` without the package rosbags."""
+
+    def __init__(self) -> None:
+        with needed("a bag", "rosbags", "bag"):
+            from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+        self.store = get_typestore(Stores.ROS1_NOETIC)
+        if _TF not in self.store.types:  # which is no type of common_msgs
+            self.store.register(
+                get_types_from_msg("geometry_msgs/TransformStamped[] transforms", _TF)
+            )
+
+    def layout(self, labels: Sequence[str], size: int) -> Any:
+        """Make the layout of an array whose dimensions are called so."""
+        dimension = self._type("std_msgs/msg/MultiArrayDimension")
+        sizes = [size, *[1] * (len(labels) - 1)]
+        dimensions = [dimension(label, n, n) for label, n in zip(labels, sizes)]
+        return self._type("std_msgs/msg/MultiArrayLayout")(dimensions, 0)
+
+    def array(self, numbers: np.ndarray, layout: Any) -> bytes:
+        """Make an array of numbers."""
+        return self._bytes(self._type(ARRAY)(layout, np.array(numbers, dtype=float)), ARRAY)
+
+    def of_node(self, columns: Sequence[str]) -> OfNode:
+        """Make what turns a row with these columns into the node's messages."""
+        rotors = sum("." not in column for column in columns) - len(log_columns(0))
+        topics: Dict[str, List[int]] = {}
+        for i, column in enumerate(columns):
+            topic, is_topic, _ = column.partition(".")
+            if is_topic:
+                topics.setdefault(topic, []).append(i)
+        kinds = {
+            "/clock": _CLOCK,
+            "/ground_truth/odometry": _ODOMETRY,
+            "/tf": _TF,
+            "/joint_states": _JOINTS,
+        }
+        layouts = {}
+        for topic, places in topics.items():
+            fields = [columns[i].partition(".")[2] for i in places if not _is_stamp(columns[i])]
+            kinds[f"/{topic}"] = _ODOMETRY if fields == _FIELDS else ARRAY
+            layouts[topic] = self.layout([", ".join(fields)], len(fields))
+        sent: Dict[str, float] = {}  # stamps
+
+        def at(row: np.ndarray) -> Iterator[Tuple[str, float, bytes]]:
+            stamp = self._stamp(row[0])
+            yield "/clock", row[0], self._bytes(self._type(_CLOCK)(stamp), _CLOCK)
+            yield "/ground_truth/odometry", row[0], self._odometry(stamp, row[1:14], [0.0] * 4)
+            yield "/tf", row[0], self._transform(stamp, row[1:8])
+            yield "/joint_states", row[0], self._joint_states(stamp, row[14 : 14 + rotors])
+            for topic, places in topics.items():
+                values = row[places]
+                has_stamp = _is_stamp(columns[places[0]])
+                when = values[0] if has_stamp else row[0]
+                numbers = values[1:] if has_stamp else values
+                if np.isnan(when) or sent.get(topic) == when:
+                    continue
+                sent[topic] = when
+                if kinds[f"/{topic}"] == _ODOMETRY:
+                    data = self._odometry(self._stamp(when), numbers[:13], numbers[13:].tolist())
+                else:
+                    data = self.array(numbers, layouts[topic])
+                yield f"/{topic}", when, data
+
+        return OfNode(kinds, at)
+
+    def _type(self, name: str) -> Any:
+        return self.store.types[name]
+
+    def _bytes(self, message: Any, kind: str) -> bytes:
+        return bytes(self.store.serialize_ros1(message, kind))
+
+    def _stamp(self, time: float) -> Any:
+        seconds, rest = divmod(round(time * 1e9), 10**9)
+        return self._type("builtin_interfaces/msg/Time")(seconds, rest)
+
+    def _header(self, stamp: Any, frame: str) -> Any:
+        return self._type("std_msgs/msg/Header")(0, stamp, frame)
+
+    def _vector(self, numbers: np.ndarray, kind: str = "Vector3") -> Any:
+        return self._type(f"geometry_msgs/msg/{kind}")(*numbers)
+
+    def _odometry(self, stamp: Any, state: np.ndarray, variances: Sequence[float]) -> bytes:
+        """From x ... qw, vx ... wz."""
+        pose = self._type("geometry_msgs/msg/Pose")(
+            self._vector(state[:3], "Point"), self._vector(state[3:7], "Quaternion")
+        )
+        twist = self._type("geometry_msgs/msg/Twist")(
+            self._vector(state[7:10]), self._vector(state[10:13])
+        )
+        covariances = [
+            np.diag(np.maximum(np.repeat(pair, 3), _LEAST_VARIANCE)).ravel()
+            for pair in (variances[:2], variances[2:])
+        ]
+        message = self._type(_ODOMETRY)(
+            self._header(stamp, "world"),
+            "drone",
+            self._type("geometry_msgs/msg/PoseWithCovariance")(pose, covariances[0]),
+            self._type("geometry_msgs/msg/TwistWithCovariance")(twist, covariances[1]),
+        )
+        return self._bytes(message, _ODOMETRY)
+
+    def _transform(self, stamp: Any, pose: np.ndarray) -> bytes:
+        transform = self._type("geometry_msgs/msg/Transform")(
+            self._vector(pose[:3]), self._vector(pose[3:], "Quaternion")
+        )
+        stamped = self._type("geometry_msgs/msg/TransformStamped")(
+            self._header(stamp, "world"), "drone", transform
+        )
+        return self._bytes(self._type(_TF)([stamped]), _TF)
+
+    def _joint_states(self, stamp: Any, rates: np.ndarray) -> bytes:
+        names = [f"j{i}" for i in range(1, 1 + len(rates))]
+        nothing = np.empty(0)
+        message = self._type(_JOINTS)(
+            self._header(stamp, ""), names, nothing, np.array(rates, dtype=float), nothing
+        )
+        return self._bytes(message, _JOINTS)
+
+
+def _is_stamp(column: str) -> bool:
+    return column.endswith(".stamp")
+
+
+_FIELDS = [
+    *log_columns(0)[1:],
+    "position_variance",
+    "orientation_variance",
+    "linear_velocity_variance",
+    "angular_velocity_variance",
+]
+"""Of an odometry."""

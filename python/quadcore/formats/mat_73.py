@@ -1,0 +1,55 @@
+"""MATLAB files of version 7.3, and HDF5 by Octave."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Callable, Dict, Mapping, Sequence
+
+import h5py
+import numpy as np
+
+from .mat_variables import Held, Value
+
+_OF_MATLAB = "#"  # begins the names of groups for its own use
+
+
+def load_73(path: Path, choose: Callable[[Mapping[str, Held]], Sequence[str]]) -> Dict[str, Value]:
+    """Load the variables that `choose` picks; raises as h5py does."""
+    with h5py.File(path, "r") as file:
+        items = {name: _content(item) for name, item in file.items() if name[0] != _OF_MATLAB}
+        held = {name: _held(item) for name, item in items.items()}
+        return {name: _value(file, items[name]) for name in choose(held)}
+
+
+def _content(item: Any) -> Any:
+    """Of what Octave wraps with its type."""
+    is_wrapped = isinstance(item, h5py.Group) and set(item) >= {"type", "value"}
+    return item["value"] if is_wrapped else item
+
+
+def _held(item: Any) -> Held:
+    if isinstance(item, h5py.Group):
+        return Held((1, 1), "struct")
+    return Held(item.shape[::-1], _kind(item))
+
+
+def _kind(item: Any) -> str:
+    kind = item.attrs.get("MATLAB_class", b"double")
+    return kind.decode() if isinstance(kind, bytes) else str(kind)
+
+
+def _value(file: Any, item: Any) -> Value:
+    item = _content(item)
+    if isinstance(item, h5py.Group):
+        fields = {name: _value(file, part) for name, part in item.items()}
+        if fields and all(isinstance(value, list) for value in fields.values()):
+            return [dict(zip(fields, row)) for row in zip(*fields.values())]  # an array of structs
+        return fields
+    if item.dtype == h5py.ref_dtype:
+        return [_value(file, file[reference]) for reference in item[()].T.flat]
+    if item.attrs.get("MATLAB_empty", 0):
+        return "" if _kind(item) == "char" else np.empty((0, 0))
+    numbers = np.asarray(item[()]).T  # columns first
+    if _kind(item) == "char":
+        return "".join(map(chr, numbers.flat))
+    return numbers

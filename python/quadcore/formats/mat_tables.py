@@ -1,0 +1,130 @@
+"""Tables in variables of MATLAB: vectors, a matrix, a struct of vectors, or time and signals."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, Optional, Sequence
+
+import numpy as np
+
+from .._core import InputError
+from .mat_variables import Held, Value, load
+
+
+def read_table(path: Path, names: Sequence[str], needed: int, expected: str) -> np.ndarray:
+    """Read columns, however they are held.
+
+    Parameters
+    ----------
+    path
+        A MATLAB file with vectors of these names, or a single matrix or struct: a matrix of the
+        columns in this order, a struct of vectors of these names, one as Simulink writes it
+        (``time`` and ``signals`` with ``values``), or one of a timeseries (``Time`` and ``Data``).
+    names
+        Of the columns, time first.
+    needed
+        How many of them must be there.
+    expected
+        What holds such a table, for errors.
+
+    Raises
+    ------
+    InputError
+        It holds something else.
+    """
+
+    def choose(held: Mapping[str, Held]) -> Sequence[str]:
+        if set(names[:needed]) <= set(held) and not _is_one_more(held, names):
+            return [name for name in names if name in held]
+        tables = [name for name, variable in held.items() if variable.is_table]
+        if len(tables) == 1 and not set(names[:needed]) <= set(held):
+            return tables
+        found = ", ".join(sorted(held)) or "no variables"
+        raise InputError(f"{path}: holds {found}; {expected}")
+
+    variables = load(path, choose)
+    if set(names[:needed]) <= set(variables):
+        return together(path, variables)
+    [(name, value)] = variables.items()
+    if isinstance(value, dict) and set(names[:needed]) <= set(value):
+        if _is_one_more(value, names):
+            raise InputError(f"{path}: {name} holds {', '.join(value)}; {expected}")
+        return together(path, {column: value[column] for column in names if column in value})
+    table = _of_signals(value) if isinstance(value, dict) else value
+    if not (
+        isinstance(table, np.ndarray)
+        and table.dtype.kind in "iuf"
+        and table.ndim == 2
+        and needed <= table.shape[1] <= len(names)
+    ):
+        raise InputError(f"{path}: {name} is {_told(value)}; {expected}")
+    return table.astype(float)
+
+
+def _is_one_more(held: Mapping[str, Any], names: Sequence[str]) -> bool:
+    """Whether there is a rotor that the model does not have."""
+    return f"w{len(names)}" in held and names[-1] == f"w{len(names) - 1}"
+
+
+def together(path: Path, columns: Mapping[str, Value]) -> np.ndarray:
+    """Make a table of vectors, which must have the length of the first."""
+    vectors = {name: vector(path, name, value) for name, value in columns.items()}
+    first = next(iter(vectors))
+    count = len(vectors[first])
+    for name, column in vectors.items():
+        if len(column) != count:
+            raise InputError(f"{path}: {name} has {len(column)} values, {first} has {count}")
+    return np.column_stack(list(vectors.values()))
+
+
+def vector(path: Path, name: str, value: Value) -> np.ndarray:
+    """Check that a variable is a vector of real numbers."""
+    if (
+        not isinstance(value, np.ndarray)
+        or value.dtype.kind not in "iuf"
+        or value.size != max(value.shape, default=0)
+    ):
+        raise InputError(f"{path}: {name} is no vector of real numbers")
+    return value.ravel().astype(float)
+
+
+def _of_signals(struct: Dict[str, Value]) -> Optional[np.ndarray]:
+    """Put time and signals side by side; None unless the struct is such a one."""
+    fields = {name.lower(): value for name, value in struct.items()}
+    time = fields.get("time")
+    if "signals" in fields:
+        signals = fields["signals"]
+        parts = [signal.get("values") for signal in _dicts(signals)]
+    else:
+        parts = [fields.get("data")]
+    arrays = [part for part in [time, *parts] if isinstance(part, np.ndarray)]
+    if len(arrays) != 1 + len(parts) or len(parts) == 0:
+        return None
+    rows = arrays[0].size
+    columns = [_rows_of(array, rows) for array in arrays]
+    if any(column is None for column in columns):
+        return None
+    return np.hstack([column for column in columns if column is not None])
+
+
+def _dicts(signals: Value) -> List[Dict[str, Any]]:
+    found = signals if isinstance(signals, list) else [signals]
+    return [signal for signal in found if isinstance(signal, dict)]
+
+
+def _rows_of(array: np.ndarray, rows: int) -> Optional[np.ndarray]:
+    """Turn values to a row for each time; Simulink has vectors as (n, 1, rows)."""
+    flat = np.squeeze(array)
+    if flat.ndim <= 1 and flat.size == rows:
+        return flat.reshape(rows, 1)
+    if flat.ndim == 2 and flat.shape[0] == rows:
+        return flat
+    return flat.T if flat.ndim == 2 and flat.shape[1] == rows else None
+
+
+def _told(value: Value) -> str:
+    if isinstance(value, dict):
+        return f"a struct of {', '.join(value)}"
+    if isinstance(value, np.ndarray):
+        return f"an array of {'x'.join(map(str, value.shape))} {value.dtype}"
+    return "no table"

@@ -1,0 +1,144 @@
+"""Bags of ROS: logs in them, and what comes out of those that the node's topics fill."""
+
+import numpy as np
+import pytest
+from processes import ran, refused
+
+import quadcore as qc
+from quadcore.formats import bag
+
+rosbags = pytest.importorskip("rosbags")
+
+ODD = {"odometry.positionNoise": 0.1, "odometry.rate": 250}
+
+
+@pytest.fixture(scope="module")
+def log():
+    """A flight whose log has everything: topics at other rates, wrenches, something ignored."""
+    simulation = qc.Simulation("quadrotor", "eigen", parameters=ODD, dt=1 / 3000)
+    flown = simulation.run(
+        0.1, [[0, 480, -470, 490, -475]], topics=["odom", "vel_cmd"], wrenches=True
+    )
+    flown.ignored.extend(["libcamera.so", "a thing, with a comma"])
+    return flown
+
+
+def assert_same(read, log):
+    np.testing.assert_array_equal(read.table.view("u8"), log.table.view("u8"))
+    assert list(read.wrenches) == list(log.wrenches)
+    for name, wrench in log.wrenches.items():
+        np.testing.assert_array_equal(read.wrenches[name], wrench)
+    assert {t: list(f) for t, f in read.topics.items()} == {
+        t: list(f) for t, f in log.topics.items()
+    }
+    for topic, fields in log.topics.items():
+        for field, column in fields.items():
+            np.testing.assert_array_equal(read.topics[topic][field], column)
+
+
+def test_a_log_goes_round_all_formats_bit_for_bit(log, tmp_path):
+    log.ignored[:] = ["libcamera.so", "thing"]
+    log.to_csv(tmp_path / "a.csv")
+    for source, target in (("a.csv", "b.mat"), ("b.mat", "c.bag"), ("c.bag", "d.csv")):
+        done = ran("convert", str(tmp_path / source), str(tmp_path / target))
+        assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+        assert_same(qc.Log.of_file(tmp_path / target), log)
+    assert (tmp_path / "d.csv").read_bytes() == (tmp_path / "a.csv").read_bytes()
+
+
+def test_what_was_ignored_stays_known(log, tmp_path):
+    log.to_file(tmp_path / "a.bag")
+    assert qc.Log.of_file(tmp_path / "a.bag").ignored == log.ignored
+
+
+def messages(path, topic):
+    from rosbags.rosbag1 import Reader
+
+    store = bag.Messages().store
+    with Reader(path) as reader:
+        found = [c for c in reader.connections if c.topic == topic]
+        for connection, time, data in reader.messages(found) if found else ():
+            yield time, store.deserialize_ros1(data, connection.msgtype)
+
+
+def test_a_flight_is_recorded_on_the_topics_of_the_node(tmp_path):
+    path = tmp_path / "flight.bag"
+    done = ran("run", "quadrotor", "--engine", "eigen", "--duration", "0.1", "--set",
+               "odometry.rate=500", "--log-topics", "odom", "--log", str(path),
+               "--log", str(tmp_path / "flight.csv"))  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    log = qc.Log.of_file(tmp_path / "flight.csv")
+    assert_same(qc.Log.of_file(path), log)
+    truth = list(messages(path, "/ground_truth/odometry"))
+    assert len(truth) == 101 and len(list(messages(path, "/odom"))) == 51
+    time, last = truth[-1]
+    assert time == 100_000_000 == last.header.stamp.nanosec
+    assert (last.header.frame_id, last.child_frame_id) == ("world", "drone")
+    assert last.pose.pose.position.z == log.position[-1, 2]
+    assert last.pose.covariance[0] == 1e-12
+    assert [t for t, _ in messages(path, "/clock")][:2] == [1, 1_000_000]
+    [joints] = [m for t, m in messages(path, "/joint_states") if t == time]
+    np.testing.assert_array_equal(joints.velocity, log.rotor_velocity[-1])
+    transform = list(messages(path, "/tf"))[-1][1].transforms[0]
+    assert (transform.child_frame_id, transform.transform.translation.z) == (
+        "drone", log.position[-1, 2]
+    )  # fmt: skip
+
+
+def write(path, topic, times, rows, kind="std_msgs/msg/Float64MultiArray"):
+    from rosbags.rosbag1 import Writer
+
+    maker = bag.Messages()
+    with Writer(path) as writer:
+        connection = writer.add_connection(topic, kind, typestore=maker.store)
+        for time, row in zip(times, rows):
+            writer.write(connection, time, maker.array(row, maker.layout(["w"], len(row))))
+
+
+@pytest.mark.parametrize("start", [0, 1_700_000_000 * 10**9])
+def test_recorded_commands_fly(start, tmp_path):
+    """By the simulated clock, or by one on the wall, which counts from the bag's start."""
+    rows = np.array([[480.0, -470, 490, -475], [470, -480, 480, -490]])
+    times = [start or 1, start + 30_000_000]
+    write(tmp_path / "commands.bag", "/quadrotor/vel_cmd", times, rows)
+    flown = qc.Simulation("quadrotor", "eigen").run(0.1, tmp_path / "commands.bag")
+    table = np.column_stack([[0, 0.03], rows])
+    expected = qc.Simulation("quadrotor", "eigen").run(0.1, table)
+    np.testing.assert_array_equal(flown.table, expected.table)
+
+
+def test_a_logged_flight_is_flown_again_from_its_bag(tmp_path):
+    commands = [[0, 480, -470, 490, -475], [0.05, 470, -480, 480, -490]]
+    log = qc.Simulation("quadrotor").run(0.1, commands, topics=["vel_cmd"])
+    log.to_file(tmp_path / "flight.bag")
+    again = qc.Simulation("quadrotor").run(0.1, tmp_path / "flight.bag")
+    np.testing.assert_array_equal(again.table, log.table)
+
+
+def test_a_flight_is_followed_from_its_bag(tmp_path):
+    simulation = qc.Simulation("quadrotor", "eigen")
+    simulation.run(0.4, [[0, 480, -480, 480, -480]], 100).to_file(tmp_path / "way.bag")
+    path = qc.Log.of_file(tmp_path / "way.bag")
+    reference = qc.references.parse(f"series:{tmp_path / 'way.bag'}")
+    np.testing.assert_allclose(reference(0.3).position, path.position[3], atol=1e-9)
+
+
+def test_what_cannot_be_read_is_one_line(tmp_path):
+    rows = [[1.0, 2.0]]
+    write(tmp_path / "other.bag", "/odd", [1], rows)
+    write(tmp_path / "short.bag", "/vel_cmd", [1], rows)
+    (tmp_path / "text.bag").write_text("t,w1\n")
+    (tmp_path / "empty.bag").write_bytes(b"")
+    for name, says in (
+        ("other.bag", "topics of commands: none; a bag of commands has one that ends in vel_cmd"),
+        ("short.bag", "/vel_cmd: a message of 2 numbers; this model with 4 rotors takes w1, w2"),
+        ("text.bag", "is no bag that can be read"),
+        ("empty.bag", "is no bag that can be read"),
+        ("none.bag", "cannot be read"),
+    ):
+        error = refused("run", "quadrotor", "--commands", str(tmp_path / name))
+        assert f"{name}: {says}" in error
+    for name in ("other.bag", "text.bag"):
+        with pytest.raises(qc.InputError, match=r"topics that end in ground_truth|is no bag"):
+            qc.Log.of_file(tmp_path / name)
+    assert refused("convert", str(tmp_path / "other.bag"), "x.txt").count("logs are written to")
