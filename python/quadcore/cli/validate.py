@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any, Dict, List, Union
 from rich.table import Table
 
 from .. import interrupts
-from .._core import FlightError, QuadcoreError
-from ..files import prepare_folder
+from .._core import FlightError, InputError, QuadcoreError
+from ..files import atomic_write, prepare_folder
+from ..flight_plan import FlightPlan
 from ..study.executor import conducted
 from . import options, terminal, values
 from .kept import kept
@@ -45,6 +46,13 @@ def register(commands: Any) -> None:
         default="lag",
         help="of the mathematical model: those of the engines, or none that lags (lag)",
     )
+    parser.add_argument(
+        "--plant",
+        metavar="FILE",
+        type=Path,
+        help="judge this recording instead: a log of any Gazebo, .csv, .mat or .bag; without "
+        "--commands its topic vel_cmd",
+    )
     options.add_jobs(parser)
     parser.add_argument(
         "--out", metavar="DIR", type=Path, help="write page, tables and figures here"
@@ -55,6 +63,8 @@ def register(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Fly everything, print how far it is from the model and why, and write it."""
+    if arguments.plant is not None:
+        return judge(arguments)
     # scipy and jinja2 are slow to import.
     from ..validation import Case, Experiment
 
@@ -85,6 +95,44 @@ def run(arguments: argparse.Namespace) -> None:
             terminal.console().print(f"written {page} and {beside} tables and figures beside it")
     if failures:
         raise FlightError(failures[0])
+
+
+def judge(arguments: argparse.Namespace) -> None:
+    """Print how far a recording is from the model and the engines, and write it."""
+    from ..validation import plant
+    from ..validation.output import size
+
+    for option in ("sim_slow", "drag"):
+        if getattr(arguments, option) is not None:
+            raise InputError(
+                f"--plant is one flight; give its --{option.replace('_', '-')} by --set"
+            )
+    plan = FlightPlan.of(
+        **options.model_arguments(arguments), world=arguments.world, dt=arguments.dt
+    )
+    if arguments.out is not None:
+        prepare_folder(arguments.out, ["plant.csv"])
+    rows = list(plant.judge(plan, arguments.plant, arguments.commands, arguments.engine))
+    if arguments.out is not None:
+        with atomic_write(arguments.out / "plant.csv") as stream:
+            stream.write(plant.table_of(rows, len(plan.model.joints)))
+    if not arguments.quiet:
+        console = terminal.console()
+        console.print(f"{arguments.plant}: largest difference from")
+        table = terminal.table("", *_JUDGED, numbers=True)
+        for row in rows:
+            largest = row.difference.largest if row.difference else {}
+            table.add_row(row.plant, *(size(largest[n]) if largest else "failed" for n in _JUDGED))
+        console.print(table)
+        if arguments.out is not None:
+            console.print(f"written {arguments.out / 'plant.csv'}")
+    failed = [row for row in rows if row.failure]
+    if failed:
+        raise FlightError(f"{failed[0].plant}: {failed[0].failure}")
+
+
+_JUDGED = ("position", "attitude", "velocity", "rates")
+"""m, rad, m/s, rad/s."""
 
 
 def _conduct(experiment: Experiment, arguments: argparse.Namespace) -> Study:
