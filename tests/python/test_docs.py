@@ -74,7 +74,7 @@ def test_every_quadcore_command_line_is_one(page):
     spans = re.findall(r"(?<!`)`([^`\n]+)`(?!`)", prose(page))
     # At the start of a line or behind a prompt or another command, after settings of variables.
     called = re.compile(
-        r"(?:^|[|;&$])\s*(?:\w+=\S+\s+)*(?:python3? -m |\S*/)?quadcore ([a-z]\w*)([^|;&#]*)"
+        r"(?:^|[|;&$])\s*(?:\w+=\S+\s+)*(?:python3? -m |\S*/)?quadcore ([a-z][\w-]*)([^|;&#]*)"
     )
     for line in lines + spans:
         for command, rest in called.findall(line):
