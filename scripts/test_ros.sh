@@ -127,6 +127,8 @@ rm -rf $workspace/xacro
 mkdir -p $workspace/xacro
 cp -r .venv/lib/python3*/site-packages/xacro $workspace/xacro
 if [ -d /opt/ros/noetic ]; then set +u; . /opt/ros/noetic/setup.bash; set -u; fi
+# But what reads bags without ROS runs there.
+export QUADCORE_COMMAND="$PWD/.venv/bin/quadcore"
 export ROS_HOME="$PWD/$workspace/ros_home"
 
 say "building a catkin workspace in $workspace"

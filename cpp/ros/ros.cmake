@@ -131,7 +131,8 @@ endif()
 
 # Not catkin_install_python: it would fix the interpreter, and these want the one that has quadcore.
 install(PROGRAMS scripts/ros/bag_player.py scripts/ros/expand_model.py
-                 scripts/ros/fly_from_python.py scripts/ros/spawn_model scripts/ros/with_frames.sh
+                 scripts/ros/flight_buttons.py scripts/ros/fly_from_python.py
+                 scripts/ros/play_commands.py scripts/ros/spawn_model scripts/ros/with_frames.sh
         DESTINATION lib/quadcore)
 install(FILES scripts/ros/recorded_commands.py DESTINATION lib/quadcore)
 

@@ -5,12 +5,36 @@ from pathlib import Path
 TYPE = "std_msgs/Float64MultiArray"
 
 
+def read_table(path, rotors):
+    """Read commands with their times: an array of rows t (s), w1..wn (rad/s).
+
+    Raises `ValueError`, or quadcore's `InputError`, with one line.
+    """
+    if not str(path).endswith(".bag"):
+        from quadcore.commands import read_commands as read_file
+
+        return read_file(path, rotors)
+    from quadcore.commands import as_commands
+
+    _, times, commands = _recorded(path, "")
+    rows = dict(zip(times, commands))  # of those of one time the last counts
+    if any(len(row) != rotors for row in commands):
+        raise ValueError(f"{path}: holds commands that are not for {rotors} rotors; set _rotors:=N")
+    return as_commands([[time, *row] for time, row in sorted(rows.items())], rotors)
+
+
 def read_commands(path, topic=""):
     """Read a bag's commands in the order in which they were recorded.
 
     Returns the topic's name and a list of rotor speeds (rad/s) for each command. Without `topic`,
     the only topic that ends in ``vel_cmd``. Raises `ValueError` with one line if there is none.
     """
+    name, _, commands = _recorded(path, topic)
+    return name, commands
+
+
+def _recorded(path, topic):
+    """Give the topic's name, the time of each message (s), and what it holds."""
     import rosbag
 
     if not Path(path).is_file():
@@ -33,7 +57,9 @@ def read_commands(path, topic=""):
         elif topic not in fitting:
             found = ", ".join(fitting) or "none"
             raise ValueError(f"{path}: no topic {topic} of {TYPE}; there are: {found}")
-        commands = [list(message.data) for _, message, _ in bag.read_messages(topics=[topic])]
-    if not commands:
+        found = [(t.to_nsec(), list(m.data)) for _, m, t in bag.read_messages(topics=[topic])]
+    if not found:
         raise ValueError(f"{path}: holds no message of {topic}")
-    return topic, commands
+    # A bag has no message at time 0: the first may lie a nanosecond late.
+    times = [(ns - (ns == 1)) / 1e9 for ns, _ in found]
+    return topic, times, [speeds for _, speeds in found]

@@ -1,5 +1,7 @@
 """Bags of ROS: logs in them, and what comes out of those that the node's topics fill."""
 
+import subprocess
+
 import numpy as np
 import pytest
 from processes import ran, refused
@@ -142,3 +144,44 @@ def test_what_cannot_be_read_is_one_line(tmp_path):
         with pytest.raises(qc.InputError, match=r"topics that end in ground_truth|is no bag"):
             qc.Log.of_file(tmp_path / name)
     assert refused("convert", str(tmp_path / "other.bag"), "x.txt").count("logs are written to")
+
+
+SYSTEM = "/usr/bin/python3"
+READ = """
+import sys, rosbag
+with rosbag.Bag(sys.argv[1]) as bag:
+    for topic, info in sorted(bag.get_type_and_topic_info().topics.items()):
+        print(topic, info.msg_type, info.message_count)
+    for topic, message, time in bag.read_messages(["/ground_truth/odometry", "/quadcore/log"]):
+        last = message
+    print(repr(message.data[3]), time.to_nsec(), message._md5sum)
+"""
+
+
+def has_rosbag():
+    done = subprocess.run([SYSTEM, "-c", "import rosbag, tf2_msgs"], capture_output=True)
+    return done.returncode == 0
+
+
+@pytest.mark.skipif(not has_rosbag(), reason="needs ROS' own rosbag")
+def test_the_rosbag_of_ros_reads_what_was_written(log, tmp_path):
+    log.to_file(tmp_path / "flight.bag")
+    done = subprocess.run(
+        [SYSTEM, "-c", READ, str(tmp_path / "flight.bag")], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    *topics, last = done.stdout.splitlines()
+    rows = len(log)
+    commands = len(np.unique(log.topics["vel_cmd"]["stamp"][1:]))
+    assert topics == [
+        f"/clock rosgraph_msgs/Clock {rows}",
+        f"/ground_truth/odometry nav_msgs/Odometry {rows}",
+        f"/joint_states sensor_msgs/JointState {rows}",
+        f"/odom nav_msgs/Odometry {len(np.unique(log.topics['odom']['stamp']))}",
+        f"/quadcore/log std_msgs/Float64MultiArray {rows}",
+        f"/tf tf2_msgs/TFMessage {rows}",
+        f"/vel_cmd std_msgs/Float64MultiArray {commands}",
+    ]
+    height, time, md5 = last.split()
+    assert float(height) == log.position[-1, 2] and int(time) == round(log.time[-1] * 1e9)
+    assert md5 == "4b7d974086d4060e7db4613a7e6c3ba4"

@@ -7,8 +7,11 @@ import subprocess
 import unittest
 
 import harness
-from harness import Recording
+import rospy
+from harness import Process, Recording, flight, settled, wait_until
 from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import Joy
 
 IDLE = """#!/usr/bin/env python3
 import rospy
@@ -41,6 +44,29 @@ def stand_in(folder, package, node, text):
 
 
 class TestJoystick(unittest.TestCase):
+    def test_buttons_pause_step_and_reset(self):
+        buttons = rospy.Publisher("joy", Joy, queue_size=10)
+        with flight("_paused:=true"), Process("flight_buttons.py", "_paused:=true", "_steps:=50"):
+            wait_until(lambda: buttons.get_num_connections() > 0)
+
+            def press(button):
+                for down in (1, 0):
+                    state = [0] * 8
+                    state[button] = down
+                    buttons.publish(Joy(buttons=state))
+
+            with Recording("/clock", Clock) as clock:
+                clock.wait_for_connection()
+                for total in (50, 100):
+                    press(0)
+                    clock.wait(lambda m, ns=total * 1_000_000: m and m[-1].clock.to_nsec() == ns)
+                press(7)  # goes on
+                clock.wait(lambda m: m[-1].clock.to_nsec() > 150_000_000)
+                press(7)
+                settled(clock)
+                press(6)
+                clock.wait(lambda m: m[-1].clock.to_nsec() == 0)
+
     def test_sticks_are_velocities_along_the_heading(self):
         folder = harness.folder_of(self)
         stand_in(folder, "joy", "joy_node", IDLE)

@@ -1,14 +1,24 @@
 #!/usr/bin/env python3
 """A recording that is played in lockstep gives the flight that was recorded."""
 
+import contextlib
+import os
+import subprocess
+import threading
 import unittest
 
 import harness
+import numpy as np
 import rosbag
+import rospy
 from harness import Process, Recording, commander, diagnostic, flight, step
 from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 from test_lockstep import LOCKSTEP, altitude_controller
+
+import quadcore as qc
 
 STEPS = 1000
 TOPIC = "/quadrotor/vel_cmd"
@@ -46,6 +56,66 @@ class TestPlaying(unittest.TestCase):
             self.assertEqual(diagnostic("late commands"), 0)
         self.assertEqual(len(recorded.read_text().splitlines()), STEPS + 2)
         self.assertEqual(recorded.read_bytes(), played.read_bytes())
+
+    def test_what_the_node_published_becomes_its_own_log(self):
+        """Read without ROS, from a bag, every bit of the rows whose topics are all there."""
+        own, bag, log = (self.folder / name for name in ("own.csv", "flight.bag", "log.csv"))
+        lock = threading.Lock()
+        topics = {"/clock": Clock, "/ground_truth/odometry": Odometry, "/joint_states": JointState}
+        with rosbag.Bag(str(bag), "w") as written, contextlib.ExitStack() as recordings:
+
+            def keep(topic):
+                def write(message):
+                    with lock:
+                        written.write(topic, message)
+
+                return write
+
+            with flight(*LOCKSTEP[:1], f"_log:={own}"), commander() as send:
+                heard = [
+                    recordings.enter_context(Recording(topic, kind, act=keep(topic)))
+                    for topic, kind in topics.items()
+                ]
+                for recording in heard:
+                    recording.wait_for_count(1)  # what is kept for newcomers
+                send([480.0, -470.0, 490.0, -475.0])
+                step(200)
+                heard[0].wait(lambda m: m[-1].clock.to_nsec() == 200_000_000)
+                for recording in heard[1:]:
+                    recording.wait(lambda m: m[-1].header.stamp.to_nsec() == 200_000_000)
+                recordings.close()
+        done = subprocess.run(
+            [os.environ["QUADCORE_COMMAND"], "convert", str(bag), str(log)],
+            env={"PATH": os.environ["PATH"]},
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        self.assertEqual(done.returncode, 0, done.stderr)
+        ours, theirs = own.read_text().splitlines(), log.read_text().splitlines()
+        self.assertGreater(len(theirs), 10)
+        self.assertLessEqual(set(theirs), set(ours))
+        self.assertEqual(theirs[-1], ours[-1])
+
+    def test_commands_of_a_file_fly_as_without_ros(self):
+        """In lockstep, and the odometry is kept."""
+        commands, out, own = (self.folder / n for n in ("c.csv", "odometry.csv", "own.csv"))
+        commands.write_text("t,w1,w2,w3,w4\n0,480,-470,490,-475\n0.05,470,-480,480,-490\n")
+        bag = self.folder / "c.bag"
+        rows = [[480.0, -470.0, 490.0, -475.0], [470.0, -480.0, 480.0, -490.0]]
+        with rosbag.Bag(str(bag), "w") as written:
+            for time, row in zip((rospy.Time(0, 1), rospy.Time(0, 50_000_000)), rows):
+                written.write("/quadrotor/vel_cmd", Float64MultiArray(data=row), time)
+        simulation = qc.Simulation("quadrotor", xacro_args={"sim_slow": 1}, spawn=(0, 0, 10))
+        flown = simulation.run(0.1, commands)
+        for file in (commands, bag):
+            arguments = (str(file), "_lockstep:=true", "_duration:=0.1", f"_out:={out}")
+            with flight(*LOCKSTEP, f"_log:={own}"), Process("play_commands.py", *arguments) as node:
+                step(100)
+                status, error = node.result()
+                self.assertEqual(status, 0, error)
+            np.testing.assert_array_equal(qc.Log.of_file(own).table, flown.table)
+            kept = qc.Log.of_file(out).table
+            np.testing.assert_array_equal(kept[:, 1:], flown.table[:, 1:14])
 
     def test_the_player_ends_with_its_recording(self):
         bag = self.folder / "short.bag"

@@ -1,0 +1,60 @@
+#!/usr/bin/env python3
+"""Pause, step and reset a flight by the buttons of a joystick, where rviz has none for that.
+
+``rosrun quadcore flight_buttons.py [_pause:=7] [_step:=0] [_reset:=6] [_steps:=100]`` takes buttons
+from topic ``joy``: one pauses a flight and lets it go on, one flies so many steps of a paused one,
+one begins it anew. `_paused:=true` if the flight is when this begins.
+"""
+
+import rospy
+from quadcore.srv import Step
+from sensor_msgs.msg import Joy
+from std_srvs.srv import Empty
+
+
+class Buttons:
+    """Calls a service when a button goes down."""
+
+    def __init__(self):
+        self._paused = bool(rospy.get_param("~paused", False))
+        self._steps = int(rospy.get_param("~steps", 100))
+        self._acts = {
+            int(rospy.get_param("~pause", 7)): self._pause,
+            int(rospy.get_param("~step", 0)): self._step,
+            int(rospy.get_param("~reset", 6)): lambda: call("/gazebo/reset_simulation"),
+        }
+        self._down = set()
+        self._subscriber = rospy.Subscriber("joy", Joy, self.take, queue_size=10)
+
+    def take(self, message):
+        """Act on the buttons that were up before."""
+        down = {i for i, button in enumerate(message.buttons) if button}
+        for button in sorted(down - self._down):
+            act = self._acts.get(button)
+            try:
+                if act:
+                    act()
+            except rospy.ServiceException as error:
+                rospy.logwarn("%s", error)
+        self._down = down
+
+    def _pause(self):
+        call("/gazebo/unpause_physics" if self._paused else "/gazebo/pause_physics")
+        self._paused = not self._paused
+
+    def _step(self):
+        answer = rospy.ServiceProxy("quadcore/step", Step)(self._steps)
+        self._paused = True  # as who steps finds it afterwards
+        if not answer.success:
+            rospy.logwarn("%s", answer.message)
+
+
+def call(service):
+    """Call a service without arguments."""
+    rospy.ServiceProxy(service, Empty)()
+
+
+if __name__ == "__main__":
+    rospy.init_node("flight_buttons", disable_rostime=True)
+    Buttons()
+    rospy.spin()

@@ -1,0 +1,87 @@
+#!/usr/bin/env python3
+"""Fly rotor speeds from a file and keep what the odometry says: the thesis' figure 5.1 as a node.
+
+``rosrun quadcore play_commands.py FILE [_topic:=/quadrotor/vel_cmd] [_rotors:=4]
+[_lockstep:=true] [_duration:=S] [_out:=odometry.mat]`` sends the rows (t, w1..wn; rad/s) of a .csv
+or .mat file or of a bag, each when the odometry has reached its time; against a plant in lockstep
+one in answer to each odometry message. It ends with the last row, or after the duration, and writes
+the odometry as a log without rotors, .mat, .csv or .bag.
+"""
+
+import sys
+import threading
+
+import numpy as np
+import rospy
+from nav_msgs.msg import Odometry
+from recorded_commands import read_table
+from std_msgs.msg import Float64MultiArray
+
+from quadcore import InputError, Log
+from quadcore.log import check_log_path
+
+
+class Player:
+    """Answers odometry with the command that is due."""
+
+    def __init__(self, table, topic, lockstep, end):
+        self._table, self._lockstep, self._end = table, lockstep, end
+        self._sent = -1
+        self.rows = {}  # by stamp: a message that is sent again is the same one
+        self.finished = threading.Event()
+        self._publisher = rospy.Publisher(
+            topic, Float64MultiArray, queue_size=1000, tcp_nodelay=True
+        )
+        self._subscriber = rospy.Subscriber("odom", Odometry, self.answer, tcp_nodelay=True)
+
+    def answer(self, message):
+        """Keep what was said, and send what is due."""
+        if self.finished.is_set():
+            return
+        time = message.header.stamp.to_sec()
+        self.rows[time] = row_of(time, message)
+        if time >= self._end - 1e-9:
+            self.finished.set()
+            return
+        due = np.searchsorted(self._table[:, 0], time + 1e-9, side="right") - 1
+        if due >= 0 and (self._lockstep or due != self._sent):
+            self._sent = due
+            self._publisher.publish(data=self._table[due, 1:].tolist())
+
+    def log(self):
+        """Give what came so far."""
+        return Log(np.array([row for _, row in sorted(self.rows.items())]).reshape(-1, 14), {})
+
+
+def row_of(time, message):
+    """Row of a log: t, pose, twist."""
+    p, q = message.pose.pose.position, message.pose.pose.orientation
+    v, w = message.twist.twist.linear, message.twist.twist.angular
+    return [time, p.x, p.y, p.z, q.x, q.y, q.z, q.w, v.x, v.y, v.z, w.x, w.y, w.z]
+
+
+def main():
+    """Play a file."""
+    arguments = rospy.myargv()[1:]
+    if len(arguments) != 1:
+        sys.exit(__doc__)
+    rospy.init_node("play_commands", disable_rostime=True)  # a paused flight's clock stands
+    out = rospy.get_param("~out", "")
+    try:
+        if out:
+            check_log_path(out)
+        table = read_table(arguments[0], int(rospy.get_param("~rotors", 4)))
+    except (InputError, ValueError) as error:
+        sys.exit(f"error: {error}")
+    topic = rospy.get_param("~topic", "/quadrotor/vel_cmd")
+    end = float(rospy.get_param("~duration", table[-1, 0]))
+    player = Player(table, topic, bool(rospy.get_param("~lockstep", False)), end)
+    rospy.loginfo("%s: %d commands for %s", arguments[0], len(table), topic)
+    while not rospy.is_shutdown() and not player.finished.wait(0.1):
+        pass
+    if out and player.rows:
+        player.log().to_file(out)
+        rospy.loginfo("written %s", out)
+
+
+main()
