@@ -63,7 +63,8 @@ class HingedBodies {
   QUADCORE_LAW HingedBodies(const HingedTree& tree, const double* constants, double* state,
                             BodyWork<T>* work, SoftRows<T>* soft)
       : tree_(tree), constants_(constants), state_(state), work_(work), soft_(soft) {
-    if constexpr (are_rotors) bodies_ = 1 + (tree.bodies + laws::lanes_of<T> - 2) / laws::lanes_of<T>;
+    if constexpr (are_rotors)
+      bodies_ = 1 + (tree.bodies + laws::lanes_of<T> - 2) / laws::lanes_of<T>;
   }
 
   /// Bodies of each vehicle, or packs of them.
@@ -83,7 +84,7 @@ class HingedBodies {
     return tree_.carriers[body];
   }
   /// Adds numbers of the bodies of a pack to what their carrier has.
-  QUADCORE_LAW void add_to_carrier(std::size_t body, T& sum, T numbers) const {
+  QUADCORE_LAW void add_to_carrier([[maybe_unused]] std::size_t body, T& sum, T numbers) const {
     if constexpr (are_rotors && laws::lanes_of<T> > 1) {
       double total = sum[0];
       for (std::size_t lane = used_lanes(body); lane-- > 0;) total += numbers[lane];
@@ -156,9 +157,7 @@ class HingedBodies {
   }
 
  private:
-  QUADCORE_LAW static Spatial<T> none() {
-    return {Vec3<T>{T{}, T{}, T{}}, Vec3<T>{T{}, T{}, T{}}};
-  }
+  QUADCORE_LAW static Spatial<T> none() { return {Vec3<T>{T{}, T{}, T{}}, Vec3<T>{T{}, T{}, T{}}}; }
 
   /// R I R^T
   QUADCORE_LAW static laws::Symmetric3<T> turned(const Matrix3<T>& R,
@@ -214,8 +213,7 @@ class HingedBodies {
     laws::SpatialInertia<T> sum = laws::body_inertia(constants(i).number(BodyConstant::mass),
                                                      work(i).p_OBcm_W, work(i).I_Bcm_W);
     if (tree_.carries[i]) {
-      laws::for_each(sum, work(i).carried,
-                     [](T& a, const T& b) QUADCORE_INLINED { a = a + b; });
+      laws::for_each(sum, work(i).carried, [](T& a, const T& b) QUADCORE_INLINED { a = a + b; });
     }
     return sum;
   }
@@ -242,9 +240,8 @@ class HingedBodies {
     }
     force.angular = force.angular - body.torque * body.axis_W;
     BodyWork<T>& parent = work(carrier(i));
-    const auto add = [&](T& sum, const T& number) QUADCORE_INLINED {
-      add_to_carrier(i, sum, number);
-    };
+    const auto add = [&](T& sum, const T& number)
+                         QUADCORE_INLINED { add_to_carrier(i, sum, number); };
     laws::for_each(parent.carried, felt, add);
     laws::for_each(parent.borne, force, add);
   }
@@ -265,8 +262,7 @@ class HingedBodies {
     give_way({{none, one, none}, zero}, slipped_W.y);
     give_way({{none, none, one}, zero}, slipped_W.z);
     for (std::size_t k = 0; k < 2; ++k) {
-      const Vec3<T> across_W =
-          body.R_WB * constants(i).vector(BodyConstant::across_C + 3 * k);
+      const Vec3<T> across_W = body.R_WB * constants(i).vector(BodyConstant::across_C + 3 * k);
       give_way({laws::cross(body.p_OA_W, across_W), across_W}, laws::dot(across_W, bent_W));
     }
   }
@@ -288,15 +284,13 @@ class HingedBodies {
     const BodyWork<T>& body = work(i);
     const Table from = state(i);
     double* const to = state_ + place(BodyRow::count, i);
-    const auto put = [to](std::size_t row, T number) QUADCORE_INLINED {
-      laws::store(to + row * widest_lanes, number);
-    };
-    const auto put3 = [&](std::size_t row, const Vec3<T>& a) QUADCORE_INLINED {
-      put(row, a.x), put(row + 1, a.y), put(row + 2, a.z);
-    };
+    const auto put = [to](std::size_t row, T number)
+                         QUADCORE_INLINED { laws::store(to + row * widest_lanes, number); };
+    const auto put3 = [&](std::size_t row, const Vec3<T>& a)
+                          QUADCORE_INLINED { put(row, a.x), put(row + 1, a.y), put(row + 2, a.z); };
     const Spatial<T>& a = body.acceleration;
-    const Vec3<T> v_W = from.vector(BodyRow::velocity) +
-                        dt * (a.linear + laws::cross(a.angular, body.p_OBcm_W));
+    const Vec3<T> v_W =
+        from.vector(BodyRow::velocity) + dt * (a.linear + laws::cross(a.angular, body.p_OBcm_W));
     const Vec3<T> w_W = from.vector(BodyRow::rate) + dt * a.angular;
     put3(BodyRow::velocity, v_W);
     put3(BodyRow::rate, w_W);
