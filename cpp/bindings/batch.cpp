@@ -114,12 +114,15 @@ auto of_each(const GuardedBatch& self, const Get& get) {
 }  // namespace
 
 void bind_batch(py::module_& m) {
-  py::class_<BatchSnapshot, std::shared_ptr<BatchSnapshot>>(m, "BatchSnapshot");
-  py::class_<GuardedBatch, std::shared_ptr<GuardedBatch>>(m, "Batch")
+  py::class_<BatchSnapshot, std::shared_ptr<BatchSnapshot>>(
+      m, "BatchSnapshot", "Everything that the future of a batch depends on.");
+  py::class_<GuardedBatch, std::shared_ptr<GuardedBatch>>(
+      m, "Batch", "Many vehicles, stepped together; use quadcore.BatchSimulation.")
       .def(py::init(&create_batch), py::arg("models"), py::arg("world"), py::arg("engine"),
            py::arg("dt"), py::arg("parameters"), py::arg("spawn"), py::arg("seeds"),
            py::arg("threads"))
-      .def("step", &step, py::arg("commands"), py::arg("steps"))
+      .def("step", &step, py::arg("commands"), py::arg("steps"),
+           "Advances all vehicles that have not failed; commands (n, rotors) in rad/s, or None.")
       .def("_write_state", &write_state, py::arg("rows"))
       .def("_take_state", &take_state, py::arg("rows"))
       .def(
@@ -128,42 +131,52 @@ void bind_batch(py::module_& m) {
             const BatchLock lock(self);
             self.batch.reset(mask.data(), seeds ? seeds->data() : nullptr);
           },
-          py::arg("mask"), py::arg("seeds"))
-      .def("snapshot",
-           [](GuardedBatch& self) {
-             const BatchLock lock(self);
-             return self.batch.snapshot();
-           })
+          py::arg("mask"), py::arg("seeds"),
+          "Takes the vehicles of a mask back to their start, with other seeds unless None.")
+      .def(
+          "snapshot",
+          [](GuardedBatch& self) {
+            const BatchLock lock(self);
+            return self.batch.snapshot();
+          },
+          "Take down all that the future of every vehicle depends on, for `restore`.")
       .def(
           "restore",
           [](GuardedBatch& self, const Built<BatchSnapshot>& snapshot) {
             const BatchLock lock(self);
             self.batch.restore(*snapshot);
           },
-          py::arg("snapshot"))
-      .def_property_readonly("dt", [](const GuardedBatch& self) { return self.batch.dt(); })
-      .def_property_readonly("command_width",
-                             [](const GuardedBatch& self) { return self.batch.command_width(); })
-      .def_property_readonly("state_width",
-                             [](const GuardedBatch& self) { return self.batch.state_width(); })
-      .def_property_readonly("time",
-                             [](GuardedBatch& self) {
-                               const BatchLock lock(self);
-                               return of_each(self,
-                                              [&](std::size_t i) { return self.batch.time(i); });
-                             })
-      .def_property_readonly("failures",
-                             [](GuardedBatch& self) {
-                               const BatchLock lock(self);
-                               return self.batch.failures();
-                             })
+          py::arg("snapshot"),
+          "Go back to a snapshot of this batch, bit for bit. Raises InputError on another's.")
+      .def_property_readonly(
+          "dt", [](const GuardedBatch& self) { return self.batch.dt(); }, "Length of a step, s.")
+      .def_property_readonly(
+          "command_width", [](const GuardedBatch& self) { return self.batch.command_width(); },
+          "Numbers of a vehicle's command.")
+      .def_property_readonly(
+          "state_width", [](const GuardedBatch& self) { return self.batch.state_width(); },
+          "Numbers of a vehicle's state, 13 + 2 rotors.")
+      .def_property_readonly(
+          "time",
+          [](GuardedBatch& self) {
+            const BatchLock lock(self);
+            return of_each(self, [&](std::size_t i) { return self.batch.time(i); });
+          },
+          "Of each vehicle, s; shape (n,).")
+      .def_property_readonly(
+          "failures",
+          [](GuardedBatch& self) {
+            const BatchLock lock(self);
+            return self.batch.failures();
+          },
+          "Why each flight ended, list of str; \"\" while it goes on.")
       .def(
           "warnings",
           [](GuardedBatch& self, std::size_t vehicle) {
             const BatchLock lock(self);
             return self.batch.warnings(vehicle);
           },
-          py::arg("vehicle"));
+          py::arg("vehicle"), "What was said of a vehicle's flight, list of str.");
 }
 
 }  // namespace quadcore::bindings

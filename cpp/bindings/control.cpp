@@ -125,34 +125,46 @@ py::dict start(const Self& self, const Reference& wanted, const std::vector<doub
 
 void bind_control(py::module_& m) {
   py::class_<TagSpec>(m, "ParameterSpec", "A parameter of a law or a reference.")
-      .def_readonly("name", &TagSpec::name)
-      .def_readonly("unit", &TagSpec::unit)
-      .def_readonly("default", &TagSpec::fallback)
-      .def_readonly("meaning", &TagSpec::meaning)
-      .def_readonly("equation", &TagSpec::equation)
-      .def_property_readonly("is_flag",
-                             [](const TagSpec& spec) { return spec.kind == TagKind::flag; })
-      .def_property_readonly("range", [](const TagSpec& spec) { return spec.range(); });
+      .def_readonly("name", &TagSpec::name, "Of the parameter.")
+      .def_readonly("unit", &TagSpec::unit, "\"\" without one.")
+      .def_readonly("default", &TagSpec::fallback, "As text.")
+      .def_readonly("meaning", &TagSpec::meaning, "In one line.")
+      .def_readonly("equation", &TagSpec::equation,
+                    "Where it stands in the source; \"\" if nowhere.")
+      .def_property_readonly(
+          "is_flag", [](const TagSpec& spec) { return spec.kind == TagKind::flag; },
+          "Whether it is true or false.")
+      .def_property_readonly(
+          "range", [](const TagSpec& spec) { return spec.range(); },
+          "Values that it may have, for a person.");
 
   py::class_<Reference>(m, "Reference", "Where a vehicle is to be, with derivatives, world axes.")
+      .def("__repr__",
+           [](const Reference& r) {
+             return py::str("Reference(position={}, velocity={}, acceleration={}, yaw={:.6g}, ...)")
+                 .format(r.position, r.velocity, r.acceleration, r.yaw);
+           })
       .def(py::init<>())
-      .def_readwrite("position", &Reference::position)
-      .def_readwrite("velocity", &Reference::velocity)
-      .def_readwrite("acceleration", &Reference::acceleration)
-      .def_readwrite("jerk", &Reference::jerk)
-      .def_readwrite("snap", &Reference::snap)
-      .def_readwrite("yaw", &Reference::yaw)
-      .def_readwrite("yaw_rate", &Reference::yaw_rate)
-      .def_readwrite("yaw_acceleration", &Reference::yaw_acceleration);
+      .def_readwrite("position", &Reference::position, "Of the frame's origin, m; shape (3,).")
+      .def_readwrite("velocity", &Reference::velocity, "m/s; shape (3,).")
+      .def_readwrite("acceleration", &Reference::acceleration, "m/s^2; shape (3,).")
+      .def_readwrite("jerk", &Reference::jerk, "m/s^3; shape (3,).")
+      .def_readwrite("snap", &Reference::snap, "m/s^4; shape (3,).")
+      .def_readwrite("yaw", &Reference::yaw, "rad.")
+      .def_readwrite("yaw_rate", &Reference::yaw_rate, "rad/s.")
+      .def_readwrite("yaw_acceleration", &Reference::yaw_acceleration, "rad/s^2.");
 
   py::class_<ReferenceShape>(m, "ReferenceShape", "A reference at any time.")
       .def(py::init([](const std::string& name, const Values& values, const py::object& rows) {
              return control::make_reference(name, values, rows_of(rows));
            }),
            py::arg("name"), py::arg("values"), py::arg("rows") = py::none())
-      .def("at", &ReferenceShape::at, py::arg("t"))
-      .def("places", &places, py::arg("times"))
-      .def_property_readonly("end", &ReferenceShape::end);
+      .def("at", &ReferenceShape::at, py::arg("t"), "Where the vehicle is to be at a time [s].")
+      .def("places", &places, py::arg("times"),
+           "Position [m] and yaw [rad] at each of some times [s]; shape (n, 4).")
+      .def_property_readonly(
+          "end", &ReferenceShape::end,
+          "From when on nothing moves any more, s; infinite if that never comes.");
 
   py::class_<FlownLaw>(m, "Controller", "A law that flies one vehicle.")
       .def(
@@ -176,9 +188,12 @@ void bind_control(py::module_& m) {
             }
             return flown.command(period, odometry(state), wanted);
           },
-          py::arg("period"), py::arg("state"), py::arg("reference"))
+          py::arg("period"), py::arg("state"), py::arg("reference"),
+          "Rotor speeds to command for a period [s], signed, rad/s; shape (n,). The state is what "
+          "an odometry says.")
       .def("command_at", &command_at, py::arg("period"), py::arg("simulation"), py::arg("sensed"),
-           py::arg("shape"))
+           py::arg("shape"),
+           "The same from what stands on a topic and from a shape at the simulation's time.")
       .def_property_readonly(
           "saturated",
           [](const FlownLaw& flown) { return Controller::saturated(flown.state.data()); },
@@ -201,7 +216,9 @@ void bind_control(py::module_& m) {
                 period, odometry(state),
                 control::AttitudeThrust{orientation(wanted, "orientation"), thrust});
           },
-          py::arg("period"), py::arg("state"), py::arg("orientation"), py::arg("thrust"))
+          py::arg("period"), py::arg("state"), py::arg("orientation"), py::arg("thrust"),
+          "Rotor speeds, rad/s, shape (n,), for an orientation (quaternion x, y, z, w) and a "
+          "thrust [N].")
       .def(
           "rates",
           [](FlownInnerLoop& flown, double period, const py::object& state,
@@ -209,9 +226,18 @@ void bind_control(py::module_& m) {
             return flown.command(period, odometry(state),
                                  control::RatesThrust{vector(wanted, "angular_velocity"), thrust});
           },
-          py::arg("period"), py::arg("state"), py::arg("angular_velocity"), py::arg("thrust"));
+          py::arg("period"), py::arg("state"), py::arg("angular_velocity"), py::arg("thrust"),
+          "Rotor speeds, rad/s, shape (n,), for an angular velocity (body axes, rad/s) and a "
+          "thrust [N].");
   m.def("inner_loop", [] { return control::InnerLoop::table(); }, "Parameters of the inner loop.");
 
+  m.def(
+      "hover_commands",
+      [](const Self& self, const std::vector<double>& spins) {
+        return control::hover_commands(describe(self), spins);
+      },
+      py::arg("simulation"), py::arg("spins"),
+      "Speeds with which the vehicle hovers level, signed, rad/s; shape (n,).");
   m.def("start_on", &start, py::arg("simulation"), py::arg("reference"), py::arg("spins"),
         "Members of the state of a vehicle that follows a reference exactly.");
   m.def(

@@ -84,7 +84,7 @@ void bind_flight(py::module_& m) {
       .def(py::init(&create_flight), py::arg("simulation"), py::arg("commands"),
            py::arg("log_every"), py::arg("wrenches") = true,
            py::arg("topics") = std::vector<std::string>{})
-      .def("advance", &advance, py::arg("n"))
+      .def("advance", &advance, py::arg("n"), "Flies n steps; raises as `Simulation.step` does.")
       .def("take", &take,
            "Hands over what was logged since the last call: table (rows, columns) and wrenches "
            "(rows, terms, 6), the latter without rows unless asked for.");
@@ -98,7 +98,8 @@ void bind_flight(py::module_& m) {
         return std::pair{fault->row, fault->what};
       },
       py::arg("table"), "Row and reason why a table (rows, 1 + n) is none of commands, or None.");
-  m.def("log_columns", py::overload_cast<std::size_t>(&log_columns), py::arg("rotor_count"));
+  m.def("log_columns", py::overload_cast<std::size_t>(&log_columns), py::arg("rotor_count"),
+        "Names of the columns of a log's table for so many rotors, as they head a CSV file.");
   m.def(
       "flight_columns",
       [](const Self& self, const std::vector<std::string>& topics) {
@@ -107,7 +108,8 @@ void bind_flight(py::module_& m) {
       },
       py::arg("simulation"), py::arg("topics"),
       "Names of the columns of a flight that logs these topics.");
-  m.def("log_remark", &log_remark, py::arg("ignored"));
+  m.def("log_remark", &log_remark, py::arg("ignored"),
+        "Comment of a log on what was ignored; \"\" if nothing was.");
   m.def("csv_rows", &csv_rows, py::arg("table"),
         "Rows of a table as CSV with the fewest digits that restore every bit.");
 }

@@ -1,8 +1,10 @@
 #include "quadcore/model.hpp"
 
 #include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include "arguments.hpp"
 #include "bindings.hpp"
 #include "built.hpp"
 #include "quadcore/document.hpp"
@@ -38,6 +40,18 @@ Places joint_places(const Model& model) {
   return places;
 }
 
+/// Pose i: of link i in the frame [m], as a homogeneous matrix.
+py::array_t<double> poses_of_links(const Model& model) {
+  const std::vector<Eigen::Isometry3d> poses = link_poses(model);
+  py::array_t<double> matrices(
+      {static_cast<py::ssize_t>(poses.size()), py::ssize_t{4}, py::ssize_t{4}});
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    Eigen::Map<Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(matrices.mutable_data() + 16 * i) =
+        poses[i].matrix();
+  }
+  return matrices;
+}
+
 /// Pickles by the document, and reads that again: no path, and nothing that could be torn.
 template <class Read>
 auto by_document(Read (*read)(const Document&, const std::vector<std::string>&)) {
@@ -60,16 +74,25 @@ auto by_document(Read (*read)(const Document&, const std::vector<std::string>&))
 }  // namespace
 
 void bind_model(py::module_& m) {
-  py::class_<Document>(m, "Document", "An XML text and where its lines came from.")
+  py::class_<Document>(m, "Document", R"(An XML text and where its lines came from.
+
+Attributes
+----------
+largest : int
+    Bytes that a text may have.
+most_levels, most_attributes : int
+    Levels of elements that a text may have, and attributes of one element.)")
       .def(py::init([](std::string name, std::string text,
                        std::vector<std::pair<std::string, int>> lines) {
              return Document{std::move(name), std::move(text), std::move(lines)};
            }),
            py::arg("name"), py::arg("text"),
            py::arg("lines") = std::vector<std::pair<std::string, int>>{})
-      .def_readonly("name", &Document::name)
-      .def_readonly("text", &Document::text)
-      .def_readonly("lines", &Document::lines)
+      .def_readonly("name", &Document::name, "File that it is, for errors.")
+      .def_readonly("text", &Document::text, "The XML.")
+      .def_readonly("lines", &Document::lines,
+                    "File and line that each line of an expanded text stems from; empty if the "
+                    "text is the file.")
       .def_property_readonly_static("largest", [](const py::object&) { return Document::largest; })
       .def_property_readonly_static("most_levels",
                                     [](const py::object&) { return Document::most_levels; })
@@ -77,81 +100,145 @@ void bind_model(py::module_& m) {
                                     [](const py::object&) { return Document::most_attributes; });
 
   py::class_<PassedOver>(m, "PassedOver", "What a reader met and did not take in.")
-      .def_property_readonly("ignored", &PassedOver::ignored)
-      .def_property_readonly("warning", &PassedOver::warning);
+      .def_property_readonly("ignored", &PassedOver::ignored,
+                             "Names of what was left out because the user asked for it.")
+      .def_property_readonly(
+          "warning", &PassedOver::warning,
+          "What was left out because nothing feels it, in one line; \"\" if nothing was.");
 
   py::class_<Unfelt>(m, "Unfelt", "An element or a module that no vehicle feels.")
-      .def_readonly("name", &Unfelt::name)
-      .def_readonly("parent", &Unfelt::parent)
-      .def_readonly("what", &Unfelt::what);
+      .def_readonly("name", &Unfelt::name, "Of the element, or file name of the module.")
+      .def_readonly("parent", &Unfelt::parent,
+                    "Element around it, such as \"robot/link\"; \"\" for a module.")
+      .def_readonly("what", &Unfelt::what, "What it is.");
 
   py::class_<Collision>(m, "Collision", "A shape that may touch the ground.")
-      .def_readonly("where", &Collision::where)
-      .def_property_readonly("size", [](const Collision& c) -> Vector3d { return c.size; })
-      .def_property_readonly("xyz", [](const Collision& c) -> Vector3d { return c.pose.xyz; })
-      .def_property_readonly("rpy", [](const Collision& c) -> Vector3d { return c.pose.rpy; });
+      .def_readonly("where", &Collision::where, "FILE:LINE.")
+      .def_property_readonly(
+          "size", [](const Collision& c) -> Vector3d { return c.size; },
+          "Box x, y, z; cylinder radius, length, 0; sphere radius, 0, 0; m, shape (3,).")
+      .def_property_readonly(
+          "xyz", [](const Collision& c) -> Vector3d { return c.pose.xyz; },
+          "Place in the link's axes, m; shape (3,).")
+      .def_property_readonly(
+          "rpy", [](const Collision& c) -> Vector3d { return c.pose.rpy; },
+          "Roll, pitch, yaw in the link, rad; shape (3,).");
 
   py::class_<Link>(m, "Link", "A moving body: a link and every link fixed to it.")
-      .def_readonly("name", &Link::name)
-      .def_readonly("where", &Link::where)
-      .def_property_readonly("mass", [](const Link& link) { return link.inertial.mass; })
-      .def_property_readonly("center_of_mass",
-                             [](const Link& link) -> Vector3d { return link.inertial.pose.xyz; })
-      .def_property_readonly("inertia",
-                             [](const Link& link) { return link.inertial.inertia_in_link_axes(); })
-      .def_readonly("collisions", &Link::collisions);
+      .def_readonly("name", &Link::name, "Of the link that carries those fixed to it.")
+      .def_readonly("where", &Link::where, "FILE:LINE.")
+      .def_property_readonly(
+          "mass", [](const Link& link) { return link.inertial.mass; }, "kg.")
+      .def_property_readonly(
+          "center_of_mass", [](const Link& link) -> Vector3d { return link.inertial.pose.xyz; },
+          "In the link's axes, from its origin, m; shape (3,).")
+      .def_property_readonly(
+          "inertia", [](const Link& link) { return link.inertial.inertia_in_link_axes(); },
+          "About the centre of mass, along the link's axes, kg m^2; shape (3, 3).")
+      .def("__repr__",
+           [](const Link& link) {
+             return py::str("<Link '{}', {:.6g} kg>").format(text(link.name), link.inertial.mass);
+           })
+      .def_readonly("collisions", &Link::collisions,
+                    "Shapes that may touch the ground, list of Collision.");
 
   py::class_<Joint>(m, "Joint", "A continuous joint.")
-      .def_readonly("name", &Joint::name)
-      .def_readonly("where", &Joint::where)
-      .def_readonly("damping", &Joint::damping)
-      .def_property_readonly("axis", [](const Joint& joint) -> Vector3d { return joint.axis; })
-      .def_property_readonly("xyz", [](const Joint& joint) -> Vector3d { return joint.pose.xyz; })
-      .def_property_readonly("rpy", [](const Joint& joint) -> Vector3d { return joint.pose.rpy; });
+      .def("__repr__",
+           [](const Joint& joint) { return py::str("<Joint '{}'>").format(text(joint.name)); })
+      .def_readonly("name", &Joint::name, "Of the joint.")
+      .def_readonly("where", &Joint::where, "FILE:LINE.")
+      .def_readonly("damping", &Joint::damping, "N m s/rad.")
+      .def_property_readonly(
+          "axis", [](const Joint& joint) -> Vector3d { return joint.axis; },
+          "Unit vector in the child link's axes; a positive velocity turns about it by the "
+          "right-hand rule; shape (3,).")
+      .def_property_readonly(
+          "xyz", [](const Joint& joint) -> Vector3d { return joint.pose.xyz; },
+          "Origin of the child link in the parent link, m; shape (3,).")
+      .def_property_readonly(
+          "rpy", [](const Joint& joint) -> Vector3d { return joint.pose.rpy; },
+          "Roll, pitch, yaw of the child link in the parent link at angle zero, rad; shape (3,).");
 
   py::class_<Model, std::shared_ptr<Model>>(m, "Model", "A vehicle: bodies, joints, plugins.")
-      .def_property_readonly("name", [](const Built<Model>& held) { return held->name; })
-      .def_property_readonly("links", [](const Built<Model>& held) { return held->links; })
-      .def_property_readonly("joints", [](const Built<Model>& held) { return held->joints; })
-      .def_property_readonly("joint_places",
-                             [](const Built<Model>& held) { return joint_places(*held); })
-      .def_property_readonly("warnings", [](const Built<Model>& held) { return held->warnings; })
-      .def_property_readonly("passed_over",
-                             [](const Built<Model>& held) { return held->passed_over; })
       .def_property_readonly(
-          "document", [](const Built<Model>& held) { return source_of(held->source).document; })
+          "name", [](const Built<Model>& held) { return held->name; }, "Of the robot.")
+      .def_property_readonly(
+          "links", [](const Built<Model>& held) { return held->links; },
+          "Bodies, list of Link: the frame, then of each joint the link that it carries.")
+      .def_property_readonly(
+          "joints", [](const Built<Model>& held) { return held->joints; },
+          "Continuous joints in the file's order, list of Joint.")
+      .def_property_readonly(
+          "link_poses", [](const Built<Model>& held) { return poses_of_links(*held); },
+          "Pose of each of `links` in the frame, all joints at angle zero: homogeneous matrices, "
+          "m; shape (n + 1, 4, 4).")
+      .def_property_readonly(
+          "joint_places", [](const Built<Model>& held) { return joint_places(*held); },
+          "Origin of each joint's link from the frame's, in the frame's axes, all joints at angle "
+          "zero, m; shape (n, 3).")
+      .def_property_readonly(
+          "warnings", [](const Built<Model>& held) { return held->warnings; },
+          "What is allowed but was perhaps not meant, list of str.")
+      .def_property_readonly(
+          "passed_over", [](const Built<Model>& held) { return held->passed_over; },
+          "What the reader did not take in.")
+      .def_property_readonly(
+          "document", [](const Built<Model>& held) { return source_of(held->source).document; },
+          "The text that it was read from.")
+      .def("__repr__",
+           [](const Built<Model>& held) {
+             return py::str("<Model '{}', {:.6g} kg, {} rotors>")
+                 .format(text(held->name), mass_properties(*held).mass, held->joints.size());
+           })
       .def(by_document(&read_model));
 
   py::class_<World, std::shared_ptr<World>>(m, "World", "What a world file sets.")
-      .def_property_readonly("gravity",
-                             [](const Built<World>& held) -> Vector3d { return held->gravity_W; })
-      .def_property_readonly("wind",
-                             [](const Built<World>& held) -> Vector3d { return held->wind_W; })
+      .def_property_readonly(
+          "gravity", [](const Built<World>& held) -> Vector3d { return held->gravity_W; },
+          "World axes, m/s^2; shape (3,).")
+      .def_property_readonly(
+          "wind", [](const Built<World>& held) -> Vector3d { return held->wind_W; },
+          "Velocity of the air, world axes, m/s; shape (3,).")
       .def_property_readonly(
           "magnetic_field",
-          [](const Built<World>& held) -> Vector3d { return held->magnetic_field_W; })
-      .def_property_readonly("max_step_size",
-                             [](const Built<World>& held) { return held->max_step_size; })
-      .def_property_readonly("real_time_update_rate",
-                             [](const Built<World>& held) { return held->real_time_update_rate; })
-      .def_property_readonly("ground_plane",
-                             [](const Built<World>& held) { return held->ground_plane; })
-      .def_property_readonly("passed_over",
-                             [](const Built<World>& held) { return held->passed_over; })
+          [](const Built<World>& held) -> Vector3d { return held->magnetic_field_W; },
+          "World axes (x east, y north, z up), T; shape (3,).")
       .def_property_readonly(
-          "document", [](const Built<World>& held) { return source_of(held->source).document; })
+          "max_step_size", [](const Built<World>& held) { return held->max_step_size; },
+          "Length of a step unless a simulation is given another, s.")
+      .def_property_readonly(
+          "real_time_update_rate",
+          [](const Built<World>& held) { return held->real_time_update_rate; },
+          "Steps per second of real time of what paces itself; 0 is as fast as possible.")
+      .def_property_readonly(
+          "ground_plane", [](const Built<World>& held) { return held->ground_plane; },
+          "Whether there is ground at z = 0.")
+      .def_property_readonly(
+          "passed_over", [](const Built<World>& held) { return held->passed_over; },
+          "What the reader did not take in.")
+      .def_property_readonly(
+          "document", [](const Built<World>& held) { return source_of(held->source).document; },
+          "The text that it was read from.")
+      .def("__repr__",
+           [](const Built<World>& held) {
+             const Vector3d& g = held->gravity_W;
+             return py::str("<World, gravity ({:g}, {:g}, {:g}) m/s^2, steps of {:g} s, {}>")
+                 .format(g.x(), g.y(), g.z(), held->max_step_size,
+                         held->ground_plane ? "ground" : "no ground");
+           })
       .def(by_document(&read_world));
 
   m.def("parse_number", &parse_number, py::arg("text"),
         "The finite number that a text is, as in a URDF; None otherwise.");
   py::class_<GazeboTag>(m, "GazeboTag", "What a <gazebo reference> may hold.")
-      .def_readonly("name", &GazeboTag::name)
-      .def_readonly("of", &GazeboTag::of)
-      .def_readonly("felt_by", &GazeboTag::felt_by)
-      .def_readonly("unit", &GazeboTag::unit)
-      .def_readonly("default", &GazeboTag::fallback)
-      .def_readonly("range", &GazeboTag::range)
-      .def_readonly("meaning", &GazeboTag::meaning);
+      .def_readonly("name", &GazeboTag::name, "Of the tag.")
+      .def_readonly("of", &GazeboTag::of, "What the reference must name: link or joint.")
+      .def_readonly("felt_by", &GazeboTag::felt_by,
+                    "What feels it: shapes, body or joint; \"\" if nothing does.")
+      .def_readonly("unit", &GazeboTag::unit, "\"\" without one.")
+      .def_readonly("default", &GazeboTag::fallback, "Value without the tag; \"\" without one.")
+      .def_readonly("range", &GazeboTag::range, "Values that it may have, for a person.")
+      .def_readonly("meaning", &GazeboTag::meaning, "In one line.");
   m.def("gazebo_tags", &gazebo_tags, "What a <gazebo reference> may hold, the felt tags first.");
 
   const auto nothing = std::vector<std::string>{};

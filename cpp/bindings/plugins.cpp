@@ -40,34 +40,68 @@ const char* kind_of(const Parameter& parameter) {
 
 void bind_plugins(py::module_& m) {
   py::class_<Parameter>(m, "ParameterInfo", "One effective parameter of a plugin.")
-      .def_property_readonly("name", [](const Parameter& p) { return text(p.spec.name); })
+      .def("__repr__",
+           [](const Parameter& p) {
+             return py::str("<ParameterInfo {} = {}>")
+                 .format(text(p.spec.name), text(p.text.empty() ? p.spec.absent : p.text));
+           })
       .def_property_readonly(
-          "value", [](const Parameter& p) { return p.text.empty() ? p.spec.absent : p.text; })
-      .def_property_readonly("kind", &kind_of)
-      .def_property_readonly("text", [](const Parameter& p) { return text(p.text); })
-      .def_property_readonly("file", [](const Parameter& p) { return file_name(p.file); })
-      .def_property_readonly("unit", [](const Parameter& p) { return text(p.spec.unit); })
-      .def_property_readonly("default",
-                             [](const Parameter& p) -> std::optional<std::string> {
-                               if (p.spec.required) return std::nullopt;
-                               return p.spec.fallback.empty() ? p.spec.absent : p.spec.fallback;
-                             })
-      .def_property_readonly("range", [](const Parameter& p) { return p.spec.range(); })
-      .def_property_readonly("meaning", [](const Parameter& p) { return text(p.spec.meaning); })
-      .def_property_readonly("equation", [](const Parameter& p) { return text(p.spec.equation); })
-      .def_property_readonly("alias", [](const Parameter& p) { return text(p.spec.alias); })
-      .def_readonly("origin", &Parameter::origin);
+          "name", [](const Parameter& p) { return text(p.spec.name); }, "Of the tag.")
+      .def_property_readonly(
+          "value", [](const Parameter& p) { return p.text.empty() ? p.spec.absent : p.text; },
+          "That is in effect, as text.")
+      .def_property_readonly(
+          "kind", &kind_of,
+          "What it is written as: number, numbers, flag, choice, text, file, link or joints.")
+      .def_property_readonly(
+          "text", [](const Parameter& p) { return text(p.text); },
+          "As the file or the caller has it; \"\" where neither does.")
+      .def_property_readonly(
+          "file", [](const Parameter& p) { return file_name(p.file); },
+          "Path that it leads to; \"\" unless its kind is file.")
+      .def_property_readonly(
+          "unit", [](const Parameter& p) { return text(p.spec.unit); }, "\"\" without one.")
+      .def_property_readonly(
+          "default",
+          [](const Parameter& p) -> std::optional<std::string> {
+            if (p.spec.required) return std::nullopt;
+            return p.spec.fallback.empty() ? p.spec.absent : p.spec.fallback;
+          },
+          "Value without the tag; None if the tag is required.")
+      .def_property_readonly(
+          "range", [](const Parameter& p) { return p.spec.range(); },
+          "Values that it may have, for a person.")
+      .def_property_readonly(
+          "meaning", [](const Parameter& p) { return text(p.spec.meaning); }, "In one line.")
+      .def_property_readonly(
+          "equation", [](const Parameter& p) { return text(p.spec.equation); },
+          "Where it stands in the source; \"\" if nowhere.")
+      .def_property_readonly(
+          "alias", [](const Parameter& p) { return text(p.spec.alias); },
+          "Second name of the tag; \"\" without one.")
+      .def_readonly("origin", &Parameter::origin,
+                    "Where the value is from: FILE:LINE, \"default\", or \"set\" by the caller.");
 
   py::class_<LoadedPlugin>(m, "PluginInfo", "A loaded plugin.")
-      .def_readonly("name", &LoadedPlugin::name)
-      .def_readonly("filename", &LoadedPlugin::filename)
-      .def_property_readonly("path", [](const LoadedPlugin& p) { return file_name(p.path); })
-      .def_property_readonly("summary",
-                             [](const LoadedPlugin& p) { return text(p.descriptor->summary); })
-      .def_property_readonly("wrenches",
-                             [](const LoadedPlugin& p) { return p.descriptor->wrenches; })
-      .def_property_readonly("parameters",
-                             [](const LoadedPlugin& p) { return p.parameters.all(); });
+      .def("__repr__",
+           [](const LoadedPlugin& p) {
+             return py::str("<PluginInfo '{}', {}>").format(text(p.name), text(p.filename));
+           })
+      .def_readonly("name", &LoadedPlugin::name,
+                    "The plugin tag's attribute, which PLUGIN.TAG begins with.")
+      .def_readonly("filename", &LoadedPlugin::filename, "Of the module, as the tag has it.")
+      .def_property_readonly(
+          "path", [](const LoadedPlugin& p) { return file_name(p.path); },
+          "Of the module that was loaded.")
+      .def_property_readonly(
+          "summary", [](const LoadedPlugin& p) { return text(p.descriptor->summary); },
+          "What it does, in one line.")
+      .def_property_readonly(
+          "wrenches", [](const LoadedPlugin& p) { return p.descriptor->wrenches; },
+          "Names of the wrenches that it reports, list of str.")
+      .def_property_readonly(
+          "parameters", [](const LoadedPlugin& p) { return p.parameters.all(); },
+          "Every tag that it knows, list of ParameterInfo.");
 
   m.def(
       "load_plugin_path", [](const py::object& folder) { load_plugin_path(path_of(folder)); },

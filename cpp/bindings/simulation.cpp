@@ -154,12 +154,37 @@ void move_by(const Self& self, const py::function& motion) {
 }  // namespace
 
 void bind_simulation(py::module_& m) {
-  py::class_<Guarded, std::shared_ptr<Guarded>> simulation(m, "Simulation", py::dynamic_attr());
+  py::class_<Guarded, std::shared_ptr<Guarded>> simulation(
+      m, "Simulation", py::dynamic_attr(), "One vehicle in one world; use quadcore.Simulation.");
   simulation
       .def(py::init(&create_simulation), py::arg("model"), py::arg("world"), py::arg("engine"),
            py::arg("dt"), py::arg("seed"), py::arg("parameters"), py::arg("spawn"))
-      .def("command", &set_command, py::arg("speeds"))
-      .def("step", &step, py::arg("n") = 1)
+      .def("command", &set_command, py::arg("speeds"),
+           R"(Publish rotor speeds, which hold until the next ones.
+
+Parameters
+----------
+speeds : array_like (n,)
+    Signed, before the division by sim_slow, rad/s; n is `command_width`. A positive speed
+    turns about the joint's axis by the right-hand rule.
+
+Raises
+------
+InputError
+    Another count, a number that is not finite, or a plugin that commands; nothing was changed.)")
+      .def("step", &step, py::arg("n") = 1, R"(Advance by whole steps of `dt`, without the GIL.
+
+Parameters
+----------
+n : int
+    How many.
+
+Raises
+------
+FlightError
+    The flight failed, with `time` and reason; restore, reset and set_state go on from there.
+InputError
+    Another thread is stepping this simulation.)")
       .def(
           "set_state",
           [](const Self& self, const py::object& object) {
@@ -167,12 +192,30 @@ void bind_simulation(py::module_& m) {
             const Lock lock(*self);
             raising_warnings(*self, [&] { self->set_state(state); });
           },
-          py::arg("state"))
-      .def("snapshot",
-           [](const Self& self) {
-             const Lock lock(*self);
-             return self->snapshot();
-           })
+          py::arg("state"), R"(Move the vehicle into a state; what plugins remember stays.
+
+Parameters
+----------
+state : State
+    As `state.copy()` gives it, or what has the same members.
+
+Raises
+------
+InputError
+    Members of other sizes, a number that is not finite, or a quaternion that is none; nothing
+    was changed.)")
+      .def(
+          "snapshot",
+          [](const Self& self) {
+            const Lock lock(*self);
+            return self->snapshot();
+          },
+          R"(Take down all that the future depends on.
+
+Returns
+-------
+Snapshot
+    For `restore`; can be pickled.)")
       .def(
           "restore",
           [](const Self& self, const Built<Snapshot>& snapshot,
@@ -180,46 +223,76 @@ void bind_simulation(py::module_& m) {
             const Lock lock(*self);
             self->restore(*snapshot, Allowed::of(allow));
           },
-          py::arg("snapshot"), py::arg("allow"))
+          py::arg("snapshot"), py::arg("allow"),
+          "Go back to a snapshot; `allow` names what may differ.")
       .def(
           "reset",
           [](const Self& self, const std::optional<std::uint64_t>& seed) {
             const Lock lock(*self);
             seed ? self->reset(*seed) : self->reset();
           },
-          py::arg("seed"))
-      .def_property_readonly("time", [](const Self& self) { return self->time(); })
-      .def_property_readonly("dt", [](const Self& self) { return self->dt(); })
-      .def_property_readonly("engine", [](const Self& self) { return self->engine_name(); })
-      .def_property_readonly("method", locked([](const Simulation& s) { return s.method(); }))
-      .def_property_readonly("model", locked([](const Simulation& s) { return s.model(); }))
-      .def_property_readonly("warnings", [](const Self& self) { return self->warnings(); })
-      .def_property_readonly("ignored", [](const Self& self) { return self->ignored(); })
+          py::arg("seed"),
+          "Go back to the moment of construction, as if made with `seed`; None keeps it.")
+      .def_property_readonly(
+          "time", [](const Self& self) { return self->time(); }, "Simulation time, s.")
+      .def_property_readonly(
+          "dt", [](const Self& self) { return self->dt(); }, "Length of a step, s.")
+      .def_property_readonly(
+          "engine", [](const Self& self) { return self->engine_name(); }, "Name of the engine.")
+      .def_property_readonly("method", locked([](const Simulation& s) { return s.method(); }),
+                             "How the engine takes its steps, in one line.")
+      .def_property_readonly(
+          "model", locked([](const Simulation& s) { return s.model(); }),
+          "The vehicle as the engine flies it, with what rides on its frame now.")
+      .def_property_readonly(
+          "warnings", [](const Self& self) { return self->warnings(); },
+          "What was perhaps not meant, of the model and of this flight, list of str.")
+      .def_property_readonly(
+          "ignored", [](const Self& self) { return self->ignored(); },
+          "What was left out of model and world at the user's wish, list of str.")
       .def_property_readonly(
           "plugins", [](const Self& self) { return &self->plugins(); },
-          py::return_value_policy::reference_internal)
-      .def_property_readonly("rotor_count", [](const Self& self) { return self->rotor_count(); })
-      .def_property_readonly("rotor_names", [](const Self& self) { return self->rotor_names(); })
-      .def_property_readonly("command_width",
-                             [](const Self& self) { return self->command_width(); })
+          py::return_value_policy::reference_internal,
+          "Loaded plugins in the order of the URDF, list of PluginInfo.")
       .def_property_readonly(
-          "mass", locked([](const Simulation& s) { return mass_properties(s.model()).mass; }))
-      .def_property_readonly("center_of_mass", locked([](const Simulation& s) -> Vector3d {
-                               return mass_properties(s.model()).p_FCcm;
-                             }))
+          "rotor_count", [](const Self& self) { return self->rotor_count(); },
+          "Number of rotor joints.")
+      .def_property_readonly(
+          "rotor_names", [](const Self& self) { return self->rotor_names(); },
+          "Of the rotor joints, in the order of all that is said of rotors, list of str.")
+      .def_property_readonly(
+          "command_width", [](const Self& self) { return self->command_width(); },
+          "Numbers of a command. Raises InputError if no plugin takes one.")
+      .def_property_readonly(
+          "mass", locked([](const Simulation& s) { return mass_properties(s.model()).mass; }),
+          "Of the whole vehicle, kg.")
+      .def_property_readonly(
+          "center_of_mass",
+          locked([](const Simulation& s) -> Vector3d { return mass_properties(s.model()).p_FCcm; }),
+          "Of the whole vehicle, from the frame's origin, frame axes, m; shape (3,).")
       .def_property_readonly("inertia", locked([](const Simulation& s) {
                                return mass_properties(s.model()).inertia_Ccm_F;
-                             }))
-      .def_property_readonly("wrench_terms", [](const Self& self) { return self->wrench_terms(); })
+                             }),
+                             "Of the whole vehicle, rotors included, about its centre of mass, "
+                             "frame axes, kg m^2; shape (3, 3).")
+      .def_property_readonly(
+          "gravity", [](const Self& self) -> Vector3d { return self->world().gravity_W; },
+          "World axes, m/s^2; shape (3,).")
+      .def_property_readonly(
+          "wrench_terms", [](const Self& self) { return self->wrench_terms(); },
+          "Names of the wrenches that a log can have, list of str.")
       .def("_views", &views)
       .def("_move_by", &move_by, py::arg("motion"));
   bind_topics(m, simulation);
 
-  m.def("engines", [] {
-    std::vector<std::pair<std::string, std::string>> list;
-    for (const EngineInfo& info : engines()) list.emplace_back(info.name, info.summary);
-    return list;
-  });
+  m.def(
+      "engines",
+      [] {
+        std::vector<std::pair<std::string, std::string>> list;
+        for (const EngineInfo& info : engines()) list.emplace_back(info.name, info.summary);
+        return list;
+      },
+      "Name and summary of every engine, list of pairs of str.");
 }
 
 }  // namespace quadcore::bindings

@@ -97,6 +97,11 @@ void bind_snapshot(py::module_& m) {
       m, "Snapshot",
       "Everything that the future of a simulation depends on. Pickled, it holds numbers and texts "
       "and no path.")
+      .def("__repr__",
+           [](const Built<Snapshot>& held) {
+             return py::str("<Snapshot, {} steps from t = {:g} s>")
+                 .format(held->steps, held->start_time);
+           })
       .def(py::pickle(&saved, &restored));
 }
 

@@ -58,17 +58,43 @@ void publish(const Self& self, const std::string& name, const py::object& values
 
 void bind_topics(py::module_& m, py::class_<Guarded, std::shared_ptr<Guarded>>& simulation) {
   py::class_<TopicInfo>(m, "TopicInfo", "What plugins have declared of a topic.")
-      .def_readonly("name", &TopicInfo::name)
-      .def_property_readonly("kind", [](const TopicInfo& t) { return text(t.kind); })
-      .def_readonly("fields", &TopicInfo::fields)
-      .def_readonly("writer", &TopicInfo::writer)
-      .def_readonly("readers", &TopicInfo::readers);
+      .def("__repr__",
+           [](const TopicInfo& t) {
+             return py::str("<TopicInfo '{}', {}>").format(text(t.name), text(t.kind));
+           })
+      .def_readonly("name", &TopicInfo::name, "Of the topic.")
+      .def_property_readonly(
+          "kind", [](const TopicInfo& t) { return text(t.kind); },
+          "Of its messages, such as \"odometry\".")
+      .def_readonly("fields", &TopicInfo::fields,
+                    "Names of a message's numbers, in order, list of str.")
+      .def_readonly("writer", &TopicInfo::writer,
+                    "Plugin that publishes on it; None: the caller may.")
+      .def_readonly("readers", &TopicInfo::readers, "Plugins that take it, list of str.");
   m.def("odometry_parts", &messages::parts_of<messages::Odometry>,
         "Quantities of an odometry message and the fields that each is.");
   simulation.attr("command_topic") = Simulation::command_topic;
-  simulation.def("topic", &topic, py::arg("name"))
-      .def("publish", &publish, py::arg("topic"), py::arg("values"))
-      .def_property_readonly("topics", &topics);
+  simulation
+      .def("topic", &topic, py::arg("name"), R"(Give the message that stands on a topic.
+
+Parameters
+----------
+name : str
+    One of `topics`.
+
+Returns
+-------
+dict of str to float
+    ``stamp`` (s), ``count`` (of the messages so far), and each field of the topic.
+
+Raises
+------
+InputError
+    There is no such topic.)")
+      .def(
+          "publish", &publish, py::arg("topic"), py::arg("values"),
+          "Publish a message on a topic that no plugin writes; numbers in the order of its fields.")
+      .def_property_readonly("topics", &topics, "Every topic by name, dict of str to TopicInfo.");
 }
 
 }  // namespace quadcore::bindings

@@ -241,6 +241,10 @@ class BatchSimulation(_core.Batch):
             raise InputError(f"mask is no array of {self.n} booleans; give one")
         super().reset(chosen, None if seed is None else self._seeds(seed))
 
+    def __repr__(self) -> str:
+        failed = sum(map(bool, self.failures))
+        return f"<BatchSimulation of {self.n} vehicles, {failed} failed, steps of {self.dt:g} s>"
+
     def _of_each(self, parameters: Mapping[str, Any]) -> List[Dict[str, str]]:
         """Write out the parameters of each vehicle."""
         common, own = {}, {}

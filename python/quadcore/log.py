@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import List, Mapping, Sequence, Tuple, Union
+from typing import Any, Dict, List, Mapping, Sequence, Tuple, Union
 
 import numpy as np
 
 from ._core import InputError
+from .extras import needed
 from .files import check_writable
 from .forks import LOCK
 from .formats import format_of, mat
-from .formats.rows import LogFile, split_columns
+from .formats.rows import LogFile, split_columns, wrench_columns
+from .parameters import did_you_mean
 from .trajectory import Trajectory
 
 PathLike = Union[str, "os.PathLike[str]"]
@@ -22,7 +24,10 @@ _READ = "logs are read from"
 
 
 class Log(Trajectory):
-    """States of a flight; see `Trajectory`. To be written and drawn."""
+    """States of a flight; see `Trajectory`. To be written and drawn.
+
+    ``log["x"]`` is a column by the name that it has in the CSV file.
+    """
 
     @classmethod
     def of_rows(
@@ -50,6 +55,55 @@ class Log(Trajectory):
         file = Path(path)
         read = format_of(file, _READ).read_log(file)
         return cls.of_rows(read.rows, read.columns, read.wrenches, read.ignored)
+
+    def to_dict(self) -> Dict[str, np.ndarray]:
+        """Name every column as the CSV file does, topics and wrenches included; shape (rows,)."""
+        named = dict(zip(self.columns, self.table.T))
+        for topic, fields in self.topics.items():
+            named.update((f"{topic}.{field}", column) for field, column in fields.items())
+        for term, wrench in self.wrenches.items():
+            named.update(zip(wrench_columns([term]), wrench.T))
+        return named
+
+    def to_dataframe(self) -> Any:
+        """Make a pandas DataFrame of every column of `to_dict`, indexed by the time ``t`` [s].
+
+        Raises
+        ------
+        InputError
+            pandas is not installed.
+        """
+        with needed("log.to_dataframe()", "pandas", "pandas"):
+            import pandas
+        return pandas.DataFrame(self.to_dict()).set_index("t")
+
+    def __getitem__(self, column: str) -> np.ndarray:
+        named = self.to_dict()
+        if column not in named:
+            near = did_you_mean(str(column), list(named))
+            raise InputError(f"log[{column!r}]: no such column{near}; log.to_dict() has them all")
+        return named[column]
+
+    def __iter__(self) -> Any:
+        raise TypeError("a log is iterated by its arrays, log.time say, or log.to_dict()")
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self.to_dict())
+
+    def __repr__(self) -> str:
+        flown = f" of {self.title}" if self.title else ""
+        span = f", t = {self.time[0]:g} to {self.time[-1]:g} s" if len(self) else ""
+        more = "".join(
+            f", {kind} {', '.join(names)}"
+            for kind, names in (("topics", self.topics), ("wrenches", self.wrenches))
+            if names
+        )
+        return f"<Log{flown}: {len(self)} rows{span}{more}>"
+
+    def _repr_html_(self) -> str:
+        from .notebook import log_html  # pictures need matplotlib
+
+        return log_html(self)
 
     def to_csv(self, path: PathLike) -> None:
         """Write `table` as text with the fewest digits that restore every bit.

@@ -5,13 +5,13 @@ from __future__ import annotations
 import io
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Sequence, Tuple
 
 import numpy as np
 
 from .colours import PALETTE
 from .files import atomic_write, make_folder
-from .rotation import roll_pitch_yaw
+from .rotation import continuous
 
 # Files need no window, and a wrong name of a toolkit for windows must not end a flight.
 _toolkit = os.environ.pop("MPLBACKEND", None)
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 # x, y, z keep theirs throughout.
 _XYZ = ("#d55e00", "#009e73", "#0072b2")
+_PLACES = ("x (m)", "y (m)", "z (m)")
+_ANGLES = ("roll (deg)", "pitch (deg)", "yaw (deg)")
 
 
 def draw(log: Trajectory, directory: Path) -> list[Path]:
@@ -74,9 +76,17 @@ def png(figure: Figure) -> bytes:
     return stream.getvalue()
 
 
+def glance(log: Trajectory) -> Figure:
+    """Draw position and attitude over time, side by side."""
+    figure, grid = panels(_title(log, "Position and attitude of the frame"), 3, 2)
+    _curves(grid[:, 0], log.time, log.position, _PLACES)
+    _curves(grid[:, 1], log.time, np.degrees(continuous(log.rpy)), _ANGLES)
+    return figure
+
+
 def _position(log: Trajectory) -> Figure:
     figure, grid = panels(_title(log, "Position of the frame"), 3)
-    _curves(grid[:, 0], log.time, log.position, ("x (m)", "y (m)", "z (m)"))
+    _curves(grid[:, 0], log.time, log.position, _PLACES)
     wanted = _wanted(log)
     if wanted is not None:
         for axes, curve in zip(grid[:, 0], wanted.T):
@@ -104,8 +114,7 @@ def _wanted(log: Trajectory) -> Any:
 
 def _attitude(log: Trajectory) -> Figure:
     figure, grid = panels(_title(log, "Attitude of the frame"), 3)
-    angles = np.degrees(np.unwrap(roll_pitch_yaw(log.orientation), axis=0))
-    _curves(grid[:, 0], log.time, angles, ("roll (deg)", "pitch (deg)", "yaw (deg)"))
+    _curves(grid[:, 0], log.time, np.degrees(continuous(log.rpy)), _ANGLES)
     return figure
 
 
@@ -157,15 +166,7 @@ def _wrenches(log: Trajectory) -> Figure:
 
 
 def _path(log: Trajectory) -> Figure:
-    figure = titled(_title(log, "Path of the frame"), 6, 6)
-    axes = figure.add_axes((0.0, 0.02, 0.94, 0.94), projection="3d")
-    # The same scale along all three axes, with room for flights that hardly move.
-    low, high = log.position.min(axis=0), log.position.max(axis=0)
-    reach = max((high - low).max() / 2, 0.1)
-    corner = (low + high) / 2 - reach
-    for name, start in zip("xyz", corner):
-        getattr(axes, f"set_{name}lim")(start, start + 2 * reach)
-        getattr(axes, f"set_{name}label")(f"{name} (m)")
+    figure, axes, corner = space(_title(log, "Path of the frame"), [log.position])
     x, y, z = log.position.T
     axes.plot(x, y, np.full_like(z, corner[2]), color="0.7", linewidth=1, label="seen from above")
     axes.plot(x, y, z, color=_XYZ[2], label="path")
@@ -176,6 +177,21 @@ def _path(log: Trajectory) -> Figure:
     axes.plot(x[-1:], y[-1:], z[-1:], "s", color="black", markersize=5, label="end")
     axes.legend(loc="upper right", frameon=False)
     return figure
+
+
+def space(title: str, paths: Sequence[np.ndarray]) -> Tuple[Figure, Any, np.ndarray]:
+    """Make a figure of axes in space with room for paths, each (rows, 3); and their low corner."""
+    figure = titled(title, 6, 6)
+    axes = figure.add_axes((0.0, 0.02, 0.94, 0.94), projection="3d")
+    # The same scale along all three axes, with room for flights that hardly move.
+    low = np.min([path.min(axis=0) for path in paths], axis=0)
+    high = np.max([path.max(axis=0) for path in paths], axis=0)
+    reach = max((high - low).max() / 2, 0.1)
+    corner = (low + high) / 2 - reach
+    for name, start in zip("xyz", corner):
+        getattr(axes, f"set_{name}lim")(start, start + 2 * reach)
+        getattr(axes, f"set_{name}label")(f"{name} (m)")
+    return figure, axes, corner
 
 
 def panels(

@@ -41,11 +41,12 @@ def rendered(template: str, **values: object) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["picture"] = _picture
+    environment.filters["picture"] = picture
     return environment.get_template(template).render(values)
 
 
-def _picture(data: bytes, meaning: str) -> str:
+def picture(data: bytes, meaning: str) -> str:
+    """Make an image of the bytes of a PNG that stands in the page itself."""
     from markupsafe import Markup
 
     source = f"data:image/png;base64,{base64.b64encode(data).decode()}"

@@ -25,6 +25,48 @@ def roll_pitch_yaw(orientation: np.ndarray) -> np.ndarray:
     return np.stack([roll, pitch, yaw], axis=-1)
 
 
+def continuous(angles: np.ndarray) -> np.ndarray:
+    """Write roll, pitch, yaw of a motion without jumps.
+
+    An attitude has two triples of angles, ``(r, p, y)`` and ``(r + pi, pi - p, y + pi)``, and
+    every angle may be 2 pi more: each row takes what is nearest to the row before.
+
+    Parameters
+    ----------
+    angles : ndarray (rows, 3)
+        As `roll_pitch_yaw` gives them, rad.
+
+    Returns
+    -------
+    ndarray (rows, 3)
+        rad; pitch, too, may leave [-pi/2, pi/2].
+    """
+    stays = _apart(angles[1:], angles[:-1]) <= _apart(_flipped(angles[1:]), angles[:-1])
+    is_flipped = np.concatenate([[False], np.cumsum(~stays) % 2 == 1])[: len(angles)]
+    nearest = np.where(is_flipped[:, None], _flipped(angles), angles)
+    return np.asarray(np.unwrap(nearest, axis=0))
+
+
+def angles_between(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Subtract roll, pitch, yaw, rad, of the triples that are nearest: shape (rows, 3)."""
+    is_near = _apart(one, other) <= _apart(_flipped(one), other)
+    nearest = np.where(is_near[:, None], one, _flipped(one))
+    return _wrapped(nearest - other)
+
+
+def _flipped(angles: np.ndarray) -> np.ndarray:
+    return np.stack([angles[:, 0] + np.pi, np.pi - angles[:, 1], angles[:, 2] + np.pi], axis=1)
+
+
+def _wrapped(angles: np.ndarray) -> np.ndarray:
+    wrapped: np.ndarray = np.remainder(angles + np.pi, 2 * np.pi) - np.pi
+    return wrapped
+
+
+def _apart(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    return np.asarray(np.abs(_wrapped(one - other)).sum(axis=1))
+
+
 def matrix(orientation: np.ndarray) -> np.ndarray:
     """Give the matrices R_WF that turn vectors from frame axes to world axes.
 

@@ -54,6 +54,13 @@ class Simulation(_core.Simulation):
         What to leave out of model and world because quadcore does not know it: names or file names
         of plugins, names of elements, uris or names of a world's models. `ignored` keeps it.
 
+    Attributes
+    ----------
+    world : World
+        As it was read.
+    command_topic : str
+        That `command` publishes on.
+
     Raises
     ------
     InputError
@@ -100,6 +107,15 @@ class Simulation(_core.Simulation):
         attrgetter("_live"),
         doc="The state now, as live read-only views; `state.copy()` is free.",
     )
+
+    @property
+    def hover_speed(self) -> np.ndarray:
+        """Commands with which the vehicle hovers level, signed, rad/s; shape (n,).
+
+        Neighbours around the vehicle turn against each other. Asks the force laws anew, which takes
+        some milliseconds. Raises InputError if nothing drives the rotors or they cannot hold it.
+        """
+        return np.asarray(_core.hover_commands(self, []))
 
     def restore(  # type: ignore[override]  # pybind11 2.4 has no keyword-only arguments
         self, snapshot: _core.Snapshot, *, allow: Sequence[str] = ()
@@ -225,6 +241,17 @@ class Simulation(_core.Simulation):
             error.log = rows.log()  # type: ignore[union-attr]
             raise
         return rows.log()
+
+    def __repr__(self) -> str:
+        return (
+            f"<Simulation of '{self.model.name}', {self.engine}, t = {self.time:g} s, "
+            f"steps of {self.dt:g} s>"
+        )
+
+    def _repr_html_(self) -> str:
+        from .notebook import simulation_html
+
+        return simulation_html(self)
 
     def _put_on(self, controller: Any, reference: Any) -> Any:
         """Put the vehicle onto a reference, and give that."""

@@ -7,6 +7,7 @@ from typing import Dict, Mapping, Optional, Sequence
 import numpy as np
 
 from ._core import InputError, log_columns
+from .rotation import roll_pitch_yaw
 
 _STATE_SIZE = len(log_columns(0))
 
@@ -75,6 +76,11 @@ class Trajectory:
     def orientation(self) -> np.ndarray:
         """Orientation of the frame link in the world, unit quaternion x, y, z, w; (rows, 4)."""
         return self.table[:, 4:8]
+
+    @property
+    def rpy(self) -> np.ndarray:
+        """Roll, pitch, yaw of the frame link, R = Rz(yaw) Ry(pitch) Rx(roll), rad; (rows, 3)."""
+        return roll_pitch_yaw(self.orientation)
 
     @property
     def linear_velocity(self) -> np.ndarray:

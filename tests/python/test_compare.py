@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import signal
 from pathlib import Path
@@ -166,7 +167,7 @@ def test_the_number_of_processes_changes_no_byte():
     for jobs in "1", "3":
         assert main([*arguments, "--jobs", jobs, "--out", jobs]) == 0
     files = sorted(path.relative_to("1") for path in Path("1").rglob("*") if path.is_file())
-    assert len(files) == 15  # 7 logs, 5 pictures, table, numbers, report
+    assert len(files) == 16  # 7 logs, 6 pictures, table, numbers, report
     for file in files:
         assert (Path("1") / file).read_bytes() == (Path("3") / file).read_bytes(), file
 
@@ -224,6 +225,41 @@ def test_the_first_that_flew_is_what_the_others_are_compared_with():
     nothing = qc.compare("toy.urdf", {"motor.kp": [-1, -2]}, **SPIN)
     assert nothing.reference is None
     assert main(["compare", "toy.urdf", "--vary", "motor.kp=-1", "--out", "out"]) == 3
+
+
+@pytest.mark.parametrize("processes", [1, 2])
+def test_any_flight_can_be_what_the_others_are_compared_with(processes):
+    first = qc.compare("toy.urdf", {"motor.kp": [1e-4, 2e-4, 3e-4]}, **SPIN)
+    last = qc.compare(
+        "toy.urdf", {"motor.kp": [1e-4, 2e-4, 3e-4]}, reference=2, processes=processes, **SPIN
+    )
+    assert last.reference == 2
+    for one, other in zip(first.logs, last.logs):
+        assert np.array_equal(one.table, other.table)
+    assert last.table["largest_position"][2] == 0
+    assert last.table["final_j1"][0] == -first.table["final_j1"][2] != 0
+    assert last.table["final_j1"][1] == first.table["final_j1"][1] - first.table["final_j1"][2]
+
+
+def test_a_flight_to_compare_with_that_is_none_or_fails_is_said(capsys):
+    vary = ["--vary", "motor.kp=1e-4,-1"]
+    assert main(["compare", "toy.urdf", *FLIGHT, *vary, "--reference", "3"]) == 2
+    assert capsys.readouterr().err == "error: --reference 3: there are 2 flights\n"
+    assert main(["compare", "toy.urdf", *FLIGHT, *vary, "--reference", "2"]) == 3
+    assert "error: no. 2, to compare the others with, failed: " in capsys.readouterr().err
+    assert main(["compare", "toy.urdf", *FLIGHT, *vary, "--reference", "1", "--out", "out"]) == 3
+    assert json.loads(Path("out/comparison.json").read_text())["reference"] == 1
+
+
+def test_people_read_degrees_and_files_hold_radians(capsys):
+    arguments = ["compare", "toy.urdf", *FLIGHT, "--no-plots", "--vary", "motor.kp=1e-4,2e-4"]
+    assert main([*arguments, "--out", "out"]) == 0
+    degrees = f"{math.degrees(float(rows()[1]['largest_attitude'])):.4g}"
+    assert float(degrees) > 0
+    shown = capsys.readouterr().out
+    assert "attitude (deg)" in shown and f"/ {degrees}" in shown
+    page = Path("out/report.html").read_text()
+    assert f'<td class="number">{degrees}<br>' in page
 
 
 def test_a_process_that_dies_is_a_case_that_failed():

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from quadcore import Log
 from quadcore._core import Document
 from quadcore.comparison.difference import ABSENT, Difference, Fact, differences, facts
-from quadcore.rotation import roll_pitch_yaw
+from quadcore.rotation import continuous, roll_pitch_yaw
 from quadcore.study import metrics
 
 BEFORE = """<robot name="r">
@@ -159,8 +159,13 @@ def test_differences_are_those_of_each_state_row_by_row():
     between = np.linalg.norm((turns[0].inv() * turns[1]).as_rotvec(), axis=1)
     assert np.allclose(found[:, 1], between, atol=1e-12)
     assert np.array_equal(found[:, 4:7], apart[:, 1:4])
-    angles = roll_pitch_yaw(log.orientation) - roll_pitch_yaw(reference.orientation)
-    assert np.allclose(np.exp(1j * found[:, 7:10]), np.exp(1j * angles), atol=1e-12)
+    # Added to the angles of the reference they give the log's attitude, and by no way round.
+    angles = roll_pitch_yaw(reference.orientation) + found[:, 7:10]
+    there = Rotation.from_euler("ZYX", angles[:, ::-1])
+    assert np.allclose((there.inv() * turns[1]).magnitude(), 0, atol=1e-7)
+    straight = roll_pitch_yaw(log.orientation) - roll_pitch_yaw(reference.orientation)
+    straight = np.abs(np.angle(np.exp(1j * straight))).sum(axis=1)
+    assert np.all(np.abs(found[:, 7:10]).sum(axis=1) <= straight + 1e-12)
     assert np.abs(found[:, 7:10]).max() <= np.pi
     assert np.array_equal(found[:, 10:], apart[:, 8:])
 
@@ -185,6 +190,29 @@ def test_angles_on_either_side_of_half_a_turn_are_near_each_other():
             final, largest = metrics.metrics(turned(axis, before), turned(axis, after))
             assert final[column] == pytest.approx(np.radians(apart), abs=1e-12)
             assert largest[column] == pytest.approx(np.radians(abs(apart)), abs=1e-12)
+
+
+def pitched(*degrees):
+    """A body that turns about its y axis."""
+    rows = [Rotation.from_euler("Y", angle, degrees=True).as_quat() for angle in degrees]
+    table = np.zeros((len(rows), 14))
+    table[:, 0], table[:, 4:8] = np.arange(len(rows)), rows
+    return Log(table, {})
+
+
+def test_a_flip_of_the_angles_beyond_the_vertical_is_no_difference():
+    """At 89 degrees of pitch roll and yaw are 0, at 91 they are 180."""
+    below, beyond = pitched(60, 89), pitched(62, 91)
+    found = dict(zip(metrics.states(0), np.degrees(metrics.differences(below, beyond)).T))
+    assert np.allclose(found["pitch"], 2)
+    assert np.allclose(found["roll"], 0) and np.allclose(found["yaw"], 0)
+
+
+def test_a_looping_is_drawn_without_a_jump():
+    looping = np.arange(0, 730, 10.0)
+    angles = np.degrees(continuous(pitched(*looping).rpy))
+    assert np.allclose(angles, np.stack([0 * looping, looping, 0 * looping], axis=1), atol=1e-6)
+    assert continuous(np.zeros((0, 3))).shape == (0, 3)
 
 
 def test_the_sign_of_a_quaternion_makes_no_difference():

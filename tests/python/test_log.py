@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import base64
+import re
+import sys
+
 import numpy as np
 import pytest
 import scipy.io
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
+from scipy.spatial.transform import Rotation
 
 from quadcore import InputError, Log
 from quadcore.log import check_log_path
@@ -162,3 +167,42 @@ def test_a_log_whose_orientation_is_none_is_refused(log, tmp_path, suffix):
     getattr(log, f"to_{suffix[1:]}")(file)
     with pytest.raises(InputError, match="the orientation is no unit quaternion"):
         Log.of_file(file)
+
+
+def test_a_column_goes_by_its_name_in_the_csv_file(log, tmp_path):
+    topics = {"odom": {"x": log.time + 1}}
+    whole = Log(log.table, log.wrenches, topics=topics)
+    whole.to_csv(tmp_path / "log.csv")
+    header = (tmp_path / "log.csv").read_text().split("\n")[0].split(",")
+    written = np.loadtxt(tmp_path / "log.csv", delimiter=",", skiprows=1)
+    for name, column in zip(header, written.T):
+        assert np.array_equal(whole[name], column), name
+    assert list(whole.to_dict()) == header
+    with pytest.raises(InputError, match="did you mean 'j1'"):
+        whole["j11"]
+
+
+def test_a_data_frame_has_the_columns_of_the_csv_file(log):
+    frame = log.to_dataframe()
+    assert frame.index.name == "t"
+    assert np.array_equal(frame.index, log.time)
+    for name in frame.columns:
+        assert np.array_equal(frame[name], log[name])
+    assert set(frame.columns) == set(log.to_dict()) - {"t"}
+
+
+def test_without_pandas_a_line_says_what_to_install(log, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(InputError, match=r"pip install 'quadcore\[pandas\]'"):
+        log.to_dataframe()
+
+
+def test_the_angles_are_those_of_the_rotation_about_z_then_y_then_x(log):
+    whole = Rotation.from_quat(log.orientation).as_euler("ZYX")[:, ::-1]
+    assert np.allclose(log.rpy, whole)
+
+
+def test_a_notebook_shows_a_log_as_a_picture_in_the_page_itself(log):
+    shown = log._repr_html_()
+    assert "101 rows" in shown
+    assert base64.b64decode(re.search(r"base64,([^\"]+)", shown).group(1)).startswith(b"\x89PNG")

@@ -8,7 +8,7 @@ import time
 import numpy as np
 import pytest
 from flights import BUSY, ENGINES, HOVER, MANOEUVRE, bits, hold_height, quadrotor
-from vehicles import Rotor, vehicle
+from vehicles import AIR, COM, MOTOR, Rotor, start, vehicle
 
 import quadcore as qc
 from quadcore import _core
@@ -18,6 +18,33 @@ def test_a_hover_holds_height_by_its_odometry():
     simulation = quadrotor(parameters=BUSY)
     hold_height(simulation, 2000)
     assert abs(simulation.state.position[2] - 10) < 0.5
+
+
+def test_a_vehicle_with_its_mass_off_the_middle_hovers_level_at_its_hover_speed(hangar):
+    flying = hangar(
+        vehicle(com=COM, air=AIR, motor=MOTOR), engine="eigen", gravity=(0, 0, -3.7), dt=1e-4
+    )
+    flying.command(flying.hover_speed)
+    start(flying, rotor_velocity=flying.hover_speed)
+    flying.step(10000)
+    assert np.ptp(np.abs(flying.hover_speed)) > 5
+    assert np.allclose(flying.state.orientation, [0, 0, 0, 1], atol=1e-6)
+    assert np.allclose(flying.state.linear_velocity, 0, atol=1e-5)
+    assert list(flying.gravity) == [0, 0, -3.7]
+
+
+def test_hovering_at_a_tenth_of_the_speed_is_commanded_at_full_speed():
+    """As sim_slow has it: the plant's joints turn slower than the command says."""
+    slow, full = quadrotor(), quadrotor(xacro_args={"sim_slow": 1})
+    assert np.allclose(slow.hover_speed, full.hover_speed)
+    weight = full.mass * 9.8
+    assert np.isclose(1.1487e-5 * np.sum(full.hover_speed**2), weight, rtol=1e-6)
+
+
+def test_a_vehicle_that_its_rotors_cannot_hold_has_no_hover_speed():
+    weak = quadrotor(parameters={"motorpid_plugin.maxVelocity": 300})
+    with pytest.raises(qc.InputError, match="the rotors cannot hold the vehicle"):
+        weak.hover_speed  # noqa: B018
 
 
 @pytest.mark.parametrize("engine", ENGINES)

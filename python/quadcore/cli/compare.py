@@ -14,8 +14,8 @@ from ..comparison.plan import Plan
 from ..files import make_folder, prepare_folder
 from ..log import Log
 from ..study.sampling import thinned
-from ..study.table import number_text
-from . import options, terminal
+from ..study.table import number_text, shown_in
+from . import options, terminal, values
 from .kept import kept
 
 _ROWS = 40  # on the terminal
@@ -34,6 +34,12 @@ def register(commands: Any) -> None:
     options.add_scenario(parser)
     options.add_jobs(parser)
     parser.add_argument(
+        "--reference",
+        metavar="N",
+        type=values.integer(1),
+        help="number of the flight that the others are compared with (the first that flies)",
+    )
+    parser.add_argument(
         "--out",
         metavar="DIR",
         type=Path,
@@ -47,6 +53,8 @@ def register(commands: Any) -> None:
 def compare(arguments: argparse.Namespace) -> None:
     """Print how the models differ, fly them, and print how the flights differ."""
     plan = _plan(arguments)
+    if arguments.reference is not None and arguments.reference > plan.count:
+        raise InputError(f"--reference {arguments.reference}: there are {plan.count} flights")
     out = arguments.out
     if out is not None:
         prepare_folder(out, FILES)  # after the flights would be too late
@@ -57,7 +65,13 @@ def compare(arguments: argparse.Namespace) -> None:
         return write(flown, plan, _flight(arguments), out, plots) if out is not None else []
 
     with kept("comparison", out, put), terminal.progress(arguments.quiet) as progress:
-        comparison = fly(plan, _keeper(arguments, plan), arguments.jobs, progress)
+        comparison = fly(
+            plan,
+            _keeper(arguments, plan),
+            arguments.jobs,
+            progress,
+            None if arguments.reference is None else arguments.reference - 1,
+        )
     files = put(comparison, not arguments.no_plots)
     if not arguments.quiet:
         _show_flights(plan, comparison, files)
@@ -144,15 +158,16 @@ def _show_flights(plan: Plan, comparison: Comparison, files: list[Path]) -> None
     whole = list(comparison.states)[:4]
     if comparison.reference is not None:
         console.print(f"differences from no. {comparison.reference + 1}, final / largest")
-    headings = [f"{state} ({comparison.states[state]})" for state in whole]
+    units = {state: shown_in(comparison.states[state]) for state in whole}
+    headings = [f"{state} ({unit})" for state, (unit, _) in units.items()]
     table = terminal.table("no.", "variant", *headings)
     for number, (row, variant) in enumerate(zip(comparison.table, plan), start=1):
         if number > _ROWS:
             table.add_row("...", f"{plan.count - _ROWS} more")
             break
         cells = [
-            " / ".join(number_text(row[f"{kind}_{state}"]) for kind in ("final", "largest"))
-            for state in whole
+            " / ".join(number_text(row[f"{k}_{state}"] * factor) for k in ("final", "largest"))
+            for state, (_, factor) in units.items()
         ]
         table.add_row(
             str(number), plan.label(variant), *([row["failure"]] if row["failure"] else cells)

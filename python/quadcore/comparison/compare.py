@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import islice
 from pathlib import Path
 from typing import (
     Any,
@@ -20,13 +21,13 @@ from typing import (
 import numpy as np
 
 from .. import interrupts
-from .._core import InputError, QuadcoreError
+from .._core import FlightError, InputError, QuadcoreError
 from ..commands import CommandsLike
 from ..log import Log
 from ..study.axes import Values
 from ..study.executor import conducted
 from ..study.metrics import metrics, states
-from ..study.table import NOT_FLOWN
+from ..study.table import NOT_FLOWN, flown_and_failed
 from .difference import Difference
 from .plan import Plan, Variant
 
@@ -38,20 +39,37 @@ _LARGEST_LOGS = 2 * 2**30  # bytes
 
 
 class Comparison(NamedTuple):
-    """What became of the flights."""
+    """What became of the flights.
+
+    Attributes
+    ----------
+    table : ndarray
+        Structured, a row per variant: ``model``, each axis, ``failure`` ("" if it flew), and
+        ``final_STATE`` and ``largest_STATE`` for each of `states`, NaN where it did not fly.
+    logs : list
+        `Log` of each variant, None where it did not fly; empty if logs were not asked for.
+    states : dict of str to str
+        Unit of each state that is compared, by name. ``position``, ``velocity`` and ``rates`` are
+        lengths of difference vectors, ``attitude`` is the angle between both.
+    reference : int or None
+        Row that all others are compared with: the one asked for, or the first that flew.
+    differences : dict of str to list of Difference
+        What each further model's file differs in from the first's.
+    """
 
     table: np.ndarray
-    """Structured, a row per variant: ``model``, each axis, ``failure`` ("" if it flew),
-    and ``final_STATE`` and ``largest_STATE`` for each of `states`, NaN where it did not fly."""
     logs: List[Any]
-    """`Log` of each variant, None where it did not fly; empty if logs were not asked for."""
     states: Dict[str, str]
-    """Unit of each state that is compared, by name. ``position``, ``velocity`` and ``rates`` are
-    lengths of difference vectors, ``attitude`` is the angle between both."""
     reference: Optional[int]
-    """Row that all others are compared with: the first that flew."""
     differences: Dict[str, List[Difference]]
-    """What each further model's file differs in from the first's."""
+
+    def __repr__(self) -> str:
+        return f"<Comparison, {flown_and_failed(self.table['failure'].tolist())}>"
+
+    def _repr_html_(self) -> str:
+        from ..notebook import comparison_html
+
+        return comparison_html(self)
 
 
 def compare(
@@ -63,6 +81,7 @@ def compare(
     logs: bool = True,
     processes: Optional[int] = None,
     progress: Optional[Progress] = None,
+    reference: Optional[int] = None,
     **options: Any,
 ) -> Comparison:
     """Fly the same flight with several models or parameters, in parallel.
@@ -83,6 +102,8 @@ def compare(
         How many; None takes one per core.
     progress
         Called as progress(flights_done, flights_total).
+    reference
+        Row of the table that all others are compared with; None: the first that flies.
     **options
         As for `Simulation`: engine, world, dt, seed, parameters, xacro_args, spawn; and scenario, a
         file or the name of a shipped one.
@@ -98,6 +119,8 @@ def compare(
         Nothing was flown: too many variants, logs that would take more than 2 GiB, an unreadable
         file, an unknown tag, or models with different numbers of rotors under the same commands. A
         variant that fails by itself is a row of the table with its reason instead.
+    FlightError
+        The reference failed.
     KeyboardInterrupt
         With the attribute `comparison`, whose missing rows say so.
     """
@@ -105,7 +128,7 @@ def compare(
     plan = Plan(names, vary or {}, commands, duration, log_every, options)
     if logs:
         _check_memory(plan, duration, log_every)
-    return fly(plan, (lambda _, log: log) if logs else None, processes, progress)
+    return fly(plan, (lambda _, log: log) if logs else None, processes, progress, reference)
 
 
 def fly(
@@ -113,6 +136,7 @@ def fly(
     keep: Optional[Keep] = None,
     processes: Optional[int] = None,
     progress: Optional[Progress] = None,
+    reference: Optional[int] = None,
 ) -> Comparison:
     """Fly a plan.
 
@@ -122,38 +146,55 @@ def fly(
         What to fly.
     keep
         Called as keep(row, log) in the process that flew; what it returns stands in for the log.
-    processes, progress
+    processes, progress, reference
         As for `compare`.
     """
+    if reference is not None and not 0 <= reference < plan.count:
+        raise InputError(f"reference is {reference}; give a row from 0 to {plan.count - 1}")
     tally = _Tally(plan, keep, progress)
-    flights = enumerate(plan)
+    flights = _reference_first(plan, reference)
     try:
-        reference = _first_flown(plan, flights, tally)
-        if reference is not None:
+        compared_with = _first_flown(plan, flights, tally, reference)
+        if compared_with is not None:
 
             def flown(flight: Tuple[int, Variant]) -> Any:
                 row, variant = flight
                 log = plan.fly(variant)
-                return row, metrics(reference, log), log
+                return row, metrics(compared_with, log), log
 
             def kept(result: Any) -> Outcome:
                 row, measured, log = result
                 return _kept(row, measured, log, keep)
 
             start = tally.done
-            conducted(
-                flown, flights, lambda i, outcome: tally.note(start + i, outcome), processes, kept
-            )
+
+            def note(i: int, outcome: Any) -> None:
+                row = start + i
+                tally.note(row - 1 if reference is not None and row <= reference else row, outcome)
+
+            conducted(flown, flights, note, processes, kept)
     except KeyboardInterrupt as stop:
         stop.comparison = tally.result()  # type: ignore[attr-defined]
         raise
     return tally.result()
 
 
+def _reference_first(plan: Plan, reference: Optional[int]) -> Iterator[Tuple[int, Variant]]:
+    """Give each variant with its row, the reference before all others."""
+    if reference is not None:
+        yield reference, next(islice(plan, reference, None))
+    for row, variant in enumerate(plan):
+        if row != reference:
+            yield row, variant
+
+
 def _first_flown(
-    plan: Plan, flights: Iterator[Tuple[int, Variant]], tally: _Tally
+    plan: Plan, flights: Iterator[Tuple[int, Variant]], tally: _Tally, wanted: Optional[int]
 ) -> Optional[Log]:
-    """Take flights until one succeeds, which all later ones are compared with."""
+    """Take flights until one succeeds, which all later ones are compared with.
+
+    One that is wanted must.
+    """
     outcomes: List[Union[Log, QuadcoreError]] = []
     for row, variant in flights:
         # In a process too: what crashes there does not end the comparison.
@@ -164,6 +205,8 @@ def _first_flown(
             with interrupts.held():
                 tally.note(row, _kept(row, metrics(log, log), log, tally.keep))
             return log
+        if wanted is not None:
+            raise FlightError(f"no. {row + 1}, to compare the others with, failed: {log}")
         tally.note(row, log)
     return None
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence
+from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
 from ..study.sampling import evenly
-from ..study.table import csv_bytes, flown_and_failed, json_bytes, number_text, save
+from ..study.table import csv_bytes, flown_and_failed, json_bytes, number_text, save, shown_in
 from .compare import Comparison
 from .plan import Plan
 
@@ -106,12 +106,16 @@ def _number(comparison: Comparison) -> Optional[int]:
 def _page(
     comparison: Comparison, plan: Plan, flight: Mapping[str, str], images: Mapping[str, bytes]
 ) -> Dict[str, Any]:
+    units = {state: shown_in(unit) for state, unit in comparison.states.items()}
     rows = []
     for number, (row, variant) in enumerate(zip(comparison.table, plan), start=1):
         if number > _ROWS_OF_PAGE:
             break
         cells = {
-            kind: [number_text(row[f"{kind}_{state}"]) for state in comparison.states]
+            kind: {
+                state: number_text(row[f"{kind}_{state}"] * factor)
+                for state, (_, factor) in units.items()
+            }
             for kind in ("final", "largest")
         }
         label = plan.label(variant)
@@ -130,10 +134,17 @@ def _page(
         "pictures": [{"name": name, "data": data} for name, data in images.items()],
         "thinned": f"{shown} of {plan.count} are drawn." if shown < plan.count else "",
         "reference": comparison.reference is not None and f"no. {_number(comparison)}",
-        "states": comparison.states,
+        "units": {state: unit for state, (unit, _) in units.items()},
+        "groups": _groups(list(comparison.states)),
         "rows": rows,
         "more": max(0, plan.count - _ROWS_OF_PAGE),
     }
+
+
+def _groups(states: Sequence[str]) -> List[Tuple[str, Sequence[str]]]:
+    """Split the states into tables that a page has room for: the lengths, then the parts."""
+    parts = [states[4:7], states[7:10], states[10:13], states[13:16], states[16:]]
+    return [("", states[:4]), *zip((*states[:4], "rotors"), parts)]
 
 
 def listed(values: Any) -> str:

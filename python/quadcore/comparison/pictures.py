@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 from ..colours import PALETTE
 from ..log import Log
-from ..plots import panels
-from ..rotation import roll_pitch_yaw
+from ..plots import panels, space
+from ..rotation import continuous
 from ..study.metrics import differences
 
 _LABELS = 6
@@ -38,6 +38,7 @@ def draw(curves: Sequence[Curve], reference: Log, name: str) -> Dict[str, Figure
     """
     styles = _styles(curves)
     return {
+        "path": _path(curves, styles),
         "position": _position(curves, styles),
         "attitude": _attitude(curves, styles),
         "rates": _rates(curves, styles),
@@ -66,13 +67,21 @@ def _styles(curves: Sequence[Curve]) -> List[Dict[str, Any]]:
     return styles
 
 
+def _path(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure:
+    figure, axes, _ = space("Paths of the frame", [curve.log.position for curve in curves])
+    for curve, style in zip(curves, styles):
+        axes.plot(*curve.log.position.T, **style)
+    axes.legend(loc="upper right", frameon=False)
+    return figure
+
+
 def _position(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure:
     values = [curve.log.position for curve in curves]
     return _figure("Position", curves, styles, [(values, [f"{a} (m)" for a in "xyz"])])
 
 
 def _attitude(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure:
-    values = [np.degrees(np.unwrap(roll_pitch_yaw(c.log.orientation), axis=0)) for c in curves]
+    values = [np.degrees(continuous(curve.log.rpy)) for curve in curves]
     labels = [f"{angle} (deg)" for angle in ("roll", "pitch", "yaw")]
     return _figure("Attitude", curves, styles, [(values, labels)])
 
@@ -97,9 +106,9 @@ def _rotors(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure
 def _differences(
     curves: Sequence[Curve], styles: Sequence[Dict[str, Any]], reference: Log, name: str
 ) -> Figure:
-    scale = np.array([1, 180 / np.pi, 1, 180 / np.pi])
+    scale = np.array([1, 180 / np.pi, 1, 1])
     values = [differences(reference, curve.log)[:, :4] * scale for curve in curves]
-    labels = ["position (m)", "attitude (deg)", "velocity (m/s)", "rates (deg/s)"]
+    labels = ["position (m)", "attitude (deg)", "velocity (m/s)", "rates (rad/s)"]
     return _figure(f"Distance from {name}", curves, styles, [(values, labels)])
 
 

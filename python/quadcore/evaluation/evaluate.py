@@ -23,6 +23,7 @@ from ..study import arguments
 from ..study.axes import Values
 from ..study.executor import conducted
 from ..study.sampling import evenly
+from ..study.table import flown_and_failed
 from .entries import Named
 from .flights import Outcome, flown
 from .plan import Case, Plan
@@ -48,27 +49,44 @@ _DRAWN = 60  # flights of which enough is kept to draw them
 
 
 class Evaluation(NamedTuple):
-    """What became of the flights."""
+    """What became of the flights.
+
+    Attributes
+    ----------
+    table : list of dict
+        A row per flight: controller, reference, engine, model, scenario, seed, failure ("" if it
+        flew) and each of the measures, NaN where it failed.
+    groups : list of dict
+        A row per combination, over its seeds: flights, not_flown and failure_rate; of those that
+        flew, for each of `JUDGED`, mean and interval (low, high); cvar, in which who failed counts
+        as infinite; and the mean difference from the first controller under the same seeds, with
+        its interval.
+    margins : list of dict
+        A row per controller if they were searched, see `robustness`.
+    poles : list of dict
+        Of the cascaded laws in hover, for each axis, see `poles`; whose, and on what.
+    outcomes : sequence of Outcome
+        What is known of each flight; of the first seed of some combinations, enough to draw it.
+    """
 
     table: List[Dict[str, Any]]
-    """A row per flight: controller, reference, engine, model, scenario, seed, failure ("" if it
-    flew) and each of the measures, NaN where it failed."""
     groups: List[Dict[str, Any]]
-    """A row per combination, over its seeds: flights, not_flown and failure_rate; of those that
-    flew, for each of `JUDGED`, mean and interval (low, high); cvar, in which who failed counts as
-    infinite; and the mean difference from the first controller under the same seeds, with its
-    interval."""
     margins: List[Dict[str, Any]]
-    """A row per controller if they were searched, see `robustness`."""
     poles: List[Dict[str, Any]]
-    """Of the cascaded laws in hover, for each axis, see `poles`; whose, and on what."""
     outcomes: Sequence[Outcome]
-    """What is known of each flight; of the first seed of some combinations, enough to draw it."""
 
     @property
     def drawn(self) -> Dict[int, Outcome]:
         """What can be drawn, by row of the table."""
         return {row: outcome for row, outcome in enumerate(self.outcomes) if outcome.log}
+
+    def __repr__(self) -> str:
+        return f"<Evaluation, {flown_and_failed([row['failure'] for row in self.table])}>"
+
+    def _repr_html_(self) -> str:
+        from ..notebook import evaluation_html
+
+        return evaluation_html(self)
 
 
 def evaluate(

@@ -39,28 +39,45 @@ _HELD_OUT = 4  # each so many horizons one is not fitted to
 
 
 class Fit(NamedTuple):
-    """What a flight tells of a model."""
+    """What a flight tells of a model.
+
+    Attributes
+    ----------
+    values : dict of str to float
+        Of each free parameter; where the flight does not tell one, near where it began.
+    start, units : dict
+        Where each began, and its unit.
+    identified : Identified
+        Deviations, covariance, and which combinations alone are told.
+    shift : float
+        By which what was measured lags behind the commands, s.
+    train : dict of str to pair of float
+        By channel, root of the mean square that is left over with the start's values, and with
+        those that were found; each in the channel's unit, starts of horizons fitted.
+    held_out : dict of str to pair of float
+        The same of horizons that were not fitted to.
+    model : Model
+        With the values.
+    """
 
     values: Dict[str, float]
-    """Of each free parameter; where the flight does not tell one, near where it began."""
     start: Dict[str, float]
     units: Dict[str, str]
     identified: Identified
-    """Deviations, covariance, and which combinations alone are told."""
     shift: float
-    """By which what was measured lags behind the commands, s."""
     train: Dict[str, Tuple[float, float]]
-    """By channel, root of the mean square that is left over with the start's values, and with those
-    that were found; each in the channel's unit, starts of horizons fitted."""
     held_out: Dict[str, Tuple[float, float]]
-    """The same of horizons that were not fitted to."""
     model: Model
-    """With the values."""
 
     @property
     def combinations(self) -> List[Combination]:
         """Sums of parameters of which each alone is not told."""
         return self.identified.combinations
+
+    def __repr__(self) -> str:
+        deviations = self.identified.deviations
+        found = (f"{name} = {v:.6g} +- {deviations[name]:.2g}" for name, v in self.values.items())
+        return f"<Fit: {', '.join(found)}>"
 
     def told(self) -> List[str]:
         """Say what the flight does not tell, and how well what it tells is apart, in lines."""

@@ -7,7 +7,7 @@ from typing import Dict, NamedTuple, Sequence
 import numpy as np
 
 from ..log import Log
-from ..rotation import roll_pitch_yaw
+from ..rotation import angles_between
 
 # Lengths of the difference vectors, and the angle between the attitudes.
 _WHOLE = {"position": "m", "attitude": "rad", "velocity": "m/s", "rates": "rad/s"}
@@ -32,14 +32,14 @@ def differences(reference: Log, log: Log) -> np.ndarray:
     Returns
     -------
     ndarray, shape (rows, 16 + n)
-        Columns as `states` names them for the reference's n rotors; angles within [-pi, pi]. A
-        flight with another number of rotors has NaN for them.
+        Columns as `states` names them for the reference's n rotors; angles within [-pi, pi], of
+        the two triples that an attitude has the nearer. A flight with another number of rotors has
+        NaN for them.
     """
     log = Log(log.table[log.time <= reference.time[-1] + 1e-9], {})
     reference = _at(log.time, reference)
     position = log.position - reference.position
-    angles = roll_pitch_yaw(log.orientation) - roll_pitch_yaw(reference.orientation)
-    angles = np.remainder(angles + np.pi, 2 * np.pi) - np.pi
+    angles = angles_between(log.rpy, reference.rpy)
     # |q - p| and |q + p| are 2 sin and 2 cos of a quarter of the angle: exact for small angles too,
     # and blind to the sign of a quaternion.
     apart = np.linalg.norm(log.orientation - reference.orientation, axis=1)

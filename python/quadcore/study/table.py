@@ -7,7 +7,7 @@ import io
 import json
 import math
 from pathlib import Path
-from typing import Any, Iterable, List, Mapping, Sequence
+from typing import Any, Iterable, List, Mapping, Sequence, Tuple
 
 from ..files import atomic_write, cell, text_bytes
 
@@ -30,6 +30,14 @@ def json_bytes(content: Any) -> bytes:
 def number_text(value: float) -> str:
     """Four digits, for a table that is read."""
     return "" if math.isnan(value) else f"{value:.4g}"
+
+
+def shown_in(unit: str) -> Tuple[str, float]:
+    """Name the unit in which people are shown a quantity, and give the factor to it.
+
+    Files hold radians.
+    """
+    return ("deg", 180 / math.pi) if unit == "rad" else (unit, 1.0)
 
 
 NOT_FLOWN = "not flown: interrupted"

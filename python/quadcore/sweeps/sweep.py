@@ -26,6 +26,7 @@ from ..commands import CommandsLike
 from ..files import make_folder
 from ..simulation import whole
 from ..study import arguments
+from ..study.table import flown_and_failed
 from .dask import cluster
 from .design import Design
 from .places import fly_here, fly_over
@@ -65,13 +66,22 @@ _KINDS = {
 
 
 class Sweep(NamedTuple):
-    """What became of the rows."""
+    """What became of the rows.
+
+    Attributes
+    ----------
+    columns : dict of str to ndarray
+        By name: ``row``, what flew, ``failure`` ("" if it flew), the measures, NaN where it failed,
+        and ``fingerprint``. pandas and polars make a DataFrame of it.
+    sensitivities : list of dict
+        What each measure is sensitive to, see `sensitivity`.
+    """
 
     columns: Dict[str, np.ndarray]
-    """By name: ``row``, what flew, ``failure`` ("" if it flew), the measures, NaN where it failed,
-    and ``fingerprint``. pandas and polars make a DataFrame of it."""
     sensitivities: List[Dict[str, Any]]
-    """What each measure is sensitive to, see `sensitivity`."""
+
+    def __repr__(self) -> str:
+        return f"<Sweep, {flown_and_failed(self.columns['failure'].tolist())}>"
 
 
 def sweep(

@@ -13,5 +13,9 @@ namespace control {
 VehicleState start_on(const Reference& wanted, const VehicleDescription& vehicle,
                       const std::vector<double>& spins = {});
 
+/// Speeds to command so that the vehicle hovers level, signed [rad/s], in the order of the command.
+/// Throws InputError on a vehicle that laws cannot fly or that its rotors cannot hold.
+VectorXd hover_commands(const VehicleDescription& vehicle, const std::vector<double>& spins = {});
+
 }  // namespace control
 }  // namespace quadcore

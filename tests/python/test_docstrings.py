@@ -1,0 +1,69 @@
+"""Everything public says what it is."""
+
+from __future__ import annotations
+
+import inspect
+import re
+
+import pytest
+
+import quadcore as qc
+from quadcore import _core
+
+PUBLIC = {
+    f"{module.__name__}.{name}": getattr(module, name)
+    for module in (qc, qc.laws, qc.references, _core)
+    for name in getattr(module, "__all__", dir(module))
+    if not name.startswith("_")
+}
+THINGS = {name: value for name, value in PUBLIC.items() if callable(value)}
+
+
+def told(member, name):
+    """What a docstring says beside the signatures that pybind11 writes."""
+    text = inspect.getdoc(member) or ""
+    return re.sub(rf"^(\d+\. )?{name}\(.*\)( -> .*)?$", "", text, flags=re.MULTILINE).strip()
+
+
+def members(thing):
+    """Public members of a class and of those that it stems from, by name."""
+    for kind in reversed(thing.__mro__):
+        if kind.__module__.startswith("quadcore"):
+            for name in vars(kind):
+                if not name.startswith("_"):
+                    member = inspect.getattr_static(thing, name)
+                    yield name, member if isinstance(member, property) else getattr(thing, name)
+
+
+@pytest.mark.parametrize("name", THINGS)
+def test_each_class_and_function_has_a_docstring(name):
+    assert told(THINGS[name], name.rpartition(".")[2])
+
+
+def is_told(kind, name, member):
+    """Whether a member has a docstring, or a line among the attributes of its class."""
+    if (callable(member) or isinstance(member, property)) and told(member, name):
+        return True
+    classes = [inspect.getdoc(each) or "" for each in kind.__mro__]
+    return any(re.search(rf"^(\w+, )*{name}(, \w+)*( :|$)", text, re.MULTILINE) for text in classes)
+
+
+@pytest.mark.parametrize("name", [name for name, thing in THINGS.items() if inspect.isclass(thing)])
+def test_each_member_is_told(name):
+    untold = [
+        member
+        for member, value in members(THINGS[name])
+        if not is_told(THINGS[name], member, value)
+    ]
+    # The core's own class is told of where it is used.
+    assert untold == (["command_topic"] if name == "quadcore._core.Simulation" else [])
+
+
+def test_a_public_object_does_not_show_as_an_address():
+    sim = qc.Simulation("quadrotor", engine="eigen")
+    log = sim.run(0.01)
+    shown = [sim, sim.state, sim.model, sim.world, sim.snapshot(), log, qc.references.hover()(0)]
+    shown += [*sim.model.links, *sim.model.joints, *sim.plugins, *sim.plugins[0].parameters]
+    shown += [*sim.topics.values(), qc.laws.geometric(), qc.references.spiral(), qc.InnerLoop()]
+    shown += [qc.BatchSimulation(n=2), qc.FlightPlan.of(), qc.AttitudeThrust((0, 0, 0, 1), 1.0)]
+    assert [repr(each) for each in shown if " at 0x" in repr(each)] == []
