@@ -27,7 +27,8 @@ if TYPE_CHECKING:
     from .trajectory import Trajectory
 
 # x, y, z keep theirs throughout.
-_XYZ = ("#d55e00", "#009e73", "#0072b2")
+AXES = ("#d55e00", "#009e73", "#0072b2")
+WHOLE = (0.0, 0.02, 0.94, 0.94)  # of a figure that axes in space fill
 _PLACES = ("x (m)", "y (m)", "z (m)")
 _ANGLES = ("roll (deg)", "pitch (deg)", "yaw (deg)")
 
@@ -156,7 +157,7 @@ def _wrenches(log: Trajectory) -> Figure:
     for row, (name, wrench) in zip(grid, acting.items()):
         row[0].set_ylabel(name)
         for axes, part in ((row[0], wrench[:, :3]), (row[1], wrench[:, 3:])):
-            for values, colour, axis in zip(part.T, _XYZ, "xyz"):
+            for values, colour, axis in zip(part.T, AXES, "xyz"):
                 axes.plot(log.time, values, color=colour, label=axis)
             if not np.any(part):
                 axes.set_ylim(-1, 1)
@@ -166,10 +167,11 @@ def _wrenches(log: Trajectory) -> Figure:
 
 
 def _path(log: Trajectory) -> Figure:
-    figure, axes, corner = space(_title(log, "Path of the frame"), [log.position])
+    figure = titled(_title(log, "Path of the frame"), 6, 6)
+    axes, corner = space(figure, WHOLE, [log.position])
     x, y, z = log.position.T
     axes.plot(x, y, np.full_like(z, corner[2]), color="0.7", linewidth=1, label="seen from above")
-    axes.plot(x, y, z, color=_XYZ[2], label="path")
+    axes.plot(x, y, z, color=AXES[2], label="path")
     wanted = _wanted(log)
     if wanted is not None:
         axes.plot(*wanted.T, "--", color="0.3", linewidth=1, label="reference")
@@ -179,10 +181,12 @@ def _path(log: Trajectory) -> Figure:
     return figure
 
 
-def space(title: str, paths: Sequence[np.ndarray]) -> Tuple[Figure, Any, np.ndarray]:
-    """Make a figure of axes in space with room for paths, each (rows, 3); and their low corner."""
-    figure = titled(title, 6, 6)
-    axes = figure.add_axes((0.0, 0.02, 0.94, 0.94), projection="3d")
+def space(figure: Figure, place: Any, paths: Sequence[np.ndarray]) -> Tuple[Any, np.ndarray]:
+    """Put axes in space into a figure, with room for paths, each (rows, 3).
+
+    Returns the axes and their low corner.
+    """
+    axes = figure.add_axes(place, projection="3d")
     # The same scale along all three axes, with room for flights that hardly move.
     low = np.min([path.min(axis=0) for path in paths], axis=0)
     high = np.max([path.max(axis=0) for path in paths], axis=0)
@@ -191,7 +195,7 @@ def space(title: str, paths: Sequence[np.ndarray]) -> Tuple[Figure, Any, np.ndar
     for name, start in zip("xyz", corner):
         getattr(axes, f"set_{name}lim")(start, start + 2 * reach)
         getattr(axes, f"set_{name}label")(f"{name} (m)")
-    return figure, axes, corner
+    return axes, corner
 
 
 def panels(
@@ -255,6 +259,6 @@ def _legend(figure: Figure, axes: Any) -> None:
 
 
 def _curves(panels: Any, time: np.ndarray, values: np.ndarray, labels: Sequence[str]) -> None:
-    for axes, curve, colour, label in zip(panels, values.T, _XYZ, labels):
+    for axes, curve, colour, label in zip(panels, values.T, AXES, labels):
         axes.plot(time, curve, color=colour)
         axes.set_ylabel(label)

@@ -13,7 +13,7 @@ import pytest
 import scipy.io
 
 import quadcore as qc
-from quadcore.cli import main, terminal
+from quadcore.cli import info, main, terminal
 from quadcore.formats import mat
 
 FALL = ["run", "quadrotor", "--duration", "0.05"]
@@ -61,6 +61,16 @@ def test_info_puts_every_parameter_on_one_line_with_all_that_is_known_of_it(caps
         assert text in thrust
     assert " --set " in lines["drone_plugin.inducedDragCoeff"]
     assert " default " in lines["motorpid_plugin.commandTimeout"]
+
+
+def test_info_tells_all_of_a_parameter_in_80_columns():
+    for plugin in qc.Simulation("quadrotor").plugins:
+        lines = info._told(plugin, 80).splitlines()
+        assert max(map(len, lines)) <= 80
+        words = " ".join(" ".join(lines).split())
+        for parameter in plugin.parameters:
+            for told in (parameter.name, parameter.meaning, parameter.range, parameter.unit):
+                assert told in words, parameter.name
 
 
 def test_run_prints_a_summary_and_writes_nothing_unasked(capsys):

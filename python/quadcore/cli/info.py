@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import textwrap
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +13,11 @@ from rich.table import Table
 from .. import resources
 from .._core import InputError
 from ..chapter2.vehicle import Vehicle
+from ..files import atomic_write
 from ..simulation import Simulation
 from . import options, terminal
 
-_WIDE = 120  # columns
+_LONGEST = 100  # columns of a line that is read
 
 
 def register(commands: Any) -> None:
@@ -24,6 +26,12 @@ def register(commands: Any) -> None:
         commands, "info", "Show a model's links, rotors, plugins and every parameter.", info
     )
     options.add_model(parser)
+    parser.add_argument(
+        "--picture",
+        metavar="FILE.png",
+        type=Path,
+        help="also draw frames, masses, boxes of inertia, and rotors with number and spin",
+    )
     parser.add_argument(
         "--vehicle",
         metavar="FILE.mat",
@@ -44,22 +52,36 @@ def info(arguments: argparse.Namespace) -> None:
         console.print(table, "")
     for plugin in simulation.plugins:
         console.print(f"plugin {plugin.name}: {plugin.summary}")
-        console.print(f"  {plugin.filename}, loaded from {plugin.path}")
+        console.print(f"  {plugin.filename}, loaded from {plugin.path}", soft_wrap=True)
         for name, topic in simulation.topics.items():
             if topic.writer == plugin.name:
                 console.print(f"  publishes topic {name}, {topic.kind}")
             if plugin.name in topic.readers:
                 console.print(f"  takes topic {name}, {topic.kind}")
-        # Lines that are searched stand alone; on a terminal the heading is in sight.
-        prefix = "" if console.is_terminal else f"{plugin.name}."
-        console.print(_parameters(plugin, prefix, console.width >= _WIDE), "")
+        if console.is_terminal:
+            console.print(_told(plugin, min(console.width, _LONGEST)), "", soft_wrap=True, sep="\n")
+        else:  # to be searched: a line has all that is known of a parameter
+            console.print(_parameters(plugin), "")
+    if arguments.picture is not None:
+        _draw(simulation, arguments.picture)
+        console.print(f"written {arguments.picture}")
     if arguments.vehicle is not None:
         if arguments.vehicle.suffix.lower() != ".mat":
             raise InputError(f"--vehicle {arguments.vehicle}: name a .mat file")
         Vehicle.of(simulation).to_mat(arguments.vehicle)
         console.print(f"written {arguments.vehicle}")
-    if console.width < _WIDE:
-        console.print("A wider terminal shows range, meaning and equation, too.")
+
+
+def _draw(simulation: Simulation, file: Path) -> None:
+    """Draw the vehicle; raise `InputError` if the file cannot be written."""
+    from ..plots import png  # matplotlib is slow to import
+    from ..vehicle_picture import draw
+
+    if file.suffix.lower() != ".png":
+        raise InputError(f"--picture {file}: name a file that ends in .png, which it would hold")
+    picture = png(draw(simulation))
+    with atomic_write(file) as stream:
+        stream.write(picture)
 
 
 def _links(simulation: Simulation) -> Table:
@@ -86,12 +108,29 @@ def _rotors(simulation: Simulation) -> Table:
     return table
 
 
-def _parameters(plugin: Any, prefix: str, wide: bool) -> Table:
-    explained = ("range", "meaning", "equation") if wide else ()
+def _told(plugin: Any, width: int) -> str:
+    """All of each parameter in a few lines, for a terminal; paths stay whole."""
+    lines = []
+    for parameter in plugin.parameters:
+        default = "required" if parameter.default is None else f"default {parameter.default}"
+        facts = (parameter.meaning, parameter.range, default, parameter.equation)
+        lines.append(f"  {parameter.name}  {parameter.value} {parameter.unit}".rstrip())
+        origin = "" if parameter.origin == "default" else _origin(parameter.origin)
+        told = "; ".join(filter(None, (*facts, origin)))
+        indent = " " * 6
+        lines += textwrap.wrap(
+            told, width, initial_indent=indent, subsequent_indent=indent,
+            break_long_words=False, break_on_hyphens=False,
+        )  # fmt: skip
+    return "\n".join(lines)
+
+
+def _parameters(plugin: Any) -> Table:
+    explained = ("range", "meaning", "equation")
     table = terminal.table("parameter", "value", "unit", "default", "from", *explained)
     for parameter in plugin.parameters:
         table.add_row(
-            prefix + parameter.name,
+            f"{plugin.name}.{parameter.name}",
             parameter.value,
             parameter.unit,
             "required" if parameter.default is None else parameter.default,

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from ..colours import PALETTE
 from ..log import Log
-from ..plots import panels, space
+from ..plots import WHOLE, panels, space, titled
 from ..rotation import continuous
 from ..study.metrics import differences
 
@@ -68,7 +68,8 @@ def _styles(curves: Sequence[Curve]) -> List[Dict[str, Any]]:
 
 
 def _path(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure:
-    figure, axes, _ = space("Paths of the frame", [curve.log.position for curve in curves])
+    figure = titled("Paths of the frame", 6, 6)
+    axes, _ = space(figure, WHOLE, [curve.log.position for curve in curves])
     for curve, style in zip(curves, styles):
         axes.plot(*curve.log.position.T, **style)
     axes.legend(loc="upper right", frameon=False)
