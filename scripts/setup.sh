@@ -63,6 +63,11 @@ install_quadcore() {
   echo "$sources $python_extras" > .venv/quadcore.sha256
 }
 
+# The pages of docs/ as a site; fails on a warning.
+build_docs() {
+  .venv/bin/python -W ignore -m sphinx -W --keep-going -q -b html docs build/docs/html
+}
+
 # A Python of somebody else's (conda, pyenv) must not lend its packages.
 unset PYTHONPATH PYTHONHOME
 install_apt_packages

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds a catkin workspace in build/catkin and runs every test of tests/ros in its devel space, and
-# some once more in its install space. Where ROS 1 cannot be had it says so in one line and succeeds.
+# some once more in its install space. Where ROS 1 is not there, or with --with-ros cannot be had, it says
+# so in one line and succeeds.
 # Needs .venv, which scripts/test makes, for xacro where the distribution has none.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -31,7 +32,8 @@ known() { apt-cache show "$1" >/dev/null 2>&1; }
 
 install_ros() {
   local packages missing="" package
-  known libroscpp-dev || known ros-noetic-ros-base || ! may_be_root || as_root apt-get -qq update
+  known libroscpp-dev || known ros-noetic-ros-base || [ "$1" != --with-ros ] || ! may_be_root ||
+    as_root apt-get -qq update
   if [ -d /opt/ros/noetic ] || known ros-noetic-ros-base; then packages=$noetic_packages
   elif known libroscpp-dev; then packages=$debian_packages
   else skip "apt knows no packages of ROS 1"; fi
@@ -40,6 +42,7 @@ install_ros() {
       missing="$missing $package"
   done
   [ -z "$missing" ] && return
+  [ "$1" = --with-ros ] || skip "packages of ROS are missing; scripts/test --with-ros installs them"
   local install="apt-get install -y --no-install-recommends$missing"
   may_be_root || skip "packages are missing and need root; run: sudo $install"
   say "installing with apt:$missing"
@@ -119,7 +122,7 @@ run_in() {
 workspace=build/catkin
 mkdir -p $workspace
 rm -f $workspace/failed
-install_ros
+install_ros "${1:-}"
 # The nodes written in Python run on the system's, with quadcore from the workspace and nothing of
 # .venv, except xacro where the distribution has none.
 export PATH="/usr/bin:$PATH"
