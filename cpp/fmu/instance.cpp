@@ -23,6 +23,7 @@ Instance::Instance(const std::string& resources, const std::string& guid)
 }
 
 void Instance::initialise() {
+  outputs_.forget();
   simulation_ = made();
   tuned_ = false;
   told_ = 0;
@@ -57,6 +58,7 @@ void Instance::step(double time, double length) {
     throw InputError("a step from " + seconds(time) + ", but the flight is at " +
                      seconds(this->time()) + "; go on from there");
   }
+  outputs_.forget();
   tune();
   for (auto& [topic, message] : settings_.inputs) {
     if (!message.is_set) continue;
@@ -85,7 +87,7 @@ double Instance::number(unsigned reference) {
   const Variable& v = variable(reference);
   if (!is_output(v)) return fmu::number(settings_, v);
   if (!simulation_) throw InputError("an output before the initialisation; initialise first");
-  return output(*simulation_, v);
+  return outputs_.at(*simulation_, v);
 }
 
 const std::string& Instance::text(unsigned reference) {
@@ -127,6 +129,7 @@ void Instance::restore(const SavedState& state) {
     settings_ = std::move(before);
     throw;
   }
+  outputs_.forget();
   start_time_ = state.start_time;
   tuned_ = false;
   told_ = simulation_ ? simulation_->warnings().size() : 0;

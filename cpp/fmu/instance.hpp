@@ -49,6 +49,7 @@ class Instance {
   Settings settings_;
   double start_time_ = 0;
   std::unique_ptr<Simulation> simulation_;
+  Outputs outputs_;
   bool tuned_ = false;    ///< a parameter changed since the simulation was made
   std::size_t told_ = 0;  ///< warnings of the simulation
 };

@@ -44,18 +44,22 @@ SimulationOptions options_of(const FlightFile& file, const Settings& settings) {
   return options;
 }
 
-double output(Simulation& simulation, const Variable& variable) {
+double Outputs::at(Simulation& simulation, const Variable& variable) {
   if (variable.kind == Variable::wrench) {
-    const Wrench& wrench = simulation.wrenches().at(variable.index / 6);
-    const auto i = static_cast<Eigen::Index>(variable.index % 3);
-    return variable.index % 6 < 3 ? wrench.force_F[i] : wrench.torque_F[i];
+    if (wrenches_.empty()) {
+      for (const Wrench& wrench : simulation.wrenches()) {
+        for (const Vector3d& part : {wrench.force_F, wrench.torque_F})
+          wrenches_.insert(wrenches_.end(), part.data(), part.data() + 3);
+      }
+    }
+    return wrenches_.at(variable.index);
+  }
+  if (variable.kind == Variable::state) {
+    if (state_.empty()) append_log_row(simulation.state(), state_);
+    return state_.at(variable.index);
   }
   std::vector<double> row;
-  if (variable.kind == Variable::state) {
-    append_log_row(simulation.state(), row);
-  } else {
-    append_log_row(simulation.topics()[simulation.topics().at(variable.name)], row);
-  }
+  append_log_row(simulation.topics()[simulation.topics().at(variable.name)], row);
   return row.at(variable.index);
 }
 

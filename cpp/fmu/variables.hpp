@@ -24,11 +24,23 @@ struct Settings {
   explicit Settings(const FlightFile& file);
 };
 
-/// \name Values of variables
-/// Throw InputError if the variable is no output, or no setting, or cannot have the value.
+/// What is read of a simulation in its present state; rows of many variables are made once.
+class Outputs {
+ public:
+  /// The state has changed.
+  void forget() {
+    state_.clear();
+    wrenches_.clear();
+  }
+  double at(Simulation& simulation, const Variable& variable);
+
+ private:
+  std::vector<double> state_, wrenches_;
+};
+
+/// \name Values of what can be set
+/// Throw InputError if the variable is no such one, or cannot have the value.
 /// @{
-/// Of an output, in the present state.
-double output(Simulation& simulation, const Variable& variable);
 double number(const Settings& settings, const Variable& variable);
 const std::string& text(const Settings& settings, const Variable& variable);
 void set_number(Settings& settings, const Variable& variable, double value);

@@ -7,10 +7,24 @@
 #include "quadcore/log.hpp"
 
 namespace quadcore::node {
+namespace {
+
+/// Opens a file. Throws InputError on a name of a format that needs all rows at once.
+std::FILE* opened(const std::string& path) {
+  for (const std::string other : {".mat", ".bag"}) {
+    if (path.size() < other.size() || path.substr(path.size() - other.size()) != other) continue;
+    throw InputError(path +
+                     ": the node writes CSV; name a .csv file, of which `quadcore convert` " +
+                     "makes a " + other + " afterwards");
+  }
+  return std::fopen(path.c_str(), "w");
+}
+
+}  // namespace
 
 CsvLog::CsvLog(const std::string& path, const Simulation& simulation,
                const std::vector<std::string>& topics)
-    : path_(path), topics_(simulation.topics().at(topics)), file_(std::fopen(path.c_str(), "w")) {
+    : path_(path), topics_(simulation.topics().at(topics)), file_(opened(path)) {
   if (!file_) throw InputError(path + ": cannot be written: " + std::strerror(errno));
   std::string header;
   for (const std::string& column : log_columns(simulation.model().joints.size())) {

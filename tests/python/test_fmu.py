@@ -285,6 +285,66 @@ def test_it_flies_where_neither_quadcore_nor_ode_is(fmus, tmp_path):
     assert eval(row) == logged_row(simulation)
 
 
+DRIVER = """
+#include <dlfcn.h>
+#include <stdarg.h>
+#include <stdio.h>
+static void say(void* e, const char* i, int s, const char* c, const char* text, ...) { puts(text); }
+typedef struct { void *logger, *allocate, *free, *finished, *environment; } Callbacks;
+int main(int n, char** v) {
+  void* library = dlopen(v[1], RTLD_NOW | RTLD_LOCAL);
+  if (!library) { puts(dlerror()); return 1; }
+#define GET(name, result, ...) result (*name)(__VA_ARGS__) = dlsym(library, #name)
+  GET(fmi2Instantiate, void*, const char*, int, const char*, const char*, Callbacks*, int, int);
+  GET(fmi2EnterInitializationMode, int, void*);
+  GET(fmi2DoStep, int, void*, double, double, int);
+  GET(fmi2GetReal, int, void*, const unsigned*, unsigned long, double*);
+  Callbacks callbacks = {say};
+  void* one = fmi2Instantiate("one", 1, v[2], "file:///resources", &callbacks, 0, 0);
+  if (!one || fmi2EnterInitializationMode(one) || fmi2DoStep(one, 0, 0.1, 0)) return 2;
+  const unsigned reference = 2;
+  double z;
+  fmi2GetReal(one, &reference, 1, &z);
+  printf("%.17g\\n", z);
+  return 0;
+}
+"""
+
+
+def test_it_flies_in_a_system_with_nothing_but_the_libraries_of_c_and_cpp(fmus, tmp_path):
+    """Another root, where there is no Python, and a program of forty lines."""
+    root = tmp_path / "root"
+    fmpy.extract(str(fmus("ode")), str(root))
+    (tmp_path / "fly.c").write_text(DRIVER)
+    compiled = subprocess.run(
+        ["cc", "-w", "-o", str(root / "fly"), str(tmp_path / "fly.c"), "-ldl"], capture_output=True
+    )
+    assert compiled.returncode == 0, compiled.stderr
+    base = re.compile(r"(/\S*/(?:ld-linux\S*|lib(?:c|m|stdc\+\+|gcc_s|dl|pthread)\.so\S*))")
+    for binary in (root / "fly", library(root)):
+        listed = subprocess.run(["ldd", str(binary)], capture_output=True, text=True).stdout
+        for file in base.findall(listed):
+            target = root / file.lstrip("/")
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(file, str(target))
+    assert next(v for v in variables_of(root) if v.valueReference == 2).name == "z"
+    guid = fmpy.read_model_description(str(root)).guid
+    inside = f"/{library(root).relative_to(root)}"
+    flown = subprocess.run(
+        ["unshare", "-r", "chroot", str(root), "/fly", inside, guid], capture_output=True, text=True
+    )
+    if "Operation not permitted" in flown.stderr:
+        pytest.skip("needs a system that lets users make a root of their own")
+    assert flown.returncode == 0, flown.stdout + flown.stderr
+    simulation = qc.Simulation("quadrotor", "ode")
+    simulation.step(100)
+    assert float(flown.stdout) == simulation.state.position[2]
+
+
+def variables_of(folder):
+    return fmpy.read_model_description(str(folder)).modelVariables
+
+
 def test_the_command_line_writes_one(tmp_path):
     path = tmp_path / "x.fmu"
     done = ran("export-fmu", "quadrotor", "--engine", "eigen", "--set", "odometry.rate=100",

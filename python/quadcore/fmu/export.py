@@ -93,13 +93,24 @@ def _libraries(simulation: Simulation) -> List[Tuple[str, bytes]]:
                 f"plugin '{plugin.name}': {plugin.filename} in {Path(plugin.path).parent} is none "
                 "of quadcore's own, which alone are inside an FMU; leave it out with --ignore"
             )
-    found = sorted((own / "fmu").glob("*.so*"))
-    if not any(library.name == _LIBRARY for library in found):
+    library = own / "fmu" / _LIBRARY
+    if not library.is_file():
         raise InputError(
-            f"{own / 'fmu' / _LIBRARY}: is missing: quadcore was built where libode.a or libccd "
-            "was not found, or without QUADCORE_BUILD_FMU; build it anew"
+            f"{library}: is missing: quadcore was built where libode.a or libccd was not found, or "
+            "without QUADCORE_BUILD_FMU; build it anew"
         )
-    return [(library.name, library.read_bytes()) for library in found]
+    found = {_LIBRARY: library.read_bytes()}
+    # Where the build puts what it needs, and where a wheel that was made for all machines has it.
+    others = [*(own / "fmu").glob("*.so*"), *own.parents[1].glob("quadcore.libs/*.so*")]
+    missed = True
+    while missed:
+        missed = False
+        for other in others:
+            is_named = any(other.name.encode() + b"\0" in data for data in found.values())
+            if is_named and other.name not in found:
+                found[other.name] = other.read_bytes()
+                missed = True
+    return sorted(found.items())
 
 
 def _files(simulation: Simulation) -> Iterator[Tuple[str, Tuple[str, bytes]]]:
