@@ -1,6 +1,7 @@
-# quadcore_build_in(TARGET PLUGIN...): gives a target the table of the plugins that it has inside, each
-# under its own symbol; a shared core has none.
-function(quadcore_build_in target)
+# quadcore_build_in(TARGET SEARCHED PLUGIN...): gives a target the table of the plugins that it has
+# inside, each under its own symbol; a shared core has none. SEARCHED: whether folders are searched for
+# others, and before those.
+function(quadcore_build_in target searched)
   set(declarations "")
   set(entries "")
   foreach(plugin ${ARGN})

@@ -240,6 +240,14 @@ def test_files_that_tags_name_travel_inside(imported, tmp_path):
     assert "vel_cmd.w1" in instance.variables and "w1" not in instance.variables
 
 
+def test_plugins_of_the_machine_do_not_come_in(imported, fmus, tmp_path, monkeypatch):
+    path = fmus("eigen")
+    (tmp_path / "libaerodynamic_plugin.so").write_text("no library")
+    monkeypatch.setenv("QUADCORE_PLUGIN_PATH", str(tmp_path))
+    instance = imported(path=path)
+    instance.step()
+
+
 def test_the_same_vehicle_is_the_same_file(fmus, tmp_path):
     qc.export_fmu(tmp_path / "again.fmu", "quadrotor", engine="eigen")
     assert (tmp_path / "again.fmu").read_bytes() == fmus("eigen").read_bytes()

@@ -99,6 +99,7 @@ void load_plugin_path(const std::string& folder) {
 
 std::vector<std::string> plugin_folders() {
   std::vector<std::string> folders;
+  if (!folders_are_searched()) return folders;
   {
     const std::lock_guard<std::mutex> lock(added_mutex);
     folders = added_folders;
