@@ -21,12 +21,11 @@ geometry_msgs::TransformStamped same_place(const std::string& parent, const std:
 
 Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
                      const KeptPublisher<rosgraph_msgs::Clock>& clock,
-                     const std::string& model_name, const GazeboNeighbours* neighbours,
-                     const std::string& frame_prefix, bool rotor_tf)
+                     const std::string& frame_prefix, GazeboStates& gazebo_states, bool rotor_tf)
     : odometry_topic_(simulation),
       clock_publisher_(clock),
       path_(nh),
-      gazebo_states_(nh, simulation, model_name, neighbours) {
+      gazebo_states_(gazebo_states) {
   joint_states_publisher_ = nh.advertise<sensor_msgs::JointState>("joint_states", 100, kept);
   const Model& model = simulation.model();
   joint_states_.name = model.joint_names();

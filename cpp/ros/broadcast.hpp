@@ -27,14 +27,12 @@ namespace quadcore::node {
 class Broadcast {
  public:
   /// \param clock  where the clock is sent; an empty publisher = somebody else sends it
-  /// \param model  its name
-  /// \param neighbours  whose models are of the same world; null = somebody else tells of them
   /// \param frame_prefix  of the vehicle's frames, "" or such as "uav1/"
   /// \param rotor_tf  whether tf holds the rotors' links, too. What robot_state_publisher says of
   ///                  them is not kept for those who come later.
   Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
-            const KeptPublisher<rosgraph_msgs::Clock>& clock, const std::string& model,
-            const GazeboNeighbours* neighbours, const std::string& frame_prefix, bool rotor_tf);
+            const KeptPublisher<rosgraph_msgs::Clock>& clock, const std::string& frame_prefix,
+            GazeboStates& gazebo_states, bool rotor_tf);
 
   /// After a step; `jumped`: after the start, a reset or a new state.
   void send(const Simulation& simulation, bool jumped);
@@ -60,7 +58,7 @@ class Broadcast {
   ros::Publisher static_tf_publisher_;
   ros::Publisher joint_states_publisher_;
   PathTopic path_;
-  GazeboStates gazebo_states_;
+  GazeboStates& gazebo_states_;
   std::optional<TopicBroadcast> others_;
 
   // Kept, so that sending them needs no new memory.

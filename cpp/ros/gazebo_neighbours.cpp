@@ -17,18 +17,19 @@ void add(const States& more, States& states) {
 
 }  // namespace
 
-void GazeboNeighbours::look(const std::vector<std::string>& spaces) {
+void GazeboNeighbours::look(const std::vector<std::string>& spaces, bool listen) {
   std::map<std::string, Told> gone;  // subscribers end without the lock that their callbacks take
   {
     const std::lock_guard<std::mutex> lock(mutex_);
+    spaces_ = spaces;
     for (auto told = told_.begin(); told != told_.end();) {
       const auto next = std::next(told);
-      if (std::count(spaces.begin(), spaces.end(), told->first) == 0) {
-        gone.insert(told_.extract(told));
-      }
+      const bool stays = std::count(spaces.begin(), spaces.end(), told->first) > 0;
+      if (!stays || !listen) gone.insert(told_.extract(told));
       told = next;
     }
   }
+  if (!listen) return;
   for (const std::string& space : spaces) {
     std::unique_lock<std::mutex> lock(mutex_);
     if (told_.count(space) > 0) continue;
@@ -51,9 +52,7 @@ ros::Subscriber GazeboNeighbours::subscribe(const std::string& topic, States& ne
 
 std::vector<std::string> GazeboNeighbours::spaces() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  std::vector<std::string> spaces;
-  for (const auto& [space, told] : told_) spaces.push_back(space);
-  return spaces;
+  return spaces_;
 }
 
 void GazeboNeighbours::add_to(gazebo_msgs::ModelStates& states) const {

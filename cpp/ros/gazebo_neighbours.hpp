@@ -18,7 +18,8 @@ class GazeboNeighbours {
   explicit GazeboNeighbours(const ros::NodeHandle& nh) : nh_(nh) {}
 
   /// Who they are now, by namespace.
-  void look(const std::vector<std::string>& spaces);
+  /// \param listen  whether to hear where their models are
+  void look(const std::vector<std::string>& spaces, bool listen);
   std::vector<std::string> spaces() const;
   /// Adds what they told last.
   void add_to(gazebo_msgs::ModelStates& states) const;
@@ -35,6 +36,7 @@ class GazeboNeighbours {
 
   ros::NodeHandle nh_;
   mutable std::mutex mutex_;
+  std::vector<std::string> spaces_;
   std::map<std::string, Told> told_;  ///< by namespace
 };
 

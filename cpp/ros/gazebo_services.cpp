@@ -219,10 +219,13 @@ void GazeboServices::offer_properties() {
       if (simulation.world().ground_plane) response.model_names.push_back("ground_plane");
       response.model_names.push_back(model_);
     });
-    gazebo_msgs::ModelStates others;
-    if (neighbours_) neighbours_->add_to(others);
-    for (const std::string& name : others.name) {
-      if (name != "ground_plane") response.model_names.push_back(name);
+    if (!neighbours_) return;
+    for (const std::string& space : neighbours_->spaces()) {
+      gazebo_msgs::GetWorldProperties other;
+      if (!ros::service::call(space + "/gazebo/get_world_properties", other)) continue;
+      for (const std::string& name : other.response.model_names) {
+        if (name != "ground_plane") response.model_names.push_back(name);
+      }
     }
   });
   offer<gazebo_msgs::GetModelProperties>(

@@ -78,7 +78,8 @@ int run(const EndSignal& end_signal) {
   std::optional<GazeboNeighbours> neighbours;
   if (clock) neighbours.emplace(nh);
   const GazeboNeighbours* const known = neighbours ? &*neighbours : nullptr;
-  Broadcast broadcast(nh, simulation, clock, model, known, prefix, settings.rotor_tf);
+  GazeboStates gazebo_states(nh, simulation, model, known);
+  Broadcast broadcast(nh, simulation, clock, prefix, gazebo_states, settings.rotor_tf);
   const std::vector<CommandTopic> topics = command_topics(nh, settings.plant, simulation);
   std::vector<std::string> taken = simulated(topics);
   taken.push_back(GazeboWrenches::topic);
@@ -94,6 +95,8 @@ int run(const EndSignal& end_signal) {
            simulation.engine_name().c_str(), described(topics).c_str(),
            flight_settings.lockstep ? ", one for each odometry message" : "");
   FlightThread flight(simulation, flight_settings, listener);
+  gazebo_states.for_newcomers(
+      [&] { flight.tell([&](const Simulation& now) { gazebo_states.send(now); }); });
   std::optional<ClockLeader> leader;
   if (clock) leader.emplace(nh, flight, clock);
   if (follower) follower->follow(flight);
@@ -110,7 +113,7 @@ int run(const EndSignal& end_signal) {
   while (ros::ok() && !end_signal.has_come()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     if (leader) leader->look();
-    if (leader) neighbours->look(leader->spaces());
+    if (leader) neighbours->look(leader->spaces(), gazebo_states.asks_neighbours());
     if (follower) follower->tell(flight.report());
     if (Wall::now() < due) continue;
     diagnostics.send(flight.report(), commands.refusals());

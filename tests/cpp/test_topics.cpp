@@ -118,6 +118,20 @@ TEST_CASE("names that a log or ROS could not carry are refused") {
   }
 }
 
+TEST_CASE("a name may have parts, which are one word where names have none") {
+  Declared topics;
+  topics.plugin("one");
+  const std::size_t truth = topics.publishes("ground_truth/imu/2", heat);
+  CHECK(topics[truth].name == "ground_truth_imu_2");
+  CHECK(topics[truth].path == "ground_truth/imu/2");
+  CHECK(topics.at("ground_truth/imu/2") == truth);
+  CHECK(topics.at("ground_truth_imu_2") == truth);
+  CHECK(topics.takes("ground_truth_imu_2", heat) == truth);
+  for (const char* name : {"/imu", "imu/", "ground//imu", "2/imu"}) {
+    CHECK(contains(refusal([&] { topics.publishes(name, heat); }), "is no plain word; write"));
+  }
+}
+
 TEST_CASE("writers run before readers, else plugins run by name, wherever they stand") {
   // c writes for b, which writes for d; a has nothing to do with them.
   const std::vector<std::string> wanted = {"a", "c", "b", "d"};

@@ -194,7 +194,13 @@ PID = '<plugin name="pid" filename="libmotorpid_plugin.so"><kp>1e-4</kp></plugin
         (
             SECOND + "<linkName>firefly/rotor_1</linkName>",
             "<jointName>firefly/rotor_0_joint</jointName><linkName>firefly/rotor_0</linkName>",
-            ("plugin 'motor_1' turns joint 'firefly/rotor_0_joint', as 'motor_0' (", "one plugin"),
+            ("joint 'firefly/rotor_0_joint' is turned by 'motor_0' (", "one plugin"),
+        ),
+        (
+            SECOND + "<linkName>firefly/rotor_1</linkName>",
+            "<motorType>position</motorType><jointName>firefly/rotor_0_joint</jointName>"
+            "<linkName>firefly/rotor_0</linkName>",
+            ("joint 'firefly/rotor_0_joint' is turned by 'motor_0' (", "one plugin"),
         ),
         (
             MOTOR_0,
@@ -231,6 +237,7 @@ PID = '<plugin name="pid" filename="libmotorpid_plugin.so"><kp>1e-4</kp></plugin
     ],
     ids=[
         "two motors on a joint",
+        "two motors of different kinds on a joint",
         "a motor and a PID",
         "no joint",
         "no XML",
@@ -263,8 +270,34 @@ def test_a_motor_may_exert_a_torque(edited):
     assert simulation.state.rotor_velocity[0] == pytest.approx(1e-6 / moment * 0.1, rel=1e-3)
 
 
-def test_a_motor_may_hold_an_angle(edited):
+def test_motors_of_one_number_follow_one_command_and_that_is_said(edited):
+    simulation = edited(("<motorNumber>3<", "<motorNumber>0<"))
+    (said,) = [w for w in simulation.warnings if "<motorNumber>" in w]
+    assert "motors 'motor_0' and 'motor_3' have the same <motorNumber> 0 (" in said
+    simulation.command([500, 0, 0, 0, 0, 0])
+    simulation.step(200)
+    assert list(abs(simulation.state.rotor_velocity) > 1) == [
+        True,
+        False,
+        False,
+        True,
+        False,
+        False,
+    ]
+
+
+def test_without_bounds_a_motor_holds_no_angle_as_in_gazebo_and_that_is_said(edited):
     gains = "<joint_control_pid><p>2e-3</p><d>4e-4</d></joint_control_pid>"
+    simulation = edited((KIND, KIND + "<motorType>position</motorType>" + gains))
+    (said,) = [w for w in simulation.warnings if "holds no angle" in w]
+    assert "motor 'motor_0'" in said
+    simulation.command([0.5, 0, 0, 0, 0, 0])
+    simulation.step(100)
+    assert abs(simulation.state.rotor_angle[0]) < 1e-12
+
+
+def test_a_motor_may_hold_an_angle(edited):
+    gains = "<joint_control_pid><p>2e-3</p><d>4e-4</d><cmdMax>-1</cmdMax></joint_control_pid>"
     simulation = edited((KIND, KIND + "<motorType>position</motorType>" + gains))
     simulation.command([0.5, 0, 0, 0, 0, 0])
     simulation.step(3000)

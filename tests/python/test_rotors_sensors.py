@@ -146,3 +146,9 @@ def test_a_unit_off_the_centre_feels_how_it_is_carried_round(fitted):
     felt = (turn[1:-1] * R_FS).inv().apply(a)
     told = np.array([message[f][2:] for f in ("ax", "ay", "az")]).T
     assert np.allclose(told, felt, atol=1e-9)
+
+
+def test_noise_beyond_all_numbers_is_refused(fitted):
+    unit = plugin("unit", "imu_plugin", linkName="mast", imuTopic="u", gyroscopeNoiseDensity=1e300)
+    with pytest.raises(qc.InputError, match="<gyroscopeNoiseDensity> is 1e300, but must be .*1e6"):
+        fitted(unit)

@@ -142,3 +142,19 @@ def test_a_tag_that_a_fork_has_added_to_a_sensor_is_refused_with_the_option_that
     says = r"unknown tag <measurementDivisor>.*--ignore librotors_gazebo_imu_plugin\.so"
     with pytest.raises(qc.InputError, match=says):
         fitted(forked)
+
+
+def test_a_second_wind_is_refused_with_both_lines_and_a_remedy(fitted):
+    winds = [plugin(name, "wind_plugin", linkName="mast") for name in ("wind", "more_wind")]
+    with pytest.raises(qc.InputError, match=r":\d+: .*'(more_)?wind'.*keep one of the two"):
+        fitted(*winds)
+
+
+def test_a_wind_tells_how_it_blows(fitted):
+    wind = plugin(
+        "wind", "wind_plugin", linkName="mast", windSpeedMean=3, windDirection="0 2 0", **GUST
+    )
+    log = fitted(wind).run(0.2, topics=["wind_speed", "external_force"])
+    assert log.topics["wind_speed"]["y"][1:] == pytest.approx(3)
+    pushes = log.topics["external_force"]["fy"][1:]
+    assert np.count_nonzero(pushes == 2) == 50 and np.count_nonzero(pushes) == 50

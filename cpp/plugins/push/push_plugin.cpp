@@ -150,6 +150,7 @@ PluginDescriptor describe() {
       },
       {"push"},
       create<PushPlugin>,
+      true,
   };
 }
 

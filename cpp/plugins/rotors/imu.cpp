@@ -116,7 +116,7 @@ PluginDescriptor describe() {
   using T = TagSpec;
   const auto add = [](const char* name, const char* unit, const char* fallback,
                       const char* meaning) {
-    return T::number(name, unit, fallback, meaning).at_least(0).from("RotorS");
+    return T::number(name, unit, fallback, meaning).at_least(0).at_most(1e6).from("RotorS");
   };
   return {
       "RotorS' inertial measurement unit: of the state a step before its stamp, each step",
@@ -128,14 +128,16 @@ PluginDescriptor describe() {
           add("gyroscopeBiasRandomWalk", "rad/s^2/sqrt(Hz)", "3.8785094488762879e-05",
               "random walk of their bias"),
           add("gyroscopeBiasCorrelationTime", "s", "1000", "correlation time of that bias")
-              .above(0),
+              .above(0)
+              .at_most(1e12),
           add("gyroscopeTurnOnBiasSigma", "rad/s", "0.008726646259971648",
               "standard deviation of the bias at turn-on"),
           add("accelerometerNoiseDensity", "m/s^2/sqrt(Hz)", "0.004",
               "density of the white noise of the specific force"),
           add("accelerometerRandomWalk", "m/s^3/sqrt(Hz)", "0.006", "random walk of its bias"),
           add("accelerometerBiasCorrelationTime", "s", "300", "correlation time of that bias")
-              .above(0),
+              .above(0)
+              .at_most(1e12),
           add("accelerometerTurnOnBiasSigma", "m/s^2", "0.196",
               "standard deviation of the bias at turn-on"),
           T::choice("noise", {"rotors", "seeded"},

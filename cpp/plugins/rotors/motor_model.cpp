@@ -66,6 +66,13 @@ class MotorModel final : public Plugin {
         power_(
             setup.topics.takes(setup.parameters.text("power"), shares(setup.model.joints.size()))),
         speed_(speed_topic(setup)) {
+    look_at_twins(setup);
+    if (type_ == Type::position && control_.is_mute()) {
+      setup.warnings.push_back(
+          "motor '" + setup.name +
+          "' holds no angle: without <cmdMax> and <cmdMin> Gazebo's PID lets no "
+          "torque through; write bounds, or <cmdMax>-1</cmdMax> for none");
+    }
     for (const PluginElement& other : setup.model.plugins) {
       if (other.filename != controller_interface_file) continue;
       // As RotorS' own messages do, what it forwards arrives with the next step.
@@ -167,6 +174,30 @@ class MotorModel final : public Plugin {
                        std::to_string(motor_count(setup.model)) + ", counted from 0");
     }
     return static_cast<std::size_t>(number);
+  }
+
+  /// Throws InputError if a motor before this one has its joint, and warns if one has its number.
+  static void look_at_twins(const PluginSetup& setup) {
+    const auto of = [](const PluginElement& plugin, const std::string& name) {
+      for (const PluginTag& tag : plugin.tags) {
+        if (tag.name == name) return tag;
+      }
+      return PluginTag{};
+    };
+    for (const PluginElement& other : setup.model.plugins) {
+      if (other.name == setup.name) return;
+      if (other.filename != motor_model_file) continue;
+      const PluginTag joint = of(other, "jointName"), number = of(other, "motorNumber");
+      if (joint.text == setup.parameters.text("jointName")) {
+        throw InputError("joint '" + joint.text + "' is turned by '" + other.name + "' (" +
+                         joint.where + ") already; let one plugin drive each joint");
+      }
+      if (number.text == setup.parameters.text("motorNumber")) {
+        setup.warnings.push_back("motors '" + other.name + "' and '" + setup.name +
+                                 "' have the same <motorNumber> " + number.text + " (" +
+                                 number.where + "): one number of a command drives both");
+      }
+    }
   }
 
   static std::optional<std::size_t> speed_topic(const PluginSetup& setup) {

@@ -22,8 +22,8 @@ class PositionControl {
         i_min_(p.number(name("iMin"))),
         largest_(p.number(name("cmdMax"))),
         smallest_(p.number(name("cmdMin"))) {
-    if (i_min_ > i_max_ || smallest_ > largest_) {
-      throw InputError("<joint_control_pid> has a minimum above its maximum; swap them");
+    if (i_min_ > i_max_) {
+      throw InputError("<joint_control_pid> has its <iMin> above its <iMax>; swap them");
     }
   }
 
@@ -33,8 +33,11 @@ class PositionControl {
     memory[kSum] = std::clamp(memory[kSum] + dt * i_ * error, i_min_, i_max_);
     const double torque = -p_ * error - memory[kSum] - d_ * (error - memory[kLast]) / dt;
     memory[kLast] = error;
-    return largest_ == 0 && smallest_ == 0 ? torque : std::clamp(torque, smallest_, largest_);
+    return is_bounded() ? std::clamp(torque, smallest_, largest_) : torque;
   }
+
+  /// Whether bounds, as they are given or left out, let no torque through.
+  bool is_mute() const { return is_bounded() && smallest_ == 0 && largest_ == 0; }
 
   static void add_tags(std::vector<TagSpec>& tags) {
     const auto add = [&](const char* gain, const char* unit, const std::string& meaning) {
@@ -45,11 +48,13 @@ class PositionControl {
     add("d", "N m s/rad", "its derivative gain");
     add("iMax", "N m", "largest integral torque");
     add("iMin", "N m", "smallest integral torque");
-    add("cmdMax", "N m", "largest torque; 0 and 0: no bounds");
-    add("cmdMin", "N m", "smallest torque");
+    add("cmdMax", "N m", "largest torque; below cmdMin: no bounds");
+    add("cmdMin", "N m", "smallest torque; 0 and 0: no torque");
   }
 
  private:
+  /// Gazebo takes bounds the wrong way round for none.
+  bool is_bounded() const { return smallest_ <= largest_; }
   static std::string name(const char* gain) { return std::string("joint_control_pid/") + gain; }
 
   double p_, i_, d_, i_max_, i_min_, largest_, smallest_;
