@@ -169,9 +169,11 @@ class MotorModel final : public Plugin {
     const double number = setup.parameters.number("motorNumber");
     const auto motors = static_cast<double>(motor_count(setup.model));
     if (number != std::floor(number) || number >= motors) {
-      throw InputError("<motorNumber> " + setup.parameters.text("motorNumber") +
-                       " is no number of a motor; the model has " +
-                       std::to_string(motor_count(setup.model)) + ", counted from 0");
+      throw InputError(
+          "<motorNumber> " + setup.parameters.text("motorNumber") +
+          " is no number of a motor; the model has " + std::to_string(motor_count(setup.model)) +
+          ", counted from 0; number them without a gap, and cut one that is to stand still "
+          "with libfault_plugin.so");
     }
     return static_cast<std::size_t>(number);
   }

@@ -175,9 +175,11 @@ def motor_of(simulation: Simulation) -> PluginInfo:
 
 
 def _the_one(found: Sequence[PluginInfo], such_as: str) -> PluginInfo:
-    if len(found) != 1:
-        raise InputError(f"the mathematical model needs one plugin {such_as}; got {len(found)}")
-    return found[0]
+    if len(found) == 1:
+        return found[0]
+    others = sorted({plugin.filename for plugin in found} - {such_as})
+    got = f"{len(found)}" if not others else f"{', '.join(others)}; take another engine"
+    raise InputError(f"the mathematical model needs one plugin {such_as}; got {got}")
 
 
 def parameters_of(plugin: PluginInfo) -> Dict[str, str]:
