@@ -8,7 +8,7 @@ frames=${frames#/}
 [ -n "$frames" ] || exec "$@"
 # The links of RotorS' vehicles have the namespace in their names already.
 links=$frames
-if rosparam get robot_description | grep -q "<link name=.\{1,2\}$frames/"; then links=""; fi
+if rosparam get -p robot_description | grep "<link name=\"$frames/" >/dev/null; then links=""; fi
 case $1 in
   *robot_state_publisher) exec "$@" "_tf_prefix:=$links" ;;
   *)

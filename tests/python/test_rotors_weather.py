@@ -144,9 +144,9 @@ def test_a_tag_that_a_fork_has_added_to_a_sensor_is_refused_with_the_option_that
         fitted(forked)
 
 
-def test_a_second_wind_is_refused_with_both_lines_and_a_remedy(fitted):
+def test_a_second_wind_is_refused_with_its_line_and_a_remedy(fitted):
     winds = [plugin(name, "wind_plugin", linkName="mast") for name in ("wind", "more_wind")]
-    with pytest.raises(qc.InputError, match=r":\d+: .*'(more_)?wind'.*keep one of the two"):
+    with pytest.raises(qc.InputError, match=r":\d+: plugin 'wind' .*load only one"):
         fitted(*winds)
 
 

@@ -8,6 +8,7 @@
 #include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
 #include "quadcore/rotor_shares.hpp"
+#include "twins.hpp"
 
 namespace quadcore::rotors {
 namespace {
@@ -176,30 +177,6 @@ class MotorModel final : public Plugin {
           "with libfault_plugin.so");
     }
     return static_cast<std::size_t>(number);
-  }
-
-  /// Throws InputError if a motor before this one has its joint, and warns if one has its number.
-  static void look_at_twins(const PluginSetup& setup) {
-    const auto of = [](const PluginElement& plugin, const std::string& name) {
-      for (const PluginTag& tag : plugin.tags) {
-        if (tag.name == name) return tag;
-      }
-      return PluginTag{};
-    };
-    for (const PluginElement& other : setup.model.plugins) {
-      if (other.name == setup.name) return;
-      if (other.filename != motor_model_file) continue;
-      const PluginTag joint = of(other, "jointName"), number = of(other, "motorNumber");
-      if (joint.text == setup.parameters.text("jointName")) {
-        throw InputError("joint '" + joint.text + "' is turned by '" + other.name + "' (" +
-                         joint.where + ") already; let one plugin drive each joint");
-      }
-      if (number.text == setup.parameters.text("motorNumber")) {
-        setup.warnings.push_back("motors '" + other.name + "' and '" + setup.name +
-                                 "' have the same <motorNumber> " + number.text + " (" +
-                                 number.where + "): one number of a command drives both");
-      }
-    }
   }
 
   static std::optional<std::size_t> speed_topic(const PluginSetup& setup) {
