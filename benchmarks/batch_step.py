@@ -1,4 +1,4 @@
-"""What a vehicle's step costs in a batch, one thread, over what it costs alone: drags, sizes."""
+"""What a vehicle's step costs in a batch, one thread, over what it costs alone: engines, drags, sizes."""
 
 import sys
 from statistics import median
@@ -11,7 +11,11 @@ import quadcore as qc
 STEPS = 10  # a call
 CALLS = 20
 SPEEDS = [480, -480, 480, -480]
-LARGEST = {"chapter2": 0.35, "appendix": 0.45}
+LARGEST = {
+    ("eigen", "chapter2"): 0.35,
+    ("eigen", "appendix"): 0.45,
+    ("gazebo11", "appendix"): 0.5,
+}
 LARGEST_OWN, LARGEST_MANY = 1.15, 1.2
 
 
@@ -22,11 +26,13 @@ def nanoseconds(vehicles, call):
     return (thread_time_ns() - start) / (CALLS * STEPS * vehicles)
 
 
-def batch(n, drag, own=False):
+def batch(n, drag, own=False, engine="eigen"):
     parameters = {"drone_plugin.dragModel": drag}
     if own:
         parameters["drone_plugin.rotorThrustCoeff"] = np.linspace(8e-6, 9e-6, n)
-    vehicles = qc.BatchSimulation(n=n, parameters=parameters, threads=1)
+    vehicles = qc.BatchSimulation(
+        n=n, engine=engine, parameters=parameters, spawn=(0, 0, 10), threads=1
+    )
     commands, rows = np.resize(np.array(SPEEDS, float), (n, 4)), vehicles.read_state()
 
     def call():
@@ -36,8 +42,10 @@ def batch(n, drag, own=False):
     return lambda: nanoseconds(n, call)
 
 
-def alone(drag):
-    sim = qc.Simulation(engine="eigen", parameters={"drone_plugin.dragModel": drag})
+def alone(drag, engine):
+    sim = qc.Simulation(
+        engine=engine, parameters={"drone_plugin.dragModel": drag}, spawn=(0, 0, 10)
+    )
     sim.command(SPEEDS)
     return lambda: nanoseconds(100, lambda: sim.step(100 * STEPS))
 
@@ -47,10 +55,11 @@ def ratio(part, whole, rounds):
 
 
 rounds = int(sys.argv[1]) if len(sys.argv) > 1 else 21
-for drag, largest in LARGEST.items():
-    of_batch = batch(1024, drag)
+for (engine, drag), largest in LARGEST.items():
+    of_batch = batch(1024, drag, engine=engine)
+    both = f"{engine}, {drag}"
     print(
-        f"in a batch of 1024 / alone, {drag:9s} {ratio(of_batch, alone(drag), rounds):7.3f}   "
+        f"1024 / alone, {both:21s} {ratio(of_batch, alone(drag, engine), rounds):7.3f}   "
         f"at most {largest}   ({median(of_batch() for _ in range(rounds)):.0f} ns)"
     )
 own = ratio(batch(1024, "chapter2", own=True), batch(1024, "chapter2"), rounds)

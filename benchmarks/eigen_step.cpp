@@ -18,7 +18,7 @@ constexpr double spawn_height = 10;  // m
 constexpr int steps = 4000;
 constexpr double speeds[2][4] = {{480, -480, 480, -480}, {479.9, -480, 480.1, -480}};
 constexpr double largest_distance = 1e-9;
-constexpr double largest_over_floor = 3, largest_over_gazebo11 = 0.2;
+constexpr double largest_over_floor = 3;
 
 void command(bare::Gyrostat& vehicle, const double* rotors) { vehicle.command(rotors); }
 void command(quadcore::Simulation& vehicle, const double* rotors) { vehicle.command(rotors, 4); }
@@ -56,8 +56,8 @@ int compare(const char* urdf, int rounds) {
   std::printf("eigen / hand-written floor          %7.3f   at most %.2f   (quartiles %.3f, %.3f)\n",
               quantile(over_floor, 0.5), largest_over_floor, quantile(over_floor, 0.25),
               quantile(over_floor, 0.75));
-  std::printf("eigen / gazebo11                    %7.3f   at most %.2f   (quartiles %.3f, %.3f)\n",
-              quantile(over_gazebo11, 0.5), largest_over_gazebo11, quantile(over_gazebo11, 0.25),
+  std::printf("eigen / gazebo11                    %7.3f   (quartiles %.3f, %.3f)\n",
+              quantile(over_gazebo11, 0.5), quantile(over_gazebo11, 0.25),
               quantile(over_gazebo11, 0.75));
   std::printf("end positions apart, m              %7.0e   at most %.0e\n", apart,
               largest_distance);

@@ -44,13 +44,13 @@ class Batch::Implementation {
     is_commanded_.resize(size());
     commands_.resize(size() * command_width());
     failures_.resize(size());
-    lanes_ = std::make_unique<LaneBlocks>(crew.in_lanes, common_.rotors(), world.gravity_W);
+    lanes_ = std::make_unique<LaneBlocks>(crew.in_lanes, common_.rotors(), world);
     for (std::size_t i = 0; i < size(); ++i) begin(i);
   }
 
   std::size_t size() const { return members_.size(); }
   std::size_t command_width() const { return common_.command_width(); }
-  std::size_t state_width() const { return lanes_->state_rows(); }
+  std::size_t state_width() const { return lanes_->shown_rows(); }
   double dt() const { return common_.dt(); }
   double time(std::size_t i) const { return static_cast<double>(steps_.at(i)) * dt(); }
   const std::vector<std::string>& failures() const { return failures_; }
@@ -166,7 +166,7 @@ class Batch::Implementation {
   template <class Work>
   void for_each_block(const Work& work) const {
     side_by_side(threads_, lanes_->blocks(), [&](std::size_t begin, std::size_t end) {
-      LaneNumbers room(batch::work_size(common_.rotors()));
+      LaneNumbers room(lanes_->work_size());
       for (std::size_t block = begin; block < end; ++block) {
         const std::size_t first = block * widest_lanes;
         work(block, first, std::min(size(), first + widest_lanes), room.data());

@@ -10,6 +10,10 @@
 /// for each vehicle. Free of Eigen and of code, so that files compiled for one processor may
 /// include it.
 
+namespace quadcore {
+struct HingedTree;
+}
+
 namespace quadcore::batch {
 
 /// Rows of the state of vehicles: p_WC, quaternion of F in W (x, y, z, w), v_WC_W, w_WF_F, then for
@@ -100,6 +104,7 @@ struct Block {
   double* state;
   double* work;         ///< room for two states and the sines and cosines of the rotors
   std::int64_t* steps;  ///< of each vehicle: how many it has flown of those asked for
+  const HingedTree* tree = nullptr;  ///< of bodies on hinges
 };
 
 /// Numbers of a block's work.

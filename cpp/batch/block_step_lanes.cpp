@@ -1,7 +1,7 @@
-#include "block_motion.hpp"
 #include "laws/ahead.hpp"
 #include "laws/gyrostat.hpp"
 #include "laws/motor_torque.hpp"
+#include "masks.hpp"
 
 namespace quadcore::batch {
 namespace {
@@ -134,19 +134,6 @@ QUADCORE_LAW void normalise(const Block& block, double* state) {
   }
 }
 
-/// Where a comparison holds, all bits.
-template <class T>
-using Mask = laws::BitsOf<T>;
-
-template <class T, class Comparison>
-QUADCORE_LAW Mask<T> mask(const Comparison& comparison) {
-  if constexpr (laws::lanes_of<T> == 1) {
-    return -static_cast<std::int64_t>(comparison);
-  } else {
-    return comparison;
-  }
-}
-
 /// Vehicles of which no plugin has to be asked about the state in which a step begins.
 template <class T>
 QUADCORE_LAW Mask<T> is_quiet(const Block& block, const Table<T>& constants, const Table<T>& state,
@@ -168,27 +155,18 @@ QUADCORE_LAW Mask<T> is_quiet(const Block& block, const Table<T>& constants, con
   return good;
 }
 
-/// Vehicles that a step left where a flight may go on without looking closer.
 template <class T>
-QUADCORE_LAW Mask<T> is_sound(const Block& block, const Table<T>& state) {
-  const Bounds& bounds = block.bounds;
+QUADCORE_LAW Outcome<T> outcome(const Block& block, const Table<T>& state) {
   const auto square = [&](std::size_t row) QUADCORE_INLINED {
     const Vec3<T> a = state.vector(row);
     return laws::dot(a, a);
   };
-  const T p2 = square(StateRow::position), v2 = square(StateRow::velocity),
-          w2 = square(StateRow::rate);
-  T rates2{};
+  T rates{};
   for (std::size_t i = 0; i < block.rotors; ++i) {
     const T rate = state.number(StateRow::joint(StateRow::joint_rate, i));
-    rates2 = rates2 + rate * rate;
+    rates = rates + rate * rate;
   }
-  // By the bits, because the compiler is told that numbers are finite.
-  constexpr std::int64_t exponent = 0x7FF0000000000000;
-  const auto finite = (laws::bits(((p2 + v2) + w2) + rates2) & exponent) != exponent;
-  return mask<T>(finite) & mask<T>(p2 < bounds.distance_squared) &
-         mask<T>(v2 < bounds.speed_squared) & mask<T>(w2 < bounds.rate_squared) &
-         mask<T>(rates2 < bounds.rate_squared);
+  return {square(StateRow::position), square(StateRow::velocity), square(StateRow::rate), rates};
 }
 
 template <class T, bool upright>
@@ -208,7 +186,7 @@ QUADCORE_LAW void fly(const Block& block, std::size_t first, std::int64_t count,
     differentiate<T, Stage::between, upright>(block, at, at.stage, {2, dt});
     differentiate<T, Stage::last, upright>(block, at, at.stage, {1, dt / 6});
     normalise<T>(block, at.stage);
-    flies &= is_sound(block, moved);
+    flies &= is_sound(block.bounds, outcome(block, moved));
     steps -= flies;
     for (std::size_t row = 0; row < numbers; row += widest_lanes) {
       laws::store(at.state + row, laws::chosen_by(flies, laws::load<T>(at.stage + row),

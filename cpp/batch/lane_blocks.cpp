@@ -3,8 +3,13 @@
 #include <algorithm>
 
 #include "eigen/gyrostat_step.hpp"
+#include "hinged_block.hpp"
 #include "lanes/for_each_width.hpp"
 #include "laws/motor_target.hpp"
+#include "ode/body_state.hpp"
+#include "ode/hinged_bodies.hpp"
+#include "ode/ode_engine.hpp"
+#include "quadcore/elementary.hpp"
 #include "quadcore/lane_width.hpp"
 #include "quadcore/simulation.hpp"
 
@@ -21,16 +26,8 @@ double square(double a) { return a * a; }
 }  // namespace
 
 LaneBlocks::LaneBlocks(const std::vector<std::shared_ptr<const LaneVehicle>>& vehicles,
-                       std::size_t rotors, const Vector3d& gravity_W)
-    : rotors_(rotors), gravity_W_(gravity_W), constants_differ_(false) {
-  static constexpr laws::ForEachWidth<void(const Block&, std::int64_t, double)> steps{
-      &step_block<1>, &step_block<2>, &step_block<4>, &step_block<8>};
-  static constexpr laws::ForEachWidth<void(const Block&, double*)> shows{
-      &show_block<1>, &show_block<2>, &show_block<4>, &show_block<8>};
-  const int width = lane_width(widest_lanes);
-  step_ = steps[width];
-  show_ = shows[width];
-
+                       std::size_t rotors, const World& world)
+    : rotors_(rotors), gravity_W_(world.gravity_W), constants_differ_(false) {
   const LaneVehicle* first = nullptr;
   bounds_ = {unbounded,        false, -unbounded, square(sure_distance), square(sure_speed),
              square(sure_rate)};
@@ -47,23 +44,63 @@ LaneBlocks::LaneBlocks(const std::vector<std::shared_ptr<const LaneVehicle>>& ve
   if (!first) return;
   laws_ = first->laws;
   places_ = first->places;
+  hinged_ = first->hinged;
+  if (are_hinged()) {
+    tree_ = hinged_->tree(world);
+    has_ground_ = world.ground_plane;
+    if (has_ground_) of_ground_.resize(vehicles.size());
+  }
+  choose_width();
 
-  const std::size_t rows = ConstantRow::count(rotors);
+  const std::size_t rows = constant_rows();
   constants_.resize(rows * (constants_differ_ ? places : widest_lanes));
-  state_.resize(StateRow::count(rotors) * places);
+  state_.resize(state_rows() * places);
   motors_.resize(MotorRow::count * rotors * places);
   may_tilt_.resize(places);
   for (std::size_t i = 0; i < places; ++i) {
     const bool is_in = i < vehicles.size() && vehicles[i];
     const LaneVehicle& vehicle = is_in ? *vehicles[i] : *first;  // an empty place is flown, too
     flies_[i] = -std::int64_t{is_in};
-    column(state_, StateRow::count(rotors), i)[(StateRow::orientation + 3) * widest_lanes] = 1;
+    if (!are_hinged()) {
+      column(state_, state_rows(), i)[(StateRow::orientation + 3) * widest_lanes] = 1;
+    }
     if (!constants_differ_ && i >= widest_lanes) continue;
     double* constants = column(constants_, rows, i);
     for (std::size_t row = 0; row < rows; ++row) {
       constants[row * widest_lanes] = vehicle.constants[row];
     }
   }
+}
+
+void LaneBlocks::choose_width() {
+  using Step = void(const Block&, std::int64_t, double);
+  using Show = void(const Block&, double*);
+  static constexpr laws::ForEachWidth<Step> steps{&step_block<1>, &step_block<2>, &step_block<4>,
+                                                  &step_block<8>};
+  static constexpr laws::ForEachWidth<Show> shows{&show_block<1>, &show_block<2>, &show_block<4>,
+                                                  &show_block<8>};
+  static constexpr laws::ForEachWidth<Step> hinged_steps{
+      &step_hinged_block<1>, &step_hinged_block<2>, &step_hinged_block<4>, &step_hinged_block<8>};
+  static constexpr laws::ForEachWidth<Show> hinged_shows{
+      &show_hinged_block<1>, &show_hinged_block<2>, &show_hinged_block<4>, &show_hinged_block<8>};
+  const int width = lane_width(widest_lanes);
+  step_ = are_hinged() ? hinged_steps[width] : steps[width];
+  show_ = are_hinged() ? hinged_shows[width] : shows[width];
+}
+
+std::size_t LaneBlocks::state_rows() const {
+  return are_hinged() ? HingedRow::state(rotors_) : StateRow::count(rotors_);
+}
+
+std::size_t LaneBlocks::constant_rows() const {
+  return are_hinged() ? HingedRow::constants(rotors_) : ConstantRow::count(rotors_);
+}
+
+std::size_t LaneBlocks::work_size() const {
+  if (!are_hinged()) return batch::work_size(rotors_);
+  constexpr std::size_t of_body =
+      (sizeof(BodyWork<double>) + sizeof(SoftRows<double>)) / sizeof(double);
+  return (TurnedRow::end(rotors_) + (rotors_ + 1) * of_body) * widest_lanes;
 }
 
 void LaneBlocks::begin(std::size_t vehicle, const std::vector<double>& engine_state) {
@@ -79,8 +116,7 @@ void LaneBlocks::begin(std::size_t vehicle, const std::vector<double>& engine_st
 void LaneBlocks::command(std::size_t vehicle, const double* speeds) {
   if (is_empty()) return;
   double* motors = column(motors_, MotorRow::count * rotors_, vehicle);
-  const double* constants = column(constants_, ConstantRow::count(rotors_),
-                                   constants_differ_ ? vehicle : vehicle % widest_lanes);
+  const double* constants = constants_of(vehicle);
   const double fastest = constants[ConstantRow::fastest * widest_lanes],
                sim_slow = constants[ConstantRow::motors_sim_slow * widest_lanes];
   for (std::size_t i = 0; i < rotors_; ++i) {
@@ -101,13 +137,14 @@ Block LaneBlocks::view(std::size_t block, double* work, std::int64_t* steps) {
           laws_,
           bounds_,
           {gravity_W_.x(), gravity_W_.y(), gravity_W_.z()},
-          part(constants_, constants_differ_ ? ConstantRow::count(rotors_) : 0),
+          part(constants_, constants_differ_ ? constant_rows() : 0),
           part(motors_, MotorRow::count * rotors_),
           &flies_[first],
           &may_tilt_[first],
-          part(state_, StateRow::count(rotors_)),
+          part(state_, state_rows()),
           work,
-          steps};
+          steps,
+          &tree_};
 }
 
 void LaneBlocks::step(std::size_t block, std::int64_t count, double dt, double* work,
@@ -118,8 +155,8 @@ void LaneBlocks::step(std::size_t block, std::int64_t count, double dt, double* 
 
 void LaneBlocks::show(std::size_t block, std::size_t vehicles, double* work, double* rows) const {
   if (is_empty()) return;
-  show_(const_cast<LaneBlocks*>(this)->view(block, nullptr, nullptr), work);
-  const std::size_t width = state_rows();
+  show_(const_cast<LaneBlocks*>(this)->view(block, work, nullptr), work);
+  const std::size_t width = shown_rows();
   for (std::size_t i = 0; i < vehicles; ++i) {
     double* to = rows + i * width;
     for (std::size_t row = 0; row < StateRow::joints; ++row) to[row] = work[row * widest_lanes + i];
@@ -128,9 +165,30 @@ void LaneBlocks::show(std::size_t block, std::size_t vehicles, double* work, dou
         return work[StateRow::joint(row, j) * widest_lanes + i];
       };
       to[StateRow::joints + j] = joint(StateRow::joint_rate);
-      to[StateRow::joints + rotors_ + j] = joint(StateRow::joint_angle);
+      to[StateRow::joints + rotors_ + j] = are_hinged()
+                                               ? hinged_angle(block * widest_lanes + i, work + i, j)
+                                               : joint(StateRow::joint_angle);
     }
   }
+}
+
+/// As Kinematics::angle(): of the j-th joint of a vehicle whose motion was shown.
+double LaneBlocks::hinged_angle(std::size_t vehicle, const double* shown, std::size_t j) const {
+  const auto vector = [](const double* from) {
+    return Vector3d(from[0], from[widest_lanes], from[2 * widest_lanes]);
+  };
+  const auto matrix = [&](const double* from) {
+    Matrix3d m;
+    m << vector(from), vector(from + 3 * widest_lanes), vector(from + 6 * widest_lanes);
+    return m;
+  };
+  const double* const rotor = shown + TurnedRow::rotor(0, j, rotors_) * widest_lanes;
+  const double* const at_zero =
+      constants_of(vehicle) + ConstantRow::rotor(ConstantRow::R_FR_at_zero, j) * widest_lanes;
+  const Matrix3d R = matrix(rotor + TurnedRow::R_FR * widest_lanes) * matrix(at_zero).transpose();
+  const Vector3d twice_sine(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
+  return elementary::atan2(vector(rotor + TurnedRow::axis_F * widest_lanes).dot(twice_sine),
+                           R.trace() - 1);
 }
 
 namespace {
@@ -150,20 +208,59 @@ void for_each_number(std::size_t rotors, const Function& f) {
   }
 }
 
+/// The same of bodies on hinges.
+template <class Function>
+void for_each_hinged_number(std::size_t rotors, const Function& f) {
+  for (std::size_t i = 0; i <= rotors; ++i) {
+    const std::size_t here = i * BodyRow::count, there = i * (pose_size + velocity_size);
+    for (std::size_t k = 0; k < 3; ++k) {
+      f(here + BodyRow::position + k, there + k);
+      f(here + BodyRow::orientation + k, there + 4 + k);
+      f(here + BodyRow::velocity + k, there + pose_size + k);
+      f(here + BodyRow::rate + k, there + pose_size + 3 + k);
+    }
+    f(here + BodyRow::orientation + 3, there + 3);
+  }
+}
+
+/// Writes rotations that belong to the quaternions.
+void turn_hinged(std::size_t rotors, double* engine) {
+  for (std::size_t i = 0; i <= rotors; ++i) {
+    const double* const q = engine + i * (pose_size + velocity_size) + 3;
+    const auto R = laws::rotation(laws::Quaternion<double>{q[1], q[2], q[3], q[0]});
+    const double rows[] = {R.xx, R.xy, R.xz, 0, R.yx, R.yy, R.yz, 0, R.zx, R.zy, R.zz, 0};
+    std::copy_n(rows, 12, engine + i * (pose_size + velocity_size) + 7);
+  }
+}
+
 }  // namespace
 
 void LaneBlocks::get_engine_state(std::size_t vehicle, std::vector<double>& engine) const {
   const double* rows = column(state_, state_rows(), vehicle);
-  for_each_number(rotors_, [&](std::size_t row, std::size_t place) {
+  bool moved = false;
+  const auto get = [&](std::size_t row, std::size_t place) {
+    moved |= engine[place] != rows[row * widest_lanes];
     engine[place] = rows[row * widest_lanes];
-  });
+  };
+  if (!are_hinged()) return for_each_number(rotors_, get);
+  if (has_ground_) engine = of_ground_[vehicle];
+  for_each_hinged_number(rotors_, get);
+  if (moved) turn_hinged(rotors_, engine.data());
 }
 
 void LaneBlocks::set_engine_state(std::size_t vehicle, const std::vector<double>& engine) {
   double* rows = column(state_, state_rows(), vehicle);
-  for_each_number(rotors_, [&](std::size_t row, std::size_t place) {
+  const auto set = [&](std::size_t row, std::size_t place) {
     rows[row * widest_lanes] = engine[place];
-  });
+  };
+  if (!are_hinged()) return for_each_number(rotors_, set);
+  for_each_hinged_number(rotors_, set);
+  if (has_ground_) of_ground_[vehicle] = engine;
+}
+
+void LaneBlocks::let_fly(std::size_t vehicle, bool flies) {
+  flies_[vehicle] = -std::int64_t{flies};
+  if (has_ground_ && !is_clear_of_contact(of_ground_[vehicle])) flies_[vehicle] = 0;
 }
 
 }  // namespace quadcore::batch

@@ -4,6 +4,8 @@
 
 #include "eigen/compliant_ground.hpp"
 #include "eigen/gyrostat.hpp"
+#include "hinged_block.hpp"
+#include "ode/ode_engine.hpp"
 #include "quadcore/error.hpp"
 
 namespace quadcore::batch {
@@ -21,14 +23,80 @@ class Rows {
   std::vector<double>& rows_;
 };
 
+void put_gyrostat(const Model& model, const World& world, LaneVehicle& vehicle) {
+  using Row = ConstantRow;
+  const Gyrostat body(model);
+  if (world.ground_plane) vehicle.reach = CompliantGround(model, body).reach();
+  vehicle.laws.upright = body.upright;
+  vehicle.laws.normals_turn = vehicle.laws.turn = body.normals_turn;
+  Rows rows(vehicle.constants);
+  rows.put(Row::inverse_mass, body.inverse_mass);
+  rows.put(Row::p_FCcm_F, body.p_FCcm_F);
+  rows.put(Row::I_C_F, body.I_Ccm_F);
+  rows.put(Row::inverse_reduced_I_F, body.inverse_reduced_I_F);
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    using Constant = RotorConstant;
+    rows.put(Row::rotor(Row::axis_F, i), body.rotors.vector(Constant::axis_F, i));
+    rows.put(Row::rotor(Row::p_CR_F, i), body.rotors.vector(Constant::p_CR_F, i));
+    rows.put(Row::rotor(Row::p_CRcm_F, i), body.rotors.vector(Constant::p_CRcm_F, i));
+    rows.put(Row::rotor(Row::moment, i), body.rotors.number(Constant::moment, i));
+    rows.put(Row::rotor(Row::inverse_moment, i), body.rotors.number(Constant::inverse_moment, i));
+    rows.put(Row::rotor(Row::damping, i), body.rotors.number(Constant::damping, i));
+    rows.put(Row::rotor(Row::R_FR_at_zero, i), body.R_FR_at_zero[i]);
+  }
+}
+
+/// How far shapes reach from the frame's centre of mass [m]; none if rotors throw theirs about.
+std::optional<double> reach_of(const Model& model, const std::vector<Reach>& reaches) {
+  double furthest = 0;
+  for (const Reach& reach : reaches) {
+    double arm = 0;
+    if (reach.body > 0) {
+      const Joint& joint = model.joints[reach.body - 1];
+      const Vector3d& center = model.links[reach.body].inertial.pose.xyz;
+      if (center.cross(joint.axis).norm() > 1e-9) return std::nullopt;
+      arm = (joint.pose.xyz - model.links[0].inertial.pose.xyz).norm() + center.norm();
+    }
+    furthest = std::max(furthest, arm + reach.length);
+  }
+  return furthest;
+}
+
+/// Whether the vehicle can be put.
+bool put_hinged(const Model& model, const World& world, LaneVehicle& vehicle) {
+  const OdeEngine engine(model, world, gazebo11_recipe);
+  const HingedModel hinged(engine.model());
+  if (!engine.may_float() || !hinged.is_star()) return false;
+  if (world.ground_plane) {
+    const std::optional<double> reach = reach_of(engine.model(), engine.reaches());
+    if (!reach) return false;
+    vehicle.reach = *reach;
+  }
+  vehicle.hinged = std::make_shared<const HingedModel>(hinged);
+  const std::size_t rotors = model.joints.size();
+  vehicle.constants.resize(HingedRow::constants(rotors));
+  for (std::size_t i = 0; i <= rotors; ++i) {
+    const std::vector<double> rows = body_constants(engine.model(), i);
+    std::copy(rows.begin(), rows.end(),
+              &vehicle.constants[ConstantRow::count(rotors) + i * BodyConstant::count]);
+  }
+  for (std::size_t i = 0; i < rotors; ++i) {
+    Rows(vehicle.constants)
+        .put(ConstantRow::rotor(ConstantRow::R_FR_at_zero, i),
+             Matrix3d(engine.model().joints[i].pose.rotation().toRotationMatrix()));
+  }
+  return true;
+}
+
 }  // namespace
 
 std::optional<LaneVehicle> lane_vehicle(Simulation& simulation) {
   const ForceLaws& told = simulation.force_laws();
   const Model& model = simulation.model();
   const std::size_t rotors = model.joints.size();
-  if (simulation.engine_name() != "eigen" || !told.all_quiet || rotors > most_rotors ||
-      told.rotor_forces.size() > 1 || told.frame_drags.size() > 1 ||
+  const bool like_gazebo = simulation.engine_name() == "gazebo11";
+  if (!(like_gazebo || simulation.engine_name() == "eigen") || !told.all_quiet ||
+      rotors > most_rotors || told.rotor_forces.size() > 1 || told.frame_drags.size() > 1 ||
       told.motor_torques.size() != 1) {
     return std::nullopt;
   }
@@ -40,25 +108,23 @@ std::optional<LaneVehicle> lane_vehicle(Simulation& simulation) {
     simulation.restore(start);
     return std::nullopt;
   }
-  const Gyrostat body(model);
-  LaneVehicle vehicle{{}, unbounded, false, -unbounded, {}, {}};
-  if (simulation.world().ground_plane) vehicle.reach = CompliantGround(model, body).reach();
+  LaneVehicle vehicle{{}, unbounded, false, -unbounded, {}, {}, {}};
+  vehicle.constants.resize(ConstantRow::count(rotors));
+  if (!like_gazebo) {
+    put_gyrostat(model, simulation.world(), vehicle);
+  } else if (!put_hinged(model, simulation.world(), vehicle)) {
+    simulation.restore(start);
+    return std::nullopt;
+  }
   for (const Quiet& quiet : told.quiet) {
     vehicle.fastest = std::min(vehicle.fastest, quiet.fastest);
     vehicle.no_tilt |= quiet.no_tilt;
   }
-  vehicle.constants.resize(ConstantRow::count(rotors));
-  Rows rows(vehicle.constants);
   using Row = ConstantRow;
-  rows.put(Row::inverse_mass, body.inverse_mass);
-  rows.put(Row::p_FCcm_F, body.p_FCcm_F);
-  rows.put(Row::I_C_F, body.I_Ccm_F);
-  rows.put(Row::inverse_reduced_I_F, body.inverse_reduced_I_F);
+  Rows rows(vehicle.constants);
   rows.put(Row::flapping + 4, 1.0);  // a radius, where nothing flaps
 
   Laws& laws = vehicle.laws;
-  laws.upright = body.upright;
-  laws.normals_turn = laws.turn = body.normals_turn;
   for (const FrameDrag& law : told.frame_drags) {
     laws.drag = true;
     rows.put(Row::frame_drag, law.coefficient);
@@ -88,17 +154,7 @@ std::optional<LaneVehicle> lane_vehicle(Simulation& simulation) {
   rows.put(Row::kp, motors.kp);
   rows.put(Row::fastest, motors.fastest);
   rows.put(Row::motors_sim_slow, motors.sim_slow);
-  for (std::size_t i = 0; i < rotors; ++i) {
-    using Constant = RotorConstant;
-    rows.put(Row::rotor(Row::axis_F, i), body.rotors.vector(Constant::axis_F, i));
-    rows.put(Row::rotor(Row::p_CR_F, i), body.rotors.vector(Constant::p_CR_F, i));
-    rows.put(Row::rotor(Row::p_CRcm_F, i), body.rotors.vector(Constant::p_CRcm_F, i));
-    rows.put(Row::rotor(Row::moment, i), body.rotors.number(Constant::moment, i));
-    rows.put(Row::rotor(Row::inverse_moment, i), body.rotors.number(Constant::inverse_moment, i));
-    rows.put(Row::rotor(Row::damping, i), body.rotors.number(Constant::damping, i));
-    rows.put(Row::rotor(Row::R_FR_at_zero, i), body.R_FR_at_zero[i]);
-    vehicle.places.push_back(motors.places[i]);
-  }
+  vehicle.places.assign(motors.places, motors.places + rotors);
   simulation.restore(start);
   return vehicle;
 }
@@ -108,7 +164,8 @@ bool fit(const LaneVehicle& one, const LaneVehicle& other) {
   return a.across_link_z == b.across_link_z && a.at_origins == b.at_origins &&
          a.about_frame_z == b.about_frame_z && a.on_rotor == b.on_rotor && a.forces == b.forces &&
          a.drag == b.drag && a.parasitic == b.parasitic && a.flaps == b.flaps &&
-         a.upright == b.upright && a.normals_turn == b.normals_turn && one.places == other.places;
+         a.upright == b.upright && a.normals_turn == b.normals_turn && one.places == other.places &&
+         !one.hinged == !other.hinged;
 }
 
 }  // namespace quadcore::batch

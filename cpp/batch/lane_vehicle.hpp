@@ -1,8 +1,10 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "batch/block.hpp"
+#include "ode/hinged_model.hpp"
 #include "quadcore/simulation.hpp"
 
 namespace quadcore::batch {
@@ -10,11 +12,12 @@ namespace quadcore::batch {
 /// What steps of a block take of one vehicle.
 struct LaneVehicle {
   Laws laws;
-  double fastest;                 ///< as Bounds, rad/s
-  bool no_tilt;                   ///< as Bounds
-  double reach;                   ///< as Bounds [m]
-  std::vector<double> constants;  ///< rows as ConstantRow has them
-  std::vector<int> places;        ///< of each rotor, of its number in the command
+  double fastest;                             ///< as Bounds, rad/s
+  bool no_tilt;                               ///< as Bounds
+  double reach;                               ///< as Bounds [m]
+  std::vector<double> constants;              ///< rows as ConstantRow has them, or HingedRow
+  std::vector<int> places;                    ///< of each rotor, of its number in the command
+  std::shared_ptr<const HingedModel> hinged;  ///< for gazebo11; null for eigen
 };
 
 /// The vehicle of a simulation, which it leaves as it was, if laws that fly in lanes are all that

@@ -175,8 +175,7 @@ template <class T>
 QUADCORE_LAW Freedom<T> soft_to(const Spatial<T>& direction, const Spatial<T>& load,
                                 const Spatial<T>& force, T wanted, T softness) {
   const T share = 1 / (1 + softness * dot(direction, load));
-  return {direction, load, share * softness,
-          share * (wanted + softness * dot(direction, force))};
+  return {direction, load, share * softness, share * (wanted + softness * dot(direction, force))};
 }
 
 /// Leaves of what a body asks for, and of the force on it, what its carrier feels.

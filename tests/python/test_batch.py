@@ -57,55 +57,58 @@ def assert_same(batch, i, sim):
     assert batch.time[i] == sim.time
 
 
+@pytest.mark.parametrize("engine", ["eigen", "gazebo11"])
 @pytest.mark.parametrize("width", ["1", "2", "4", "8"])
-def test_each_moves_as_it_does_alone_to_the_last_bit(odd, width, monkeypatch):
+def test_each_moves_as_it_does_alone_to_the_last_bit(odd, width, engine, monkeypatch):
     monkeypatch.setenv("QUADCORE_LANES", width)
-    batch = batch_of(odd)
+    batch = batch_of(odd, engine=engine)
     fly(batch, COMMANDS, 40)
+    monkeypatch.delenv("QUADCORE_LANES")  # alone, all its rotors side by side
     for i in (0, 7, 8, N - 1):
-        assert_same(batch, i, fly_alone(alone(odd, i), i, 40))
+        assert_same(batch, i, fly_alone(alone(odd, i, engine=engine), i, 40))
 
 
-@pytest.mark.parametrize("engine", ["gazebo11", "ode"])
-def test_engines_without_lanes_fly_the_same_one_by_one(odd, engine):
-    batch = batch_of(odd, 3, engine=engine)
+def test_an_engine_without_lanes_flies_the_same_one_by_one(odd):
+    batch = batch_of(odd, 3, engine="ode")
     fly(batch, COMMANDS[:3], 20)
     for i in range(3):
-        assert_same(batch, i, fly_alone(alone(odd, i, engine=engine), i, 20))
+        assert_same(batch, i, fly_alone(alone(odd, i, engine="ode"), i, 20))
 
 
-def test_neither_threads_nor_neighbours_nor_the_length_of_calls_change_a_bit(odd):
-    batch = batch_of(odd, threads=1)
+@pytest.mark.parametrize("engine", ["eigen", "gazebo11"])
+def test_neither_threads_nor_neighbours_nor_the_length_of_calls_change_a_bit(odd, engine):
+    batch = batch_of(odd, engine=engine, threads=1)
     fly(batch, COMMANDS, 30)
     expected = batch.read_state()
-    several = batch_of(odd, threads=3)
+    several = batch_of(odd, engine=engine, threads=3)
     fly(several, COMMANDS, 30)
     np.testing.assert_array_equal(several.read_state(), expected)
-    few = batch_of(odd, 3)
+    few = batch_of(odd, 3, engine=engine)
     fly(few, COMMANDS[:3], 30)
     np.testing.assert_array_equal(few.read_state(), expected[:3])
-    piecewise = batch_of(odd)
+    piecewise = batch_of(odd, engine=engine)
     for k in range(3):
         for _ in range(30):
             piecewise.step(COMMANDS * (1 - 0.02 * k))
     np.testing.assert_array_equal(piecewise.read_state(), expected)
 
 
-def test_a_vehicle_that_fails_is_told_of_and_the_others_fly_on():
+@pytest.mark.parametrize("engine", ["eigen", "gazebo11"])
+def test_a_vehicle_that_fails_is_told_of_and_the_others_fly_on(engine):
     commands = COMMANDS.copy()
     commands[5] = 3300, -500, 500, -500  # half a turn per step, as if it could
     parameters = {"drone_plugin.sim_slow": 1, "motorpid_plugin.sim_slow": 1}
     free = {**parameters, "motorpid_plugin.maxVelocity": 1e6}
-    batch = BatchSimulation(n=N, spawn=SPAWN, parameters=free)
+    batch = BatchSimulation(n=N, engine=engine, spawn=SPAWN, parameters=free)
     batch.step(commands, 300)
-    sim = Simulation(engine="eigen", spawn=SPAWN[5], parameters=free)
+    sim = Simulation(engine=engine, spawn=SPAWN[5], parameters=free)
     sim.command(commands[5])
     with pytest.raises(qc.FlightError) as failure:
         sim.step(300)
     assert list(np.flatnonzero(batch.failed)) == [5]
     assert batch.failures[5] == str(failure.value)
     for i in (4, 6):
-        sim = Simulation(engine="eigen", spawn=SPAWN[i], parameters=free)
+        sim = Simulation(engine=engine, spawn=SPAWN[i], parameters=free)
         sim.command(commands[i])
         sim.step(300)
         assert_same(batch, i, sim)
@@ -167,27 +170,30 @@ def test_a_snapshot_brings_back_what_was_to_come(odd):
         batch_of(odd).restore(snapshot)
 
 
-def test_vehicles_take_off_and_land_as_they_do_alone():
+@pytest.mark.parametrize("engine", ["eigen", "gazebo11"])
+def test_vehicles_take_off_and_land_as_they_do_alone(engine):
     """They leave the lanes at the ground, and come back above it."""
     heights = np.array([0.05, 0.3, 0.6, 3.0])
     spawn = np.column_stack([*np.zeros((2, 4)), heights, 0.1 * np.ones(4), *np.zeros((2, 4))])
-    batch = BatchSimulation(n=4, world="default", spawn=spawn)
+    batch = BatchSimulation(n=4, engine=engine, world="default", spawn=spawn)
     for speed in (0, 0, 620, 620, 450, 450, 450):
         batch.step(np.resize(np.array([speed, -speed], float), (4, 4)), 150)
     assert not batch.failed.any()
     for i in range(4):
-        sim = Simulation(engine="eigen", world="default", spawn=spawn[i])
+        sim = Simulation(engine=engine, world="default", spawn=spawn[i])
         for speed in (0, 0, 620, 620, 450, 450, 450):
             sim.command([speed, -speed] * 2)
             sim.step(150)
         assert_same(batch, i, sim)
 
 
-def test_masses_and_poses_may_be_each_vehicles_own():
+@pytest.mark.parametrize("engine", ["eigen", "gazebo11"])
+def test_masses_and_poses_may_be_each_vehicles_own(engine):
     masses = np.array([0.8, 1.0, 1.3])
-    batch = BatchSimulation(n=3, parameters={"frame.mass": masses}, spawn=(1, 2, 30))
+    parameters = {"frame.mass": masses}
+    batch = BatchSimulation(n=3, engine=engine, parameters=parameters, spawn=(1, 2, 30))
     batch.step(COMMANDS[:3], 30)
-    sim = Simulation(engine="eigen", parameters={"frame.mass": 1.3}, spawn=(1, 2, 30))
+    sim = Simulation(engine=engine, parameters={"frame.mass": 1.3}, spawn=(1, 2, 30))
     sim.command(COMMANDS[2])
     sim.step(30)
     assert_same(batch, 2, sim)

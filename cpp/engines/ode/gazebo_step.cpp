@@ -194,13 +194,12 @@ void GazeboStep::begin(double dt) {
     if (row.hinge >= 0) {
       const WarmStart& start = warm_start[static_cast<std::size_t>(row.hinge)];
       const auto k = static_cast<std::size_t>(row.hinge_row);
-      multiplier = Sweeps::Two{warm_start_factor * start.pose[k],
-                               warm_start_factor * start.velocity[k]};
+      multiplier =
+          Sweeps::Two{warm_start_factor * start.pose[k], warm_start_factor * start.velocity[k]};
     }
     // Gazebo forgets the sign of what it caps.
     const bool capped = std::abs(row.correction) > row.max_correction;
-    Sweeps::Two wanted{row.correction / dt,
-                       (capped ? row.max_correction : row.correction) / dt};
+    Sweeps::Two wanted{row.correction / dt, (capped ? row.max_correction : row.correction) / dt};
     for (int side = 0; side < 2 && row.body[side] >= 0; ++side) {
       const Body& body = bodies_[static_cast<std::size_t>(row.body[side])];
       wanted -= row.J[side].dot(body.velocity / dt + body.free_acceleration);
@@ -239,8 +238,7 @@ double GazeboStep::remaining_error(double dt, std::uint64_t seed) {
       const double multiplier = solved_[i]->multiplier[pose];
       double acceleration = row.cfm * multiplier;
       for (int side = 0; side < 2 && row.body[side] >= 0; ++side) {
-        acceleration +=
-            row.J[side].dot(constraint(static_cast<std::size_t>(row.body[side]), pose));
+        acceleration += row.J[side].dot(constraint(static_cast<std::size_t>(row.body[side]), pose));
       }
       sum += multiplier * acceleration;
     }

@@ -1,5 +1,4 @@
 #include "hinged_flight.hpp"
-
 #include "hinged_motion.hpp"
 #include "laws/rotors.hpp"
 
@@ -12,8 +11,7 @@ using Bodies = HingedBodies<laws::Pack<W>, Lanes::rotors>;
 template <int W>
 QUADCORE_LAW Bodies<W> bodies_of(const HingedFlight& flight) {
   using T = laws::Pack<W>;
-  return {flight.tree, flight.constants, flight.state,
-          reinterpret_cast<BodyWork<T>*>(flight.work),
+  return {flight.tree, flight.constants, flight.state, reinterpret_cast<BodyWork<T>*>(flight.work),
           reinterpret_cast<SoftRows<T>*>(flight.soft)};
 }
 
@@ -80,9 +78,8 @@ void show_hinged(const HingedFlight& flight, const ShownFlight& shown) {
   for (std::size_t i = 0; i + 1 < bodies.size(); ++i) {
     const HingedRotor<T, Lanes::rotors> rotor{bodies, frame, i};
     double* const to = shown.motion + rotor_offset(MotionRow::count, i * W);
-    const auto put = [to](std::size_t row, const Vec3<T>& v) QUADCORE_INLINED {
-      laws::store3(to + row * widest_lanes, v);
-    };
+    const auto put = [to](std::size_t row, const Vec3<T>& v)
+                         QUADCORE_INLINED { laws::store3(to + row * widest_lanes, v); };
     const Vec3<T> z_F = rotor.normal_F();
     put(MotionRow::axis, rotor.axis_F());
     put(MotionRow::normal, z_F);

@@ -6,26 +6,11 @@
 
 #include "gazebo_step.hpp"
 #include "hinged_flight.hpp"
+#include "hinged_model.hpp"
 #include "quadcore/kinematics.hpp"
 #include "quadcore/loads.hpp"
-#include "quadcore/model.hpp"
-#include "quadcore/world.hpp"
 
 namespace quadcore {
-
-/// What a HingedTree takes of a model.
-struct HingedModel {
-  std::vector<std::size_t> carriers;
-  std::vector<char> carries, brakes;
-
-  explicit HingedModel(const Model& model);
-  HingedTree tree(const World& world) const;
-  /// Whether all hinges are on the frame, and none brakes.
-  bool is_star() const;
-};
-
-/// Rows of BodyConstant of a body of a model.
-std::vector<double> body_constants(const Model& model, std::size_t body);
 
 /// A vehicle's bodies as HingedFlight takes them, beside those in an ODE world.
 class HingedVehicle {

@@ -29,6 +29,10 @@ constexpr std::uint64_t tried_attitudes = 8;
 
 }  // namespace
 
+bool is_clear_of_contact(const std::vector<double>& saved) {
+  return saved.back() >= steps_beside_contact;
+}
+
 OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& recipe)
     : model_(recipe.like_gazebo ? converted_to_sdf(model) : model),
       recipe_(recipe),

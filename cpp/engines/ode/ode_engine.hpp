@@ -27,6 +27,9 @@ extern const OdeRecipe gazebo11_recipe;
 /// The same world without Gazebo's faults.
 extern const OdeRecipe ode_recipe;
 
+/// Whether a state that an engine has saved remembers no contact that it is beside.
+bool is_clear_of_contact(const std::vector<double>& saved);
+
 /// Rigid bodies on hinges in a world of upstream ODE.
 class OdeEngine final : public Engine {
  public:
@@ -41,6 +44,11 @@ class OdeEngine final : public Engine {
   void restore(const std::vector<double>& saved) override;
   std::string method() const override { return method_; }
   std::vector<std::string> warnings() const override { return warnings_; }
+
+  /// Whether HingedVehicle alone moves it, while it is well above the ground.
+  bool may_float() const { return may_float_; }
+  /// Of its shapes, if there is a ground.
+  const std::vector<Reach>& reaches() const { return ground_->reaches(); }
 
  private:
   struct FreeThreading {
@@ -71,9 +79,9 @@ class OdeEngine final : public Engine {
   std::string method_;
   std::vector<std::string> warnings_;
   std::unique_ptr<OdeVehicle> vehicle_;
-  bool rubs_ = false;         ///< some hinge has dry friction, whose bounds are inequalities
-  bool may_float_ = false;    ///< what acts in flight is known to `hinged_` as well
-  HingedVehicle hinged_;      ///< moves as the bodies in ODE, or before them
+  bool rubs_ = false;            ///< some hinge has dry friction, whose bounds are inequalities
+  bool may_float_ = false;       ///< see may_float()
+  HingedVehicle hinged_;         ///< moves as the bodies in ODE, or before them
   mutable bool behind_ = false;  ///< the bodies in ODE are
   std::unique_ptr<GroundContact> ground_;  ///< null in a world without ground
   int steps_since_contact_;                ///< counted no further than it matters

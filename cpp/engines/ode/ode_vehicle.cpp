@@ -10,8 +10,7 @@ double implicit_damping(const Joint& joint) { return joint.implicit_damping ? jo
 
 }  // namespace
 
-OdeVehicle::OdeVehicle(const Model& model, dWorldID world)
-    : model_(model) {
+OdeVehicle::OdeVehicle(const Model& model, dWorldID world) : model_(model) {
   create_bodies(world);
   create_hinges(world);
 }

@@ -26,15 +26,15 @@ class Sweeps {
   };
   /// Any row J a = wanted of up to two bodies.
   struct Row : Solved {
-    int body[2];                ///< the second is -1 for the ground
-    double J[2][6];             ///< for each body
+    int body[2];     ///< the second is -1 for the ground
+    double J[2][6];  ///< for each body
     double inverse_mass_J[2][6];
-    double relaxation;          ///< over the row's diagonal
+    double relaxation;  ///< over the row's diagonal
     double cfm;
-    double low, high;           ///< bounds of the multiplier
-    double friction;            ///< of a friction row: bound per multiplier of its normal
-    int normal;                 ///< of a friction row: the row of its normal, else -1
-    bool smooth;                ///< whether its multiplier is smoothed
+    double low, high;  ///< bounds of the multiplier
+    double friction;   ///< of a friction row: bound per multiplier of its normal
+    int normal;        ///< of a friction row: the row of its normal, else -1
+    bool smooth;       ///< whether its multiplier is smoothed
   };
   /// A row of a hinge without friction, damping or mixing, most components of which are zero
   /// whatever the state: the angular parts in child and parent, and what a unit of the multiplier

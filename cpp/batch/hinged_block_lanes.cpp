@@ -1,0 +1,197 @@
+#include "engines/ode/hinged_motion.hpp"
+#include "hinged_block.hpp"
+#include "laws/motor_torque.hpp"
+#include "masks.hpp"
+
+namespace quadcore::batch {
+namespace {
+
+template <class T>
+using Bodies = HingedBodies<T, Lanes::vehicles>;
+
+/// The places of a pack of vehicles, from the first of them on.
+template <class T>
+struct Places {
+  const double *constants, *motors;
+  double *state, *moved;
+
+  QUADCORE_LAW Places(const Block& block, std::size_t first)
+      : constants(block.constants + first),
+        motors(block.motors + first),
+        state(block.state + first),
+        moved(block.work + first) {}
+
+  QUADCORE_LAW Bodies<T> bodies(const Block& block, double* of) const {
+    double* const work = block.work + TurnedRow::end(block.rotors) * widest_lanes;
+    auto* const of_bodies = reinterpret_cast<BodyWork<T>*>(work);
+    auto* const of_rows = reinterpret_cast<SoftRows<T>*>(of_bodies + block.rotors + 1);
+    return {*block.tree, constants + ConstantRow::count(block.rotors) * widest_lanes, of, of_bodies,
+            block.tree->cfm > 0 ? of_rows : nullptr};
+  }
+};
+
+/// The motion of the i-th rotors: see laws/rotor_forces.hpp.
+template <class T>
+struct MovingRotor : HingedRotor<T, Lanes::vehicles> {
+  QUADCORE_LAW MovingRotor(const Bodies<T>& bodies, const HingedFrame<T>& frame, std::size_t i)
+      : HingedRotor<T, Lanes::vehicles>{bodies, frame, i} {}
+
+  QUADCORE_LAW Vec3<T> in_frame(const Vec3<T>& f_R) const {
+    const Vec3<T> x = this->x_F(), y = this->y_F(), z = this->normal_F();
+    return Matrix3<T>{x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z} * f_R;
+  }
+  QUADCORE_LAW bool windy() const { return false; }
+  QUADCORE_LAW Vec3<T> v_WA_F() const { return {T{}, T{}, T{}}; }
+  QUADCORE_LAW Vec3<T> w_WF_F() const { return this->frame.w_WF_F; }
+  QUADCORE_LAW Vec3<T> v_WF_W() const { return this->frame.R_WF * this->frame.v_WF_F; }
+};
+
+template <class T>
+QUADCORE_LAW void push(const Block& block, const Places<T>& at, Bodies<T>& bodies,
+                       const HingedFrame<T>& frame) {
+  const Table<T> constants{at.constants}, motors{at.motors};
+  const Forces<T> forces(block.laws, constants);
+  bodies.clear_forces();
+  const Vec3<T> none{T{}, T{}, T{}};
+  Vec3<T> f_F = none, tau_F = none, reaction_F = none;
+  if (block.laws.drag) {
+    const HingedCenter<T> center(bodies, frame);
+    const Vec3<T>& v_F = center.v_WCcm_F;
+    f_F = laws::parasitic_drag(v_F, laws::square_root(laws::dot(v_F, v_F)),
+                               constants.number(ConstantRow::frame_drag));
+    tau_F = laws::cross(center.p_FCcm_F, f_F);
+  }
+  for (std::size_t i = 0; i < block.rotors; ++i) {
+    const MovingRotor<T> rotor(bodies, frame, i);
+    laws::RotorLoads<T> loads{none, none, T{}};
+    if (block.laws.forces) laws::add_rotor_forces<T>(forces, rotor, i, loads);
+    const T rate = rotor.rate();
+    if (block.laws.motors) {
+      loads.joint_torque =
+          loads.joint_torque +
+          laws::motor_torque<T>(motors.number(i * MotorRow::count + MotorRow::active),
+                                constants.number(ConstantRow::kp),
+                                motors.number(i * MotorRow::count + MotorRow::target), T{}, rate);
+    }
+    reaction_F = reaction_F + loads.reaction_F;
+    push_rotor(bodies, frame, i, loads.f_F, loads.joint_torque, rate);
+  }
+  push_frame(bodies, frame, f_F, tau_F + reaction_F);
+}
+
+/// Vehicles of which no plugin has to be asked about the state in which a step begins, and which
+/// are not to come near the ground soon.
+template <class T>
+QUADCORE_LAW Mask<T> is_quiet(const Block& block, const Bodies<T>& bodies,
+                              const HingedFrame<T>& frame, const std::int64_t* tilts, double dt) {
+  const Bounds& bounds = block.bounds;
+  Mask<T> good = ~Mask<T>{};
+  for (std::size_t i = 0; i < block.rotors; ++i) {
+    good &= mask<T>(laws::absolute(bodies.joint_rate(i + 1)) < bounds.fastest);
+  }
+  if (bounds.reach > 0) {
+    // Earlier than OdeEngine looks closer, so that it has taken a step by itself before.
+    const double g_z = block.gravity_W[2];
+    const double time = 60 * dt, fallen = (10 + (g_z < 0 ? -g_z : g_z)) * time * time;
+    const T z = bodies.state(0).number(BodyRow::position + 2);
+    const T v_z = bodies.state(0).number(BodyRow::velocity + 2);
+    const T rate = laws::square_root(laws::dot(frame.w_WF_F, frame.w_WF_F));
+    const T sinks = time * (laws::absolute(v_z) + (5 * bounds.reach) * rate);
+    good &= mask<T>(z >= bounds.reach + (fallen + sinks));
+  }
+  if (!bounds.no_tilt) return good;
+  const Matrix3<T>& R = frame.R_WF;
+  const Vec3<T> up_F{R.zx, R.zy, R.zz};
+  for (std::size_t i = 0; i < block.rotors; ++i) {
+    const MovingRotor<T> rotor(bodies, frame, i);
+    good &= mask<T>(laws::dot(up_F, rotor.normal_F()) >= 0) | laws::load_bits<T>(tilts);
+  }
+  return good;
+}
+
+template <class T>
+QUADCORE_LAW Outcome<T> outcome(const Bodies<T>& bodies) {
+  const auto square = [&](std::size_t row) QUADCORE_INLINED {
+    const Vec3<T> a = bodies.state(0).vector(row);
+    return laws::dot(a, a);
+  };
+  T rates{};
+  for (std::size_t i = 1; i < bodies.size(); ++i) {
+    const T rate = bodies.joint_rate(i);
+    rates = rates + rate * rate;
+  }
+  return {square(BodyRow::position), square(BodyRow::velocity), square(BodyRow::rate), rates};
+}
+
+template <class T>
+QUADCORE_LAW void fly(const Block& block, std::size_t first, std::int64_t count, double dt) {
+  const Places<T> at(block, first);
+  const std::size_t numbers = HingedRow::state(block.rotors) * widest_lanes;
+  const auto copy = [&](const double* from, double* to, const Mask<T>& flies) QUADCORE_INLINED {
+    for (std::size_t row = 0; row < numbers; row += widest_lanes) {
+      laws::store(to + row,
+                  laws::chosen_by(flies, laws::load<T>(from + row), laws::load<T>(to + row)));
+    }
+  };
+  copy(at.state, at.moved, ~Mask<T>{});
+  Bodies<T> bodies = at.bodies(block, at.moved);
+  bodies.read();
+  Mask<T> flies = laws::load_bits<T>(block.flies + first);
+  Mask<T> steps{};
+  for (std::int64_t n = 0; n < count; ++n) {
+    const HingedFrame<T> frame(bodies);
+    flies &= is_quiet(block, bodies, frame, block.may_tilt + first, dt);
+    if (!laws::any(flies)) break;
+    push(block, at, bodies, frame);
+    bodies.turn_inertias(true);
+    bodies.advance(dt);
+    bodies.read();
+    flies &= is_sound(block.bounds, outcome(bodies));
+    steps -= flies;
+    copy(at.moved, at.state, flies);
+  }
+  laws::store_bits<T>(block.steps + first, steps);
+}
+
+}  // namespace
+
+template <int W>
+void step_hinged_block(const Block& block, std::int64_t count, double dt) {
+  for (std::size_t first = 0; first < widest_lanes; first += W) {
+    fly<laws::Pack<W>>(block, first, count, dt);
+  }
+}
+
+template <int W>
+void show_hinged_block(const Block& block, double* shown) {
+  using T = laws::Pack<W>;
+  for (std::size_t first = 0; first < widest_lanes; first += W) {
+    const Places<T> at(block, first);
+    Bodies<T> bodies = at.bodies(block, at.state);
+    bodies.read();
+    const HingedFrame<T> frame(bodies);
+    const auto put = [&](std::size_t row, T a)
+                         QUADCORE_INLINED { laws::store(shown + first + row * widest_lanes, a); };
+    const auto put3 = [&](std::size_t row, const Vec3<T>& a)
+                          QUADCORE_INLINED { put(row, a.x), put(row + 1, a.y), put(row + 2, a.z); };
+    put3(StateRow::position, frame.p_WF);
+    for (std::size_t k = 0; k < 4; ++k) {
+      put(StateRow::orientation + k, bodies.state(0).number(BodyRow::orientation + k));
+    }
+    put3(StateRow::velocity, frame.R_WF * frame.v_WF_F);
+    put3(StateRow::rate, frame.w_WF_F);
+    for (std::size_t i = 0; i < block.rotors; ++i) {
+      const MovingRotor<T> rotor(bodies, frame, i);
+      put(StateRow::joint(StateRow::joint_rate, i), rotor.rate());
+      put3(TurnedRow::rotor(TurnedRow::axis_F, i, block.rotors), rotor.axis_F());
+      put3(TurnedRow::rotor(TurnedRow::R_FR, i, block.rotors), rotor.x_F());
+      put3(TurnedRow::rotor(TurnedRow::R_FR + 3, i, block.rotors), rotor.y_F());
+      put3(TurnedRow::rotor(TurnedRow::R_FR + 6, i, block.rotors), rotor.normal_F());
+    }
+  }
+}
+
+template void step_hinged_block<QUADCORE_LANES>(const Block&, std::int64_t, double);
+template void show_hinged_block<QUADCORE_LANES>(const Block&, double*);
+
+}  // namespace quadcore::batch

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "hinged_tree.hpp"
+#include "quadcore/model.hpp"
+#include "quadcore/world.hpp"
+
+namespace quadcore {
+
+/// What a HingedTree takes of a model.
+struct HingedModel {
+  std::vector<std::size_t> carriers;
+  std::vector<char> carries, brakes;
+
+  explicit HingedModel(const Model& model);
+  HingedTree tree(const World& world) const;
+  /// Whether all hinges are on the frame, and none brakes.
+  bool is_star() const;
+};
+
+/// Rows of BodyConstant of a body of a model.
+std::vector<double> body_constants(const Model& model, std::size_t body);
+
+}  // namespace quadcore
