@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 # x, y, z keep theirs throughout.
 AXES = ("#d55e00", "#009e73", "#0072b2")
 WHOLE = (0.0, 0.02, 0.94, 0.94)  # of a figure that axes in space fill
+_NOTHING = 1e-6  # m, m/s, rad/s, deg: a range below which there is rounding to be seen
+_NO_FORCE = 1e-9  # N, N m
 _PLACES = ("x (m)", "y (m)", "z (m)")
 _ANGLES = ("roll (deg)", "pitch (deg)", "yaw (deg)")
 
@@ -130,12 +132,18 @@ def _rates(log: Trajectory) -> Figure:
 
 
 def _rotors(log: Trajectory) -> Figure:
-    figure, (whole, close) = panels(_title(log, "Velocity of the rotor joints"), 2, height=2.2)
+    is_slow = log.per_command not in (0.0, 1.0)
+    title = _title(log, "Velocity of the rotor joints")
+    figure, (whole, close) = panels(title, 2, height=2.2, right=0.8 if is_slow else 0.1)
     for i, velocity in enumerate(log.rotor_velocity.T):
         style = {"color": PALETTE[i % len(PALETTE)], "label": f"{i + 1}" if i else "rotor 1"}
         whole[0].plot(log.time, velocity, **style)
         close[0].plot(log.time, np.abs(velocity), **style)
     whole[0].set_ylabel("signed (rad/s)")
+    if is_slow:
+        to_command = (lambda rate: rate / log.per_command, lambda told: told * log.per_command)
+        commanded = close[0].secondary_yaxis("right", functions=to_command)
+        commanded.set_ylabel("as commanded (rad/s)")
     close[0].set_ylabel("magnitude (rad/s)")
     close[0].set_title("without the lowest 5 %", loc="left", fontsize="medium")
     # Around hover the differences that steer are a hundredth of the speed: show them large.
@@ -149,7 +157,8 @@ def _rotors(log: Trajectory) -> Figure:
 
 
 def _wrenches(log: Trajectory) -> Figure:
-    acting = {name: wrench for name, wrench in log.wrenches.items() if np.any(wrench)}
+    sizes = {name: np.abs(wrench).max(initial=0) for name, wrench in log.wrenches.items()}
+    acting = {name: wrench for name, wrench in log.wrenches.items() if sizes[name] > _NO_FORCE}
     title = _title(log, "Wrenches about the centre of mass, frame axes")
     figure, grid = panels(title, max(1, len(acting)), 2)
     grid[0, 0].set_title("force (N)", fontsize="medium")
@@ -159,9 +168,7 @@ def _wrenches(log: Trajectory) -> Figure:
         for axes, part in ((row[0], wrench[:, :3]), (row[1], wrench[:, 3:])):
             for values, colour, axis in zip(part.T, AXES, "xyz"):
                 axes.plot(log.time, values, color=colour, label=axis)
-            if not np.any(part):
-                axes.set_ylim(-1, 1)
-                axes.set_yticks([0])
+            _flatten(axes, _NO_FORCE)
     _legend(figure, grid[0, 0])
     return figure
 
@@ -199,7 +206,12 @@ def space(figure: Figure, place: Any, paths: Sequence[np.ndarray]) -> Tuple[Any,
 
 
 def panels(
-    title: str, rows: int, columns: int = 1, height: float = 1.6, above: float = 0.5
+    title: str,
+    rows: int,
+    columns: int = 1,
+    height: float = 1.6,
+    above: float = 0.5,
+    right: float = 0.1,
 ) -> tuple[Figure, Any]:
     """Make a figure of panels over time, `height` inches each, with room for title and legend."""
     width, below = (8.0 if columns > 1 else 7.0), 0.5  # inch
@@ -208,7 +220,7 @@ def panels(
     # Fixed margins: matplotlib's automatic layouts differ from version to version.
     margins = {
         "left": 0.85 / width,
-        "right": 1 - 0.1 / width,
+        "right": 1 - right / width,
         "top": 1 - above / total,
         "bottom": below / total,
         "wspace": 0.27,
@@ -230,6 +242,23 @@ def dress(axes: Any) -> None:
     axes.margins(x=0.01)
     axes.spines["top"].set_visible(False)
     axes.spines["right"].set_visible(False)
+
+
+def widen(axes: Any, least: float) -> None:
+    """Show a range of at least that much, so that rounding is a flat line."""
+    low, high = axes.get_ylim()
+    if high - low < least:
+        middle = (low + high) / 2
+        axes.set_ylim(middle - least / 2, middle + least / 2)
+
+
+def _flatten(axes: Any, least: float) -> None:
+    """Show what moves less than that much as a flat line on a scale of one unit."""
+    low, high = axes.get_ylim()
+    if high - low < least:
+        middle = round((low + high) / 2, 3) + 0.0
+        axes.set_ylim(middle - 1, middle + 1)
+        axes.set_yticks([middle])
 
 
 def _title(log: Trajectory, what: str) -> str:
@@ -262,3 +291,4 @@ def _curves(panels: Any, time: np.ndarray, values: np.ndarray, labels: Sequence[
     for axes, curve, colour, label in zip(panels, values.T, AXES, labels):
         axes.plot(time, curve, color=colour)
         axes.set_ylabel(label)
+        _flatten(axes, _NOTHING)

@@ -38,7 +38,15 @@ class Trajectory:
     topics : mapping of str to mapping of str to ndarray, shape (rows,)
         Of each topic that was logged, by field, the message that is the last at that time, and its
         ``stamp`` (s); NaN before the first.
+
+    Attributes
+    ----------
+    per_command : float
+        Size of the rotor joints' velocity per commanded speed, 0.1 at a sim_slow of 10; 1 if it is
+        not known. Pictures show both.
     """
+
+    per_command = 1.0
 
     def __init__(
         self,

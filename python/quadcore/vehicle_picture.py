@@ -97,7 +97,7 @@ def _radius(rotors: List[_Rotor]) -> float:
     places = np.array([rotor.place for rotor in rotors])
     apart = [np.linalg.norm(a - b) for i, a in enumerate(places) for b in places[:i]]
     apart = [distance for distance in apart if distance > 1e-3]  # coaxial ones share a place
-    return 0.4 * min(apart) if apart else 0.1
+    return 0.4 * float(min(apart)) if apart else 0.1
 
 
 def _rim(rotor: _Rotor, radius: float) -> np.ndarray:
@@ -149,7 +149,8 @@ def _spin(axes: Any, rotor: _Rotor, radius: float) -> None:
     if rotor.colour == _STILL:
         return
     ends = np.radians([150, 30] if rotor.colour == _BACK else [30, 150])
-    start, end = (rotor.place[:2] + radius * np.array([np.cos(a), np.sin(a)]) for a in ends)
+    x, y, _ = rotor.place
+    start, end = ((x + radius * np.cos(angle), y + radius * np.sin(angle)) for angle in ends)
     bend = -0.55 if rotor.colour == _BACK else 0.55
     axes.add_patch(
         FancyArrowPatch(

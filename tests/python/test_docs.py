@@ -175,3 +175,17 @@ def test_the_model_of_the_guide_flies(engine, tmp_path):
     simulation.step(2000)
     assert simulation.state.position[0] > 0.1  # the wind takes it along
     assert simulation.state.linear_velocity[2] > 0
+
+
+def test_every_command_of_the_readme_flies_from_a_clone(tmp_path):
+    block = next(b for b in blocks(ROOT / "README.md", "sh") if b.startswith("quadcore info"))
+    lines = [line.partition("#")[0] for line in block.splitlines() if "mass.yaml" not in line]
+    assert len(lines) == 8
+    (tmp_path / "config").symlink_to(ROOT / "config")
+    (tmp_path / "out").mkdir()
+    for line in lines:
+        words = [sys.executable, "-m", *line.split()]
+        ran = subprocess.run(words, cwd=str(tmp_path), stderr=subprocess.PIPE, check=False)
+        assert (ran.returncode, ran.stderr) == (0, b""), line
+    made = "quadrotor.png hover/path.png flight.mat kp/report.html laws/report.html flights.html"
+    assert all((tmp_path / "out" / name).exists() for name in made.split())

@@ -25,13 +25,18 @@ def register(commands: Any) -> None:
         metavar="MODEL",
         help="whose rotors are drawn where they are, as for `quadcore run`; without, a cross",
     )
+    add_names(parser)
+    parser.add_argument("--quiet", action="store_true", help="print warnings and errors only")
+
+
+def add_names(parser: argparse.ArgumentParser) -> None:
+    """Add the option that names logs."""
     parser.add_argument(
         "--names",
         metavar="NAME,NAME",
         type=values.names,
         help="what the flights are called (what their paths differ by)",
     )
-    parser.add_argument("--quiet", action="store_true", help="print warnings and errors only")
 
 
 def play(arguments: argparse.Namespace) -> None:
@@ -41,9 +46,7 @@ def play(arguments: argparse.Namespace) -> None:
     if arguments.out.suffix.lower() not in (".html", ".htm"):
         raise InputError(f"{arguments.out}: name a file that ends in .html, which it would hold")
     check_writable(arguments.out)
-    names = arguments.names or _names(arguments.logs)
-    if len(names) != len(arguments.logs):
-        raise InputError(f"--names: {len(names)} for {len(arguments.logs)} logs; name each")
+    names = names_of(arguments)
     rotors = None if arguments.model is None else read_model(arguments.model).joint_places
     flights = [
         PlayerFlight(name, Log.of_file(file), rotors) for name, file in zip(names, arguments.logs)
@@ -53,6 +56,14 @@ def play(arguments: argparse.Namespace) -> None:
         stream.write(text_bytes(text))
     if not arguments.quiet:
         terminal.console().print(f"written {arguments.out}")
+
+
+def names_of(arguments: argparse.Namespace) -> List[str]:
+    """Name each log, as `add_names` asked for."""
+    names: List[str] = arguments.names or _names(arguments.logs)
+    if len(names) != len(arguments.logs):
+        raise InputError(f"--names: {len(names)} for {len(arguments.logs)} logs; name each")
+    return names
 
 
 def _names(logs: Sequence[Path]) -> List[str]:

@@ -7,7 +7,7 @@ from typing import Any, Callable, Dict, List, NamedTuple, Sequence, Tuple
 import numpy as np
 
 from ..colours import PALETTE
-from ..plots import dress, png, titled
+from ..plots import dress, png, titled, widen
 from .causes import draw_chains, draw_damping
 from .experiment import MODEL, Case
 from .states import states
@@ -72,7 +72,7 @@ def draw(what: Curves, kind: str) -> bytes:
             for axes, curve in zip(column, what.model[:, columns].T * scale):
                 axes.plot(what.time, curve, **_MODEL)
     for axes in panels.flat:
-        _widen(axes, least)
+        widen(axes, least)
     for axes, label in zip(panels[:, 0], labels):
         axes.set_ylabel(label)
     for axes in panels[-1]:
@@ -139,16 +139,9 @@ def _panels(
     for axes in panels.flat:
         dress(axes)
         axes.ticklabel_format(axis="y", scilimits=(-3, 4), useOffset=False)
+        axes.locator_params(axis="x", nbins=4, steps=[1, 2, 5, 10])  # neighbours do not touch
     figure.align_ylabels(panels)
     return figure, panels
-
-
-def _widen(axes: Any, least: float) -> None:
-    """Show a range of at least that much, so that rounding is a flat line."""
-    low, high = axes.get_ylim()
-    if high - low < least:
-        middle = (low + high) / 2
-        axes.set_ylim(middle - least / 2, middle + least / 2)
 
 
 def _legend(figure: Any, panels: Any) -> None:

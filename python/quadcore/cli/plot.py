@@ -1,0 +1,53 @@
+"""``quadcore plot``: pictures of logs that there are."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any, List, Sequence
+
+from ..files import make_folder
+from ..log import Log
+from ..study.sampling import thinned
+from ..study.table import save
+from . import options, terminal
+from .play import add_names, names_of
+
+_ROWS = 20_000  # of several logs, more than a picture shows
+
+
+def register(commands: Any) -> None:
+    """Add the command to the command line."""
+    parser = options.subparser(
+        commands, "plot", "Draw a log, or several over each other, from the first on.", plot
+    )
+    parser.add_argument("logs", metavar="LOG", nargs="+", type=Path, help="log, .csv or .mat")
+    parser.add_argument(
+        "--out", metavar="DIR", type=Path, required=True, help="where to; made if missing"
+    )
+    add_names(parser)
+    parser.add_argument("--quiet", action="store_true", help="print warnings and errors only")
+
+
+def plot(arguments: argparse.Namespace) -> None:
+    """Read the logs and draw them."""
+    names = names_of(arguments)
+    logs = [Log.of_file(file) for file in arguments.logs]
+    if len(logs) == 1:
+        logs[0].title = names[0]
+        written = logs[0].plot(arguments.out)
+    else:
+        written = _over_each_other(names, logs, arguments.out)
+    if not arguments.quiet:
+        for file in written:
+            terminal.console().print(f"written {file}")
+
+
+def _over_each_other(names: Sequence[str], logs: Sequence[Log], folder: Path) -> List[Path]:
+    from ..comparison.pictures import Curve, draw  # matplotlib is slow to import
+    from ..plots import png
+
+    curves = [Curve(name, thinned(log, _ROWS)) for name, log in zip(names, logs)]
+    figures = draw(curves, curves[0].log, names[0])
+    make_folder(folder)
+    return save(folder, {f"{name}.png": png(figure) for name, figure in figures.items()})

@@ -1,0 +1,97 @@
+"""Pictures of logs that there are, and of what a flight's numbers are worth."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import quadcore as qc
+from quadcore import plots
+from quadcore.cli import main
+
+ONE = {f"{name}.png" for name in ("position", "attitude", "rates", "rotors", "path")}
+
+
+@pytest.fixture(autouse=True)
+def logs(tmp_path, monkeypatch):
+    """Two logs, of a fall and of a climb."""
+    monkeypatch.chdir(tmp_path)
+    for name, speed in (("fall", 0), ("climb", 500)):
+        sim = qc.Simulation("quadrotor", engine="eigen")
+        sim.command(speed * np.sign(sim.hover_speed))
+        sim.run(0.2).to_csv(f"{name}.csv")
+
+
+def pictures(folder):
+    return {path.name for path in Path(folder).iterdir()}
+
+
+def test_one_log_gives_the_pictures_of_its_flight():
+    assert main(["plot", "fall.csv", "--out", "a"]) == 0
+    log = qc.Log.of_file("fall.csv")
+    log.title = "fall"
+    log.plot("b")
+    assert pictures("a") == ONE
+    assert all(Path("a", name).read_bytes() == Path("b", name).read_bytes() for name in ONE)
+
+
+def test_several_logs_are_drawn_over_each_other(capsys):
+    assert main(["plot", "fall.csv", "climb.csv", "--out", "both"]) == 0
+    assert pictures("both") == ONE | {"differences.png"}
+    assert capsys.readouterr().out.count("written both/") == 6
+
+
+def test_what_is_no_log_and_too_few_names_are_refused(capsys):
+    Path("none.csv").write_text("a,b\n1,2\n")
+    assert main(["plot", "none.csv", "--out", "a"]) == 2
+    assert "none.csv" in capsys.readouterr().err
+    assert main(["plot", "fall.csv", "climb.csv", "--names", "one", "--out", "a"]) == 2
+    assert "--names: 1 for 2 logs" in capsys.readouterr().err
+    assert not Path("a").exists()
+
+
+def test_rounding_is_drawn_as_a_flat_line():
+    table = np.zeros((3, 18))
+    table[:, 0], table[:, 7] = range(3), 1
+    table[:, 1], table[:, 3] = [0, 1e-14, -1e-14], [10, 9, 7]
+    x, _, z = plots._position(qc.Log(table, {})).axes
+    assert x.get_ylim() == (-1, 1) and list(x.get_yticks()) == [0]
+    assert z.get_ylim()[1] - z.get_ylim()[0] < 4
+
+
+def test_speeds_of_slow_rotors_are_drawn_as_commanded_too():
+    log = qc.Log.of_file("climb.csv")
+    log.per_command = 0.1
+    (beside,) = plots._rotors(log).axes[1].child_axes
+    assert np.allclose(beside._functions[0](np.array([47.1])), 471)
+    assert beside.get_ylabel() == "as commanded (rad/s)"
+
+
+def test_a_run_that_can_hardly_be_meant_is_said_and_flown(capsys):
+    run = ["run", "quadrotor", "--duration", "0.01", "--quiet"]
+    Path("one_way.csv").write_text("t,w1,w2,w3,w4\n0,471,471,471,471\n")
+    Path("hover.csv").write_text("t,w1,w2,w3,w4\n0,471,-471,471,-471\n")
+    for more, told in (
+        ([], "warning: nothing commands the rotors"),
+        (["--commands", "one_way.csv"], "it hovers at 471, -471, 471, -471 rad/s"),
+        (["--commands", "hover.csv"], ""),
+        (["--controller", "geometric"], ""),
+    ):
+        assert main([*run, *more]) == 0
+        err = capsys.readouterr().err
+        assert told in err and bool(told) == bool(err)
+    # Whose plugins know in which sense each turns.
+    assert main(["run", "hummingbird", *run[2:], "--commands", "one_way.csv"]) == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_the_summary_has_the_fastest_rotor_as_it_was_commanded(capsys):
+    Path("hover.csv").write_text("t,w1,w2,w3,w4\n0,471,-471,471,-471\n")
+    run = ["run", "quadrotor", "--duration", "2", "--commands", "hover.csv"]
+    for more, told in ([], "47.1"), (["--xacro", "sim_slow:=1"], "471.0"):
+        assert main([*run, *more]) == 0
+        (line,) = (row for row in capsys.readouterr().out.splitlines() if "fastest" in row)
+        assert told in line
+        assert ("as commanded 471.0" in line) == (not more)
