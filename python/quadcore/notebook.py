@@ -65,13 +65,10 @@ def comparison_html(comparison: Comparison) -> str:
 
 def evaluation_html(evaluation: Evaluation) -> str:
     """Show a row for each combination."""
-    from .evaluation.output import rows_to_read
+    from .evaluation.output import columns_to_read, rows_to_read
 
     lines = rows_to_read(evaluation)
-    names = ("reference", "engine", "model", "scenario")
-    shown = {name: name for name in names if len({line[name] for line in lines}) > 1}
-    shown = {"controller": "controller", **shown, "flown": "flown", "rms_position": "RMS (m)"}
-    shown.update(largest_position="largest (m)", tail_position="last 10 s (m)", best="")
+    shown = {**columns_to_read(lines), "best": ""}
     rows = [[line[name] for name in shown] for line in lines[:_ROWS]]
     head = f"<p>{escape(repr(evaluation)[1:-1])}</p>"
     return head + _table(list(shown.values()), rows, len(lines))

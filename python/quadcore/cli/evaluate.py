@@ -111,25 +111,11 @@ def _varied(arguments: argparse.Namespace) -> dict[str, Any]:
 
 
 def _show(evaluation: Evaluation, files: list[Path]) -> None:
-    from ..evaluation.output import causes, rows_to_read, summary
+    from ..evaluation.output import causes, columns_to_read, rows_to_read, summary
 
     console = terminal.console()
     lines = rows_to_read(evaluation)
-    shown = {
-        name: heading
-        for name, heading in (
-            ("controller", "controller"),
-            ("reference", "reference"),
-            ("engine", "engine"),
-            ("model", "model"),
-            ("scenario", "scenario"),
-        )
-        if name == "controller" or len({line[name] for line in lines}) > 1
-    }
-    shown.update(flown="flown", rms_position="RMS (m)", largest_position="largest (m)")
-    shown.update(tail_position="last 10 s (m)", cvar="its CVaR (m)")
-    if any(line["difference"] for line in lines):
-        shown["difference"] = "from the first (m)"
+    shown = columns_to_read(lines)
     table = terminal.table(*shown.values(), "")
     for line in lines[:_ROWS]:
         table.add_row(*(line[name] for name in shown), line["best"])

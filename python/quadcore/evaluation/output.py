@@ -139,6 +139,17 @@ def rows_to_read(evaluation: Evaluation) -> List[Dict[str, str]]:
     return lines
 
 
+def columns_to_read(lines: Sequence[Mapping[str, str]]) -> Dict[str, str]:
+    """Headings of what is shown of `rows_to_read`: no names that all have in common."""
+    names = (name for name in _NAMES if len({line[name] for line in lines}) > 1)
+    shown = {"controller": "controller", **{name: name for name in names}, "flown": "flown"}
+    shown.update(rms_position="RMS (m)", largest_position="largest (m)")
+    shown.update(tail_position="last 10 s (m)", cvar="its CVaR (m)")
+    if any(line["difference"] for line in lines):
+        shown["difference"] = "from the first (m)"
+    return shown
+
+
 def _interval(group: Mapping[str, Any], name: str, of: str = "") -> str:
     low, high = group[f"{of}low_{name}"], group[f"{of}high_{name}"]
     return "" if math.isnan(low) else f" [{low:.3g}, {high:.3g}]"
@@ -245,11 +256,13 @@ def _page(evaluation: Evaluation, plan: Plan, images: Mapping[str, bytes]) -> Di
         for row in evaluation.table
         if row["failure"] not in ("", NOT_FLOWN)
     ]
+    lines = rows_to_read(evaluation)
     return {
         "title": "Evaluation of controllers",
         "summary": summary(evaluation),
         "flight": _told(plan),
-        "lines": rows_to_read(evaluation)[:ROWS_OF_PAGE],
+        "shown": columns_to_read(lines),
+        "lines": lines[:ROWS_OF_PAGE],
         "more": max(0, len(evaluation.groups) - ROWS_OF_PAGE),
         "failures": failures[:ROWS_OF_PAGE],
         "confidence": f"{100 * CONFIDENCE:g} %",
