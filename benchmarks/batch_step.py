@@ -1,4 +1,4 @@
-"""What a vehicle's step costs in a batch, one thread, over what it costs alone: engines, drags, sizes."""
+"""What a step costs in a batch on one thread, over what it costs alone: engines, drags, sizes."""
 
 import sys
 from statistics import median

@@ -13,7 +13,7 @@ MADE = BUILD / "made"
 
 project = "quadcore"
 author = "the quadcore authors"
-copyright = f"2026, {author}"  # noqa: A001
+copyright = f"2026, {author}"
 release = version = quadcore.__version__
 
 extensions = [
@@ -54,16 +54,14 @@ def _as_sphinx_reads_it(app, docname, source):
 def _make_flights(page):
     """Fly the spiral under three laws, to watch on the first page."""
     quadcore_ = [sys.executable, "-m", "quadcore"]
+    flight = "--engine eigen --xacro sim_slow:=1 --reference spiral --duration 20 --log-every 20"
     logs = []
     for law in ("pid_thesis", "pd", "geometric"):
-        folder = MADE / "flights" / law
-        flown = subprocess.run(
-            [*quadcore_, "run", "quadrotor", "--engine", "eigen", "--xacro", "sim_slow:=1"]
-            + ["--controller", law, "--reference", "spiral", "--duration", "20", "--quiet"]
-            + ["--log-every", "20", "--no-plots", "--out", str(folder)],
-        )
+        folder = str(MADE / "flights" / law)
+        words = ["run", "quadrotor", *flight.split(), "--quiet", "--no-plots", "--out", folder]
+        flown = subprocess.run([*quadcore_, *words, "--controller", law])
         assert flown.returncode in (0, 3)  # the printed gains lose the vehicle
-        logs.append(str(folder / "log.csv"))
+        logs.append(f"{folder}/log.csv")
     subprocess.run([*quadcore_, "play", *logs, "--model", "quadrotor", "-o", str(page)], check=True)
 
 

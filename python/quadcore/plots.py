@@ -291,4 +291,5 @@ def _curves(panels: Any, time: np.ndarray, values: np.ndarray, labels: Sequence[
     for axes, curve, colour, label in zip(panels, values.T, AXES, labels):
         axes.plot(time, curve, color=colour)
         axes.set_ylabel(label)
+        axes.ticklabel_format(axis="y", useOffset=False)
         _flatten(axes, _NOTHING)

@@ -1,0 +1,47 @@
+"""The notebooks run from the first cell to the last, and show what their cells end with."""
+
+from __future__ import annotations
+
+import ast
+import re
+import warnings
+from pathlib import Path
+
+import pytest
+
+NOTEBOOKS = sorted((Path(__file__).resolve().parents[2] / "notebooks").glob("*.py"))
+
+
+def cells(notebook):
+    """Code of each cell, as jupytext tells them from text."""
+    parts = re.split(r"^# %%(.*)\n", notebook.read_text(), flags=re.MULTILINE)
+    return [code for kind, code in zip(parts[1::2], parts[2::2]) if not kind.strip()]
+
+
+def shown(code, names):
+    """What a notebook shows below a cell: its last expression, if it ends with one."""
+    tree = ast.parse(code)
+    last = tree.body.pop() if isinstance(tree.body[-1], ast.Expr) else None
+    exec(compile(tree, "cell", "exec"), names)
+    if last is None:
+        return ""
+    value = eval(compile(ast.Expression(last.value), "cell", "eval"), names)
+    return value._repr_html_() if hasattr(value, "_repr_html_") else repr(value)
+
+
+@pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
+def test_a_notebook_runs_and_shows_its_results(notebook, monkeypatch, tmp_path):
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    monkeypatch.chdir(tmp_path)
+    names = {"__name__": "__main__"}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        results = [shown(code, names) for code in cells(notebook)]
+    assert len(results) > 3
+    assert results[-1]
+    assert not [result for result in results if " at 0x" in result and "matplotlib" not in result]
+
+
+def test_there_are_the_three_notebooks():
+    names = [notebook.stem for notebook in NOTEBOOKS]
+    assert names == ["identifying_a_vehicle", "tuning_a_controller", "why_gazebo_misled"]
