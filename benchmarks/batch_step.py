@@ -1,4 +1,4 @@
-"""What a step costs in a batch on one thread, over what it costs alone: engines, drags, sizes."""
+"""What a vehicle's step costs in a batch over what it costs alone, one thread: engines, sizes."""
 
 import sys
 from statistics import median

@@ -64,6 +64,6 @@ def place(position, orientation):
 for engine, dt in (("gazebo11", 1e-3), ("eigen", 1e-3), ("eigen", 5e-3)):
     alone = Alone(engine, dt)
     judge(engine, dt, 1, lambda sim=alone, dt=dt: fly(sim, 10**9, dt))
-for dt in (1e-3, 5e-3):
-    batch = Batch("eigen", dt, 1024)
-    judge("eigen, batch", dt, 1024, lambda sim=batch, dt=dt: fly(sim, CALL, dt))
+for engine, dt in (("gazebo11", 1e-3), ("eigen", 1e-3), ("eigen", 5e-3)):
+    batch = Batch(engine, dt, 1024)
+    judge(f"{engine}, batch", dt, 1024, lambda sim=batch, dt=dt: fly(sim, CALL, dt))

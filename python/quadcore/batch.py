@@ -68,8 +68,8 @@ class BatchSimulation(_core.Batch):
     """Many vehicles of one model, each in a world of its own, stepped together.
 
     Each moves, to the last bit, as a `Simulation` of it does, however many others and threads there
-    are. In the engine "eigen" several vehicles share each instruction, as long as motors and force
-    laws are all that acts; others, and those in other engines, are stepped one by one.
+    are. In the engines "eigen" and "gazebo11" several vehicles share each instruction, as long as
+    motors and force laws are all that acts; others, and those in "ode", are stepped one by one.
 
     Parameters
     ----------

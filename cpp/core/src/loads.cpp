@@ -29,8 +29,12 @@ void Loads::clear_rest() {
 bool Loads::all_finite() const {
   // A sum is finite if its terms are, and they are far from overflow.
   double sum = (frame_.force_F + frame_.torque_F).sum();
-  for (std::size_t row = 0; row < LoadRow::count; ++row) {
-    for (std::size_t i = 0; i < rotors_.rotors(); ++i) sum += rotors_.number(row, i);
+  for (std::size_t i = 0; i < rotors_.rotors(); i += widest_lanes) {
+    const double* const block = rotors_.data() + rotor_offset(LoadRow::count, i);
+    const std::size_t lanes = std::min(rotors_.rotors() - i, widest_lanes);
+    for (std::size_t row = 0; row < LoadRow::count; ++row) {
+      for (std::size_t j = 0; j < lanes; ++j) sum += block[row * widest_lanes + j];
+    }
   }
   for (const auto& rate : rates_) {
     if (rate) sum += rate->at_end + rate->slope;

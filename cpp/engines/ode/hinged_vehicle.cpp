@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "body_state.hpp"
-#include "hinged_bodies.hpp"
+#include "body_work.hpp"
 #include "ode_math.hpp"
 #include "quadcore/lane_width.hpp"
 
