@@ -162,7 +162,7 @@ def test_the_same_seed_gives_the_same_bytes():
         ("run quadrotor --commands nope.csv", "nope.csv: cannot be read"),
         ("run quadrotor --commands w.csv", "w.csv:3: w2 is nan"),
         ("run quadrotor --log nope/log.csv", "there is no folder nope"),
-        ("run quadrotor --log log.txt", "log.txt: logs are written to .csv and .mat"),
+        ("run quadrotor --log log.txt", "log.txt: logs are written to .csv, .mat, .bag"),
         ("run quadrotor --out w.csv", "w.csv: cannot be made: File exists"),
     ],
 )
@@ -209,13 +209,13 @@ def test_an_interrupted_run_keeps_its_log_and_is_status_130(capsys, monkeypatch)
 
 
 def test_an_interrupt_while_the_log_is_written_waits_for_it(monkeypatch):
-    write = mat.write_log
+    write = mat.write_variables
 
     def interrupted(*what):
         signal.raise_signal(signal.SIGINT)
         write(*what)
 
-    monkeypatch.setattr(mat, "write_log", interrupted)
+    monkeypatch.setattr(mat, "write_variables", interrupted)
     assert main([*FALL, "--log", "log.mat"]) == 130
     assert len(scipy.io.loadmat("log.mat")["t"]) == 51
 

@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -221,6 +222,24 @@ def test_different_fmus_fly_in_one_process_without_a_word_to_each_other(imported
         assert instance.get("x", "y", "z", "wx", "wy", "wz") == [
             *twin.state.position, *twin.state.angular_velocity
         ]  # fmt: skip
+
+
+@pytest.mark.parametrize("engine", ["ode", "gazebo11"])
+def test_instances_fly_side_by_side_in_threads(engine, imported):
+    """Each in a thread that did not make it."""
+
+    def fly(instance):
+        instance.command(HOVER)
+        for _ in range(200):
+            instance.step()
+        return instance.row()
+
+    with ThreadPoolExecutor(4) as pool:
+        rows = list(pool.map(fly, [imported(engine) for _ in range(4)]))
+    simulation = qc.Simulation("quadrotor", engine)
+    simulation.command(HOVER)
+    simulation.step(200)
+    assert rows == [logged_row(simulation)] * 4
 
 
 def test_files_that_tags_name_travel_inside(imported, tmp_path):
