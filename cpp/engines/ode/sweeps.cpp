@@ -74,7 +74,7 @@ QUADCORE_LAW void relax(Sweeps::Hinge& hinge, Sweeps::Acceleration& child, InReg
 }
 
 QUADCORE_LAW void relax_all(std::vector<Sweeps::Hinge>& hinges,
-                            std::vector<Sweeps::Acceleration>& bodies) {
+                            std::vector<Sweeps::Acceleration>& bodies, int times) {
   if (hinges.empty()) return;
   // What the hinges meet in stays in registers for as long as it is the same.
   const auto of = [&](int body) -> Sweeps::Acceleration& {
@@ -82,13 +82,15 @@ QUADCORE_LAW void relax_all(std::vector<Sweeps::Hinge>& hinges,
   };
   int carrier = hinges.front().parent;
   InRegisters p(of(carrier));
-  for (Sweeps::Hinge& hinge : hinges) {
-    if (hinge.parent != carrier) {
-      p.store(of(carrier));
-      carrier = hinge.parent;
-      p = InRegisters(of(carrier));
+  for (int n = 0; n < times; ++n) {
+    for (Sweeps::Hinge& hinge : hinges) {
+      if (hinge.parent != carrier) {
+        p.store(of(carrier));
+        carrier = hinge.parent;
+        p = InRegisters(of(carrier));
+      }
+      relax(hinge, of(hinge.child), p);
     }
-    relax(hinge, of(hinge.child), p);
   }
   p.store(of(carrier));
 }
@@ -120,8 +122,9 @@ QUADCORE_LAW void relax(Sweeps& sweeps, Sweeps::Row& row) {
 }  // namespace
 
 void Sweeps::sweep(int times) {
+  if (order.empty()) return relax_all(hinges, bodies, times);
   for (int n = 0; n < times; ++n) {
-    relax_all(hinges, bodies);
+    relax_all(hinges, bodies, 1);
     for (const std::size_t row : order) relax(*this, rows[row]);
   }
 }
