@@ -20,12 +20,13 @@ void check_word(const std::string& what, const std::string& name) {
                    "' is no plain word; write letters, digits and _, a letter first");
 }
 
-/// The plain word that a path is.
-std::string word_of(std::string path) {
+/// The plain word that a path is; of what is none, such as "a//b", a word that is not plain.
+std::string word_of(const std::string& path) {
+  std::string word = path;
   for (std::size_t i = 1; i + 1 < path.size(); ++i) {
-    if (path[i] == '/' && path[i - 1] != '/') path[i] = '_';
+    if (path[i] == '/' && path[i - 1] != '/') word[i] = '_';
   }
-  return path;
+  return word;
 }
 
 }  // namespace
