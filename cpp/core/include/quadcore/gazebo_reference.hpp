@@ -8,7 +8,8 @@
 
 namespace quadcore QUADCORE_EXPORT {
 
-/// What a `<gazebo reference="LINK or JOINT">` may hold. Parsing, errors and the docs come from here.
+/// What a `<gazebo reference="LINK or JOINT">` may hold. Parsing, errors and the docs come from
+/// here.
 struct GazeboTag {
   std::string name;
   std::string of;        ///< what the reference must name: link | joint
