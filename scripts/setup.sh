@@ -35,10 +35,21 @@ install_apt_packages() {
   $as_root env DEBIAN_FRONTEND=noninteractive $install >/dev/null
 }
 
+# How far the compiler is, where somebody sees it.
+show_compiling() {
+  if [ -t 1 ]; then
+    awk '/^ *\[[0-9]+\/[0-9]+\] / { printf "\rquadcore: compiling %s ", $1; fflush() }
+         END { printf "\r\033[K" }'
+  else
+    cat >/dev/null
+  fi
+}
+
 # Installs with pip, in the versions that were tested, and says what was not there.
 pip_install() {
   local log=.venv/pip.log
-  .venv/bin/python -m pip install --constraint constraints.txt "$@" >$log 2>&1 ||
+  .venv/bin/python -m pip install --verbose --constraint constraints.txt "$@" 2>&1 |
+    tee $log | show_compiling ||
     { cat $log >&2; say "pip could not install $*" >&2; exit 2; }
   { grep '^Successfully installed' $log || true; } | sed 's/^S/quadcore: pip s/'
 }

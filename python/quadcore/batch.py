@@ -22,8 +22,8 @@ import numpy as np
 from . import _core
 from ._core import InputError
 from .description import read_both
+from .given import Value, text_of, whole
 from .overrides import check_names, with_links, without_xacro
-from .simulation import Value, text_of, whole
 from .warning import QuadcoreWarning
 
 if TYPE_CHECKING:

@@ -17,13 +17,14 @@ from .commands import CommandsLike, as_commands
 from .controller import Guided
 from .description import read_both
 from .flight import Progress
+from .given import Number, Value, pose, text_of, whole
 from .log import Log
 from .overrides import check_names, with_links, without_xacro
 from .plants import build
 from .references import ReferenceLike
 from .scenarios import Scenario
 from .scenarios import read as read_scenario
-from .simulation import Number, Simulation, Value, pose, text_of, whole
+from .simulation import Simulation
 from .warning import QuadcoreWarning, unheard
 
 _VERSION = 1  # of what a fingerprint stands for

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable, Mapping, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Callable, Mapping, Optional, Sequence, Union
 from warnings import warn
 
 import numpy as np
@@ -13,6 +13,7 @@ from . import _core, references
 from .controller import Controller, Guided
 from .description import list_of_names, read_both
 from .flight import Progress, Rows, columns_of, fly
+from .given import Number, Value, pose, text_of, whole
 from .law import Law
 from .log import Log
 from .overrides import check_names, with_links, without_xacro
@@ -22,9 +23,6 @@ from .warning import QuadcoreWarning
 
 if TYPE_CHECKING:
     import numpy.typing as npt
-
-Number = Union[float, str]
-Value = Union[float, str, bool, Path, Sequence[str], Sequence[float], np.ndarray]
 
 
 class Simulation(_core.Simulation):
@@ -271,39 +269,3 @@ def _in_order(topic: str, values: Mapping[str, float], fields: Sequence[str]) ->
             f"give {', '.join(fields)}"
         )
     return [values[field] for field in fields]
-
-
-def whole(seed: object, name: str = "seed") -> int:
-    """Check a seed, or what else is such a number."""
-    if not isinstance(seed, (int, np.integer)) or not 0 <= seed < 2**64:
-        raise _core.InputError(f"{name} is {seed!r}; give a whole number from 0 to 2^64 - 1")
-    return int(seed)
-
-
-def text_of(value: Value) -> str:
-    """Write a parameter's value as a URDF would."""
-    if isinstance(value, (bool, np.bool_)):
-        return "true" if value else "false"
-    if isinstance(value, (list, tuple, np.ndarray)):
-        return " ".join(text_of(part) for part in value)
-    return str(value)
-
-
-def pose(spawn: Sequence[Number]) -> Tuple[float, ...]:
-    """Check a start pose: x, y, z, roll, pitch, yaw."""
-    try:
-        given = [_number(value) for value in spawn]
-    except (TypeError, ValueError):
-        given = []
-    if len(given) not in (3, 6):
-        raise _core.InputError(f"spawn is {spawn!r}; give x, y, z[, roll, pitch, yaw] in m and rad")
-    return (*given, *[0.0] * (6 - len(given)))
-
-
-def _number(value: Number) -> float:
-    if not isinstance(value, str):
-        return float(value)
-    number = _core.parse_number(value)
-    if number is None:
-        raise ValueError(value)
-    return number

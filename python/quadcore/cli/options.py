@@ -11,7 +11,7 @@ from .. import laws, references, resources
 from .._core import InputError, engines
 from ..controller import give
 from ..flight_plan import FlightPlan
-from ..simulation import pose
+from ..given import pose
 from ..study.axes import parse_axis
 from . import values
 

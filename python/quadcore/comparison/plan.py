@@ -14,10 +14,11 @@ from ..description import list_of_names, read_model, read_world
 from ..files import shown
 from ..flight import check_logged
 from ..flight_plan import FlightPlan
+from ..given import text_of
 from ..log import Log
 from ..overrides import XACRO, check_names, link_values, without_xacro
 from ..scenarios import read as read_scenario
-from ..simulation import Simulation, text_of
+from ..simulation import Simulation
 from ..study.axes import WHOLE, Axis, Values, axes_of, check_size, variants
 from .difference import Difference, differences, facts
 

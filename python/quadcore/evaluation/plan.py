@@ -15,9 +15,9 @@ from ..description import list_of_names, read_world
 from ..files import shown
 from ..flight import check_logged
 from ..flight_plan import FlightPlan
+from ..given import whole
 from ..plants import LAGRANGE
 from ..scenario_events import Event
-from ..simulation import whole
 from ..study.axes import LARGEST, Values
 from ..study.variation import Variation, give_all, of_controller
 from ..warning import unheard

@@ -9,16 +9,17 @@ import numpy as np
 
 from .._core import FlightError, InputError, Model
 from ..description import read_both
+from ..given import text_of
 from ..log import Log
-from ..overrides import XACRO, check_names, with_links, without_xacro
-from ..simulation import Simulation, text_of
+from ..overrides import check_names, with_links, without_xacro
+from ..simulation import Simulation
 from ..study import arguments
 from ..warning import unheard
 from . import record as records
 from .document import with_values
 from .horizons import Horizons
 from .identify import Combination, Identified, identify
-from .problem import Parameter, Problem
+from .problem import Problem, free_parameter, names_of
 from .search import search
 
 Progress = Callable[[int, int], None]
@@ -174,9 +175,9 @@ def fit(
     for name in known:
         if name not in free:
             raise InputError(f"bound {name}: it is not free; free it, or leave the bound out")
-    wanted = [_parameter(name, read, simulation, known.get(name)) for name in _names(free)]
+    wanted = [free_parameter(name, read, simulation, known.get(name)) for name in names_of(free)]
     flown = records.read(log, simulation.rotor_count, commands, sensed)
-    names = _channels(channels, flown)
+    names = records.channels(channels, flown)
     make = {"model": read, "engine": engine, "world": read_world}
     lag, slow = _motors(simulation)
     fixed = {name: value for name, value in tags.items() if name not in free}
@@ -274,45 +275,6 @@ def _best_shift(problem: Problem, most: int) -> int:
     problem.starts[:] = 0
     problem.noise[:] = 1
     return best
-
-
-def _names(free: Sequence[str]) -> List[str]:
-    names = [str(name) for name in arguments.several(free)]
-    for name in names:
-        if name.partition(".")[0] == XACRO:
-            raise InputError(
-                f"free {name}: arguments of xacro are given, not found; name PLUGIN.TAG, "
-                "LINK.mass, LINK.ixx or the like"
-            )
-        if names.count(name) > 1:
-            raise InputError(f"free {name}: it is named twice; keep one")
-    if not names:
-        raise InputError("nothing is free; name what to fit")
-    return names
-
-
-def _parameter(
-    name: str, model: Model, simulation: Simulation, bounds: Optional[Tuple[float, float]]
-) -> Parameter:
-    if bounds is not None:
-        return Parameter(name, model, simulation, bounds)
-    made = Parameter(name, model, simulation)
-    if made.start >= 0 and not name.endswith((".ixy", ".ixz", ".iyz")):
-        made.bounds = (0.0, np.inf)
-    return made
-
-
-def _channels(given: Optional[Sequence[str]], flown: records.Record) -> List[str]:
-    if given is None:
-        return ["position", "attitude", "rates"] + ["rotors"] * (flown.commands is not None)
-    given = arguments.several(given)
-    if not given:
-        raise InputError(f"channels is {given}; give some of {', '.join(records.CHANNELS)}")
-    for name in given:
-        if name not in records.CHANNELS:
-            known = ", ".join(records.CHANNELS)
-            raise InputError(f"there is no channel '{name}'; give some of {known}")
-    return [name for name in records.CHANNELS if name in given]
 
 
 def _motors(simulation: Simulation) -> Tuple[float, float]:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Dict, List, Mapping, Sequence, Tuple
+from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
 from .._core import FlightError, InputError, Model, parse_number
+from ..overrides import XACRO
 from ..parameters import did_you_mean
 from ..simulation import Simulation
+from ..study import arguments
 from .document import written
 from .horizons import Horizons
 
@@ -67,6 +69,34 @@ class Parameter:
             raise InputError(f"bound {name}: begins at {value:g}, not within {low:g} and {high:g}")
         self.name, self.start, self.bounds = name, value, (low, high)
         self.size = abs(value) or 1e-2
+
+
+def names_of(free: Sequence[str]) -> List[str]:
+    """List what is free; raises `InputError` for what cannot be."""
+    names = [str(name) for name in arguments.several(free)]
+    for name in names:
+        if name.partition(".")[0] == XACRO:
+            raise InputError(
+                f"free {name}: arguments of xacro are given, not found; name PLUGIN.TAG, "
+                "LINK.mass, LINK.ixx or the like"
+            )
+        if names.count(name) > 1:
+            raise InputError(f"free {name}: it is named twice; keep one")
+    if not names:
+        raise InputError("nothing is free; name what to fit")
+    return names
+
+
+def free_parameter(
+    name: str, model: Model, simulation: Simulation, bounds: Optional[Tuple[float, float]]
+) -> Parameter:
+    """Make one; without bounds what is not negative stays so."""
+    if bounds is not None:
+        return Parameter(name, model, simulation, bounds)
+    made = Parameter(name, model, simulation)
+    if made.start >= 0 and not name.endswith((".ixy", ".ixz", ".iyz")):
+        made.bounds = (0.0, np.inf)
+    return made
 
 
 class Problem:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Dict, NamedTuple, Optional, Tuple, Union
+from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from .._core import InputError
 from ..commands import as_commands
 from ..log import Log
+from ..study import arguments
 
 CHANNELS: Dict[str, int] = {"position": 3, "attitude": 3, "velocity": 3, "rates": 3, "rotors": 0}
 """What can be measured, with the numbers of each; `rotors` has one for each rotor."""
@@ -97,6 +98,20 @@ def read(
     return Record(
         flown.time.copy(), position, orientation, velocity, rates, flown.rotor_velocity, table
     )
+
+
+def channels(given: Optional[Sequence[str]], flown: Record) -> List[str]:
+    """Choose what is compared; raises `InputError` for what there is not."""
+    if given is None:
+        return ["position", "attitude", "rates"] + ["rotors"] * (flown.commands is not None)
+    given = arguments.several(given)
+    if not given:
+        raise InputError(f"channels is {given}; give some of {', '.join(CHANNELS)}")
+    for name in given:
+        if name not in CHANNELS:
+            known = ", ".join(CHANNELS)
+            raise InputError(f"there is no channel '{name}'; give some of {known}")
+    return [name for name in CHANNELS if name in given]
 
 
 def _sensed(log: Log, where: str, topic: str) -> Tuple[np.ndarray, ...]:

@@ -11,7 +11,7 @@ from typing import Any, Iterator, List, Mapping, NamedTuple, Sequence, Tuple, Un
 import numpy as np
 
 from .._core import InputError, parse_number
-from ..simulation import Value, text_of
+from ..given import Value, text_of
 
 WHOLE = ("engine", "world", "scenario")
 """What is varied by name, as a whole."""

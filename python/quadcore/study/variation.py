@@ -11,10 +11,10 @@ from .._core import InputError, Model, World, parse_number
 from ..controller import give
 from ..description import read_model, read_world
 from ..flight_plan import FlightPlan
+from ..given import text_of
 from ..overrides import check_names, without_xacro
 from ..scenarios import Scenario
 from ..scenarios import read as read_scenario
-from ..simulation import text_of
 
 OF_CONTROLLER = "controller."
 

@@ -19,7 +19,7 @@ from ..evaluation.plan import LOG_RATE
 from ..files import shown
 from ..flight import check_logged
 from ..flight_plan import FlightPlan
-from ..simulation import whole
+from ..given import whole
 from ..study.variation import Variation, give_all, is_of_controller, of_controller
 from ..warning import unheard
 from . import motion

@@ -24,7 +24,7 @@ from .. import interrupts
 from .._core import InputError
 from ..commands import CommandsLike
 from ..files import make_folder
-from ..simulation import whole
+from ..given import whole
 from ..study import arguments
 from ..study.table import flown_and_failed
 from .dask import cluster

@@ -13,8 +13,9 @@ from ..chapter2.vehicle import air_of, command_order, motor_of, parameters_of
 from ..commands import CommandsLike, as_commands
 from ..flight import check_logged
 from ..flight_plan import FlightPlan
+from ..given import Value, text_of
 from ..log import Log
-from ..simulation import Simulation, Value, text_of
+from ..simulation import Simulation
 from ..state import State
 from .ascent import ascent
 from .given_speeds import fly_given_speeds, stiff_gain

@@ -1,0 +1,49 @@
+"""Numbers and texts that callers give, checked and written as a URDF would."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Sequence, Tuple, Union
+
+import numpy as np
+
+from . import _core
+
+Number = Union[float, str]
+Value = Union[float, str, bool, Path, Sequence[str], Sequence[float], np.ndarray]
+
+
+def whole(seed: object, name: str = "seed") -> int:
+    """Check a seed, or what else is such a number."""
+    if not isinstance(seed, (int, np.integer)) or not 0 <= seed < 2**64:
+        raise _core.InputError(f"{name} is {seed!r}; give a whole number from 0 to 2^64 - 1")
+    return int(seed)
+
+
+def text_of(value: Value) -> str:
+    """Write a parameter's value as a URDF would."""
+    if isinstance(value, (bool, np.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return " ".join(text_of(part) for part in value)
+    return str(value)
+
+
+def pose(spawn: Sequence[Number]) -> Tuple[float, ...]:
+    """Check a start pose: x, y, z, roll, pitch, yaw."""
+    try:
+        given = [_number(value) for value in spawn]
+    except (TypeError, ValueError):
+        given = []
+    if len(given) not in (3, 6):
+        raise _core.InputError(f"spawn is {spawn!r}; give x, y, z[, roll, pitch, yaw] in m and rad")
+    return (*given, *[0.0] * (6 - len(given)))
+
+
+def _number(value: Number) -> float:
+    if not isinstance(value, str):
+        return float(value)
+    number = _core.parse_number(value)
+    if number is None:
+        raise ValueError(value)
+    return number
