@@ -9,7 +9,6 @@ from typing import (
     Dict,
     List,
     Mapping,
-    NamedTuple,
     Optional,
     Sequence,
     Tuple,
@@ -21,47 +20,16 @@ import numpy as np
 
 from . import _core
 from ._core import InputError
+from .batch_state import BatchState as BatchState
 from .description import read_both
-from .given import Value, text_of, whole
+from .flight import check_logged, steps_within
+from .given import Value, poses, seeds, text_of, whole
+from .log import Log
 from .overrides import check_names, with_links, without_xacro
 from .warning import QuadcoreWarning
 
 if TYPE_CHECKING:
     import numpy.typing as npt
-
-
-class BatchState(NamedTuple):
-    """The states of the vehicles of a batch, a row for each.
-
-    Attributes
-    ----------
-    position : ndarray (n, 3)
-        Frame origins in the world, m.
-    orientation : ndarray (n, 4)
-        Of the frames in the world, unit quaternions x, y, z, w.
-    linear_velocity : ndarray (n, 3)
-        Of the frame origins, world axes, m/s.
-    angular_velocity : ndarray (n, 3)
-        Of the frames, body axes, rad/s.
-    rotor_velocity : ndarray (n, rotors)
-        Joint velocities as the engine has them, rad/s.
-    rotor_angle : ndarray (n, rotors)
-        Joint angles in (-pi, pi], rad.
-    """
-
-    position: np.ndarray
-    orientation: np.ndarray
-    linear_velocity: np.ndarray
-    angular_velocity: np.ndarray
-    rotor_velocity: np.ndarray
-    rotor_angle: np.ndarray
-
-    @classmethod
-    def of(cls, rows: np.ndarray) -> BatchState:
-        """Name the columns of rows as `BatchSimulation.read_state` writes them."""
-        rotors = (rows.shape[1] - 13) // 2
-        ends = np.cumsum([3, 4, 3, 3, rotors])
-        return cls(*np.split(rows, ends, axis=1))
 
 
 class BatchSimulation(_core.Batch):
@@ -138,8 +106,8 @@ class BatchSimulation(_core.Batch):
             engine,
             dt,
             [tags for _, tags in built],
-            self._poses(spawn),
-            self._seeds(seed),
+            poses(spawn, self.n),
+            seeds(seed, self.n),
             0 if threads is None else whole(threads, "threads"),
         )
         for warning in self.warnings(0):
@@ -217,6 +185,60 @@ class BatchSimulation(_core.Batch):
         """
         super().step(commands, whole(steps, "steps"))
 
+    def run(
+        self,
+        duration: float,
+        commands: Optional[npt.ArrayLike] = None,
+        log: Sequence[int] = (),
+        log_every: int = 1,
+    ) -> List[Log]:
+        """Fly all vehicles for a while, and log some of them.
+
+        Parameters
+        ----------
+        duration : float
+            s; the last step is the last that ends within it.
+        commands : array_like (n, rotors), optional
+            As of `step`.
+        log : sequence of int
+            Vehicles, counted from 0.
+        log_every : int
+            Steps between logged rows.
+
+        Returns
+        -------
+        list of Log
+            Of each of these vehicles, the bytes that `Simulation.run` would give. One that fails
+            ends with the last row before.
+
+        Raises
+        ------
+        InputError
+            An argument is at fault; nothing has moved then.
+        """
+        chosen = [whole(vehicle, "log") for vehicle in log]
+        for vehicle in chosen:
+            if vehicle >= self.n:
+                raise InputError(f"log names vehicle {vehicle}; there are 0 to {self.n - 1}")
+        total = steps_within(duration, self.dt)
+        if chosen:
+            check_logged(duration, self.dt, log_every)
+        self.step(commands, 0)
+        logged = [self._rows_now(chosen)]
+        flown = [np.ones(len(chosen), bool)]
+        while chosen and len(logged) <= total // log_every:
+            super().step(None, log_every)
+            logged.append(self._rows_now(chosen))
+            flown.append(~self.failed[chosen])
+        super().step(None, total - log_every * (len(logged) - 1))
+        table, whole_rows = np.array(logged), np.array(flown)
+        return [Log(table[whole_rows[:, i], i], {}) for i in range(len(chosen))]
+
+    def _rows_now(self, chosen: Sequence[int]) -> np.ndarray:
+        """Write rows of a log, which has no angles of the joints."""
+        state = self.read_state()[chosen]
+        return np.column_stack([self.time[chosen], state[:, : (self.state_width + 13) // 2]])
+
     @property
     def failed(self) -> np.ndarray:
         """Whether each vehicle's flight has failed: (n,) of bool. A reset ends that."""
@@ -239,7 +261,7 @@ class BatchSimulation(_core.Batch):
         chosen = np.ones(self.n, bool) if mask is None else np.asarray(mask)
         if chosen.shape != (self.n,) or chosen.dtype != bool:
             raise InputError(f"mask is no array of {self.n} booleans; give one")
-        super().reset(chosen, None if seed is None else self._seeds(seed))
+        super().reset(chosen, None if seed is None else seeds(seed, self.n))
 
     def __repr__(self) -> str:
         failed = sum(map(bool, self.failures))
@@ -262,28 +284,3 @@ class BatchSimulation(_core.Batch):
             {**common, **{key: text_of(values[i]) for key, values in own.items()}}
             for i in range(self.n)
         ]
-
-    def _poses(self, spawn: npt.ArrayLike) -> np.ndarray:
-        try:
-            given = np.atleast_2d(np.asarray(spawn, dtype=float))
-        except (TypeError, ValueError):
-            given = np.empty((0, 0))
-        if given.shape not in {(rows, width) for rows in (1, self.n) for width in (3, 6)}:
-            raise InputError(
-                f"spawn holds no poses of {self.n} vehicles; give x, y, z[, roll, pitch, yaw] in m "
-                "and rad, for each or once for all"
-            )
-        poses = np.zeros((self.n, 6))
-        poses[:, : given.shape[1]] = given
-        return poses
-
-    def _seeds(self, seed: Union[int, npt.ArrayLike]) -> np.ndarray:
-        if isinstance(seed, (int, np.integer)):
-            first = whole(seed)
-            return np.array([(first + i) % 2**64 for i in range(self.n)], np.uint64)
-        seeds = np.asarray(seed)
-        if seeds.shape != (self.n,):
-            raise InputError(f"seed holds no {self.n} whole numbers; give one for each, or one")
-        if seeds.dtype == np.uint64:
-            return seeds
-        return np.array([whole(number) for number in seeds], np.uint64)

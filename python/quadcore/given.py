@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Sequence, Tuple, Union
 
 import numpy as np
 
 from . import _core
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 Number = Union[float, str]
 Value = Union[float, str, bool, Path, Sequence[str], Sequence[float], np.ndarray]
@@ -47,3 +50,32 @@ def _number(value: Number) -> float:
     if number is None:
         raise ValueError(value)
     return number
+
+
+def poses(spawn: npt.ArrayLike, n: int) -> np.ndarray:
+    """Check the start poses of n vehicles, one for each or one for all: shape (n, 6)."""
+    try:
+        given = np.atleast_2d(np.asarray(spawn, dtype=float))
+    except (TypeError, ValueError):
+        given = np.empty((0, 0))
+    if given.shape not in {(rows, width) for rows in (1, n) for width in (3, 6)}:
+        raise _core.InputError(
+            f"spawn holds no poses of {n} vehicles; give x, y, z[, roll, pitch, yaw] in m "
+            "and rad, for each or once for all"
+        )
+    padded = np.zeros((n, 6))
+    padded[:, : given.shape[1]] = given
+    return padded
+
+
+def seeds(seed: Union[int, npt.ArrayLike], n: int) -> np.ndarray:
+    """Check the seeds of n vehicles; one is that of the first, the next has the next."""
+    if isinstance(seed, (int, np.integer)):
+        first = whole(seed)
+        return np.array([(first + i) % 2**64 for i in range(n)], np.uint64)
+    given = np.asarray(seed)
+    if given.shape != (n,):
+        raise _core.InputError(f"seed holds no {n} whole numbers; give one for each, or one")
+    if given.dtype == np.uint64:
+        return given
+    return np.array([whole(number) for number in given], np.uint64)

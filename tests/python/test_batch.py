@@ -263,3 +263,40 @@ def test_a_command_that_grows_old_does_so_in_a_batch_as_it_does_alone():
     sim.command(COMMANDS[1])
     sim.step(50)
     assert_same(batch, 1, sim)
+
+
+@pytest.mark.parametrize("engine", ["eigen", "gazebo11"])
+def test_logs_of_chosen_vehicles_are_those_of_a_run_alone(odd, engine):
+    n = 5
+    commands = np.array([[470.0 + 3 * i, -471, 469, -472] for i in range(n)])
+    batch = BatchSimulation(odd, n, engine=engine, seed=3)
+    first, second = batch.run(0.5, commands, log=[4, 1], log_every=7)
+    for log, i in ((first, 4), (second, 1)):
+        alone = qc.Simulation(odd, engine=engine, seed=3 + i)
+        alone.command(commands[i])
+        assert log.table.tobytes() == alone.run(0.5, log_every=7).table.tobytes()
+    assert batch.time.tolist() == pytest.approx([0.5] * n)
+
+
+def test_the_log_of_a_vehicle_that_fails_ends_before_it():
+    batch = BatchSimulation("quadrotor", 2, xacro_args={"sim_slow": 1, "max_velocity": 1e12})
+    commands = np.array([[470.0, -470, 470, -470], [1e11, -1e11, 1e11, -1e11]])
+    flies, fails = batch.run(1.0, commands, log=[0, 1], log_every=10)
+    assert batch.failed.tolist() == [False, True] and len(flies) == 101 > len(fails) >= 1
+    assert np.isfinite(fails.table).all()
+
+
+@pytest.mark.parametrize(
+    ("given", "what"),
+    [
+        ({"log": [2]}, "log names vehicle 2; there are 0 to 1"),
+        ({"log": [0], "log_every": 0}, "log_every is 0; give a whole number >= 1"),
+        ({"log": [0], "log_every": 20}, "log_every is 20 but the flight has 10 steps"),
+        ({"commands": [1, 2]}, "commands"),
+    ],
+)
+def test_what_cannot_be_logged_of_a_batch_is_refused(given, what):
+    batch = BatchSimulation("quadrotor", 2)
+    with pytest.raises(qc.InputError, match=what):
+        batch.run(0.01, **given)
+    assert not batch.time.any()

@@ -95,7 +95,9 @@ def test_a_warning_made_an_error_ends_the_call_after_its_step(hangar):
 
 
 def test_the_command_line_prints_what_a_flight_is_warned_of(tmp_path, capsys):
+    (tmp_path / "off.csv").write_text("t,w1,w2,w3,w4\n0,0,0,0,0\n")
     arguments = ["run", "quadrotor", "--spawn", "0,0,1000,3.1,0,0", "--duration", "0.1", "--quiet"]
+    arguments += ["--commands", str(tmp_path / "off.csv")]
     assert main([*arguments, "--out", str(tmp_path / "out"), "--no-plots"]) == 0
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 1
