@@ -38,8 +38,12 @@ install_apt_packages() {
 # How far the compiler is, where somebody sees it.
 show_compiling() {
   if [ -t 1 ]; then
-    awk '/^ *\[[0-9]+\/[0-9]+\] / { printf "\rquadcore: compiling %s ", $1; fflush() }
-         END { printf "\r\033[K" }'
+    local line
+    while IFS= read -r line; do
+      [[ $line =~ ^\ *(\[[0-9]+/[0-9]+\])\  ]] &&
+        printf '\rquadcore: compiling %s ' "${BASH_REMATCH[1]}"
+    done
+    printf '\r\033[K'
   else
     cat >/dev/null
   fi

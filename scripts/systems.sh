@@ -20,7 +20,7 @@ make_system() {
   say "making a bare Debian $suite in $root"
   rm -rf "$root"
   mkdir -p "$root"
-  debootstrap --variant=minbase --include=ca-certificates,python3-venv "$suite" "$root" "$mirror" \
+  debootstrap --force-check-gpg --variant=minbase --include=ca-certificates,python3-venv "$suite" "$root" "$mirror" \
     >"$root.log" 2>&1 || { tail -n 5 "$root.log" >&2; exit 2; }
   touch "$root/complete"
 }

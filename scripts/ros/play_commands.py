@@ -40,13 +40,12 @@ class Player:
             return
         time = message.header.stamp.to_sec()
         self.rows[time] = row_of(time, message)
-        if time >= self._end - 1e-9:
-            self.finished.set()
-            return
         due = np.searchsorted(self._table[:, 0], time + 1e-9, side="right") - 1
         if due >= 0 and (self._lockstep or due != self._sent):
             self._sent = due
             self._publisher.publish(data=self._table[due, 1:].tolist())
+        if time >= self._end - 1e-9:
+            self.finished.set()
 
     def log(self):
         """Give what came so far."""

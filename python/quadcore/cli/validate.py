@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     from ..validation import Chain, Experiment, Study
 
 
+_OF_FLIGHTS = ("duration", "spawn", "seed", "log_every", "motors", "jobs")
+"""Options that a recording leaves no room for."""
+
+
 def register(commands: Any) -> None:
     """Add the command to the command line."""
     parser = options.subparser(
@@ -58,7 +62,8 @@ def register(commands: Any) -> None:
         "--out", metavar="DIR", type=Path, help="write page, tables and figures here"
     )
     parser.add_argument("--no-plots", action="store_true", help="no figures in --out")
-    parser.set_defaults(model="quadrotor")
+    of_flights = {name: parser.get_default(name) for name in _OF_FLIGHTS}
+    parser.set_defaults(model="quadrotor", of_flights=of_flights)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -107,6 +112,10 @@ def judge(arguments: argparse.Namespace) -> None:
             raise InputError(
                 f"--plant is one flight; give its --{option.replace('_', '-')} by --set"
             )
+    for name, default in arguments.of_flights.items():
+        if getattr(arguments, name) != default:
+            option = f"--{name.replace('_', '-')}"
+            raise InputError(f"--plant judges the flight that was recorded; leave {option} out")
     plan = FlightPlan.of(
         **options.model_arguments(arguments), world=arguments.world, dt=arguments.dt
     )

@@ -93,7 +93,9 @@ def read_log(path: Path) -> LogRows:
 
 def _whole_rows(bag: Any, found: Sequence[Any]) -> Tuple[List[str], np.ndarray, List[str]]:
     messages = [message for _, message in _messages(bag, found)]
-    labels = [dimension.label for dimension in messages[0].layout.dim]
+    labels = [dimension.label for dimension in messages[0].layout.dim] if messages else []
+    if not labels:
+        raise InputError(f"{bag.path}: {LOG} does not name its columns; quadcore wrote other bags")
     return labels[0].split(","), np.array([m.data for m in messages], dtype=float), labels[1:]
 
 
@@ -104,16 +106,21 @@ def _rows_of_the_node(path: Path, bag: Any) -> Tuple[List[str], np.ndarray, List
     if not stamps:
         raise InputError(f"{path}: no time has both a ground_truth/odometry and a joint_states")
     step = int(np.gcd.reduce([*_stamps_of_clock(bag), *stamps])) or 1
-    rows = []
+    rows, rotors = [], len(joints[stamps[0]].velocity)
     for stamp in stamps:
         pose, twist = odometry[stamp].pose.pose, odometry[stamp].twist.twist
         q = pose.orientation
+        if len(joints[stamp].velocity) != rotors:
+            raise InputError(
+                f"{path}: joint_states: {rotors} joints at first, {len(joints[stamp].velocity)} at "
+                f"t = {stamp / 1e9:g} s; a log has the same throughout"
+            )
         rows.append([
             stamp // step * (step / 1e9),  # as simulations count it
             *_xyz(pose.position), *_xyz(q), q.w, *_xyz(twist.linear), *_xyz(twist.angular),
             *joints[stamp].velocity,
         ])  # fmt: skip
-    return log_columns(len(joints[stamps[0]].velocity)), np.array(rows), []
+    return log_columns(rotors), np.array(rows), []
 
 
 def _xyz(vector: Any) -> Tuple[float, float, float]:
@@ -144,6 +151,14 @@ def _stamps_of_clock(bag: Any) -> List[int]:
 def _messages(bag: Any, found: Sequence[Any]) -> Iterator[Tuple[int, Any]]:
     if not found:  # which would be all
         return
+    for connection in found:
+        written = sorted(bag.indexes[connection.id], key=lambda e: (e.chunk_pos, e.offset))
+        times = [entry.time for entry in written]
+        if times != sorted(times):
+            raise InputError(
+                f"{bag.path}: {connection.topic}: its time goes back, as after a reset; record "
+                "each flight in a bag of its own"
+            )
     store = Messages().store
     for connection, time, data in bag.messages(found):
         yield time, store.deserialize_ros1(data, connection.msgtype)

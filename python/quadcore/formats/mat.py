@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, Mapping, Sequence, Tuple
 
 import numpy as np
 
@@ -62,7 +62,7 @@ def read_log(path: Path) -> LogRows:
     InputError
         No log, or a broken one.
     """
-    variables = _vectors(load(path, list))
+    variables = _vectors(path, load(path, list))
     columns = [name for name in log_columns(len(variables)) if name in variables]
     of_state = check_log_columns(f"{path}", columns)
     parts = {name: variables[name] for name in columns}
@@ -70,23 +70,38 @@ def read_log(path: Path) -> LogRows:
     for name, value in variables.items():
         kind, _, rest = name.partition("_")
         if kind == "wrench":
-            wrenches[rest] = np.asarray(value, dtype=float)
+            wrenches[rest] = _wrench(path, name, value)
         elif kind == "topic" and isinstance(value, dict):
             parts.update((f"{rest}.{field}", column) for field, column in value.items())
     rows = together(path, parts)
+    for name, wrench in wrenches.items():
+        if len(wrench) != len(rows):
+            raise InputError(f"{path}: wrench_{name} has {len(wrench)} rows, the log {len(rows)}")
     check_log_rows(lambda row: f"{path}: row {1 + row}", rows, of_state)
     ignored = variables.get("ignored", [])
     names = [ignored] if isinstance(ignored, str) else [str(name) for name in ignored]
     return LogRows(list(parts), rows, wrenches, names)
 
 
-def _vectors(variables: Dict[str, Value]) -> Dict[str, Any]:
+def _wrench(path: Path, name: str, value: Any) -> np.ndarray:
+    wrench = np.asarray(value)
+    if wrench.dtype.kind not in "iuf" or wrench.ndim != 2 or wrench.shape[1] != 6:
+        raise InputError(f"{path}: {name} is no matrix of 6 columns; give force and torque")
+    return wrench.astype(float)
+
+
+def _vectors(path: Path, variables: Dict[str, Value]) -> Dict[str, Any]:
     """Bring a log of any layout into that of vectors."""
     log = variables.get(_LOG)
     if isinstance(log, np.ndarray) and log.ndim == 2:
         named = variables.get("columns")
         rotors = max(0, log.shape[1] - len(log_columns(0)))
         names = named if isinstance(named, list) else log_columns(rotors)
+        if len(names) != log.shape[1]:
+            raise InputError(
+                f"{path}: {_LOG} has {log.shape[1]} columns, {len(names)} are named; name each in "
+                "the cell array columns"
+            )
         of_state, topics = split_columns(list(map(str, names)), log)
         vectors: Dict[str, Any] = {name: log[:, [i]] for i, name in enumerate(of_state)}
         vectors.update((f"topic_{name}", fields) for name, fields in topics.items())
@@ -97,14 +112,20 @@ def _vectors(variables: Dict[str, Value]) -> Dict[str, Any]:
     if not set(log) >= {"time", "signals"}:
         return log
     vectors = {"t": log["time"]}
-    for signal in log["signals"]:
-        label, values = str(signal["label"]), signal["values"]
+    for label, values in _labelled(path, log["signals"]):
         topic, is_topic, field = label.partition(".")
         if is_topic:
             vectors.setdefault(f"topic_{topic}", {})[field] = values
         else:
             vectors[label] = values
     return {**vectors, **{name: value for name, value in variables.items() if name != _LOG}}
+
+
+def _labelled(path: Path, signals: Any) -> Iterator[Tuple[str, Any]]:
+    for signal in [signals] if isinstance(signals, dict) else signals:
+        if not isinstance(signal, dict) or not set(signal) >= {"label", "values"}:
+            raise InputError(f"{path}: {_LOG}.signals: give each a label and values")
+        yield str(signal["label"]), signal["values"]
 
 
 def write_log(
