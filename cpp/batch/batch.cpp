@@ -68,13 +68,16 @@ class Batch::Implementation {
       for (std::size_t i = first; commands && i < end; ++i) lanes_->command(i, command_of(i));
       lanes_->step(block, count, dt(), work, flown);
       for (std::size_t i = first; i < end; ++i) {
-        if (!failures_[i].empty()) continue;
-        steps_[i] += flown[i - first];
         const bool hears =
             commands && is_apart_[i] && !members_[i].in_lanes;  // even if no step follows
+        if (!failures_[i].empty()) {
+          if (hears) members_[i].apart->command(command_of(i), command_width());
+          continue;
+        }
+        steps_[i] += flown[i - first];
         if (flown[i - first] < count || hears) {
           go_on_apart(i, commands, count - flown[i - first]);
-        } else if (is_apart_[i]) {
+        } else if (count > 0 && is_apart_[i]) {
           come_back(i);
         }
       }

@@ -1,3 +1,4 @@
+#include "engines/ode/beside_contact.hpp"
 #include "engines/ode/hinged_motion.hpp"
 #include "hinged_block.hpp"
 #include "laws/motor_torque.hpp"
@@ -92,7 +93,8 @@ QUADCORE_LAW Mask<T> is_quiet(const Block& block, const Bodies<T>& bodies,
   if (bounds.reach > 0) {
     // Earlier than OdeEngine looks closer, so that it has taken a step by itself before.
     const double g_z = block.gravity_W[2];
-    const double time = 60 * dt, fallen = (10 + (g_z < 0 ? -g_z : g_z)) * time * time;
+    const double time = (steps_beside_contact + 10) * dt,
+                 fallen = (10 + (g_z < 0 ? -g_z : g_z)) * time * time;
     const T z = bodies.state(0).number(BodyRow::position + 2);
     const T v_z = bodies.state(0).number(BodyRow::velocity + 2);
     const T rate = laws::square_root(laws::dot(frame.w_WF_F, frame.w_WF_F));

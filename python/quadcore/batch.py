@@ -7,6 +7,7 @@ from typing import (
     TYPE_CHECKING,
     Any,
     Dict,
+    Iterable,
     List,
     Mapping,
     Optional,
@@ -108,7 +109,7 @@ class BatchSimulation(_core.Batch):
             [tags for _, tags in built],
             poses(spawn, self.n),
             seeds(seed, self.n),
-            0 if threads is None else whole(threads, "threads"),
+            0 if threads is None else whole(threads, "threads", bits=31),
         )
         for warning in self.warnings(0):
             warn(warning, QuadcoreWarning, stacklevel=2)
@@ -183,7 +184,7 @@ class BatchSimulation(_core.Batch):
             Commands of another shape, or not finite, or for vehicles that a plugin commands;
             nothing has moved then.
         """
-        super().step(commands, whole(steps, "steps"))
+        super().step(commands, whole(steps, "steps", bits=63))
 
     def run(
         self,
@@ -216,12 +217,14 @@ class BatchSimulation(_core.Batch):
         InputError
             An argument is at fault; nothing has moved then.
         """
+        if not isinstance(log, Iterable):
+            raise InputError(f"log is {log!r}; give a list of numbers of vehicles")
         chosen = [whole(vehicle, "log") for vehicle in log]
         for vehicle in chosen:
             if vehicle >= self.n:
                 raise InputError(f"log names vehicle {vehicle}; there are 0 to {self.n - 1}")
         total = steps_within(duration, self.dt)
-        if chosen:
+        if whole(log_every, "log_every") < 1 or chosen:
             check_logged(duration, self.dt, log_every)
         self.step(commands, 0)
         logged = [self._rows_now(chosen)]

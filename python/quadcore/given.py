@@ -16,11 +16,12 @@ Number = Union[float, str]
 Value = Union[float, str, bool, Path, Sequence[str], Sequence[float], np.ndarray]
 
 
-def whole(seed: object, name: str = "seed") -> int:
-    """Check a seed, or what else is such a number."""
-    if not isinstance(seed, (int, np.integer)) or not 0 <= seed < 2**64:
-        raise _core.InputError(f"{name} is {seed!r}; give a whole number from 0 to 2^64 - 1")
-    return int(seed)
+def whole(seed: object, name: str = "seed", bits: int = 64) -> int:
+    """Check a seed, or what else is such a number of so many bits."""
+    is_whole = isinstance(seed, (int, np.integer)) and not isinstance(seed, bool)
+    if not is_whole or not 0 <= seed < 2**bits:  # type: ignore[operator]
+        raise _core.InputError(f"{name} is {seed!r}; give a whole number from 0 to 2^{bits} - 1")
+    return int(seed)  # type: ignore[call-overload,no-any-return]
 
 
 def text_of(value: Value) -> str:
@@ -73,7 +74,10 @@ def seeds(seed: Union[int, npt.ArrayLike], n: int) -> np.ndarray:
     if isinstance(seed, (int, np.integer)):
         first = whole(seed)
         return np.array([(first + i) % 2**64 for i in range(n)], np.uint64)
-    given = np.asarray(seed)
+    try:
+        given = np.asarray(seed)
+    except ValueError:  # rows of several lengths
+        given = np.empty((0, 0))
     if given.shape != (n,):
         raise _core.InputError(f"seed holds no {n} whole numbers; give one for each, or one")
     if given.dtype == np.uint64:

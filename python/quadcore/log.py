@@ -79,10 +79,13 @@ class Log(Trajectory):
 
     def __getitem__(self, column: str) -> np.ndarray:
         named = self.to_dict()
-        if column not in named:
+        if not isinstance(column, str) or column not in named:
             near = did_you_mean(str(column), list(named))
             raise InputError(f"log[{column!r}]: no such column{near}; log.to_dict() has them all")
         return named[column]
+
+    def __contains__(self, column: object) -> bool:
+        return isinstance(column, str) and column in self.to_dict()
 
     def __iter__(self) -> Any:
         raise TypeError("a log is iterated by its arrays, log.time say, or log.to_dict()")

@@ -110,8 +110,9 @@ class Simulation(_core.Simulation):
     def hover_speed(self) -> np.ndarray:
         """Commands with which the vehicle hovers level, signed, rad/s; shape (n,).
 
-        Neighbours around the vehicle turn against each other. Asks the force laws anew, which takes
-        some milliseconds. Raises InputError if nothing drives the rotors or they cannot hold it.
+        Neighbours around the vehicle turn against each other; faults of rotors are not
+        heeded. Asks the force laws anew, which takes some milliseconds. Raises InputError if
+        nothing drives the rotors or they cannot hold it.
         """
         return np.asarray(_core.hover_commands(self, []))
 

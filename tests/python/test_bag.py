@@ -129,11 +129,13 @@ def test_what_cannot_be_read_is_one_line(tmp_path):
     rows = [[1.0, 2.0]]
     write(tmp_path / "other.bag", "/odd", [1], rows)
     write(tmp_path / "short.bag", "/vel_cmd", [1], rows)
+    write(tmp_path / "reset.bag", "/vel_cmd", [0, 20, 0, 10], [[1.0, -1, 1, -1]] * 4)
     (tmp_path / "text.bag").write_text("t,w1\n")
     (tmp_path / "empty.bag").write_bytes(b"")
     for name, says in (
         ("other.bag", "topics of commands: none; a bag of commands has one that ends in vel_cmd"),
         ("short.bag", "/vel_cmd: a message of 2 numbers; this model with 4 rotors takes w1, w2"),
+        ("reset.bag", "/vel_cmd: its time goes back, as after a reset"),
         ("text.bag", "is no bag that can be read"),
         ("empty.bag", "is no bag that can be read"),
         ("none.bag", "cannot be read"),

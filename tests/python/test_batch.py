@@ -292,6 +292,9 @@ def test_the_log_of_a_vehicle_that_fails_ends_before_it():
         ({"log": [2]}, "log names vehicle 2; there are 0 to 1"),
         ({"log": [0], "log_every": 0}, "log_every is 0; give a whole number >= 1"),
         ({"log": [0], "log_every": 20}, "log_every is 20 but the flight has 10 steps"),
+        ({"log": [True, False]}, "log is True; give a whole number"),
+        ({"log": 1}, "log is 1; give a list of numbers of vehicles"),
+        ({"log_every": "a"}, "log_every is 'a'; give a whole number"),
         ({"commands": [1, 2]}, "commands"),
     ],
 )
@@ -300,3 +303,33 @@ def test_what_cannot_be_logged_of_a_batch_is_refused(given, what):
     with pytest.raises(qc.InputError, match=what):
         batch.run(0.01, **given)
     assert not batch.time.any()
+
+
+@pytest.mark.parametrize("engine", ["eigen", "gazebo11"])
+def test_on_the_ground_a_run_remembers_what_came_before(engine):
+    world = {"world": "default", "spawn": (0, 0, 0.3, 0.3, 0.2, 0), "engine": engine}
+    batch, alone = BatchSimulation("quadrotor", 1, **world), qc.Simulation("quadrotor", **world)
+    command = 0.6 * alone.hover_speed
+    batch.step([command], 400)
+    alone.command(command)
+    alone.step(400)
+    (log,) = batch.run(0.3, log=[0])
+    assert log.table[:, 1:].tobytes() == alone.run(0.3).table[:, 1:].tobytes()
+
+
+def test_a_command_that_a_failed_vehicle_is_given_holds_when_it_flies_again():
+    options = {"parameters": {"motorpid_plugin.ki": 1e-4, "motorpid_plugin.iMax": 1,
+                              "motorpid_plugin.iMin": -1}}  # fmt: skip
+    batch, alone = (
+        BatchSimulation("quadrotor", 1, **options),
+        qc.Simulation("quadrotor", engine="eigen", **options),
+    )
+    start, hover = batch.read_state(), alone.hover_speed
+    batch.step([hover * 1e9], 2000)
+    assert batch.failed.all()
+    batch.step([hover])
+    batch.set_state(start)
+    batch.step(None, 100)
+    alone.command(hover)
+    alone.step(100)
+    assert batch.state.rotor_velocity[0] == pytest.approx(alone.state.rotor_velocity, rel=0.2)

@@ -179,3 +179,21 @@ def test_a_layout_that_there_is_not_is_refused(log, tmp_path):
     with pytest.raises(qc.InputError, match="layout 'table' is none of vectors, struct, matrix"):
         log.to_mat(tmp_path / "log.mat", "table")
     assert not (tmp_path / "log.mat").exists()
+
+
+@pytest.mark.parametrize(
+    ("held", "says"),
+    [
+        ({"wrench_thrust": np.zeros((3, 5))}, "wrench_thrust is no matrix of 6 columns"),
+        ({"wrench_thrust": np.zeros((2, 6))}, "wrench_thrust has 2 rows, the log 3"),
+        ({"wrench_thrust": "text"}, "wrench_thrust is no matrix of 6 columns"),
+        ({"log": np.zeros((3, 5))}, "log has 5 columns, 14 are named"),
+        ({"log": {"time": [0, 1], "signals": {"values": [1, 2]}}}, "give each a label and values"),
+        ({"log": {"time": [0, 1], "signals": 3}}, "give each a label and values"),
+    ],
+)
+def test_what_is_no_log_is_told(held, says, log, tmp_path):
+    of_three = {name: column[:3] for name, column in zip(log.columns, log.table.T)}
+    scipy.io.savemat(tmp_path / "odd.mat", {**({} if "log" in held else of_three), **held})
+    with pytest.raises(qc.InputError, match=says):
+        qc.Log.of_file(tmp_path / "odd.mat")

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "beside_contact.hpp"
 #include "body_state.hpp"
 #include "ode_process.hpp"
 #include "quadcore/error.hpp"
@@ -21,9 +22,6 @@ namespace {
 /// take their place. Flights of 10 s are 4e-10 m apart where they leave 7e-11, and 0.4
 /// mm where they leave 1e-5; vehicles whose 50 sweeps do not converge leave more than that.
 constexpr double converged = 1e-14;
-/// So many steps beside a contact the sweeps have not converged: they start from multipliers that
-/// an impact has made large.
-constexpr int steps_beside_contact = 50;
 /// Attitudes in which convergence is tried: it depends on them, a little.
 constexpr std::uint64_t tried_attitudes = 8;
 
