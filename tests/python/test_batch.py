@@ -201,7 +201,7 @@ def test_masses_and_poses_may_be_each_vehicles_own(engine):
 
 def test_plugins_that_fly_in_no_lane_fly_each_by_itself():
     """A controller's commands are its own."""
-    given = {"motorpid_plugin.ki": 1e-4, "motorpid_plugin.iMax": 1, "motorpid_plugin.iMin": -1}
+    given = {"motorpid_plugin.ki": 1e-4, "motorpid_plugin.iMax": 1e-6, "motorpid_plugin.iMin": -1}
     batch = BatchSimulation(n=2, parameters=given)
     batch.step(COMMANDS[:2], 30)
     sim = Simulation(engine="eigen", parameters=given)
@@ -318,12 +318,16 @@ def test_on_the_ground_a_run_remembers_what_came_before(engine):
 
 
 def test_a_command_that_a_failed_vehicle_is_given_holds_when_it_flies_again():
-    options = {"parameters": {"motorpid_plugin.ki": 1e-4, "motorpid_plugin.iMax": 1,
-                              "motorpid_plugin.iMin": -1}}  # fmt: skip
-    batch, alone = (
-        BatchSimulation("quadrotor", 1, **options),
-        qc.Simulation("quadrotor", engine="eigen", **options),
-    )
+    options = {
+        "parameters": {
+            "motorpid_plugin.ki": 1e-4,
+            "motorpid_plugin.iMax": 1e-6,
+            "motorpid_plugin.iMin": -1e-6,
+        },
+        "xacro_args": {"sim_slow": 1, "max_velocity": 1e12},
+    }
+    batch = BatchSimulation("quadrotor", 1, **options)
+    alone = qc.Simulation("quadrotor", engine="eigen", **options)
     start, hover = batch.read_state(), alone.hover_speed
     batch.step([hover * 1e9], 2000)
     assert batch.failed.all()
