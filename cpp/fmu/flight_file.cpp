@@ -54,8 +54,9 @@ FlightFile read(const std::string& folder) {
   std::copy_n(spawn.begin(), 3, file.options.spawn.xyz.data());
   std::copy_n(spawn.begin() + 3, 3, file.options.spawn.rpy.data());
   for (const YAML::Node& v : root["variables"]) {
-    file.variables.push_back(
-        {kind_of(v[0].as<std::string>()), v[1].as<std::string>(), v[2].as<std::size_t>()});
+    file.variables.push_back({v[0].as<std::string>(), kind_of(v[1].as<std::string>()),
+                              v[2].as<std::string>(), v[3].as<std::size_t>(),
+                              v[4].as<std::string>() == "fixed"});
   }
   return file;
 }

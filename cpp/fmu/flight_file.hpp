@@ -14,17 +14,19 @@ namespace quadcore::fmu {
 struct Variable {
   enum Kind {
     state,      ///< `index` in a row of the log
-    topic,      ///< `index` in the row of topic `name`
+    topic,      ///< `index` in the row of topic `key`
     wrench,     ///< `index` in the row of all wrenches
-    input,      ///< `index` among the fields of topic `name`
-    parameter,  ///< tag `name`
-    file,       ///< tag `name`, which names a file among the resources
+    input,      ///< `index` among the fields of topic `key`
+    parameter,  ///< tag `key`
+    file,       ///< tag `key`, which names a file among the resources
     spawn,      ///< `index` in the pose
     seed,
   };
+  std::string name;  ///< for importers
   Kind kind;
-  std::string name;
+  std::string key;
   std::size_t index = 0;
+  bool is_fixed = false;  ///< when the flight has begun
 };
 
 /// What `quadcore export-fmu` writes for this library: resources/flight.yaml.

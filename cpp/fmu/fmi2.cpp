@@ -98,6 +98,7 @@ const char* fmi2GetVersion() { return "2.0"; }
 
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
                               const fmi2CallbackFunctions* callbacks, fmi2Boolean, fmi2Boolean) {
+  if (!name) name = "";
   try {
     if (type != fmi2CoSimulation) throw quadcore::InputError("this FMU is for co-simulation");
     if (!resources) throw quadcore::InputError("no folder of resources was named");

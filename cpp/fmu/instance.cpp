@@ -11,6 +11,8 @@ namespace {
 
 /// Of a step, by which a communication step may be no multiple of it.
 constexpr double roundness = 1e-6;
+/// Of a communication step; a double counts no further one by one.
+constexpr double most_steps = 9007199254740992;
 
 }  // namespace
 
@@ -20,6 +22,11 @@ Instance::Instance(const std::string& resources, const std::string& guid)
     throw InputError("the GUID is " + guid + ", this FMU's is " + file_.guid +
                      "; read its modelDescription.xml anew");
   }
+}
+
+void Instance::start_at(double time) {
+  if (!std::isfinite(time)) throw InputError("the start time is no finite number; give one, in s");
+  start_time_ = time;
 }
 
 void Instance::initialise() {
@@ -47,12 +54,13 @@ void Instance::step(double time, double length) {
   if (!simulation_) throw InputError("a step before the initialisation; initialise first");
   const double dt = simulation_->dt();
   const double count = std::round(length / dt);
-  if (!(count >= 1) || std::abs(length - count * dt) > roundness * dt) {
+  const bool is_counted = count >= 1 && count <= most_steps;
+  if (!is_counted || std::abs(length - count * dt) > roundness * dt) {
     std::string text = "a communication step of ";
     append_shortest(length, text);
     text += " s; give a whole multiple of the step of ";
     append_shortest(dt, text);
-    throw InputError(text + " s");
+    throw InputError(text + " s" + (count > most_steps ? ", 2^53 of them at most" : ""));
   }
   if (!(std::abs(time - this->time()) < dt / 2)) {
     throw InputError("a step from " + seconds(time) + ", but the flight is at " +
@@ -83,6 +91,13 @@ const Variable& Instance::variable(unsigned reference) const {
   throw InputError("no variable has the value reference " + std::to_string(reference));
 }
 
+const Variable& Instance::settable(unsigned reference) const {
+  const Variable& v = variable(reference);
+  if (!simulation_ || !v.is_fixed) return v;
+  throw InputError("variable " + v.name +
+                   ": is fixed once the flight is initialised; set it before, or reset");
+}
+
 double Instance::number(unsigned reference) {
   const Variable& v = variable(reference);
   if (!is_output(v)) return fmu::number(settings_, v);
@@ -95,13 +110,11 @@ const std::string& Instance::text(unsigned reference) {
 }
 
 void Instance::set_number(unsigned reference, double value) {
-  const Variable& v = variable(reference);
-  fmu::set_number(settings_, v, value);
-  tuned_ = tuned_ || is_parameter(v);
+  if (fmu::set_number(settings_, settable(reference), value)) tuned_ = true;
 }
 
 void Instance::set_text(unsigned reference, const std::string& value) {
-  fmu::set_text(settings_, file_, variable(reference), value);
+  fmu::set_text(settings_, file_, settable(reference), value);
   tuned_ = true;
 }
 

@@ -18,7 +18,7 @@ class Instance {
   /// Throws InputError if the importer knows the FMU by another guid.
   Instance(const std::string& resources, const std::string& guid);
 
-  void start_at(double time) { start_time_ = time; }
+  void start_at(double time);
   /// Makes the simulation.
   void initialise();
   /// Publishes what was set, and flies whole steps.
@@ -41,6 +41,8 @@ class Instance {
 
  private:
   const Variable& variable(unsigned reference) const;
+  /// The same, of one that can be set now.
+  const Variable& settable(unsigned reference) const;
   std::unique_ptr<Simulation> made() const;
   /// Makes the simulation anew if a parameter changed.
   void tune();

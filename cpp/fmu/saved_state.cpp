@@ -35,9 +35,19 @@ class Reader {
   std::size_t at_ = 0;
 };
 
-template <class Archive, class T, std::enable_if_t<std::is_arithmetic_v<T>, int> = 0>
+template <class Archive, class T,
+          std::enable_if_t<std::is_arithmetic_v<T> && !std::is_same_v<T, bool>, int> = 0>
 void visit(Archive& archive, T& number) {
   archive.raw(&number, sizeof number);
+}
+
+/// Only 0 and 1 are values of one.
+template <class Archive>
+void visit(Archive& archive, bool& flag) {
+  unsigned char byte = flag ? 1 : 0;
+  visit(archive, byte);
+  if (byte > 1) throw InputError("the saved state is damaged; save it anew");
+  flag = byte == 1;
 }
 
 /// Changes the length of a row to that which is read.

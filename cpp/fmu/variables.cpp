@@ -9,6 +9,8 @@
 namespace quadcore::fmu {
 namespace {
 
+constexpr double largest_seed = 2147483647;  // of an fmi2Integer
+
 /// Of a pose.
 double& component(Pose& pose, std::size_t index) {
   const auto i = static_cast<Eigen::Index>(index % 3);
@@ -25,14 +27,12 @@ Settings::Settings(const FlightFile& file)
     : spawn(file.options.spawn), seed(file.options.seed), tags(file.tags) {
   for (const Variable& v : file.variables) {
     if (v.kind != Variable::input) continue;
-    std::vector<double>& values = inputs[v.name].values;
+    std::vector<double>& values = inputs[v.key].values;
     if (values.size() <= v.index) values.resize(v.index + 1);
   }
 }
 
 bool is_output(const Variable& variable) { return variable.kind <= Variable::wrench; }
-
-bool is_parameter(const Variable& variable) { return variable.kind > Variable::input; }
 
 SimulationOptions options_of(const FlightFile& file, const Settings& settings) {
   SimulationOptions options = file.options;
@@ -59,14 +59,14 @@ double Outputs::at(Simulation& simulation, const Variable& variable) {
     return state_.at(variable.index);
   }
   std::vector<double> row;
-  append_log_row(simulation.topics()[simulation.topics().at(variable.name)], row);
+  append_log_row(simulation.topics()[simulation.topics().at(variable.key)], row);
   return row.at(variable.index);
 }
 
 double number(const Settings& settings, const Variable& variable) {
   switch (variable.kind) {
     case Variable::input:
-      return settings.inputs.at(variable.name).values.at(variable.index);
+      return settings.inputs.at(variable.key).values.at(variable.index);
     case Variable::spawn: {
       Pose pose = settings.spawn;
       return component(pose, variable.index);
@@ -83,37 +83,40 @@ double number(const Settings& settings, const Variable& variable) {
 }
 
 const std::string& text(const Settings& settings, const Variable& variable) {
-  const auto found = settings.tags.find(variable.name);
+  const auto found = settings.tags.find(variable.key);
   if (found == settings.tags.end()) refuse(variable, "is a number; ask for one");
   return found->second;
 }
 
-void set_number(Settings& settings, const Variable& variable, double value) {
+bool set_number(Settings& settings, const Variable& variable, double value) {
   if (!std::isfinite(value)) refuse(variable, "is to be no finite number; give one");
   switch (variable.kind) {
     case Variable::input: {
-      Waiting& message = settings.inputs.at(variable.name);
+      Waiting& message = settings.inputs.at(variable.key);
       message.values.at(variable.index) = value;
       message.is_set = true;
-      return;
+      return false;
     }
     case Variable::spawn:
       component(settings.spawn, variable.index) = value;
-      return;
+      return false;
     case Variable::seed:
-      if (value < 0) refuse(variable, "is negative; give a whole number from 0");
+      if (!(value >= 0 && value <= largest_seed && value == std::floor(value))) {
+        refuse(variable, "is no seed; give a whole number from 0 to 2147483647");
+      }
       settings.seed = static_cast<std::uint64_t>(value);
-      return;
+      return false;
     case Variable::parameter: {
-      std::string& kept = settings.tags.at(variable.name);
+      std::string& kept = settings.tags.at(variable.key);
       const bool is_flag = kept == "true" || kept == "false";
+      if (!is_flag && parse_number(kept) == value) return false;
       kept.clear();
       if (is_flag) {
         kept = value != 0 ? "true" : "false";
       } else {
         append_shortest(value, kept);
       }
-      return;
+      return true;
     }
     default:
       refuse(variable, "cannot be set to a number");
@@ -126,7 +129,7 @@ void set_text(Settings& settings, const FlightFile& file, const Variable& variab
     refuse(variable, "is a number; set one");
   }
   const bool within = variable.kind == Variable::file && !value.empty() && value.front() != '/';
-  settings.tags.at(variable.name) = within ? file.folder + "/" + value : value;
+  settings.tags.at(variable.key) = within ? file.folder + "/" + value : value;
 }
 
 }  // namespace quadcore::fmu

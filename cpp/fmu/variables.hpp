@@ -43,14 +43,13 @@ class Outputs {
 /// @{
 double number(const Settings& settings, const Variable& variable);
 const std::string& text(const Settings& settings, const Variable& variable);
-void set_number(Settings& settings, const Variable& variable, double value);
+/// Returns whether a tag has changed.
+bool set_number(Settings& settings, const Variable& variable, double value);
 void set_text(Settings& settings, const FlightFile& file, const Variable& variable,
               const std::string& value);
 /// @}
 
 bool is_output(const Variable& variable);
-/// Whether only another simulation has the changed value.
-bool is_parameter(const Variable& variable);
 /// Those of a simulation with the settings.
 SimulationOptions options_of(const FlightFile& file, const Settings& settings);
 

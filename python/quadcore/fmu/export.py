@@ -21,6 +21,9 @@ from .variables import Variable, spawn_and_seed, variables_of
 
 _VERSION = 1  # of flight.yaml, which cpp/fmu/flight_file.cpp reads
 _LIBRARY = "libquadcore_fmu.so"
+_OPTIONS = (
+    "engine", "world", "dt", "seed", "parameters", "xacro_args", "spawn", "ignore", "scenario",
+)  # fmt: skip
 _LONG_AGO = (1980, 1, 1, 0, 0, 0)  # the same FMU, the same bytes
 
 
@@ -51,6 +54,12 @@ def export_fmu(
     file = Path(path)
     if file.suffix.lower() != ".fmu":
         raise InputError(f"{path}: name a file that ends in .fmu, which it would hold")
+    for name in options:
+        if name not in _OPTIONS:
+            raise InputError(
+                f"an FMU carries no {name}, for it begins at rest and its importer commands it; "
+                f"leave it out, or give one of {', '.join(_OPTIONS)}"
+            )
     write_fmu(file, FlightPlan.of(model, **options))
 
 
@@ -137,17 +146,18 @@ def _flight(
         "parameters": {key: value for key, value in plan.parameters.items() if key not in files},
         "tags": {tag.key: str(tag.start) for tag in tags if tag.key not in files},
         "files": files,
-        "variables": [[v.kind, v.key, v.place] for v in variables],
+        "variables": [[v.name, v.kind, v.key, v.place, v.variability] for v in variables],
     }
 
 
 def _document(document: Document, ignored: List[str]) -> Dict[str, Any]:
-    files = sorted({file for file, _ in document.lines})
+    lines = [(Path(file).name, line) for file, line in document.lines]
+    files = sorted({file for file, _ in lines})
     return {
-        "name": document.name,
+        "name": Path(document.name).name,
         "text": document.text,
         "files": files,
-        "lines": [[files.index(file), line] for file, line in document.lines],
+        "lines": [[files.index(file), line] for file, line in lines],
         "ignore": list(ignored),
     }
 
