@@ -10,7 +10,7 @@ from imported import Imported
 
 import quadcore as qc
 
-fmpy = pytest.importorskip("fmpy")
+pytest.importorskip("fmpy")
 
 
 def with_pilot(folder):
