@@ -54,7 +54,12 @@ class TestSeveral(unittest.TestCase):
             self.assertEqual({m.child_frame_id for m in messages}, {f"{name}/drone"})
             stamps = np.array([m.header.stamp.to_nsec() for m in messages])
             self.assertGreaterEqual(np.diff(stamps).min(), 0)
-            self.assertTrue(np.isin(stamps[stamps <= ticks[-1]][1:], ticks).all())
+            # Each is a time of the clock's; of a busy machine a tick may have been lost on its way.
+            known = stamps[stamps <= ticks[-1]][1:]
+            unseen = known[~np.isin(known, ticks)]
+            after = np.searchsorted(ticks, unseen)
+            self.assertTrue((ticks[after] - ticks[after - 1] > 1000000).all())
+            self.assertTrue((unseen % 1000000 == 0).all())
             self.assertAlmostEqual(messages[-1].pose.pose.position.y, 2 * i, delta=0.5)
             # Its own reset put it back to the start, once; those of the others did not.
             pairs = zip(messages, messages[1:])
