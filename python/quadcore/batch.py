@@ -227,20 +227,20 @@ class BatchSimulation(_core.Batch):
         if whole(log_every, "log_every") < 1 or chosen:
             check_logged(duration, self.dt, log_every)
         self.step(commands, 0)
-        logged = [self._rows_now(chosen)]
-        flown = [np.ones(len(chosen), bool)]
-        while chosen and len(logged) <= total // log_every:
+        logged = [[row] for row in self._rows_now(chosen)]
+        times = total // log_every if chosen else 0
+        for _ in range(times):
             super().step(None, log_every)
-            logged.append(self._rows_now(chosen))
-            flown.append(~self.failed[chosen])
-        super().step(None, total - log_every * (len(logged) - 1))
-        table, whole_rows = np.array(logged), np.array(flown)
-        return [Log(table[whole_rows[:, i], i], {}) for i in range(len(chosen))]
+            for rows, row, failed in zip(logged, self._rows_now(chosen), self.failed[chosen]):
+                if not failed:
+                    rows.append(row)
+        super().step(None, total - log_every * times)
+        return [Log(np.array(rows), {}) for rows in logged]
 
     def _rows_now(self, chosen: Sequence[int]) -> np.ndarray:
         """Write rows of a log, which has no angles of the joints."""
-        state = self.read_state()[chosen]
-        return np.column_stack([self.time[chosen], state[:, : (self.state_width + 13) // 2]])
+        *logged, _ = BatchState.of(self.read_state()[chosen])
+        return np.column_stack([self.time[chosen], *logged])
 
     @property
     def failed(self) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 from .._core import InputError, log_columns
 from ..files import atomic_write
 from ..forks import LOCK
-from .mat_tables import read_table, together
+from .mat_tables import listed, read_table, together
 from .mat_variables import Value, load
 from .rows import LogRows, Table, check_log_columns, check_log_rows, split_columns
 
@@ -122,7 +122,7 @@ def _vectors(path: Path, variables: Dict[str, Value]) -> Dict[str, Any]:
 
 
 def _labelled(path: Path, signals: Any) -> Iterator[Tuple[str, Any]]:
-    for signal in [signals] if isinstance(signals, dict) else signals:
+    for signal in listed(signals):
         if not isinstance(signal, dict) or not set(signal) >= {"label", "values"}:
             raise InputError(f"{path}: {_LOG}.signals: give each a label and values")
         yield str(signal["label"]), signal["values"]

@@ -94,7 +94,7 @@ def _of_signals(struct: Dict[str, Value]) -> Optional[np.ndarray]:
     time = fields.get("time")
     if "signals" in fields:
         signals = fields["signals"]
-        parts = [signal.get("values") for signal in _dicts(signals)]
+        parts = [signal.get("values") for signal in listed(signals) if isinstance(signal, dict)]
     else:
         parts = [fields.get("data")]
     arrays = [part for part in [time, *parts] if isinstance(part, np.ndarray)]
@@ -107,9 +107,9 @@ def _of_signals(struct: Dict[str, Value]) -> Optional[np.ndarray]:
     return np.hstack([column for column in columns if column is not None])
 
 
-def _dicts(signals: Value) -> List[Dict[str, Any]]:
-    found = signals if isinstance(signals, list) else [signals]
-    return [signal for signal in found if isinstance(signal, dict)]
+def listed(signals: Value) -> List[Any]:
+    """Give the signals of a struct as Simulink writes it, where one is no list."""
+    return signals if isinstance(signals, list) else [signals]
 
 
 def _rows_of(array: np.ndarray, rows: int) -> Optional[np.ndarray]:

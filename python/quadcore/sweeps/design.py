@@ -10,7 +10,9 @@ from .._core import InputError
 from ..files import read_text
 from ..study.axes import Axis, axes_of, parse_axis
 from . import distributions
-from .distributions import LARGEST as LARGEST
+
+LARGEST = 1_000_000
+"""Rows of one sweep."""
 
 _LARGEST = 10**8  # bytes of a table of points
 
@@ -69,6 +71,8 @@ class Design(Sequence[Point]):
             names = list(self.drawn)
             if samples is None:
                 raise InputError(f"vary {names[0]}: is drawn; say how many --samples")
+            if samples > LARGEST:
+                raise InputError(f"samples is {samples}; at most {LARGEST} rows are swept")
             values = list(self.drawn.values())
             rows = distributions.drawn(names, values, design, samples, seed)
             blocks.append(Block(names, rows, is_drawn=True))

@@ -11,9 +11,6 @@ import numpy as np
 from .._core import InputError, parse_number
 from ..extras import needed
 
-LARGEST = 1_000_000
-"""Rows of one sweep."""
-
 DIGITS = 12
 """Of what is drawn, as text: fewer than a double has, so that every machine writes the same."""
 
@@ -174,8 +171,6 @@ def drawn(
     """
     if design not in DESIGNS:
         raise InputError(f"there is no design '{design}'; give one of {', '.join(DESIGNS)}")
-    if samples > LARGEST:
-        raise InputError(f"samples is {samples}; at most {LARGEST} rows are swept")
     cube = DESIGNS[design][1](len(names), samples, seed)
     columns = []
     for name, distribution, part in zip(names, distributions, cube.T):
