@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import pickle
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -81,3 +82,17 @@ def flown_elsewhere(fly, *things):
 
 def digest(data):
     return hashlib.sha256(data).hexdigest()
+
+
+def with_pilot(folder):
+    """Copy the quadrotor with a PID, whose gains lie in a file beside it."""
+    folder.mkdir()
+    shutil.copy(qc.resources.root() / "config/gains/quadrotor/pid.yaml", folder / "gains.yaml")
+    text = (qc.resources.root() / "urdf/quadrotor.urdf.xacro").read_text()
+    pilot = (
+        '<gazebo><plugin name="pilot" filename="libcontroller_plugin.so"><law>pid</law>'
+        "<gains>gains.yaml</gains></plugin></gazebo></robot>"
+    )
+    model = folder / "piloted.urdf.xacro"
+    model.write_text(text.replace("</robot>", pilot))
+    return str(model)

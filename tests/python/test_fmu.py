@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from flights import ENGINES, HOVER
+from flights import ENGINES, HOVER, with_pilot
 from imported import Imported, library
 from processes import ran, refused
 
@@ -243,17 +243,9 @@ def test_instances_fly_side_by_side_in_threads(engine, imported):
 
 
 def test_files_that_tags_name_travel_inside(imported, tmp_path):
-    gains = tmp_path / "gains.yaml"
-    shutil.copy(qc.resources.root() / "config/gains/quadrotor/pid.yaml", gains)
-    text = (qc.resources.root() / "urdf/quadrotor.urdf.xacro").read_text()
-    pilot = (
-        '<gazebo><plugin name="pilot" filename="libcontroller_plugin.so"><law>pid</law>'
-        "<gains>gains.yaml</gains></plugin></gazebo></robot>"
-    )
-    model = tmp_path / "piloted.urdf.xacro"
-    model.write_text(text.replace("</robot>", pilot))
-    instance = imported("eigen", model=str(model))
-    gains.unlink()
+    folder = tmp_path / "piloted"
+    instance = imported("eigen", model=with_pilot(folder))
+    (folder / "gains.yaml").unlink()
     instance.initialise()
     instance.step(0.1)
     assert "vel_cmd.w1" in instance.variables and "w1" not in instance.variables

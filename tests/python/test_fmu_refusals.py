@@ -1,30 +1,15 @@
 """What FMUs refuse, and what they take for no change."""
 
-import shutil
 import zipfile
 from ctypes import byref
 
 import pytest
-from flights import HOVER
+from flights import HOVER, with_pilot
 from imported import Imported
 
 import quadcore as qc
 
 pytest.importorskip("fmpy")
-
-
-def with_pilot(folder):
-    """Copy the quadrotor with a PID, whose gains lie in a file beside it."""
-    folder.mkdir()
-    shutil.copy(qc.resources.root() / "config/gains/quadrotor/pid.yaml", folder / "gains.yaml")
-    text = (qc.resources.root() / "urdf/quadrotor.urdf.xacro").read_text()
-    pilot = (
-        '<gazebo><plugin name="pilot" filename="libcontroller_plugin.so"><law>pid</law>'
-        "<gains>gains.yaml</gains></plugin></gazebo></robot>"
-    )
-    model = folder / "piloted.urdf.xacro"
-    model.write_text(text.replace("</robot>", pilot))
-    return str(model)
 
 
 @pytest.fixture(scope="module")
