@@ -15,8 +15,9 @@
 namespace quadcore::bindings {
 namespace {
 
-/// Signals are looked at after about so many steps of single vehicles, some hundredths of a second.
-constexpr std::int64_t between_signals = 100000;
+/// Signals are looked at after about so many steps of single vehicles, some hundredths of a second;
+/// not after each step of very many, whose numbers would go through the cache once for each.
+constexpr std::int64_t between_signals = 100000, steps_between_signals = 10;
 
 /// A batch that refuses to be used by two Python threads at once.
 struct GuardedBatch {
@@ -82,8 +83,8 @@ void step(GuardedBatch& self, const py::object& commands, std::int64_t steps) {
   }
   const BatchLock lock(self);
   const double* told = commands.is_none() ? nullptr : rows.data();
-  const std::int64_t piece =
-      std::max<std::int64_t>(1, between_signals / static_cast<std::int64_t>(self.batch.size()));
+  const std::int64_t piece = std::max(
+      steps_between_signals, between_signals / static_cast<std::int64_t>(self.batch.size()));
   do {
     const std::int64_t now = std::min(steps, piece);
     without_gil([&] { self.batch.step(told, now); });

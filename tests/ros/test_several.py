@@ -54,12 +54,13 @@ class TestSeveral(unittest.TestCase):
             self.assertEqual({m.child_frame_id for m in messages}, {f"{name}/drone"})
             stamps = np.array([m.header.stamp.to_nsec() for m in messages])
             self.assertGreaterEqual(np.diff(stamps).min(), 0)
-            # Each is a time of the clock's; of a busy machine a tick may have been lost on its way.
-            known = stamps[stamps <= ticks[-1]][1:]
+            # Each is a time of the clock's; on a busy machine a tick may have been lost on its way.
+            known = stamps[(stamps > ticks[0]) & (stamps < ticks[-1])]
+            self.assertGreater(known.size, 90 * SECONDS)
             unseen = known[~np.isin(known, ticks)]
             after = np.searchsorted(ticks, unseen)
-            self.assertTrue((ticks[after] - ticks[after - 1] > 1000000).all())
-            self.assertTrue((unseen % 1000000 == 0).all())
+            np.testing.assert_array_less(1000000, ticks[after] - ticks[after - 1])
+            np.testing.assert_array_equal(unseen % 1000000, 0)
             self.assertAlmostEqual(messages[-1].pose.pose.position.y, 2 * i, delta=0.5)
             # Its own reset put it back to the start, once; those of the others did not.
             pairs = zip(messages, messages[1:])
