@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "laws/turned_by.hpp"
 #include "ode_math.hpp"
 
 namespace quadcore {
@@ -36,11 +37,11 @@ void restore_velocity(dBodyID body, const double* from) {
 
 void move_pose(dBodyID body, const Vector3d& v_W, const Vector3d& w_W, double dt) {
   const Vector3d p_W = vec(dBodyGetPosition(body)) + dt * v_W;
-  const Vector3d half_turn = dt / 2 * w_W;
-  const dReal* old = dBodyGetQuaternion(body);
-  const Quaterniond q(old[0], old[1], old[2], old[3]);
-  const Quaterniond dq = Quaterniond(0, half_turn.x(), half_turn.y(), half_turn.z()) * q;
-  const dQuaternion next = {q.w() + dq.w(), q.x() + dq.x(), q.y() + dq.y(), q.z() + dq.z()};
+  const Vector3d h_W = dt / 2 * w_W;
+  const dReal* const old = dBodyGetQuaternion(body);
+  const auto q =
+      laws::turned_by<double>({h_W.x(), h_W.y(), h_W.z()}, {old[1], old[2], old[3], old[0]});
+  const dQuaternion next = {q.w, q.x, q.y, q.z};
   dBodySetPosition(body, p_W.x(), p_W.y(), p_W.z());
   dBodySetQuaternion(body, next);
 }

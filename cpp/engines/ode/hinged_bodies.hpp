@@ -3,6 +3,7 @@
 #include "body_work.hpp"
 #include "hinged_tree.hpp"
 #include "lanes/table.hpp"
+#include "laws/turned_by.hpp"
 #include "quadcore/rotor_layout.hpp"
 
 namespace quadcore {
@@ -69,9 +70,7 @@ class HingedBodies {
     for (std::size_t i = 0; i < size(); ++i) {
       BodyWork<T>& body = work(i);
       const Table state = this->state(i);
-      body.R_WB = laws::rotation(laws::Quaternion<T>{
-          state.number(BodyRow::orientation), state.number(BodyRow::orientation + 1),
-          state.number(BodyRow::orientation + 2), state.number(BodyRow::orientation + 3)});
+      body.R_WB = laws::rotation(q_WB(state));
       if (i > 0) body.axis_W = body.R_WB * constants(i).vector(BodyConstant::axis_C);
     }
   }
@@ -104,7 +103,7 @@ class HingedBodies {
     work(0).p_OBcm_W = {T{}, T{}, T{}};
     for (std::size_t i = 1; i < size(); ++i) read_hinge(i, dt);
     for (std::size_t i = size(); i-- > 1;) eliminate(i, dt);
-    work(0).acceleration = laws::solve(felt(0), at_O(0));
+    work(0).acceleration = laws::solve(felt(0), at_O(0, {T{}, T{}, T{}}));
     move(0, dt);
     for (std::size_t i = 1; i < size(); ++i) {
       accelerate(i);
@@ -121,12 +120,17 @@ class HingedBodies {
   /// What the hinge of a body has exerted on it and on what it carries, at O, in the last step.
   QUADCORE_LAW Spatial<T> load_of_hinge(std::size_t i) const {
     const Spatial<T>& a = work(i).acceleration;
-    Spatial<T> load = body_load(i, a) - at_O(i);
+    // About the axis as it was in the step, whose end has turned it since.
+    Spatial<T> load = body_load(i, a) - at_O(i, work(i).turn.direction.angular);
     if (tree_.carries[i]) load = load + work(i).carried * a;
     return load;
   }
 
  private:
+  QUADCORE_LAW static laws::Quaternion<T> q_WB(const Table& state) {
+    return {state.number(BodyRow::orientation), state.number(BodyRow::orientation + 1),
+            state.number(BodyRow::orientation + 2), state.number(BodyRow::orientation + 3)};
+  }
   QUADCORE_LAW static Spatial<T> none() { return {Vec3<T>{T{}, T{}, T{}}, Vec3<T>{T{}, T{}, T{}}}; }
 
   /// R I R^T
@@ -162,15 +166,15 @@ class HingedBodies {
         per_step * (rate * gap_W - slip_W) + laws::cross(body.p_OA_W, body.wanted.angular);
   }
 
-  /// Forces on a body itself and by what it carries, at O.
-  QUADCORE_LAW Spatial<T> at_O(std::size_t i) const {
+  /// Forces on a body itself and by what it carries, at O; about the axis the torque of its joint.
+  QUADCORE_LAW Spatial<T> at_O(std::size_t i, const Vec3<T>& axis_W) const {
     const BodyWork<T>& body = work(i);
     const T weight = constants(i).number(BodyConstant::weight);
     const double* g_W = tree_.gravity_W;
     const Vec3<T> f_W =
         body.force.linear + Vec3<T>{weight * g_W[0], weight * g_W[1], weight * g_W[2]};
     Spatial<T> sum{f_W, body.force.angular + laws::cross(body.p_OBcm_W, f_W)};
-    if (i > 0) sum.angular = sum.angular + body.torque * body.axis_W;
+    if (i > 0) sum.angular = sum.angular + body.torque * axis_W;
     return tree_.carries[i] ? sum + body.borne : sum;
   }
 
@@ -191,7 +195,7 @@ class HingedBodies {
   QUADCORE_LAW void eliminate(std::size_t i, double dt) {
     BodyWork<T>& body = work(i);
     laws::SpatialInertia<T> felt = this->felt(i);
-    Spatial<T> force = at_O(i);
+    Spatial<T> force = at_O(i, body.axis_W);
     const Spatial<T> turn{laws::cross(body.p_OA_W, body.axis_W), body.axis_W};
     Spatial<T> load = body_load(i, turn);
     if (tree_.carries[i]) load = load + body.carried * turn;
@@ -249,7 +253,7 @@ class HingedBodies {
     body.acceleration = a;
   }
 
-  /// ODE's: new velocities, with which the poses move; q + dt/2 w q, normalised.
+  /// ODE's: new velocities, with which the poses move.
   QUADCORE_LAW void move(std::size_t i, double dt) {
     const BodyWork<T>& body = work(i);
     const Table from = state(i);
@@ -265,16 +269,10 @@ class HingedBodies {
     put3(BodyRow::velocity, v_W);
     put3(BodyRow::rate, w_W);
     put3(BodyRow::position, from.vector(BodyRow::position) + dt * v_W);
-    const Vec3<T> h = (dt / 2) * w_W;
-    const T x = from.number(BodyRow::orientation), y = from.number(BodyRow::orientation + 1),
-            z = from.number(BodyRow::orientation + 2), w = from.number(BodyRow::orientation + 3);
-    const T qx = x + (h.x * w + (h.y * z - h.z * y)), qy = y + (h.y * w + (h.z * x - h.x * z)),
-            qz = z + (h.z * w + (h.x * y - h.y * x)), qw = w - (h.x * x + (h.y * y + h.z * z));
-    const T by = 1 / laws::square_root((qx * qx + qy * qy) + (qz * qz + qw * qw));
-    put(BodyRow::orientation, by * qx);
-    put(BodyRow::orientation + 1, by * qy);
-    put(BodyRow::orientation + 2, by * qz);
-    put(BodyRow::orientation + 3, by * qw);
+    const auto q = laws::turned_by((dt / 2) * w_W, q_WB(from));
+    const T by = 1 / laws::square_root((q.x * q.x + q.y * q.y) + (q.z * q.z + q.w * q.w));
+    put3(BodyRow::orientation, by * Vec3<T>{q.x, q.y, q.z});
+    put(BodyRow::orientation + 3, by * q.w);
   }
 
   /// Where a table of so many rows has a body's.

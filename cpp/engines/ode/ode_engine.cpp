@@ -217,7 +217,9 @@ void OdeEngine::remember_hinge_forces() const {
     gazebo_step_->warm_start[i] = {multipliers, multipliers};
   };
   if (!rubs_) return hinged_.for_each_hinge(remember);
-  for (std::size_t i = 0; i < vehicle_->hinges(); ++i) remember(i, vehicle_->multipliers(i));
+  for (std::size_t i = 0; i < vehicle_->hinges(); ++i) {
+    remember(i, vehicle_->multipliers(i, kinematics_.R_WF * kinematics_.R_FR(i)));
+  }
 }
 
 /// Shows the motion of the bodies in ODE.

@@ -74,8 +74,7 @@ void OdeVehicle::report_hinge_forces() {
   for (std::size_t i = 0; i < hinges_.size(); ++i) dJointSetFeedback(hinges_[i], &feedback_[i]);
 }
 
-GazeboStep::Multipliers OdeVehicle::multipliers(std::size_t hinge) const {
-  const Matrix3d R_WC = rotation(dBodyGetRotation(bodies_[hinge + 1]));
+GazeboStep::Multipliers OdeVehicle::multipliers(std::size_t hinge, const Matrix3d& R_WC) const {
   const Vector3d f_W = vec(feedback_[hinge].f1);
   const Vector3d anchor_W = R_WC * -model_.links[hinge + 1].inertial.pose.xyz;
   const Vector3d tau_W = vec(feedback_[hinge].t1) - anchor_W.cross(f_W);

@@ -43,7 +43,8 @@ class OdeVehicle {
   /// ODE's direct solver is to report the forces of the hinges.
   void report_hinge_forces();
   /// Of the solver's last step, as reported.
-  GazeboStep::Multipliers multipliers(std::size_t hinge) const;
+  /// \param R_WC  of the rotor as that step began
+  GazeboStep::Multipliers multipliers(std::size_t hinge, const Matrix3d& R_WC) const;
 
  private:
   void create_bodies(dWorldID world);
