@@ -78,10 +78,11 @@ def _cell(text: str) -> str:
     return text.replace("|", "\\|")
 
 
-def plugin_sections(simulation: qc.Simulation) -> Iterator[str]:
-    """One section for each module of the simulation's plugins."""
+def plugin_sections(*simulations: qc.Simulation) -> Iterator[str]:
+    """One section for each module of the simulations' plugins."""
     told = set()
-    for plugin in simulation.plugins:
+    plugins = (plugin for simulation in simulations for plugin in simulation.plugins)
+    for plugin in sorted(plugins, key=lambda plugin: plugin.name):
         if plugin.filename in told:
             continue
         told.add(plugin.filename)
@@ -264,7 +265,6 @@ FURTHER = {
     "ground_effect": "",
     "imu": "",
     "magnetometer": "",
-    "motor": "<sim_slow>10</sim_slow>",
     "payload": "<mass>0.1</mass>",
     "push": "",
     "reference": "",
@@ -293,17 +293,18 @@ def rotors_sections() -> Iterator[str]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # its frame has an inertia that no body can have
         link = "<linkName>firefly/base_link</linkName>"
-        further = {"magnetometer": link, "pressure": link, "wind": link}
+        further = {"gps": link, "magnetometer": link, "pressure": link, "wind": link}
         yield from plugin_sections(vehicle_with("firefly", "librotors_gazebo_", further))
 
 
 def page() -> str:
     """Write out the whole page."""
     simulation = vehicle_with("quadrotor", "lib", FURTHER)
+    other_motors = qc.Simulation("quadrotor", xacro_args={"motor": "first_order"})
     return "".join(
         [
             INTRODUCTION,
-            *plugin_sections(simulation),
+            *plugin_sections(simulation, other_motors),
             *rotors_sections(),
             reference_section(),
             world_section(),

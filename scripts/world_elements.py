@@ -25,6 +25,24 @@ WORLD = {
         *_FIELD,
         "of the Earth in world axes, x east, y north, z up; for magnetometers",
     ),
+    "spherical_coordinates/surface_model": ("", "`EARTH_WGS84`", "must be so"),
+    "spherical_coordinates/world_frame_orientation": (
+        "",
+        "`ENU`",
+        "must be so: x east, y north, z up",
+    ),
+    "spherical_coordinates/latitude_deg": (
+        "deg",
+        "0",
+        "of the world's origin, positive north; for RotorS' satellite receiver",
+    ),
+    "spherical_coordinates/longitude_deg": ("deg", "0", "the same, positive east"),
+    "spherical_coordinates/elevation": ("m", "0", "its height"),
+    "spherical_coordinates/heading_deg": (
+        "deg",
+        "0",
+        "by which the axes are turned; a satellite receiver takes 0 alone",
+    ),
     "include/uri": (
         "",
         "",

@@ -8,13 +8,13 @@ foreach(plugin ${QUADCORE_PLUGINS})
   set(${plugin}_module ${plugin}_plugin)
 endforeach()
 # Those that do what RotorS' modules do have their names.
-foreach(source motor_model controller_interface multirotor_base imu magnetometer odometry pressure
-               wind)
+foreach(source motor_model controller_interface multirotor_base gps imu magnetometer odometry
+               pressure wind)
   list(APPEND QUADCORE_PLUGINS rotors_${source})
   set(rotors_${source}_source rotors/${source}.cpp)
   set(rotors_${source}_module rotors_gazebo_${source})
 endforeach()
-foreach(source multirotor_base imu magnetometer odometry pressure wind)
+foreach(source multirotor_base gps imu magnetometer odometry pressure wind)
   set(rotors_${source}_module rotors_gazebo_${source}_plugin)
 endforeach()
 

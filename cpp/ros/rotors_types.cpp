@@ -4,6 +4,7 @@
 #include <geometry_msgs/Pose.h>
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <geometry_msgs/TransformStamped.h>
+#include <geometry_msgs/TwistStamped.h>
 #include <rotors_comm/WindSpeed.h>
 #include <std_msgs/Float32.h>
 #include <tf2_msgs/TFMessage.h>
@@ -48,6 +49,24 @@ class RateOutlet final : public Outlet {
  private:
   KeptPublisher<std_msgs::Float32> publisher_;
   std_msgs::Float32 message_;
+};
+
+/// How a satellite receiver moves.
+class GroundSpeedOutlet final : public Outlet {
+ public:
+  GroundSpeedOutlet(ros::NodeHandle& nh, const std::string& name)
+      : publisher_(nh, name, queue_size) {
+    message_.header.frame_id = world_frame;
+  }
+  void send(const Topic& topic, const ros::Time&) override {
+    message_.header.stamp = node::to_ros(topic.stamp);
+    set_vector(message_.twist.linear, topic.values.data());
+    publisher_.publish(message_);
+  }
+
+ private:
+  KeptPublisher<geometry_msgs::TwistStamped> publisher_;
+  geometry_msgs::TwistStamped message_;
 };
 
 class WindOutlet final : public Outlet {
@@ -132,6 +151,9 @@ std::unique_ptr<Outlet> make_rotors_outlet(ros::NodeHandle& nh, const Topic& top
   if (kind == messages::motor_speed().name) return std::make_unique<RateOutlet>(nh, topic.path);
   if (kind == messages::WindSpeed::kind) {
     return std::make_unique<WindOutlet>(nh, topic.path, frame);
+  }
+  if (kind == messages::GroundSpeed::kind) {
+    return std::make_unique<GroundSpeedOutlet>(nh, topic.path);
   }
   if (writer.filename != odometry_file) return nullptr;
   return std::make_unique<OdometryOutlet>(nh, topic, writer, frame, frame != root_frame);

@@ -15,7 +15,7 @@ import quadcore as qc
 from quadcore.cli import main
 
 SCENERY = (
-    "<gui/>\n<scene><sky/></scene>\n<light name='sun'/>\n<spherical_coordinates/>\n"
+    "<gui/>\n<scene><sky/></scene>\n<light name='sun'/>\n"
     "<audio/>\n"
     "<plugin name='ros' filename='librotors_gazebo_ros_interface_plugin.so'><a><b/></a></plugin>\n"
 )
@@ -25,7 +25,7 @@ def test_what_nothing_feels_of_a_world_is_named_in_one_warning(flown):
     with pytest.warns(qc.QuadcoreWarning):
         (warning,) = flown(world=SCENERY).warnings
     assert warning.startswith(f"{UNFELT}<gui> ({at('toy.world', '<gui')}), <scene> (toy.world:")
-    for name in ("<light>", "<spherical_coordinates>", "<audio>", "librotors_gazebo_ros"):
+    for name in ("<light>", "<audio>", "librotors_gazebo_ros"):
         assert f", {name}" in warning
 
 

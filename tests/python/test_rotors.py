@@ -194,18 +194,31 @@ PID = '<plugin name="pid" filename="libmotorpid_plugin.so"><kp>1e-4</kp></plugin
         (
             SECOND + "<linkName>firefly/rotor_1</linkName>",
             "<jointName>firefly/rotor_0_joint</jointName><linkName>firefly/rotor_0</linkName>",
-            ("joint 'firefly/rotor_0_joint' is turned by 'motor_0' (", "one plugin"),
+            ("'motor_1' drives joint 'firefly/rotor_0_joint', as 'motor_0' (", "one plugin"),
         ),
         (
             SECOND + "<linkName>firefly/rotor_1</linkName>",
             "<motorType>position</motorType><jointName>firefly/rotor_0_joint</jointName>"
             "<linkName>firefly/rotor_0</linkName>",
-            ("joint 'firefly/rotor_0_joint' is turned by 'motor_0' (", "one plugin"),
+            ("'motor_1' drives joint 'firefly/rotor_0_joint', as 'motor_0' (", "one plugin"),
         ),
         (
             MOTOR_0,
             PID + MOTOR_0,
-            ("'pid' turns joint 'firefly/rotor_0_joint', as 'motor_0' (", "one plugin drive each"),
+            ("'pid' drives joint 'firefly/rotor_0_joint', as 'motor_0' (", "one plugin drive each"),
+        ),
+        *(
+            (
+                MOTOR_0,
+                PID + MOTOR_0 + f"<motorType>{kind}</motorType>",
+                ("'pid' drives joint 'firefly/rotor_0_joint', as 'motor_0' (", "one plugin"),
+            )
+            for kind in ("position", "force")
+        ),
+        (
+            MOTOR_0,
+            PID + PID.replace('"pid"', '"more"') + MOTOR_0,
+            ("'motor_0' drives joint 'firefly/rotor_0_joint', as 'more' (", "one plugin drive each"),
         ),
         (SECOND, "", ("'motor_1': required tag <jointName> is missing", "add <jointName>")),
         ("<motorConstant>", "<thrustConstant>", ("mismatched", "")),
@@ -239,6 +252,9 @@ PID = '<plugin name="pid" filename="libmotorpid_plugin.so"><kp>1e-4</kp></plugin
         "two motors on a joint",
         "two motors of different kinds on a joint",
         "a motor and a PID",
+        "a motor that holds an angle and a PID",
+        "a motor that exerts a torque and a PID",
+        "two PIDs and a motor",
         "no joint",
         "no XML",
         "no direction",

@@ -47,6 +47,31 @@ def test_a_vehicle_of_rotors_hovers_by_its_name_on_the_command_line(tmp_path, ca
     assert np.abs(log["z"] - log["z"][0]).max() < 1e-3
 
 
+# Mass, gain of the place and thrust per squared speed that rotors_gazebo/resource gives the
+# controller.
+BELIEVED = {
+    "firefly": (1.56779, 6, 8.54858e-06),
+    "hummingbird": (0.716, 4, 8.54858e-06),
+    "pelican": (1.0, 4, 9.9865e-06),
+}
+
+
+@pytest.mark.parametrize("model", BELIEVED)
+def test_rotors_own_controller_hovers_as_far_off_as_its_numbers_are_from_the_vehicles(model):
+    """The vertical part of its law: thrust m g - kp e - kv v, shared by all rotors."""
+    mass, kp, k = BELIEVED[model]
+    simulation = qc.Simulation(model, world="basic", spawn=(0, 0, 1))
+    rotors = len(simulation.state.rotor_velocity)
+    simulation.step(1)
+    for _ in range(800):
+        told = simulation.topic("odometry_sensor1_odometry")
+        thrust = mass * 9.81 - kp * (told["z"] - 1) - 4.7 * told["vz"]
+        simulation.publish("command_motor_speed", [np.sqrt(max(thrust, 0) / rotors / k)] * rotors)
+        simulation.step(1)
+    expected = (mass * 9.81 - simulation.mass * 9.8) / kp
+    assert told["z"] - 1 == pytest.approx(expected, abs=1e-4)
+
+
 def checkout():
     """Where ROS_PACKAGE_PATH has rotors_description, or None."""
     folders = map(Path, os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep))

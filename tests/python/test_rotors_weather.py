@@ -67,12 +67,6 @@ def test_wind_that_blows_is_felt_by_the_rotors_drag_alone(fitted, engine):
     assert np.allclose(log.wrenches["wind_force"], 0)
 
 
-def test_a_field_of_wind_from_a_file_is_refused(fitted):
-    wind = plugin("wind", "wind_plugin", linkName="mast", useCustomStaticWindField="true")
-    with pytest.raises(qc.InputError, match=r"fitted.urdf:\d+: plugin 'wind'.*libwind_plugin.so"):
-        fitted(wind)
-
-
 def test_a_sensor_on_a_link_that_turns_or_is_not_there_is_refused(fitted):
     for link, says in (
         ("firefly/rotor_0", "not part of the frame"),

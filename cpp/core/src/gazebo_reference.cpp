@@ -152,7 +152,8 @@ std::vector<GazeboTag> gazebo_tags() {
 
 GazeboReference read_reference(const Xml& xml, const Element& element) {
   GazeboReference reference{xml.attribute(element, "reference"), xml.where(element), {}};
-  std::set<std::string> names, repeatable;
+  // Sensors are read_sensor()'s.
+  std::set<std::string> names = {"sensor"}, repeatable = names;
   for (const Entry& entry : table()) {
     names.insert(entry.tag.name);
     if (entry.values.kind == Kind::anything) repeatable.insert(entry.tag.name);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -27,6 +28,11 @@ struct Given {
     fail(where, plugin, "<" + spec.name + "> '" + parameter.text + "' " + what);
   }
 };
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
 
 bool is_within(const TagSpec& spec, double value) {
   return (spec.exclusive_min ? value > spec.min : value >= spec.min) && value <= spec.max;
@@ -64,6 +70,8 @@ void interpret_numbers(const Given& given) {
 }
 
 void interpret_choice(const Given& given) {
+  // xacro writes what Python does: True.
+  if (given.spec.kind == TagKind::flag) given.parameter.text = lower(given.parameter.text);
   const std::vector<std::string>& choices = given.spec.choices;
   if (std::find(choices.begin(), choices.end(), given.parameter.text) == choices.end()) {
     given.refuse("is not a choice; write " + given.spec.range());
@@ -71,7 +79,9 @@ void interpret_choice(const Given& given) {
 }
 
 void interpret_text(const Given& given) {
-  if (given.parameter.text.empty()) given.refuse("is empty; write something or leave it out");
+  // Where a tag may be absent, one without text is as good as that.
+  if (!given.parameter.text.empty() || !given.spec.absent.empty()) return;
+  given.refuse("is empty; write something or leave it out");
 }
 
 /// A path counts from the folder of the document that the tag stands in; one that is set from

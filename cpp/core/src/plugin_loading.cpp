@@ -199,26 +199,21 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
 
 void Simulation::check_drivers() {
   const std::size_t joints = model_.joints.size();
-  struct Driver {
-    const LoadedPlugin* plugin = nullptr;
-    bool prescribes = false;
-  };
-  std::vector<Driver> drivers(joints);
+  std::vector<const LoadedPlugin*> drivers(joints, nullptr);
   for (const LoadedPlugin& p : plugins_) {
     std::vector<RotorDescription> rotors(joints);
     active_ = &p;
     p.plugin->describe_rotors(rotors);
     active_ = nullptr;
     for (std::size_t i = 0; i < joints; ++i) {
-      const bool prescribes = rotors[i].prescribed;
-      if (!prescribes && rotors[i].place == not_driven) continue;
-      const Driver& first = drivers[i];
-      if (first.plugin && (prescribes || first.prescribes)) {
-        throw InputError(p.who + " turns joint '" + model_.joints[i].name + "', as '" +
-                         first.plugin->name + "' (" + where_of(*first.plugin) +
+      const RotorDescription& rotor = rotors[i];
+      if (!rotor.prescribed && !rotor.otherwise && rotor.place == not_driven) continue;
+      if (const LoadedPlugin* const first = drivers[i]) {
+        throw InputError(p.who + " drives joint '" + model_.joints[i].name + "', as '" +
+                         first->name + "' (" + where_of(*first) +
                          ") does already; let one plugin drive each joint");
       }
-      drivers[i] = {&p, prescribes};
+      drivers[i] = &p;
     }
   }
 }

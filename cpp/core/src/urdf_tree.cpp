@@ -184,6 +184,9 @@ UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::st
   return joint;
 }
 
+void read_plugin_tag(const Xml& xml, const Element& tag, const std::string& outer,
+                     PluginElement& plugin);
+
 /// A tag of tags stands for these, which go by both names: outer/inner.
 void read_plugin_tags(const Xml& xml, const Element& element, const std::string& outer,
                       PluginElement& plugin) {
@@ -192,14 +195,20 @@ void read_plugin_tags(const Xml& xml, const Element& element, const std::string&
       xml.fail(element, "stray text '" + trimmed(node->Value()) + "' in <plugin name=\"" +
                             plugin.name + "\">; write <tag>value</tag>");
     }
-    const Element* tag = node->ToElement();
-    if (!tag) continue;
-    const std::string name = outer + tag->Name();
-    if (tag->FirstChildElement()) {
-      read_plugin_tags(xml, *tag, name + "/", plugin);
-    } else {
-      plugin.tags.push_back({name, xml.text(*tag), xml.where(*tag)});
+    if (const Element* tag = node->ToElement()) read_plugin_tag(xml, *tag, outer, plugin);
+  }
+}
+
+void read_plugin_tag(const Xml& xml, const Element& tag, const std::string& outer,
+                     PluginElement& plugin) {
+  const std::string name = outer + tag.Name();
+  if (tag.FirstChildElement()) {
+    if (tag.Attribute("type")) {
+      plugin.tags.push_back({name + "/type", xml.attribute(tag, "type"), xml.where(tag)});
     }
+    read_plugin_tags(xml, tag, name + "/", plugin);
+  } else {
+    plugin.tags.push_back({name, xml.text(tag), xml.where(tag)});
   }
 }
 
@@ -215,10 +224,34 @@ PluginElement read_plugin(const Xml& xml, const Element& element) {
   return plugin;
 }
 
+/// Modules that a sensor of Gazebo's carries, whose own elements are tags to them: sensor/...
+const std::set<std::string> carried_by_sensors = {"librotors_gazebo_gps_plugin.so"};
+
+/// Passes over a sensor, but for such a module.
+void read_sensor(const Xml& xml, const Element& sensor, UrdfTree& tree) {
+  if (xml.passed_over().ignores({"sensor"})) return;
+  for (const Element* child = sensor.FirstChildElement("plugin"); child;
+       child = child->NextSiblingElement("plugin")) {
+    const char* const filename = child->Attribute("filename");
+    if (!filename || !carried_by_sensors.count(filename)) continue;
+    PluginElement plugin = read_plugin(xml, *child);
+    if (xml.passed_over().ignores({plugin.name, plugin.filename})) return;
+    for (const Element* tag = sensor.FirstChildElement(); tag; tag = tag->NextSiblingElement()) {
+      if (std::string(tag->Name()) != "plugin") read_plugin_tag(xml, *tag, "sensor/", plugin);
+    }
+    return tree.plugins.push_back(std::move(plugin));
+  }
+  xml.passed_over().add_unfelt("<sensor>", xml.where(sensor));
+}
+
 void read_gazebo(const Xml& xml, const Element& element, UrdfTree& tree) {
   xml.only_attributes(element, {"reference", "name"});
   if (element.Attribute("reference")) {
     tree.references.push_back(read_reference(xml, element));
+    for (const Element* sensor = element.FirstChildElement("sensor"); sensor;
+         sensor = sensor->NextSiblingElement("sensor")) {
+      read_sensor(xml, *sensor, tree);
+    }
     return;
   }
   for (const Element* child : xml.children(element, {"plugin"}, {"plugin"})) {

@@ -53,6 +53,7 @@ class WorldReader {
                    {"magnetic_field", vector(world_.magnetic_field_W)},
                    {"physics", physics},
                    {"physics:ode", physics},
+                   {"spherical_coordinates", [this](const Element& e) { read_origin(e); }},
                    {"wind", [this](const Element& e) { read_wind(e); }},
                    {"atmosphere", [this](const Element& e) { read_atmosphere(e); }},
                    {"include", [this](const Element& e) { read_include(e); }},
@@ -154,6 +155,23 @@ class WorldReader {
                            {"iters", iterations},
                            {"sor", number(world_.solver_sor, 0, true, 2)},
                            {"use_dynamic_moi_rescaling", rescaling}});
+  }
+
+  void read_origin(const Element& origin) {
+    const auto only = [this](const std::string& word) -> Handler {
+      return [this, word](const Element& e) {
+        if (xml_.text(e) == word) return;
+        xml_.fail(e, "<" + std::string(e.Name()) + "> '" + xml_.text(e) +
+                         "' is not supported; write " + word);
+      };
+    };
+    Origin& at = world_.origin;
+    read_children(origin, {{"surface_model", only("EARTH_WGS84")},
+                           {"world_frame_orientation", only("ENU")},
+                           {"latitude_deg", number(at.latitude, -90, false, 90)},
+                           {"longitude_deg", number(at.longitude, -180, false, 180)},
+                           {"elevation", number(at.altitude, -1e5, false, 1e7)},
+                           {"heading_deg", number(at.heading, -360, false, 360)}});
   }
 
   void read_wind(const Element& wind) {

@@ -1,8 +1,8 @@
 #include <cmath>
 
+#include "earth.hpp"
 #include "plugins/noise_and_drift.hpp"
 #include "plugins/sensing.hpp"
-#include "quadcore/elementary.hpp"
 #include "quadcore/plugin.hpp"
 
 namespace quadcore::gps {
@@ -12,20 +12,6 @@ using Errors = sensing::NoiseAndDrift<3>;
 
 /// What it remembers: when it measured, the errors of the position, what is on the way.
 enum Memory { kSamples, kErrors, kChannel = kErrors + Errors::kMemorySize };
-
-/// Radii of curvature of the ellipsoid of WGS 84 (NIMA TR8350.2) where the world is, and how many
-/// degrees a metre is.
-struct Earth {
-  double north, east;  ///< deg/m
-
-  Earth(double latitude, double altitude) {
-    const double a = 6378137, f = 1 / 298.257223563, degrees = 180 / M_PI;
-    const auto [sin, cos] = elementary::sincos(latitude / degrees);
-    const double e2 = f * (2 - f), w2 = 1 - e2 * sin * sin, w = std::sqrt(w2);
-    north = degrees / (a * (1 - e2) / (w2 * w) + altitude);
-    east = degrees / ((a / w + altitude) * cos);
-  }
-};
 
 /// Place and velocity of a link of the frame as a satellite receiver has them.
 class GpsPlugin final : public Plugin {

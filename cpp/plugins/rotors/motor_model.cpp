@@ -87,7 +87,8 @@ class MotorModel final : public Plugin {
 
   void describe_rotors(std::vector<RotorDescription>& rotors) const override {
     RotorDescription& rotor = rotors[joint_];
-    if (!turns()) return;
+    rotor.otherwise = !turns();
+    if (rotor.otherwise) return;
     rotor.rate_per_command = sense_ / slowdown_;
     rotor.lag = std::max(lag_.up, lag_.down);
     rotor.fastest = fastest_;

@@ -3,12 +3,11 @@
 #include <string>
 
 #include "naming.hpp"
-#include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
 
 namespace quadcore::rotors {
 
-/// Throws InputError if a motor before this one has its joint, and warns if one has its number.
+/// Warns if a motor before this one has its number.
 inline void look_at_twins(const PluginSetup& setup) {
   const auto of = [](const PluginElement& plugin, const std::string& name) {
     for (const PluginTag& tag : plugin.tags) {
@@ -19,11 +18,7 @@ inline void look_at_twins(const PluginSetup& setup) {
   for (const PluginElement& other : setup.model.plugins) {
     if (other.name == setup.name) return;
     if (other.filename != motor_model_file) continue;
-    const PluginTag joint = of(other, "jointName"), number = of(other, "motorNumber");
-    if (joint.text == setup.parameters.text("jointName")) {
-      throw InputError("joint '" + joint.text + "' is turned by '" + other.name + "' (" +
-                       joint.where + ") already; let one plugin drive each joint");
-    }
+    const PluginTag number = of(other, "motorNumber");
     if (number.text == setup.parameters.text("motorNumber")) {
       setup.warnings.push_back("motors '" + other.name + "' and '" + setup.name +
                                "' have the same <motorNumber> " + number.text + " (" +

@@ -1,19 +1,23 @@
 #include <cmath>
+#include <filesystem>
+#include <optional>
 
 #include "center_of_mass.hpp"
 #include "naming.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
+#include "wind_field.hpp"
 
 namespace quadcore::rotors {
 namespace {
 
 /// A force that stays and a gust that comes and goes, on the frame; and a wind that the rotors'
-/// drag feels.
+/// drag feels. Or a field of wind, and then neither force nor gust.
 class Wind final : public Plugin {
  public:
   explicit Wind(const PluginSetup& setup)
       : p_FQ_F_(point(setup)),
+        p_FS_F_(place_of(setup, "linkName").xyz),
         force_W_(along(setup, "windForceMean", "windDirection")),
         gust_W_(along(setup, "windGustForceMean", "windGustDirection")),
         begin_(setup.parameters.number("windGustStart")),
@@ -23,11 +27,14 @@ class Wind final : public Plugin {
                                             messages::kind_of<messages::Wrench>())),
         speed_topic_(setup.topics.publishes(topic_of(setup, "windSpeedPubTopic"),
                                             messages::kind_of<messages::WindSpeed>())) {
-    if (setup.parameters.flag("useCustomStaticWindField")) {
-      throw InputError(
-          "<useCustomStaticWindField> is true, but fields of wind from files are not "
-          "modelled; write false, or use libwind_plugin.so");
+    if (!setup.parameters.flag("useCustomStaticWindField")) return;
+    field_.emplace(path_of_field(setup.parameters));
+    for (const char* tag : {"windForceMean", "windGustForceMean"}) {
+      if (setup.parameters.number(tag) == 0) continue;
+      setup.warnings.push_back(std::string("<") + tag +
+                               "> has no effect beside a field of wind, as in RotorS");
     }
+    force_W_ = gust_W_ = Vector3d::Zero();
   }
 
   std::size_t state_size() const override { return 1; }
@@ -35,20 +42,42 @@ class Wind final : public Plugin {
   void update(const Sample& sample, PluginState gusty) const override {
     const double now = sample.time + sample.dt;  // RotorS' clock has moved on already
     gusty[0] = now >= begin_ - 1e-9 && now < end_ - 1e-9 ? 1 : 0;
+    sample.topics.publish(speed_topic_, now, messages::WindSpeed{wind(sample.kinematics)});
+    if (field_) return;
     sample.topics.publish(force_topic_, now, messages::Wrench{force(gusty[0]), Vector3d::Zero()});
-    sample.topics.publish(speed_topic_, now, messages::WindSpeed{v_WA_W_});
   }
 
   void forces(const Kinematics& k, ConstPluginState gusty, Loads& loads) const override {
     loads.add_frame_force(0, k.R_WF.transpose() * force(gusty[0]), p_FQ_F_);
   }
 
-  void air(const Kinematics&, ConstPluginState, Vector3d& v_WA_W) const override {
-    v_WA_W += v_WA_W_;
+  void air(const Kinematics& k, ConstPluginState, Vector3d& v_WA_W) const override {
+    v_WA_W += wind(k);
   }
 
  private:
+  /// Where the link's origin is; beyond the field, the wind that the tags give.
+  Vector3d wind(const Kinematics& k) const {
+    Vector3d v_WA_W = v_WA_W_;
+    if (field_) field_->at(k.p_WF + k.R_WF * p_FS_F_, v_WA_W);
+    return v_WA_W;
+  }
   Vector3d force(double gusty) const { return force_W_ + gusty * gust_W_; }
+
+  /// Relative to the document that the tag stands in, or, set from outside, to where the program
+  /// runs.
+  static std::string path_of_field(const Parameters& parameters) {
+    for (const Parameter& parameter : parameters.all()) {
+      if (parameter.spec.name != "customWindFieldPath" || parameter.text.empty()) continue;
+      const std::filesystem::path path = parameter.text;
+      if (path.is_absolute() || parameter.origin == "set") return path.string();
+      const std::filesystem::path document =
+          parameter.origin.substr(0, parameter.origin.rfind(':'));
+      return (document.parent_path() / path).lexically_normal().string();
+    }
+    throw InputError(
+        "<useCustomStaticWindField> is true, but no <customWindFieldPath> names the file; add it");
+  }
 
   static Vector3d point(const PluginSetup& setup) {
     const Pose X_FS = place_of(setup, "linkName");
@@ -68,9 +97,11 @@ class Wind final : public Plugin {
   }
 
   Vector3d p_FQ_F_;            ///< where the forces act [m]
+  Vector3d p_FS_F_;            ///< origin of the link [m]
   Vector3d force_W_, gust_W_;  ///< N
   double begin_, end_;         ///< s
   Vector3d v_WA_W_;            ///< m/s
+  std::optional<WindField> field_;
   std::size_t force_topic_, speed_topic_;
 };
 
@@ -96,13 +127,15 @@ PluginDescriptor describe() {
       T::text("windSpeedPubTopic", "wind_speed",
               "where the wind is published, m/s; all that feels the air feels it"),
       T::text("frameId", "world", "tf's name of the axes that a ROS node names with both"),
-      T::flag("useCustomStaticWindField", "false", "a field of wind from a file; not modelled"),
+      T::flag("useCustomStaticWindField", "false",
+              "a field of wind from a file, in place of force and gust; beyond it, windSpeedMean"),
+      T::text("customWindFieldPath", "", "that file, relative to the document that holds the tag")
+          .or_absent("none"),
   };
   for (TagSpec& tag : tags) tag.equation = "RotorS";
   for (const char* name : {"windForceVariance", "windGustForceVariance", "windSpeedVariance"}) {
     tags.push_back(idle(name, unused));
   }
-  tags.push_back(idle("customWindFieldPath", "fields of wind are not modelled"));
   tags.push_back(namespace_tag());
   return {"RotorS' wind: a force, a gust, and a wind on the rotors",
           tags,

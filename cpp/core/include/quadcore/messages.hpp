@@ -208,6 +208,17 @@ struct WindSpeed {
   }
 };
 
+/// How a satellite receiver moves, world axes.
+struct GroundSpeed {
+  static constexpr const char* kind = "ground_speed";
+  Vector3d velocity = Vector3d::Zero();  ///< [m/s]
+
+  template <class M, class Visit>
+  static void for_each_field(M& m, const Visit& visit) {
+    visit("velocity", {"x", "y", "z"}, m.velocity.data());
+  }
+};
+
 /// The rate of one joint [rad/s].
 inline MessageKind motor_speed() { return {"motor_speed", {"w"}}; }
 

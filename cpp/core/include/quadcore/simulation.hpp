@@ -138,7 +138,7 @@ class Simulation : private ForceField {
   void warn(const std::string& warning);  ///< nothing if empty
   std::string describe_idle(const Model& model) const;
   void load_plugins(const Model& model, const SimulationOptions& options);
-  void check_drivers();  ///< throws if two plugins want one joint, and one prescribes its rate
+  void check_drivers();  ///< throws if two plugins drive one joint
   void note_hooks();     ///< who has which, and in which order they are called
   void gather_laws();
   void prepare_plugins();  ///< tells those that ask what they fly

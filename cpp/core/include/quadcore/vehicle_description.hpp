@@ -30,6 +30,7 @@ struct RotorDescription {
   int place = not_driven;   ///< of its number in the command, from 0 on
   double spin = 0;          ///< sense about its axis in which alone it is driven, 1, -1; 0: either
   bool prescribed = false;  ///< it turns as Loads::prescribe_joint_rate() says, not by torques
+  bool otherwise = false;   ///< it is driven by a command that is no speed: an angle, a torque
   /// @}
 };
 

@@ -24,6 +24,13 @@ struct Atmosphere {
   double density() const { return pressure / (gas_constant * temperature); }
 };
 
+/// Where on Earth (WGS 84) the world's origin lies; x points east there, y north.
+struct Origin {
+  double latitude = 0, longitude = 0;  ///< positive north and east [deg]
+  double altitude = 0;                 ///< m
+  double heading = 0;                  ///< by which the axes are turned from there [deg]
+};
+
 /// What a world file sets; the defaults are Gazebo 11's.
 struct World {
   Vector3d gravity_W{0, 0, -9.8};       ///< m/s^2
@@ -40,6 +47,7 @@ struct World {
   Vector3d wind_W{0, 0, 0};  ///< velocity of the air [m/s]
   Atmosphere atmosphere;
   Vector3d magnetic_field_W{5.5645e-6, 22.8758e-6, -42.3884e-6};  ///< x east, y north, z up [T]
+  Origin origin;
   PassedOver passed_over;
   /// What it was read from; null unless read_world() made it.
   std::shared_ptr<const Source> source;

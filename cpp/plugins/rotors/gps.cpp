@@ -1,0 +1,156 @@
+#include <cmath>
+
+#include "naming.hpp"
+#include "noise.hpp"
+#include "plugins/gps/earth.hpp"
+#include "plugins/sensing.hpp"
+#include "quadcore/error.hpp"
+#include "quadcore/plugin.hpp"
+
+namespace quadcore::rotors {
+namespace {
+
+/// What it remembers: when it measured, and numbers of chance drawn.
+enum Memory { kSamples, kDraws, kMemorySize };
+
+/// The tag of the noise on a sensor's position, of Gazebo's format SDF.
+std::string noise_tag(const std::string& quantity, const std::string& direction,
+                      const std::string& what) {
+  return "sensor/gps/" + quantity + "_sensing/" + direction + "/noise/" + what;
+}
+
+/// A satellite receiver: Gazebo's sensor spoils the place, RotorS' module the velocity, each along
+/// the world's axes.
+class Gps final : public Plugin {
+ public:
+  explicit Gps(const PluginSetup& setup)
+      : p_FS_F_(antenna(setup)),
+        rate_(setup.parameters.number("sensor/update_rate")),
+        each_step_(setup.parameters.number("sensor/update_rate") == 0),
+        origin_(checked(setup.world.origin)),
+        earth_(origin_.latitude, origin_.altitude),
+        place_noise_(along(setup, noise_tag("position", "horizontal", "stddev"),
+                           noise_tag("position", "vertical", "stddev"))),
+        velocity_noise_(along(setup, "horVelStdDev", "verVelStdDev")),
+        told_(along(setup, "horPosStdDev", "verPosStdDev")),
+        fix_(setup.topics.publishes(topic_of(setup, "gpsTopic"),
+                                    messages::kind_of<messages::Fix>())),
+        speed_(setup.topics.publishes(topic_of(setup, "groundSpeedTopic"),
+                                      messages::kind_of<messages::GroundSpeed>())) {}
+
+  std::size_t state_size() const override { return kMemorySize; }
+
+  void sense(const Sample& sample, PluginState state) const override {
+    if (!each_step_ && !rate_.is_due(sample, state[kSamples])) return;
+    const Kinematics& k = sample.kinematics;
+    const auto draw = [&](const Vector3d& deviation) {
+      Vector3d error;
+      for (int i = 0; i < 3; ++i) error[i] = normal_of(deviation[i], sample.seed, state[kDraws]);
+      return error;
+    };
+    messages::Fix fix;
+    fix.position = k.p_WF + k.R_WF * p_FS_F_ + draw(place_noise_);
+    fix.velocity = k.v_WS_W(p_FS_F_) + draw(velocity_noise_);
+    fix.latitude = origin_.latitude + earth_.north * fix.position.y();
+    fix.longitude = std::remainder(origin_.longitude + earth_.east * fix.position.x(), 360);
+    fix.altitude = origin_.altitude + fix.position.z();
+    fix.horizontal_variance = told_.x() * told_.x();
+    fix.vertical_variance = told_.z() * told_.z();
+    fix.velocity_variance = velocity_noise_.cwiseAbs2().maxCoeff();
+    sample.topics.publish(fix_, sample.time, fix);
+    sample.topics.publish(speed_, sample.time, messages::GroundSpeed{fix.velocity});
+  }
+
+ private:
+  static Vector3d antenna(const PluginSetup& setup) {
+    const Pose X_FS = place_of(setup, "linkName");
+    return X_FS.xyz + X_FS.rotation() * vector_of(setup.parameters, "sensor/pose");
+  }
+
+  static const Origin& checked(const Origin& origin) {
+    if (origin.heading != 0) {
+      throw InputError(
+          "the world's <heading_deg> turns its axes from east and north, which this module does "
+          "not "
+          "model; write 0");
+    }
+    if (std::abs(origin.latitude) > 89) {
+      throw InputError(
+          "the world's <latitude_deg> is at a pole, where east has no meaning; write one from -89 "
+          "to 89");
+    }
+    return origin;
+  }
+
+  static Vector3d along(const PluginSetup& setup, const std::string& horizontal,
+                        const std::string& vertical) {
+    const double level = setup.parameters.number(horizontal);
+    return {level, level, setup.parameters.number(vertical)};
+  }
+
+  Vector3d p_FS_F_;  ///< of the antenna [m]
+  sensing::Rate rate_;
+  bool each_step_;
+  Origin origin_;
+  gps::Earth earth_;
+  Vector3d place_noise_, velocity_noise_, told_;  ///< standard deviations [m], [m/s], [m]
+  std::size_t fix_, speed_;                       ///< topics
+};
+
+PluginDescriptor describe() {
+  using T = TagSpec;
+  const auto deviation = [](const std::string& name, const char* unit, const char* fallback,
+                            const std::string& of) {
+    return T::number(name, unit, fallback, "standard deviation of " + of).at_least(0);
+  };
+  std::vector<TagSpec> tags = {
+      T::link("linkName", "the link that it sits on").must(),
+      T::text("gpsTopic", "gps", "where the places are published"),
+      T::text("groundSpeedTopic", "ground_speed", "where the velocities are published"),
+      deviation("horPosStdDev", "m", "3",
+                "x and y each that messages tell; the noise is the sensor's"),
+      deviation("verPosStdDev", "m", "6", "z that messages tell"),
+      deviation("horVelStdDev", "m/s", "0.1", "the noise on the velocity along x and y each"),
+      deviation("verVelStdDev", "m/s", "0.1", "the noise on the velocity along z"),
+  };
+  for (TagSpec& tag : tags) tag.equation = "RotorS";
+  tags.push_back(namespace_tag());
+  std::vector<TagSpec> of_sensor = {
+      T::numbers("sensor/pose", "m, rad", "0 0 0 0 0 0", "of the antenna in the link").of(6),
+      T::number("sensor/update_rate", "1/s", "0",
+                "messages per second, at most one per step; 0: each step")
+          .at_least(0),
+  };
+  for (const char* idle_tag : {"always_on", "visualize", "topic"}) {
+    of_sensor.push_back(idle("sensor/" + std::string(idle_tag), "it always measures"));
+  }
+  for (const char* direction : {"horizontal", "vertical"}) {
+    const std::string axes = direction == std::string("vertical") ? "z" : "x and y each";
+    of_sensor.push_back(deviation(noise_tag("position", direction, "stddev"), "m", "0",
+                                  "the noise on the place along " + axes));
+    of_sensor.push_back(
+        T::choice(noise_tag("position", direction, "type"), {"gaussian"}, "of that noise"));
+    for (const char* what : {"mean", "bias_mean", "bias_stddev"}) {
+      of_sensor.push_back(T::number(noise_tag("position", direction, what), "m", "0",
+                                    "of an error that stays, which is not modelled")
+                              .at_least(0)
+                              .at_most(0));
+    }
+  }
+  for (const char* direction : {"horizontal", "vertical"}) {
+    for (const char* what : {"stddev", "type", "mean", "bias_mean", "bias_stddev"}) {
+      of_sensor.push_back(idle(noise_tag("velocity", direction, what),
+                               "RotorS takes the link's velocity, and horVelStdDev, verVelStdDev"));
+    }
+  }
+  for (TagSpec& tag : of_sensor) {
+    tag.equation = "SDF";
+    tags.push_back(tag);
+  }
+  return {"RotorS' satellite receiver, with the sensor that it hangs on", tags, {}, create<Gps>};
+}
+
+}  // namespace
+}  // namespace quadcore::rotors
+
+QUADCORE_REGISTER_PLUGIN(quadcore::rotors::describe)
