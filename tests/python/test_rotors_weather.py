@@ -152,3 +152,9 @@ def test_a_wind_tells_how_it_blows(fitted):
     assert log.topics["wind_speed"]["y"][1:] == pytest.approx(3)
     pushes = log.topics["external_force"]["fy"][1:]
     assert np.count_nonzero(pushes == 2) == 50 and np.count_nonzero(pushes) == 50
+
+
+def test_flags_are_read_as_xacro_writes_them(fitted):
+    """RotorS' own macro hands a flag to ${...}, which makes it Python's."""
+    wind = plugin("wind", "wind_plugin", linkName="mast", useCustomStaticWindField="False")
+    assert "wind_speed" in fitted(wind).topics

@@ -6,10 +6,11 @@ import unittest
 import harness
 import numpy as np
 import rospy
-from geometry_msgs.msg import WrenchStamped
+from geometry_msgs.msg import TwistStamped, WrenchStamped
 from harness import Recording, flight, step
 from mav_msgs.msg import Actuators
 from rotors_comm.msg import WindSpeed
+from sensor_msgs.msg import NavSatFix
 
 from quadcore.description import load_description
 
@@ -22,6 +23,11 @@ WIND = (
     '<gazebo><plugin name="wind" filename="librotors_gazebo_wind_plugin.so">'
     "<linkName>windy/base_link</linkName><windForceMean>0.5</windForceMean>"
     "<windSpeedMean>3</windSpeedMean><windDirection>0 2 0</windDirection></plugin></gazebo>"
+)
+RECEIVER = (
+    '<gazebo reference="windy/base_link"><sensor type="gps" name="gps">'
+    '<plugin name="gps" filename="librotors_gazebo_gps_plugin.so">'
+    "<linkName>windy/base_link</linkName></plugin></sensor></gazebo>"
 )
 
 
@@ -37,14 +43,15 @@ class TestRotorsTopics(unittest.TestCase):
 
     def test_motors_take_speeds_directly_and_a_wind_is_told(self):
         urdf = load_description("firefly", {"namespace": "windy"}).text
-        with flight(
-            "_paused:=true", urdf=urdf.replace("</robot>", WIND + "</robot>"), namespace="/windy"
-        ):
+        urdf = urdf.replace("</robot>", WIND + RECEIVER + "</robot>")
+        with flight("_paused:=true", urdf=urdf, namespace="/windy"):
             direct = rospy.Publisher("/windy/gazebo/command/motor_speed", Actuators, queue_size=1)
             speeds = Recording("/windy/motor_speed", Actuators)
             wind = Recording("/windy/wind_speed", WindSpeed)
             force = Recording("/windy/external_force", WrenchStamped)
-            for topic in (speeds, wind, force):
+            fix = Recording("/windy/gps", NavSatFix)
+            ground_speed = Recording("/windy/ground_speed", TwistStamped)
+            for topic in (speeds, wind, force, fix, ground_speed):
                 topic.wait_for_connection()
             harness.wait_until(lambda: direct.get_num_connections() > 0)
             direct.publish(angular_velocities=[500] * 5)  # too few: refused
@@ -55,6 +62,10 @@ class TestRotorsTopics(unittest.TestCase):
             self.assertEqual(wind.messages[-1].header.frame_id, "world")
             self.assertEqual(wind.messages[-1].velocity.y, 3)
             self.assertEqual(force.messages[-1].wrench.force.y, 0.5)
+            self.assertEqual(fix.messages[-1].position_covariance[8], 36)  # RotorS' default
+            self.assertLess(abs(fix.messages[-1].longitude), 1e-3)
+            self.assertEqual(ground_speed.messages[-1].header.frame_id, "world")
+            self.assertNotEqual(ground_speed.messages[-1].twist.linear.z, 0)
 
 
 if __name__ == "__main__":

@@ -105,11 +105,6 @@ const std::vector<Entry>& table() {
   return entries;
 }
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 /// Gazebo takes `value="..."` as well as text.
 std::string text_of(const Xml& xml, const Element& element) {
   if (!element.Attribute("value")) return xml.text(element);

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -28,11 +27,6 @@ struct Given {
     fail(where, plugin, "<" + spec.name + "> '" + parameter.text + "' " + what);
   }
 };
-
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 bool is_within(const TagSpec& spec, double value) {
   return (spec.exclusive_min ? value > spec.min : value >= spec.min) && value <= spec.max;

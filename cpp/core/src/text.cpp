@@ -1,6 +1,7 @@
 #include "quadcore/text.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <locale>
 #include <numeric>
@@ -27,6 +28,11 @@ std::optional<Vector3d> parse_vector(const std::string& text) {
     vector[i] = *value;
   }
   return vector;
+}
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
 }
 
 std::string trimmed(const std::string& text) {

@@ -17,6 +17,8 @@ std::optional<double> parse_number(const std::string& text);
 /// Exactly three finite numbers, separated by blanks.
 std::optional<Vector3d> parse_vector(const std::string& text);
 std::string trimmed(const std::string& text);
+/// With small letters of ASCII in place of capitals.
+std::string lower(std::string text);
 std::vector<std::string> split(const std::string& text);
 
 /// Bytes of the well-formed UTF-8 character that begins at `at`, or 0 if none does.
