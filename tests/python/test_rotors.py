@@ -218,7 +218,10 @@ PID = '<plugin name="pid" filename="libmotorpid_plugin.so"><kp>1e-4</kp></plugin
         (
             MOTOR_0,
             PID + PID.replace('"pid"', '"more"') + MOTOR_0,
-            ("'motor_0' drives joint 'firefly/rotor_0_joint', as 'more' (", "one plugin drive each"),
+            (
+                "'motor_0' drives joint 'firefly/rotor_0_joint', as 'more' (",
+                "one plugin drive each",
+            ),
         ),
         (SECOND, "", ("'motor_1': required tag <jointName> is missing", "add <jointName>")),
         ("<motorConstant>", "<thrustConstant>", ("mismatched", "")),
