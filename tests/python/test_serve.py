@@ -151,6 +151,19 @@ def test_a_client_that_dies_within_a_message_is_told_of(served, sent, what):
         client.step(SPEEDS[0])
 
 
+def test_steps_of_a_client_that_has_gone_are_not_flown(served):
+    """Of the billion that it asked for; the next client is served."""
+    port, said = served
+    with socket.create_connection(("127.0.0.1", port)) as gone:
+        gone.sendall(struct.pack("<3d", 2, 1, 1e9))
+    assert ends(said)
+    assert re.fullmatch(
+        r"client 1: (has gone before its steps were flown|.*reset by peer)", said[0]
+    )
+    with Client(port) as client:
+        np.testing.assert_array_equal(client.step(SPEEDS[0], 3), in_process()[0])
+
+
 def test_a_flight_that_fails_stands_until_a_reset(served):
     port, _ = served
     with Client(port) as client:

@@ -21,6 +21,8 @@ class ServedFlight:
     ----------
     simulation, topics, record, log_every
         As of `Server`.
+    check_there
+        Called now and then while many steps are flown; raises where nobody waits for them.
     """
 
     def __init__(
@@ -29,9 +31,11 @@ class ServedFlight:
         topics: Sequence[str],
         record: Optional[Callable[[], Recorder]],
         log_every: int,
+        check_there: Callable[[], None],
     ) -> None:
         self._simulation, self._topics = simulation, topics
         self._record, self._log_every = record, log_every
+        self._check_there = check_there
         self._recorder: Optional[Recorder] = None
         self._failure: Optional[_core.FlightError] = None
         self._begin(None)
@@ -62,6 +66,8 @@ class ServedFlight:
             self._simulation.command(numbers[1:])
         try:
             for done in range(0, steps, _PIECE):
+                if done:
+                    self._check_there()
                 self._flight.advance(min(_PIECE, steps - done))
                 self._take()
         except _core.FlightError as error:

@@ -6,6 +6,7 @@ import errno
 import os
 import socket
 import stat
+from functools import partial
 from typing import Callable, List, Optional, Sequence, Tuple, Union
 
 from .. import _core
@@ -97,7 +98,13 @@ class Server:
         if connection.family != socket.AF_UNIX:
             connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._simulation.restore(self._start)
-        flown = ServedFlight(self._simulation, self._topics, self._record, self._log_every)
+        flown = ServedFlight(
+            self._simulation,
+            self._topics,
+            self._record,
+            self._log_every,
+            partial(_check_there, connection),
+        )
         try:
             while True:
                 try:
@@ -133,6 +140,16 @@ class Server:
             )
         simulation = self._simulation
         return [protocol.VERSION, simulation.dt, simulation.command_width, len(self.columns)]
+
+
+def _check_there(connection: socket.socket) -> None:
+    """Raise `ConnectionError` if the client has closed its end."""
+    try:
+        there = connection.recv(1, socket.MSG_PEEK | socket.MSG_DONTWAIT)
+    except BlockingIOError:
+        return
+    if not there:
+        raise ConnectionError("has gone before its steps were flown")
 
 
 def _text(reply: Reply, text: str) -> bytes:
