@@ -16,10 +16,15 @@ constexpr int version = 1;
 constexpr std::array<const char*, 8> kinds = {"state",     "topic", "wrench", "input",
                                               "parameter", "file",  "spawn",  "seed"};
 
-Variable::Kind kind_of(const std::string& name) {
-  const auto* const found = std::find(kinds.begin(), kinds.end(), name);
-  if (found == kinds.end()) throw InputError("no kind of variable is called " + name);
-  return static_cast<Variable::Kind>(found - kinds.begin());
+/// In the order of Variable::Type.
+constexpr std::array<const char*, 4> types = {"Real", "Integer", "Boolean", "String"};
+
+/// The place of a name among others.
+template <class Enum, std::size_t n>
+Enum place(const std::string& name, const std::array<const char*, n>& names) {
+  const auto* const found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) throw InputError("no kind or type of variable is called " + name);
+  return static_cast<Enum>(found - names.begin());
 }
 
 Document document_of(const YAML::Node& node) {
@@ -54,14 +59,17 @@ FlightFile read(const std::string& folder) {
   std::copy_n(spawn.begin(), 3, file.options.spawn.xyz.data());
   std::copy_n(spawn.begin() + 3, 3, file.options.spawn.rpy.data());
   for (const YAML::Node& v : root["variables"]) {
-    file.variables.push_back({v[0].as<std::string>(), kind_of(v[1].as<std::string>()),
-                              v[2].as<std::string>(), v[3].as<std::size_t>(),
-                              v[4].as<std::string>() == "fixed"});
+    file.variables.push_back(
+        {v[0].as<std::string>(), place<Variable::Kind>(v[1].as<std::string>(), kinds),
+         v[2].as<std::string>(), v[3].as<std::size_t>(), v[4].as<std::string>() == "fixed",
+         place<Variable::Type>(v[5].as<std::string>(), types)});
   }
   return file;
 }
 
 }  // namespace
+
+const char* name_of(Variable::Type type) { return types.at(type); }
 
 FlightFile read_flight_file(const std::string& resources) {
   try {

@@ -22,11 +22,14 @@ struct Variable {
     spawn,      ///< `index` in the pose
     seed,
   };
+  /// FMI's.
+  enum Type { real, integer, boolean, string };
   std::string name;  ///< for importers
   Kind kind;
   std::string key;
   std::size_t index = 0;
   bool is_fixed = false;  ///< when the flight has begun
+  Type type = real;
 };
 
 /// What `quadcore export-fmu` writes for this library: resources/flight.yaml.
@@ -39,6 +42,9 @@ struct FlightFile {
   std::vector<Variable> variables;
   std::string folder;  ///< of the resources
 };
+
+/// FMI's name of a type.
+const char* name_of(Variable::Type type);
 
 /// Throws InputError on a file that `quadcore export-fmu` of this version did not write.
 FlightFile read_flight_file(const std::string& resources);

@@ -15,11 +15,12 @@ namespace {
 
 using quadcore::fmu::Instance;
 using quadcore::fmu::SavedState;
+using quadcore::fmu::Variable;
 
 /// What an importer holds.
 struct Component {
   std::string name;
-  fmi2CallbackFunctions callbacks;
+  fmi2CallbackFunctions callbacks = {};
   std::unique_ptr<Instance> instance;
 };
 
@@ -35,6 +36,7 @@ void say(const std::string& name, const fmi2CallbackFunctions& callbacks, fmi2St
 /// Calls f(instance) and says what it throws, or what the flight warned of.
 template <class Function>
 fmi2Status guarded(fmi2Component c, const Function& f) {
+  if (!c) return fmi2Error;
   auto& component = *static_cast<Component*>(c);
   try {
     f(*component.instance);
@@ -97,18 +99,20 @@ const char* fmi2GetTypesPlatform() { return "default"; }
 const char* fmi2GetVersion() { return "2.0"; }
 
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
-                              const fmi2CallbackFunctions* callbacks, fmi2Boolean, fmi2Boolean) {
+                              const fmi2CallbackFunctions* given, fmi2Boolean, fmi2Boolean) {
   if (!name) name = "";
+  const fmi2CallbackFunctions callbacks = given ? *given : fmi2CallbackFunctions();
   try {
     if (type != fmi2CoSimulation) throw quadcore::InputError("this FMU is for co-simulation");
     if (!resources) throw quadcore::InputError("no folder of resources was named");
+    if (!guid) throw quadcore::InputError("no GUID was named; give that of modelDescription.xml");
     auto component = std::make_unique<Component>();
     component->name = name;
-    component->callbacks = *callbacks;
+    component->callbacks = callbacks;
     component->instance = std::make_unique<Instance>(path_of(resources), guid);
     return component.release();
   } catch (...) {
-    say(name, *callbacks, fmi2Error, quadcore::what_was_thrown());
+    say(name, callbacks, fmi2Error, quadcore::what_was_thrown());
     return nullptr;
   }
 }
@@ -129,7 +133,10 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
   return guarded(c, [](Instance& instance) { instance.initialise(); });
 }
 
-fmi2Status fmi2ExitInitializationMode(fmi2Component) { return fmi2OK; }
+fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
+  return guarded(c, [](Instance& instance) { instance.begin(); });
+}
+
 fmi2Status fmi2Terminate(fmi2Component) { return fmi2OK; }
 
 fmi2Status fmi2Reset(fmi2Component c) {
@@ -145,16 +152,19 @@ fmi2Status fmi2CancelStep(fmi2Component c) { return unsupported(c, "an asynchron
 // Values
 
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference* v, std::size_t n, fmi2Real* to) {
-  return for_each(c, n, [=](Instance& i, std::size_t k) { to[k] = i.number(v[k]); });
+  return for_each(c, n,
+                  [=](Instance& i, std::size_t k) { to[k] = i.number(v[k], Variable::real); });
 }
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference* v, std::size_t n,
                           fmi2Integer* to) {
-  return for_each(
-      c, n, [=](Instance& i, std::size_t k) { to[k] = static_cast<fmi2Integer>(i.number(v[k])); });
+  return for_each(c, n, [=](Instance& i, std::size_t k) {
+    to[k] = static_cast<fmi2Integer>(i.number(v[k], Variable::integer));
+  });
 }
 fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference* v, std::size_t n,
                           fmi2Boolean* to) {
-  return for_each(c, n, [=](Instance& i, std::size_t k) { to[k] = i.number(v[k]) != 0; });
+  return for_each(
+      c, n, [=](Instance& i, std::size_t k) { to[k] = i.number(v[k], Variable::boolean) != 0; });
 }
 fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference* v, std::size_t n,
                          fmi2String* to) {
@@ -162,15 +172,18 @@ fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference* v, std::size
 }
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference* v, std::size_t n,
                        const fmi2Real* values) {
-  return for_each(c, n, [=](Instance& i, std::size_t k) { i.set_number(v[k], values[k]); });
+  return for_each(
+      c, n, [=](Instance& i, std::size_t k) { i.set_number(v[k], Variable::real, values[k]); });
 }
 fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference* v, std::size_t n,
                           const fmi2Integer* values) {
-  return for_each(c, n, [=](Instance& i, std::size_t k) { i.set_number(v[k], values[k]); });
+  return for_each(
+      c, n, [=](Instance& i, std::size_t k) { i.set_number(v[k], Variable::integer, values[k]); });
 }
 fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference* v, std::size_t n,
                           const fmi2Boolean* values) {
-  return for_each(c, n, [=](Instance& i, std::size_t k) { i.set_number(v[k], values[k]); });
+  return for_each(
+      c, n, [=](Instance& i, std::size_t k) { i.set_number(v[k], Variable::boolean, values[k]); });
 }
 fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference* v, std::size_t n,
                          const fmi2String* values) {

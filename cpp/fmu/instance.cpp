@@ -34,6 +34,13 @@ void Instance::initialise() {
   simulation_ = made();
   tuned_ = false;
   told_ = 0;
+  is_flying_ = false;
+}
+
+void Instance::begin() {
+  if (!simulation_) throw InputError("an end of the initialisation before its begin");
+  tune();
+  is_flying_ = true;
 }
 
 std::unique_ptr<Simulation> Instance::made() const {
@@ -42,6 +49,7 @@ std::unique_ptr<Simulation> Instance::made() const {
 
 void Instance::tune() {
   if (!tuned_) return;
+  if (!is_flying_) return initialise();
   Allowed allowed;
   allowed.parameters = true;
   std::unique_ptr<Simulation> tuned = made();
@@ -51,7 +59,7 @@ void Instance::tune() {
 }
 
 void Instance::step(double time, double length) {
-  if (!simulation_) throw InputError("a step before the initialisation; initialise first");
+  if (!is_flying_) throw InputError("a step before the end of the initialisation; end it first");
   const double dt = simulation_->dt();
   const double count = std::round(length / dt);
   const bool is_counted = count >= 1 && count <= most_steps;
@@ -80,46 +88,55 @@ void Instance::reset() {
   simulation_.reset();
   settings_ = Settings(file_);
   start_time_ = 0;
-  tuned_ = false;
+  is_flying_ = tuned_ = false;
   told_ = 0;
 }
 
 double Instance::time() const { return start_time_ + (simulation_ ? simulation_->time() : 0); }
 
-const Variable& Instance::variable(unsigned reference) const {
-  if (reference < file_.variables.size()) return file_.variables[reference];
-  throw InputError("no variable has the value reference " + std::to_string(reference));
+const Variable& Instance::variable(unsigned reference, Variable::Type type) const {
+  if (reference >= file_.variables.size()) {
+    throw InputError("no variable has the value reference " + std::to_string(reference));
+  }
+  const Variable& v = file_.variables[reference];
+  if (v.type == type) return v;
+  throw InputError("variable " + v.name + ": is of type " + name_of(v.type) + ", no " +
+                   name_of(type) + "; call the function of that");
 }
 
-const Variable& Instance::settable(unsigned reference) const {
-  const Variable& v = variable(reference);
-  if (!simulation_ || !v.is_fixed) return v;
+const Variable& Instance::settable(unsigned reference, Variable::Type type) const {
+  const Variable& v = variable(reference, type);
+  if (!is_flying_ || !v.is_fixed) return v;
   throw InputError("variable " + v.name +
                    ": is fixed once the flight is initialised; set it before, or reset");
 }
 
-double Instance::number(unsigned reference) {
-  const Variable& v = variable(reference);
+double Instance::number(unsigned reference, Variable::Type type) {
+  const Variable& v = variable(reference, type);
   if (!is_output(v)) return fmu::number(settings_, v);
   if (!simulation_) throw InputError("an output before the initialisation; initialise first");
+  if (!is_flying_) tune();
   return outputs_.at(*simulation_, v);
 }
 
 const std::string& Instance::text(unsigned reference) {
-  return fmu::text(settings_, variable(reference));
+  return fmu::text(settings_, variable(reference, Variable::string));
 }
 
-void Instance::set_number(unsigned reference, double value) {
-  if (fmu::set_number(settings_, settable(reference), value)) tuned_ = true;
+void Instance::set_number(unsigned reference, Variable::Type type, double value) {
+  if (fmu::set_number(settings_, settable(reference, type), value)) tuned_ = true;
 }
 
-void Instance::set_text(unsigned reference, const std::string& value) {
-  fmu::set_text(settings_, file_, settable(reference), value);
+void Instance::set_text(unsigned reference, const char* value) {
+  const Variable& v = settable(reference, Variable::string);
+  if (!value) throw InputError("variable " + v.name + ": is to be no text; give one");
+  fmu::set_text(settings_, file_, v, value);
   tuned_ = true;
 }
 
-SavedState Instance::save() const {
-  SavedState state{file_.guid, settings_, start_time_, nullptr};
+SavedState Instance::save() {
+  if (simulation_ && !is_flying_) tune();
+  SavedState state{file_.guid, settings_, start_time_, nullptr, is_flying_};
   if (simulation_) state.snapshot = std::make_shared<Snapshot>(simulation_->snapshot());
   return state;
 }
@@ -144,6 +161,7 @@ void Instance::restore(const SavedState& state) {
   }
   outputs_.forget();
   start_time_ = state.start_time;
+  is_flying_ = state.is_flying;
   tuned_ = false;
   told_ = simulation_ ? simulation_->warnings().size() : 0;
 }

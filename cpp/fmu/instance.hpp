@@ -10,8 +10,9 @@
 
 namespace quadcore::fmu {
 
-/// One instance of an FMU: a simulation that is made when its parameters are known, and made anew,
-/// going on from where it is, when a tunable one changes. All functions throw Error.
+/// One instance of an FMU: a simulation that is made when the initialisation begins, and made anew
+/// when a parameter changes: in the initialisation from the start, in flight, where tunable ones
+/// alone can be set, going on from where it is. All functions throw Error.
 class Instance {
  public:
   /// \param resources  folder of the FMU's resources
@@ -19,20 +20,25 @@ class Instance {
   Instance(const std::string& resources, const std::string& guid);
 
   void start_at(double time);
-  /// Makes the simulation.
+  /// Begins the initialisation: makes the simulation.
   void initialise();
+  /// Ends it.
+  void begin();
   /// Publishes what was set, and flies whole steps.
   void step(double time, double length);
   void reset();
   /// s, of the importer.
   double time() const;
 
-  double number(unsigned reference);
+  /// \name Values of variables; the type is that of the function by which they are asked for
+  /// @{
+  double number(unsigned reference, Variable::Type type);
   const std::string& text(unsigned reference);
-  void set_number(unsigned reference, double value);
-  void set_text(unsigned reference, const std::string& value);
+  void set_number(unsigned reference, Variable::Type type, double value);
+  void set_text(unsigned reference, const char* value);
+  /// @}
 
-  SavedState save() const;
+  SavedState save();
   void restore(const SavedState& state);
   const FlightFile& file() const { return file_; }
 
@@ -40,9 +46,9 @@ class Instance {
   std::vector<std::string> take_warnings();
 
  private:
-  const Variable& variable(unsigned reference) const;
+  const Variable& variable(unsigned reference, Variable::Type type) const;
   /// The same, of one that can be set now.
-  const Variable& settable(unsigned reference) const;
+  const Variable& settable(unsigned reference, Variable::Type type) const;
   std::unique_ptr<Simulation> made() const;
   /// Makes the simulation anew if a parameter changed.
   void tune();
@@ -52,8 +58,9 @@ class Instance {
   double start_time_ = 0;
   std::unique_ptr<Simulation> simulation_;
   Outputs outputs_;
-  bool tuned_ = false;    ///< a parameter changed since the simulation was made
-  std::size_t told_ = 0;  ///< warnings of the simulation
+  bool is_flying_ = false;  ///< the initialisation has ended
+  bool tuned_ = false;      ///< a parameter changed since the simulation was made
+  std::size_t told_ = 0;    ///< warnings of the simulation
 };
 
 }  // namespace quadcore::fmu

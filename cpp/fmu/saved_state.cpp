@@ -133,6 +133,7 @@ void visit(Archive& archive, SavedState& state) {
   Snapshot snapshot = state.snapshot ? *state.snapshot : Snapshot();
   visit(archive, snapshot);
   if constexpr (Archive::reads) state.snapshot = std::make_shared<Snapshot>(std::move(snapshot));
+  visit(archive, state.is_flying);
 }
 
 }  // namespace
@@ -147,7 +148,7 @@ std::string serialised(const SavedState& state) {
 
 SavedState deserialised(const FlightFile& file, const std::string& bytes) {
   Reader reader(bytes);
-  SavedState state{"", Settings(file), 0, nullptr};
+  SavedState state{"", Settings(file), 0, nullptr, false};
   visit(reader, state.guid);
   if (state.guid != file.guid) throw InputError("the saved state is of another FMU; save it anew");
   visit(reader, state);

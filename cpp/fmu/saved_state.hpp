@@ -14,6 +14,7 @@ struct SavedState {
   Settings settings;
   double start_time = 0;                     ///< s, of the importer when the simulation's is 0
   std::shared_ptr<const Snapshot> snapshot;  ///< null before the simulation is made
+  bool is_flying = false;                    ///< the initialisation has ended
 };
 
 /// As bytes, which are the same for the same state and mean the same in another process.

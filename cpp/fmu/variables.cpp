@@ -1,6 +1,7 @@
 #include "variables.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "quadcore/error.hpp"
 #include "quadcore/log.hpp"
@@ -98,14 +99,14 @@ bool set_number(Settings& settings, const Variable& variable, double value) {
       return false;
     }
     case Variable::spawn:
-      component(settings.spawn, variable.index) = value;
-      return false;
+      return std::exchange(component(settings.spawn, variable.index), value) != value;
     case Variable::seed:
       if (!(value >= 0 && value <= largest_seed && value == std::floor(value))) {
         refuse(variable, "is no seed; give a whole number from 0 to 2147483647");
       }
+      if (static_cast<std::uint64_t>(value) == settings.seed) return false;
       settings.seed = static_cast<std::uint64_t>(value);
-      return false;
+      return true;
     case Variable::parameter: {
       std::string& kept = settings.tags.at(variable.key);
       const bool is_flag = kept == "true" || kept == "false";

@@ -43,7 +43,7 @@ class Outputs {
 /// @{
 double number(const Settings& settings, const Variable& variable);
 const std::string& text(const Settings& settings, const Variable& variable);
-/// Returns whether a tag has changed.
+/// Returns whether a parameter has changed.
 bool set_number(Settings& settings, const Variable& variable, double value);
 void set_text(Settings& settings, const FlightFile& file, const Variable& variable,
               const std::string& value);

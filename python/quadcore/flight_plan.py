@@ -52,7 +52,7 @@ class FlightPlan:
     rotor_velocity : tuple of float, optional
         Of the rotor joints at the start, rad/s; None is at rest.
     duration : float
-        s
+        s; infinite where whoever flies it says when it ends.
     commands : ndarray (rows, 1 + n), optional
         As for `Simulation.run`.
     controller, reference : optional

@@ -316,11 +316,13 @@ int main(int n, char** v) {
 #define GET(name, result, ...) result (*name)(__VA_ARGS__) = dlsym(library, #name)
   GET(fmi2Instantiate, void*, const char*, int, const char*, const char*, Callbacks*, int, int);
   GET(fmi2EnterInitializationMode, int, void*);
+  GET(fmi2ExitInitializationMode, int, void*);
   GET(fmi2DoStep, int, void*, double, double, int);
   GET(fmi2GetReal, int, void*, const unsigned*, unsigned long, double*);
   Callbacks callbacks = {say};
   void* one = fmi2Instantiate("one", 1, v[2], "file:///resources", &callbacks, 0, 0);
-  if (!one || fmi2EnterInitializationMode(one) || fmi2DoStep(one, 0, 0.1, 0)) return 2;
+  if (!one || fmi2EnterInitializationMode(one) || fmi2ExitInitializationMode(one)) return 3;
+  if (fmi2DoStep(one, 0, 0.1, 0)) return 2;
   const unsigned reference = 2;
   double z;
   fmi2GetReal(one, &reference, 1, &z);

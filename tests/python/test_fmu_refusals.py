@@ -1,7 +1,7 @@
 """What FMUs refuse, and what they take for no change."""
 
 import zipfile
-from ctypes import byref
+from ctypes import byref, c_char_p
 
 import pytest
 from flights import HOVER, with_pilot
@@ -10,6 +10,7 @@ from imported import Imported
 import quadcore as qc
 
 pytest.importorskip("fmpy")
+from fmpy import fmi2
 
 
 @pytest.fixture(scope="module")
@@ -73,6 +74,43 @@ def test_what_is_not_tunable_is_fixed_in_flight(instance):
     assert instance.get("z") == [3.0]
 
 
+def test_parameters_are_fixed_after_the_initialisation_and_not_before(fmu, tmp_path):
+    """FMI 2.0, 4.2.4: in it, what begins exactly may be set."""
+    instance = Imported(fmu, tmp_path, initialise=False)
+    simulation = qc.Simulation(
+        "quadrotor",
+        "eigen",
+        spawn=(0, 0, 3),
+        seed=7,
+        parameters={"drone_plugin.dragModel": "chapter2", "odometry.positionNoise": 0.1},
+    )
+    instance.slave.enterInitializationMode()
+    assert instance.get("z") == [10.0]
+    instance.set("spawn.z", 3.0)
+    instance.set("seed", 7)
+    instance.set("drone_plugin.dragModel", "chapter2")
+    instance.set("odometry.positionNoise", 0.1)
+    assert instance.get("z", "odom.x") == [3.0, simulation.topic("odom")["x"]]
+    state = instance.slave.getFMUstate()
+    instance.set("drone_plugin.rotorThrustCoeff", -1.0)
+    said = refusal(instance, instance.slave.exitInitializationMode)
+    assert "plugin 'drone_plugin': <rotorThrustCoeff>" in said
+    said = refusal(instance, instance.step)
+    assert "a step before the end of the initialisation; end it first" in said
+    instance.slave.setFMUstate(state)
+    instance.set("spawn.y", 1.0)  # the state is one of the initialisation
+    instance.set("spawn.y", 0.0)
+    instance.slave.exitInitializationMode()
+    for fly in (instance, simulation):
+        fly.command(HOVER)
+    instance.step(0.1)
+    simulation.step(100)
+    assert instance.get("x", "z") == [simulation.state.position[0], simulation.state.position[2]]
+    assert instance.get("odom.x") == [simulation.topic("odom")["x"]]
+    assert "is fixed once" in refusal(instance, instance.set, "spawn.z", 3.0)
+    instance.close()
+
+
 def test_a_parameter_set_to_the_value_that_it_has_is_no_change(tmp_path):
     """No second simulation is made, which would miss the file of the pilot's gains."""
     path = tmp_path / "piloted.fmu"
@@ -98,10 +136,9 @@ def test_steps_beyond_all_counting_are_refused(instance):
 
 def test_variables_are_called_by_their_names_in_errors(instance):
     instance.slave.reset()
+    said = refusal(instance, instance.set, "seed", -1)
+    assert "variable seed: is no seed; give a whole number from 0 to 2147483647" in said
     for name, value, says in (
-        ("seed", 1e30, "is no seed; give a whole number from 0 to 2147483647"),
-        ("seed", 1.5, "is no seed"),
-        ("seed", -1.0, "is no seed"),
         ("spawn.yaw", float("nan"), "is to be no finite number"),
         ("z", 1.0, "cannot be set to a number"),
         ("odom.x", 1.0, "cannot be set to a number"),
@@ -126,6 +163,59 @@ def test_an_instance_needs_no_name(instance):
         if made:
             slave.fmi2FreeInstance(made)
     assert "the GUID is another" in instance.said[-1][1]
+
+
+def test_a_variable_is_asked_for_by_its_type(instance):
+    """Reading another would round it, or make a text of it, without a word."""
+    slave, types = instance.slave, {"Real": "z", "Integer": "seed"}
+    types.update({"Boolean": "odometry.publishTf", "String": "drone_plugin.dragModel"})
+    calls = {"Real": slave.getReal, "Integer": slave.getInteger, "String": slave.getString}
+    calls["Boolean"] = slave.getBoolean
+    for asked, call in calls.items():
+        for held, name in types.items():
+            if asked == held:
+                call([instance.reference(name)])
+            else:
+                said = refusal(instance, call, [instance.reference(name)])
+                assert f"variable {name}: is of type {held}, no {asked}; call" in said
+        assert "no variable has the value reference 99999" in refusal(instance, call, [99999])
+    slave.reset()
+    said = refusal(instance, slave.setReal, [instance.reference("seed")], [3.0])
+    assert "variable seed: is of type Integer, no Real" in said
+    reference = byref(fmi2.fmi2ValueReference(instance.reference("drone_plugin.dragModel")))
+    nothing = (c_char_p * 1)(None)
+    said = refusal(instance, slave.fmi2SetString, slave.component, reference, 1, nothing)
+    assert "variable drone_plugin.dragModel: is to be no text; give one" in said
+
+
+def test_an_importer_may_have_nothing_to_be_told_by(instance):
+    """No logger, or no functions at all: what is wrong is still a status."""
+    slave, description = instance.slave, instance.description
+    where = (instance.folder / "resources").as_uri().encode()
+    guid = description.guid.encode()
+    for callbacks in (None, byref(fmi2.fmi2CallbackFunctions())):
+        for arguments in ((guid, None), (None, where), (b"another", where)):
+            assert not slave.fmi2Instantiate(b"one", 1, *arguments, callbacks, 0, 0)
+        made = slave.fmi2Instantiate(b"one", 1, guid, where, callbacks, 0, 0)
+        with pytest.raises(Exception, match="fmi2DoStep"):
+            slave.fmi2DoStep(made, 0.0, 0.001, 0)
+        slave.fmi2FreeInstance(made)
+    with pytest.raises(Exception, match="fmi2ExitInitializationMode"):
+        slave.fmi2ExitInitializationMode(None)
+    slave.fmi2FreeInstance(None)
+
+
+def test_events_of_a_scenario_may_come_whenever_the_importer_flies(tmp_path, recwarn):
+    """Nobody knows when it ends."""
+    late, path = tmp_path / "late.yaml", tmp_path / "late.fmu"
+    late.write_text("events:\n  - {at: 1000, weaken: 2, to: 0.95}\n")
+    qc.export_fmu(path, "quadrotor", engine="eigen", scenario=late)
+    assert [str(warning.message) for warning in recwarn] == []
+    instance = Imported(path, tmp_path / "fmu")
+    names = ("fault.effectiveness", "fault.effectiveness_tag")  # of the topic, and of the plugin
+    assert [instance.variables[name].causality for name in names] == ["input", "parameter"]
+    instance.step()
+    instance.close()
 
 
 def test_a_flag_of_a_saved_state_is_0_or_1(instance):

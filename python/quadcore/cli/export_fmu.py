@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +37,7 @@ def export(arguments: argparse.Namespace) -> None:
         **options.model_arguments(arguments),
         **options.flight_arguments(arguments),
         scenario=arguments.scenario,
+        duration=math.inf,
     )
     write_fmu(arguments.output, plan)
     if not arguments.quiet:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from pathlib import Path
 from typing import Any, Sequence
 
@@ -46,6 +47,7 @@ def serve(arguments: argparse.Namespace) -> None:
         **options.model_arguments(arguments),
         **options.flight_arguments(arguments),
         scenario=arguments.scenario,
+        duration=math.inf,
     )
     simulation = plan.simulation()
     address = arguments.port if arguments.socket is None else arguments.socket

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 import re
 import uuid
 import zipfile
@@ -60,7 +61,7 @@ def export_fmu(
                 f"an FMU carries no {name}, for it begins at rest and its importer commands it; "
                 f"leave it out, or give one of {', '.join(_OPTIONS)}"
             )
-    write_fmu(file, FlightPlan.of(model, **options))
+    write_fmu(file, FlightPlan.of(model, duration=math.inf, **options))
 
 
 def write_fmu(path: Path, plan: FlightPlan) -> None:
@@ -146,7 +147,7 @@ def _flight(
         "parameters": {key: value for key, value in plan.parameters.items() if key not in files},
         "tags": {tag.key: str(tag.start) for tag in tags if tag.key not in files},
         "files": files,
-        "variables": [[v.name, v.kind, v.key, v.place, v.variability] for v in variables],
+        "variables": [[*v[:4], v.variability, v.type] for v in variables],
     }
 
 

@@ -41,14 +41,20 @@ def variables_of(simulation: Simulation) -> List[Variable]:
     InputError
         Two have one name.
     """
-    found = [*_outputs(simulation), *_inputs(simulation), *_parameters(simulation)]
+    of_topics = [*_outputs(simulation), *_inputs(simulation)]
+    taken = {variable.name for variable in of_topics}
+    parameters = [  # a plugin may have the name of a topic, and a tag that of a field of it
+        tag._replace(name=f"{tag.name}_tag") if tag.name in taken else tag
+        for tag in _parameters(simulation)
+    ]
+    found = [*of_topics, *parameters]
     known: Dict[str, Variable] = {}
     for variable in found:
         other = known.setdefault(variable.name, variable)
         if other is not variable:
             raise InputError(
-                f"an FMU would have two variables {variable.name}, a {other.kind} and a "
-                f"{variable.kind}; rename the plugin or the topic"
+                f"an FMU would have two variables {variable.name}, of kind {other.kind} "
+                f"and {variable.kind}; rename the plugin or the topic"
             )
     return found
 
