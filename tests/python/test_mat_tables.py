@@ -47,6 +47,26 @@ def test_commands_are_read_however_they_are_held(held, version, tmp_path):
     np.testing.assert_array_equal(read_commands(tmp_path / "c.mat", 2), TABLE)
 
 
+def test_one_row_is_a_command_that_is_held(tmp_path):
+    path = tmp_path / "c.mat"
+    for held in (
+        {"hover": TABLE[:1]},
+        {"t": 0.0, "w1": 480.0, "w2": -470.0},
+        {"s": {"t": 0.0, "w1": 480.0, "w2": -470.0}},
+    ):
+        scipy.io.savemat(path, held)
+        np.testing.assert_array_equal(read_commands(path, 2), TABLE[:1])
+    for held in (
+        {"t": TABLE[:1]},
+        {"turned": TABLE[:1].T},
+        {"a": TABLE[:1], "b": TABLE[:1]},
+        {"text": "abc"},
+    ):
+        scipy.io.savemat(path, held)
+        with pytest.raises(qc.InputError, match="takes t, w1, w2, or one matrix or struct of them"):
+            read_commands(path, 2)
+
+
 def write_73(path, held):
     """As MATLAB does: columns first, structs as groups, arrays of structs by reference."""
     h5py = pytest.importorskip("h5py")

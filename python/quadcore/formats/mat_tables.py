@@ -36,7 +36,11 @@ def read_table(path: Path, names: Sequence[str], needed: int, expected: str) -> 
     def choose(held: Mapping[str, Held]) -> Sequence[str]:
         if set(names[:needed]) <= set(held) and not _is_one_more(held, names):
             return [name for name in names if name in held]
-        tables = [name for name, variable in held.items() if variable.is_table]
+        tables = [
+            name
+            for name, variable in held.items()
+            if variable.is_table or (name not in names and _is_row(variable, needed, len(names)))
+        ]
         if len(tables) == 1 and not set(names[:needed]) <= set(held):
             return tables
         found = ", ".join(sorted(held)) or "no variables"
@@ -59,6 +63,13 @@ def read_table(path: Path, names: Sequence[str], needed: int, expected: str) -> 
     ):
         raise InputError(f"{path}: {name} is {_told(value)}; {expected}")
     return table.astype(float)
+
+
+def _is_row(variable: Held, least: int, most: int) -> bool:
+    """Whether it may be a matrix of one row, such as a command that is held throughout."""
+    return (
+        variable.shape[:1] == (1,) and least <= variable.shape[-1] <= most and variable.is_numbers
+    )
 
 
 def _is_one_more(held: Mapping[str, Any], names: Sequence[str]) -> bool:

@@ -27,10 +27,13 @@ class Held(NamedTuple):
 
     @property
     def is_table(self) -> bool:
-        """Whether it may hold several columns."""
-        return self.kind == "struct" or (
-            self.kind not in ("char", "cell", "opaque") and min(self.shape, default=0) > 1
-        )
+        """Whether it holds several columns."""
+        return self.kind == "struct" or (self.is_numbers and min(self.shape, default=0) > 1)
+
+    @property
+    def is_numbers(self) -> bool:
+        """Whether it is an array of them."""
+        return self.kind not in ("struct", "char", "cell", "opaque")
 
 
 Choose = Callable[[Mapping[str, Held]], Sequence[str]]
