@@ -2,20 +2,13 @@
 
 #include "messages.hpp"
 #include "plant.hpp"
+#include "vehicle_messages.hpp"
 
 namespace quadcore::node {
 namespace {
 
 constexpr bool kept = true;  ///< the last message, for those who subscribe later
 constexpr const char* truth = "ground_truth/odometry";
-
-geometry_msgs::TransformStamped same_place(const std::string& parent, const std::string& child) {
-  geometry_msgs::TransformStamped same;
-  same.header.frame_id = parent;
-  same.child_frame_id = child;
-  same.transform.rotation.w = 1;
-  return same;
-}
 
 }  // namespace
 
@@ -107,9 +100,7 @@ void Broadcast::send_transforms(const Simulation& simulation) {
   for (geometry_msgs::TransformStamped& transform : transforms_.transforms) {
     transform.header.stamp = clock_.clock;
   }
-  geometry_msgs::Transform& vehicle = transforms_.transforms.front().transform;
-  set_vector(vehicle.translation, state.position.data());
-  set_quaternion(vehicle.rotation, state.orientation.coeffs().data());
+  to_ros(state, transforms_.transforms.front().transform);
   for (std::size_t i = 1; i < transforms_.transforms.size(); ++i) {
     const Joint& joint = simulation.model().joints[i - 1];
     const double angle = state.rotor_angle[static_cast<Eigen::Index>(i - 1)];
@@ -120,12 +111,8 @@ void Broadcast::send_transforms(const Simulation& simulation) {
 }
 
 void Broadcast::send_joint_states(const VehicleState& state) {
-  const auto assign = [](std::vector<double>& to, const VectorXd& from) {
-    to.assign(from.data(), from.data() + from.size());
-  };
   joint_states_.header.stamp = clock_.clock;
-  assign(joint_states_.position, state.rotor_angle);
-  assign(joint_states_.velocity, state.rotor_velocity);
+  to_ros(state, joint_states_);
   joint_states_publisher_.publish(joint_states_);
 }
 

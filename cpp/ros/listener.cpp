@@ -7,7 +7,7 @@ namespace quadcore::node {
 
 Listener::Listener(Broadcast& broadcast, TopicInlets& inlets, GazeboWrenches& wrenches,
                    const Simulation& simulation, std::vector<CommandTopic> command_topics,
-                   std::unique_ptr<CsvLog> log, ClockFollower* follower)
+                   std::unique_ptr<FlightLog> log, ClockFollower* follower)
     : broadcast_(broadcast),
       inlets_(inlets),
       wrenches_(wrenches),

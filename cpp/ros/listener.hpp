@@ -7,7 +7,7 @@
 #include "broadcast.hpp"
 #include "clock.hpp"
 #include "command_topics.hpp"
-#include "csv_log.hpp"
+#include "flight_log.hpp"
 #include "flight_thread.hpp"
 #include "gazebo_wrenches.hpp"
 #include "sayer.hpp"
@@ -18,11 +18,11 @@ namespace quadcore::node {
 /// What the node does with a flight: sends it, logs it if asked to, and passes on what is wrong.
 class Listener final : public FlightListener {
  public:
-  /// \param log       CSV log to write; null = none
+  /// \param log       log to write; null = none
   /// \param follower  to be told of each step; null = this node leads the clock
   Listener(Broadcast& broadcast, TopicInlets& inlets, GazeboWrenches& wrenches,
            const Simulation& simulation, std::vector<CommandTopic> command_topics,
-           std::unique_ptr<CsvLog> log, ClockFollower* follower);
+           std::unique_ptr<FlightLog> log, ClockFollower* follower);
 
   void feed(Simulation& simulation) override {
     inlets_.take(simulation);
@@ -41,7 +41,7 @@ class Listener final : public FlightListener {
   TopicInlets& inlets_;
   GazeboWrenches& wrenches_;
   const std::vector<CommandTopic> command_topics_;
-  const std::unique_ptr<CsvLog> log_;
+  const std::unique_ptr<FlightLog> log_;
   ClockFollower* const follower_;
   std::size_t warnings_told_;  ///< of the simulation
   Sayer sayer_;

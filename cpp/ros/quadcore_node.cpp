@@ -85,9 +85,9 @@ int run(const EndSignal& end_signal) {
   taken.push_back(GazeboWrenches::topic);
   TopicInlets inlets(nh, simulation, taken, flight_settings.lockstep);
   GazeboWrenches wrenches;
-  std::unique_ptr<CsvLog> log;
+  std::unique_ptr<FlightLog> log;
   if (!settings.log.empty()) {
-    log = std::make_unique<CsvLog>(settings.log, simulation, settings.log_topics);
+    log = open_log(settings.log, simulation, settings.log_topics, nh, prefix);
   }
   Listener listener(broadcast, inlets, wrenches, simulation, topics, std::move(log),
                     follower ? &*follower : nullptr);
@@ -120,6 +120,7 @@ int run(const EndSignal& end_signal) {
     due += std::chrono::seconds(1);
   }
   flight.end();
+  end_signal.flight_is_being_written();
   // Before anything that may take longer than there is time.
   const std::string log_error = listener.close_log();
   if (!log_error.empty()) say_error(log_error);

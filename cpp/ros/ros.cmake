@@ -104,16 +104,18 @@ function(add_ros_node name)
 endfunction()
 
 add_ros_node(quadcore_node
-  cpp/ros/broadcast.cpp cpp/ros/clock.cpp cpp/ros/command_queue.cpp cpp/ros/command_subscriber.cpp
+  cpp/ros/bag_file.cpp cpp/ros/bag_log.cpp cpp/ros/broadcast.cpp cpp/ros/clock.cpp
+  cpp/ros/command_queue.cpp cpp/ros/command_subscriber.cpp
   cpp/ros/command_topics.cpp
-  cpp/ros/csv_log.cpp cpp/ros/diagnostics.cpp cpp/ros/drag_choice.cpp cpp/ros/flight_loop.cpp
-  cpp/ros/flight_thread.cpp cpp/ros/gazebo_bodies.cpp cpp/ros/gazebo_neighbours.cpp
+  cpp/ros/csv_log.cpp cpp/ros/diagnostics.cpp cpp/ros/drag_choice.cpp cpp/ros/flight_log.cpp
+  cpp/ros/flight_loop.cpp cpp/ros/flight_thread.cpp cpp/ros/gazebo_bodies.cpp cpp/ros/gazebo_neighbours.cpp
   cpp/ros/gazebo_physics.cpp
   cpp/ros/gazebo_services.cpp cpp/ros/gazebo_states.cpp cpp/ros/gazebo_wrenches.cpp
   cpp/ros/listener.cpp cpp/ros/master_api.cpp cpp/ros/master_check.cpp
-  cpp/ros/master_watch.cpp cpp/ros/odometry_topic.cpp cpp/ros/parameter_watch.cpp cpp/ros/path.cpp
+  cpp/ros/master_watch.cpp cpp/ros/mat_file.cpp cpp/ros/mat_log.cpp cpp/ros/odometry_topic.cpp cpp/ros/parameter_watch.cpp cpp/ros/path.cpp
   cpp/ros/plant.cpp cpp/ros/private_parameters.cpp cpp/ros/quadcore_node.cpp cpp/ros/ros_types.cpp
-  cpp/ros/rotors_types.cpp cpp/ros/services.cpp cpp/ros/settings.cpp cpp/ros/topic_broadcast.cpp cpp/ros/topic_inlets.cpp
+  cpp/ros/rotors_types.cpp cpp/ros/services.cpp cpp/ros/settings.cpp
+  cpp/ros/topic_broadcast.cpp cpp/ros/topic_inlets.cpp
   cpp/ros/topic_services.cpp)
 target_link_libraries(quadcore_node PRIVATE quadcore)
 add_ros_node(controller_node
@@ -140,9 +142,9 @@ if(CATKIN_ENABLE_TESTING)
   find_package(rostest QUIET)
   if(rostest_FOUND)
     add_ros_node(simulink_stand_in tests/ros/simulink_stand_in.cpp)
-    foreach(test topics services lockstep playing clock several parameters faults masters launch
+    foreach(test topics services lockstep playing logs clock several parameters faults masters launch
                  fly_from_python controller controller_faults set_points pid joystick sensors
-                 disturbances rotors rotors_topics rotors_hover gazebo gazebo_launch)
+                 disturbances rotors rotors_topics rotors_hover gazebo gazebo_launch pages)
       add_rostest(tests/ros/${test}.test)
     endforeach()
   endif()

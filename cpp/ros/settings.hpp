@@ -15,7 +15,7 @@ namespace quadcore::node {
 /// What the node's private parameters say.
 struct Settings {
   Plant plant;
-  std::string log;                      ///< path of a CSV log; "" = none
+  std::string log;                      ///< path of a log; "" = none
   std::vector<std::string> log_topics;  ///< topics in it
   bool verbose = false;
   bool rotor_tf = false;  ///< send the rotors' links, too

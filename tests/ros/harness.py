@@ -63,6 +63,7 @@ class Process:
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
+            restore_signals=False,  # a file that may not grow is an error, as a full disk is
         )
 
     def __enter__(self) -> Process:

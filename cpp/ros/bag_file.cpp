@@ -1,0 +1,137 @@
+#include "bag_file.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace quadcore::node {
+namespace {
+
+// Kinds of records, by the numbers that the format has for them.
+constexpr char message_data = 2, bag_header = 3, index_data = 4, chunk = 5, chunk_info = 6,
+               connection = 7;
+constexpr std::size_t head_size = 4096;         ///< of the first record, without its two lengths
+constexpr std::size_t chunk_size = 768 * 1024;  ///< as rosbag has it
+
+template <class Number>
+std::string raw(Number number) {
+  std::string bytes(sizeof number, '\0');
+  std::memcpy(&bytes[0], &number, sizeof number);
+  return bytes;
+}
+
+std::string raw(const ros::Time& time) { return raw(time.sec) + raw(time.nsec); }
+
+std::string sized(const std::string& bytes) {
+  return raw(static_cast<std::uint32_t>(bytes.size())) + bytes;
+}
+
+std::string field(const char* name, const std::string& value) {
+  return sized(name + ("=" + value));
+}
+
+std::string kind(char number) { return field("op", std::string(1, number)); }
+
+}  // namespace
+
+BagFile::BagFile(const std::string& path) : file_(std::fopen(path.c_str(), "w")) {
+  if (!file_) return;
+  put("#ROSBAG V2.0\n");
+  write_head(0);
+  end_ = static_cast<std::uint64_t>(std::ftell(file_.get()));
+}
+
+std::uint32_t BagFile::add(const std::string& topic, const char* type, const char* md5sum,
+                           const char* definition) {
+  const auto number = static_cast<std::uint32_t>(connections_.size());
+  connections_.push_back(
+      sized(field("conn", raw(number)) + kind(connection) + field("topic", topic)) +
+      sized(field("topic", topic) + field("type", type) + field("md5sum", md5sum) +
+            field("message_definition", definition)));
+  entries_.emplace_back();
+  return number;
+}
+
+void BagFile::write_bytes(std::uint32_t topic, const ros::Time& time) {
+  if (!is_whole_) return;
+  // So that each chunk can be read without the others.
+  if (entries_[topic].empty()) chunk_ += connections_[topic];
+  entries_[topic].push_back({time, static_cast<std::uint32_t>(chunk_.size())});
+  chunk_ += sized(field("conn", raw(topic)) + kind(message_data) + field("time", raw(time)));
+  chunk_ += sized(bytes_);
+  if (chunk_.size() >= chunk_size) write_chunk();
+}
+
+void BagFile::write_chunk() {
+  Chunk written{end_, ros::TIME_MAX, ros::TIME_MIN, {}};
+  std::string index;
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    std::vector<Entry>& entries = entries_[i];
+    // After a reset time begins anew.
+    std::stable_sort(entries.begin(), entries.end(),
+                     [](const Entry& a, const Entry& b) { return a.time < b.time; });
+    written.counts.push_back(static_cast<std::uint32_t>(entries.size()));
+    if (entries.empty()) continue;
+    written.first = std::min(written.first, entries.front().time);
+    written.last = std::max(written.last, entries.back().time);
+    index += sized(field("conn", raw(static_cast<std::uint32_t>(i))) +
+                   field("count", raw(written.counts.back())) + kind(index_data) +
+                   field("ver", raw(std::uint32_t{1})));
+    std::string places;
+    for (const Entry& entry : entries) places += raw(entry.time) + raw(entry.offset);
+    index += sized(places);
+    entries.clear();
+  }
+  const std::string head = field("compression", "none") + kind(chunk) +
+                           field("size", raw(static_cast<std::uint32_t>(chunk_.size())));
+  is_whole_ = put(sized(head)) && put(raw(static_cast<std::uint32_t>(chunk_.size()))) &&
+              put(chunk_) && put(index) && std::fflush(file_.get()) == 0;
+  chunk_.clear();
+  if (!is_whole_) return;
+  chunks_.push_back(std::move(written));
+  end_ = static_cast<std::uint64_t>(std::ftell(file_.get()));
+}
+
+void BagFile::close() {
+  if (is_whole_ && !chunk_.empty()) write_chunk();
+  std::clearerr(file_.get());
+  std::FILE* const file = file_.get();
+  bool good = is_whole_ || ftruncate(fileno(file), static_cast<off_t>(end_)) == 0;
+  good = good && std::fseek(file, static_cast<long>(end_), SEEK_SET) == 0;
+  std::string index;
+  for (const std::string& record : connections_) index += record;
+  for (const Chunk& written : chunks_) {
+    std::string counts;
+    std::uint32_t topics = 0;
+    for (std::size_t i = 0; i < written.counts.size(); ++i) {
+      if (written.counts[i] == 0) continue;
+      ++topics;
+      counts += raw(static_cast<std::uint32_t>(i)) + raw(written.counts[i]);
+    }
+    index += sized(field("chunk_pos", raw(written.place)) + field("count", raw(topics)) +
+                   field("end_time", raw(written.last)) + kind(chunk_info) +
+                   field("start_time", raw(written.first)) + field("ver", raw(std::uint32_t{1})));
+    index += sized(counts);
+  }
+  good = good && put(index) && std::fflush(file) == 0 &&
+         std::fseek(file, static_cast<long>(std::strlen("#ROSBAG V2.0\n")), SEEK_SET) == 0;
+  if (good) write_head(end_);
+  const bool closed = std::fclose(file_.release()) == 0;
+  is_indexed_ = good && closed;
+  is_whole_ = is_whole_ && is_indexed_;
+}
+
+void BagFile::write_head(std::uint64_t index) {
+  const std::string head =
+      field("chunk_count", raw(static_cast<std::uint32_t>(chunks_.size()))) +
+      field("conn_count", raw(static_cast<std::uint32_t>(index == 0 ? 0 : connections_.size()))) +
+      field("index_pos", raw(index)) + kind(bag_header);
+  put(sized(head) + sized(std::string(head_size - head.size(), ' ')));
+}
+
+bool BagFile::put(const std::string& bytes) {
+  return std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size();
+}
+
+}  // namespace quadcore::node

@@ -1,0 +1,112 @@
+#include "bag_log.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <utility>
+
+#include "quadcore/error.hpp"
+#include "quadcore/text.hpp"
+#include "ros_types.hpp"
+#include "vehicle_messages.hpp"
+
+namespace quadcore::node {
+namespace {
+
+constexpr double never = std::numeric_limits<double>::quiet_NaN();
+
+void add_dimension(std_msgs::Float64MultiArray& array, const std::string& label, std::size_t size) {
+  std_msgs::MultiArrayDimension dimension;
+  dimension.label = label;
+  dimension.size = dimension.stride = static_cast<std::uint32_t>(size);
+  array.layout.dim.push_back(dimension);
+}
+
+/// A bag has no message at time 0.
+ros::Time in_bag(const ros::Time& time) { return std::max(time, ros::TIME_MIN); }
+
+}  // namespace
+
+BagLog::BagLog(const std::string& path, const Simulation& simulation, LogRow row,
+               const ros::NodeHandle& nh, const std::string& frame_prefix)
+    : path_(path), active_(path + ".active"), row_(std::move(row)), bag_(active_) {
+  if (!bag_.is_open()) throw InputError(unwritable(path_));
+  const std::string vehicle = frame_prefix + vehicle_name;
+  set_frames(odometry_, vehicle);
+  tf_.transforms.push_back(same_place(world_frame, vehicle));
+  joints_.name = simulation.model().joint_names();
+  clock_number_ = bag_.add<rosgraph_msgs::Clock>("/clock");
+  truth_number_ = bag_.add<nav_msgs::Odometry>(nh.resolveName("ground_truth/odometry"));
+  tf_number_ = bag_.add<tf2_msgs::TFMessage>("/tf");
+  joints_number_ = bag_.add<sensor_msgs::JointState>(nh.resolveName("joint_states"));
+  for (const std::size_t index : row_.topics()) {
+    const Topic& topic = simulation.topics()[index];
+    Logged logged{index, 0, topic.kind == messages::kind_of<messages::Odometry>(), never, {}};
+    const std::string name = nh.resolveName(topic.name);
+    logged.number = logged.is_odometry ? bag_.add<nav_msgs::Odometry>(name)
+                                       : bag_.add<std_msgs::Float64MultiArray>(name);
+    add_dimension(logged.array, joined(topic.kind.fields), topic.kind.fields.size());
+    topics_.push_back(std::move(logged));
+  }
+  row_number_ = bag_.add<std_msgs::Float64MultiArray>("/quadcore/log");
+  std::string names;
+  for (const std::string& column : row_.columns()) names += (names.empty() ? "" : ",") + column;
+  add_dimension(whole_row_, names, row_.columns().size());
+  for (const std::string& name : simulation.ignored()) add_dimension(whole_row_, name, 1);
+}
+
+void BagLog::add(const Simulation& simulation) {
+  const ros::Time time = to_ros(simulation.time());
+  add_state(simulation.state(), time);
+  for (Logged& logged : topics_) {
+    const Topic& topic = simulation.topics()[logged.index];
+    if (topic.count > 0 && topic.stamp != logged.stamp) add(topic, logged);
+  }
+  whole_row_.data = row_.of(simulation);
+  bag_.write(row_number_, in_bag(time), whole_row_);
+  if (!bag_.is_whole() && error().empty()) fail(cut_short(path_));
+}
+
+void BagLog::add_state(const VehicleState& state, const ros::Time& time) {
+  clock_.clock = time;
+  bag_.write(clock_number_, in_bag(time), clock_);
+  messages::Odometry truth;
+  truth.position = state.position;
+  truth.orientation = state.orientation;
+  truth.linear_velocity = state.linear_velocity;
+  truth.angular_velocity = state.angular_velocity;
+  odometry_.header.stamp = time;
+  to_ros(truth, odometry_);
+  bag_.write(truth_number_, in_bag(time), odometry_);
+  tf_.transforms.front().header.stamp = time;
+  to_ros(state, tf_.transforms.front().transform);
+  bag_.write(tf_number_, in_bag(time), tf_);
+  joints_.header.stamp = time;
+  to_ros(state, joints_);
+  bag_.write(joints_number_, in_bag(time), joints_);
+}
+
+void BagLog::add(const Topic& topic, Logged& logged) {
+  logged.stamp = topic.stamp;
+  const ros::Time stamp = to_ros(topic.stamp);
+  if (logged.is_odometry) {
+    odometry_.header.stamp = stamp;
+    to_ros(messages::read<messages::Odometry>(topic.values.data()), odometry_);
+    bag_.write(logged.number, in_bag(stamp), odometry_);
+  } else {
+    logged.array.data = topic.values;
+    bag_.write(logged.number, in_bag(stamp), logged.array);
+  }
+}
+
+void BagLog::close() {
+  bag_.close();
+  if (!bag_.is_whole()) fail(cut_short(path_));
+  if (!bag_.is_indexed()) {
+    fail(cut_short(path_));
+    return;
+  }
+  if (std::rename(active_.c_str(), path_.c_str()) != 0) fail(unwritable(path_));
+}
+
+}  // namespace quadcore::node

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <geometry_msgs/TransformStamped.h>
+#include <nav_msgs/Odometry.h>
+#include <rosgraph_msgs/Clock.h>
+#include <sensor_msgs/JointState.h>
+#include <std_msgs/Float64MultiArray.h>
+#include <tf2_msgs/TFMessage.h>
+
+#include <string>
+#include <vector>
+
+#include "bag_file.hpp"
+#include "flight_log.hpp"
+
+namespace quadcore::node {
+
+/// A bag with a row of the log and the state in messages of ROS, after each step, and each message
+/// of the topics that are logged. It is called FILE.bag.active as long as it grows, as
+/// `rosbag record` does, so that an older one stays till then.
+class BagLog final : public FlightLog {
+ public:
+  /// Throws InputError if the file cannot be written.
+  BagLog(const std::string& path, const Simulation& simulation, LogRow row,
+         const ros::NodeHandle& nh, const std::string& frame_prefix);
+  void add(const Simulation& simulation) override;
+  void close() override;
+
+ private:
+  /// A topic of the simulation.
+  struct Logged {
+    std::size_t index;     ///< among those of the simulation
+    std::uint32_t number;  ///< in the bag
+    bool is_odometry;      ///< else an array
+    double stamp;          ///< of the last message
+    std_msgs::Float64MultiArray array;
+  };
+  void add_state(const VehicleState& state, const ros::Time& time);
+  void add(const Topic& topic, Logged& logged);
+
+  const std::string path_, active_;
+  LogRow row_;
+  BagFile bag_;
+  std::uint32_t clock_number_, truth_number_, tf_number_, joints_number_, row_number_;
+  std::vector<Logged> topics_;
+  // Kept, so that they need no new memory.
+  rosgraph_msgs::Clock clock_;
+  nav_msgs::Odometry odometry_;
+  tf2_msgs::TFMessage tf_;
+  sensor_msgs::JointState joints_;
+  std_msgs::Float64MultiArray whole_row_;
+};
+
+}  // namespace quadcore::node

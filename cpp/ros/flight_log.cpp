@@ -1,0 +1,51 @@
+#include "flight_log.hpp"
+
+#include <cerrno>
+#include <cstring>
+
+#include "bag_log.hpp"
+#include "csv_log.hpp"
+#include "mat_log.hpp"
+#include "quadcore/log.hpp"
+
+namespace quadcore::node {
+
+LogRow::LogRow(const Simulation& simulation, const std::vector<std::string>& names)
+    : topics_(simulation.topics().at(names)),
+      columns_(log_columns(simulation.model().joints.size())) {
+  for (const std::size_t topic : topics_) {
+    for (std::string& column : log_columns(simulation.topics()[topic]))
+      columns_.push_back(std::move(column));
+  }
+}
+
+const std::vector<double>& LogRow::of(const Simulation& simulation) {
+  row_.clear();
+  append_log_row(simulation.state(), row_);
+  for (const std::size_t topic : topics_) append_log_row(simulation.topics()[topic], row_);
+  return row_;
+}
+
+std::unique_ptr<FlightLog> open_log(const std::string& path, const Simulation& simulation,
+                                    const std::vector<std::string>& topics,
+                                    const ros::NodeHandle& nh, const std::string& frame_prefix) {
+  const auto has = [&path](const std::string& end) {
+    return path.size() >= end.size() &&
+           path.compare(path.size() - end.size(), end.size(), end) == 0;
+  };
+  LogRow row(simulation, topics);
+  if (has(".mat")) return std::make_unique<MatLog>(path, simulation, std::move(row));
+  if (has(".bag"))
+    return std::make_unique<BagLog>(path, simulation, std::move(row), nh, frame_prefix);
+  return std::make_unique<CsvLog>(path, simulation, std::move(row));
+}
+
+std::string unwritable(const std::string& path) {
+  return path + ": cannot be written: " + std::strerror(errno);
+}
+
+std::string cut_short(const std::string& path) {
+  return path + ": the log is cut short: " + std::strerror(errno);
+}
+
+}  // namespace quadcore::node

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <geometry_msgs/TransformStamped.h>
+#include <sensor_msgs/JointState.h>
+
+#include <string>
+
+#include "messages.hpp"
+#include "quadcore/state.hpp"
+
+/// \file
+/// What tf and joint_states say of a vehicle.
+
+namespace quadcore::node {
+
+/// A frame that lies in another as long as nothing else is said.
+inline geometry_msgs::TransformStamped same_place(const std::string& parent,
+                                                  const std::string& child) {
+  geometry_msgs::TransformStamped same;
+  same.header.frame_id = parent;
+  same.child_frame_id = child;
+  same.transform.rotation.w = 1;
+  return same;
+}
+
+inline void to_ros(const VehicleState& state, geometry_msgs::Transform& vehicle) {
+  set_vector(vehicle.translation, state.position.data());
+  set_quaternion(vehicle.rotation, state.orientation.coeffs().data());
+}
+
+inline void to_ros(const VehicleState& state, sensor_msgs::JointState& joints) {
+  const auto assign = [](std::vector<double>& to, const VectorXd& from) {
+    to.assign(from.data(), from.data() + from.size());
+  };
+  assign(joints.position, state.rotor_angle);
+  assign(joints.velocity, state.rotor_velocity);
+}
+
+}  // namespace quadcore::node
