@@ -10,6 +10,7 @@ the odometry as a log without rotors, .mat, .csv or .bag.
 
 import sys
 import threading
+from pathlib import Path
 
 import numpy as np
 import rospy
@@ -17,8 +18,9 @@ from nav_msgs.msg import Odometry
 from recorded_commands import read_table
 from std_msgs.msg import Float64MultiArray
 
-from quadcore import InputError, Log
-from quadcore.log import check_log_path
+from quadcore import InputError
+from quadcore._core import log_columns
+from quadcore.log import check_log_path, log_file
 
 
 class Player:
@@ -41,15 +43,16 @@ class Player:
         time = message.header.stamp.to_sec()
         self.rows[time] = row_of(time, message)
         due = np.searchsorted(self._table[:, 0], time + 1e-9, side="right") - 1
-        if due >= 0 and (self._lockstep or due != self._sent):
+        heard = self._lockstep or self._publisher.get_num_connections() > 0
+        if due >= 0 and heard and (self._lockstep or due != self._sent):
             self._sent = due
             self._publisher.publish(data=self._table[due, 1:].tolist())
         if time >= self._end - 1e-9:
             self.finished.set()
 
-    def log(self):
+    def table(self):
         """Give what came so far."""
-        return Log(np.array([row for _, row in sorted(self.rows.items())]).reshape(-1, 14), {})
+        return np.array([row for _, row in sorted(self.rows.items())])
 
 
 def row_of(time, message):
@@ -66,9 +69,11 @@ def main():
         sys.exit(__doc__)
     rospy.init_node("play_commands", disable_rostime=True)  # a paused flight's clock stands
     out = rospy.get_param("~out", "")
+    log = None
     try:
         if out:
             check_log_path(out)
+            log = log_file(Path(out), log_columns(0), (), ())
         table = read_table(arguments[0], int(rospy.get_param("~rotors", 4)))
     except (InputError, ValueError) as error:
         sys.exit(f"error: {error}")
@@ -78,9 +83,14 @@ def main():
     rospy.loginfo("%s: %d commands for %s", arguments[0], len(table), topic)
     while not rospy.is_shutdown() and not player.finished.wait(0.1):
         pass
-    if out and player.rows:
-        player.log().to_file(out)
-        rospy.loginfo("written %s", out)
+    if log is None or not player.rows:
+        return
+    try:
+        log.receive(player.table(), np.empty((len(player.rows), 0, 6)))
+        log.close()
+    except InputError as error:
+        sys.exit(f"error: {error}")
+    rospy.loginfo("written %s", out)
 
 
 main()

@@ -6,12 +6,23 @@ import os
 import subprocess
 import threading
 import unittest
+import xmlrpc.client
 
 import harness
 import numpy as np
 import rosbag
+import rosgraph
 import rospy
-from harness import Process, Recording, commander, diagnostic, flight, step
+import scipy.io
+from harness import (
+    Process,
+    Recording,
+    call,
+    commander,
+    diagnostic,
+    flight,
+    step,
+)
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
@@ -22,6 +33,17 @@ import quadcore as qc
 
 STEPS = 1000
 TOPIC = "/quadrotor/vel_cmd"
+
+
+def connected(other):
+    """Topics, and whether in or out, by which the plant's node is connected with another."""
+    master = rosgraph.Master("/playing")
+    plant = xmlrpc.client.ServerProxy(master.lookupNode("/quadcore"))
+    others = {other}
+    with contextlib.suppress(rosgraph.MasterException):
+        others.add(master.lookupNode(other))
+    _, _, found = plant.getBusInfo("/playing")
+    return {(topic, way) for _, who, way, _, topic, *_ in found if who in others}
 
 
 class TestPlaying(unittest.TestCase):
@@ -98,16 +120,19 @@ class TestPlaying(unittest.TestCase):
 
     def test_commands_of_a_file_fly_as_without_ros(self):
         """In lockstep, and the odometry is kept."""
-        commands, out, own = (self.folder / n for n in ("c.csv", "odometry.csv", "own.csv"))
+        commands, own = self.folder / "c.csv", self.folder / "own.csv"
         commands.write_text("t,w1,w2,w3,w4\n0,480,-470,490,-475\n0.05,470,-480,480,-490\n")
         bag = self.folder / "c.bag"
         rows = [[480.0, -470.0, 490.0, -475.0], [470.0, -480.0, 480.0, -490.0]]
         with rosbag.Bag(str(bag), "w") as written:
             for time, row in zip((rospy.Time(0, 1), rospy.Time(0, 50_000_000)), rows):
                 written.write("/quadrotor/vel_cmd", Float64MultiArray(data=row), time)
+        matrix = self.folder / "c.mat"
+        scipy.io.savemat(str(matrix), {"commands": [[0.0, *rows[0]], [0.05, *rows[1]]]})
         simulation = qc.Simulation("quadrotor", xacro_args={"sim_slow": 1}, spawn=(0, 0, 10))
         flown = simulation.run(0.1, commands)
-        for file in (commands, bag):
+        for file, suffix in ((commands, "csv"), (bag, "csv"), (matrix, "mat")):
+            out = self.folder / f"odometry.{suffix}"
             arguments = (str(file), "_lockstep:=true", "_duration:=0.1", f"_out:={out}")
             with flight(*LOCKSTEP, f"_log:={own}"), Process("play_commands.py", *arguments) as node:
                 step(100)
@@ -116,6 +141,36 @@ class TestPlaying(unittest.TestCase):
             np.testing.assert_array_equal(qc.Log.of_file(own).table, flown.table)
             kept = qc.Log.of_file(out).table
             np.testing.assert_array_equal(kept[:, 1:], flown.table[:, 1:14])
+            out.unlink()
+
+    def test_commands_of_a_file_are_sent_at_their_times_by_the_odometry(self):
+        """Each once, in order and never early, however late the plant listens."""
+        times = 0.05 * np.arange(8)
+        table = np.column_stack([times, *(sign * (480 + np.arange(8)) for sign in (1, -1, 1, -1))])
+        file, out, own = (self.folder / name for name in ("c.mat", "odometry.mat", "own.csv"))
+        scipy.io.savemat(str(file), {"t": times, **{f"w{i}": table[:, i] for i in range(1, 5)}})
+        arguments = (str(file), "_duration:=0.4", f"_out:={out}")
+        slow = ("_paused:=true", "_real_time_factor:=0.1", "_log_topics:=vel_cmd", f"_log:={own}")
+        with flight(*slow), Process("play_commands.py", *arguments) as node:
+            harness.wait_until(
+                lambda: {("/odom", "o"), (TOPIC, "i")} <= connected("/play_commands")
+            )
+            call("/gazebo/unpause_physics")
+            status, error = node.result()
+            self.assertEqual(status, 0, error)
+            diagnostic("commands", lambda count: count == len(table))
+        log = qc.Log.of_file(own)
+        sent = np.column_stack(
+            [log.topics["vel_cmd"][n] for n in ("stamp", "w1", "w2", "w3", "w4")]
+        )
+        sent = sent[np.isfinite(sent[:, 0])]
+        sent = sent[np.append(True, np.diff(sent[:, 0]) > 0)]
+        np.testing.assert_array_equal(sent[:, 1:], table[:, 1:])
+        self.assertTrue((sent[:, 0] >= times - 1e-9).all(), sent[:, 0])
+        kept = qc.Log.of_file(out).table
+        np.testing.assert_allclose(kept[:, 0], 0.001 * np.arange(401), atol=1e-9)
+        at = np.searchsorted(log.time, kept[:, 0] - 1e-6)
+        np.testing.assert_array_equal(kept[:, 1:], log.table[at, 1:14])
 
     def test_the_player_ends_with_its_recording(self):
         bag = self.folder / "short.bag"
