@@ -20,11 +20,11 @@ debian_packages="catkin rosout python3-rosbag python3-roslaunch python3-rosnode 
   ros-message-runtime libdiagnostic-msgs-dev libgeometry-msgs-dev libnav-msgs-dev libroscpp-dev
   libros-rosgraph-msgs-dev librostest-dev libsensor-msgs-dev libstd-msgs-dev libstd-srvs-dev
   libtf2-msgs-dev libtrajectory-msgs-dev
-  pybind11-dev python3-dev python3-numpy python3-setuptools"
+  pybind11-dev python3-dev python3-numpy python3-scipy python3-setuptools"
 noetic_packages="ros-noetic-ros-base ros-noetic-rostest ros-noetic-tf2-msgs ros-noetic-diagnostic-msgs
   ros-noetic-nav-msgs ros-noetic-sensor-msgs ros-noetic-std-srvs ros-noetic-trajectory-msgs
   ros-noetic-xacro
-  pybind11-dev python3-dev python3-numpy python3-setuptools"
+  pybind11-dev python3-dev python3-numpy python3-scipy python3-setuptools"
 
 as_root() {
   if [ "$(id -u)" = 0 ]; then env DEBIAN_FRONTEND=noninteractive "$@"
@@ -58,7 +58,7 @@ copy_sources() {
   rm -rf $workspace/src/quadcore
   mkdir -p $workspace/src/quadcore/tests
   cp -rp CMakeLists.txt LICENSE README.md package.xml pyproject.toml setup.py cpp python launch msg srv \
-    urdf worlds config scripts $workspace/src/quadcore
+    urdf worlds config docs scripts $workspace/src/quadcore
   cp -rp tests/ros $workspace/src/quadcore/tests
   # Messages of others that the distribution lacks.
   local package
@@ -143,9 +143,9 @@ copy_sources
 build
 say "running the ROS tests"
 SECONDS=0
-(run_in devel topics services lockstep playing clock several parameters faults masters fly_from_python \
+(run_in devel topics services lockstep playing logs clock several parameters faults masters fly_from_python \
   controller controller_faults set_points pid joystick launch plugin_by_others plugin_topics sensors \
-  disturbances rotors rotors_topics rotors_hover gazebo gazebo_launch)
+  disturbances rotors rotors_topics rotors_hover gazebo gazebo_launch pages)
 (run_in install launch playing fly_from_python plugin_by_others)
 [ ! -e $workspace/failed ]
 say "the ROS tests passed in $SECONDS s"
