@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import glob
 import os
 import shutil
 import stat
@@ -247,6 +248,22 @@ def check_writable(path: Path) -> None:
 def unwritable(path: Path, error: OSError) -> InputError:
     """Make the error that says why a file cannot be written."""
     return InputError(f"{path}: cannot be written: {error.strerror or error}")
+
+
+def remove_left(path: Path) -> None:
+    """Remove what processes that were killed while they wrote `path` have left beside it."""
+    target = Path(os.path.realpath(str(path)))
+    for part in target.parent.glob(f".{glob.escape(target.name)}.*.part"):
+        number = part.name[len(target.name) + 2 :].partition(".")[0]
+        if not number.isdigit():
+            continue
+        try:
+            os.kill(int(number), 0)
+        except (ProcessLookupError, OverflowError):
+            with contextlib.suppress(OSError):
+                part.unlink()
+        except PermissionError:  # it runs, as somebody else
+            pass
 
 
 def _replaceable(path: Path) -> bool:

@@ -1,5 +1,6 @@
 """Bags of ROS: logs in them, and what comes out of those that the node's topics fill."""
 
+import os
 import subprocess
 
 import numpy as np
@@ -46,6 +47,20 @@ def test_a_log_goes_round_all_formats_bit_for_bit(log, tmp_path):
         assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
         assert_same(qc.Log.of_file(tmp_path / target), log)
     assert (tmp_path / "d.csv").read_bytes() == (tmp_path / "a.csv").read_bytes()
+
+
+def test_what_a_killed_conversion_left_goes_with_the_next(log, tmp_path):
+    """Of a process that has gone; one that runs is at work."""
+    gone = subprocess.Popen(["true"])
+    gone.wait()
+    log.to_file(tmp_path / "a.csv")
+    others = [f".b.bag.{os.getpid()}.part", ".c.bag.1.part", ".b.bag.mine.part"]
+    for name in (f".b.bag.{gone.pid}.part", f".b.bag.{gone.pid}.rows.part", *others):
+        (tmp_path / name).touch()
+    done = ran("convert", str(tmp_path / "a.csv"), str(tmp_path / "b.bag"))
+    assert done.returncode == 0, done.stderr
+    left = sorted(path.name for path in tmp_path.iterdir())
+    assert left == sorted(["a.csv", "b.bag", *others])
 
 
 def test_what_was_ignored_stays_known(log, tmp_path):

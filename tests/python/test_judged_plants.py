@@ -7,6 +7,7 @@ import pytest
 from processes import ran, refused
 
 import quadcore as qc
+from quadcore.formats.bag_messages import ARRAY, Messages
 
 MOVING = {"linear_velocity": [1.0, -0.5, 0.2], "rotor_velocity": [47.0, -46, 47, -46]}
 
@@ -56,6 +57,22 @@ def test_a_wrong_model_is_far_from_the_recording(recording, tmp_path):
     apart = largest(tmp_path)
     assert apart["eigen", "z"] > 0.1 and apart["chapter 2", "z"] > 0.1
     assert ("gazebo11", "z") not in apart
+
+
+def test_a_bag_of_the_thesis_lacks_the_rotors_and_says_so(tmp_path):
+    """Its Gazebo sent odom and took vel_cmd, no more."""
+    writer = pytest.importorskip("rosbags.rosbag1").Writer
+    messages, state = Messages(), np.array([0, 0, 1, 0, 0, 0, 1, *[0] * 6], dtype=float)
+    with writer(tmp_path / "thesis.bag") as bag:
+        odometry = bag.add_connection("/odom", "nav_msgs/msg/Odometry", typestore=messages.store)
+        commands = bag.add_connection("/quadrotor/vel_cmd", ARRAY, typestore=messages.store)
+        stamp = messages._stamp(0.0)
+        bag.write(odometry, 1, messages._odometry(stamp, state, [0.0] * 4))
+        speeds = np.array([480.0, -480, 480, -480])
+        bag.write(commands, 1, messages.array(speeds, messages.layout(["w"], 4)))
+    found = refused("validate", "--plant", str(tmp_path / "thesis.bag"))
+    assert "topics that end in ground_truth/odometry: none" in found
+    assert "record both, or give a .csv or .mat file with the columns of a log" in found
 
 
 def test_what_cannot_be_judged_is_one_line(recording):

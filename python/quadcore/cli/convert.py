@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from ..files import remove_left
 from ..log import Log, check_log_path
 from . import options
 
@@ -23,4 +24,5 @@ def register(commands: Any) -> None:
 def convert(arguments: argparse.Namespace) -> None:
     """Read one, write the other."""
     check_log_path(arguments.target)
+    remove_left(arguments.target)
     Log.of_file(arguments.source).to_file(arguments.target)

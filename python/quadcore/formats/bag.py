@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import shutil
-import tempfile
 from pathlib import Path
 from typing import Any, Dict, Iterator, List, Mapping, Sequence, Tuple
 
 import numpy as np
 
+from .. import interrupts
 from .._core import InputError, QuadcoreError, log_columns
 from ..extras import needed
-from ..files import atomic_write, check_regular
+from ..files import atomic_write, check_regular, unwritable
 from ..rotation import roll_pitch_yaw
 from .at_the_end import AtTheEnd
 from .bag_messages import ARRAY, Messages
@@ -133,7 +134,8 @@ def _only(path: Path, bag: Any, kind: str, name: str) -> List[Any]:
     if len(topics) != 1:
         raise InputError(
             f"{path}: topics that end in {name}: {', '.join(topics) or 'none'}; a bag of a flight "
-            "has one, and joint_states"
+            "has one ground_truth/odometry and one joint_states, with the speeds of the rotors; "
+            "record both, or give a .csv or .mat file with the columns of a log"
         )
     return found
 
@@ -194,9 +196,8 @@ def write_log(
     names = [*columns, *wrench_columns(list(wrenches))]
     layout = messages.layout([",".join(names), *ignored], len(names))
     of_node = messages.of_node(columns)
-    with tempfile.TemporaryDirectory(dir=str(path.parent)) as folder, atomic_write(path) as stream:
-        part = Path(folder) / "log.bag"  # the library writes to a name only
-        with Writer(part) as bag:
+    with _name_beside(path) as part, atomic_write(path) as stream:
+        with Writer(part) as bag:  # to a name only
             connections = {
                 topic: bag.add_connection(topic, kind, typestore=messages.store)
                 for topic, kind in [*of_node.kinds.items(), (LOG, ARRAY)]
@@ -210,6 +211,21 @@ def write_log(
                     bag.write(connections[topic], max(1, round(time * 1e9)), data)
         with part.open("rb") as written:
             shutil.copyfileobj(written, stream)
+
+
+@contextlib.contextmanager
+def _name_beside(path: Path) -> Iterator[Path]:
+    """Name a file for a while; one that a process left which was killed is in nobody's way."""
+    part = path.with_name(f".{path.name}.{os.getpid()}.rows.part")
+    with contextlib.suppress(FileNotFoundError):
+        part.unlink()
+    try:
+        yield part
+    except OSError as error:
+        raise unwritable(path, error) from error
+    finally:
+        with interrupts.held(), contextlib.suppress(OSError):
+            part.unlink()
 
 
 def log_file(
