@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "quadcore/error.hpp"
+#include "quadcore/plugin_library.hpp"
 #include "quadcore/text.hpp"
 
 namespace quadcore::fmu {
@@ -22,6 +23,8 @@ Instance::Instance(const std::string& resources, const std::string& guid)
     throw InputError("the GUID is " + guid + ", this FMU's is " + file_.guid +
                      "; read its modelDescription.xml anew");
   }
+  // The core may be that of the same FMU in another folder, which is gone.
+  load_plugin_path(resources + "/../binaries/linux64");
 }
 
 void Instance::start_at(double time) {

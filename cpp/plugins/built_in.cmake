@@ -1,7 +1,6 @@
-# quadcore_build_in(TARGET SEARCHED PLUGIN...): gives a target the table of the plugins that it has
-# inside, each under its own symbol; a shared core has none. SEARCHED: whether folders are searched for
-# others, and before those.
-function(quadcore_build_in target searched)
+# quadcore_build_in(TARGET PLUGIN...): gives a target the table of the plugins that it has inside, each
+# under its own symbol; a shared core has none.
+function(quadcore_build_in target)
   set(declarations "")
   set(entries "")
   foreach(plugin ${ARGN})

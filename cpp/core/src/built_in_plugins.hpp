@@ -11,7 +11,4 @@ namespace quadcore {
 /// shared core. Made by the build.
 const std::map<std::string, const PluginModule*>& built_in_plugins();
 
-/// Whether plugins may come from folders, too. Made by the build.
-bool folders_are_searched();
-
 }  // namespace quadcore

@@ -18,18 +18,27 @@ namespace {
 std::mutex added_mutex;
 std::vector<std::string> added_folders;
 
-std::string own_folder() {
-  Dl_info info;
-  if (!dladdr(reinterpret_cast<const void*>(&own_folder), &info)) return ".";
-  return std::filesystem::canonical(info.dli_fname).parent_path().string();
+/// Of the core; it may be gone by now.
+const std::string& own_folder() {
+  static const std::string folder = [] {
+    Dl_info info;
+    if (!dladdr(reinterpret_cast<const void*>(&own_folder), &info)) return std::string(".");
+    return std::filesystem::canonical(info.dli_fname).parent_path().string();
+  }();
+  return folder;
 }
-
-/// Folder of the shipped modules that have the names of another program's, which must not find
-/// them.
-std::string named_as_others() { return own_folder() + "/quadcore"; }
 
 std::string who_is(const PluginElement& element) {
   return element.where + ": plugin '" + element.name + "': " + element.filename;
+}
+
+/// The folders, and in each the one of those shipped modules that have the names of another
+/// program's, which must not find them.
+std::vector<std::string> folders_within() {
+  std::vector<std::string> folders = plugin_folders();
+  const std::size_t n = folders.size();
+  for (std::size_t i = 0; i < n; ++i) folders.push_back(folders[i] + "/quadcore");
+  return folders;
 }
 
 /// The nearest module in the folders or built in, if it differs by a slip only.
@@ -38,9 +47,7 @@ std::string misspelt(const std::string& filename) {
   for (const auto& [name, module] : built_in_plugins()) {
     if (is_slip(filename, name)) modules.push_back(name);
   }
-  std::vector<std::string> folders = plugin_folders();
-  if (built_in_plugins().empty()) folders.push_back(named_as_others());
-  for (const std::string& folder : folders) {
+  for (const std::string& folder : folders_within()) {
     std::error_code unreachable;
     for (const auto& file : std::filesystem::directory_iterator(folder, unreachable)) {
       const std::string name = file.path().filename().string();
@@ -94,12 +101,13 @@ void load_plugin_path(const std::string& folder) {
     throw InputError(folder + ": is not a folder; give one that holds plugin libraries");
   }
   const std::lock_guard<std::mutex> lock(added_mutex);
+  const auto known = std::find(added_folders.begin(), added_folders.end(), whole.string());
+  if (known != added_folders.end()) added_folders.erase(known);
   added_folders.insert(added_folders.begin(), whole.string());
 }
 
 std::vector<std::string> plugin_folders() {
   std::vector<std::string> folders;
-  if (!folders_are_searched()) return folders;
   {
     const std::lock_guard<std::mutex> lock(added_mutex);
     folders = added_folders;
@@ -116,22 +124,23 @@ std::vector<std::string> plugin_folders() {
 
 std::optional<std::string> find_plugin(const std::string& filename) {
   if (filename.find('/') != std::string::npos) return std::nullopt;
-  for (const std::string& folder : plugin_folders()) {
+  for (const std::string& folder : folders_within()) {
     const std::string path = (std::filesystem::path(folder) / filename).string();
     std::error_code unreachable;
     if (std::filesystem::exists(path, unreachable)) return path;
   }
   if (built_in_plugins().count(filename)) return filename;
-  const std::string own = named_as_others() + "/" + filename;
-  std::error_code unreachable;
-  if (std::filesystem::exists(own, unreachable)) return own;
   return std::nullopt;
 }
 
 bool is_named_as_others(const std::string& path) {
-  const std::filesystem::path file = path;
-  return file.parent_path() == named_as_others() ||
-         (built_in_plugins().count(path) && path.rfind("librotors_gazebo_", 0) == 0);
+  const std::string name = "librotors_gazebo_";
+  if (path.find('/') == std::string::npos) return path.rfind(name, 0) == 0;
+  const std::filesystem::path parent = std::filesystem::path(path).parent_path();
+  const std::vector<std::string> folders = plugin_folders();
+  return std::any_of(folders.begin(), folders.end(), [&](const std::string& folder) {
+    return parent == std::filesystem::path(folder) / "quadcore";
+  });
 }
 
 PluginLibrary open_plugin(const PluginElement& element, const std::string& path) {

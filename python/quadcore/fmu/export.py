@@ -18,10 +18,10 @@ from ..files import atomic_write
 from ..flight_plan import FlightPlan
 from ..simulation import Simulation
 from .description import description
+from .libraries import Libraries
 from .variables import Variable, spawn_and_seed, variables_of
 
 _VERSION = 1  # of flight.yaml, which cpp/fmu/flight_file.cpp reads
-_LIBRARY = "libquadcore_fmu.so"
 _OPTIONS = (
     "engine", "world", "dt", "seed", "parameters", "xacro_args", "spawn", "ignore", "scenario",
 )  # fmt: skip
@@ -69,14 +69,15 @@ def write_fmu(path: Path, plan: FlightPlan) -> None:
     simulation = plan.simulation()
     if plan.engine not in dict(_core.engines()):
         raise InputError(f"an FMU flies on one of the engines, not on {plan.engine}; choose one")
-    libraries = _libraries(simulation)
+    libraries = Libraries(simulation)
     variables = [*variables_of(simulation), *spawn_and_seed(plan.spawn, plan.seed)]
     files = dict(_files(simulation))
     flight = _flight(plan, simulation, variables, {tag: name for tag, (name, _) in files.items()})
     contents = {f"resources/{name}": data for name, data in files.values()}
     digest = hashlib.sha256(_yaml(flight))
-    for _, data in sorted([*contents.items(), *libraries]):
+    for _, data in sorted(contents.items()):
         digest.update(data)
+    digest.update(libraries.content())
     guid = str(uuid.UUID(bytes=digest.digest()[:16]))
     name = simulation.model.name
     identifier = re.sub(r"\W|^(?=\d)", "_", name, flags=re.ASCII)
@@ -84,43 +85,13 @@ def write_fmu(path: Path, plan: FlightPlan) -> None:
         name, identifier, f"{{{guid}}}", f"quadcore {__version__}", simulation.dt, variables
     )
     contents["resources/flight.yaml"] = _yaml({**flight, "guid": f"{{{guid}}}"})
-    for library, data in libraries:
-        own = library == _LIBRARY
-        contents[f"binaries/linux64/{f'{identifier}.so' if own else library}"] = data
+    for library, data in libraries.files(identifier, guid).items():
+        contents[f"binaries/linux64/{library}"] = data
     with atomic_write(path) as stream, zipfile.ZipFile(stream, "w") as archive:
         for place, data in contents.items():
             entry = zipfile.ZipInfo(place, _LONG_AGO)
             entry.external_attr = 0o644 << 16
             archive.writestr(entry, data, zipfile.ZIP_DEFLATED)
-
-
-def _libraries(simulation: Simulation) -> List[Tuple[str, bytes]]:
-    """Read what is to be inside: this library and what it needs."""
-    own = Path(_core.plugin_folders()[-1])
-    for plugin in simulation.plugins:
-        if Path(plugin.path).parent not in (own, own / "quadcore"):
-            raise InputError(
-                f"plugin '{plugin.name}': {plugin.filename} in {Path(plugin.path).parent} is none "
-                "of quadcore's own, which alone are inside an FMU; leave it out with --ignore"
-            )
-    library = own / "fmu" / _LIBRARY
-    if not library.is_file():
-        raise InputError(
-            f"{library}: is missing: quadcore was built where libode.a or libccd was not found, or "
-            "without QUADCORE_BUILD_FMU; build it anew"
-        )
-    found = {_LIBRARY: library.read_bytes()}
-    # Where the build puts what it needs, and where a wheel that was made for all machines has it.
-    others = [*(own / "fmu").glob("*.so*"), *own.parents[1].glob("quadcore.libs/*.so*")]
-    missed = True
-    while missed:
-        missed = False
-        for other in others:
-            is_named = any(other.name.encode() + b"\0" in data for data in found.values())
-            if is_named and other.name not in found:
-                found[other.name] = other.read_bytes()
-                missed = True
-    return sorted(found.items())
 
 
 def _files(simulation: Simulation) -> Iterator[Tuple[str, Tuple[str, bytes]]]:
