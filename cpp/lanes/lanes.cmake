@@ -27,5 +27,7 @@ function(quadcore_compile_lanes target source)
       endif()
     endif()
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${object}>)
+    # For who takes the objects of the target.
+    set_property(TARGET ${target} APPEND PROPERTY lane_objects $<TARGET_OBJECTS:${object}>)
   endforeach()
 endfunction()

@@ -11,6 +11,4 @@ function(quadcore_build_in target)
   set(table ${CMAKE_CURRENT_BINARY_DIR}/${target}_built_in_plugins.cpp)
   configure_file(${PROJECT_SOURCE_DIR}/cpp/plugins/built_in_plugins.cpp.in ${table} @ONLY)
   target_sources(${target} PRIVATE ${table})
-  # Whoever takes the objects of a target brings a table of its own.
-  set_source_files_properties(${table} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()

@@ -13,7 +13,7 @@ its faults, driven from Python.
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, List
 
-from . import laws, references
+from . import core, laws, references
 from ._core import (
     FlightError,
     InputError,

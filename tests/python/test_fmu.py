@@ -376,3 +376,38 @@ def test_the_command_line_writes_one(tmp_path):
     assert "name a file that ends in .fmu" in refused("export-fmu", "quadrotor", "-o", "x.zip")
     assert "no shipped model" in refused("export-fmu", "nothing", "-o", str(tmp_path / "y.fmu"))
     assert not (tmp_path / "y.fmu").exists()
+
+
+FIRST = """
+import os, sys
+sys.path.insert(0, sys.argv[1])
+from imported import Imported
+one = Imported(sys.argv[2], __import__("pathlib").Path(sys.argv[3]))
+one.step()
+import quadcore as qc
+assert not qc.plugin_folders()[-1].startswith(sys.argv[3])
+simulation = qc.Simulation("quadrotor")
+simulation.step(1)
+assert one.get("z") == [simulation.state.position[2]]
+"""
+
+
+def test_python_flies_by_its_own_core_after_an_fmu_was_flown(fmus, tmp_path):
+    """The loader takes a library for one that it has loaded under the same name."""
+    done = subprocess.run(
+        [sys.executable, "-c", FIRST, HERE, str(fmus("gazebo11")), str(tmp_path / "one")],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("model", ["quadrotor", "firefly"])
+def test_it_flies_again_when_the_folder_of_its_first_flight_is_gone(model, fmus, tmp_path):
+    rows = []
+    for name in ("first", "second"):
+        instance = Imported(fmus(model=model), tmp_path / name)
+        instance.step(0.1)
+        rows.append(instance.row())
+        instance.close()
+        shutil.rmtree(str(tmp_path / name))
+    assert rows[0] == rows[1]
