@@ -39,6 +39,13 @@ inside() {
     chroot "$root" "$@"
 }
 
+# The same, in which nothing is compiled twice: but for the bindings, it is the same for all Pythons.
+compiled_once() {
+  local system=$1
+  shift
+  inside "$system" env CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=/ CCACHE_NOHASHDIR=1 "$@"
+}
+
 leave_systems() {
   local root
   for root in "$systems"/*/; do

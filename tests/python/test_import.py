@@ -1,5 +1,10 @@
 """What `import quadcore` brings in, and what it leaves until somebody asks."""
 
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
 from processes import script
 
 import quadcore as qc
@@ -34,3 +39,36 @@ def test_every_name_is_there_when_it_is_asked_for():
     text = "import quadcore; print(*(name for name in dir(quadcore) if hasattr(quadcore, name)))"
     assert set(qc.__all__) <= set(script(text).stdout.split())
     assert "has no attribute 'evaluat'" in script("import quadcore; quadcore.evaluat").stderr
+
+
+def test_a_library_that_is_missing_is_named_with_its_package(tmp_path):
+    """As the loader says it, in a package that has nothing but the beginning."""
+    package = tmp_path / "quadcore"
+    package.mkdir()
+    (package / "__init__.py").write_text("from . import core")
+    shutil.copy(qc.core.__file__, str(package / "core.py"))
+    loading = "cannot open shared object file: No such file or directory"
+    packages = {"libode.so.8": "libode8", "libtinyxml2.so.9": "libtinyxml2-9"}
+    packages["libyaml-cpp.so.0.7"] = "libyaml-cpp0.7"
+    for file, name in packages.items():
+        (package / "_core.py").write_text(f"raise ImportError('{file}: {loading}')")
+        said = script("import quadcore", cwd=tmp_path).stderr
+        assert said.splitlines()[-1] == (
+            f"ImportError: quadcore was built with {file}, which is not there; install it (Debian, "
+            f"Ubuntu: apt-get install {name}), or build quadcore anew"
+        )
+    (package / "_core.py").write_text("raise ImportError('another')")
+    assert script("import quadcore", cwd=tmp_path).stderr.endswith(
+        "ImportError: another\n"
+    )
+
+
+def test_a_build_names_the_packages_that_it_lacks(tmp_path):
+    root = Path(__file__).parents[2]
+    done = subprocess.run(
+        ["cmake", "-S", str(root), "-B", str(tmp_path), "-DQUADCORE_WITH_ROS=OFF"],
+        env={**os.environ, "PKG_CONFIG_LIBDIR": str(tmp_path)},
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode != 0
+    assert "apt-get install libode-dev libtinyxml2-dev libyaml-cpp-dev\n" in done.stderr
