@@ -13,7 +13,8 @@ its faults, driven from Python.
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, List
 
-from . import core, laws, references
+from . import core as core  # before all that needs it
+from . import laws, references
 from ._core import (
     FlightError,
     InputError,

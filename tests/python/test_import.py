@@ -58,9 +58,7 @@ def test_a_library_that_is_missing_is_named_with_its_package(tmp_path):
             f"Ubuntu: apt-get install {name}), or build quadcore anew"
         )
     (package / "_core.py").write_text("raise ImportError('another')")
-    assert script("import quadcore", cwd=tmp_path).stderr.endswith(
-        "ImportError: another\n"
-    )
+    assert script("import quadcore", cwd=tmp_path).stderr.endswith("ImportError: another\n")
 
 
 def test_a_build_names_the_packages_that_it_lacks(tmp_path):
