@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
+import struct
 from pathlib import Path
 from typing import Dict, List, Set
 
@@ -13,7 +14,7 @@ from ..simulation import Simulation
 
 # The loader takes a library for one that it has loaded under the same name, so an FMU's would fly
 # by another's core, or by this one's, whose folders may be gone.
-_NAME = re.compile(rb"(?<=\0)[\w.+-]+\.so(?:\.\d+)*(?=\0)")
+_PT_LOAD, _PT_DYNAMIC, _DT_NEEDED, _DT_STRTAB = 1, 2, 1, 5
 _EVERYWHERE = re.compile(r"(ld-linux.*|lib(c|m|dl|rt|pthread|stdc\+\+|gcc_s))\.so.*")
 
 
@@ -50,10 +51,10 @@ class Libraries:
                 )
             self._plugins[str(path.relative_to(own))] = path.read_bytes()
         self._linked: Dict[str, bytes] = {}
-        loaded = [path for path in _loaded() if path.parent != own or "libquadcore" in path.name]
+        loaded = _loaded()
         to_see = [self._interface, *self._plugins.values()]
         while to_see:
-            for name in _names(to_see.pop()) - set(self._linked):
+            for name in _needed(to_see.pop()) - set(self._linked):
                 for path in loaded:
                     if f"{path.name}.".startswith(f"{name}."):  # links lead to longer names
                         self._linked[name] = path.read_bytes()
@@ -86,9 +87,22 @@ class Libraries:
         return files
 
 
-def _names(data: bytes) -> Set[str]:
-    """Find the names in a library that may be those of others."""
-    names = {name.decode() for name in _NAME.findall(data)}
+def _needed(data: bytes) -> Set[str]:
+    """Read from an ELF file for 64 bits which others it needs (man 5 elf)."""
+    (headers,) = struct.unpack_from("<Q", data, 32)
+    size, count = struct.unpack_from("<HH", data, 54)
+    # Type, flags, offset, address, physical address, size.
+    segments = [struct.unpack_from("<IIQQQQ", data, headers + i * size) for i in range(count)]
+    dynamic = next(segment for segment in segments if segment[0] == _PT_DYNAMIC)
+    entries = list(struct.iter_unpack("<QQ", data[dynamic[2] : dynamic[2] + dynamic[5] // 16 * 16]))
+    address = dict(entries)[_DT_STRTAB]
+    texts = next(
+        address - segment[3] + segment[2]
+        for segment in segments
+        if segment[0] == _PT_LOAD and segment[3] <= address < segment[3] + segment[5]
+    )
+    starts = [texts + value for tag, value in entries if tag == _DT_NEEDED]
+    names = {data[start : data.index(b"\0", start)].decode() for start in starts}
     return {name for name in names if not _EVERYWHERE.fullmatch(name)}
 
 
