@@ -24,7 +24,7 @@ from ._core import InputError
 from .batch_state import BatchState as BatchState
 from .description import read_both
 from .flight import check_logged, steps_within
-from .given import Value, poses, seeds, text_of, whole
+from .given import Value, engine_and_step, poses, seeds, text_of, whole
 from .log import Log
 from .overrides import check_names, with_links, without_xacro
 from .warning import QuadcoreWarning
@@ -92,6 +92,7 @@ class BatchSimulation(_core.Batch):
         self.n = whole(n, "n")
         if self.n < 1:
             raise InputError("n is 0; give the number of vehicles")
+        engine, dt = engine_and_step(engine, dt)
         given = parameters or {}
         arguments, others = without_xacro(given, xacro_args)
         model, self.world = read_both(model, world, arguments, ignore)

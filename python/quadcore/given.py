@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -22,6 +22,21 @@ def whole(seed: object, name: str = "seed", bits: int = 64) -> int:
     if not is_whole or not 0 <= seed < 2**bits:  # type: ignore[operator]
         raise _core.InputError(f"{name} is {seed!r}; give a whole number from 0 to 2^{bits} - 1")
     return int(seed)  # type: ignore[call-overload,no-any-return]
+
+
+def engine_and_step(engine: object, dt: object) -> Tuple[str, Optional[float]]:
+    """Check an engine's name, known or not, and the length of a step or None."""
+    if not isinstance(engine, str):
+        known = ", ".join(name for name, _ in _core.engines())
+        raise _core.InputError(f"engine is {engine!r}; give one of {known}")
+    if dt is None:
+        return engine, None
+    try:
+        if not isinstance(dt, (str, bytes)):
+            return engine, float(dt)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        pass
+    raise _core.InputError(f"dt is {dt!r}; give the length of a step in s")
 
 
 def text_of(value: Value) -> str:

@@ -13,7 +13,7 @@ from . import _core, references
 from .controller import Controller, Guided
 from .description import list_of_names, read_both
 from .flight import Progress, Rows, columns_of, fly
-from .given import Number, Value, pose, text_of, whole
+from .given import Number, Value, engine_and_step, pose, text_of, whole
 from .law import Law
 from .log import Log
 from .overrides import check_names, with_links, without_xacro
@@ -82,6 +82,7 @@ class Simulation(_core.Simulation):
         spawn: Sequence[Number] = (0, 0, 10),
         ignore: Sequence[str] = (),
     ) -> None:
+        engine, dt = engine_and_step(engine, dt)
         given = parameters or {}
         arguments, others = without_xacro(given, xacro_args)
         model, self.world = read_both(model, world, arguments, ignore)

@@ -32,6 +32,26 @@ def test_commands_that_are_no_real_numbers_are_refused():
     simulation.command([1, 2, 3, np.float32(4)])
 
 
+@pytest.mark.parametrize("make", [qc.Simulation, qc.BatchSimulation])
+def test_an_engine_and_a_step_that_are_none_are_refused_in_one_line(make):
+    for given, told in (
+        ({"engine": None}, "engine is None; give one of gazebo11, ode, eigen"),
+        ({"engine": 3}, "engine is 3; give one of gazebo11, ode, eigen"),
+        ({"dt": "a"}, "dt is 'a'; give the length of a step in s"),
+        ({"dt": [1, 2]}, "dt is [1, 2]; give the length of a step in s"),
+    ):
+        with pytest.raises(qc.InputError) as refusal:
+            make("quadrotor", **given)
+        assert str(refusal.value) == told
+
+
+def test_flights_compared_without_commands_are_told_of(capsys):
+    flight = ["compare", "quadrotor", "--engine", "eigen", "--duration", "0.01", "--no-plots"]
+    assert main([*flight, "--vary", "motorpid_plugin.kp=0.0005,0.001"]) == 0
+    told = capsys.readouterr().err
+    assert "nothing commands the rotors" in told and "quadcore evaluate" in told
+
+
 def test_an_interrupt_inside_an_argument_is_one():
     class Interrupting:
         def __array__(self, *_, **__):

@@ -7,7 +7,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from .._core import FlightError, InputError
+from .._core import FlightError, InputError, QuadcoreError
 from ..comparison.compare import Comparison, fly
 from ..comparison.output import FILES, drawn, listed, summary, write
 from ..comparison.plan import Plan
@@ -17,6 +17,7 @@ from ..study.sampling import thinned
 from ..study.table import number_text, shown_in
 from . import options, terminal, values
 from .kept import kept
+from .unmeant import warn_of_commands
 
 _ROWS = 40  # on the terminal
 _FEW = 20  # logs that --out writes unasked
@@ -58,6 +59,7 @@ def compare(arguments: argparse.Namespace) -> None:
     out = arguments.out
     if out is not None:
         prepare_folder(out, FILES)  # after the flights would be too late
+    _warn_of_commands(plan)
     if not arguments.quiet:
         _show_models(plan)
 
@@ -99,6 +101,17 @@ def _plan(arguments: argparse.Namespace) -> Plan:
             "scenario": arguments.scenario,
             "wrenches": arguments.wrenches,
         },
+    )
+
+
+def _warn_of_commands(plan: Plan) -> None:
+    first = plan.flight(next(iter(plan)))
+    try:
+        simulation = first.simulation()
+    except QuadcoreError:  # a row of the table, with its reason
+        return
+    warn_of_commands(
+        simulation, first, "fly with a controller: quadcore evaluate takes --vary, too"
     )
 
 

@@ -12,15 +12,18 @@ from ..simulation import Simulation
 from ..warning import QuadcoreWarning
 
 
-def warn_of_commands(simulation: Simulation, plan: FlightPlan) -> None:
-    """Warn of a flight that can hardly be meant: no commands, or all rotors turning one way."""
+def warn_of_commands(simulation: Simulation, plan: FlightPlan, otherwise: str) -> None:
+    """Warn of a flight that can hardly be meant: no commands, or all rotors turning one way.
+
+    `otherwise` is what may be given instead of commands.
+    """
     topic = simulation.topics.get(simulation.command_topic)
     if plan.controller is not None or topic is None or topic.writer is not None:
         return
     if plan.commands is None:
         _warn(
             "nothing commands the rotors, so that the vehicle falls; give --commands FILE, or "
-            "--controller geometric, which hovers"
+            + otherwise
         )
     elif _one_way(plan.commands[:, 1:]):
         try:
