@@ -16,6 +16,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import quadcore as qc
+from quadcore import vehicle_picture
 from quadcore.plots import dress, png
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -165,9 +166,17 @@ def draw_rotors() -> None:
     save(figure, "rotors_steps")
 
 
+def draw_vehicle() -> None:
+    """Draw the shipped quadrotor as ``quadcore info --picture`` does."""
+    figure = vehicle_picture.draw(qc.Simulation("quadrotor", xacro_args={"sim_slow": 1}))
+    figure.set_dpi(90)
+    save(figure, "vehicle")
+
+
 if __name__ == "__main__":
     save(spiral.picture(spiral.fly()), "spiral")
     draw_flight()
     draw_wrenches()
     draw_contact()
     draw_rotors()
+    draw_vehicle()
