@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
+from PIL import Image
 
 import quadcore as qc
 from quadcore import vehicle_picture
@@ -169,8 +170,9 @@ def draw_rotors() -> None:
 def draw_vehicle() -> None:
     """Draw the shipped quadrotor as ``quadcore info --picture`` does."""
     figure = vehicle_picture.draw(qc.Simulation("quadrotor", xacro_args={"sim_slow": 1}))
-    figure.set_dpi(90)
     save(figure, "vehicle")
+    file = IMAGES / "vehicle.png"
+    Image.open(file).convert("RGB").quantize(64, dither=Image.Dither.NONE).save(file, optimize=True)
 
 
 if __name__ == "__main__":

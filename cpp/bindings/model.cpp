@@ -8,6 +8,7 @@
 #include "bindings.hpp"
 #include "built.hpp"
 #include "quadcore/document.hpp"
+#include "quadcore/drawing.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/gazebo_reference.hpp"
 #include "quadcore/seen_or_sensed.hpp"
@@ -38,6 +39,17 @@ Places joint_places(const Model& model) {
     places.row(static_cast<Eigen::Index>(i)) = poses[i + 1].translation();
   }
   return places;
+}
+
+/// Row i: on the far side along axis k of the box where bit k of i is set [m].
+py::array_t<double> corners_of_box(const Link& link) {
+  const InertiaBox box = inertia_box(link.inertial);
+  Eigen::Matrix<double, 8, 3, Eigen::RowMajor> corners;
+  for (int i = 0; i < 8; ++i) {
+    const Vector3d sides((i & 1) - 0.5, (i >> 1 & 1) - 0.5, (i >> 2 & 1) - 0.5);
+    corners.row(i) = box.center + box.orientation * sides.cwiseProduct(box.edges);
+  }
+  return py::cast(corners);
 }
 
 /// Pose i: of link i in the frame [m], as a homogeneous matrix.
@@ -135,6 +147,9 @@ most_levels, most_attributes : int
       .def_property_readonly(
           "inertia", [](const Link& link) { return link.inertial.inertia_in_link_axes(); },
           "About the centre of mass, along the link's axes, kg m^2; shape (3, 3).")
+      .def_property_readonly("inertia_box", &corners_of_box,
+                             "Corners of the homogeneous box that has its mass and inertia, in the "
+                             "link's axes, m; shape (8, 3).")
       .def("__repr__",
            [](const Link& link) {
              return py::str("<Link '{}', {:.6g} kg>").format(text(link.name), link.inertial.mass);
@@ -172,6 +187,9 @@ most_levels, most_attributes : int
           "link_poses", [](const Built<Model>& held) { return poses_of_links(*held); },
           "Pose of each of `links` in the frame, all joints at angle zero: homogeneous matrices, "
           "m; shape (n + 1, 4, 4).")
+      .def_property_readonly(
+          "drawn_disc_radius", [](const Built<Model>& held) { return drawn_disc_radius(*held); },
+          "Of the rotors' discs in pictures, so that none covers another, m.")
       .def_property_readonly(
           "joint_places", [](const Built<Model>& held) { return joint_places(*held); },
           "Origin of each joint's link from the frame's, in the frame's axes, all joints at angle "

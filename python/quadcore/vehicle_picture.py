@@ -43,7 +43,7 @@ def draw(simulation: Simulation) -> Figure:
     """Draw what a simulation flies, all joints at angle zero: in space, and from above."""
     rotors, model = _rotors(simulation), simulation.model
     boxes = [_box(link, pose) for link, pose in zip(model.links, model.link_poses)]
-    radius = _radius(rotors)
+    radius = model.drawn_disc_radius
     figure = titled("", 11, 6.2)
     rims = [rotor.place + s * radius for rotor in rotors for s in (-1, 1)]
     title = f"{model.name}: {simulation.mass:.6g} kg, {len(rotors)} rotors"
@@ -81,23 +81,8 @@ def _rotors(simulation: Simulation) -> List[_Rotor]:
 
 
 def _box(link: _core.Link, pose: np.ndarray) -> np.ndarray:
-    """Corners in the frame of the homogeneous box with a link's mass and inertia; shape (8, 3).
-
-    Its edges are sqrt(6 (Iy + Iz - Ix) / m) and so on; one that no body can have is drawn as 0.
-    """
-    moments, axes = np.linalg.eigh(link.inertia)
-    edges = np.sqrt(np.maximum(6 * (moments.sum() - 2 * moments) / link.mass, 0))
-    signs = np.array([[(i >> k & 1) - 0.5 for k in range(3)] for i in range(8)])
-    corners = link.center_of_mass + (signs * edges) @ axes.T
-    return np.asarray(corners @ pose[:3, :3].T + pose[:3, 3])
-
-
-def _radius(rotors: List[_Rotor]) -> float:
-    """Of the discs, so that none covers another, m."""
-    places = np.array([rotor.place for rotor in rotors])
-    apart = [np.linalg.norm(a - b) for i, a in enumerate(places) for b in places[:i]]
-    apart = [distance for distance in apart if distance > 1e-3]  # coaxial ones share a place
-    return 0.4 * float(min(apart)) if apart else 0.1
+    """Corners in the frame of the box with a link's mass and inertia; shape (8, 3)."""
+    return np.asarray(link.inertia_box @ pose[:3, :3].T + pose[:3, 3])
 
 
 def _rim(rotor: _Rotor, radius: float) -> np.ndarray:
