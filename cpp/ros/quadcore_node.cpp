@@ -15,6 +15,7 @@
 #include "quadcore/error.hpp"
 #include "services.hpp"
 #include "settings.hpp"
+#include "vehicle_markers.hpp"
 
 namespace quadcore::node {
 namespace {
@@ -79,6 +80,7 @@ int run(const EndSignal& end_signal) {
   if (clock) neighbours.emplace(nh);
   const GazeboNeighbours* const known = neighbours ? &*neighbours : nullptr;
   GazeboStates gazebo_states(nh, simulation, model, known);
+  const VehicleMarkers markers(nh, simulation, prefix);
   Broadcast broadcast(nh, simulation, clock, prefix, gazebo_states, settings.rotor_tf);
   const std::vector<CommandTopic> topics = command_topics(nh, settings.plant, simulation);
   std::vector<std::string> taken = simulated(topics);

@@ -4,7 +4,7 @@
 # What needs others stands after them, for a package that lacks one of its own ends everything.
 set(ros_packages
   message_generation roscpp std_msgs std_srvs geometry_msgs sensor_msgs nav_msgs rosgraph_msgs
-  diagnostic_msgs tf2_msgs trajectory_msgs)
+  diagnostic_msgs tf2_msgs trajectory_msgs visualization_msgs)
 
 # The first python3 on PATH may be one that ROS' packages were not made for, and catkin ends the
 # configuration over it even when asked quietly. Some packages load catkin, so this comes first.
@@ -76,7 +76,7 @@ catkin_package(
   INCLUDE_DIRS cpp/core/include ${PROJECT_BINARY_DIR}/cpp/core/include
   LIBRARIES quadcore
   CATKIN_DEPENDS diagnostic_msgs geometry_msgs message_runtime nav_msgs roscpp rosgraph_msgs
-                 sensor_msgs std_msgs std_srvs tf2_msgs trajectory_msgs
+                 sensor_msgs std_msgs std_srvs tf2_msgs trajectory_msgs visualization_msgs
   CFG_EXTRAS ${CMAKE_CURRENT_LIST_DIR}/quadcore-target.cmake)
 export(TARGETS quadcore NAMESPACE quadcore::
        FILE ${CATKIN_DEVEL_PREFIX}/lib/cmake/quadcore/quadcore.cmake)
@@ -112,11 +112,12 @@ add_ros_node(quadcore_node
   cpp/ros/gazebo_physics.cpp
   cpp/ros/gazebo_services.cpp cpp/ros/gazebo_states.cpp cpp/ros/gazebo_wrenches.cpp
   cpp/ros/listener.cpp cpp/ros/master_api.cpp cpp/ros/master_check.cpp
-  cpp/ros/master_watch.cpp cpp/ros/mat_file.cpp cpp/ros/mat_log.cpp cpp/ros/odometry_topic.cpp cpp/ros/parameter_watch.cpp cpp/ros/path.cpp
+  cpp/ros/master_watch.cpp cpp/ros/mat_file.cpp cpp/ros/mat_log.cpp cpp/ros/odometry_topic.cpp
+  cpp/ros/parameter_watch.cpp cpp/ros/path.cpp
   cpp/ros/plant.cpp cpp/ros/private_parameters.cpp cpp/ros/quadcore_node.cpp cpp/ros/ros_types.cpp
   cpp/ros/rotors_types.cpp cpp/ros/services.cpp cpp/ros/settings.cpp
   cpp/ros/topic_broadcast.cpp cpp/ros/topic_inlets.cpp
-  cpp/ros/topic_services.cpp)
+  cpp/ros/topic_services.cpp cpp/ros/vehicle_markers.cpp)
 target_link_libraries(quadcore_node PRIVATE quadcore)
 add_ros_node(controller_node
   cpp/ros/controller_node.cpp cpp/ros/controller_settings.cpp cpp/ros/drag_choice.cpp
@@ -144,7 +145,8 @@ if(CATKIN_ENABLE_TESTING)
     add_ros_node(simulink_stand_in tests/ros/simulink_stand_in.cpp)
     foreach(test topics services lockstep playing logs clock several parameters faults masters launch
                  fly_from_python controller controller_faults set_points pid joystick sensors
-                 disturbances rotors rotors_topics rotors_hover gazebo gazebo_launch pages)
+                 disturbances markers tutorial rotors rotors_topics rotors_hover gazebo gazebo_launch
+                 pages)
       add_rostest(tests/ros/${test}.test)
     endforeach()
   endif()

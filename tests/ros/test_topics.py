@@ -27,6 +27,7 @@ PUBLISHED = {
     "/clock": ("rosgraph_msgs/Clock", "a9c97c1d230cfc112e270351a944ee47"),
     "/joint_states": ("sensor_msgs/JointState", "3066dcd76a6cfaef579bd0f34173e9fd"),
     "/path": ("nav_msgs/Path", "6227e2b7e9cce15051f669a5e197bbf7"),
+    "/vehicle_markers": ("visualization_msgs/MarkerArray", "d155b9ce5188fbaf89745847fd5882d7"),
     "/diagnostics": ("diagnostic_msgs/DiagnosticArray", "60810da900de1dd6ddd437c3503511da"),
 }
 PLACES = [[0.2, 0], [0, -0.2], [-0.2, 0], [0, 0.2]]  # of the rotors in the frame (m)
