@@ -12,6 +12,7 @@ from gazebo_msgs.srv import GetPhysicsProperties
 from harness import Recording
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
+from tf2_msgs.msg import TFMessage
 
 
 class TestGazeboLaunch(unittest.TestCase):
@@ -23,6 +24,9 @@ class TestGazeboLaunch(unittest.TestCase):
         place = [pose.position.x, pose.position.y, pose.position.z]
         self.assertEqual(place, [1, -2, 3])
         self.assertAlmostEqual(pose.orientation.z, math.sin(0.25), places=12)
+        with Recording("/tf", TFMessage) as tf:  # for rviz
+            frames = {t.child_frame_id for t in tf.wait_for_count(1)[0].transforms}
+        self.assertEqual(frames, {"drone", *(f"propeller{i}" for i in range(1, 5))})
         rospy.wait_for_service("/gazebo/get_physics_properties", harness.LONG)
         physics = rospy.ServiceProxy("/gazebo/get_physics_properties", GetPhysicsProperties)
         self.assertTrue(physics().pause)
