@@ -15,15 +15,16 @@ asked=no
 debian_packages="catkin rosout python3-rosbag python3-roslaunch python3-rosnode python3-rosparam
   python3-rostest python3-rostopic python3-rosservice python3-rospy python3-diagnostic-msgs
   python3-geometry-msgs python3-nav-msgs python3-sensor-msgs python3-std-srvs python3-tf2-msgs
-  python3-trajectory-msgs ros-diagnostic-msgs ros-geometry-msgs ros-nav-msgs ros-rosgraph-msgs
-  ros-sensor-msgs ros-std-msgs ros-std-srvs ros-tf2-msgs ros-trajectory-msgs ros-message-generation
-  ros-message-runtime libdiagnostic-msgs-dev libgeometry-msgs-dev libnav-msgs-dev libroscpp-dev
+  python3-trajectory-msgs python3-visualization-msgs ros-diagnostic-msgs ros-geometry-msgs
+  ros-nav-msgs ros-rosgraph-msgs ros-sensor-msgs ros-std-msgs ros-std-srvs ros-tf2-msgs
+  ros-trajectory-msgs ros-visualization-msgs ros-message-generation ros-message-runtime
+  libdiagnostic-msgs-dev libgeometry-msgs-dev libnav-msgs-dev libroscpp-dev
   libros-rosgraph-msgs-dev librostest-dev libsensor-msgs-dev libstd-msgs-dev libstd-srvs-dev
-  libtf2-msgs-dev libtrajectory-msgs-dev
+  libtf2-msgs-dev libtrajectory-msgs-dev libvisualization-msgs-dev
   pybind11-dev python3-dev python3-numpy python3-scipy python3-setuptools"
 noetic_packages="ros-noetic-ros-base ros-noetic-rostest ros-noetic-tf2-msgs ros-noetic-diagnostic-msgs
   ros-noetic-nav-msgs ros-noetic-sensor-msgs ros-noetic-std-srvs ros-noetic-trajectory-msgs
-  ros-noetic-xacro
+  ros-noetic-visualization-msgs ros-noetic-xacro
   pybind11-dev python3-dev python3-numpy python3-scipy python3-setuptools"
 
 as_root() {
@@ -145,7 +146,7 @@ say "running the ROS tests"
 SECONDS=0
 (run_in devel topics services lockstep playing logs clock several parameters faults masters fly_from_python \
   controller controller_faults set_points pid joystick launch plugin_by_others plugin_topics sensors \
-  disturbances rotors rotors_topics rotors_hover gazebo gazebo_launch pages)
+  disturbances markers tutorial rotors rotors_topics rotors_hover gazebo gazebo_launch pages)
 (run_in install launch playing fly_from_python plugin_by_others)
 [ ! -e $workspace/failed ]
 say "the ROS tests passed in $SECONDS s"
