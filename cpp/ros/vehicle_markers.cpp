@@ -100,7 +100,9 @@ VehicleMarkers::VehicleMarkers(ros::NodeHandle& nh, Simulation& simulation,
     if (i > 0) axis = poses[i].linear() * model.joints[i - 1].axis;
     const double rate = i == 0 ? 0 : rates[static_cast<Eigen::Index>(i - 1)];
     const Colour colour = i == 0 ? dark : colour_of(rate * axis.z());
-    Marker cube = marker(frame, "boxes", i, Marker::CUBE, box.center, box.edges, colour, 0.35f);
+    // A flat one gets the edge of a sheet, for rviz warns of none.
+    const Vector3d edges = box.edges.cwiseMax(1e-4);
+    Marker cube = marker(frame, "boxes", i, Marker::CUBE, box.center, edges, colour, 0.35f);
     set_quaternion(cube.pose.orientation, box.orientation.coeffs().data());
     add(cube);
     std::string mass;
