@@ -270,7 +270,8 @@ def test_a_sweep_that_waited_for_another_finds_what_that_one_left():
 
     def until(wanted):
         end = time.monotonic() + LONG
-        while not wanted() and time.monotonic() < end:
+        while not wanted():
+            assert time.monotonic() < end
             time.sleep(0.01)
 
     first = begun()

@@ -47,7 +47,7 @@ class Calls:
             raise InputError(f"these are {len(design)} points; at most {LARGEST} are swept")
 
     at_once = 32
-    """Rows of a task."""
+    """Rows of a task at most."""
     apart = False
     whole = ()
     """Columns that hold whole numbers, besides ``row``."""

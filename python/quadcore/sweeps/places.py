@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import queue
 from typing import (
     TYPE_CHECKING,
@@ -34,6 +35,12 @@ _ATTEMPTS = 3
 
 _AHEAD = 1024
 """Tasks that are handed out at a time: enough for many workers, and few to hold, 25 kB each."""
+
+_WORKERS = 16
+"""That an executor, which does not say, may be thought to have."""
+
+_SHARES = 4
+"""Tasks at least for each process, if there are rows enough: one may be slower than another."""
 
 _LOOK = 1.0  # s; between two looks at whether an executor still lives
 
@@ -68,7 +75,7 @@ class _Attempt:
 
     def fly(self, rows: Iterable[int], processes: Optional[int]) -> None:
         if self._number == 1:
-            tasks = _several(rows, self._plan.at_once)
+            tasks = _tasks(self._plan, rows, processes or len(os.sched_getaffinity(0)))
         else:  # what was killed for want of memory has all of it when it flies alone
             tasks, processes = _several(rows, 1), 1
         each(self._flown, self._noted(tasks), self._took, processes, apart=self._plan.apart)
@@ -116,7 +123,7 @@ def fly_over(
     QuadcoreError
         The executor failed; the rows that it gave were taken.
     """
-    waiting = _several(rows, plan.at_once)
+    waiting = _tasks(plan, rows, _WORKERS)
     under_way: Dict[Any, Sequence[int]] = {}
     ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
 
@@ -196,6 +203,11 @@ def _spec(plan: AnyPlan, number: int) -> Union[Spec, Row]:
         return plan.spec(number)
     except QuadcoreError as error:
         return Row(number, str(error), None, digest(str(error).encode()))
+
+
+def _tasks(plan: AnyPlan, rows: Iterable[int], processes: int) -> Iterator[Sequence[int]]:
+    """Share rows out, so many to a task as its process flies at its best."""
+    return _several(rows, max(1, min(plan.at_once, len(plan) // (_SHARES * processes))))
 
 
 def _several(rows: Iterable[int], count: int) -> Iterator[Sequence[int]]:

@@ -132,7 +132,7 @@ class Plan:
 
     @property
     def at_once(self) -> int:
-        """Rows of a task: several where they can fly on one batch."""
+        """Rows of a task at most: several where they can fly on one batch."""
         return 1 if self.is_guided or self.engines != [ENGINE] else _TOGETHER
 
     @property
