@@ -39,7 +39,7 @@ void GazeboStep::reserve(std::size_t contacts) {
   sweeps_.order.reserve(constraints_.most_rows());
   solved_.reserve(constraints_.most_rows());
   place_.reserve(constraints_.most_rows());
-  relaxation_.reserve(constraints_.most_rows());
+  prepared_.reserve(constraints_.most_rows());
 }
 
 void GazeboStep::step(const std::vector<Contact>& contacts, double dt) {
@@ -95,35 +95,36 @@ void GazeboStep::prepare_rows() {
   sweeps_.rows.clear();
   solved_.clear();
   place_.clear();
-  relaxation_.clear();
+  prepared_.clear();
   const auto of_hinges = std::count_if(rows_->begin(), rows_->end(),
                                        [](const ConstraintRow& row) { return row.hinge >= 0; });
   const bool simple = options_.rows.cfm == 0 && static_cast<std::size_t>(of_hinges) ==
                                                     Sweeps::rows_of_hinge * warm_start.size();
   for (std::size_t i = 0; i < rows_->size(); ++i) {
     const ConstraintRow& row = (*rows_)[i];
+    Prepared& prepared = prepared_.emplace_back();
     double diagonal = row.cfm;
     for (int side = 0; side < 2 && row.body[side] >= 0; ++side) {
-      diagonal += row.J[side].dot(inverse_mass_J(row, side));
+      prepared.inverse_mass_J[side] = inverse_mass_J(row, side);
+      diagonal += row.J[side].dot(prepared.inverse_mass_J[side]);
     }
-    const double relaxation =
-        options_.sor * (row.normal >= 0 ? friction_relaxation : 1.0) / diagonal;
-    relaxation_.push_back(relaxation);
+    prepared.relaxation = options_.sor * (row.normal >= 0 ? friction_relaxation : 1.0) / diagonal;
     if (simple && row.hinge >= 0) {
-      put_hinge(i, relaxation);
+      put_hinge(i);
     } else {
-      put_row(i, relaxation);
+      put_row(i);
     }
   }
   order_rows();
 }
 
-void GazeboStep::put_hinge(std::size_t index, double relaxation) {
+void GazeboStep::put_hinge(std::size_t index) {
   const ConstraintRow& row = (*rows_)[index];
+  const Prepared& prepared = prepared_[index];
   if (row.hinge_row == 0) sweeps_.hinges.push_back({row.body[0], row.body[1], {}});
   const auto k = static_cast<std::size_t>(row.hinge_row);
   Sweeps::HingeRow& to = sweeps_.hinges.back().rows[k];
-  const Vector6 of_C = inverse_mass_J(row, 0), of_P = inverse_mass_J(row, 1);
+  const Vector6 &of_C = prepared.inverse_mass_J[0], &of_P = prepared.inverse_mass_J[1];
   for (int j = 0; j < 3; ++j) {
     to.turn_C[j] = row.J[0][3 + j];
     to.turn_P[j] = row.J[1][3 + j];
@@ -132,21 +133,22 @@ void GazeboStep::put_hinge(std::size_t index, double relaxation) {
   }
   to.linear_C = row.hinge_row < 3 ? of_C[row.hinge_row] : 0;
   to.linear_P = row.hinge_row < 3 ? of_P[row.hinge_row] : 0;
-  to.relaxation = relaxation;
+  to.relaxation = prepared.relaxation;
   solved_.push_back(&to);
   place_.push_back(-1);
 }
 
-void GazeboStep::put_row(std::size_t index, double relaxation) {
+void GazeboStep::put_row(std::size_t index) {
   const ConstraintRow& row = (*rows_)[index];
+  const Prepared& prepared = prepared_[index];
   Sweeps::Row to;
   for (int side = 0; side < 2; ++side) {
     to.body[side] = row.body[side];
     if (row.body[side] < 0) continue;
     Eigen::Map<Vector6>(to.J[side]) = row.J[side];
-    Eigen::Map<Vector6>(to.inverse_mass_J[side]) = inverse_mass_J(row, side);
+    Eigen::Map<Vector6>(to.inverse_mass_J[side]) = prepared.inverse_mass_J[side];
   }
-  to.relaxation = relaxation;
+  to.relaxation = prepared.relaxation;
   to.cfm = row.cfm;
   to.low = row.low;
   to.high = row.high;
@@ -179,7 +181,7 @@ void GazeboStep::order_rows() {
 void GazeboStep::add_multiplier(std::size_t index, const Sweeps::Two& multiplier) {
   const ConstraintRow& row = (*rows_)[index];
   for (int side = 0; side < 2 && row.body[side] >= 0; ++side) {
-    const Vector6 by = inverse_mass_J(row, side);
+    const Vector6& by = prepared_[index].inverse_mass_J[side];
     Sweeps::Acceleration& sum = sweeps_.bodies[static_cast<std::size_t>(row.body[side])];
     for (std::size_t k = 0; k < 6; ++k) sum[k] += multiplier * by[static_cast<int>(k)];
   }
@@ -226,7 +228,7 @@ double GazeboStep::remaining_error(double dt, std::uint64_t seed) {
   double count = 0;
   for (std::size_t i = 0; i < rows_->size(); ++i) {
     // In units of the multiplier that would stop the row's bodies by itself.
-    const double multiplier = random_normal(seed, count) * std::sqrt(relaxation_[i]);
+    const double multiplier = random_normal(seed, count) * std::sqrt(prepared_[i].relaxation);
     solved_[i]->multiplier = Sweeps::Two{multiplier, multiplier};
     solved_[i]->wanted = Sweeps::Two{};
     add_multiplier(i, solved_[i]->multiplier);

@@ -62,11 +62,17 @@ class GazeboStep {
     Vector6 moving;             ///< velocity with which the pose moves
   };
 
+  /// What the sweeps take of a row, besides itself.
+  struct Prepared {
+    Vector6 inverse_mass_J[2];  ///< for each body
+    double relaxation;          ///< over the row's diagonal
+  };
+
   void read_bodies();
   void prepare_rows();
   void order_rows();
-  void put_hinge(std::size_t row, double relaxation);
-  void put_row(std::size_t row, double relaxation);
+  void put_hinge(std::size_t row);
+  void put_row(std::size_t row);
   void begin(double dt);
   Vector6 inverse_mass_J(const ConstraintRow& row, int side) const;
   Vector6 constraint(std::size_t body, int solve) const;
@@ -81,7 +87,7 @@ class GazeboStep {
   Sweeps sweeps_;
   std::vector<Sweeps::Solved*> solved_;  ///< of each row, in sweeps_
   std::vector<int> place_;               ///< of each row, among the rows of sweeps_
-  std::vector<double> relaxation_;       ///< of each row
+  std::vector<Prepared> prepared_;       ///< of each row
   std::size_t friction_begin_ = 0;       ///< in the order of sweeps_
 };
 

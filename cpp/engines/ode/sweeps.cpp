@@ -25,9 +25,9 @@ struct InRegisters {
 /// Relaxes a row whose bodies accelerate along it so; gives the change of its multiplier.
 QUADCORE_LAW Two relax(Sweeps::HingeRow& row, Two along_C, Two along_P) {
   const Two residual = row.wanted - along_C - along_P;
-  const Two old = row.multiplier;
-  row.multiplier = old + row.relaxation * residual;
-  return row.multiplier - old;
+  const Two by = row.relaxation * residual;
+  row.multiplier += by;  // nobody waits for it
+  return by;
 }
 
 // What a row has of an acceleration: a sum of six products goes (0 + (2 + 4)) + (1 + (3 + 5)),
