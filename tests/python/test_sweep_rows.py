@@ -270,14 +270,14 @@ def test_a_sweep_that_waited_for_another_finds_what_that_one_left():
 
     def until(wanted):
         end = time.monotonic() + LONG
-        while not wanted():
+        while not wanted():  # looked at without a pause: the file is open for moments only
             assert time.monotonic() < end
-            time.sleep(0.01)
 
     first = begun()
     until(lambda: len_of("swept") == 4)  # the head, and all rows but that which waits
     second = begun()
-    until(lambda: open_files(second.pid) & {os.path.abspath("swept/table.csv")})
+    table = os.path.abspath("swept/table.csv")
+    until(lambda: table in open_files(second.pid) or second.poll() is not None)
     Path("go").touch()
     assert first.wait() == 0
     if second.wait() != 0:  # a busy machine outlasts its patience
