@@ -1,5 +1,7 @@
 #include "parameter_watch.hpp"
 
+#include <utility>
+
 #include "master_api.hpp"
 #include "private_parameters.hpp"
 #include "quadcore/error.hpp"
@@ -8,8 +10,8 @@ namespace quadcore::node {
 
 using XmlRpc::XmlRpcValue;
 
-ParameterWatch::ParameterWatch(FlightThread& flight, bool follows_clock)
-    : flight_(flight), follows_clock_(follows_clock), last_(read()) {}
+ParameterWatch::ParameterWatch(FlightThread& flight, bool follows_clock, Values known)
+    : flight_(flight), follows_clock_(follows_clock), last_(std::move(known)) {}
 
 ParameterWatch::Values ParameterWatch::read() {
   Values values;

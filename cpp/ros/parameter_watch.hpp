@@ -13,15 +13,17 @@ namespace quadcore::node {
 /// of the others that they cannot.
 class ParameterWatch {
  public:
+  using Values = std::map<std::string, XmlRpc::XmlRpcValue>;
+
   /// \param follows_clock  whether somebody else sets the pace
-  ParameterWatch(FlightThread& flight, bool follows_clock);
+  /// \param known          what read() gave before the flight was set up
+  ParameterWatch(FlightThread& flight, bool follows_clock, Values known);
+  /// The private parameters as they are now.
+  static Values read();
   /// Asks the master once for all of them.
   void look();
 
  private:
-  using Values = std::map<std::string, XmlRpc::XmlRpcValue>;
-
-  static Values read();
   void obey(const std::string& name, const XmlRpc::XmlRpcValue& value);
 
   FlightThread& flight_;

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 
 #include "command_subscriber.hpp"
 #include "diagnostics.hpp"
@@ -55,6 +56,7 @@ void say_error(const std::string& error) {
 int run(const EndSignal& end_signal) {
   ros::NodeHandle nh;
   send_without_delay();
+  ParameterWatch::Values given = ParameterWatch::read();  // somebody may change them meanwhile
   const Settings settings = read_settings(nh);
   if (settings.verbose &&
       ros::console::set_logger_level(ROSCONSOLE_DEFAULT_NAME, ros::console::levels::Debug)) {
@@ -104,7 +106,7 @@ int run(const EndSignal& end_signal) {
   if (follower) follower->follow(flight);
   const CommandSubscriber commands(nh, topics, flight_settings.lockstep, flight);
   const Services services(nh, simulation, flight, model, wrenches, known);
-  ParameterWatch parameters(flight, !clock);
+  ParameterWatch parameters(flight, !clock, std::move(given));
   MasterWatch master_watch(services.names(), public_parameters(nh, settings, !!clock),
                            [&parameters] { parameters.look(); });
   Diagnostics diagnostics(nh, flight.report(), described(topics));
