@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Iterable, Tuple
 
+from images import save
 from matplotlib.figure import Figure
 
 import quadcore as qc
@@ -46,12 +47,6 @@ def figure() -> Tuple[Figure, Any]:
     return both, both.subplots(1, 2, gridspec_kw=margins)
 
 
-def save(drawn: Figure, name: str) -> None:
-    """Write docs/images/NAME.png."""
-    (ROOT / "docs" / "images" / f"{name}.png").write_bytes(png(drawn))
-    print(f"docs/images/{name}.png")
-
-
 def draw_sim_slow() -> None:
     """Draw the distance from sim_slow 1 in two engines."""
     drawn, panels = figure()
@@ -65,7 +60,7 @@ def draw_sim_slow() -> None:
         axes.set_yscale("log")
         axes.set_ylim(1e-5, 30)
     panels[0].legend(frameon=False, loc="upper left", fontsize="small")
-    save(drawn, "comparing_sim_slow")
+    save("comparing_sim_slow", png(drawn))
 
 
 def draw_drags() -> None:
@@ -85,7 +80,7 @@ def draw_drags() -> None:
     apart.set_ylim(1e-5, 60)
     panel(speed, "speed (m/s)", speeds)
     speed.legend(frameon=False, loc="upper left", fontsize="small")
-    save(drawn, "comparing_drags")
+    save("comparing_drags", png(drawn))
 
 
 def norm(log: qc.Log) -> Any:
@@ -107,7 +102,7 @@ def draw_gain() -> None:
     ]
     panel(height, "height (m)", heights)
     height.legend(frameon=False, loc="lower left", fontsize="small")
-    save(drawn, "comparing_gain")
+    save("comparing_gain", png(drawn))
 
 
 if __name__ == "__main__":

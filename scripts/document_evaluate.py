@@ -3,12 +3,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from images import save
 
 import quadcore as qc
 from quadcore.evaluation.pictures import draw
 
-IMAGES = Path(__file__).resolve().parents[1] / "docs" / "images"
 LAWS = ["pd", "pd_compensated", "pid", "geometric", "indi", "lqr"]
 NOISE = {"odometry.positionNoise": 0.2106e-3, "odometry.orientationNoise": 0.2e-3}
 
@@ -18,8 +17,7 @@ def main() -> None:
     found = qc.evaluate(LAWS, "circle", seeds=20, parameters=NOISE, xacro_args={"sim_slow": 1})
     pictures = draw(found)
     for name, of in (("evaluate_errors", "errors_1"), ("evaluate_seeds", "seeds")):
-        (IMAGES / f"{name}.png").write_bytes(pictures[of])
-        print(f"docs/images/{name}.png")
+        save(name, pictures[of])
 
 
 if __name__ == "__main__":

@@ -6,13 +6,14 @@ Every flight is flown here; the recordings of real Gazebo 11 lie in tests/data/g
 
 from __future__ import annotations
 
-import shutil
+import io
 import sys
 import tempfile
 import warnings
 from pathlib import Path
 
 import numpy as np
+from images import save, save_in_few_colours
 from matplotlib.figure import Figure
 from PIL import Image
 
@@ -22,7 +23,6 @@ from quadcore.plots import dress, png
 
 ROOT = Path(__file__).resolve().parents[1]
 DATA = ROOT / "tests" / "data" / "gazebo11"
-IMAGES = ROOT / "docs" / "images"
 
 sys.path.insert(0, str(ROOT / "examples"))
 import spiral  # noqa: E402  (an example, no package)
@@ -41,12 +41,6 @@ def distance(log: qc.Log, rows: np.ndarray) -> np.ndarray:
     """Distance from the recording at each of its rows (m)."""
     at = np.searchsorted(log.time, rows[:, 0] - 1e-6)
     return np.linalg.norm(log.position[at] - rows[:, 1:4], axis=1)
-
-
-def save(figure: Figure, name: str) -> None:
-    """Write docs/images/NAME.png."""
-    (IMAGES / f"{name}.png").write_bytes(png(figure))
-    print(f"docs/images/{name}.png")
 
 
 def draw_flight() -> None:
@@ -87,7 +81,7 @@ def draw_flight() -> None:
     apart.set_ylim(1e-17, 1e3)
     apart.set_xlim(0, 10)
     dress(apart)
-    save(figure, "flight")
+    save("flight", png(figure))
 
 
 def draw_wrenches() -> None:
@@ -101,8 +95,7 @@ def draw_wrenches() -> None:
     log = sim.run(10.0, commands=DATA / "commands_S5.csv", log_every=10, wrenches=True)
     with tempfile.TemporaryDirectory() as folder:
         log.plot(folder)
-        shutil.copyfile(Path(folder) / "wrenches.png", IMAGES / "wrenches.png")
-    print("docs/images/wrenches.png")
+        save("wrenches", (Path(folder) / "wrenches.png").read_bytes())
 
 
 def draw_contact() -> None:
@@ -130,7 +123,7 @@ def draw_contact() -> None:
     apart.set_xlabel("time (s)")
     for axes in (height, apart):
         dress(axes)
-    save(figure, "contact")
+    save("contact", png(figure))
 
 
 def draw_rotors() -> None:
@@ -164,19 +157,17 @@ def draw_rotors() -> None:
     axes.set_ylim(1e-6, 1e2)
     axes.legend(frameon=False, loc="lower right")
     dress(axes)
-    save(figure, "rotors_steps")
+    save("rotors_steps", png(figure))
 
 
 def draw_vehicle() -> None:
     """Draw the shipped quadrotor as ``quadcore info --picture`` does."""
     figure = vehicle_picture.draw(qc.Simulation("quadrotor", xacro_args={"sim_slow": 1}))
-    save(figure, "vehicle")
-    file = IMAGES / "vehicle.png"
-    Image.open(file).convert("RGB").quantize(64, dither=Image.Dither.NONE).save(file, optimize=True)
+    save_in_few_colours("vehicle", Image.open(io.BytesIO(png(figure))))
 
 
 if __name__ == "__main__":
-    save(spiral.picture(spiral.fly()), "spiral")
+    save("spiral", png(spiral.picture(spiral.fly())))
     draw_flight()
     draw_wrenches()
     draw_contact()

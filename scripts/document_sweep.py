@@ -6,6 +6,8 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
+from images import save
+
 from quadcore.sweeps.design import Design
 from quadcore.sweeps.pictures import draw
 from quadcore.sweeps.plan import Plan
@@ -13,7 +15,6 @@ from quadcore.sweeps.rows import table
 from quadcore.sweeps.sensitivity import sensitivities
 from quadcore.sweeps.sweep import conduct
 
-IMAGE = Path(__file__).resolve().parents[1] / "docs" / "images" / "sweep_parallel.png"
 AXES = {
     "frame.mass": "uniform:0.9:1.1",
     "drone_plugin.rotorThrustCoeff": "normal:1.1487e-5:3e-7",
@@ -29,8 +30,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         columns = table(conduct(plan, Path(folder)))
     pictures = draw(plan, columns, sensitivities(plan, columns), "rms_position")
-    IMAGE.write_bytes(pictures["parallel"])
-    print(f"docs/images/{IMAGE.name}")
+    save("sweep_parallel", pictures["parallel"])
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Iterator
 
 import numpy as np
+from images import save
 from measured import DOCS, figures, put
 
 from quadcore.colours import PALETTE
@@ -19,7 +20,6 @@ from quadcore.validation.figures import pictures
 from quadcore.validation.output import size
 from quadcore.validation.thesis import KINDS, thesis_figures
 
-IMAGES = Path(__file__).resolve().parents[1] / "docs" / "images"
 FROM_THE_COMMAND = {"position": "position_all", "error": "error_all", "chain": "chain_all"}
 
 
@@ -170,10 +170,8 @@ def main() -> None:
     for name, picture in {**FROM_THE_COMMAND, "commands": "commands", "damping": "damping"}.items():
         function, arguments = wanted[picture]
         drawn[name] = function(*arguments)
-    IMAGES.mkdir(parents=True, exist_ok=True)
     for name, data in drawn.items():
-        (IMAGES / f"validation_{name}.png").write_bytes(data)
-        print(f"docs/images/validation_{name}.png")
+        save(f"validation_{name}", data)
 
 
 if __name__ == "__main__":
