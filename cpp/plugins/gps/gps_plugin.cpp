@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "earth.hpp"
 #include "plugins/noise_and_drift.hpp"
 #include "plugins/sensing.hpp"
@@ -19,10 +17,8 @@ class GpsPlugin final : public Plugin {
   explicit GpsPlugin(const PluginSetup& setup)
       : p_FS_F_(setup.model.pose_of_link.at(setup.parameters.choice("link")).xyz),
         rate_(setup.parameters.number("rate")),
-        latitude_(setup.parameters.number("latitude")),
-        longitude_(setup.parameters.number("longitude")),
-        altitude_(setup.parameters.number("altitude")),
-        earth_(latitude_, altitude_),
+        earth_({setup.parameters.number("latitude"), setup.parameters.number("longitude"),
+                setup.parameters.number("altitude")}),
         errors_(along(setup, "Noise"), along(setup, "Drift"), setup.parameters.number("driftTime")),
         velocity_noise_(setup.parameters.number("velocityNoise")),
         channel_(setup,
@@ -53,9 +49,7 @@ class GpsPlugin final : public Plugin {
     messages::Fix fix;
     fix.position = k.p_WF + k.R_WF * p_FS_F_ + error;
     fix.velocity = k.v_WS_W(p_FS_F_) + velocity_noise_ * Errors::draw(sample, memory);
-    fix.latitude = latitude_ + earth_.north * fix.position.y();
-    fix.longitude = std::remainder(longitude_ + earth_.east * fix.position.x(), 360);
-    fix.altitude = altitude_ + fix.position.z();
+    earth_.locate(fix);
     fix.horizontal_variance = variance.x();
     fix.vertical_variance = variance.z();
     fix.velocity_variance = velocity_noise_ * velocity_noise_;
@@ -64,8 +58,6 @@ class GpsPlugin final : public Plugin {
 
   Vector3d p_FS_F_;  ///< of the link's origin [m]
   sensing::Rate rate_;
-  double latitude_, longitude_;  ///< deg
-  double altitude_;              ///< m
   Earth earth_;
   Errors errors_;          ///< of the position, along the world's axes [m]
   double velocity_noise_;  ///< m/s

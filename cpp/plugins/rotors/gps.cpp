@@ -27,8 +27,7 @@ class Gps final : public Plugin {
       : p_FS_F_(antenna(setup)),
         rate_(setup.parameters.number("sensor/update_rate")),
         each_step_(setup.parameters.number("sensor/update_rate") == 0),
-        origin_(checked(setup.world.origin)),
-        earth_(origin_.latitude, origin_.altitude),
+        earth_(checked(setup.world.origin)),
         place_noise_(along(setup, noise_tag("position", "horizontal", "stddev"),
                            noise_tag("position", "vertical", "stddev"))),
         velocity_noise_(along(setup, "horVelStdDev", "verVelStdDev")),
@@ -51,9 +50,7 @@ class Gps final : public Plugin {
     messages::Fix fix;
     fix.position = k.p_WF + k.R_WF * p_FS_F_ + draw(place_noise_);
     fix.velocity = k.v_WS_W(p_FS_F_) + draw(velocity_noise_);
-    fix.latitude = origin_.latitude + earth_.north * fix.position.y();
-    fix.longitude = std::remainder(origin_.longitude + earth_.east * fix.position.x(), 360);
-    fix.altitude = origin_.altitude + fix.position.z();
+    earth_.locate(fix);
     fix.horizontal_variance = told_.x() * told_.x();
     fix.vertical_variance = told_.z() * told_.z();
     fix.velocity_variance = velocity_noise_.cwiseAbs2().maxCoeff();
@@ -70,9 +67,8 @@ class Gps final : public Plugin {
   static const Origin& checked(const Origin& origin) {
     if (origin.heading != 0) {
       throw InputError(
-          "the world's <heading_deg> turns its axes from east and north, which this module does "
-          "not "
-          "model; write 0");
+          "the world's <heading_deg> turns its axes from east and north, which is not modelled; "
+          "write 0");
     }
     if (std::abs(origin.latitude) > 89) {
       throw InputError(
@@ -91,7 +87,6 @@ class Gps final : public Plugin {
   Vector3d p_FS_F_;  ///< of the antenna [m]
   sensing::Rate rate_;
   bool each_step_;
-  Origin origin_;
   gps::Earth earth_;
   Vector3d place_noise_, velocity_noise_, told_;  ///< standard deviations [m], [m/s], [m]
   std::size_t fix_, speed_;                       ///< topics
