@@ -14,6 +14,8 @@ from typing import IO, Iterable, Iterator, Optional, Tuple, Union
 from . import interrupts
 from ._core import InputError
 
+_PART = ".part"
+
 
 def read_text(path: Path, largest: Optional[int] = None) -> str:
     """Text of a UTF-8 file, without byte-order mark.
@@ -87,7 +89,7 @@ def atomic_write(path: Path) -> Iterator[IO[bytes]]:
         The file cannot be written. Nothing is left behind then, and an older file stays.
     """
     target = Path(os.path.realpath(str(path)))
-    part = _beside(target)
+    part = beside(target)
     try:
         if not _replaceable(target):
             with target.open("wb") as stream:
@@ -237,7 +239,7 @@ def check_writable(path: Path) -> None:
             return
         if target.exists() and not os.access(str(target), os.W_OK):
             raise InputError(f"{path}: cannot be written: it is read-only")
-        probe = _beside(target)
+        probe = beside(target)
         with interrupts.held():
             probe.touch()
             probe.unlink()
@@ -253,8 +255,8 @@ def unwritable(path: Path, error: OSError) -> InputError:
 def remove_left(path: Path) -> None:
     """Remove what processes that were killed while they wrote `path` have left beside it."""
     target = Path(os.path.realpath(str(path)))
-    for part in target.parent.glob(f".{glob.escape(target.name)}.*.part"):
-        number = part.name[len(target.name) + 2 :].partition(".")[0]
+    for part in target.parent.glob(f"{glob.escape(_before(target))}*{_PART}"):
+        number = part.name[len(_before(target)) :].partition(".")[0]
         if not number.isdigit():
             continue
         try:
@@ -266,11 +268,18 @@ def remove_left(path: Path) -> None:
             pass
 
 
+def beside(path: Path, piece: str = "") -> Path:
+    """Name a file in which a process prepares `path`, or a piece of it, until it is whole.
+
+    In the same folder, because a rename is atomic only within one file system.
+    """
+    return path.with_name(f"{_before(path)}{os.getpid()}{piece}{_PART}")
+
+
+def _before(path: Path) -> str:
+    return f".{path.name}."
+
+
 def _replaceable(path: Path) -> bool:
     """Whether a new file may take the place of what is there: not of a device or a pipe."""
     return not path.exists() or path.is_file()
-
-
-def _beside(path: Path) -> Path:
-    # In the same folder, because a rename is atomic only within one file system.
-    return path.with_name(f".{path.name}.{os.getpid()}.part")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import shutil
 from pathlib import Path
 from typing import Any, Dict, Iterator, List, Mapping, Sequence, Tuple
@@ -13,7 +12,7 @@ import numpy as np
 from .. import interrupts
 from .._core import InputError, QuadcoreError, log_columns
 from ..extras import needed
-from ..files import atomic_write, check_regular, unwritable
+from ..files import atomic_write, beside, check_regular, unwritable
 from ..rotation import roll_pitch_yaw
 from .at_the_end import AtTheEnd
 from .bag_messages import ARRAY, Messages
@@ -216,7 +215,7 @@ def write_log(
 @contextlib.contextmanager
 def _name_beside(path: Path) -> Iterator[Path]:
     """Name a file for a while; one that a process left which was killed is in nobody's way."""
-    part = path.with_name(f".{path.name}.{os.getpid()}.rows.part")
+    part = beside(path, ".rows")
     with contextlib.suppress(FileNotFoundError):
         part.unlink()
     try:

@@ -30,6 +30,11 @@ _PATIENCE = 10.0  # s; how long a process that was asked to end may take
 _PR_SET_PDEATHSIG = 1  # of linux/prctl.h
 
 
+def usable_cores() -> int:
+    """Count the cores that this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
 def each(
     function: Callable[[Case], Result],
     cases: Iterable[Case],
@@ -74,7 +79,7 @@ def each(
     """
     crew = _Crew(function, conclude, cases, apart)
     try:
-        crew.hire(processes or len(os.sched_getaffinity(0)))
+        crew.hire(processes or usable_cores())
         while crew.busy:
             for connection in wait(list(crew.busy)):
                 with interrupts.held():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import queue
 from typing import (
     TYPE_CHECKING,
@@ -19,7 +18,7 @@ from typing import (
 
 from .. import interrupts
 from .._core import QuadcoreError
-from ..study.executor import Died, each
+from ..study.executor import Died, each, usable_cores
 from .batches import fly_together
 from .plan import AnyPlan
 from .rows import fingerprint
@@ -75,7 +74,7 @@ class _Attempt:
 
     def fly(self, rows: Iterable[int], processes: Optional[int]) -> None:
         if self._number == 1:
-            tasks = _tasks(self._plan, rows, processes or len(os.sched_getaffinity(0)))
+            tasks = _tasks(self._plan, rows, processes or usable_cores())
         else:  # what was killed for want of memory has all of it when it flies alone
             tasks, processes = _several(rows, 1), 1
         each(self._flown, self._noted(tasks), self._took, processes, apart=self._plan.apart)
