@@ -15,13 +15,6 @@ namespace {
 
 constexpr double never = std::numeric_limits<double>::quiet_NaN();
 
-void add_dimension(std_msgs::Float64MultiArray& array, const std::string& label, std::size_t size) {
-  std_msgs::MultiArrayDimension dimension;
-  dimension.label = label;
-  dimension.size = dimension.stride = static_cast<std::uint32_t>(size);
-  array.layout.dim.push_back(dimension);
-}
-
 /// A bag has no message at time 0.
 ros::Time in_bag(const ros::Time& time) { return std::max(time, ros::TIME_MIN); }
 
@@ -36,9 +29,9 @@ BagLog::BagLog(const std::string& path, const Simulation& simulation, LogRow row
   tf_.transforms.push_back(same_place(world_frame, vehicle));
   joints_.name = simulation.model().joint_names();
   clock_number_ = bag_.add<rosgraph_msgs::Clock>("/clock");
-  truth_number_ = bag_.add<nav_msgs::Odometry>(nh.resolveName("ground_truth/odometry"));
+  truth_number_ = bag_.add<nav_msgs::Odometry>(nh.resolveName(truth_topic));
   tf_number_ = bag_.add<tf2_msgs::TFMessage>("/tf");
-  joints_number_ = bag_.add<sensor_msgs::JointState>(nh.resolveName("joint_states"));
+  joints_number_ = bag_.add<sensor_msgs::JointState>(nh.resolveName(joint_states_topic));
   for (const std::size_t index : row_.topics()) {
     const Topic& topic = simulation.topics()[index];
     Logged logged{index, 0, topic.kind == messages::kind_of<messages::Odometry>(), never, {}};
@@ -49,9 +42,7 @@ BagLog::BagLog(const std::string& path, const Simulation& simulation, LogRow row
     topics_.push_back(std::move(logged));
   }
   row_number_ = bag_.add<std_msgs::Float64MultiArray>("/quadcore/log");
-  std::string names;
-  for (const std::string& column : row_.columns()) names += (names.empty() ? "" : ",") + column;
-  add_dimension(whole_row_, names, row_.columns().size());
+  add_dimension(whole_row_, row_.header(), row_.columns().size());
   for (const std::string& name : simulation.ignored()) add_dimension(whole_row_, name, 1);
 }
 
@@ -102,11 +93,10 @@ void BagLog::add(const Topic& topic, Logged& logged) {
 void BagLog::close() {
   bag_.close();
   if (!bag_.is_whole()) fail(cut_short(path_));
-  if (!bag_.is_indexed()) {
-    fail(cut_short(path_));
-    return;
+  // One that was cut short can be read as far as it goes, once it has its index.
+  if (bag_.is_indexed() && std::rename(active_.c_str(), path_.c_str()) != 0) {
+    fail(unwritable(path_));
   }
-  if (std::rename(active_.c_str(), path_.c_str()) != 0) fail(unwritable(path_));
 }
 
 }  // namespace quadcore::node

@@ -8,7 +8,6 @@ namespace quadcore::node {
 namespace {
 
 constexpr bool kept = true;  ///< the last message, for those who subscribe later
-constexpr const char* truth = "ground_truth/odometry";
 
 }  // namespace
 
@@ -19,7 +18,7 @@ Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
       clock_publisher_(clock),
       path_(nh),
       gazebo_states_(gazebo_states) {
-  joint_states_publisher_ = nh.advertise<sensor_msgs::JointState>("joint_states", 100, kept);
+  joint_states_publisher_ = nh.advertise<sensor_msgs::JointState>(joint_states_topic, 100, kept);
   const Model& model = simulation.model();
   joint_states_.name = model.joint_names();
   if (odometry_topic_.exists()) {
@@ -34,9 +33,9 @@ Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
 void Broadcast::advertise_odometry(ros::NodeHandle& nh, const std::string& frame_prefix,
                                    const Simulation& simulation, bool rotor_tf) {
   const Model& model = simulation.model();
-  const bool of_plugin = simulation.topics().find(truth) >= 0;  // as RotorS' vehicles have it
+  const bool of_plugin = simulation.topics().find(truth_topic) >= 0;  // as RotorS' vehicles have it
   odometry_publisher_ = nh.advertise<nav_msgs::Odometry>(OdometryTopic::name, 1000, kept);
-  if (!of_plugin) truth_publisher_ = nh.advertise<nav_msgs::Odometry>(truth, 1000, kept);
+  if (!of_plugin) truth_publisher_ = nh.advertise<nav_msgs::Odometry>(truth_topic, 1000, kept);
   const std::string vehicle_frame = frame_prefix + vehicle_name;
   set_frames(odometry_, vehicle_frame);
   set_frames(truth_, vehicle_frame);

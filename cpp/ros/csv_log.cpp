@@ -10,10 +10,8 @@ namespace quadcore::node {
 CsvLog::CsvLog(const std::string& path, const Simulation& simulation, LogRow row)
     : path_(path), row_(std::move(row)), file_(std::fopen(path.c_str(), "w")) {
   if (!file_) throw InputError(unwritable(path));
-  std::string header;
-  for (const std::string& column : row_.columns()) header += (header.empty() ? "" : ",") + column;
-  header += log_remark(simulation.ignored());
-  std::fprintf(file_.get(), "%s\n", header.c_str());
+  const std::string header = row_.header() + log_remark(simulation.ignored()) + "\n";
+  std::fputs(header.c_str(), file_.get());
 }
 
 void CsvLog::add(const Simulation& simulation) {

@@ -19,6 +19,12 @@ LogRow::LogRow(const Simulation& simulation, const std::vector<std::string>& nam
   }
 }
 
+std::string LogRow::header() const {
+  std::string header;
+  for (const std::string& column : columns_) header += (header.empty() ? "" : ",") + column;
+  return header;
+}
+
 const std::vector<double>& LogRow::of(const Simulation& simulation) {
   row_.clear();
   append_log_row(simulation.state(), row_);

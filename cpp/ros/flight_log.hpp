@@ -18,6 +18,8 @@ class LogRow {
   LogRow(const Simulation& simulation, const std::vector<std::string>& names);
   /// Names of the numbers: those of the state, then TOPIC.FIELD.
   const std::vector<std::string>& columns() const { return columns_; }
+  /// The names in one line, with commas between.
+  std::string header() const;
   /// Of the simulation.
   const std::vector<std::size_t>& topics() const { return topics_; }
   /// The numbers of now.

@@ -2,7 +2,6 @@
 
 #include <geometry_msgs/Vector3Stamped.h>
 #include <geometry_msgs/WrenchStamped.h>
-#include <std_msgs/Float64MultiArray.h>
 
 #include <algorithm>
 #include <type_traits>
@@ -82,10 +81,7 @@ class FixOutlet final : public Outlet {
 class ArrayOutlet final : public Outlet {
  public:
   ArrayOutlet(ros::NodeHandle& nh, const Topic& topic) : publisher_(nh, topic.path, queue_size) {
-    std_msgs::MultiArrayDimension fields;
-    fields.label = joined(topic.kind.fields);
-    fields.size = fields.stride = static_cast<std::uint32_t>(topic.kind.fields.size());
-    message_.layout.dim.push_back(fields);
+    add_dimension(message_, joined(topic.kind.fields), topic.kind.fields.size());
   }
   void send(const Topic& topic, const ros::Time&) override {
     message_.data = topic.values;
@@ -162,6 +158,13 @@ void check_free(ros::NodeHandle& nh, const std::string& name) {
     throw InputError("topic '" + name + "' of a plugin has the name of one of the node's own; " +
                      "give it another");
   }
+}
+
+void add_dimension(std_msgs::Float64MultiArray& array, const std::string& label, std::size_t size) {
+  std_msgs::MultiArrayDimension dimension;
+  dimension.label = label;
+  dimension.size = dimension.stride = static_cast<std::uint32_t>(size);
+  array.layout.dim.push_back(dimension);
 }
 
 void set_frames(nav_msgs::Odometry& message, const std::string& vehicle_frame) {

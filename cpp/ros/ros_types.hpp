@@ -2,6 +2,7 @@
 
 #include <nav_msgs/Odometry.h>
 #include <ros/ros.h>
+#include <std_msgs/Float64MultiArray.h>
 
 #include <functional>
 #include <memory>
@@ -35,6 +36,8 @@ std::unique_ptr<Outlet> make_outlet(ros::NodeHandle& nh, const Topic& topic,
 /// Throws InputError if the node has a topic of that name already, or no type of ROS holds it.
 ros::Subscriber make_inlet(ros::NodeHandle& nh, const Topic& topic, const Take& take);
 
+/// Says that an array has so many numbers more, and what they are called.
+void add_dimension(std_msgs::Float64MultiArray& array, const std::string& label, std::size_t size);
 /// Names the frames of an odometry message.
 void set_frames(nav_msgs::Odometry& message, const std::string& vehicle_frame);
 /// Fills pose, twist and their covariances. A variance of 0 becomes the least that filters bear.

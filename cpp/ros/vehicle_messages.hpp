@@ -13,6 +13,9 @@
 
 namespace quadcore::node {
 
+constexpr const char* truth_topic = "ground_truth/odometry";
+constexpr const char* joint_states_topic = "joint_states";
+
 /// A frame that lies in another as long as nothing else is said.
 inline geometry_msgs::TransformStamped same_place(const std::string& parent,
                                                   const std::string& child) {
