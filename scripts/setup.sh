@@ -74,6 +74,10 @@ install_quadcore() {
   say "building and installing quadcore and what it needs into .venv"
   # An older pip does not know the names of today's binary packages.
   pip_install "pip>=20.3" $build_packages
+  # The C++ tests are built around the same core later, so that it is compiled once; by one cmake,
+  # since what another has laid out is compiled anew.
+  [ "$python_extras" = test ] && export SKBUILD_BUILD_DIR=build/tests CMAKE_EXECUTABLE=/usr/bin/cmake \
+    SKBUILD_CMAKE_DEFINE="QUADCORE_BUILD_TESTS=OFF;QUADCORE_WERROR=ON"
   pip_install --no-build-isolation ".${python_extras:+[$python_extras]}"
   echo "$sources $python_extras" > .venv/quadcore.sha256
 }
