@@ -1,0 +1,136 @@
+"""What users install, and the way there: the package's page, the workflows, scripts/release."""
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from processes import script
+
+import quadcore as qc
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGE = ROOT / "python" / "README.md"
+ZIZMOR = shutil.which("zizmor", path=str(Path(sys.executable).parent))
+NAMED = "CMakeLists.txt pyproject.toml package.xml python/quadcore/__init__.py CITATION.cff"
+
+
+def blocks(language):
+    return re.findall(rf"^```{language}\n(.*?)^```$", PAGE.read_text(), re.DOTALL | re.MULTILINE)
+
+
+def test_the_page_of_the_package_stands_by_itself():
+    assert f'readme = "{PAGE.relative_to(ROOT)}"' in (ROOT / "pyproject.toml").read_text()
+    assert not re.findall(r"\]\((?!https://)", PAGE.read_text())  # PyPI has no file beside it
+    assert not re.findall(r"^.{111,}$", PAGE.read_text(), re.MULTILINE)
+
+
+def test_the_python_of_that_page_runs(tmp_path):
+    (text,) = blocks("python")
+    done = script(text, cwd=tmp_path)
+    assert done.returncode == 0 and done.stderr == ""
+    log = qc.Log.of_file(tmp_path / "hover.csv")
+    assert log.position[-1] == pytest.approx([0, 0, 10], abs=1e-3)
+
+
+def test_the_commands_of_that_page_run(tmp_path):
+    (lines,) = (block for block in blocks("sh") if block.startswith("quadcore"))
+    for line in lines.splitlines():
+        command = re.sub("^quadcore", f"{sys.executable} -m quadcore", line.partition("#")[0])
+        done = subprocess.run(
+            ["sh", "-c", command], cwd=str(tmp_path), capture_output=True, text=True, check=False
+        )
+        assert (done.returncode, done.stderr) == (0, ""), line
+
+
+@pytest.mark.skipif(not ZIZMOR, reason="zizmor is for Python 3.11 and later")
+def test_the_workflows_are_valid_and_hand_out_no_rights():
+    done = subprocess.run(
+        [ZIZMOR, "--offline", "--strict-collection", "--quiet", ".github"],
+        cwd=str(ROOT), capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.fixture
+def ready(tmp_path):
+    """A repository whose version 1.2.3 can be released."""
+    folder = tmp_path / "repository"
+    version = qc.__version__
+    for name in [*NAMED.split(), "README.md", "CHANGELOG.md", "scripts/release"]:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(str(ROOT / name), str(folder / name))
+    for name in [*NAMED.split(), "README.md"]:
+        edit(folder / name, version, "1.2.3")
+    edit(folder / "CHANGELOG.md", "## [Unreleased]", "## [Unreleased]\n\n## [1.2.3] - 2031-12-24")
+    edit(folder / "README.md", "git clone REPOSITORY", "git clone https://example.org/quadcore")
+    if "[project.urls]" not in (folder / "pyproject.toml").read_text():
+        edit(folder / "pyproject.toml", "[project.scripts]", "[project.urls]\n\n[project.scripts]")
+    git(folder, "init", "-q")
+    commit(folder)
+    return folder
+
+
+def edit(file, old, new):
+    text = file.read_text()
+    assert old in text
+    file.write_text(text.replace(old, new))
+
+
+def git(folder, *arguments):
+    subprocess.run(["git", *arguments], cwd=str(folder), check=True, stdout=subprocess.PIPE)
+
+
+def commit(folder):
+    git(folder, "add", "-A")
+    who = ["-c", "user.name=somebody", "-c", "user.email=somebody@example.org"]
+    git(folder, *who, "commit", "-q", "--allow-empty", "-m", "change")
+
+
+def released(folder, version="1.2.3"):
+    return subprocess.run(
+        ["scripts/release", version], cwd=str(folder), capture_output=True, text=True, check=False
+    )
+
+
+needs_git = pytest.mark.skipif(not shutil.which("git"), reason="there is no git")
+
+
+@needs_git
+@pytest.mark.parametrize("version", ["1.2.3", "v1.2.3"])
+def test_what_is_ready_may_be_released_and_tagged(ready, version):
+    done = released(ready, version)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("quadcore: 1.2.3 is ready: git tag v1.2.3")
+    git(ready, "tag", "v1.2.3")
+    assert released(ready, version).returncode == 0
+
+
+@needs_git
+@pytest.mark.parametrize(
+    ("name", "old", "new", "complaint"),
+    [
+        *((name, "1.2.3", "1.2.2", f"{name}: does not have") for name in NAMED.split()),
+        ("README.md", "version 1.2.3", "version 1.2", "README.md: does not have"),
+        ("CHANGELOG.md", "2031-12-24", "soon", "CHANGELOG.md: has no heading '## [1.2.3] - YEAR"),
+        ("README.md", "https://example.org/quadcore", "REPOSITORY", "README.md: 'git clone REPO"),
+        ("pyproject.toml", "[project.urls]\n", "", "pyproject.toml: has no [project.urls]"),
+    ],
+)
+def test_what_is_not_ready_is_told(ready, name, old, new, complaint):
+    edit(ready / name, old, new)
+    assert "there are uncommitted changes" in released(ready).stderr
+    commit(ready)
+    done = released(ready)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr.startswith(f"quadcore: {complaint}") and done.stderr.count("\n") == 1
+
+
+@needs_git
+def test_a_tag_is_not_moved(ready):
+    git(ready, "tag", "v1.2.3")
+    commit(ready)
+    done = released(ready)
+    assert (done.returncode, done.stderr) == (1, "quadcore: tag v1.2.3 is another commit's\n")
