@@ -95,7 +95,7 @@ function(add_ros_node name)
   target_include_directories(${name} SYSTEM PRIVATE ${catkin_INCLUDE_DIRS}
                              ${CATKIN_DEVEL_PREFIX}/include ${foreign_dir})
   target_compile_definitions(${name} PRIVATE BOOST_BIND_GLOBAL_PLACEHOLDERS)
-  target_link_libraries(${name} PRIVATE ${catkin_LIBRARIES})
+  target_link_libraries(${name} PRIVATE ${catkin_LIBRARIES} Threads::Threads)
   add_dependencies(${name} ${catkin_EXPORTED_TARGETS} quadcore_generate_messages_cpp
                    foreign_messages)
   set_target_properties(${name} PROPERTIES
