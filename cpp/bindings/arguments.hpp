@@ -3,8 +3,10 @@
 #include <pybind11/numpy.h>
 
 #include <string>
+#include <type_traits>
 
 #include "older_pybind11.hpp"
+#include "quadcore/error.hpp"
 
 /// \file
 /// Numbers and texts on their way between Python and the core.
@@ -19,9 +21,36 @@ using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 /// in the InputError otherwise. No texts, no complex numbers, no masks.
 Numbers numbers(const py::object& object, int dimensions, const char* what);
 
+/// A whole number or a name that is refused in one line of quadcore's own if it is none.
+template <class T>
+struct Given {
+  static constexpr const char* kind =
+      std::is_integral_v<T> ? "a whole number below 2^63" : "a name";
+  T value;
+};
+
 /// Text by others, a plugin's say, as it can be shown.
 py::str text(const std::string& text);
 /// A file's name, which need not be UTF-8, as Python has it.
 py::str file_name(const std::string& path);
 
 }  // namespace quadcore::bindings
+
+namespace pybind11::detail {
+
+template <class T>
+struct type_caster<quadcore::bindings::Given<T>> {
+  PYBIND11_TYPE_CASTER(quadcore::bindings::Given<T>, make_caster<T>::name);
+
+  bool load(handle source, bool convert) {
+    make_caster<T> caster;
+    if (!caster.load(source, convert)) {
+      throw quadcore::InputError(std::string("give ") + quadcore::bindings::Given<T>::kind +
+                                 ", not a '" + Py_TYPE(source.ptr())->tp_name + "'");
+    }
+    value.value = cast_op<T&&>(std::move(caster));
+    return true;
+  }
+};
+
+}  // namespace pybind11::detail

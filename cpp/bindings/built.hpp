@@ -21,11 +21,15 @@ struct Built {
   const T* operator->() const { return held.get(); }
 };
 
-/// Reads what an object holds. False for another class; throws InputError if it holds nothing.
+/// Reads what an object holds. Throws InputError for another class, or if it holds nothing.
 template <class T>
 bool load_built(pybind11::handle source, bool convert, std::shared_ptr<T>& held,
                 const char* if_empty) {
-  if (!pybind11::isinstance<T>(source)) return false;
+  if (!pybind11::isinstance<T>(source)) {
+    const pybind11::handle wanted = pybind11::detail::get_type_handle(typeid(T), true);
+    throw InputError("give a " + pybind11::cast<std::string>(wanted.attr("__name__")) +
+                     ", not a '" + Py_TYPE(source.ptr())->tp_name + "'");
+  }
   auto* const instance = reinterpret_cast<pybind11::detail::instance*>(source.ptr());
   if (!instance->get_value_and_holder().holder_constructed()) throw InputError(if_empty);
   pybind11::detail::make_caster<std::shared_ptr<T>> caster;

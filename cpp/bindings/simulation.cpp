@@ -35,7 +35,8 @@ void set_command(const Self& self, const py::object& speeds) {
   self->command(array.data(), static_cast<std::size_t>(array.size()));
 }
 
-void step(const Self& self, std::int64_t n) {
+void step(const Self& self, const Given<std::int64_t>& steps) {
+  std::int64_t n = steps.value;
   using Clock = std::chrono::steady_clock;
   const Lock lock(*self);
   // A single step is over sooner than the GIL is handed over and back.
@@ -110,8 +111,14 @@ py::dict views(const Self& self) {
 }
 
 VehicleState to_state(const py::object& object) {
-  const auto vector = [&object](const char* name) -> VectorXd {
-    const Numbers array = numbers(object.attr(name), 1, (std::string("state.") + name).c_str());
+  const auto member = [&object](const char* name, int dimensions) {
+    if (!py::hasattr(object, name)) {
+      throw InputError(std::string("the state has no member ") + name + "; give a State");
+    }
+    return numbers(object.attr(name), dimensions, (std::string("state.") + name).c_str());
+  };
+  const auto vector = [&member](const char* name) -> VectorXd {
+    const Numbers array = member(name, 1);
     return Eigen::Map<const VectorXd>(array.data(), array.size());
   };
   const auto sized = [&vector](const char* name, Eigen::Index size) -> VectorXd {
@@ -123,7 +130,7 @@ VehicleState to_state(const py::object& object) {
     return v;
   };
   VehicleState state;
-  state.time = *numbers(object.attr("time"), 0, "state.time").data();
+  state.time = *member("time", 0).data();
   state.position = sized("position", 3);
   state.orientation.coeffs() = sized("orientation", 4);
   state.linear_velocity = sized("linear_velocity", 3);

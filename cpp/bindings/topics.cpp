@@ -36,9 +36,9 @@ py::dict topics(const Self& self) {
   return infos;
 }
 
-py::dict topic(const Self& self, const std::string& name) {
+py::dict topic(const Self& self, const Given<std::string>& name) {
   const Lock lock(*self);
-  const Topic& topic = self->topics()[self->topics().at(name)];
+  const Topic& topic = self->topics()[self->topics().at(name.value)];
   py::dict message;
   message["stamp"] = topic.stamp;
   message["count"] = static_cast<std::int64_t>(topic.count);
@@ -48,7 +48,8 @@ py::dict topic(const Self& self, const std::string& name) {
   return message;
 }
 
-void publish(const Self& self, const std::string& name, const py::object& values) {
+void publish(const Self& self, const Given<std::string>& given, const py::object& values) {
+  const std::string& name = given.value;
   const Numbers array = numbers(values, 1, ("publish: topic '" + name + "'").c_str());
   const Lock lock(*self);
   self->publish(name, array.data(), static_cast<std::size_t>(array.size()));

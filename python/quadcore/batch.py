@@ -93,10 +93,9 @@ class BatchSimulation(_core.Batch):
         if self.n < 1:
             raise InputError("n is 0; give the number of vehicles")
         engine, dt = engine_and_step(engine, dt)
-        given = parameters or {}
-        arguments, others = without_xacro(given, xacro_args)
+        arguments, others = without_xacro(parameters, xacro_args)
         model, self.world = read_both(model, world, arguments, ignore)
-        check_names(model, given)
+        check_names(model, parameters or {})
         built: List[Tuple[_core.Model, Dict[str, str]]] = []
         before: Dict[str, str] = {}
         for values in self._of_each(others):
@@ -161,11 +160,13 @@ class BatchSimulation(_core.Batch):
             Another shape, a number that is not finite, or a quaternion that is none; nothing has
             changed then.
         """
-        given = np.ascontiguousarray(rows, dtype=float)
-        if given.shape != (self.n, self.state_width):
-            raise InputError(
-                f"states are an array of shape {given.shape}; give {(self.n, self.state_width)}"
-            )
+        shape = (self.n, self.state_width)
+        try:
+            given = np.ascontiguousarray(rows, dtype=float)
+        except (TypeError, ValueError):
+            raise InputError(f"states are no numbers; give an array of {shape}") from None
+        if given.shape != shape:
+            raise InputError(f"states are an array of shape {given.shape}; give {shape}")
         self._take_state(given)
 
     def step(self, commands: Optional[npt.ArrayLike] = None, steps: int = 1) -> None:

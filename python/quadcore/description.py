@@ -7,6 +7,7 @@ from typing import Mapping, Optional, Sequence, Tuple, Union
 
 from . import _core, resources, xml_source
 from ._core import Document, InputError, Model, World
+from .arguments import LIST, OPTIONS, check
 from .files import is_file, shown
 from .forks import LOCK
 
@@ -32,6 +33,7 @@ def read_model(
     InputError
         The model is at fault; the message carries FILE:LINE.
     """
+    check({"xacro_args": xacro_args}, OPTIONS)
     arguments = {name: str(value) for name, value in (xacro_args or {}).items()}
     return _core.read_model(
         load_description(str(model), arguments), list_of_names("ignore", ignore)
@@ -83,9 +85,8 @@ def read_both(
 
 def list_of_names(argument: str, names: Sequence[str]) -> list[str]:
     """Check names given as an argument."""
-    if isinstance(names, str) or not all(isinstance(name, str) for name in names):
-        raise InputError(f"{argument} is {names!r}; give a list of names")
-    return list(names)
+    check({argument: names}, {argument: LIST})
+    return list(map(str, names))
 
 
 def load_description(model: str, xacro_args: Mapping[str, str]) -> Document:

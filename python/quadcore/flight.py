@@ -12,6 +12,7 @@ import numpy as np
 
 from . import _core, interrupts
 from .commands import CommandsLike, as_commands
+from .given import whole
 from .log import Log
 
 if TYPE_CHECKING:
@@ -84,6 +85,7 @@ def fly(
         The flight failed, or what the pilot gave after the start was no command.
     """
     total = steps_within(duration, simulation.dt)
+    log_every = whole(log_every, "log_every", bits=63)
     table = None if commands is None else as_commands(commands, simulation.command_width)
     if pilot is not None:
         pilot.reset(simulation)

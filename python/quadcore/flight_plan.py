@@ -132,7 +132,7 @@ class FlightPlan:
         InputError
             The model, the world, the commands, the scenario or an argument is at fault.
         """
-        arguments, given = without_xacro(parameters or {}, xacro_args)
+        arguments, given = without_xacro(parameters, xacro_args)
         readings = read_both(model, world, arguments, ignore)
         check_names(readings[0], parameters or {})
         plan = cls(

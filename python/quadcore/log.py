@@ -9,6 +9,7 @@ from typing import Any, Dict, List, Mapping, Sequence, Tuple, Union
 import numpy as np
 
 from ._core import InputError
+from .arguments import NAME, check
 from .extras import needed
 from .files import check_writable
 from .forks import LOCK
@@ -52,7 +53,7 @@ class Log(Trajectory):
             Another suffix, a file that cannot be read, or one that holds no log; the message begins
             with the file and, if it is text, the line.
         """
-        file = Path(path)
+        file = _named(path)
         read = format_of(file, _READ).read_log(file)
         return cls.of_rows(read.rows, read.columns, read.wrenches, read.ignored)
 
@@ -133,7 +134,7 @@ class Log(Trajectory):
             the names of its ``columns`` beside it, or time and "signals", as Simulink has them.
         """
         self._check_suffix(path, ".mat")
-        mat.write_log(Path(path), *self._parts(), layout)
+        mat.write_log(_named(path), *self._parts(), layout)
 
     def to_file(self, path: PathLike) -> None:
         """Write a ``.csv``, ``.mat`` or ``.bag`` file, as its name says.
@@ -143,7 +144,7 @@ class Log(Trajectory):
         InputError
             Another suffix, or a file that cannot be written; nothing is left behind then.
         """
-        file = Path(path)
+        file = _named(path)
         format_of(file, _WRITTEN).write_log(file, *self._parts())
 
     def _parts(self) -> Tuple[List[str], np.ndarray, Mapping[str, np.ndarray], List[str]]:
@@ -157,14 +158,20 @@ class Log(Trajectory):
 
     def plot(self, directory: PathLike) -> list[Path]:
         """Draw the flight into PNG files in `directory` (made if missing); returns their paths."""
+        folder = _named(directory, "directory")
         with LOCK:
             from .plots import draw  # matplotlib is slow to import
 
-        return draw(self, Path(directory))
+        return draw(self, folder)
 
     def _check_suffix(self, path: PathLike, suffix: str) -> None:
-        if Path(path).suffix.lower() != suffix:
+        if _named(path).suffix.lower() != suffix:
             raise InputError(f"{path}: name a file that ends in {suffix}, which it would hold")
+
+
+def _named(path: PathLike, argument: str = "path") -> Path:
+    check({argument: path}, {argument: NAME})
+    return Path(path)
 
 
 def check_log_path(path: PathLike) -> None:

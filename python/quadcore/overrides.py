@@ -8,6 +8,7 @@ from xml.parsers import expat
 
 from . import _core
 from ._core import Document, InputError, Model
+from .arguments import OPTIONS, check
 
 XACRO = "xacro"
 _LINK = "a link"
@@ -18,17 +19,18 @@ _PLACES.update({name: ("inertia", name) for name in ("ixx", "ixy", "ixz", "iyy",
 
 
 def without_xacro(
-    parameters: Mapping[str, Any], xacro_args: Optional[Mapping[str, object]]
+    parameters: Optional[Mapping[str, Any]], xacro_args: Optional[Mapping[str, object]]
 ) -> Tuple[Dict[str, object], Dict[str, Any]]:
     """Take the xacro.ARG out of parameters: arguments for the reader, and what is left.
 
     Raises
     ------
     InputError
-        An argument that is given in both ways.
+        Something else than names with values, or an argument that is given in both ways.
     """
+    check({"parameters": parameters, "xacro_args": xacro_args}, OPTIONS)
     arguments, left = dict(xacro_args or {}), {}
-    for key, value in parameters.items():
+    for key, value in (parameters or {}).items():
         owner, _, name = key.rpartition(".")
         if owner != XACRO:
             left[key] = value

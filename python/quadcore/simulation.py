@@ -10,6 +10,7 @@ from warnings import warn
 import numpy as np
 
 from . import _core, references
+from .arguments import PROGRESS, check, or_none
 from .controller import Controller, Guided
 from .description import list_of_names, read_both
 from .flight import Progress, Rows, columns_of, fly
@@ -83,10 +84,9 @@ class Simulation(_core.Simulation):
         ignore: Sequence[str] = (),
     ) -> None:
         engine, dt = engine_and_step(engine, dt)
-        given = parameters or {}
-        arguments, others = without_xacro(given, xacro_args)
+        arguments, others = without_xacro(parameters, xacro_args)
         model, self.world = read_both(model, world, arguments, ignore)
-        check_names(model, given)
+        check_names(model, parameters or {})
         model, tags = with_links(model, {key: text_of(value) for key, value in others.items()})
         super().__init__(
             model=model,
@@ -135,7 +135,7 @@ class Simulation(_core.Simulation):
             It was taken from another simulation, with what differs, or is damaged; nothing has
             changed then.
         """
-        super().restore(snapshot, list(allow))
+        super().restore(snapshot, list_of_names("allow", allow))
 
     def reset(self, seed: Optional[int] = None) -> None:
         """Go back to the moment of construction, bit for bit.
@@ -233,6 +233,7 @@ class Simulation(_core.Simulation):
         if on_reference:
             reference = self._put_on(controller, reference)
         names = list_of_names("topics", topics)
+        check({"progress": progress}, {"progress": or_none(PROGRESS)})
         pilot = None if controller is None else Guided(controller, self, reference)
         rows = Rows(self, columns_of(self, names, pilot))
         try:

@@ -70,7 +70,7 @@ def test_a_link_that_only_a_sensor_feels_makes_another_vehicle(hangar):
 
 
 def test_no_snapshot_is_none():
-    with pytest.raises(TypeError):
+    with pytest.raises(qc.InputError, match="give a Snapshot, not a 'NoneType'"):
         quadrotor().restore(None)
 
 

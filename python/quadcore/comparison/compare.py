@@ -20,7 +20,7 @@ from typing import (
 
 import numpy as np
 
-from .. import interrupts
+from .. import arguments, interrupts
 from .._core import FlightError, InputError, QuadcoreError
 from ..commands import CommandsLike
 from ..log import Log
@@ -35,6 +35,19 @@ Progress = Callable[[int, int], None]
 Keep = Callable[[int, Log], Any]
 Outcome = Tuple[np.ndarray, Any]
 
+_KINDS = {
+    "models": arguments.NAMES,
+    "vary": arguments.or_none(arguments.AXES),
+    "duration": arguments.SECONDS,
+    "log_every": arguments.COUNT,
+    "processes": arguments.or_none(arguments.COUNT),
+    "progress": arguments.or_none(arguments.PROGRESS),
+    "reference": arguments.or_none(arguments.WHOLE),
+    "engine": arguments.NAME,
+    "world": arguments.ANY,
+    "spawn": arguments.ANY,
+    "scenario": arguments.ANY,
+}
 _LARGEST_LOGS = 2 * 2**30  # bytes
 
 
@@ -124,8 +137,10 @@ def compare(
     KeyboardInterrupt
         With the attribute `comparison`, whose missing rows say so.
     """
-    names = [models] if isinstance(models, (str, Path)) else list(models)
-    plan = Plan(names, vary or {}, commands, duration, log_every, options)
+    given = locals()
+    told = [name for name in _KINDS if name in given]
+    arguments.check({**{name: given[name] for name in told}, **options}, _KINDS)
+    plan = Plan(arguments.several(models), vary or {}, commands, duration, log_every, options)
     if logs:
         _check_memory(plan, duration, log_every)
     return fly(plan, (lambda _, log: log) if logs else None, processes, progress, reference)

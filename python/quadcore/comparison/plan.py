@@ -64,9 +64,7 @@ class Plan:
         self.names = [shown(model) for model in models]
         own = dict(options)
         ignore = own.pop("ignore", ())
-        arguments, given = without_xacro(
-            own.pop("parameters", None) or {}, own.pop("xacro_args", None)
-        )
+        arguments, given = without_xacro(own.pop("parameters", None), own.pop("xacro_args", None))
         self._set = {key: text_of(value) for key, value in given.items()}
         self._taken = [*self._set, *(f"{XACRO}.{name}" for name in arguments)]
         self._read = lru_cache(_READ)(

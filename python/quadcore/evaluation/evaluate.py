@@ -17,9 +17,9 @@ from typing import (
     Union,
 )
 
+from .. import arguments
 from .._core import QuadcoreError
 from ..flight_plan import FlightPlan
-from ..study import arguments
 from ..study.axes import Values
 from ..study.executor import conducted
 from ..study.sampling import evenly

@@ -7,13 +7,13 @@ from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Seq
 
 import numpy as np
 
+from .. import arguments
 from .._core import FlightError, InputError, Model
 from ..description import read_both
 from ..given import text_of
 from ..log import Log
 from ..overrides import check_names, with_links, without_xacro
 from ..simulation import Simulation
-from ..study import arguments
 from ..warning import unheard
 from . import record as records
 from .document import with_values
@@ -166,7 +166,7 @@ def fit(
     told = dict(locals())
     options = ("parameters", "world", "dt", "xacro_args", "ignore")
     arguments.check({name: told[name] for name in (*_KINDS, *options)}, _KINDS)
-    of_xacro, given = without_xacro(parameters or {}, xacro_args)
+    of_xacro, given = without_xacro(parameters, xacro_args)
     read, read_world = read_both(model, world, of_xacro, ignore)
     check_names(read, parameters or {})
     read, tags = with_links(read, {name: text_of(value) for name, value in given.items()})

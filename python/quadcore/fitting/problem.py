@@ -6,11 +6,11 @@ from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
+from .. import arguments
 from .._core import FlightError, InputError, Model, parse_number
 from ..overrides import XACRO
 from ..parameters import did_you_mean
 from ..simulation import Simulation
-from ..study import arguments
 from .document import written
 from .horizons import Horizons
 

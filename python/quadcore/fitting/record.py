@@ -7,10 +7,10 @@ from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
+from .. import arguments
 from .._core import InputError
 from ..commands import as_commands
 from ..log import Log
-from ..study import arguments
 
 CHANNELS: Dict[str, int] = {"position": 3, "attitude": 3, "velocity": 3, "rates": 3, "rotors": 0}
 """What can be measured, with the numbers of each; `rotors` has one for each rotor."""

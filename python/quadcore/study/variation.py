@@ -39,7 +39,7 @@ class Variation:
         xacro_args: Optional[Mapping[str, object]] = None,
         ignore: Sequence[str] = (),
     ) -> None:
-        arguments, given = without_xacro(parameters or {}, xacro_args)
+        arguments, given = without_xacro(parameters, xacro_args)
         self.arguments, self.ignore = arguments, ignore
         self.set = {key: text_of(value) for key, value in given.items()}
         """Values that all flights have, by ``PLUGIN.TAG``, ``LINK.mass`` or the like."""

@@ -20,12 +20,11 @@ from typing import (
 
 import numpy as np
 
-from .. import interrupts
+from .. import arguments, interrupts
 from .._core import InputError
 from ..commands import CommandsLike
 from ..files import make_folder
 from ..given import whole
-from ..study import arguments
 from ..study.table import flown_and_failed
 from .dask import cluster
 from .design import Design

@@ -5,11 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Optional, Sequence, Union
 
-from .. import laws
+from .. import arguments, laws
 from .._core import FlightError
+from ..arguments import several
 from ..extras import needed
-from ..study import arguments
-from ..study.arguments import several
 from .problem import Problem
 from .search import Progress, Search, Tuning
 

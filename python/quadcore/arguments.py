@@ -1,13 +1,14 @@
-"""What kind of value each argument takes, told before anything flies."""
+"""What kind of value each argument takes, told before anything flies or is read."""
 
 from __future__ import annotations
 
 import math
+import os
+import reprlib
 from numbers import Integral, Real
-from pathlib import Path
 from typing import Any, Callable, Dict, Iterable, List, Mapping, Tuple
 
-from .._core import InputError
+from ._core import InputError
 
 Kind = Tuple[Callable[[Any], bool], str]
 """Whether a value is of it, and what to give."""
@@ -33,7 +34,7 @@ def check(arguments: Mapping[str, Any], kinds: Mapping[str, Kind]) -> None:
                 f"{', '.join(OPTIONS)}"
             )
         if not kind[0](value):
-            raise InputError(f"{name} is {value!r}; give {kind[1]}")
+            raise InputError(f"{name} is {_shown(value)}; give {kind[1]}")
 
 
 def or_none(kind: Kind) -> Kind:
@@ -46,12 +47,21 @@ def several(value: Any) -> List[Any]:
     return [value] if _is_text(value) or callable(value) else list(value)
 
 
+def _shown(value: Any) -> str:
+    """Write a value in one line, shortened if it is long."""
+    return " ".join(reprlib.repr(value).split())
+
+
 def _is_text(value: Any) -> bool:
-    return isinstance(value, (str, Path))
+    return isinstance(value, (str, os.PathLike))
 
 
 def _are_names(value: Any) -> bool:
     return _is_text(value) or (isinstance(value, Iterable) and all(map(_is_text, value)))
+
+
+def _is_list(value: Any) -> bool:
+    return _are_names(value) and not _is_text(value)
 
 
 def _are_guides(value: Any) -> bool:
@@ -98,6 +108,7 @@ def _is_limit(value: Any) -> bool:
 
 NAME: Kind = (_is_text, "a name or a path")
 NAMES: Kind = (_are_names, "a name, or several")
+LIST: Kind = (_is_list, "a list of names")
 GUIDES: Kind = (_are_guides, "names, or functions that are called as reference(t)")
 NAMED: Kind = (_are_named, "a mapping of names to values")
 AXES: Kind = (_are_axes, "a mapping of names to lists of values")
@@ -116,12 +127,13 @@ LIMIT: Kind = (_is_limit, f"seconds, more than 0 and at most {_LONGEST:g}")
 WHOLE: Kind = (_is_whole, "a whole number")
 COUNT: Kind = (_is_count, "a whole number from 1 on")
 FLAG: Kind = (lambda value: isinstance(value, bool), "True or False")
+ANY: Kind = (lambda value: True, "")  # told where it is read
 PROGRESS: Kind = (callable, "a function that is called as progress(done, total)")
 
 OPTIONS: Dict[str, Kind] = {
     "world": or_none(NAME),
     "dt": or_none((lambda value: isinstance(value, Real), "a step in s")),
-    "seed": (lambda value: True, ""),  # told where it is read
+    "seed": ANY,
     "parameters": or_none(NAMED),
     "xacro_args": or_none(NAMED),
     "ignore": NAMES,
