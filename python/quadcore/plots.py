@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 # x, y, z keep theirs throughout.
 AXES = ("#d55e00", "#009e73", "#0072b2")
 WHOLE = (0.0, 0.02, 0.94, 0.94)  # of a figure that axes in space fill
-_NOTHING = 1e-6  # m, m/s, rad/s, deg: a range below which there is rounding to be seen
+NOTHING = 1e-6  # m, m/s, rad/s, deg: a range below which there is rounding to be seen
 _NO_FORCE = 1e-9  # N, N m
 _PLACES = ("x (m)", "y (m)", "z (m)")
 _ANGLES = ("roll (deg)", "pitch (deg)", "yaw (deg)")
@@ -168,7 +168,7 @@ def _wrenches(log: Trajectory) -> Figure:
         for axes, part in ((row[0], wrench[:, :3]), (row[1], wrench[:, 3:])):
             for values, colour, axis in zip(part.T, AXES, "xyz"):
                 axes.plot(log.time, values, color=colour, label=axis)
-            _flatten(axes, _NO_FORCE)
+            flatten(axes, _NO_FORCE)
     _legend(figure, grid[0, 0])
     return figure
 
@@ -202,6 +202,7 @@ def space(figure: Figure, place: Any, paths: Sequence[np.ndarray]) -> Tuple[Any,
     for name, start in zip("xyz", corner):
         getattr(axes, f"set_{name}lim")(start, start + 2 * reach)
         getattr(axes, f"set_{name}label")(f"{name} (m)")
+    axes.locator_params(nbins=5, prune="both")  # neighbours do not touch
     return axes, corner
 
 
@@ -229,6 +230,8 @@ def panels(
     grid = figure.subplots(rows, columns, sharex=True, squeeze=False, gridspec_kw=margins)
     for axes in grid.flat:
         dress(axes)
+        # Numbers too long for the margin are told with a power of ten.
+        axes.ticklabel_format(axis="y", useOffset=False, scilimits=(-3, 4))
     for axes in grid[-1]:
         axes.set_xlabel("time (s)")
     figure.align_ylabels(grid)
@@ -252,9 +255,9 @@ def widen(axes: Any, least: float) -> None:
         axes.set_ylim(middle - least / 2, middle + least / 2)
 
 
-def _flatten(axes: Any, least: float) -> None:
+def flatten(axes: Any, least: float) -> None:
     """Show what moves less than that much as a flat line on a scale of one unit."""
-    low, high = axes.get_ylim()
+    low, high = axes.dataLim.intervaly
     if high - low < least:
         middle = round((low + high) / 2, 3) + 0.0
         axes.set_ylim(middle - 1, middle + 1)
@@ -291,5 +294,4 @@ def _curves(panels: Any, time: np.ndarray, values: np.ndarray, labels: Sequence[
     for axes, curve, colour, label in zip(panels, values.T, AXES, labels):
         axes.plot(time, curve, color=colour)
         axes.set_ylabel(label)
-        axes.ticklabel_format(axis="y", useOffset=False)
-        _flatten(axes, _NOTHING)
+        flatten(axes, NOTHING)

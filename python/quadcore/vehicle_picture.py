@@ -17,6 +17,8 @@ from .plots import AXES, space, titled
 from .simulation import Simulation
 
 _FRAME, _AHEAD, _BACK, _STILL = "0.35", PALETTE[0], PALETTE[1], "0.6"
+_TRIAD, _ABOVE = 0.6, 0.68  # radii: axes of a rotor's link, and its number beyond them
+_PAPER = {"facecolor": "white", "edgecolor": "none", "pad": 1}  # under text that lines cross
 _EDGES = [(i, j) for i in range(8) for j in range(i) if bin(i ^ j).count("1") == 1]
 
 
@@ -55,10 +57,9 @@ def draw(simulation: Simulation) -> Figure:
     for rotor in rotors:
         rim = _rim(rotor, radius)
         axes.plot(*rim.T, color=rotor.colour, linewidth=1)
-        axes.text(
-            *(rotor.place + 0.35 * radius * rotor.axis), str(rotor.number), color=rotor.colour
-        )
-    for pose, length in zip(model.link_poses, [1.2 * radius, *[0.6 * radius] * len(rotors)]):
+        above = rotor.place + _ABOVE * radius * rotor.axis
+        axes.text(*above, str(rotor.number), color=rotor.colour, ha="center")
+    for pose, length in zip(model.link_poses, [1.2 * radius, *[_TRIAD * radius] * len(rotors)]):
         _triad(axes, pose, length)
     axes.plot(*simulation.center_of_mass[:, None], "o", color="black", markersize=4)
     _from_above(figure.add_axes((0.56, 0.22, 0.43, 0.7)), simulation, rotors, boxes, radius)
@@ -114,7 +115,8 @@ def _from_above(
         axes.text(x, y, str(rotor.number), ha="center", va="center", color=rotor.colour)
         if not np.isnan(rotor.command):
             told = f"{rotor.command:+.4g}"
-            axes.text(x, y - 0.45 * radius, told, ha="center", va="center", fontsize="x-small")
+            where = (x, y - 0.45 * radius)
+            axes.text(*where, told, ha="center", va="center", fontsize="x-small", bbox=_PAPER)
     for name, colour, tip in zip("xy", AXES, np.eye(2)):
         axes.annotate(
             "", 0.8 * radius * tip, (0, 0), arrowprops={"arrowstyle": "->", "color": colour}

@@ -6,10 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import quadcore as qc
 from quadcore import plots
 from quadcore.cli import main
+from quadcore.comparison import pictures as overlaid
 
 ONE = {f"{name}.png" for name in ("position", "attitude", "rates", "rotors", "path")}
 
@@ -59,6 +61,39 @@ def test_rounding_is_drawn_as_a_flat_line():
     x, _, z = plots._position(qc.Log(table, {})).axes
     assert x.get_ylim() == (-1, 1) and list(x.get_yticks()) == [0]
     assert z.get_ylim()[1] - z.get_ylim()[0] < 4
+
+
+def test_rounding_is_flat_where_flights_are_drawn_over_each_other():
+    logs = []
+    for spread in (0, 1e-13):
+        table = np.zeros((3, 18))
+        table[:, 0], table[:, 7] = range(3), 1
+        table[:, 1], table[:, 3] = [0, spread, -spread], [10, 9, 7 - 1e3 * spread]
+        logs.append(qc.Log(table, {}))
+    curves = [overlaid.Curve(name, log) for name, log in zip("ab", logs)]
+    figures = overlaid.draw(curves, logs[0], "a")
+    x, _, z = figures["position"].axes
+    assert list(x.get_yticks()) == [0] and z.get_ylim()[1] - z.get_ylim()[0] < 4
+    assert list(figures["differences"].axes[0].get_yticks()) == [0]
+
+
+@pytest.mark.parametrize("size", [1e-5, 8.6e-4, 0.03, 123.0, 23456.0])
+def test_no_label_is_cut_off_or_lies_on_its_neighbour(size):
+    table = np.zeros((9, 18))
+    table[:, 0], table[:, 7] = range(9), 1
+    table[:, 1:4] = table[:, 8:14] = -size * np.linspace(0, 1, 9)[:, None]
+    log = qc.Log(table, {}, topics={"error": dict(zip("xyz", table[:, 1:4].T))})
+    for draw in (plots._position, plots._error, plots._rates, plots.glance):
+        figure = draw(log)
+        renderer = FigureCanvasAgg(figure).get_renderer()
+        figure.draw(renderer)
+        for axes in figure.axes:
+            label = axes.yaxis.label.get_window_extent(renderer)
+            ticks = [tick.get_window_extent(renderer) for tick in axes.get_yticklabels()]
+            shown = [tick for tick in ticks if axes.bbox.y0 <= tick.y1 and tick.y0 <= axes.bbox.y1]
+            assert label.x0 >= 0 and label.x1 <= min(tick.x0 for tick in shown)
+            others = [other.bbox for other in figure.axes if other is not axes]
+            assert not any(label.overlaps(box) for box in others)
 
 
 def test_speeds_of_slow_rotors_are_drawn_as_commanded_too():

@@ -10,11 +10,12 @@ from matplotlib.figure import Figure
 
 from ..colours import PALETTE
 from ..log import Log
-from ..plots import WHOLE, panels, space, titled
+from ..plots import NOTHING, WHOLE, flatten, panels, space, titled
 from ..rotation import continuous
 from ..study.metrics import differences
 
 _LABELS = 6
+_NO_DIFFERENCE = 1e-9  # m, deg, m/s, rad/s
 
 
 class Curve(NamedTuple):
@@ -110,7 +111,8 @@ def _differences(
     scale = np.array([1, 180 / np.pi, 1, 1])
     values = [differences(reference, curve.log)[:, :4] * scale for curve in curves]
     labels = ["position (m)", "attitude (deg)", "velocity (m/s)", "rates (rad/s)"]
-    return _figure(f"Distance from {name}", curves, styles, [(values, labels)])
+    title = f"Distance from {name}"
+    return _figure(title, curves, styles, [(values, labels)], _NO_DIFFERENCE)
 
 
 def _figure(
@@ -118,8 +120,12 @@ def _figure(
     curves: Sequence[Curve],
     styles: Sequence[Dict[str, Any]],
     sides: Sequence[Tuple[Sequence[np.ndarray], Sequence[str]]],
+    least: float = NOTHING,
 ) -> Figure:
-    """Make a column of panels for each side: its values by flight, and its columns' labels."""
+    """Make a column of panels for each side: its values by flight, and its columns' labels.
+
+    What moves less than `least` is drawn flat.
+    """
     named = [style["label"] for style in styles if style["label"]]
     # A sign is a tenth of an inch wide at most; a legend line is as wide as seven.
     columns = max(1, int((8 if len(sides) > 1 else 7) * 10 / (7 + max(map(len, named)))))
@@ -132,6 +138,7 @@ def _figure(
                 axes.plot(curve.log.time[: len(state)], state, **style)
         for axes, label in zip(column, labels):
             axes.set_ylabel(label)
+            flatten(axes, least)
     figure.legend(
         *grid[0, 0].get_legend_handles_labels(),
         loc="upper left",
