@@ -16,6 +16,7 @@ from .rotation import continuous
 # Files need no window, and a wrong name of a toolkit for windows must not end a flight.
 _toolkit = os.environ.pop("MPLBACKEND", None)
 try:
+    from matplotlib import rc_context
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from mpl_toolkits.mplot3d import Axes3D  # noqa: F401  (matplotlib < 3.2 needs it for "3d")
@@ -220,22 +221,28 @@ def panels(
     figure = titled(title, width, total)
     # Fixed margins: matplotlib's automatic layouts differ from version to version.
     margins = {
-        "left": 0.85 / width,
+        "left": 1.1 / width,
         "right": 1 - right / width,
         "top": 1 - above / total,
         "bottom": below / total,
-        "wspace": 0.27,
+        "wspace": 0.38,
         "hspace": 0.18,
     }
-    grid = figure.subplots(rows, columns, sharex=True, squeeze=False, gridspec_kw=margins)
-    for axes in grid.flat:
-        dress(axes)
-        # Numbers too long for the margin are told with a power of ten.
-        axes.ticklabel_format(axis="y", useOffset=False, scilimits=(-3, 4))
+    grid = subplots(figure, rows, columns, margins, sharex=True)
     for axes in grid[-1]:
         axes.set_xlabel("time (s)")
-    figure.align_ylabels(grid)
     return figure, grid
+
+
+def subplots(figure: Figure, rows: int, columns: int, margins: Any, **shared: Any) -> Any:
+    """Put dressed panels into a figure, whose numbers have nine signs at most."""
+    with rc_context({"axes.formatter.offset_threshold": 7}):
+        grid = figure.subplots(rows, columns, squeeze=False, gridspec_kw=margins, **shared)
+    for axes in grid.flat:
+        dress(axes)
+        axes.ticklabel_format(axis="y", scilimits=(-3, 4))
+    figure.align_ylabels(grid)
+    return grid
 
 
 def dress(axes: Any) -> None:
@@ -280,14 +287,9 @@ def titled(title: str, width: float, height: float, dpi: int = 150) -> Figure:
 def _legend(figure: Figure, axes: Any) -> None:
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(
-        handles,
-        labels,
-        loc="upper right",
-        ncol=max(1, len(labels)),
-        frameon=False,
-        handlelength=1.0,
-        columnspacing=1.0,
-    )
+        handles, labels, loc="upper right", ncol=max(1, len(labels)), frameon=False,
+        handlelength=1.0, columnspacing=1.0,
+    )  # fmt: skip
 
 
 def _curves(panels: Any, time: np.ndarray, values: np.ndarray, labels: Sequence[str]) -> None:

@@ -78,10 +78,11 @@ def test_rounding_is_flat_where_flights_are_drawn_over_each_other():
 
 
 @pytest.mark.parametrize("size", [1e-5, 8.6e-4, 0.03, 123.0, 23456.0])
-def test_no_label_is_cut_off_or_lies_on_its_neighbour(size):
+@pytest.mark.parametrize("from_", [0.0, -10.0, 123.0])
+def test_no_label_is_cut_off_or_lies_on_its_neighbour(size, from_):
     table = np.zeros((9, 18))
     table[:, 0], table[:, 7] = range(9), 1
-    table[:, 1:4] = table[:, 8:14] = -size * np.linspace(0, 1, 9)[:, None]
+    table[:, 1:4] = table[:, 8:14] = from_ - size * np.linspace(0, 1, 9)[:, None]
     log = qc.Log(table, {}, topics={"error": dict(zip("xyz", table[:, 1:4].T))})
     for draw in (plots._position, plots._error, plots._rates, plots.glance):
         figure = draw(log)

@@ -7,7 +7,7 @@ from typing import Any, Callable, Dict, List, NamedTuple, Sequence, Tuple
 import numpy as np
 
 from ..colours import PALETTE
-from ..plots import dress, png, titled, widen
+from ..plots import png, subplots, titled, widen
 from .causes import draw_chains, draw_damping
 from .experiment import MODEL, Case
 from .states import states
@@ -127,7 +127,7 @@ def _panels(
     figure = titled(title, width, height, _DPI)
     # Fixed margins: matplotlib's automatic layouts differ from version to version.
     margins = {
-        "left": 0.75 / width,
+        "left": 1.1 / width,
         "right": 1 - 0.2 / width,
         "top": 1 - above / height,
         "bottom": below / height,
@@ -135,12 +135,9 @@ def _panels(
         "wspace": 0.1 if sharey == "row" else 0.3,
     }
     shared: Any = {"sharex": True, "sharey": sharey}
-    panels = figure.subplots(rows, columns, squeeze=False, gridspec_kw=margins, **shared)
+    panels = subplots(figure, rows, columns, margins, **shared)
     for axes in panels.flat:
-        dress(axes)
-        axes.ticklabel_format(axis="y", scilimits=(-3, 4), useOffset=False)
         axes.locator_params(axis="x", nbins=4, steps=[1, 2, 5, 10])  # neighbours do not touch
-    figure.align_ylabels(panels)
     return figure, panels
 
 
