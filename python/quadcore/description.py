@@ -10,6 +10,7 @@ from ._core import Document, InputError, Model, World
 from .arguments import LIST, OPTIONS, check
 from .files import is_file, shown
 from .forks import LOCK
+from .parameters import did_you_mean
 
 
 def read_model(
@@ -148,8 +149,9 @@ def _find(kind: str, name: str, folder: str) -> Path:
         return by_name[name]
     if path.is_dir():
         raise InputError(f"{name}: is a folder; name the {kind} file in it")
-    known = ", ".join(shipped) or "none"
-    raise InputError(f"{name}: no such file, and no shipped {kind} of that name ({known})")
+    known = f"({', '.join(shipped) or 'none'})"
+    near = did_you_mean(name, list(by_name))
+    raise InputError(f"{name}: no such file, and no shipped {kind} of that name {known}{near}")
 
 
 def _plain(path: Path) -> Document:

@@ -141,13 +141,17 @@ def test_the_same_seed_gives_the_same_bytes():
 @pytest.mark.parametrize(
     ("arguments", "reason"),
     [
-        ("", "required: COMMAND"),
         ("fly quadrotor", "invalid choice: 'fly'"),
+        ("runn quadrotor", "(did you mean 'run')"),
         ("run", "required: MODEL"),
         ("run nope.urdf", "nope.urdf: no such file"),
+        ("run qudrotor", "(did you mean 'quadrotor')"),
         ("run quadrotor --bogus", "unrecognized arguments: --bogus"),
         ("run quadrotor --dur 1", "unrecognized arguments: --dur 1"),
+        ("run quadrotor --enigne ode", "--enigne ode (did you mean '--engine'); see quadcore run"),
         ("run quadrotor --engine bullet", "invalid choice: 'bullet'"),
+        ("run quadrotor --engine eigne", "(did you mean 'eigen')"),
+        ("run quadrotor --world emtpy", "(did you mean 'empty')"),
         ("run quadrotor --world nope.world", "nope.world: no such file"),
         ("run quadrotor --dt 0", "--dt: 0 is not greater than 0"),
         ("run quadrotor --duration nan", "--duration: 'nan' is not a finite number"),
@@ -251,10 +255,15 @@ def test_help_and_the_module_work_from_a_shell():
 
 
 def test_a_reader_that_stops_early_is_no_error():
-    command = f"{sys.executable} -m quadcore info quadrotor | head -n 1"
-    shown = subprocess.run(command, shell=True, capture_output=True, text=True)
+    command = f"set -o pipefail; {sys.executable} -m quadcore info quadrotor | head -n 1"
+    shown = subprocess.run(["bash", "-c", command], capture_output=True, text=True)
     assert shown.stdout == "model quadrotor\n"
-    assert shown.stderr == ""
+    assert (shown.returncode, shown.stderr) == (0, "")
+
+
+def test_the_command_alone_shows_what_there_is(capsys):
+    assert main([]) == 2
+    assert "evaluate" in capsys.readouterr().out
 
 
 def test_a_mat_log_may_skip_steps():

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 import sys
-from typing import NoReturn, Sequence
+from typing import Any, NoReturn, Sequence
 
 from .. import __version__, interrupts
 from .._core import FlightError, InputError, QuadcoreError
 from ..files import shown
+from ..parameters import did_you_mean
 from . import (
     compare,
     convert,
@@ -49,6 +50,20 @@ class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message}; see {self.prog} --help")
 
+    def parse_known_args(self, *given: Any, **named: Any) -> Any:  # type: ignore[override]
+        read, unknown = super().parse_known_args(*given, **named)
+        if unknown:  # told by the command that does not know them
+            near = did_you_mean(unknown[0], list(self._option_string_actions))
+            self.error(f"unrecognized arguments: {' '.join(unknown)}{near}")
+        return read, unknown
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        try:
+            super()._check_value(action, value)
+        except argparse.ArgumentError as error:
+            near = did_you_mean(str(value), [str(choice) for choice in action.choices or ()])
+            raise argparse.ArgumentError(action, f"{error.message}{near}") from None
+
     def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
         sys.stdout.flush()  # while a full disk can still be told
         super().exit(status, message)
@@ -80,8 +95,12 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _act(argv: Sequence[str] | None) -> int:
     try:
         with interrupts.heard(), terminal.warnings_as_lines():
-            arguments = _parser().parse_args(argv)
-            arguments.words = list(sys.argv[1:] if argv is None else argv)
+            words = list(sys.argv[1:] if argv is None else argv)
+            parser = _parser()
+            if not words:
+                parser.print_help()
+            arguments = parser.parse_args(words)
+            arguments.words = words
             arguments.action(arguments)
             sys.stdout.flush()
     except QuadcoreError as error:

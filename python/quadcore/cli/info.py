@@ -11,7 +11,7 @@ from typing import Any
 from rich.table import Table
 
 from .. import resources
-from .._core import InputError
+from .._core import InputError, parse_number
 from ..chapter2.vehicle import Vehicle
 from ..files import atomic_write
 from ..simulation import Simulation
@@ -112,9 +112,14 @@ def _told(plugin: Any, width: int) -> str:
     """All of each parameter in a few lines, for a terminal; paths stay whole."""
     lines = []
     for parameter in plugin.parameters:
+        # A unit belongs to a number: not to "off", but to what may be given instead.
+        is_number = parse_number(parameter.value.partition(" ")[0]) is not None
+        value, allowed = f"{parameter.value} {parameter.unit}", parameter.range
+        if not is_number:
+            value, allowed = parameter.value, f"{parameter.range} {parameter.unit}"
         default = "required" if parameter.default is None else f"default {parameter.default}"
-        facts = (parameter.meaning, parameter.range, default, parameter.equation)
-        lines.append(f"  {parameter.name}  {parameter.value} {parameter.unit}".rstrip())
+        facts = (parameter.meaning, allowed.rstrip(), default, parameter.equation)
+        lines.append(f"  {parameter.name}  {value}".rstrip())
         origin = "" if parameter.origin == "default" else _origin(parameter.origin)
         told = "; ".join(filter(None, (*facts, origin)))
         indent = " " * 6

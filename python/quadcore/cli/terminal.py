@@ -50,6 +50,9 @@ class _Console(Console):
         shown = [printable(part) if isinstance(part, str) else part for part in objects]
         super().print(*shown, **options)
 
+    def on_broken_pipe(self) -> None:
+        raise BrokenPipeError  # not the exit of status 1 that newer rich makes of it
+
 
 class _Table(Table):
     def add_row(self, *cells: Any, **options: Any) -> None:
