@@ -100,6 +100,10 @@ most_levels, most_attributes : int
            }),
            py::arg("name"), py::arg("text"),
            py::arg("lines") = std::vector<std::pair<std::string, int>>{})
+      .def("__repr__",
+           [](const Document& d) {
+             return py::str("<Document '{}', {} characters>").format(text(d.name), d.text.size());
+           })
       .def_readonly("name", &Document::name, "File that it is, for errors.")
       .def_readonly("text", &Document::text, "The XML.")
       .def_readonly("lines", &Document::lines,
