@@ -154,6 +154,13 @@ def test_a_grid_of_tags_engines_and_worlds_in_the_order_given():
     assert np.array_equal(result.logs[7].table, alone.run(0.02).table)
 
 
+def test_what_is_varied_is_not_told_as_what_all_flights_share():
+    vary = ["--vary", "engine=ode,eigen", "--spawn", "0,0,3", "--no-plots"]
+    assert main(["compare", "toy.urdf", *FLIGHT, *vary, "--out", "out"]) == 0
+    shared = json.loads(Path("out/comparison.json").read_text())["flight"]
+    assert "engine" not in shared and shared["spawn"] == "0, 0, 3"
+
+
 def test_ranges():
     vary = ["--vary", "motor.kp=log:1e-4:1e-2:3", "--vary", "air.rotorTorqueCoeff=0:3e-7:4"]
     arguments = ["compare", "toy.urdf", *FLIGHT, "--quiet", "--no-plots"]

@@ -64,7 +64,7 @@ def compare(arguments: argparse.Namespace) -> None:
         _show_models(plan)
 
     def put(flown: Comparison, plots: bool = False) -> list[Path]:
-        return write(flown, plan, _flight(arguments), out, plots) if out is not None else []
+        return write(flown, plan, _flight(arguments, plan), out, plots) if out is not None else []
 
     with kept("comparison", out, put), terminal.progress(arguments.quiet) as progress:
         comparison = fly(
@@ -136,16 +136,20 @@ def _keeper(arguments: argparse.Namespace, plan: Plan) -> Any:
     return keep
 
 
-def _flight(arguments: argparse.Namespace) -> dict[str, str]:
+def _flight(arguments: argparse.Namespace, plan: Plan) -> dict[str, str]:
     """Describe what all flights share."""
-    return {
+    shared = {
         "commands": arguments.commands or "none",
-        **({"scenario": arguments.scenario} if arguments.scenario else {}),
+        "scenario": arguments.scenario,
         "duration": f"{arguments.duration:g} s",
+        **options.flight_arguments(arguments),
+    }
+    varied = [axis.name for axis in plan.axes]
+    return {
         **{
-            name: str(value).strip("()")
-            for name, value in options.flight_arguments(arguments).items()
-            if value not in (None, 0)
+            name: ", ".join(f"{part:g}" for part in value) if name == "spawn" else str(value)
+            for name, value in shared.items()
+            if value not in (None, 0) and name not in varied
         },
         **options.changes_told(arguments),
     }
