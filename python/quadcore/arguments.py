@@ -9,6 +9,7 @@ from numbers import Integral, Real
 from typing import Any, Callable, Dict, Iterable, List, Mapping, Tuple
 
 from ._core import InputError
+from .parameters import did_you_mean
 
 Kind = Tuple[Callable[[Any], bool], str]
 """Whether a value is of it, and what to give."""
@@ -29,8 +30,9 @@ def check(arguments: Mapping[str, Any], kinds: Mapping[str, Kind]) -> None:
     for name, value in arguments.items():
         kind = kinds.get(name) or OPTIONS.get(name)
         if kind is None:
+            near = did_you_mean(name, [*kinds, *OPTIONS])
             raise InputError(
-                f"there is no option '{name}'; besides those of help() there are "
+                f"there is no option '{name}'{near}; besides those of help() there are "
                 f"{', '.join(OPTIONS)}"
             )
         if not kind[0](value):

@@ -115,3 +115,8 @@ def test_a_long_value_is_shortened_in_what_is_said_of_it():
     told = str(refusal.value)
     assert told.startswith("parameters is array([[") and len(told) < 250 and "\n" not in told
     assert told.endswith("give a mapping of names to values")
+
+
+def test_an_option_that_there_is_not_is_told_with_the_nearest():
+    with pytest.raises(qc.InputError, match="no option 'enigne' \\(did you mean 'engine'\\)"):
+        qc.compare("quadrotor", enigne="ode")
