@@ -14,9 +14,9 @@ from pathlib import Path
 import numpy as np
 
 from quadcore.comparison.compare import fly
-from quadcore.comparison.output import thinned
 from quadcore.comparison.plan import Plan
 from quadcore.study.axes import parse_axis
+from quadcore.study.sampling import thinned
 
 COMMANDS = Path(__file__).resolve().parents[1] / "tests/data/gazebo11/commands_S5.csv"
 LONGEST = 20.0  # s, on two cores

@@ -11,9 +11,9 @@ from images import save
 from quadcore.sweeps.design import Design
 from quadcore.sweeps.pictures import draw
 from quadcore.sweeps.plan import Plan
-from quadcore.sweeps.rows import table
 from quadcore.sweeps.sensitivity import sensitivities
 from quadcore.sweeps.sweep import conduct
+from quadcore.sweeps.table import table
 
 AXES = {
     "frame.mass": "uniform:0.9:1.1",

@@ -137,7 +137,7 @@ def _panels(
     shared: Any = {"sharex": True, "sharey": sharey}
     panels = subplots(figure, rows, columns, margins, **shared)
     for axes in panels.flat:
-        axes.locator_params(axis="x", nbins=4, steps=[1, 2, 5, 10])  # neighbours do not touch
+        axes.locator_params(axis="x", nbins=4 if columns > 1 else 10, steps=[1, 2, 5, 10])
     return figure, panels
 
 
