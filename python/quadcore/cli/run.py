@@ -143,7 +143,7 @@ def _flown(
     rows = [
         ("flown", _what(simulation)),
         ("duration", f"{simulation.time:.9g} s"),
-        ("steps", f"{steps}, {steps / elapsed:,.0f} per s"),
+        ("steps", f"{steps}, {steps / elapsed:,.0f} per s, log included"),
         ("final position", f"{_fixed(simulation.state.position, 6)} m"),
         ("final roll, pitch, yaw", f"{_fixed(attitude, 4)} deg"),
         ("fastest rotor", f"{fastest:.3f} rad/s{commanded}"),
