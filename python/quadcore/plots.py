@@ -75,8 +75,7 @@ def png(figure: Figure) -> bytes:
     """Picture of a figure; the same flight gives the same bytes."""
     FigureCanvasAgg(figure)
     stream = io.BytesIO()
-    # A fixed text in place of matplotlib's version.
-    figure.savefig(stream, format="png", metadata={"Software": "quadcore"})
+    figure.savefig(stream, format="png", metadata={"Software": "quadcore"})  # and no version
     return stream.getvalue()
 
 
@@ -125,26 +124,22 @@ def _attitude(log: Trajectory) -> Figure:
 def _rates(log: Trajectory) -> Figure:
     title = _title(log, "Linear (world) and angular (body) velocity of the frame")
     figure, grid = panels(title, 3, 2)
-    linear = [f"$v_{axis}$ (m/s)" for axis in "xyz"]
+    _curves(grid[:, 0], log.time, log.linear_velocity, [f"$v_{a}$ (m/s)" for a in "xyz"])
     angular = [rf"$\omega_{axis}$ (rad/s)" for axis in "xyz"]
-    _curves(grid[:, 0], log.time, log.linear_velocity, linear)
     _curves(grid[:, 1], log.time, log.angular_velocity, angular)
     return figure
 
 
 def _rotors(log: Trajectory) -> Figure:
-    is_slow = log.per_command not in (0.0, 1.0)
     title = _title(log, "Velocity of the rotor joints")
-    figure, (whole, close) = panels(title, 2, height=2.2, right=0.8 if is_slow else 0.1)
+    figure, (whole, close) = panels(title, 2, height=2.2, right=0.8 if log.is_slow else 0.1)
     for i, velocity in enumerate(log.rotor_velocity.T):
         style = {"color": PALETTE[i % len(PALETTE)], "label": f"{i + 1}" if i else "rotor 1"}
         whole[0].plot(log.time, velocity, **style)
         close[0].plot(log.time, np.abs(velocity), **style)
     whole[0].set_ylabel("signed (rad/s)")
-    if is_slow:
-        to_command = (lambda rate: rate / log.per_command, lambda told: told * log.per_command)
-        commanded = close[0].secondary_yaxis("right", functions=to_command)
-        commanded.set_ylabel("as commanded (rad/s)")
+    if log.is_slow:
+        as_commanded(close[0], log.per_command)
     close[0].set_ylabel("magnitude (rad/s)")
     close[0].set_title("without the lowest 5 %", loc="left", fontsize="medium")
     # Around hover the differences that steer are a hundredth of the speed: show them large.
@@ -155,6 +150,12 @@ def _rotors(log: Trajectory) -> Figure:
         close[0].set_ylim(low - margin, high + margin)
     _legend(figure, whole[0])
     return figure
+
+
+def as_commanded(axes: Any, per_command: float) -> None:
+    """Tell speeds of joints as commanded, too, on the right."""
+    to_command = (lambda rate: rate / per_command, lambda told: told * per_command)
+    axes.secondary_yaxis("right", functions=to_command).set_ylabel("commanded (rad/s)")
 
 
 def _wrenches(log: Trajectory) -> Figure:

@@ -6,10 +6,16 @@ from typing import Dict, Mapping, Optional, Sequence
 
 import numpy as np
 
-from ._core import InputError, log_columns
+from ._core import InputError, Simulation, log_columns, rates_per_command
 from .rotation import roll_pitch_yaw
 
 _STATE_SIZE = len(log_columns(0))
+
+
+def per_command(simulation: Simulation) -> float:
+    """Size of the rotor joints' velocity per commanded speed; 1 if there are several."""
+    sizes = set(np.abs(rates_per_command(simulation)).tolist())
+    return sizes.pop() if len(sizes) == 1 else 1.0
 
 
 class Wrenches(Dict[str, np.ndarray]):
@@ -64,6 +70,11 @@ class Trajectory:
 
     def __len__(self) -> int:
         return len(self.table)
+
+    @property
+    def is_slow(self) -> bool:
+        """Whether the joints are known to turn otherwise than commanded."""
+        return self.per_command not in (0.0, 1.0)
 
     @property
     def columns(self) -> list[str]:

@@ -102,7 +102,20 @@ def test_speeds_of_slow_rotors_are_drawn_as_commanded_too():
     log.per_command = 0.1
     (beside,) = plots._rotors(log).axes[1].child_axes
     assert np.allclose(beside._functions[0](np.array([47.1])), 471)
-    assert beside.get_ylabel() == "as commanded (rad/s)"
+    assert beside.get_ylabel() == "commanded (rad/s)"
+
+
+def test_flights_over_each_other_tell_commands_and_what_they_are_compared_with(monkeypatch):
+    drawn = {}
+    monkeypatch.setattr(plots, "png", lambda figure: drawn.setdefault(len(drawn), figure) and b"")
+    flight = ["compare", "quadrotor", "--duration", "0.01", "--commands", "c.csv", "--out", "o"]
+    Path("c.csv").write_text("t,w1,w2,w3,w4\n0,471,-471,471,-471\n")
+    vary = ["--vary", "motorpid_plugin.kp=0.0005,0.001", "--reference", "2", "--quiet"]
+    assert main([*flight, *vary]) == 0
+    *_, rotors, differences = drawn.values()
+    (beside,) = rotors.axes[0].child_axes
+    assert np.allclose(beside._functions[0](np.array([47.1])), 471)
+    assert differences._suptitle.get_text() == "Distance from kp 0.001"
 
 
 def test_a_run_that_can_hardly_be_meant_is_said_and_flown(capsys):

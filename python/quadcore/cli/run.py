@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from .. import interrupts
-from .._core import InputError, QuadcoreError, rates_per_command
+from .._core import InputError, QuadcoreError
 from ..controller import Guided, faults_told
 from ..files import make_folder
 from ..flight import columns_of, fly, steps_within
@@ -22,6 +22,7 @@ from ..plants import plants
 from ..recording import TAIL, Errors, Fastest, Recording, Thinned
 from ..rotation import roll_pitch_yaw
 from ..simulation import Simulation
+from ..trajectory import per_command
 from . import options, terminal
 from .unmeant import warn_of_commands
 
@@ -91,14 +92,14 @@ def run(arguments: argparse.Namespace) -> None:
     elapsed = time.perf_counter() - started
     with interrupts.held():
         files = recording.close()
-    per_command = _per_command(simulation)
+    told = per_command(simulation)
     if drawn is not None:
         log = drawn.log()
-        log.per_command = per_command
+        log.per_command = told
         log.title = ", ".join(filter(None, (_what(simulation), log.title)))
         files += log.plot(arguments.out)
     if not arguments.quiet:
-        rows = _flown(simulation, fastest.speed, per_command, elapsed)
+        rows = _flown(simulation, fastest.speed, told, elapsed)
         if pilot is not None and errors is not None:
             rows += _guided(arguments, plan, pilot, errors)
         rows += [("" if i else "written", str(file)) for i, file in enumerate(files)]
@@ -127,19 +128,13 @@ def _what(simulation: Simulation) -> str:
     return f"{simulation.model.name}, {simulation.engine}"
 
 
-def _per_command(simulation: Simulation) -> float:
-    """Size of the rotors' velocity per commanded speed; 1 if there are several."""
-    sizes = set(np.abs(rates_per_command(simulation)).tolist())
-    return sizes.pop() if len(sizes) == 1 else 1.0
-
-
 def _flown(
-    simulation: Simulation, fastest: float, per_command: float, elapsed: float
+    simulation: Simulation, fastest: float, told: float, elapsed: float
 ) -> list[tuple[str, str]]:
     steps = round(simulation.time / simulation.dt)
     attitude = np.degrees(roll_pitch_yaw(simulation.state.orientation))
-    is_slow = per_command not in (0.0, 1.0)  # sim_slow
-    commanded = f", as commanded {fastest / per_command:.1f}" if is_slow else ""
+    is_slow = told not in (0.0, 1.0)  # sim_slow
+    commanded = f", as commanded {fastest / told:.1f}" if is_slow else ""
     rows = [
         ("flown", _what(simulation)),
         ("duration", f"{simulation.time:.9g} s"),

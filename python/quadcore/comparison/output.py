@@ -7,6 +7,7 @@ from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
 from ..study.sampling import evenly
 from ..study.table import csv_bytes, flown_and_failed, json_bytes, number_text, save, shown_in
+from ..trajectory import per_command
 from .compare import Comparison
 from .plan import Plan
 
@@ -68,11 +69,12 @@ def _images(comparison: Comparison, plan: Plan) -> Dict[str, bytes]:
     curves, reference = [], None
     for row, (log, variant) in enumerate(zip(comparison.logs, plan)):
         if log is not None:
+            log.per_command = per_command(plan.flight(variant).simulation())
             curves.append(pictures.Curve(plan.label(variant), log))
-            reference = log if row == comparison.reference else reference
+            reference = curves[-1] if row == comparison.reference else reference
     if reference is None:
         return {}
-    figures = pictures.draw(curves, reference, curves[0].label)
+    figures = pictures.draw(curves, reference.log, reference.label)
     return {name: png(figure) for name, figure in figures.items()}
 
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from ..colours import PALETTE
 from ..log import Log
-from ..plots import NOTHING, WHOLE, flatten, panels, space, titled
+from ..plots import NOTHING, WHOLE, as_commanded, flatten, panels, space, titled
 from ..rotation import continuous
 from ..study.metrics import differences
 
@@ -102,7 +102,15 @@ def _rotors(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure
     count = max(curve.log.rotor_velocity.shape[1] for curve in curves)
     values = [np.abs(curve.log.rotor_velocity) for curve in curves]
     labels = [f"rotor {i} (rad/s)" for i in range(1, 1 + count)]
-    return _figure("Speed of the rotor joints", curves, styles, [(values, labels)])
+    title = "Speed of the rotor joints"
+    sizes = {curve.log.per_command for curve in curves}
+    if len(sizes) == 1 and curves[0].log.is_slow:
+        title += ", and as commanded"
+        figure = _figure(title, curves, styles, [(values, labels)], right=0.8)
+        for axes in figure.axes:
+            as_commanded(axes, curves[0].log.per_command)
+        return figure
+    return _figure(title, curves, styles, [(values, labels)])
 
 
 def _differences(
@@ -121,6 +129,7 @@ def _figure(
     styles: Sequence[Dict[str, Any]],
     sides: Sequence[Tuple[Sequence[np.ndarray], Sequence[str]]],
     least: float = NOTHING,
+    right: float = 0.1,
 ) -> Figure:
     """Make a column of panels for each side: its values by flight, and its columns' labels.
 
@@ -130,7 +139,8 @@ def _figure(
     # A sign is a tenth of an inch wide at most; a legend line is as wide as seven.
     columns = max(1, int((8 if len(sides) > 1 else 7) * 10 / (7 + max(map(len, named)))))
     lines = 1 + (len(named) - 1) // columns
-    figure, grid = panels(title, len(sides[0][1]), len(sides), above=0.45 + 0.22 * lines)
+    above = 0.45 + 0.22 * lines
+    figure, grid = panels(title, len(sides[0][1]), len(sides), above=above, right=right)
     for column, (values, labels) in zip(grid.T, sides):
         for curve, style, table in zip(curves, styles, values):
             # Differences end where the reference does.
