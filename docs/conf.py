@@ -8,6 +8,7 @@ from pathlib import Path
 import quadcore
 
 ROOT = Path(__file__).resolve().parent.parent
+DOCS = ROOT / "docs"
 BUILD = ROOT / "build" / "docs"
 MADE = BUILD / "made"
 
@@ -27,6 +28,8 @@ extensions = [
 html_theme = "furo"
 html_title = f"quadcore {release}"
 html_copy_source = False
+html_static_path = ["static"]
+html_css_files = ["site.css"]
 html_extra_path = [str(MADE / "extra")]
 
 myst_enable_extensions = ["dollarmath"]
@@ -44,9 +47,19 @@ breathe_default_project = "quadcore"
 def _as_sphinx_reads_it(app, docname, source):
     """Files of the checkout become their paths, as the site is read without it; anchors labels.
 
-    And formulas lose the backquotes that one reader of the pages wants.
+    A link that is called as its file is gets the title of the page, and formulas lose the
+    backquotes that one reader of the pages wants.
     """
-    source[0] = re.sub(r"\[([^\]]+)\]\((?:\.\./)+([^)#]+)(?:#[^)]*)?\)", r"\1 (`\2`)", source[0])
+    folder = (DOCS / docname).parent
+
+    def link(match):
+        words, target, anchor = match.groups()
+        leads_to = (folder / target).resolve()
+        if DOCS not in leads_to.parents:
+            return f"{words} (`{leads_to.relative_to(ROOT)}`)"
+        return f"[{'' if words.endswith('.md') else words}]({target}{anchor or ''})"
+
+    source[0] = re.sub(r"(?<!!)\[([^\]]+)\]\(([^):#]+)(#[^)]*)?\)", link, source[0])
     source[0] = re.sub(r"\$`([^`]+)`\$", r"$\1$", source[0])
     source[0] = re.sub(r'^<a id="([^"]+)"></a>$', r"(\1)=", source[0], flags=re.MULTILINE)
 

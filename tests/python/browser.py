@@ -15,26 +15,43 @@ CATCH = "<script>window.faults = []; window.onerror = (what) => faults.push(what
 
 
 STICK_OUT = """
-const told_of = {};
-window.onload = () => {
-  for (const frame of document.querySelectorAll("iframe")) {
-    const inside = frame.contentDocument, width = frame.clientWidth, out = [];
-    const hidden = (e) => e && (frame.contentWindow.getComputedStyle(e).overflowX !== "visible"
-                                || hidden(e.parentElement));
-    for (const e of inside.querySelectorAll("body *")) {
-      if (e.getBoundingClientRect().right > width + 1 && !hidden(e.parentElement)) {
-        out.push(e.tagName + ": " + e.textContent.slice(0, 40));
+const told = {};
+async function look(name, url, width) {
+  const frame = document.createElement("iframe");
+  frame.style.cssText = `width: ${width}px; height: 800px; border: 0`;
+  frame.src = url;
+  const loaded = new Promise((resolve) => (frame.onload = resolve));
+  document.body.append(frame);
+  await loaded;
+  const view = frame.contentWindow, inside = frame.contentDocument, out = [];
+  if (view.MathJax) await view.MathJax.startup.promise;
+  const scrolls = (e) => view.getComputedStyle(e).overflowX !== "visible";
+  const hidden = (e) => e && (scrolls(e) || hidden(e.parentElement));
+  const what = (e) => e.tagName + ": " + e.textContent.trim().slice(0, 60);
+  // The menu of a site waits beyond the edge.
+  const all = [...(inside.querySelector("article") || inside.body).querySelectorAll("*")];
+  for (const e of all) {
+    const { left, right } = e.getBoundingClientRect();
+    if ((left < -1 || right > width + 1) && !hidden(e.parentElement)) out.push(what(e));
+    if (e.tagName === "IFRAME"
+        && e.contentDocument.documentElement.scrollHeight > e.clientHeight + 1) {
+      out.push(`a page within is cut, ${e.contentDocument.documentElement.scrollHeight} px`);
+    }
+    if (width > 600 && (e.tagName === "TABLE" || e.classList.contains("math-wrapper"))) {
+      for (let at = e; at; at = at.parentElement) {
+        if (at.scrollWidth > at.clientWidth + 1 && scrolls(at)) out.push("cut: " + what(e));
       }
     }
-    for (const table of width < 600 ? [] : inside.querySelectorAll("table")) {
-      if (table.scrollWidth > table.clientWidth) out.push("cut: " + table.textContent);
-    }
-    if (inside.documentElement.scrollWidth > width) out.push("scrolls sideways");
-    told_of[frame.name] = out;
   }
+  if (inside.documentElement.scrollWidth > width) out.push("scrolls sideways");
+  told[`${name} ${width}`] = out;
+  frame.remove();
+}
+window.onload = async () => {
+  for (const [name, url, width] of PAGES) await look(name, url, width);
   const told_in = document.createElement("pre");
   told_in.id = "told";
-  told_in.textContent = JSON.stringify({told: told_of, faults: window.faults});
+  told_in.textContent = JSON.stringify({told, faults: window.faults});
   document.body.append(told_in);
 };
 """
@@ -55,20 +72,19 @@ def told(page, script, folder):
     )
 
 
-def what_sticks_out(pages, widths, folder):
-    """Open pages at some widths (px): what reaches beyond the right edge, by (name, width).
+def what_sticks_out(files, widths, folder):
+    """Open files at some widths (px): what reaches beyond an edge, by (file, width).
 
-    Where there is room, no table may have to be scrolled either.
+    Where there is room, no table and no formula may have to be scrolled either, and nowhere a
+    page within a page.
     """
-    frames = "".join(
-        f'<iframe name="{name} {width}" style="width: {width}px; height: 800px; border: 0" '
-        f'srcdoc="{html.escape(page)}"></iframe>'
-        for name, page in pages.items()
-        for width in widths
-    )
-    whole = f"<html><head>{CATCH}<script>{STICK_OUT}</script></head><body>{frames}</body></html>"
-    found = opened(whole, folder, "--virtual-time-budget=10000")
-    return {(name, width): found[f"{name} {width}"] for name in pages for width in widths}
+    looked_at = [(str(file), file.as_uri(), width) for file in files for width in widths]
+    script = STICK_OUT.replace("PAGES", json.dumps(looked_at))
+    whole = f"<html><head>{CATCH}<script>{script}</script></head><body></body></html>"
+    # As much time as the pages want; none passes while nothing happens.
+    options = "--allow-file-access-from-files", "--virtual-time-budget=1000000"
+    found = opened(whole, folder, *options)
+    return {(name, width): found[f"{name} {width}"] for name, _, width in looked_at}
 
 
 def opened(page, folder, *options):

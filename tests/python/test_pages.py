@@ -19,7 +19,7 @@ duration: 0.5
 
 @pytest.fixture(scope="module")
 def pages(tmp_path_factory):
-    """Of every command that writes one, by its name."""
+    """Of every command that writes one."""
     folder = tmp_path_factory.mktemp("pages")
     (folder / "speeds.csv").write_text("t,w1,w2,w3,w4\n0,476,-476,476,-476\n")
     (folder / "sweep.yaml").write_text(SWEEP)
@@ -38,10 +38,11 @@ def pages(tmp_path_factory):
         out = () if words[0] in ("run", "play") else ("--out", f"{folder}/{words[0]}")
         (folder / words[0]).mkdir(exist_ok=True)
         assert main([*words, *out]) == 0
-    return {page.parent.name: page.read_text() for page in sorted(folder.glob("*/report.html"))}
+    return sorted(folder.glob("*/report.html"))
 
 
 def test_nothing_is_cut_on_a_laptop_and_on_a_telephone(pages, tmp_path):
-    assert set(pages) == {"play", "compare", "evaluate", "sweep", "validate"}
+    names = {page.parent.name for page in pages}
+    assert names == {"play", "compare", "evaluate", "sweep", "validate"}
     found = what_sticks_out(pages, (390, 1280), tmp_path)
-    assert {key: out for key, out in found.items() if out} == {}
+    assert [(*key, *out) for key, out in found.items() if out] == []

@@ -1,0 +1,70 @@
+"""The pages as a site, as scripts/docs builds it: read without a network, on a laptop and a telephone."""
+
+from __future__ import annotations
+
+import html.parser
+import re
+from pathlib import Path
+from urllib.parse import unquote
+
+import pytest
+from browser import what_sticks_out
+
+SITE = Path(__file__).resolve().parents[2] / "build" / "docs" / "html"
+WIDTHS = (390, 1280)  # px
+
+pytestmark = pytest.mark.skipif(
+    not (SITE / "index.html").exists(), reason="the site is not built; scripts/docs builds it"
+)
+
+
+class Page(html.parser.HTMLParser):
+    """What a page fetches by itself, where its links lead, and the names that lead into it."""
+
+    def __init__(self, file):
+        super().__init__()
+        self.fetched, self.links, self.names = set(), set(), set()
+        self.feed(file.read_text())
+
+    def handle_starttag(self, tag, attrs):
+        told = dict(attrs)
+        self.names |= {told[key] for key in ("id", "name") if told.get(key)}
+        if tag == "a":
+            self.links.add(told.get("href") or "")
+        elif tag == "link" and told.get("rel", "") not in ("index", "search", "next", "prev"):
+            self.fetched.add(told.get("href", ""))
+        if told.get("src"):
+            self.fetched.add(told["src"])
+
+
+@pytest.fixture(scope="module")
+def pages():
+    """Of the site, by their files; not those that its theme's scripts bring along."""
+    files = [file for file in SITE.rglob("*.html") if "_static" not in file.parts]
+    return {file: Page(file) for file in sorted(files)}
+
+
+def test_no_page_of_the_site_needs_a_network(pages):
+    for file, page in pages.items():
+        for fetched in page.fetched:
+            assert not re.match(r"(\w+:)?//", fetched), f"{file}: {fetched}"
+            assert (file.parent / fetched.partition("?")[0]).exists(), f"{file}: {fetched}"
+    for sheet in SITE.rglob("*.css"):
+        assert not re.search(r"@import|url\(['\"]?(\w+:)?//", sheet.read_text()), sheet
+
+
+def test_every_link_within_the_site_leads_to_its_place(pages):
+    for file, page in pages.items():
+        for link in page.links:
+            if re.match(r"(\w+:)", link):
+                continue
+            target, _, name = unquote(link).partition("#")
+            leads_to = (file.parent / target).resolve() if target else file
+            assert leads_to.is_file(), f"{file}: {link}"
+            if name and leads_to in pages:
+                assert name in pages[leads_to].names, f"{file}: {link}"
+
+
+def test_no_page_of_the_site_is_cut_on_a_laptop_and_on_a_telephone(pages, tmp_path):
+    found = what_sticks_out(pages, WIDTHS, tmp_path)
+    assert [(*key, *out) for key, out in found.items() if out] == []
