@@ -11,31 +11,51 @@ import subprocess
 import pytest
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
-CATCH = "<script>window.faults = []; window.onerror = (what) => faults.push(what);</script>"
+CATCH = """<script>
+window.faults = [];
+window.onerror = (what) => faults.push(what);
+window.onunhandledrejection = (event) => faults.push(String(event.reason));
+</script>"""
 
 
-STICK_OUT = """
+IN_FRAMES = """
 const told = {};
-async function look(name, url, width) {
+async function opened(url, width) {
   const frame = document.createElement("iframe");
   frame.style.cssText = `width: ${width}px; height: 800px; border: 0`;
   frame.src = url;
   const loaded = new Promise((resolve) => (frame.onload = resolve));
   document.body.append(frame);
   await loaded;
-  const view = frame.contentWindow, inside = frame.contentDocument, out = [];
-  if (view.MathJax) await view.MathJax.startup.promise;
+  if (frame.contentWindow.MathJax) await frame.contentWindow.MathJax.startup.promise;
+  return frame;
+}
+window.onload = async () => {
+  for (const [name, url, width] of PAGES) {
+    const frame = await opened(url, width);
+    told[`${name} ${width}`] = await look(frame.contentWindow, frame.contentDocument, width);
+    frame.remove();
+  }
+  const told_in = document.createElement("pre");
+  told_in.id = "told";
+  told_in.textContent = JSON.stringify({told, faults: window.faults});
+  document.body.append(told_in);
+};
+"""
+
+STICK_OUT = """
+function look(view, inside, width) {
+  const out = [];
   const scrolls = (e) => view.getComputedStyle(e).overflowX !== "visible";
   const hidden = (e) => e && (scrolls(e) || hidden(e.parentElement));
   const what = (e) => e.tagName + ": " + e.textContent.trim().slice(0, 60);
   // The menu of a site waits beyond the edge.
-  const all = [...(inside.querySelector("article") || inside.body).querySelectorAll("*")];
-  for (const e of all) {
+  for (const e of (inside.querySelector("article") || inside.body).querySelectorAll("*")) {
     const { left, right } = e.getBoundingClientRect();
     if ((left < -1 || right > width + 1) && !hidden(e.parentElement)) out.push(what(e));
-    if (e.tagName === "IFRAME"
-        && e.contentDocument.documentElement.scrollHeight > e.clientHeight + 1) {
-      out.push(`a page within is cut, ${e.contentDocument.documentElement.scrollHeight} px`);
+    if (e.tagName === "IFRAME") {
+      const { scrollHeight } = e.contentDocument.documentElement;
+      if (scrollHeight > e.clientHeight + 1) out.push(`a page within is ${scrollHeight} px high`);
     }
     if (width > 600 && (e.tagName === "TABLE" || e.classList.contains("math-wrapper"))) {
       for (let at = e; at; at = at.parentElement) {
@@ -44,16 +64,42 @@ async function look(name, url, width) {
     }
   }
   if (inside.documentElement.scrollWidth > width) out.push("scrolls sideways");
-  told[`${name} ${width}`] = out;
-  frame.remove();
+  return out;
 }
-window.onload = async () => {
-  for (const [name, url, width] of PAGES) await look(name, url, width);
-  const told_in = document.createElement("pre");
-  told_in.id = "told";
-  told_in.textContent = JSON.stringify({told, faults: window.faults});
-  document.body.append(told_in);
-};
+"""
+
+PLAY = """
+async function look(view, inside) {
+  const within = inside.querySelector("iframe");
+  if (within) {
+    within.scrollIntoView();
+    [view, inside] = [within.contentWindow, within.contentDocument];
+  }
+  let frames = 0;  // of a screen that there is not: 50 in a second
+  view.requestAnimationFrame = (draw) => view.setTimeout(() => draw(20 * ++frames), 20);
+  const part = (name) => inside.querySelector(".player " + name), canvas = part("canvas");
+  const time = () => Number(part(".time").value);
+  const until = async (met) => {
+    while (!met()) await new Promise((resolve) => view.requestAnimationFrame(resolve));
+  };
+  const drawn = () => canvas.toDataURL(), told = { start: drawn(), begin: time() };
+  part(".speed").value = "4";
+  part(".play").click();
+  told.says = part(".play").textContent;
+  await until(() => time() > 0.5);
+  told.flying = drawn();
+  canvas.dispatchEvent(new view.KeyboardEvent("keydown", { key: " ", bubbles: true }));
+  told.held = [part(".play").textContent, time()];
+  for (let i = 0; i < 5; ++i) await new Promise((resolve) => view.requestAnimationFrame(resolve));
+  told.still = [part(".play").textContent, time()];
+  part(".play").click();
+  await until(() => part(".play").textContent === "play");
+  Object.assign(told, { end: drawn(), ended: time(), clock: part(".clock").textContent });
+  part(".play").click();
+  await until(() => time() > 0.1 && time() < told.ended / 2);
+  told.again = part(".play").textContent;
+  return told;
+}
 """
 
 
@@ -72,19 +118,33 @@ def told(page, script, folder):
     )
 
 
-def what_sticks_out(files, widths, folder):
-    """Open files at some widths (px): what reaches beyond an edge, by (file, width).
-
-    Where there is room, no table and no formula may have to be scrolled either, and nowhere a
-    page within a page.
-    """
-    looked_at = [(str(file), file.as_uri(), width) for file in files for width in widths]
-    script = STICK_OUT.replace("PAGES", json.dumps(looked_at))
+def seen(look, files, widths, folder):
+    """Open files at some widths (px): what a script finds in each, by (file, width)."""
+    pages = [(str(file), file.as_uri(), width) for file in files for width in widths]
+    script = f"const PAGES = {json.dumps(pages)};{IN_FRAMES}{look}"
     whole = f"<html><head>{CATCH}<script>{script}</script></head><body></body></html>"
     # As much time as the pages want; none passes while nothing happens.
     options = "--allow-file-access-from-files", "--virtual-time-budget=1000000"
     found = opened(whole, folder, *options)
-    return {(name, width): found[f"{name} {width}"] for name, _, width in looked_at}
+    return {(name, width): found[f"{name} {width}"] for name, _, width in pages}
+
+
+def what_sticks_out(files, widths, folder):
+    """What reaches beyond an edge of a page, by (file, width).
+
+    Where there is room, no table and no formula may have to be scrolled either, and nowhere a
+    page within a page.
+    """
+    return seen(STICK_OUT, files, widths, folder)
+
+
+def assert_it_plays(file, widths, folder):
+    """The player in a page, or in the page within that, flies from the beginning to the end."""
+    for found in seen(PLAY, [file], widths, folder).values():
+        assert len({found["start"], found["flying"], found["end"]}) == 3
+        assert found["begin"] == 0 and found["says"] == found["again"] == "pause"
+        assert found["held"] == found["still"] and found["held"][0] == "play"
+        assert found["clock"] == "{0:.2f} of {0:.2f} s".format(found["ended"])
 
 
 def opened(page, folder, *options):

@@ -1,12 +1,13 @@
-"""No page that a command writes is cut: on a laptop and on a telephone."""
+"""No page that a command writes is cut, and those with flights play: on a laptop and on a telephone."""
 
 from __future__ import annotations
 
 import pytest
-from browser import what_sticks_out
+from browser import assert_it_plays, what_sticks_out
 
 from quadcore.cli import main
 
+WIDTHS = (390, 1280)  # px
 FAST = ("--engine", "eigen", "--quiet")
 SWEEP = """controller: geometric
 reference: circle
@@ -23,7 +24,7 @@ def pages(tmp_path_factory):
     folder = tmp_path_factory.mktemp("pages")
     (folder / "speeds.csv").write_text("t,w1,w2,w3,w4\n0,476,-476,476,-476\n")
     (folder / "sweep.yaml").write_text(SWEEP)
-    speeds = ("--commands", f"{folder}/speeds.csv", "--duration", "0.2")
+    speeds = ("--commands", f"{folder}/speeds.csv", "--duration", "2")
     kp, drag = "motorpid_plugin.kp=0.0005,0.001", "drone_plugin.translationalDragCoeff=0,0.01"
     laws = ("--controller", "geometric,indi", "--reference", "circle,hover", "--seeds", "2")
     log = f"{folder}/log.csv"
@@ -44,5 +45,10 @@ def pages(tmp_path_factory):
 def test_nothing_is_cut_on_a_laptop_and_on_a_telephone(pages, tmp_path):
     names = {page.parent.name for page in pages}
     assert names == {"play", "compare", "evaluate", "sweep", "validate"}
-    found = what_sticks_out(pages, (390, 1280), tmp_path)
+    found = what_sticks_out(pages, WIDTHS, tmp_path)
     assert [(*key, *out) for key, out in found.items() if out] == []
+
+
+def test_a_page_of_flights_plays_to_the_end(pages, tmp_path):
+    (page,) = (page for page in pages if page.parent.name == "play")
+    assert_it_plays(page, WIDTHS, tmp_path)

@@ -8,7 +8,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 import pytest
-from browser import what_sticks_out
+from browser import assert_it_plays, what_sticks_out
 
 SITE = Path(__file__).resolve().parents[2] / "build" / "docs" / "html"
 WIDTHS = (390, 1280)  # px
@@ -31,8 +31,8 @@ class Page(html.parser.HTMLParser):
         self.names |= {told[key] for key in ("id", "name") if told.get(key)}
         if tag == "a":
             self.links.add(told.get("href") or "")
-        elif tag == "link" and told.get("rel", "") not in ("index", "search", "next", "prev"):
-            self.fetched.add(told.get("href", ""))
+        elif tag == "link" and told["rel"] not in ("index", "search", "next", "prev"):
+            self.fetched.add(told["href"])
         if told.get("src"):
             self.fetched.add(told["src"])
 
@@ -68,3 +68,7 @@ def test_every_link_within_the_site_leads_to_its_place(pages):
 def test_no_page_of_the_site_is_cut_on_a_laptop_and_on_a_telephone(pages, tmp_path):
     found = what_sticks_out(pages, WIDTHS, tmp_path)
     assert [(*key, *out) for key, out in found.items() if out] == []
+
+
+def test_the_player_on_the_first_page_flies_to_the_end(tmp_path):
+    assert_it_plays(SITE / "index.html", WIDTHS, tmp_path)
