@@ -1,4 +1,4 @@
-"""No page that a command writes is cut, and those with flights play: on a laptop and on a telephone."""
+"""No page that a command writes is cut, and flights play: on a laptop and on a telephone."""
 
 from __future__ import annotations
 

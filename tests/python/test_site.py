@@ -1,4 +1,4 @@
-"""The pages as a site, as scripts/docs builds it: read without a network, on a laptop and a telephone."""
+"""The pages as a site, as scripts/docs builds it: without a network, on laptop and telephone."""
 
 from __future__ import annotations
 
