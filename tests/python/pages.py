@@ -1,0 +1,147 @@
+"""What a page of the docs says to type, run from top to bottom in a folder of its own.
+
+A block of Python, of a shell or of Octave runs as it stands, all of a page's Python in one process.
+An XML element `<gazebo>` flies in the shipped vehicle. Comments before a block, which no reader sees,
+tell what else becomes of it:
+
+    <!-- quoted: FILE -->  it stands in that file, which runs elsewhere
+    <!-- file: NAME -->    it is a file that other blocks of the page use
+    <!-- run: COMMAND -->  what a reader of the page has done before, in a shell
+    <!-- python: CODE -->  the same in Python
+
+Flights are cut short except in tutorials, and programs of systems that are not here are stood in for.
+"""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import os
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+import quadcore as qc
+
+ROOT = Path(__file__).resolve().parents[2]
+TUTORIALS = ROOT / "docs" / "tutorials"
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+BLOCK = re.compile(
+    r"^<!-- (?P<kind>run|python): (?P<before>.*?) -->$"
+    r"|(?:^<!-- (?P<marker>quoted|file): (?P<file>\S+) -->\n+)?"
+    r"^ *```(?P<language>[^\n]*)\n(?P<text>.*?)^ *```$",
+    re.DOTALL | re.MULTILINE,
+)
+NOT_RUN = re.compile(r"text|math|\{")
+ELSEWHERE = "roslaunch rosrun rostopic rosservice rosparam rosbag rospack catkin_make sudo pip"
+PIECE = """<robot name="piece" xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:include filename="$(find quadcore)/urdf/quadrotor.urdf.xacro"/>
+{}</robot>
+"""
+DRIVER = """
+import re, subprocess
+from pathlib import Path
+
+def _shell(*command):
+    ran = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    assert ran.returncode == 0, f"{command[-1]}\\n{ran.stdout}"
+
+def _octave(text):
+    served = Path("served")
+    if served.exists():
+        text = text.replace("5005", served.read_text().split()[0])
+    _shell("octave-cli", "--norc", "--quiet", "--eval", "addpath('quadcore/matlab');" + text)
+"""
+
+
+def blocks(page):
+    """Each block of a page, and each command before one, as a dictionary of BLOCK's names."""
+    return [match.groupdict() for match in BLOCK.finditer(page.read_text(encoding="utf-8"))]
+
+
+def run(page, folder):
+    """Run a page; what it prints. Raises if anything fails."""
+    prepare(folder)
+    steps, pieces = [DRIVER], 0
+    for block in blocks(page):
+        language, text = block["language"], block["text"]
+        if block["marker"] == "file":
+            file = folder / block["file"]
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text)
+        elif block["marker"] == "quoted" or NOT_RUN.match(language or ""):
+            continue
+        elif block["kind"] == "python" or language == "python":
+            steps.append(text or block["before"])
+        elif block["kind"] == "run" or language == "sh":
+            shell = text or block["before"]
+            steps.append(f"_shell('bash', '-euo', 'pipefail', '-c', {shell!r})")
+        elif language in ("octave", "matlab"):
+            steps.append(f"_octave({text!r})")
+        elif language == "pycon":
+            check_calls(text)
+        elif language == "xml" and text.startswith("<launch>"):
+            check_launch(text)
+        elif language == "xml" and text.startswith("<gazebo>"):
+            pieces += 1
+            piece = folder / f"piece{pieces}.urdf.xacro"
+            piece.write_text(PIECE.format(text))
+            qc.Simulation(piece, parameters={"drone_plugin.dragModel": "chapter2"}).step(9)
+        else:
+            raise AssertionError(f"{page.name}: nothing runs a block of '{language}':\n{text}")
+    try:
+        return call([sys.executable, "-c", "\n".join(steps)], folder, page.parent != TUTORIALS)
+    finally:
+        if (folder / "served").exists():
+            os.kill(int((folder / "served").read_text().split()[1]), signal.SIGTERM)
+
+
+def call(command, folder, short):
+    environment = {
+        **os.environ,
+        "HOME": str(folder),
+        "PATH": f"{folder}/stand_ins:{Path(sys.executable).parent}:{os.environ['PATH']}",
+        "QUADCORE_SHORT": "yes" if short else "",
+    }
+    ran = subprocess.run(
+        command, cwd=str(folder), env=environment, stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT, encoding="utf-8",
+    )  # fmt: skip
+    assert ran.returncode == 0, ran.stdout
+    return ran.stdout
+
+
+def check_calls(text):
+    """What is typed where it cannot be here: functions of quadcore take what they are given."""
+    source = re.sub(r"^(>>>|\.\.\.) ?", "", text, flags=re.MULTILINE)
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Call) and ast.unparse(node.func).startswith("qc."):
+            function = getattr(qc, node.func.attr)
+            given = {keyword.arg: None for keyword in node.keywords}
+            inspect.signature(function).bind_partial(*node.args, **given)
+
+
+def check_launch(text):
+    """What a launch file includes and starts is there; tests/ros loads it."""
+    launch = ElementTree.fromstring(text)
+    for include in launch.iter("include"):
+        assert Path(include.get("file").replace("$(find quadcore)", str(ROOT))).is_file()
+    for node in launch.iter("node"):
+        assert node.get("pkg") != "quadcore" or list((ROOT / "scripts").rglob(node.get("type")))
+
+
+def prepare(folder):
+    """Make a folder like a checkout, with stand-ins for what is not here, or takes long."""
+    for name in ("config", "urdf", "worlds", "matlab", "tests", "examples"):
+        (folder / name).symlink_to(ROOT / name)
+    (folder / "quadcore").symlink_to(ROOT)
+    stand_in = Path(__file__).with_name("stand_in.py")
+    places = [folder / "stand_ins" / name for name in ("quadcore", *ELSEWHERE.split())]
+    places += [folder / "scripts" / f.name for f in (ROOT / "scripts").iterdir() if not f.suffix]
+    for place in places:
+        place.parent.mkdir(exist_ok=True)
+        place.write_text(f"#!{sys.executable}\n{stand_in.read_text()}")
+        place.chmod(0o755)

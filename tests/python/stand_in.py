@@ -1,0 +1,58 @@
+"""What a page's shell finds under the names of quadcore and of programs that tests cannot start.
+
+See `pages`; copied there under the program's name.
+"""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+SHORT = {"--duration": "1", "--seeds": "1", "--samples": "2", "--budget": "2", "--no-plots": None}
+
+
+def quadcore(words):
+    """As typed; but short if it is to be, and a server goes on behind it."""
+    from quadcore.cli import _parser
+
+    parser = _parser()
+    given = parser.parse_args(words)
+    known = parser._subparsers._group_actions[0].choices[words[0]]._option_string_actions
+    if os.environ["QUADCORE_SHORT"]:
+        for option, value in SHORT.items():
+            if option in known and not getattr(given, "plant", None):  # that has its own length
+                words += [option] + ([value] if value else [])
+    if getattr(given, "dask", None):  # there is no such cluster
+        at = words.index("--dask")
+        del words[at : at + 2]
+    command = [sys.executable, "-m", "quadcore", *words]
+    if words[0] != "serve":
+        os.execv(sys.executable, command)
+    if "--port" in words:
+        command[command.index("--port") + 1] = "0"  # which nobody else has
+    quiet = subprocess.DEVNULL  # or who waits for the page would wait for it
+    served = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=quiet, text=True)
+    address = served.stdout.readline()
+    assert address.startswith("serving ")
+    Path("served").write_text(f"{address.rpartition(':')[2].strip()} {served.pid}")
+
+
+def pip(words):
+    """Install nothing; but the extras must exist."""
+    from importlib.metadata import metadata
+
+    for word in words:
+        for extra in re.findall(r"quadcore\[(.*)\]", word):
+            assert set(extra.split(",")) <= set(metadata("quadcore").get_all("Provides-Extra"))
+
+
+def catkin_make(words):
+    Path("devel").mkdir(exist_ok=True)
+    Path("devel/setup.bash").touch()
+
+
+if __name__ == "__main__":
+    program = globals().get(Path(sys.argv[0]).name)
+    if callable(program):
+        program(sys.argv[1:])

@@ -1,0 +1,24 @@
+"""Whatever the docs say to type runs."""
+
+from __future__ import annotations
+
+import re
+import shutil
+
+import pages
+import pytest
+
+
+def name_of(page):
+    return str(page.relative_to(pages.ROOT))
+
+
+with_blocks = [page for page in pages.PAGES if pages.blocks(page)]
+
+
+@pytest.mark.parametrize("page", with_blocks, ids=name_of)
+def test_what_a_page_says_to_type_runs(page, tmp_path):
+    if re.search("^```(octave|matlab)", page.read_text(), re.M) and shutil.which("octave-cli") is None:
+        pytest.skip("needs Octave: apt install octave")
+    said = pages.run(page, tmp_path)
+    assert "QuadcoreWarning" not in said
