@@ -177,7 +177,12 @@ void bind_batch(py::module_& m) {
             const BatchLock lock(self);
             return self.batch.warnings(vehicle);
           },
-          py::arg("vehicle"), "What was said of a vehicle's flight, list of str.");
+          py::arg("vehicle"), R"(Tell what was said of a vehicle's flight, list of str.
+
+Parameters
+----------
+vehicle : int
+    Counted from 0.)");
 }
 
 }  // namespace quadcore::bindings

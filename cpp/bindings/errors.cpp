@@ -38,7 +38,7 @@ void translate(std::exception_ptr thrown) {
 void bind_errors(py::module_& m) {
   error_type = new_type(m, "QuadcoreError", PyExc_RuntimeError,
                         "Base of every error that quadcore raises; str() is one line that carries "
-                        "FILE:LINE where input is at fault.");
+                        "``FILE:LINE`` where input is at fault.");
   input_error_type = new_type(m, "InputError", error_type,
                               "The input is at fault; the refused call changed nothing.");
   flight_error_type = new_type(m, "FlightError", error_type,

@@ -105,7 +105,17 @@ void bind_plugins(py::module_& m) {
 
   m.def(
       "load_plugin_path", [](const py::object& folder) { load_plugin_path(path_of(folder)); },
-      py::arg("folder"), "Adds a folder to search for plugin libraries, before all others.");
+      py::arg("folder"), R"(Add a folder to search for plugin libraries, before all others.
+
+Parameters
+----------
+folder : str or path
+    For all simulations that this process makes from now on.
+
+Raises
+------
+InputError
+    It is no folder, or cannot be searched.)");
   m.def(
       "plugin_folders",
       [] {
@@ -113,7 +123,7 @@ void bind_plugins(py::module_& m) {
         for (const std::string& folder : plugin_folders()) folders.append(file_name(folder));
         return folders;
       },
-      "The folders searched for plugins, in order.");
+      "Name the folders searched for plugins, in order, list of str.");
 }
 
 }  // namespace quadcore::bindings

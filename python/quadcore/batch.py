@@ -67,7 +67,7 @@ class BatchSimulation(_core.Batch):
     Raises
     ------
     InputError
-        The model, world or an argument is at fault; the message carries FILE:LINE.
+        The model, world or an argument is at fault; the message carries ``FILE:LINE``.
 
     Warns
     -----
@@ -262,6 +262,11 @@ class BatchSimulation(_core.Batch):
             Which; None: all.
         seed : int or array_like (n,), optional
             As if they had been made with it; None keeps what they have.
+
+        Raises
+        ------
+        InputError
+            Another shape or kind; nothing has changed then.
         """
         chosen = np.ones(self.n, bool) if mask is None else np.asarray(mask)
         if chosen.shape != (self.n,) or chosen.dtype != bool:

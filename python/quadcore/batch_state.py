@@ -35,7 +35,13 @@ class BatchState(NamedTuple):
 
     @classmethod
     def of(cls, rows: np.ndarray) -> BatchState:
-        """Name the columns of rows as `BatchSimulation.read_state` writes them."""
+        """Name the columns of rows, without a copy.
+
+        Parameters
+        ----------
+        rows : ndarray (n, 13 + 2 rotors)
+            As `BatchSimulation.read_state` writes them.
+        """
         rotors = (rows.shape[1] - 13) // 2
         ends = np.cumsum([3, 4, 3, 3, rotors])
         return cls(*np.split(rows, ends, axis=1))

@@ -35,7 +35,13 @@ class Controller(Protocol):
     """
 
     def reset(self, simulation: Any) -> None:
-        """Begin anew: called with the `Simulation` before the first step of a run."""
+        """Begin anew.
+
+        Parameters
+        ----------
+        simulation : Simulation
+            Which flies; called with it before the first step of each run.
+        """
 
     def __call__(self, t: float, state: Odometry, reference: Any) -> Any:
         """Give the speeds for the steps until the next call.
@@ -60,6 +66,11 @@ class Controller(Protocol):
 
 class Odometry:
     """What the odometry plugin said, with the noise that its tags ask for.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        Whose odometry it is.
 
     Attributes
     ----------

@@ -29,10 +29,15 @@ def read_model(
     ignore
         As for `Simulation`; a name that nothing goes by is refused when the model flies.
 
+    Returns
+    -------
+    Model
+        For any number of simulations.
+
     Raises
     ------
     InputError
-        The model is at fault; the message carries FILE:LINE.
+        The model is at fault; the message carries ``FILE:LINE``.
     """
     check({"xacro_args": xacro_args}, OPTIONS)
     arguments = {name: str(value) for name, value in (xacro_args or {}).items()}
@@ -51,10 +56,15 @@ def read_world(world: Union[str, Path, None] = None, ignore: Sequence[str] = ())
     ignore
         As for `read_model`.
 
+    Returns
+    -------
+    World
+        For any number of simulations.
+
     Raises
     ------
     InputError
-        The world is at fault; the message carries FILE:LINE.
+        The world is at fault; the message carries ``FILE:LINE``.
     """
     document = load_world(None if world is None else str(world))
     return _core.read_world(document, list_of_names("ignore", ignore))

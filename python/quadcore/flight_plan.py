@@ -153,6 +153,11 @@ class FlightPlan:
     def befallen(self, scenario: Union[str, Path, Scenario, None]) -> FlightPlan:
         """Make the same flight in a scenario; what the plan sets wins over it.
 
+        Parameters
+        ----------
+        scenario : path, str or Scenario, optional
+            A file, the name of a shipped one, or what was read; None leaves the flight as it is.
+
         Raises
         ------
         InputError
@@ -176,7 +181,12 @@ class FlightPlan:
         return plan
 
     def commanded(self, commands: CommandsLike) -> FlightPlan:
-        """Make the same flight under other commands; a file is read now.
+        """Make the same flight under other commands.
+
+        Parameters
+        ----------
+        commands : ndarray (rows, 1 + n) or path
+            As for `Simulation.run`; a file is read now.
 
         Raises
         ------
@@ -199,13 +209,30 @@ class FlightPlan:
         return simulation
 
     def pilot(self, simulation: Simulation) -> Optional[Guided]:
-        """Make what asks the controller, if the flight has one; raises as `Simulation.run`."""
+        """Make what asks the controller, if the flight has one; raises as `Simulation.run`.
+
+        Parameters
+        ----------
+        simulation : Simulation
+            Which is to fly, as `simulation()` makes it.
+        """
         if self.controller is None:
             return None
         return Guided(self.controller, simulation, self.reference)
 
     def fly(self, progress: Optional[Progress] = None) -> Log:
-        """Fly it; raises and warns as `Simulation` and `Simulation.run` do."""
+        """Fly it; raises and warns as `Simulation` and `Simulation.run` do.
+
+        Parameters
+        ----------
+        progress : callable, optional
+            Called as progress(steps_done, steps_total) every few hundredths of a second.
+
+        Returns
+        -------
+        Log
+            Of the whole flight, from the state in which it begins.
+        """
         return self.simulation().run(
             self.duration,
             self.commands,

@@ -53,6 +53,11 @@ class Gains:
 def read(path: Union[str, Path]) -> Gains:
     """Read a gains file.
 
+    Parameters
+    ----------
+    path : str or path
+        A YAML file with the law, its parameters, rate and delay.
+
     Raises
     ------
     InputError
@@ -80,7 +85,18 @@ def write(gains: Gains, path: Union[str, Path]) -> None:
 
 
 def of_file(path: Union[str, Path]) -> Law:
-    """Make the law of a gains file; raises as `read`."""
+    """Make the law of a gains file.
+
+    Parameters
+    ----------
+    path : str or path
+        A YAML file with the law, its parameters, rate and delay.
+
+    Raises
+    ------
+    InputError
+        A missing file, or one that is wrong: one line with file and line.
+    """
     return read(path).make()
 
 

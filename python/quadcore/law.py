@@ -52,7 +52,18 @@ class Law:
         self._period = math.nan
 
     def reset(self, simulation: _core.Simulation) -> None:
-        """Begin on what the simulation flies."""
+        """Begin anew, on what is to be flown.
+
+        Parameters
+        ----------
+        simulation : Simulation
+            Says what the law believes of the vehicle, unless `belief` does.
+
+        Raises
+        ------
+        InputError
+            A vehicle that the law cannot fly, or a rate that is none.
+        """
         vehicle = believed(f"law '{self.name}'", self.belief, simulation)
         self._controller = _core.Controller(
             self.name, vehicle, simulation, self.parameters, self.spins
@@ -68,7 +79,22 @@ class Law:
         return controller.command(self._period, state, reference)
 
     def at(self, simulation: _core.Simulation, sensed: str, shape: _core.ReferenceShape) -> Any:
-        """Give the same for what stands on a topic and a reference now, without a way round."""
+        """Give the speeds that a call would, for what the simulation knows now.
+
+        Parameters
+        ----------
+        simulation : Simulation
+            Which flies.
+        sensed : str
+            Topic on which the odometry stands.
+        shape : ReferenceShape
+            Where to fly: `Shape.shape`.
+
+        Returns
+        -------
+        ndarray (n,)
+            rad/s, signed.
+        """
         return self._begun().command_at(self._period, simulation, sensed, shape)
 
     def _begun(self) -> _core.Controller:

@@ -25,9 +25,9 @@ _READ = "logs are read from"
 
 
 class Log(Trajectory):
-    """States of a flight; see `Trajectory`. To be written and drawn.
+    """States of a flight, to be written and drawn; made as its base `Trajectory` is.
 
-    ``log["x"]`` is a column by the name that it has in the CSV file.
+    ``log["x"]`` is a column (rows,) by the name that it has in the CSV file.
     """
 
     @classmethod
@@ -39,13 +39,28 @@ class Log(Trajectory):
         ignored: Sequence[str] = (),
         title: str = "",
     ) -> Log:
-        """Make a log of rows whose columns are those of the state, then TOPIC.FIELD."""
+        """Make a log of rows that hold topics as well.
+
+        Parameters
+        ----------
+        rows : ndarray (rows, columns)
+            A row per logged step.
+        columns : sequence of str
+            What they hold: the columns of the state, then ``TOPIC.FIELD``.
+        wrenches, ignored, title
+            As of `Trajectory`.
+        """
         of_state, topics = split_columns(columns, rows)
         return cls(rows[:, : len(of_state)], wrenches, title, ignored, topics)
 
     @classmethod
     def of_file(cls, path: PathLike) -> Log:
         """Read a ``.csv``, ``.mat`` or ``.bag`` file that `to_file` wrote, every bit restored.
+
+        Parameters
+        ----------
+        path : str or path
+            The suffix says which.
 
         Raises
         ------
@@ -115,6 +130,16 @@ class Log(Trajectory):
         Columns of topics follow, named ``TOPIC.FIELD``, and six of each wrench, ``wrench_NAME.fx``
         to ``wrench_NAME.tz``.
         What was `ignored`, if anything, stands in a comment below the names of the columns.
+
+        Parameters
+        ----------
+        path : str or path
+            A file that ends in ``.csv``.
+
+        Raises
+        ------
+        InputError
+            Another suffix, or a file that cannot be written; nothing is left behind then.
         """
         self._check_suffix(path, ".csv")
         self.to_file(path)
@@ -132,12 +157,22 @@ class Log(Trajectory):
         layout
             "vectors"; or all that in the one variable ``log``: a "struct" of it, a "matrix" with
             the names of its ``columns`` beside it, or time and "signals", as Simulink has them.
+
+        Raises
+        ------
+        InputError
+            Another suffix or layout, or a file that cannot be written; nothing is left behind then.
         """
         self._check_suffix(path, ".mat")
         mat.write_log(_named(path), *self._parts(), layout)
 
     def to_file(self, path: PathLike) -> None:
-        """Write a ``.csv``, ``.mat`` or ``.bag`` file, as its name says.
+        """Write a ``.csv``, ``.mat`` or ``.bag`` file.
+
+        Parameters
+        ----------
+        path : str or path
+            The suffix says which.
 
         Raises
         ------
@@ -157,7 +192,23 @@ class Log(Trajectory):
         return columns, table, self.wrenches, self.ignored
 
     def plot(self, directory: PathLike) -> list[Path]:
-        """Draw the flight into PNG files in `directory` (made if missing); returns their paths."""
+        """Draw the flight into PNG files.
+
+        Parameters
+        ----------
+        directory : str or path
+            Where to; it is made if it is missing.
+
+        Returns
+        -------
+        list of Path
+            The files.
+
+        Raises
+        ------
+        InputError
+            They cannot be written.
+        """
         folder = _named(directory, "directory")
         with LOCK:
             from .plots import draw  # matplotlib is slow to import

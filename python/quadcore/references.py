@@ -32,6 +32,15 @@ class ReferenceLike(Protocol):
 class Shape:
     """A reference of a kind that quadcore has.
 
+    Parameters
+    ----------
+    name : str
+        Of its kind.
+    rows : array_like (points, columns), optional
+        Of kinds that go through points, such as ``waypoints``.
+    **parameters
+        Of the kind, m, s, rad.
+
     Attributes
     ----------
     name : str
@@ -58,7 +67,13 @@ class Shape:
         return self.shape.at(t)
 
     def on(self, simulation: _core.Simulation) -> Shape:
-        """Make the same for a vehicle: from the `ground` where that rests, if none is given."""
+        """Make the same for a vehicle: from the `ground` where that rests, if none is given.
+
+        Parameters
+        ----------
+        simulation : Simulation
+            Of the vehicle.
+        """
         parameters = _core.on_vehicle(self.name, self.parameters, simulation)
         if parameters == self.parameters:
             return self

@@ -26,6 +26,12 @@ def shipped(folder: str) -> dict[str, Path]:
 
 
 def cmake_prefix() -> str:
-    """Folder to add to ``CMAKE_PREFIX_PATH`` so that ``find_package(quadcore)`` succeeds."""
+    """Give the folder to add to ``CMAKE_PREFIX_PATH`` for ``find_package(quadcore)``.
+
+    Returns
+    -------
+    str
+        Absolute.
+    """
     folders = Path(_core.__file__).resolve().parents  # pip's package, or catkin's space
     return str(next(folder for folder in folders if (folder / "lib/cmake/quadcore").is_dir()))

@@ -63,7 +63,7 @@ class Simulation(_core.Simulation):
     Raises
     ------
     InputError
-        The model, world or an argument is at fault; the message carries FILE:LINE.
+        The model, world or an argument is at fault; the message carries ``FILE:LINE``.
 
     Warns
     -----

@@ -78,7 +78,7 @@ def run(page, folder):
             steps.append(text or block["before"])
         elif block["kind"] == "run" or language == "sh":
             shell = text or block["before"]
-            steps.append(f"_shell('bash', '-euo', 'pipefail', '-c', {shell!r})")
+            steps.append(f"_shell('bash', '-eo', 'pipefail', '-c', {shell!r})")
         elif language in ("octave", "matlab"):
             steps.append(f"_octave({text!r})")
         elif language == "pycon":
@@ -103,6 +103,7 @@ def call(command, folder, short):
     environment = {
         **os.environ,
         "HOME": str(folder),
+        "BASH_FUNC_pip%%": '() { "$HOME/stand_ins/pip" "$@"; }',  # in environments made here, too
         "PATH": f"{folder}/stand_ins:{Path(sys.executable).parent}:{os.environ['PATH']}",
         "QUADCORE_SHORT": "yes" if short else "",
     }

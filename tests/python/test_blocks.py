@@ -18,7 +18,10 @@ with_blocks = [page for page in pages.PAGES if pages.blocks(page)]
 
 @pytest.mark.parametrize("page", with_blocks, ids=name_of)
 def test_what_a_page_says_to_type_runs(page, tmp_path):
-    if re.search("^```(octave|matlab)", page.read_text(), re.M) and shutil.which("octave-cli") is None:
+    if (
+        re.search("^```(octave|matlab)", page.read_text(), re.M)
+        and shutil.which("octave-cli") is None
+    ):
         pytest.skip("needs Octave: apt install octave")
     said = pages.run(page, tmp_path)
     assert "QuadcoreWarning" not in said

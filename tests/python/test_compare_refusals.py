@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import numpy as np
@@ -79,17 +78,6 @@ def test_the_page_needs_no_other_file():
     assert page.count("data:image/png;base64,") == 6
     assert 'src="http' not in page
     assert f"5e-4 (toy.urdf:{line_of('toy.urdf', '<kp>')})" in page
-
-
-def test_the_python_of_the_page_runs_as_it_stands(monkeypatch):
-    root = Path(__file__).resolve().parents[2]
-    monkeypatch.chdir(root)
-    page = root / "docs" / "comparing.md"
-    (block,) = re.findall(r"^```python\n(.*?)^```$", page.read_text(), re.DOTALL | re.MULTILINE)
-    names = {}
-    exec(block, names)
-    assert names["result"].reference == 0
-    assert names["result"].table["largest_position"][1:].all()
 
 
 def test_more_flights_than_can_be_held_leave_metrics_only():

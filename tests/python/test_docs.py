@@ -129,30 +129,6 @@ def test_the_reference_is_what_the_generator_writes():
     )
 
 
-@pytest.mark.parametrize(
-    ("page", "written"),
-    [
-        ("README.md", "flight.csv"),
-        ("docs/python.md", "flight.csv"),
-        ("docs/play.md", "climb.html"),
-        ("docs/fit.md", "fitted.urdf"),
-        ("docs/sweep.md", "sweep/table.csv"),
-        ("docs/tune.md", "pd.yaml"),
-    ],
-)
-def test_the_python_of_a_page_runs_as_it_stands(page, written, tmp_path):
-    script = "\n".join(blocks(ROOT / page, "python"))
-    ran = subprocess.run(
-        [sys.executable, "-c", script],
-        cwd=str(tmp_path),
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-    )
-    assert ran.returncode == 0, ran.stdout.decode()
-    assert "QuadcoreWarning" not in ran.stdout.decode()
-    assert (tmp_path / written).exists()
-
-
 def test_the_example_of_the_readme_is_short_and_holds_its_height(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (example,) = blocks(ROOT / "README.md", "python")

@@ -59,6 +59,41 @@ def test_each_member_is_told(name):
     assert untold == (["command_topic"] if name == "quadcore._core.Simulation" else [])
 
 
+def functions(name):
+    """What can be called of a public thing, by name: the thing itself and its methods."""
+    thing = THINGS[name]
+    yield name, thing
+    if inspect.isclass(thing):
+        yield from ((f"{name}.{m}", f) for m, f in members(thing) if inspect.isroutine(f))
+
+
+def arguments(function):
+    """Names of the arguments of a function, also of one that is bound."""
+    bound = re.match(r"\w+\((.*)\) -> ", inspect.getdoc(function) or "")
+    if bound:
+        return [name for name in re.findall(r"(\w+): ", bound.group(1)) if name != "self"]
+    try:
+        named = inspect.signature(function).parameters.values()
+    except (TypeError, ValueError):  # a class that nobody makes
+        return []
+    several = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
+    return [each.name for each in named if each.kind not in several and each.name != "self"]
+
+
+@pytest.mark.parametrize("name", [name for name in THINGS if "._" not in name])
+def test_each_argument_is_told(name):
+    untold = []
+    for called, function in functions(name):
+        kinds = getattr(function, "__mro__", [function])
+        told_of = "\n".join(inspect.getdoc(kind) or "" for kind in kinds)
+        untold += [
+            f"{called}({argument})"
+            for argument in arguments(function)
+            if not re.search(rf"^(\w+, )*{argument}(, \w+)*( :|$)", told_of, re.MULTILINE)
+        ]
+    assert untold == []
+
+
 def test_a_public_object_does_not_show_as_an_address():
     sim = qc.Simulation("quadrotor", engine="eigen")
     log = sim.run(0.01)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from flights import ENGINES, HOVER, with_pilot
 from imported import Imported, library
+from pages import ROOT, run
 from processes import ran, refused
 
 import quadcore as qc
@@ -411,3 +412,8 @@ def test_it_flies_again_when_the_folder_of_its_first_flight_is_gone(model, fmus,
         instance.close()
         shutil.rmtree(str(tmp_path / name))
     assert rows[0] == rows[1]
+
+
+def test_the_climb_of_the_page_arrives(tmp_path):
+    said = run(ROOT / "docs" / "fmu.md", tmp_path)
+    assert float(re.search(r"\d+\.\d+", said)[0]) == pytest.approx(3.0, abs=0.1)

@@ -21,7 +21,7 @@ class Difference(NamedTuple):
     before: str
     after: str
     before_at: str
-    """FILE:LINE; "" where `before` is absent."""
+    """``FILE:LINE``; "" where `before` is absent."""
     after_at: str
 
 
@@ -30,7 +30,7 @@ class Fact(NamedTuple):
 
     text: str
     at: str
-    """FILE:LINE"""
+    """``FILE:LINE``"""
     within: Optional[str]
     """The fact, if any, without which this one is none: the link, joint or plugin."""
 

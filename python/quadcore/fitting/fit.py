@@ -154,6 +154,11 @@ def fit(
     progress
         Called as progress(done, at most).
 
+    Returns
+    -------
+    Fit
+        The values, how well the flight tells them, and the model that has them.
+
     Raises
     ------
     InputError
