@@ -148,7 +148,17 @@ void bind_batch(py::module_& m) {
             self.batch.restore(*snapshot);
           },
           py::arg("snapshot"),
-          "Go back to a snapshot of this batch, bit for bit. Raises InputError on another's.")
+          R"(Go back to a snapshot, bit for bit.
+
+Parameters
+----------
+snapshot : BatchSnapshot
+    Of this batch, as `snapshot()` gave it.
+
+Raises
+------
+InputError
+    It was taken of another; nothing has changed then.)")
       .def_property_readonly(
           "dt", [](const GuardedBatch& self) { return self.batch.dt(); }, "Length of a step, s.")
       .def_property_readonly(

@@ -1,15 +1,16 @@
 """What a page of the docs says to type, run from top to bottom in a folder of its own.
 
-A block of Python, of a shell or of Octave runs as it stands, all of a page's Python in one process.
-An XML element `<gazebo>` flies in the shipped vehicle. Comments before a block, which no reader sees,
-tell what else becomes of it:
+A block of Python, of a shell or of Octave runs as it stands, all Python of a page in one process.
+An XML element `<gazebo>` flies in the shipped vehicle. Comments before a block, which no reader
+sees, tell what else becomes of it:
 
     <!-- quoted: FILE -->  it stands in that file, which runs elsewhere
     <!-- file: NAME -->    it is a file that other blocks of the page use
     <!-- run: COMMAND -->  what a reader of the page has done before, in a shell
     <!-- python: CODE -->  the same in Python
 
-Flights are cut short except in tutorials, and programs of systems that are not here are stood in for.
+Flights are cut short except in tutorials, and programs of systems that are not here are stood in
+for (`stand_in.py`).
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 import pytest
-from browser import assert_it_plays, what_sticks_out
+from browser import assert_it_plays, seen, what_sticks_out
 
 SITE = Path(__file__).resolve().parents[2] / "build" / "docs" / "html"
 WIDTHS = (390, 1280)  # px
@@ -72,3 +72,20 @@ def test_no_page_of_the_site_is_cut_on_a_laptop_and_on_a_telephone(pages, tmp_pa
 
 def test_the_player_on_the_first_page_flies_to_the_end(tmp_path):
     assert_it_plays(SITE / "index.html", WIDTHS, tmp_path)
+
+
+SEARCH = """
+async function look(view, inside) {
+  view.eval('Search.performSearch("payload")');
+  const found = () => [...inside.querySelectorAll("#search-results li a")].map((a) => a.href);
+  const said = () => inside.querySelector("#search-results .search-summary").textContent;
+  while (!/\\d/.test(said())) await new Promise((resolve) => view.setTimeout(resolve, 50));
+  return found();
+}
+"""
+
+
+def test_the_site_is_searched_without_a_network(tmp_path):
+    (found,) = seen(SEARCH, [SITE / "search.html"], [1280], tmp_path).values()
+    assert any("disturbances.html" in link for link in found)
+    assert any("tags.html" in link for link in found)
