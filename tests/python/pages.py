@@ -9,8 +9,8 @@ sees, tell what else becomes of it:
     <!-- run: COMMAND -->  what a reader of the page has done before, in a shell
     <!-- python: CODE -->  the same in Python
 
-Flights are cut short except in tutorials, and programs of systems that are not here are stood in
-for (`stand_in.py`).
+Sweeps fly little, other flights are cut short except in tutorials, and programs of systems that are
+not here are stood in for (`stand_in.py`).
 """
 
 from __future__ import annotations

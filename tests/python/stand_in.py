@@ -9,20 +9,20 @@ import subprocess
 import sys
 from pathlib import Path
 
-SHORT = {"--duration": "1", "--seeds": "1", "--samples": "2", "--budget": "2", "--no-plots": None}
+FEW = {"--samples": "2"}
+SHORT = {"--duration": "1", "--seeds": "1", "--budget": "2", "--no-plots": None, **FEW}
 
 
 def quadcore(words):
-    """As typed; but short if it is to be, and a server goes on behind it."""
+    """As typed; but sweeps are of few, all is short if it is to be, and a server goes on."""
     from quadcore.cli import _parser
 
     parser = _parser()
     given = parser.parse_args(words)
     known = parser._subparsers._group_actions[0].choices[words[0]]._option_string_actions
-    if os.environ["QUADCORE_SHORT"]:
-        for option, value in SHORT.items():
-            if option in known and not getattr(given, "plant", None):  # that has its own length
-                words += [option] + ([value] if value else [])
+    for option, value in (SHORT if os.environ["QUADCORE_SHORT"] else FEW).items():
+        if option in known and not getattr(given, "plant", None):  # that has its own length
+            words += [option] + ([value] if value else [])
     if getattr(given, "dask", None):  # there is no such cluster
         at = words.index("--dask")
         del words[at : at + 2]
