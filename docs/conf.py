@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from docutils import nodes
+
 import quadcore
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -64,6 +66,21 @@ def _as_sphinx_reads_it(app, docname, source):
     source[0] = re.sub(r'^<a id="([^"]+)"></a>$', r"(\1)=", source[0], flags=re.MULTILINE)
 
 
+def _tidy(app, doctree):
+    """Leave out defaults that say nothing, and call attributes what the docstrings call them."""
+    for paragraph in list(doctree.findall(nodes.paragraph)):
+        if paragraph.astext() in ("Default: []", "Default: False"):
+            paragraph.parent.remove(paragraph)
+    for name in doctree.findall(nodes.field_name):
+        if name.astext() == "Variables":
+            name[0] = nodes.Text("Attributes")
+
+
+def _is_told_by_its_class(app, what, name, member, skip, options):
+    """Skip fields of named tuples, of which Python says but their numbers."""
+    return (getattr(member, "__doc__", "") or "").startswith("Alias for field number") or None
+
+
 def _make_flights(page):
     """Fly the spiral under three laws, to watch on the first page."""
     quadcore_ = [sys.executable, "-m", "quadcore"]
@@ -84,3 +101,5 @@ def setup(app):
     subprocess.run(["doxygen", "docs/Doxyfile"], cwd=ROOT, check=True)
     _make_flights(MADE / "extra" / "flights.html")
     app.connect("source-read", _as_sphinx_reads_it)
+    app.connect("doctree-read", _tidy)
+    app.connect("autodoc-skip-member", _is_told_by_its_class)
