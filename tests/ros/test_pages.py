@@ -8,13 +8,16 @@ import subprocess
 import unittest
 from pathlib import Path
 
+import genpy
 import harness
 import rosgraph
 import roslaunch
+import roslib.message
 import roslib.packages
 import rospkg
 import rospy
 import scipy.io
+import yaml
 from harness import LONG, description, wait_until
 from roslaunch.arg_dump import get_args
 
@@ -23,6 +26,7 @@ import quadcore as qc
 FOLDER = Path(rospkg.RosPack().get_path("quadcore"))
 PAGES = [FOLDER / "README.md", *sorted((FOLDER / "docs").glob("*.md"))]
 NOT_EVERYWHERE = {"rviz", "robot_state_publisher", "joy", "teleop_twist_joy"}
+SHELL = re.compile(r"^```sh\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 COMMAND = re.compile(r"^(?:`|\s*)((?:roslaunch|rosrun) quadcore [^`#\n]*)")
 
 
@@ -39,6 +43,17 @@ def commands(program):
 
 
 class TestPages(unittest.TestCase):
+    def test_what_the_pages_publish_are_messages(self):
+        """Of types that there are, with fields that they have."""
+        typed = "\n".join(text for page in PAGES for text in SHELL.findall(page.read_text()))
+        found = re.findall(r"^rostopic pub [^']*'[^']*'", typed.replace("\\\n", " "), re.MULTILINE)
+        self.assertGreater(len(found), 4)
+        for command in found:
+            with self.subTest(command=command):
+                *_, kind, fields = shlex.split(command)
+                message = roslib.message.get_message_class(kind)()
+                genpy.message.fill_message_args(message, [yaml.safe_load(fields)])
+
     def test_what_the_pages_launch_are_nodes_that_there_are(self):
         """The arguments, too: roslaunch passes over those that a file does not declare."""
         found = commands("roslaunch")
