@@ -9,8 +9,8 @@ sees, tell what else becomes of it:
     <!-- run: COMMAND -->  what a reader of the page has done before, in a shell
     <!-- python: CODE -->  the same in Python
 
-Sweeps fly little, other flights are cut short except in tutorials, and programs of systems that are
-not here are stood in for (`stand_in.py`).
+Sweeps fly little, other flights are cut short except in tutorials and in the README, and programs
+of systems that are not here are stood in for (`stand_in.py`).
 """
 
 from __future__ import annotations
@@ -29,7 +29,8 @@ import quadcore as qc
 
 ROOT = Path(__file__).resolve().parents[2]
 TUTORIALS = ROOT / "docs" / "tutorials"
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+README = ROOT / "README.md"
+PAGES = sorted((ROOT / "docs").rglob("*.md"))
 BLOCK = re.compile(
     r"^<!-- (?P<kind>run|python): (?P<before>.*?) -->$"
     r"|(?:^<!-- (?P<marker>quoted|file): (?P<file>\S+) -->\n+)?"
@@ -47,8 +48,9 @@ import re, subprocess
 from pathlib import Path
 
 def _shell(*command):
-    ran = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    assert ran.returncode == 0, f"{command[-1]}\\n{ran.stdout}"
+    ran = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert ran.returncode == 0, f"{command[-1]}\\n{ran.stdout}{ran.stderr}"
+    print(ran.stderr, end="")
 
 def _octave(text):
     served = Path("served")
@@ -64,7 +66,7 @@ def blocks(page):
 
 
 def run(page, folder):
-    """Run a page; what it prints. Raises if anything fails."""
+    """Run a page; what its Python prints and its commands complain of. Raises where one fails."""
     prepare(folder)
     steps, pieces = [DRIVER], 0
     for block in blocks(page):
@@ -94,7 +96,9 @@ def run(page, folder):
         else:
             raise AssertionError(f"{page.name}: nothing runs a block of '{language}':\n{text}")
     try:
-        return call([sys.executable, "-c", "\n".join(steps)], folder, page.parent != TUTORIALS)
+        return call(
+            [sys.executable, "-c", "\n".join(steps)], folder, page.parent not in (ROOT, TUTORIALS)
+        )
     finally:
         if (folder / "served").exists():
             os.kill(int((folder / "served").read_text().split()[1]), signal.SIGTERM)

@@ -151,32 +151,3 @@ def test_the_model_of_the_guide_flies(engine, tmp_path):
     simulation.step(2000)
     assert simulation.state.position[0] > 0.1  # the wind takes it along
     assert simulation.state.linear_velocity[2] > 0
-
-
-def test_the_edit_of_the_readme_is_compared(tmp_path):
-    block = next(b for b in blocks(ROOT / "README.md", "sh") if b.startswith("sed"))
-    for name in ("config", "urdf"):
-        (tmp_path / name).symlink_to(ROOT / name)
-    called = block.replace("quadcore compare", f"{sys.executable} -m quadcore compare --no-plots")
-    ran = subprocess.run(
-        ["sh", "-ec", called],
-        cwd=str(tmp_path),
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        encoding="utf-8",
-    )
-    assert ran.returncode == 0, ran.stdout
-    assert re.search(r"kp +0\.0005 +0\.001 ", ran.stdout)
-
-
-def test_every_command_of_the_readme_flies_from_a_clone(tmp_path):
-    block = next(b for b in blocks(ROOT / "README.md", "sh") if b.startswith("mkdir -p out"))
-    lines = [line.partition("#")[0] for line in block.splitlines()]
-    assert len(lines) == 10
-    (tmp_path / "config").symlink_to(ROOT / "config")
-    for line in lines:
-        command = re.sub("^quadcore", f"{sys.executable} -m quadcore", line)
-        ran = subprocess.run(command, shell=True, cwd=str(tmp_path), stderr=subprocess.PIPE)
-        assert (ran.returncode, ran.stderr) == (0, b""), line
-    made = "quadrotor.png hover/path.png flight.mat kp/report.html laws/report.html flights.html"
-    assert all((tmp_path / "out" / name).exists() for name in made.split())

@@ -22,7 +22,7 @@ struct BatchVehicle {
 /// Everything that the future of a batch depends on.
 struct BatchSnapshot {
   struct Content;
-  std::shared_ptr<const Content> content;
+  std::shared_ptr<const Content> content;  ///< for restore() alone to read
 };
 
 /// Many vehicles, each in a world of its own, stepped together. Each moves, to the last bit, as a
@@ -36,11 +36,12 @@ class Batch {
   Batch(std::vector<BatchVehicle> vehicles, const World& world, const SimulationOptions& options,
         unsigned threads = 0);
   ~Batch();
+  /// What was moved from can only be destroyed.
   Batch(Batch&&) noexcept;
 
-  std::size_t size() const;
-  std::size_t command_width() const;
-  double dt() const;
+  std::size_t size() const;           ///< vehicles
+  std::size_t command_width() const;  ///< numbers of a vehicle's command
+  double dt() const;                  ///< length of a step, s
 
   /// Advances all that have not failed by so many steps.
   /// \param commands  rotor speeds [rad/s], a row of command_width() for each vehicle; null: as
@@ -69,6 +70,7 @@ class Batch {
   /// \param seeds  of each, or null: as it had
   void reset(const bool* mask, const std::uint64_t* seeds = nullptr);
 
+  /// Everything that the future of all depends on.
   BatchSnapshot snapshot() const;
   /// Throws InputError, nothing changed, on the snapshot of another batch.
   void restore(const BatchSnapshot& snapshot);

@@ -46,13 +46,14 @@ struct Snapshot {
   std::string failure;
 };
 
+/// How a simulation is made, beside its model and its world.
 struct SimulationOptions {
-  std::string engine = "gazebo11";
-  std::optional<double> dt = {};  ///< s, from 1e-9; the world's max_step_size if absent
-  std::uint64_t seed = 0;         ///< of all random numbers
+  std::string engine = "gazebo11";  ///< one of engines()
+  std::optional<double> dt = {};    ///< s, from 1e-9; the world's max_step_size if absent
+  std::uint64_t seed = 0;           ///< of all random numbers
   /// "PLUGIN.TAG" -> value, wins over the URDF.
   std::map<std::string, std::string> parameters = {};
-  Pose spawn = {};
+  Pose spawn = {};  ///< of the frame in the world, at the start
 };
 
 /// One vehicle in one world: plugins and an engine, stepped from outside.
@@ -63,6 +64,8 @@ class Simulation : private ForceField {
   /// Of command().
   static constexpr const char* command_topic = "vel_cmd";
 
+  /// Loads the plugins that the model names, and stands at the start of the flight.
+  /// Throws InputError, with FILE:LINE where a document is at fault.
   Simulation(Model model, const World& world, const SimulationOptions& options);
 
   /// Publishes rotor speeds [rad/s], signed, on topic `vel_cmd`.
@@ -87,19 +90,29 @@ class Simulation : private ForceField {
   /// Numbers that a command carries. Throws InputError if no plugin listens.
   std::size_t command_width() const;
 
+  /// Of the state, s.
   double time() const { return start_time_ + static_cast<double>(steps_) * dt_; }
+  /// Length of a step, s.
   double dt() const { return dt_; }
+  /// One of engines().
   const std::string& engine_name() const { return engine_name_; }
   /// How the engine takes its steps, in one line for a person.
   std::string method() const { return engine_->method(); }
   /// As the engine flies it, with what rides on its frame now.
   const Model& model() const { return engine_->model(); }
+  /// Rotor joints.
   std::size_t rotor_count() const { return model_.joints.size(); }
+  /// Of the rotor joints, in the order of all that is said of rotors.
   std::vector<std::string> rotor_names() const { return model_.joint_names(); }
+  /// As it was given.
   const World& world() const { return world_; }
+  /// Of all that a flight depends on beside its state.
   const Fingerprint& fingerprint() const { return *fingerprint_; }
+  /// As it stands now; the next step changes it.
   const VehicleState& state() const { return state_; }
+  /// What plugins and callers have published.
   const Topics& topics() const { return topics_; }
+  /// In the order of the URDF.
   const std::vector<LoadedPlugin>& plugins() const { return plugins_; }
   /// What was perhaps not meant: first what the model and its plugins said as they were loaded,
   /// then, growing as it happens, what plugins said of this flight. The latter are part of a
@@ -110,12 +123,14 @@ class Simulation : private ForceField {
 
   /// Throws InputError on a state that is not finite or whose sizes differ.
   void set_state(const VehicleState& state);
+  /// Everything that the future depends on.
   Snapshot snapshot() const;
   /// Throws InputError, nothing changed, if the snapshot's simulation had another fingerprint,
   /// apart from what is allowed to differ.
   void restore(const Snapshot& snapshot, const Allowed& allowed = {});
   /// Back to the moment of construction, bit for bit, as if it had been made with the seed.
   void reset(std::uint64_t seed);
+  /// The same with the seed that it has.
   void reset() { reset(seed_); }
 
   /// Laws that plugins hand out beside their forces(). Valid as long as this simulation.
