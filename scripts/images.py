@@ -19,7 +19,9 @@ def save(name: str, png: bytes) -> None:
 
 def save_in_few_colours(name: str, picture: Image.Image) -> None:
     """Write a picture that has large even areas."""
-    few = picture.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
+    few = picture.convert("RGB").quantize(
+        COLOURS, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE
+    )  # the method that leaves colours of thin lines as they are
     data = io.BytesIO()
     few.save(data, "PNG", optimize=True)
     save(name, data.getvalue())

@@ -124,7 +124,8 @@ def check_calls(text):
     """What is typed where it cannot be here: functions of quadcore take what they are given."""
     source = re.sub(r"^(>>>|\.\.\.) ?", "", text, flags=re.MULTILINE)
     for node in ast.walk(ast.parse(source)):
-        if isinstance(node, ast.Call) and ast.unparse(node.func).startswith("qc."):
+        owner = getattr(getattr(node, "func", None), "value", None)
+        if isinstance(owner, ast.Name) and owner.id == "qc":
             function = getattr(qc, node.func.attr)
             given = {keyword.arg: None for keyword in node.keywords}
             inspect.signature(function).bind_partial(*node.args, **given)
