@@ -45,6 +45,7 @@ napoleon_google_docstring = False
 napoleon_use_ivar = True
 breathe_projects = {"quadcore": str(MADE / "xml")}
 breathe_default_project = "quadcore"
+suppress_warnings = ["duplicate_declaration.cpp"]  # headers open one namespace, again and again
 
 
 def _as_sphinx_reads_it(app, docname, source):

@@ -129,6 +129,12 @@ def test_the_reference_is_what_the_generator_writes():
     )
 
 
+def test_the_reference_of_cpp_has_every_public_header_once():
+    told = re.findall(r"doxygenfile:: (\S+)", (ROOT / "docs/reference/cpp.rst").read_text())
+    headers = (ROOT / "cpp/core/include/quadcore").rglob("*.hpp")
+    assert sorted(told) == sorted(header.name for header in headers)
+
+
 def test_the_example_of_the_readme_is_short_and_holds_its_height(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (example,) = blocks(ROOT / "README.md", "python")
