@@ -8,6 +8,10 @@ build_packages="scikit-build-core>=0.5 pybind11>=2.10"
 # With "test", the tools of the tests too.
 python_extras=${python_extras:-}
 [ -x .venv/bin/pytest ] && python_extras=test  # once there, they stay in step
+# Where tests of C++ are built around the core of the package, so that it is compiled once; by one
+# cmake, since what another has laid out is compiled anew.
+tests=build/tests
+cmake=/usr/bin/cmake
 # Of foundation-policy there is but the source.
 [ "$python_extras" = test ] && build_packages="$build_packages hatchling"
 
@@ -70,15 +74,18 @@ install_quadcore() {
   local sources
   sources=$(find CMakeLists.txt pyproject.toml constraints.txt cpp python urdf worlds config launch \
     msg srv -type f -not -name '*.pyc' -print0 | sort -z | xargs -0 sha256sum | sha256sum)
-  [ "$(cat .venv/quadcore.sha256 2>/dev/null)" = "$sources $python_extras" ] && return
+  [ "$(cat .venv/quadcore.sha256 2>/dev/null)" = "$sources $python_extras" ] &&
+    { [ "$python_extras" != test ] || [ -e $tests/CMakeCache.txt ]; } && return
   say "building and installing quadcore and what it needs into .venv"
   # An older pip does not know the names of today's binary packages.
   pip_install "pip>=20.3" $build_packages
-  # The C++ tests are built around the same core later, so that it is compiled once; by one cmake,
-  # since what another has laid out is compiled anew.
-  [ "$python_extras" = test ] && export SKBUILD_BUILD_DIR=build/tests CMAKE_EXECUTABLE=/usr/bin/cmake \
-    SKBUILD_CMAKE_DEFINE="QUADCORE_BUILD_TESTS=OFF;QUADCORE_WERROR=ON"
-  pip_install --no-build-isolation ".${python_extras:+[$python_extras]}"
+  if [ "$python_extras" = test ]; then
+    SKBUILD_BUILD_DIR=$tests CMAKE_EXECUTABLE=$cmake \
+      SKBUILD_CMAKE_DEFINE="QUADCORE_BUILD_TESTS=OFF;QUADCORE_WERROR=ON" \
+      pip_install --no-build-isolation ".[test]"
+  else
+    pip_install --no-build-isolation ".${python_extras:+[$python_extras]}"
+  fi
   echo "$sources $python_extras" > .venv/quadcore.sha256
 }
 

@@ -6,7 +6,9 @@ import math
 import os
 import reprlib
 from numbers import Integral, Real
-from typing import Any, Callable, Dict, Iterable, List, Mapping, Tuple
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Tuple
+
+import numpy as np
 
 from ._core import InputError
 from .parameters import did_you_mean
@@ -36,7 +38,7 @@ def check(arguments: Mapping[str, Any], kinds: Mapping[str, Kind]) -> None:
                 f"{', '.join(OPTIONS)}"
             )
         if not kind[0](value):
-            raise InputError(f"{name} is {_shown(value)}; give {kind[1]}")
+            raise InputError(f"{name} is {brief(value)}; give {kind[1]}")
 
 
 def or_none(kind: Kind) -> Kind:
@@ -49,7 +51,7 @@ def several(value: Any) -> List[Any]:
     return [value] if _is_text(value) or callable(value) else list(value)
 
 
-def _shown(value: Any) -> str:
+def brief(value: Any) -> str:
     """Write a value in one line, shortened if it is long."""
     return " ".join(reprlib.repr(value).split())
 
@@ -59,11 +61,16 @@ def _is_text(value: Any) -> bool:
 
 
 def _are_names(value: Any) -> bool:
-    return _is_text(value) or (isinstance(value, Iterable) and all(map(_is_text, value)))
+    return _is_text(value) or (_is_list(value) and len(list(value)) > 0)
 
 
 def _is_list(value: Any) -> bool:
-    return _are_names(value) and not _is_text(value)
+    return _is_lasting(value) and not _is_text(value) and all(map(_is_text, value))
+
+
+def _is_lasting(value: Any) -> bool:
+    """Whether it can be gone through, and not just once."""
+    return isinstance(value, Iterable) and not isinstance(value, Iterator)
 
 
 def _are_guides(value: Any) -> bool:
@@ -77,13 +84,13 @@ def _are_named(value: Any) -> bool:
 
 def _are_axes(value: Any) -> bool:
     return _are_named(value) and all(
-        isinstance(one, Iterable) and not isinstance(one, (str, bytes)) for one in value.values()
+        _is_lasting(one) and not isinstance(one, (str, bytes)) for one in value.values()
     )
 
 
 def _are_values(value: Any) -> bool:
     return _are_named(value) and all(
-        isinstance(one, Iterable) or hasattr(one, "ppf") for one in value.values()
+        _is_lasting(one) or hasattr(one, "ppf") for one in value.values()
     )
 
 
@@ -128,7 +135,7 @@ LAG: Kind = (
 LIMIT: Kind = (_is_limit, f"seconds, more than 0 and at most {_LONGEST:g}")
 WHOLE: Kind = (_is_whole, "a whole number")
 COUNT: Kind = (_is_count, "a whole number from 1 on")
-FLAG: Kind = (lambda value: isinstance(value, bool), "True or False")
+FLAG: Kind = (lambda value: isinstance(value, (bool, np.bool_)), "True or False")
 ANY: Kind = (lambda value: True, "")  # told where it is read
 PROGRESS: Kind = (callable, "a function that is called as progress(done, total)")
 
@@ -138,6 +145,6 @@ OPTIONS: Dict[str, Kind] = {
     "seed": ANY,
     "parameters": or_none(NAMED),
     "xacro_args": or_none(NAMED),
-    "ignore": NAMES,
+    "ignore": LIST,
 }
 """What every study passes on to its simulations."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Mapping, Optional, Sequence, Tuple, Union
+from typing import Iterator, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _core, resources, xml_source
 from ._core import Document, InputError, Model, World
@@ -95,7 +95,8 @@ def read_both(
 
 
 def list_of_names(argument: str, names: Sequence[str]) -> list[str]:
-    """Check names given as an argument."""
+    """Check names given as an argument, which may come one by one."""
+    names = list(names) if isinstance(names, Iterator) else names
     check({argument: names}, {argument: LIST})
     return list(map(str, names))
 

@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, Any, Callable, Deque, List, Optional, Protocol
 import numpy as np
 
 from . import _core, interrupts
+from .arguments import brief
 from .commands import CommandsLike, as_commands
 from .given import whole
 from .log import Log
+from .trajectory import per_command
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -181,6 +183,7 @@ class Rows:
         self._columns = list(columns)
         self._terms = simulation.wrench_terms
         self._ignored = simulation.ignored
+        self._per_command = per_command(simulation)
         self._count = 0
         self._table = np.empty((0, len(self._columns)))
         self._wrenches = np.empty((0, len(self._terms), 6))
@@ -201,12 +204,14 @@ class Rows:
         """Give what came so far."""
         wrenches = self._wrenches[: self._count]
         named = {name: wrenches[:, i] for i, name in enumerate(self._terms)}
-        return Log.of_rows(
+        log = Log.of_rows(
             self._table[: self._count],
             self._columns,
             named if self._with_wrenches else {},
             self._ignored,
         )
+        log.per_command = self._per_command
+        return log
 
 
 def _grow(array: np.ndarray, rows: int) -> None:
@@ -223,7 +228,9 @@ def _grow(array: np.ndarray, rows: int) -> None:
 def steps_within(duration: float, dt: float) -> int:
     """Count the steps that end within a duration; raises `InputError` if it is none."""
     if not (isinstance(duration, Real) and 0 <= duration <= _LONGEST):
-        raise _core.InputError(f"duration is {duration!r}; give seconds, from 0 to {_LONGEST:g}")
+        raise _core.InputError(
+            f"duration is {brief(duration)}; give seconds, from 0 to {_LONGEST:g}"
+        )
     steps = math.floor(duration / dt + 1e-6)
     if steps == 0 and duration > 0:
         raise _core.InputError(
@@ -236,7 +243,7 @@ def check_logged(duration: float, dt: float, log_every: int) -> None:
     """Raise `InputError` if a log would hold the start alone: nothing could be told from it."""
     steps = steps_within(duration, dt)
     if not isinstance(log_every, (int, np.integer)) or log_every < 1:
-        raise _core.InputError(f"log_every is {log_every!r}; give a whole number >= 1")
+        raise _core.InputError(f"log_every is {brief(log_every)}; give a whole number >= 1")
     if log_every > steps:
         raise _core.InputError(
             f"log_every is {log_every} but the flight has {steps} steps; log more often"

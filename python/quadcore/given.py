@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Optional, Sequence, Tuple, Union
 import numpy as np
 
 from . import _core
+from .arguments import brief
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -20,7 +21,9 @@ def whole(seed: object, name: str = "seed", bits: int = 64) -> int:
     """Check a seed, or what else is such a number of so many bits."""
     is_whole = isinstance(seed, (int, np.integer)) and not isinstance(seed, bool)
     if not is_whole or not 0 <= seed < 2**bits:  # type: ignore[operator]
-        raise _core.InputError(f"{name} is {seed!r}; give a whole number from 0 to 2^{bits} - 1")
+        raise _core.InputError(
+            f"{name} is {brief(seed)}; give a whole number from 0 to 2^{bits} - 1"
+        )
     return int(seed)  # type: ignore[call-overload,no-any-return]
 
 
@@ -28,7 +31,7 @@ def engine_and_step(engine: object, dt: object) -> Tuple[str, Optional[float]]:
     """Check an engine's name, known or not, and the length of a step or None."""
     if not isinstance(engine, str):
         known = ", ".join(name for name, _ in _core.engines())
-        raise _core.InputError(f"engine is {engine!r}; give one of {known}")
+        raise _core.InputError(f"engine is {brief(engine)}; give one of {known}")
     if dt is None:
         return engine, None
     try:
@@ -36,7 +39,7 @@ def engine_and_step(engine: object, dt: object) -> Tuple[str, Optional[float]]:
             return engine, float(dt)  # type: ignore[arg-type]
     except (TypeError, ValueError):
         pass
-    raise _core.InputError(f"dt is {dt!r}; give the length of a step in s")
+    raise _core.InputError(f"dt is {brief(dt)}; give the length of a step in s")
 
 
 def text_of(value: Value) -> str:
@@ -55,7 +58,9 @@ def pose(spawn: Sequence[Number]) -> Tuple[float, ...]:
     except (TypeError, ValueError):
         given = []
     if len(given) not in (3, 6):
-        raise _core.InputError(f"spawn is {spawn!r}; give x, y, z[, roll, pitch, yaw] in m and rad")
+        raise _core.InputError(
+            f"spawn is {brief(spawn)}; give x, y, z[, roll, pitch, yaw] in m and rad"
+        )
     return (*given, *[0.0] * (6 - len(given)))
 
 

@@ -16,9 +16,9 @@ from .rotation import continuous
 # Files need no window, and a wrong name of a toolkit for windows must not end a flight.
 _toolkit = os.environ.pop("MPLBACKEND", None)
 try:
-    from matplotlib import rc_context
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
+    from matplotlib.ticker import ScalarFormatter
     from mpl_toolkits.mplot3d import Axes3D  # noqa: F401  (matplotlib < 3.2 needs it for "3d")
 finally:
     if _toolkit is not None:
@@ -237,13 +237,24 @@ def panels(
 
 def subplots(figure: Figure, rows: int, columns: int, margins: Any, **shared: Any) -> Any:
     """Put dressed panels into a figure, whose numbers have nine signs at most."""
-    with rc_context({"axes.formatter.offset_threshold": 7}):
-        grid = figure.subplots(rows, columns, squeeze=False, gridspec_kw=margins, **shared)
+    grid = figure.subplots(rows, columns, squeeze=False, gridspec_kw=margins, **shared)
     for axes in grid.flat:
         dress(axes)
+        axes.yaxis.set_major_formatter(_Numbers())
         axes.ticklabel_format(axis="y", scilimits=(-3, 4))
     figure.align_ylabels(grid)
     return grid
+
+
+class _Numbers(ScalarFormatter):
+    """Has a number of its own for what all share only where that saves so many digits.
+
+    Matplotlib has but a setting of the whole process for it, which other threads would feel.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._offset_threshold = 7
 
 
 def dress(axes: Any) -> None:

@@ -19,6 +19,7 @@ import yaml
 from . import resources
 from ._core import Document, InputError, Model, read_model
 from .files import is_file, shown
+from .parameters import did_you_mean
 from .scenario_events import Event, events_of
 from .yaml_nodes import line_of, pairs, root, scalar
 
@@ -162,8 +163,11 @@ def _find(name: str) -> Path:
     known = resources.shipped("config/scenarios")
     if name in known:
         return known[name]
-    names = ", ".join([NONE, *known])
-    raise InputError(f"{name}: no such file, and no shipped scenario of that name ({names})")
+    names = [NONE, *known]
+    near = did_you_mean(name, names)
+    raise InputError(
+        f"{name}: no such file, and no shipped scenario of that name ({', '.join(names)}){near}"
+    )
 
 
 def _sections(file: str, node: yaml.Node) -> Dict[str, yaml.Node]:

@@ -18,6 +18,11 @@ def per_command(simulation: Simulation) -> float:
     return sizes.pop() if len(sizes) == 1 else 1.0
 
 
+def is_slow(size: float) -> bool:
+    """Tell whether joints of this size per commanded speed are known to turn otherwise."""
+    return size not in (0.0, 1.0)
+
+
 class Wrenches(Dict[str, np.ndarray]):
     """Of each term, by name."""
 
@@ -74,7 +79,7 @@ class Trajectory:
     @property
     def is_slow(self) -> bool:
         """Whether the joints are known to turn otherwise than commanded."""
-        return self.per_command not in (0.0, 1.0)
+        return is_slow(self.per_command)
 
     @property
     def columns(self) -> list[str]:

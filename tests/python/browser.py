@@ -157,7 +157,7 @@ def opened(page, folder, *options):
     answer = subprocess.run(
         [program, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder}/user",
          "--window-size=1000,900", *options, "--dump-dom", file.as_uri()],
-        capture_output=True, check=True, timeout=300,
+        capture_output=True, check=True, timeout=1200,
     )  # fmt: skip
     found = re.search(r'<pre id="told">(.*?)</pre>', answer.stdout.decode(), re.DOTALL)
     assert found, answer.stderr.decode()[-2000:]

@@ -9,17 +9,20 @@ sees, tell what else becomes of it:
     <!-- run: COMMAND -->  what a reader of the page has done before, in a shell
     <!-- python: CODE -->  the same in Python
 
-Sweeps fly little, other flights are cut short except in tutorials and in the README, and programs
+Sweeps fly little, other flights are cut short except in tutorials and in READMEs, and programs
 of systems that are not here are stood in for (`stand_in.py`).
 """
 
 from __future__ import annotations
 
 import ast
+import contextlib
 import inspect
 import os
 import re
+import shlex
 import signal
+import site
 import subprocess
 import sys
 from pathlib import Path
@@ -28,8 +31,9 @@ from xml.etree import ElementTree
 import quadcore as qc
 
 ROOT = Path(__file__).resolve().parents[2]
-TUTORIALS = ROOT / "docs" / "tutorials"
 README = ROOT / "README.md"
+# These fly as long as they say.
+WHOLE = (ROOT, ROOT / "python", ROOT / "docs" / "tutorials")
 PAGES = sorted((ROOT / "docs").rglob("*.md"))
 BLOCK = re.compile(
     r"^<!-- (?P<kind>run|python): (?P<before>.*?) -->$"
@@ -92,22 +96,23 @@ def run(page, folder):
             pieces += 1
             piece = folder / f"piece{pieces}.urdf.xacro"
             piece.write_text(PIECE.format(text))
+            # Of the default drag some pieces would warn.
             qc.Simulation(piece, parameters={"drone_plugin.dragModel": "chapter2"}).step(9)
         else:
             raise AssertionError(f"{page.name}: nothing runs a block of '{language}':\n{text}")
     try:
-        return call(
-            [sys.executable, "-c", "\n".join(steps)], folder, page.parent not in (ROOT, TUTORIALS)
-        )
+        return call([sys.executable, "-c", "\n".join(steps)], folder, page.parent not in WHOLE)
     finally:
         if (folder / "served").exists():
-            os.kill(int((folder / "served").read_text().split()[1]), signal.SIGTERM)
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(int((folder / "served").read_text().split()[1]), signal.SIGTERM)
 
 
 def call(command, folder, short):
     environment = {
         **os.environ,
         "HOME": str(folder),
+        "PYTHONUSERBASE": site.getuserbase(),  # which lies in the other home
         "BASH_FUNC_pip%%": '() { "$HOME/stand_ins/pip" "$@"; }',  # in environments made here, too
         "PATH": f"{folder}/stand_ins:{Path(sys.executable).parent}:{os.environ['PATH']}",
         "QUADCORE_SHORT": "yes" if short else "",
@@ -150,5 +155,6 @@ def prepare(folder):
     places += [folder / "scripts" / f.name for f in (ROOT / "scripts").iterdir() if not f.suffix]
     for place in places:
         place.parent.mkdir(exist_ok=True)
-        place.write_text(f"#!{sys.executable}\n{stand_in.read_text()}")
+        words = " ".join(map(shlex.quote, (sys.executable, str(stand_in), place.name)))
+        place.write_text(f'#!/bin/sh\nexec {words} "$@"\n')
         place.chmod(0o755)

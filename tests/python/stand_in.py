@@ -1,6 +1,6 @@
 """What a page's shell finds under the names of quadcore and of programs that tests cannot start.
 
-See `pages`; copied there under the program's name.
+See `pages`; the first argument is the program's name.
 """
 
 import os
@@ -53,6 +53,6 @@ def catkin_make(words):
 
 
 if __name__ == "__main__":
-    program = globals().get(Path(sys.argv[0]).name)
+    program = globals().get(sys.argv[1])
     if callable(program):
-        program(sys.argv[1:])
+        program(sys.argv[2:])

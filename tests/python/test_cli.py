@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import signal
 import subprocess
 import sys
@@ -255,7 +256,8 @@ def test_help_and_the_module_work_from_a_shell():
 
 
 def test_a_reader_that_stops_early_is_no_error():
-    command = f"set -o pipefail; {sys.executable} -m quadcore info quadrotor | head -n 1"
+    python = shlex.quote(sys.executable)
+    command = f"set -o pipefail; {python} -m quadcore info quadrotor | head -n 1"
     shown = subprocess.run(["bash", "-c", command], capture_output=True, text=True)
     assert shown.stdout == "model quadrotor\n"
     assert (shown.returncode, shown.stderr) == (0, "")

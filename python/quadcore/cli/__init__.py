@@ -53,7 +53,8 @@ class _Parser(argparse.ArgumentParser):
     def parse_known_args(self, *given: Any, **named: Any) -> Any:  # type: ignore[override]
         read, unknown = super().parse_known_args(*given, **named)
         if unknown:  # told by the command that does not know them
-            near = did_you_mean(unknown[0], list(self._option_string_actions))
+            options = [word.partition("=")[0] for word in unknown if word.startswith("-")]
+            near = did_you_mean(options[0], list(self._option_string_actions)) if options else ""
             self.error(f"unrecognized arguments: {' '.join(unknown)}{near}")
         return read, unknown
 

@@ -22,7 +22,7 @@ from ..plants import plants
 from ..recording import TAIL, Errors, Fastest, Recording, Thinned
 from ..rotation import roll_pitch_yaw
 from ..simulation import Simulation
-from ..trajectory import per_command
+from ..trajectory import is_slow, per_command
 from . import options, terminal
 from .unmeant import warn_of_commands
 
@@ -92,14 +92,14 @@ def run(arguments: argparse.Namespace) -> None:
     elapsed = time.perf_counter() - started
     with interrupts.held():
         files = recording.close()
-    told = per_command(simulation)
+    size = per_command(simulation)
     if drawn is not None:
         log = drawn.log()
-        log.per_command = told
+        log.per_command = size
         log.title = ", ".join(filter(None, (_what(simulation), log.title)))
         files += log.plot(arguments.out)
     if not arguments.quiet:
-        rows = _flown(simulation, fastest.speed, told, elapsed)
+        rows = _flown(simulation, fastest.speed, size, elapsed)
         if pilot is not None and errors is not None:
             rows += _guided(arguments, plan, pilot, errors)
         rows += [("" if i else "written", str(file)) for i, file in enumerate(files)]
@@ -129,12 +129,11 @@ def _what(simulation: Simulation) -> str:
 
 
 def _flown(
-    simulation: Simulation, fastest: float, told: float, elapsed: float
+    simulation: Simulation, fastest: float, size: float, elapsed: float
 ) -> list[tuple[str, str]]:
     steps = round(simulation.time / simulation.dt)
     attitude = np.degrees(roll_pitch_yaw(simulation.state.orientation))
-    is_slow = told not in (0.0, 1.0)  # sim_slow
-    commanded = f", as commanded {fastest / told:.1f}" if is_slow else ""
+    commanded = f", as commanded {fastest / size:.1f}" if is_slow(size) else ""
     rows = [
         ("flown", _what(simulation)),
         ("duration", f"{simulation.time:.9g} s"),

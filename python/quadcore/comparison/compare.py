@@ -35,14 +35,19 @@ Progress = Callable[[int, int], None]
 Keep = Callable[[int, Log], Any]
 Outcome = Tuple[np.ndarray, Any]
 
-_KINDS = {
+_ARGUMENTS = {
     "models": arguments.NAMES,
     "vary": arguments.or_none(arguments.AXES),
+    "commands": arguments.ANY,
     "duration": arguments.SECONDS,
     "log_every": arguments.COUNT,
+    "logs": arguments.FLAG,
     "processes": arguments.or_none(arguments.COUNT),
     "progress": arguments.or_none(arguments.PROGRESS),
     "reference": arguments.or_none(arguments.WHOLE),
+}
+_KINDS = {
+    **_ARGUMENTS,
     "engine": arguments.NAME,
     "world": arguments.ANY,
     "spawn": arguments.ANY,
@@ -137,9 +142,9 @@ def compare(
     KeyboardInterrupt
         With the attribute `comparison`, whose missing rows say so.
     """
+    models = list(models) if isinstance(models, Iterator) else models
     given = locals()
-    told = [name for name in _KINDS if name in given]
-    arguments.check({**{name: given[name] for name in told}, **options}, _KINDS)
+    arguments.check({**{name: given[name] for name in _ARGUMENTS}, **options}, _KINDS)
     plan = Plan(arguments.several(models), vary or {}, commands, duration, log_every, options)
     if logs:
         _check_memory(plan, duration, log_every)

@@ -7,7 +7,6 @@ from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
 from ..study.sampling import evenly
 from ..study.table import csv_bytes, flown_and_failed, json_bytes, number_text, save, shown_in
-from ..trajectory import per_command
 from .compare import Comparison
 from .plan import Plan
 
@@ -69,7 +68,6 @@ def _images(comparison: Comparison, plan: Plan) -> Dict[str, bytes]:
     curves, reference = [], None
     for row, (log, variant) in enumerate(zip(comparison.logs, plan)):
         if log is not None:
-            log.per_command = per_command(plan.flight(variant).simulation())
             curves.append(pictures.Curve(plan.label(variant), log))
             reference = curves[-1] if row == comparison.reference else reference
     if reference is None:
