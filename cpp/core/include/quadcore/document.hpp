@@ -15,12 +15,13 @@ struct Document {
   /// \name Limits, far beyond any model or world
   /// @{
   static constexpr std::size_t largest = 1000000;  ///< bytes
-  static constexpr int most_levels = 64;
-  static constexpr int most_attributes = 100;  ///< of one element
+  static constexpr int most_levels = 64;           ///< of elements in each other
+  static constexpr int most_attributes = 100;      ///< of one element
   /// @}
 
-  std::string name;
-  std::string text;
+  std::string name;  ///< of the file, for errors
+  std::string text;  ///< the XML
+  /// File and line that each line of an expanded text stems from; empty if the text is the file.
   std::vector<std::pair<std::string, int>> lines = {};
 
   /// "FILE:LINE" of a line of the text, counted from 1.
@@ -31,7 +32,7 @@ struct Document {
 
 /// All that a model or a world was read from, so that it can be read again anywhere.
 struct Source {
-  Document document;
+  Document document;                ///< as it was given
   std::vector<std::string> ignore;  ///< see PassedOver
 };
 

@@ -12,15 +12,20 @@
 #include "quadcore/export.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
+/// Elementary functions that give the same bytes on every machine.
 namespace elementary {
 
+/// Sine and cosine of one angle.
 struct SineCosine {
-  double sin, cos;
+  /// Sine, in [-1, 1].
+  double sin, cos;  ///< cosine, in [-1, 1]
 };
 
 /// Sine and cosine of an angle [rad] at once; NaN for an angle that is not finite.
 SineCosine sincos(double x);
+/// Sine of an angle [rad]; where both are wanted, sincos() takes half as long.
 inline double sin(double x) { return sincos(x).sin; }
+/// Cosine of an angle [rad]; where both are wanted, sincos() takes half as long.
 inline double cos(double x) { return sincos(x).cos; }
 /// Angle of the point (x, y) in [-pi, pi] [rad], zeros and infinities as in the C library.
 double atan2(double y, double x);
@@ -28,6 +33,7 @@ double atan2(double y, double x);
 double asin(double x);
 /// Natural logarithm; -infinity at 0, NaN below.
 double log(double x);
+/// e to the power x; above about 709.78 infinity, below about -745.13 zero.
 double exp(double x);
 
 }  // namespace elementary

@@ -11,6 +11,7 @@ namespace quadcore QUADCORE_EXPORT {
 /// control characters are replaced, whatever input it quotes, and the middle of a long one is cut.
 class Error : public std::runtime_error {
  public:
+  /// Takes any text and makes it such a line, as one_line() does.
   explicit Error(const std::string& what);
 };
 
@@ -23,6 +24,7 @@ class InputError : public Error {
 /// The flight itself failed: a state that is not finite, has diverged, or that a plugin refuses.
 class FlightError : public Error {
  public:
+  /// A failure at a time of the simulation [s].
   FlightError(double time, const std::string& what) : Error(what), time_(time) {}
   /// Simulation time of the failure [s].
   double time() const { return time_; }

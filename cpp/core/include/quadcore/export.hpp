@@ -7,5 +7,6 @@
 #ifdef QUADCORE_STATIC
 #define QUADCORE_EXPORT
 #else
+/// Marks a namespace whose declarations the shared library exports.
 #define QUADCORE_EXPORT __attribute__((visibility("default")))
 #endif

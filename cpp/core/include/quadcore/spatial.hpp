@@ -18,6 +18,8 @@
 ///   R_WF     rotation that takes components in F to components in W
 ///   f_F      force expressed in F's axes [N];  tau_F  torque expressed in F's axes [N m]
 
+/// Simulation of multirotors: a Model in a World becomes a Simulation, which an Engine and plugins
+/// move.
 namespace quadcore QUADCORE_EXPORT {
 
 static_assert(
@@ -42,9 +44,10 @@ Quaterniond quaternion_about(const Vector3d& axis, double angle);
 
 /// A pose as URDF writes it: translation [m] and fixed-axis roll, pitch, yaw [rad].
 struct Pose {
-  Vector3d xyz = Vector3d::Zero();
-  Vector3d rpy = Vector3d::Zero();
+  Vector3d xyz = Vector3d::Zero();  ///< m
+  Vector3d rpy = Vector3d::Zero();  ///< rad
 
+  /// The orientation, as quaternion_from_rpy() makes it.
   Quaterniond rotation() const { return quaternion_from_rpy(rpy); }
   /// Composition X_AC = X_AB * X_BC.
   Pose operator*(const Pose& other) const;

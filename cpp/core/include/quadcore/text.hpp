@@ -16,9 +16,11 @@ namespace quadcore QUADCORE_EXPORT {
 std::optional<double> parse_number(const std::string& text);
 /// Exactly three finite numbers, separated by blanks.
 std::optional<Vector3d> parse_vector(const std::string& text);
+/// A text without the blanks and ends of lines around it.
 std::string trimmed(const std::string& text);
 /// With small letters of ASCII in place of capitals.
 std::string lower(std::string text);
+/// The words of a text, between blanks and ends of lines.
 std::vector<std::string> split(const std::string& text);
 
 /// Bytes of the well-formed UTF-8 character that begins at `at`, or 0 if none does.

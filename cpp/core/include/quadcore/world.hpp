@@ -26,7 +26,8 @@ struct Atmosphere {
 
 /// Where on Earth (WGS 84) the world's origin lies; x points east there, y north.
 struct Origin {
-  double latitude = 0, longitude = 0;  ///< positive north and east [deg]
+  /// Positive north [deg].
+  double latitude = 0, longitude = 0;  ///< positive east [deg]
   double altitude = 0;                 ///< m
   double heading = 0;                  ///< by which the axes are turned from there [deg]
 };
@@ -38,17 +39,17 @@ struct World {
   double real_time_update_rate = 1000;  ///< 1/s, 0 = as fast as possible; for nodes that pace
   std::string solver_type = "quick";    ///< quick | world
   std::string solver_type_where;        ///< FILE:LINE of the type
-  int solver_iterations = 50;
-  double solver_sor = 1.3;
-  double erp = 0.2;
-  double cfm = 0;
+  int solver_iterations = 50;           ///< of solver quick in a step
+  double solver_sor = 1.3;              ///< over-relaxation of solver quick
+  double erp = 0.2;                     ///< share of a hinge's error that a step corrects
+  double cfm = 0;                       ///< ODE's constraint force mixing, by which hinges give way
   double contact_max_correcting_vel = 100;  ///< m/s, also rad/s of hinges
-  bool ground_plane = false;
-  Vector3d wind_W{0, 0, 0};  ///< velocity of the air [m/s]
-  Atmosphere atmosphere;
+  bool ground_plane = false;                ///< whether there is ground at z = 0
+  Vector3d wind_W{0, 0, 0};                 ///< velocity of the air [m/s]
+  Atmosphere atmosphere;                    ///< of the air at z = 0
   Vector3d magnetic_field_W{5.5645e-6, 22.8758e-6, -42.3884e-6};  ///< x east, y north, z up [T]
-  Origin origin;
-  PassedOver passed_over;
+  Origin origin;                                                  ///< of its axes, on Earth
+  PassedOver passed_over;  ///< what its reader did not take in
   /// What it was read from; null unless read_world() made it.
   std::shared_ptr<const Source> source;
 };
