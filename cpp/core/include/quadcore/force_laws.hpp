@@ -18,10 +18,10 @@ struct Quiet {
 /// Laws that plugins hand out beside their forces(), for engines that evaluate them themselves.
 /// What they point to lies in the plugins or in their state.
 struct ForceLaws {
-  std::vector<RotorForces> rotor_forces;
-  std::vector<FrameDrag> frame_drags;
-  std::vector<MotorTorques> motor_torques;
-  std::vector<Quiet> quiet;  ///< of plugins that have an update()
+  std::vector<RotorForces> rotor_forces;    ///< thrust, drag, reaction torques
+  std::vector<FrameDrag> frame_drags;       ///< of the airframe
+  std::vector<MotorTorques> motor_torques;  ///< on the joints
+  std::vector<Quiet> quiet;                 ///< of plugins that have an update()
   /// Every plugin that has an update() is in `quiet`, and the laws are complete.
   bool all_quiet = false;
   bool complete = false;  ///< nothing else acts on the vehicle, and the air stands still

@@ -24,8 +24,9 @@ struct RotorKinematics {
 /// rotor: `motions[i].axis_F` reads three numbers.
 class RotorMotions : public RotorRows<MotionRow::count> {
  public:
+  /// Of so many rotors, with zeros in all rows.
   explicit RotorMotions(std::size_t rotors) : RotorRows(rotors) {}
-  std::size_t size() const { return rotors(); }
+  std::size_t size() const { return rotors(); }  ///< rotors
   /// A copy, const lest it be mistaken for the row and written to.
   const RotorKinematics operator[](std::size_t i) const {
     using Row = MotionRow;
@@ -43,6 +44,7 @@ class RotorMotions : public RotorRows<MotionRow::count> {
     }
     return all;
   }
+  /// Writes the rows that RotorKinematics has; the angle and the rotations stay.
   void set(std::size_t i, const RotorKinematics& rotor) {
     using Row = MotionRow;
     set_vector(Row::axis, i, rotor.axis_F);
@@ -68,6 +70,7 @@ struct FrameMotion {
 
   /// All of it, laid out as FrameNumber says.
   double* numbers() { return p_WF.data(); }
+  /// The same to read.
   const double* numbers() const { return p_WF.data(); }
 };
 static_assert(offsetof(FrameMotion, time) == FrameNumber::time * sizeof(double));
@@ -83,12 +86,13 @@ static_assert(offsetof(FrameMotion, v_WA_F) == FrameNumber::v_WA_F * sizeof(doub
 /// sized once, and refill it for each evaluation.
 class Kinematics : public FrameMotion {
  public:
-  RotorMotions rotors;
+  RotorMotions rotors;  ///< in the order of the model's joints
 
   /// \param has_rotations  whether the engine fills the rows of R_FR; if not, it fills the angles'
   explicit Kinematics(std::size_t rotor_count, bool has_rotations = true)
       : rotors(rotor_count), has_rotations_(has_rotations) {}
 
+  /// Whether the engine fills the rows of R_FR, or those of the angles.
   bool has_rotations() const { return has_rotations_; }
   /// Velocity in the world, in its axes, of the frame's point S, which is p_FS_F from F's origin
   /// [m/s].

@@ -19,7 +19,10 @@ struct Flapping {
   double radius;  ///< r, rotor radius [m]
 };
 
-/// Rows of the rotors' coefficients; all 0 for rotors that are somebody else's.
+/// Rows of the rotors' coefficients, all 0 for rotors that are somebody else's: `k` of the thrust
+/// [N s^2/rad^2], `b` of the reaction torque [N m s^2/rad^2], positive if it turns the frame as the
+/// rotor turns; `induced`, `translational` and `profile` drag [N s/m], `linear` being their sum;
+/// `parasitic` drag [N s^2/m^2].
 struct CoefficientRow {
   enum : std::size_t { k, b, induced, translational, profile, linear, parasitic, count };
 };
@@ -34,8 +37,8 @@ struct RotorForces {
   bool on_rotor;               ///< reaction torques act about the joints' axes on the rotors
   bool parasitic;              ///< each rotor takes the appendix' parasitic drag
   bool flaps;                  ///< any flapping coefficient is set
-  Flapping flapping;
-  double sim_slow;
+  Flapping flapping;           ///< if `flaps`
+  double sim_slow;             ///< speed of a real rotor over the rate of its joint
 };
 
 /// Parasitic drag of the airframe at the vehicle's centre of mass.
@@ -44,8 +47,10 @@ struct FrameDrag {
 };
 
 /// Rows of what the rotors' controllers remember; all 0 for rotors that are somebody else's and
-/// before the first command. Followed is the number of the command that gave the target, -1 if none
-/// came in time.
+/// before the first command: `active`, the share of the torque that is left; `target` of the
+/// joint's rate [rad/s]; `error_sum`, the integral of the rate's error [rad]; `last_error` [rad/s];
+/// `sampled_torque` of integral and derivative [N m]; `followed`, the number of the command that
+/// gave the target, -1 if none came in time.
 struct MemoryRow {
   enum : std::size_t { active, target, error_sum, last_error, sampled_torque, followed, count };
 };
@@ -54,8 +59,9 @@ struct MemoryRow {
 /// start of the step (thesis appendix A.4), in slowed units [N m].
 struct MotorTorques {
   const double* memory;  ///< table of MemoryRow
-  double kp;
-  double fastest, sim_slow;  ///< a command is followed up to the one [rad/s], divided by the other
+  double kp;             ///< N m s/rad
+  /// Up to which a command is followed [rad/s].
+  double fastest, sim_slow;  ///< by which it is divided then
   const int* places;         ///< of each rotor, its number in the command; not_driven for others
 };
 

@@ -14,8 +14,8 @@ namespace quadcore QUADCORE_EXPORT {
 struct Wrench {
   // Apart, so that pairs of numbers that are cleared at once are the pairs that are read at once:
   // others stall.
-  alignas(2 * sizeof(double)) Vector3d force_F = Vector3d::Zero();
-  alignas(2 * sizeof(double)) Vector3d torque_F = Vector3d::Zero();
+  alignas(2 * sizeof(double)) Vector3d force_F = Vector3d::Zero();   ///< N
+  alignas(2 * sizeof(double)) Vector3d torque_F = Vector3d::Zero();  ///< N m
 };
 
 /// The rate of a joint that is not left to torques: it is what it is said to be.
@@ -31,6 +31,7 @@ struct PrescribedRate {
 /// of a rotor or a term that is not there is an Error.
 class Loads {
  public:
+  /// For so many rotors, with nothing on any.
   explicit Loads(std::size_t rotor_count) : rotors_(rotor_count), rates_(rotor_count) {}
 
   /// A force on the frame at the point Q, p_FQ_F from the frame's origin.
@@ -70,21 +71,27 @@ class Loads {
   const Wrench& on_frame() const { return frame_; }
   /// The same with the rotors' reactions, summed in the rotors' order.
   Wrench frame() const;
+  /// Force on rotor i at its centre of mass [N].
   Vector3d rotor_force_F(std::size_t i) const { return rotors_.vector(LoadRow::force, i); }
+  /// Torque of joint i on its rotor about the joint axis [N m].
   double joint_torque(std::size_t i) const { return rotors_.number(LoadRow::joint_torque, i); }
 
   /// Whether any joint was given its rate.
   bool any_rate() const { return any_rate_; }
+  /// The rate that joint i was given; nullopt where torques make it.
   const std::optional<PrescribedRate>& joint_rate(std::size_t i) const { return rates_[i]; }
 
   /// The rotors' loads for laws that take several rotors at once; what they add here belongs to no
   /// term.
   RotorRows<LoadRow::count>& rotors() { return rotors_; }
+  /// The same to read.
   const RotorRows<LoadRow::count>& rotors() const { return rotors_; }
 
+  /// Takes everything off the vehicle. What terms are recorded to is left alone.
   void clear();
   /// Clears all but rotors().
   void clear_rest();
+  /// Whether no load and no prescribed rate is infinite or NaN.
   bool all_finite() const;
   /// While set, each load is also added to terms[term], about the vehicle's centre of mass.
   void record_terms(Wrench* terms, std::size_t count, const Kinematics* kinematics) {

@@ -18,7 +18,7 @@ namespace quadcore QUADCORE_EXPORT {
 
 /// What the row of numbers of a topic means. A plugin may make a kind of its own.
 struct MessageKind {
-  std::string name;
+  std::string name;                 ///< by which bridges and errors know it
   std::vector<std::string> fields;  ///< names of the numbers, in order
 
   bool operator==(const MessageKind& other) const {
@@ -26,6 +26,9 @@ struct MessageKind {
   }
 };
 
+/// Types of message. What such a type M has to have, also one that a plugin brings along: `kind`,
+/// the MessageKind::name, and `M::for_each_field(m, visit)`, which calls `visit(member, {field,
+/// ...}, numbers)` with the names and the numbers of each member in order.
 namespace messages {
 
 /// Names of numbers that lie side by side.
@@ -39,7 +42,7 @@ void visit_number(const Visit& visit, const char* name, Number& number) {
 
 /// Pose of the frame in the world and its velocity, with the variance of the noise on each.
 struct Odometry {
-  static constexpr const char* kind = "odometry";
+  static constexpr const char* kind = "odometry";     ///< MessageKind::name
   Vector3d position = Vector3d::Zero();               ///< world axes [m]
   Quaterniond orientation = Quaterniond::Identity();  ///< of the frame in the world, unit
   Vector3d linear_velocity =
@@ -65,7 +68,7 @@ struct Odometry {
 
 /// What an inertial measurement unit feels, in its own axes.
 struct Imu {
-  static constexpr const char* kind = "imu";
+  static constexpr const char* kind = "imu";     ///< MessageKind::name
   Vector3d angular_velocity = Vector3d::Zero();  ///< [rad/s]
   Vector3d specific_force = Vector3d::Zero();    ///< acceleration less gravity [m/s^2]
   double angular_velocity_variance = 0;          ///< of each component [rad^2/s^2]
@@ -82,15 +85,15 @@ struct Imu {
 
 /// What a satellite receiver tells: a place on Earth and in the world, and a velocity.
 struct Fix {
-  static constexpr const char* kind = "fix";
-  double latitude = 0;                   ///< positive north [deg]
-  double longitude = 0;                  ///< positive east [deg]
-  double altitude = 0;                   ///< [m]
-  Vector3d position = Vector3d::Zero();  ///< the same place in world axes [m]
-  Vector3d velocity = Vector3d::Zero();  ///< world axes [m/s]
-  double horizontal_variance = 0;        ///< of x and y each [m^2]
-  double vertical_variance = 0;          ///< of z [m^2]
-  double velocity_variance = 0;          ///< of each component [m^2/s^2]
+  static constexpr const char* kind = "fix";  ///< MessageKind::name
+  double latitude = 0;                        ///< positive north [deg]
+  double longitude = 0;                       ///< positive east [deg]
+  double altitude = 0;                        ///< [m]
+  Vector3d position = Vector3d::Zero();       ///< the same place in world axes [m]
+  Vector3d velocity = Vector3d::Zero();       ///< world axes [m/s]
+  double horizontal_variance = 0;             ///< of x and y each [m^2]
+  double vertical_variance = 0;               ///< of z [m^2]
+  double velocity_variance = 0;               ///< of each component [m^2/s^2]
 
   template <class M, class Visit>
   static void for_each_field(M& m, const Visit& visit) {
@@ -107,9 +110,9 @@ struct Fix {
 
 /// What a barometer tells.
 struct Pressure {
-  static constexpr const char* kind = "pressure";
-  double pressure = 0;  ///< static, of the air [Pa]
-  double variance = 0;  ///< [Pa^2]
+  static constexpr const char* kind = "pressure";  ///< MessageKind::name
+  double pressure = 0;                             ///< static, of the air [Pa]
+  double variance = 0;                             ///< [Pa^2]
 
   template <class M, class Visit>
   static void for_each_field(M& m, const Visit& visit) {
@@ -120,9 +123,9 @@ struct Pressure {
 
 /// What a magnetometer tells, in its own axes.
 struct Field {
-  static constexpr const char* kind = "field";
-  Vector3d flux_density = Vector3d::Zero();  ///< [T]
-  double variance = 0;                       ///< of each component [T^2]
+  static constexpr const char* kind = "field";  ///< MessageKind::name
+  Vector3d flux_density = Vector3d::Zero();     ///< [T]
+  double variance = 0;                          ///< of each component [T^2]
 
   template <class M, class Visit>
   static void for_each_field(M& m, const Visit& visit) {
@@ -133,11 +136,11 @@ struct Field {
 
 /// What a battery tells.
 struct Battery {
-  static constexpr const char* kind = "battery";
-  double voltage = 0;   ///< between its poles [V]
-  double current = 0;   ///< drawn from it [A]
-  double charge = 0;    ///< that is left [A h]
-  double capacity = 0;  ///< charge of a full one [A h]
+  static constexpr const char* kind = "battery";  ///< MessageKind::name
+  double voltage = 0;                             ///< between its poles [V]
+  double current = 0;                             ///< drawn from it [A]
+  double charge = 0;                              ///< that is left [A h]
+  double capacity = 0;                            ///< charge of a full one [A h]
 
   template <class M, class Visit>
   static void for_each_field(M& m, const Visit& visit) {
@@ -150,15 +153,15 @@ struct Battery {
 
 /// Where a vehicle is to be, with the derivatives of a flat output, world axes.
 struct Reference {
-  static constexpr const char* kind = "reference";
-  Vector3d position = Vector3d::Zero();      ///< of the frame's origin [m]
-  Vector3d velocity = Vector3d::Zero();      ///< [m/s]
-  Vector3d acceleration = Vector3d::Zero();  ///< [m/s^2]
-  Vector3d jerk = Vector3d::Zero();          ///< [m/s^3]
-  Vector3d snap = Vector3d::Zero();          ///< [m/s^4]
-  double yaw = 0;                            ///< [rad]
-  double yaw_rate = 0;                       ///< [rad/s]
-  double yaw_acceleration = 0;               ///< [rad/s^2]
+  static constexpr const char* kind = "reference";  ///< MessageKind::name
+  Vector3d position = Vector3d::Zero();             ///< of the frame's origin [m]
+  Vector3d velocity = Vector3d::Zero();             ///< [m/s]
+  Vector3d acceleration = Vector3d::Zero();         ///< [m/s^2]
+  Vector3d jerk = Vector3d::Zero();                 ///< [m/s^3]
+  Vector3d snap = Vector3d::Zero();                 ///< [m/s^4]
+  double yaw = 0;                                   ///< [rad]
+  double yaw_rate = 0;                              ///< [rad/s]
+  double yaw_acceleration = 0;                      ///< [rad/s^2]
 
   template <class M, class Visit>
   static void for_each_field(M& m, const Visit& visit) {
@@ -175,9 +178,9 @@ struct Reference {
 
 /// A force at a point and a torque; point and axes are the taker's.
 struct Wrench {
-  static constexpr const char* kind = "wrench";
-  Vector3d force = Vector3d::Zero();   ///< [N]
-  Vector3d torque = Vector3d::Zero();  ///< about the point [N m]
+  static constexpr const char* kind = "wrench";  ///< MessageKind::name
+  Vector3d force = Vector3d::Zero();             ///< [N]
+  Vector3d torque = Vector3d::Zero();            ///< about the point [N m]
 
   template <class M, class Visit>
   static void for_each_field(M& m, const Visit& visit) {
@@ -188,8 +191,8 @@ struct Wrench {
 
 /// A vector of space; axes and unit are the publisher's.
 struct Vector {
-  static constexpr const char* kind = "vector";
-  Vector3d value = Vector3d::Zero();
+  static constexpr const char* kind = "vector";  ///< MessageKind::name
+  Vector3d value = Vector3d::Zero();             ///< x, y, z
 
   template <class M, class Visit>
   static void for_each_field(M& m, const Visit& visit) {
@@ -199,8 +202,8 @@ struct Vector {
 
 /// How the air moves, world axes.
 struct WindSpeed {
-  static constexpr const char* kind = "wind_speed";
-  Vector3d velocity = Vector3d::Zero();  ///< [m/s]
+  static constexpr const char* kind = "wind_speed";  ///< MessageKind::name
+  Vector3d velocity = Vector3d::Zero();              ///< [m/s]
 
   template <class M, class Visit>
   static void for_each_field(M& m, const Visit& visit) {
@@ -210,8 +213,8 @@ struct WindSpeed {
 
 /// How a satellite receiver moves, world axes.
 struct GroundSpeed {
-  static constexpr const char* kind = "ground_speed";
-  Vector3d velocity = Vector3d::Zero();  ///< [m/s]
+  static constexpr const char* kind = "ground_speed";  ///< MessageKind::name
+  Vector3d velocity = Vector3d::Zero();                ///< [m/s]
 
   template <class M, class Visit>
   static void for_each_field(M& m, const Visit& visit) {

@@ -24,15 +24,16 @@ namespace quadcore QUADCORE_EXPORT {
 /// A plugin's state: plain numbers that belong to the simulation, so that snapshot, restore and
 /// reset are exact. All zero at the start.
 using PluginState = Eigen::Map<VectorXd>;
+/// The same to read.
 using ConstPluginState = Eigen::Map<const VectorXd>;
 
 /// What a plugin sees at a sampling instant.
 struct Sample {
-  double time;                   ///< s
-  double dt;                     ///< length of the step [s]
-  const Kinematics& kinematics;  ///< motion at `time`
-  const World& world;
-  Topics& topics;
+  double time;                         ///< s
+  double dt;                           ///< length of the step [s]
+  const Kinematics& kinematics;        ///< motion at `time`
+  const World& world;                  ///< in which it flies
+  Topics& topics;                      ///< to read and to publish
   std::vector<std::string>& warnings;  ///< what the user must know, each once per flight
   std::uint64_t seed = 0;  ///< of the plugin's random numbers: the simulation's, and the name's
   bool jumped = false;     ///< the motion was set, not flown: sensors answer at once, due or not
@@ -70,11 +71,14 @@ class Plugin {
 };
 
 /// Which hooks a class of plugins has of its own; the others are never called. Of a class that is
-/// not known all may be, but laws(), which would stand for forces().
+/// not known all may be, but laws(), which would stand for forces(). Members have the hooks' names.
 struct Hooks {
+  /// \cond
   bool prepare = true, update = true, sense = true, forces = true, laws = false, air = true,
        carried = true;
+  /// \endcond
 
+  /// Those that class P, which is derived from Plugin, overrides.
   template <class P>
   static constexpr Hooks of() {
     return {!std::is_same_v<decltype(&P::prepare), decltype(&Plugin::prepare)>,
@@ -89,10 +93,10 @@ struct Hooks {
 
 /// What a plugin is made from.
 struct PluginSetup {
-  const std::string& name;  ///< name attribute of the plugin tag
-  const Parameters& parameters;
-  const Model& model;
-  const World& world;
+  const std::string& name;             ///< name attribute of the plugin tag
+  const Parameters& parameters;        ///< that the tag and its overrides give
+  const Model& model;                  ///< that is to fly
+  const World& world;                  ///< in which it is to fly
   Topics& topics;                      ///< declare topics here
   std::vector<std::string>& warnings;  ///< what is allowed but was perhaps not meant
   /// Rate at which the engine's step no longer makes an error decay but grow, where the force law
@@ -103,9 +107,10 @@ struct PluginSetup {
 
 /// Makes plugins of one class.
 struct PluginMaker {
-  std::unique_ptr<Plugin> (*make)(const PluginSetup&) = nullptr;
-  Hooks hooks = {};
+  std::unique_ptr<Plugin> (*make)(const PluginSetup&) = nullptr;  ///< null: none
+  Hooks hooks = {};                                               ///< that the class has
 
+  /// Whether there is a class to make plugins of.
   explicit operator bool() const { return make; }
 };
 
@@ -126,8 +131,8 @@ struct PluginDescriptor {
 
 /// What a library holds: the first that is read of it, so it stays as it is for ever.
 struct PluginModule {
-  const char* interface;  ///< plugin_interface, as the library was built with it
-  const PluginDescriptor* (*descriptor)();
+  const char* interface;                    ///< plugin_interface, as the library was built with it
+  const PluginDescriptor* (*descriptor)();  ///< valid as long as the process
 };
 
 }  // namespace quadcore
@@ -138,6 +143,7 @@ struct PluginModule {
 #define QUADCORE_PLUGIN_EXPORT QUADCORE_EXPORT
 #else
 #define QUADCORE_PLUGIN_SYMBOL quadcore_plugin
+/// Exports that name from the library.
 #define QUADCORE_PLUGIN_EXPORT __attribute__((visibility("default")))
 #endif
 

@@ -12,7 +12,7 @@ namespace quadcore QUADCORE_EXPORT {
 /// A loaded module. Modules stay loaded until the process ends: objects they made may live on.
 struct PluginLibrary {
   std::string path;  ///< of a plugin that a static core has inside: the file name alone
-  const PluginDescriptor* descriptor;
+  const PluginDescriptor* descriptor;  ///< what it says of itself
 };
 
 /// Adds a folder to search before the others. Throws InputError if it is not a folder.

@@ -19,7 +19,8 @@ constexpr std::size_t rotor_offset(std::size_t rows, std::size_t i) {
   return i / widest_lanes * rows * widest_lanes + i % widest_lanes;
 }
 
-/// Where the frame's motion lies in FrameMotion, a rotation by columns.
+/// Where the frame's motion lies in FrameMotion: the first number of each member there, a rotation
+/// by columns, a quaternion as x, y, z, w.
 struct FrameNumber {
   enum : std::size_t {
     p_WF = 0,
@@ -47,7 +48,7 @@ struct MotionRow {
     angle = 16,         ///< of the joint [rad]; only if R_FR is not filled
     R_FR = 17,          ///< orientation of the rotor's link; only if the engine has rotations
     R_FR_at_zero = 26,  ///< the same at joint angle zero
-    count = 35
+    count = 35          ///< rows
   };
 };
 
@@ -57,16 +58,16 @@ struct LoadRow {
     force = 0,         ///< on each rotor at its centre of mass [N]
     reaction = 3,      ///< torque of each rotor on the frame [N m]
     joint_torque = 6,  ///< about the joint axis on each rotor, and against it on its parent [N m]
-    count = 7
+    count = 7          ///< rows
   };
 };
 
-/// The tables of one vehicle, of MotionRow::count and LoadRow::count rows.
+/// The tables of one vehicle, laid out as rotor_offset() says.
 struct RotorLanes {
-  const double* motion;
-  double* loads;
-  std::size_t rotors;
-  bool has_rotations;  ///< whether MotionRow::R_FR is filled, or MotionRow::angle
+  const double* motion;  ///< of MotionRow::count rows
+  double* loads;         ///< of LoadRow::count rows, to be added to
+  std::size_t rotors;    ///< columns
+  bool has_rotations;    ///< whether MotionRow::R_FR is filled, or MotionRow::angle
 };
 
 }  // namespace quadcore

@@ -11,9 +11,11 @@
 
 namespace quadcore QUADCORE_EXPORT {
 
-/// Begins numbers where a whole pack can be read at once.
+/// Begins numbers where a whole pack can be read at once: an allocator as the standard containers
+/// want it.
 template <class T>
 struct LaneAllocator {
+  /// \cond
   using value_type = T;
   static constexpr std::align_val_t alignment{widest_lanes * sizeof(double)};
   LaneAllocator() = default;
@@ -23,7 +25,9 @@ struct LaneAllocator {
   void deallocate(T* p, std::size_t) { ::operator delete(p, alignment); }
   bool operator==(const LaneAllocator&) const { return true; }
   bool operator!=(const LaneAllocator&) const { return false; }
+  /// \endcond
 };
+/// Numbers in packs of widest_lanes.
 using LaneNumbers = std::vector<double, LaneAllocator<double>>;
 
 /// A table of numbers of the rotors: a row for each quantity (three for a vector), a column for
@@ -31,29 +35,37 @@ using LaneNumbers = std::vector<double, LaneAllocator<double>>;
 template <std::size_t rows>
 class RotorRows {
  public:
+  /// For so many rotors, all numbers zero.
   explicit RotorRows(std::size_t rotors) : rotors_(rotors), numbers_(size_of(rotors), 0.0) {}
 
   /// Numbers that such a table takes.
   static std::size_t size_of(std::size_t rotors) {
     return (rotors + widest_lanes - 1) / widest_lanes * widest_lanes * rows;
   }
+  /// Columns that are rotors', without those that fill up the last block.
   std::size_t rotors() const { return rotors_; }
+  /// All numbers, in the order that rotor_offset() tells.
   double* data() { return numbers_.data(); }
+  /// The same to read.
   const double* data() const { return numbers_.data(); }
 
+  /// The number of rotor i in a row; neither is checked.
   double& number(std::size_t row, std::size_t i) { return numbers_[offset(row, i)]; }
+  /// The same to read.
   double number(std::size_t row, std::size_t i) const { return numbers_[offset(row, i)]; }
   /// The vector of rotor i whose x stands in a row, y and z in the next two.
   Vector3d vector(std::size_t row, std::size_t i) const {
     const double* x = data() + offset(row, i);
     return {x[0], x[widest_lanes], x[2 * widest_lanes]};
   }
+  /// Writes such a vector.
   void set_vector(std::size_t row, std::size_t i, const Vector3d& v) {
     double* x = data() + offset(row, i);
     x[0] = v.x();
     x[widest_lanes] = v.y();
     x[2 * widest_lanes] = v.z();
   }
+  /// Adds to such a vector.
   void add_vector(std::size_t row, std::size_t i, const Vector3d& v) {
     double* x = data() + offset(row, i);
     x[0] += v.x();
@@ -66,11 +78,13 @@ class RotorRows {
     m << vector(row, i), vector(row + 3, i), vector(row + 6, i);
     return m;
   }
+  /// Writes such a matrix.
   void set_matrix(std::size_t row, std::size_t i, const Matrix3d& m) {
     set_vector(row, i, m.col(0));
     set_vector(row + 3, i, m.col(1));
     set_vector(row + 6, i, m.col(2));
   }
+  /// Sets all numbers to zero.
   void clear() { std::fill(numbers_.begin(), numbers_.end(), 0.0); }
 
  private:

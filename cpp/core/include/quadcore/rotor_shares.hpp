@@ -13,6 +13,7 @@ namespace quadcore {
 /// Topic on which control laws are told what is left of the rotors.
 constexpr const char* health_topic = "health";
 
+/// The kind of message that tells them of so many rotors: s1, s2 and so on, each from 0 to 1.
 inline MessageKind shares(std::size_t rotors) {
   MessageKind kind{"shares", {}};
   for (std::size_t i = 1; i <= rotors; ++i) kind.fields.push_back("s" + std::to_string(i));

@@ -12,6 +12,7 @@ namespace quadcore {
 /// One number, 1 or 0.
 inline MessageKind switch_kind(const std::string& field) { return {"switch", {field}}; }
 
+/// Whether a kind, of at least one field, is a switch, whatever its field is called.
 inline bool is_switch(const MessageKind& kind) { return kind == switch_kind(kind.fields.front()); }
 
 }  // namespace quadcore

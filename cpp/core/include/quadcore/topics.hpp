@@ -15,17 +15,17 @@ constexpr int the_caller = -1;  ///< of Simulation::publish()
 
 /// What a topic holds at one moment, as snapshots keep it.
 struct Message {
-  std::vector<double> values;
-  double stamp = 0;  ///< time of the last message [s]
-  double count = 0;  ///< messages so far; 0 = none yet
+  std::vector<double> values;  ///< in the order of MessageKind::fields
+  double stamp = 0;            ///< time of the last message [s]
+  double count = 0;            ///< messages so far; 0 = none yet
 };
 
 /// A named message inside the simulation: a row of numbers of one kind.
 struct Topic : Message {
-  std::string name;
-  std::string path;  ///< the same where names may have parts, / between them
-  MessageKind kind;
-  int writer = the_caller;
+  std::string name;               ///< a word, for logs and Python
+  std::string path;               ///< the same where names may have parts, / between them
+  MessageKind kind;               ///< what its numbers mean
+  int writer = the_caller;        ///< index of a plugin, or the_caller
   std::vector<int> readers = {};  ///< plugins
 };
 
@@ -38,6 +38,7 @@ class Topics {
   /// such names keep; elsewhere it is motor_speed_0. Throw InputError on a name or a field that is
   /// no plain word then.
   /// @{
+
   /// Declares that the plugin writes the topic, which nobody else may then.
   std::size_t publishes(const std::string& name, const MessageKind& kind);
   /// The same of a topic that has as many fields as who takes it asks for, or else those of `kind`.
@@ -50,6 +51,8 @@ class Topics {
 
   /// \name For hooks
   /// @{
+
+  /// A topic, by the index that its declaration returned.
   const Topic& operator[](std::size_t index) const { return topics_[index]; }
   /// The last message.
   template <class M>
@@ -65,6 +68,7 @@ class Topics {
     topic.count += 1;
     return topic.values.data();
   }
+  /// Publishes a message. Throws InputError if the topic is not the writer's.
   template <class M>
   void publish(std::size_t index, double time, const M& message) {
     messages::write(message, publish(index, time));
@@ -86,6 +90,7 @@ class Topics {
 
   /// \name For the simulation
   /// @{
+
   /// Whose declarations follow: a plugin as errors call it, "FILE:LINE: plugin 'name'".
   void add_plugin(const std::string& name, const std::string& who);
   /// Checks that all declarations agree and returns the order in which plugins run: writers before

@@ -14,14 +14,14 @@ constexpr int not_driven = -1;  ///< place of a joint that follows no command
 
 /// A rotor as it stands in the frame, and what the force laws of all plugins make of it.
 struct RotorDescription {
-  std::string joint;
+  std::string joint;  ///< its name
   Vector3d p_FR_F;    ///< origin of its link [m]
   Vector3d p_FRcm_F;  ///< its centre of mass [m]
   Vector3d axis_F;    ///< unit; a positive rate turns about it by the right-hand rule
   double moment;      ///< moment of inertia about the axis [kg m^2]
   /// Force and torque about the vehicle's centre of mass per squared joint rate, turning with a
-  /// positive rate and with a negative one [N s^2/rad^2, N m s^2/rad^2].
-  Wrench forward, backward;
+  /// positive rate [N s^2/rad^2, N m s^2/rad^2].
+  Wrench forward, backward;  ///< the same with a negative rate
   /// \name As the plugin that drives it says, see Plugin::describe_rotors()
   /// @{
   double rate_per_command = 1;  ///< joint rate in the long run per commanded speed
@@ -53,7 +53,7 @@ struct VehicleDescription {
   MassProperties body;                   ///< of the whole vehicle
   Vector3d gravity_W;                    ///< m/s^2
   std::vector<RotorDescription> rotors;  ///< every joint, in file order
-  AirResistance air;
+  AirResistance air;                     ///< what still air does to it
 
   /// Those of `rotors` that follow the command, in the order of its numbers. Throws InputError if
   /// no plugin says who does, or if two follow one number.
