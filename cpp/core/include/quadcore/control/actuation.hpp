@@ -13,18 +13,22 @@ class Actuation {
   /// Throws InputError if the rotors cannot exert what may be asked of them.
   Actuation(const Belief& belief, const Values& values);
 
+  /// Parameters of the motors' lead.
   static const std::vector<TagSpec>& table();
+  /// Numbers of state for so many rotors.
   static std::size_t state_size(std::size_t rotors) { return kRotors + 2 * rotors; }
 
   /// What the rotors do, as is believed.
   struct Now {
     bool begins;     ///< nothing was asked of them yet
     bool saturated;  ///< they could not do what was asked of them last
-    Demand exerted;
-    Vector3d h_F;  ///< their angular momentum, relative to the frame [kg m^2/s]
+    Demand exerted;  ///< by the rotors
+    Vector3d h_F;    ///< their angular momentum, relative to the frame [kg m^2/s]
   };
+  /// What they do now, as they follow what was commanded so far.
   /// \param scratch  one number for each rotor
   Now now(const double* state, double* scratch) const;
+  /// Whether the rotors could not do what was asked of them last.
   static bool saturated(const double* state) { return state[kSaturated] != 0; }
 
   /// Of a rotor, the share of what it exerts that is left, as is known from now on.

@@ -26,7 +26,9 @@ class Allocation {
   /// Throws InputError if the rotors do not span thrust and torques.
   explicit Allocation(const Belief& belief);
 
+  /// How many rotors are driven.
   std::size_t rotors() const { return static_cast<std::size_t>(inverse_.rows()); }
+  /// Finds the squared speeds that exert a demand.
   /// \param squares  (rotors(),) [rad^2/s^2]
   /// \param lost     (rotors(),) of each rotor the share that is lost of what it exerts; null: none
   /// Returns whether the demand is met; where something is lost, whether it is but for yaw.

@@ -8,16 +8,30 @@ namespace control {
 
 using messages::Odometry;
 
+/// Gains of the angular acceleration p e + d (w_D - w), in F: e being 2 sign(q_w) q_vec of the
+/// wanted orientation as seen from F, p = (kr_rp, kr_rp, kr_yaw) and d = (kw_rp, kw_rp, kw_yaw).
 struct AttitudeGains {
   double kr_rp, kw_rp, kr_yaw, kw_yaw;
-  bool drag, gyroscopic;
+  /// \var kr_rp
+  /// Of the error of the attitude about x and y of F [1/s^2].
+  /// \var kw_rp
+  /// Of the error of the angular velocity about x and y of F [1/s].
+  /// \var kr_yaw
+  /// Of the error of the attitude about z of F [1/s^2].
+  /// \var kw_yaw
+  /// Of the error of the angular velocity about z of F [1/s].
+
+  /// Whether the torque of the air is made up for.
+  bool drag, gyroscopic;  ///< whether the rotors' gyroscopic torque is
 };
 
 /// The loop around the attitude.
 class AttitudeLoop {
  public:
+  /// Copies both.
   AttitudeLoop(const Belief& belief, const AttitudeGains& gains);
 
+  /// The vehicle that it was made for.
   const Belief& belief() const { return belief_; }
 
   /// Angular acceleration that makes up for errors, in F [rad/s^2].

@@ -21,6 +21,7 @@ class Controller {
     return Actuation::state_size(rotors) + law_info(law).memory_size;
   }
 
+  /// How many rotors are driven.
   std::size_t rotors() const { return belief_.rotors.size(); }
   /// Speeds to command until the next call. Yaw is given up, and only its rate damped as far as may
   /// be, where what is left of the rotors cannot turn the hovering vehicle either way.
@@ -35,6 +36,7 @@ class Controller {
   /// Whether the rotors could not do what was asked of them last.
   static bool saturated(const double* state) { return Actuation::saturated(state); }
 
+  /// What it believes of the vehicle.
   const Belief& belief() const { return belief_; }
 
  private:

@@ -15,7 +15,7 @@ double default_timing(const std::string& name);
 
 /// A law with the parameters with which it flies a vehicle.
 struct Gains {
-  std::string law;
+  std::string law;      ///< one of laws()
   std::string vehicle;  ///< name of the robot for which they were made; "" if that is not told
   double rate = default_timing("rate");    ///< calls per second
   double delay = default_timing("delay");  ///< from a call to the first step that it commands [s]

@@ -8,10 +8,13 @@ namespace control {
 
 /// \name What a law asks for that ends above the rotors
 /// @{
+
+/// An attitude, and a thrust.
 struct AttitudeThrust {
   Quaterniond orientation;  ///< of the frame in the world, unit
   double thrust;            ///< along z of F [N]
 };
+/// Angular velocities, and a thrust.
 struct RatesThrust {
   Vector3d w_WF_F;  ///< angular velocity of the frame, its own axes [rad/s]
   double thrust;    ///< along z of F [N]
@@ -29,19 +32,20 @@ class InnerLoop {
 
   /// Gains of the attitude, parameters of the motors' lead and of the belief.
   static const std::vector<TagSpec>& table();
+  /// Numbers of state for so many rotors.
   static std::size_t state_size(std::size_t rotors) { return Actuation::state_size(rotors); }
 
+  /// How many rotors are driven.
   std::size_t rotors() const { return loop_.belief().rotors.size(); }
   /// Speeds to command until the next call.
   /// \param period  since the last call and until the next [s]
   /// \param now     with the velocity in W
   /// \param speeds  (rotors(),) signed [rad/s]
-  /// @{
   void command(double period, const Odometry& now, const AttitudeThrust& wanted, double* state,
                double* speeds) const;
+  /// The same for angular velocities instead of an attitude.
   void command(double period, const Odometry& now, const RatesThrust& wanted, double* state,
                double* speeds) const;
-  /// @}
 
  private:
   InnerLoop(const Belief& belief, const Values& values);

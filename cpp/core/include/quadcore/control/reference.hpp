@@ -30,10 +30,11 @@ using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMaj
 
 /// A kind of reference, as users choose it.
 struct ReferenceInfo {
-  std::string name;
-  std::string summary;
-  bool takes_rows;  ///< and cannot do without
-  std::vector<TagSpec> table;
+  std::string name;            ///< as users write it
+  std::string summary;         ///< one line
+  bool takes_rows;             ///< and cannot do without
+  std::vector<TagSpec> table;  ///< its parameters
+  /// Makes one of values that were checked. Throws InputError on rows that are none.
   std::function<std::unique_ptr<ReferenceShape>(const Values&, const Rows&)> make;
 };
 

@@ -21,9 +21,10 @@ using Values = std::map<std::string, double>;
 /// A number or a flag of the class C, and where it goes.
 template <class C>
 struct Setting {
-  TagSpec spec;
-  std::variant<double C::*, bool C::*> member;
+  TagSpec spec;                                 ///< what it is called, and may be
+  std::variant<double C::*, bool C::*> member;  ///< where its value goes
 };
+/// All settings of the class C, in the order of their table.
 template <class C>
 using Settings = std::vector<Setting<C>>;
 
@@ -39,6 +40,7 @@ Values in_table(const std::vector<TagSpec>& table, const Values& values);
 /// Values, and those of `others` that they lack.
 Values completed(Values values, const Values& others);
 
+/// The table of settings, in their order.
 template <class C>
 std::vector<TagSpec> table_of(const Settings<C>& settings) {
   std::vector<TagSpec> table;
