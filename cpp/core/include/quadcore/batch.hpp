@@ -13,10 +13,10 @@ namespace quadcore QUADCORE_EXPORT {
 
 /// One vehicle of a batch.
 struct BatchVehicle {
-  std::shared_ptr<const Model> model;
+  std::shared_ptr<const Model> model;                  ///< what flies
   std::map<std::string, std::string> parameters = {};  ///< as in SimulationOptions
-  Pose spawn = {};
-  std::uint64_t seed = 0;
+  Pose spawn = {};                                     ///< of the frame in the world, at the start
+  std::uint64_t seed = 0;                              ///< of all random numbers
 };
 
 /// Everything that the future of a batch depends on.

@@ -18,6 +18,7 @@ void check_command(const double* speeds, std::size_t count, std::size_t width,
 /// Open-loop commands: rows of time [s] and n rotor speeds [rad/s], held until the next row.
 class Commands {
  public:
+  /// (rows, 1 + n): time [s] and n rotor speeds [rad/s].
   using Table = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
   /// \param table  (rows, 1 + n), time in the first column, strictly increasing.
@@ -26,9 +27,10 @@ class Commands {
 
   /// What makes rows of time and speeds no commands: a number that is not finite, disorder.
   struct Fault {
-    Eigen::Index row;
-    std::string what;
+    Eigen::Index row;  ///< the first at fault, counted from 0
+    std::string what;  ///< what is wrong with it, as errors say
   };
+  /// What is wrong with a table of any width; nullopt if these are commands.
   static std::optional<Fault> fault(const Table& table);
 
   /// The row for the step that starts at `time`: the last with time <= t + 1e-9, or null before the

@@ -51,6 +51,7 @@ class Engine {
 
   /// Everything that the next steps depend on, bit for bit.
   virtual std::vector<double> save() const = 0;
+  /// Goes on from what save() told. Throws InputError if that was of another model or engine.
   virtual void restore(const std::vector<double>& saved) = 0;
 
   /// How it takes its steps, in one line for a person.
@@ -59,9 +60,10 @@ class Engine {
   virtual std::vector<std::string> warnings() const { return {}; }
 };
 
+/// An engine, as users choose it.
 struct EngineInfo {
-  std::string name;
-  std::string summary;
+  std::string name;     ///< as SimulationOptions::engine has it
+  std::string summary;  ///< one line
   /// A decay at rate r is followed without growing while r dt is below this.
   double largest_decay_per_step;
 };

@@ -13,7 +13,7 @@ namespace quadcore QUADCORE_EXPORT {
 
 /// A piece of a log.
 struct LogRows {
-  std::int64_t count = 0;
+  std::int64_t count = 0;  ///< rows
   /// (count, columns) in row-major order, columns as log_columns() names them: of the state, then
   /// of each topic asked for.
   std::vector<double> table;

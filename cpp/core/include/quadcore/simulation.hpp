@@ -20,30 +20,30 @@ namespace quadcore QUADCORE_EXPORT {
 
 /// A plugin tag of the model, loaded.
 struct LoadedPlugin {
-  std::string name;
-  std::string filename;
-  std::string path;
-  const PluginDescriptor* descriptor;
-  Parameters parameters;
-  std::unique_ptr<Plugin> plugin;  ///< no longer changed once the simulation is made
-  Eigen::Index state_begin = 0;
-  Eigen::Index state_size = 0;
-  std::size_t term_begin = 0;  ///< first of its wrench terms among all
-  std::string who = {};        ///< for errors: FILE:LINE: plugin 'name'
-  std::uint64_t seed = 0;      ///< of its random numbers
+  std::string name;                    ///< PluginElement::name, made unique
+  std::string filename;                ///< PluginElement::filename
+  std::string path;                    ///< PluginLibrary::path
+  const PluginDescriptor* descriptor;  ///< what its module says of itself
+  Parameters parameters;               ///< effective ones
+  std::unique_ptr<Plugin> plugin;      ///< no longer changed once the simulation is made
+  Eigen::Index state_begin = 0;        ///< of its numbers in Snapshot::plugin_state
+  Eigen::Index state_size = 0;         ///< how many they are
+  std::size_t term_begin = 0;          ///< first of its wrench terms among all
+  std::string who = {};                ///< for errors: FILE:LINE: plugin 'name'
+  std::uint64_t seed = 0;              ///< of its random numbers
 };
 
 /// Everything that the future of a simulation depends on, as plain numbers and texts.
 struct Snapshot {
   std::shared_ptr<const Fingerprint> taken_from;  ///< of the simulation
-  double start_time = 0;
-  std::int64_t steps = 0;
-  std::uint64_t seed = 0;
-  std::vector<double> engine;
-  VectorXd plugin_state;
-  std::vector<Message> messages;      ///< of each topic
-  std::vector<std::string> warnings;  ///< of the flight
-  std::string failure;
+  double start_time = 0;                          ///< when the steps began [s]
+  std::int64_t steps = 0;                         ///< since then
+  std::uint64_t seed = 0;                         ///< of all random numbers
+  std::vector<double> engine;                     ///< what Engine::save() told
+  VectorXd plugin_state;                          ///< of all plugins, see LoadedPlugin::state_begin
+  std::vector<Message> messages;                  ///< of each topic
+  std::vector<std::string> warnings;              ///< of the flight
+  std::string failure;                            ///< why the flight ended; "" while it goes on
 };
 
 /// How a simulation is made, beside its model and its world.
