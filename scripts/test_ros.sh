@@ -70,7 +70,8 @@ copy_sources() {
 }
 
 build() {
-  catkin_make -C $workspace -DPYTHON_EXECUTABLE=/usr/bin/python3 -DQUADCORE_WITH_ROS=ON \
+  # Told how many jobs, catkin does not wait for others to leave the processor.
+  catkin_make -C $workspace "-j$(nproc)" -DPYTHON_EXECUTABLE=/usr/bin/python3 -DQUADCORE_WITH_ROS=ON \
     -DQUADCORE_WERROR=ON -DCMAKE_UNITY_BUILD=ON -DCMAKE_POLICY_VERSION_MINIMUM=3.5 \
     install >$workspace/build.log 2>&1 ||
     { tail -n 40 $workspace/build.log; say "the catkin workspace does not build"; exit 1; }

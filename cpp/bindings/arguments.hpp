@@ -24,8 +24,9 @@ Numbers numbers(const py::object& object, int dimensions, const char* what);
 /// A whole number or a name that is refused in one line of quadcore's own if it is none.
 template <class T>
 struct Given {
+  using Python = std::conditional_t<std::is_integral_v<T>, py::int_, py::str>;
   static constexpr const char* kind =
-      std::is_integral_v<T> ? "a whole number below 2^63" : "a name";
+      std::is_integral_v<T> ? "a whole number below 2^63" : "a name in UTF-8";
   T value;
 };
 
@@ -45,8 +46,12 @@ struct type_caster<quadcore::bindings::Given<T>> {
   bool load(handle source, bool convert) {
     make_caster<T> caster;
     if (!caster.load(source, convert)) {
-      throw quadcore::InputError(std::string("give ") + quadcore::bindings::Given<T>::kind +
-                                 ", not a '" + Py_TYPE(source.ptr())->tp_name + "'");
+      using Given = quadcore::bindings::Given<T>;
+      std::string told = std::string("give ") + Given::kind;
+      if (!isinstance<typename Given::Python>(source)) {
+        told += std::string(", not a '") + Py_TYPE(source.ptr())->tp_name + "'";
+      }
+      throw quadcore::InputError(told);
     }
     value.value = cast_op<T&&>(std::move(caster));
     return true;

@@ -112,10 +112,14 @@ py::dict views(const Self& self) {
 
 VehicleState to_state(const py::object& object) {
   const auto member = [&object](const char* name, int dimensions) {
-    if (!py::hasattr(object, name)) {
+    py::object given;
+    try {
+      given = object.attr(name);
+    } catch (const py::error_already_set& error) {
+      if (!error.matches(PyExc_AttributeError)) throw;
       throw InputError(std::string("the state has no member ") + name + "; give a State");
     }
-    return numbers(object.attr(name), dimensions, (std::string("state.") + name).c_str());
+    return numbers(given, dimensions, (std::string("state.") + name).c_str());
   };
   const auto vector = [&member](const char* name) -> VectorXd {
     const Numbers array = member(name, 1);

@@ -61,7 +61,7 @@ def _is_text(value: Any) -> bool:
 
 
 def _are_names(value: Any) -> bool:
-    return _is_text(value) or (_is_list(value) and len(list(value)) > 0)
+    return _is_text(value) or _is_list(value)
 
 
 def _is_list(value: Any) -> bool:
@@ -117,6 +117,7 @@ def _is_limit(value: Any) -> bool:
 
 NAME: Kind = (_is_text, "a name or a path")
 NAMES: Kind = (_are_names, "a name, or several")
+SOME: Kind = (lambda value: _are_names(value) and len(several(value)) > 0, NAMES[1])
 LIST: Kind = (_is_list, "a list of names")
 GUIDES: Kind = (_are_guides, "names, or functions that are called as reference(t)")
 NAMED: Kind = (_are_named, "a mapping of names to values")

@@ -21,6 +21,7 @@ import numpy as np
 
 from . import _core
 from ._core import InputError
+from .arguments import brief
 from .batch_state import BatchState as BatchState
 from .description import read_both
 from .flight import check_logged, steps_within
@@ -220,7 +221,7 @@ class BatchSimulation(_core.Batch):
             An argument is at fault; nothing has moved then.
         """
         if not isinstance(log, Iterable):
-            raise InputError(f"log is {log!r}; give a list of numbers of vehicles")
+            raise InputError(f"log is {brief(log)}; give a list of numbers of vehicles")
         chosen = [whole(vehicle, "log") for vehicle in log]
         for vehicle in chosen:
             if vehicle >= self.n:

@@ -11,6 +11,7 @@ import numpy as np
 
 from . import _core, laws, references
 from ._core import FlightError, InputError, QuadcoreError, odometry_parts
+from .arguments import brief
 from .flight import Pilot
 from .imported import told
 from .inner_loop import AttitudeThrust, InnerLoop, RatesThrust
@@ -144,8 +145,8 @@ class Guided(Pilot):
             reference = reference.on(simulation)
         if reference is not None and not callable(reference):
             raise InputError(
-                f"reference is {reference!r}; give one of quadcore.references, or a function that "
-                "is called as reference(t)"
+                f"reference is {brief(reference)}; give one of quadcore.references, or a function "
+                "that is called as reference(t)"
             )
         check_callable(controller)
         self.rate = checked("controller", "rate", getattr(controller, "rate", RATE))
@@ -153,7 +154,7 @@ class Guided(Pilot):
         inner_loop = getattr(controller, "inner_loop", None)
         if not (inner_loop is None or isinstance(inner_loop, InnerLoop)):
             raise InputError(
-                f"controller: its inner_loop is {inner_loop!r}; give a quadcore.InnerLoop"
+                f"controller: its inner_loop is {brief(inner_loop)}; give a quadcore.InnerLoop"
             )
         self._inner_loop = InnerLoop() if inner_loop is None else inner_loop
         self.columns = _COLUMNS if reference is not None else ()
@@ -220,7 +221,8 @@ def check_callable(controller: Any) -> None:
     form = "controller(t, state, reference)"
     if not callable(controller):
         raise InputError(
-            f"controller is {controller!r}; give a function, or an object, that is called as {form}"
+            f"controller is {brief(controller)}; give a function, or an object, that is called as "
+            f"{form}"
         )
     try:
         signature = inspect.signature(controller)

@@ -7,7 +7,7 @@ from typing import Iterator, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _core, resources, xml_source
 from ._core import Document, InputError, Model, World
-from .arguments import LIST, OPTIONS, check
+from .arguments import LIST, NAME, OPTIONS, check
 from .files import is_file, shown
 from .forks import LOCK
 from .parameters import did_you_mean
@@ -39,7 +39,7 @@ def read_model(
     InputError
         The model is at fault; the message carries ``FILE:LINE``.
     """
-    check({"xacro_args": xacro_args}, OPTIONS)
+    check({"model": model, "xacro_args": xacro_args}, {"model": NAME})
     arguments = {name: str(value) for name, value in (xacro_args or {}).items()}
     return _core.read_model(
         load_description(str(model), arguments), list_of_names("ignore", ignore)
@@ -66,6 +66,7 @@ def read_world(world: Union[str, Path, None] = None, ignore: Sequence[str] = ())
     InputError
         The world is at fault; the message carries ``FILE:LINE``.
     """
+    check({"world": world}, OPTIONS)
     document = load_world(None if world is None else str(world))
     return _core.read_world(document, list_of_names("ignore", ignore))
 

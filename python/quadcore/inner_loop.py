@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Dict, NamedTuple, Optional, Sequence, Uni
 import numpy as np
 
 from . import _core
+from .arguments import brief
 from .belief import believed
 from .parameters import docstring, values
 
@@ -136,12 +137,12 @@ def _checked(wanted: Union[AttitudeThrust, RatesThrust]) -> Any:
     except (TypeError, ValueError) as error:
         raise _core.InputError(f"{who} {name}: {error}") from None
     if target.shape != (count,) or not np.isfinite(target).all():
-        raise _core.InputError(f"{who} {name} is {wanted[0]!r}; give {count} finite numbers")
+        raise _core.InputError(f"{who} {name} is {brief(wanted[0])}; give {count} finite numbers")
     if count == 4:
         length = float(np.linalg.norm(target))
         if abs(length - 1) > _ROUNDNESS:
             raise _core.InputError(f"{who} {name} has length {length:g}; give a unit quaternion")
         target = target / length
     if not (isinstance(wanted.thrust, Real) and math.isfinite(wanted.thrust)):
-        raise _core.InputError(f"{who} thrust is {wanted.thrust!r}; give N")
+        raise _core.InputError(f"{who} thrust is {brief(wanted.thrust)}; give N")
     return target, float(wanted.thrust)

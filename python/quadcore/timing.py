@@ -6,6 +6,7 @@ from numbers import Real
 from typing import Any
 
 from . import _core
+from .arguments import brief
 
 _ROWS = {row.name: row for row in _core.timing()}
 _WORDS = {"rate": "calls per second", "delay": "seconds"}
@@ -21,5 +22,5 @@ def checked(who: str, name: str, value: Any) -> float:
     if isinstance(value, Real) and _core.is_timing(name, float(value)):
         return float(value)
     raise _core.InputError(
-        f"{who}: its {name} is {value!r}; give {_WORDS[name]}, {_ROWS[name].range}"
+        f"{who}: its {name} is {brief(value)}; give {_WORDS[name]}, {_ROWS[name].range}"
     )

@@ -173,7 +173,7 @@ def test_names_with_commas_and_parameters_are_told_apart():
         ({"dt": "x"}, "dt is 'x'; give a step in s"),
         ({"parameters": 5}, "parameters is 5; give a mapping of names to values"),
         ({"xacro_args": {5: 5}}, r"xacro_args is \{5: 5\}; give a mapping"),
-        ({"ignore": 5}, "ignore is 5; give a name, or several"),
+        ({"ignore": 5}, "ignore is 5; give a list of names"),
         ({"controller": "pd"}, "there is no option 'controller'; besides those of help"),
         ({"commands": [[0, 1, 1, 1, 1]]}, "there is no option 'commands'; .* there are world, dt"),
         ({"seeds": "3"}, "seeds is '3'; give a whole number"),

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import threading
 from pathlib import Path
 
+import matplotlib
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -144,3 +146,19 @@ def test_the_summary_has_the_fastest_rotor_as_it_was_commanded(capsys):
         (line,) = (row for row in capsys.readouterr().out.splitlines() if "fastest" in row)
         assert told in line
         assert ("as commanded 471.0" in line) == (not more)
+
+
+def test_threads_draw_the_same_and_leave_settings_alone(tmp_path):
+    log = qc.Log.of_file("climb.csv")
+    before = dict(matplotlib.rcParams)
+
+    threads = [threading.Thread(target=log.plot, args=(tmp_path / f"{i}",)) for i in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert dict(matplotlib.rcParams) == before
+    for file in (tmp_path / "0").iterdir():
+        assert {(tmp_path / f"{i}" / file.name).read_bytes() for i in range(4)} == {
+            file.read_bytes()
+        }

@@ -13,7 +13,7 @@ pytestmark = pytest.mark.usefixtures("in_empty_folder")
 # What each argument refuses; its proper kinds, None among them, are left out.
 TEXTS = (b"x", "nonsense")
 NUMBERS = (3, 1.5, float("nan"))
-LISTS = ([3], [None], (1, 2))
+LISTS = ([3], [None], (1, 2), np.eye(3))
 OTHERS = ({3: 1}, {"a": None}, object(), len)
 NO_NAME = (b"x", *NUMBERS, *LISTS, *OTHERS)
 NO_NAMES = ("nonsense", b"x", *NUMBERS, *LISTS, {3: 1}, object(), len, None)
@@ -55,7 +55,7 @@ CALLS = {
     "set_state": (lambda **given: quadrotor("eigen").set_state(**given), {"state": NO_NAME}),
     "restore": (
         lambda snapshot=None, allow=(): quadrotor("eigen").restore(
-            snapshot or quadrotor("eigen").snapshot(), allow=allow
+            quadrotor("eigen").snapshot() if snapshot is None else snapshot, allow=allow
         ),
         {"snapshot": NO_NAME, "allow": NO_NAMES},
     ),
@@ -107,6 +107,35 @@ def test_an_argument_of_a_wrong_type_is_refused_in_one_line(call, argument):
         told = str(refusal.value)
         assert "\n" not in told and len(told) < 250, value
         assert "supported" not in told and "has no attribute" not in told, value
+
+
+def test_lists_that_come_one_by_one_are_read_once():
+    assert len(qc.compare((name for name in ["quadrotor", "iris"]), duration=0.01).table) == 2
+    with pytest.raises(qc.InputError, match="nonsense"):
+        qc.Simulation("quadrotor", ignore=(name for name in ["nonsense"]))
+    log = quadrotor("eigen").run(0.01, topics=(name for name in ["odom"]))
+    assert list(log.topics) == ["odom"]
+    with pytest.raises(qc.InputError, match=r"vary is .*give a mapping of names to lists"):
+        qc.compare("quadrotor", {"motorpid_plugin.kp": (kp for kp in [1e-3])})
+    with pytest.raises(qc.InputError, match=r"models is \[\]; give a name, or several"):
+        qc.compare([])
+
+
+def test_numbers_and_names_that_cannot_be_meant_are_told():
+    with pytest.raises(qc.InputError, match=r"^give a whole number below 2\^63$"):
+        quadrotor("eigen").step(2**63)
+    with pytest.raises(qc.InputError, match=r"^give a name in UTF-8$"):
+        quadrotor("eigen").topic("\udc80")
+
+
+def test_what_reading_a_state_raises_is_seen():
+    class Late:
+        @property
+        def time(self):
+            raise RuntimeError("not yet")
+
+    with pytest.raises(RuntimeError, match="not yet"):
+        quadrotor("eigen").set_state(Late())
 
 
 def test_a_long_value_is_shortened_in_what_is_said_of_it():

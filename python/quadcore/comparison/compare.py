@@ -36,7 +36,7 @@ Keep = Callable[[int, Log], Any]
 Outcome = Tuple[np.ndarray, Any]
 
 _ARGUMENTS = {
-    "models": arguments.NAMES,
+    "models": arguments.SOME,
     "vary": arguments.or_none(arguments.AXES),
     "commands": arguments.ANY,
     "duration": arguments.SECONDS,

@@ -8,6 +8,7 @@ from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Seque
 
 from .. import laws, references
 from .._core import InputError
+from ..arguments import brief
 from ..controller import check_callable
 from ..plants import plants
 from ..study.axes import Values, axes_of
@@ -23,7 +24,9 @@ def labelled(kind: str, things: Named, one: type) -> List[Tuple[str, Any]]:
     if isinstance(things, (str, one)) or callable(things):
         things = [things]
     if not isinstance(things, Iterable):
-        raise InputError(f"{kind} is {things!r}; give a name, what is called, or several of these")
+        raise InputError(
+            f"{kind} is {brief(things)}; give a name, what is called, or several of these"
+        )
     return [(_name(thing), thing) for thing in things]
 
 
@@ -46,7 +49,7 @@ def shape(thing: Any) -> Any:
         return references.parse(thing)
     if not callable(thing):
         raise InputError(
-            f"reference is {thing!r}; give one of quadcore.references, or a function that is "
+            f"reference is {brief(thing)}; give one of quadcore.references, or a function that is "
             "called as reference(t)"
         )
     return thing

@@ -36,8 +36,8 @@ from .trial import Trial
 Progress = Callable[[int, int], None]
 
 _KINDS = {
-    "engines": arguments.NAMES,
-    "models": arguments.NAMES,
+    "engines": arguments.SOME,
+    "models": arguments.SOME,
     "vary": arguments.or_none(arguments.AXES),
     "duration": arguments.SECONDS,
     "margins": arguments.FLAG,

@@ -23,4 +23,6 @@ def thinned(log: Log, most: int = _POINTS) -> Log:
         name: {field: column[picked] for field, column in fields.items()}
         for name, fields in log.topics.items()
     }
-    return Log(log.table[picked], {}, topics=topics)
+    kept = Log(log.table[picked], {}, topics=topics)
+    kept.per_command = log.per_command
+    return kept

@@ -7,6 +7,7 @@ from types import FunctionType
 from typing import Any, Callable, Dict, List, Mapping, Sequence
 
 from .._core import InputError, QuadcoreError
+from ..arguments import brief
 from ..study.time_limit import time_limit
 from .design import LARGEST, Design
 from .spec import Measures, digest, source_of
@@ -36,9 +37,9 @@ class Calls:
         time_limit: float,
     ) -> None:
         if not callable(function):
-            raise InputError(f"function is {function!r}; give what is called with a point")
+            raise InputError(f"function is {brief(function)}; give what is called with a point")
         if not measures or len(set(measures)) < len(measures):
-            raise InputError(f"measures is {measures!r}; name what the function returns")
+            raise InputError(f"measures is {brief(measures)}; name what the function returns")
         self.design, self.measures = design, list(measures)
         self.units = dict.fromkeys(self.measures, "")
         self.meanings = dict.fromkeys(self.measures, "what the function returned")
@@ -117,7 +118,7 @@ class Call:
             return {name: float(values[name]) for name in self.wanted}
         except (KeyError, TypeError, ValueError) as error:
             raise QuadcoreError(
-                f"the function returned {found!r}; give a number, or a mapping of "
+                f"the function returned {brief(found)}; give a number, or a mapping of "
                 f"{', '.join(self.wanted)} to numbers"
             ) from error
 
