@@ -20,6 +20,7 @@ import quadcore as qc
 from quadcore import interrupts
 from quadcore.study.executor import contained, each
 
+TRIALS = int(os.environ.get("QUADCORE_TRIALS", "4"))  # moments, of each signal and command
 SIGNALS = list(interrupts.SIGNALS)
 QUADCORE = [sys.executable, "-m", "quadcore"]
 # A fall that never ends: with other drags it diverges after five minutes.
@@ -89,7 +90,7 @@ def started(*arguments, folder):
 @pytest.mark.parametrize("number", SIGNALS)
 def test_a_run_ended_at_random_moments_keeps_what_was_flown(number, tmp_path):
     moments = random.Random(int(number))
-    for trial in range(10):
+    for trial in range(TRIALS):
         folder = tmp_path / str(trial)
         folder.mkdir()
         process = started(
@@ -109,7 +110,7 @@ def test_a_run_ended_at_random_moments_keeps_what_was_flown(number, tmp_path):
 @pytest.mark.parametrize("number", SIGNALS)
 def test_a_comparison_ended_at_random_moments_keeps_what_was_flown(number, tmp_path):
     moments = random.Random(int(number))
-    for trial in range(10):
+    for trial in range(TRIALS):
         folder = tmp_path / str(trial)
         folder.mkdir()
         process = started(
@@ -135,7 +136,7 @@ def test_a_comparison_ended_at_random_moments_keeps_what_was_flown(number, tmp_p
 def test_a_validation_ended_at_random_moments_keeps_what_was_flown(number, tmp_path):
     """In turn while it flies and while it draws."""
     moments = random.Random(int(number))
-    for trial in range(10):
+    for trial in range(TRIALS):
         out = tmp_path / str(trial)
         drawing = trial % 2 == 1
         process = started(
