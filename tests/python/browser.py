@@ -14,7 +14,6 @@ NAMES = ("chromium", "chromium-browser", "google-chrome")
 CATCH = """<script>
 window.faults = [];
 window.onerror = (what) => faults.push(what);
-window.onunhandledrejection = (event) => faults.push(String(event.reason));
 </script>"""
 
 
@@ -31,10 +30,14 @@ async function opened(url, width) {
   return frame;
 }
 window.onload = async () => {
-  for (const [name, url, width] of PAGES) {
-    const frame = await opened(url, width);
-    told[`${name} ${width}`] = await look(frame.contentWindow, frame.contentDocument, width);
-    frame.remove();
+  try {
+    for (const [name, url, width] of PAGES) {
+      const frame = await opened(url, width);
+      told[`${name} ${width}`] = await look(frame.contentWindow, frame.contentDocument, width);
+      frame.remove();
+    }
+  } catch (fault) {
+    window.faults.push(String(fault));
   }
   const told_in = document.createElement("pre");
   told_in.id = "told";
@@ -80,7 +83,10 @@ async function look(view, inside) {
   const part = (name) => inside.querySelector(".player " + name), canvas = part("canvas");
   const time = () => Number(part(".time").value);
   const until = async (met) => {
-    while (!met()) await new Promise((resolve) => view.requestAnimationFrame(resolve));
+    for (let i = 0; !met(); ++i) {
+      if (i > 2000) throw "it does not come so far";
+      await new Promise((resolve) => view.requestAnimationFrame(resolve));
+    }
   };
   const drawn = () => canvas.toDataURL(), told = { start: drawn(), begin: time() };
   part(".speed").value = "4";
