@@ -51,7 +51,11 @@ KeptPublisher<rosgraph_msgs::Clock> take_part_in_clock(ros::NodeHandle& nh, Cloc
   if (role == ClockRole::follow) return {};
   KeptPublisher<rosgraph_msgs::Clock> publisher(nh, "/clock", 1000, Again::to_all);
   const std::string leader = first_publisher("/clock");
-  if (leader.empty()) return publisher;
+  if (leader.empty()) {
+    // As gazebo_ros does; before there are services, so that whoever waits for one finds it.
+    if (!nh.hasParam(use_sim_time)) nh.setParam(use_sim_time, true);
+    return publisher;
+  }
   if (role == ClockRole::lead) {
     throw InputError("parameter ~clock: is lead, but " + leader +
                      " publishes /clock already; there can be one clock only, follow it");

@@ -22,9 +22,12 @@ enum class ClockRole {
   follow
 };
 
-/// Takes this node's part in the one clock that all have: whoever leads publishes /clock, the
-/// others make their steps by it. If several start at once, the one that the master knew first
-/// leads.
+/// The parameter that makes nodes go by /clock.
+constexpr char use_sim_time[] = "/use_sim_time";
+
+/// Takes this node's part in the one clock that all have: whoever leads publishes /clock and says
+/// so by /use_sim_time unless that is set, the others make their steps by it. If several start at
+/// once, the one that the master knew first leads.
 /// \return the publisher of /clock; empty if this node follows.
 /// Throws InputError if another node leads though this one is to.
 KeptPublisher<rosgraph_msgs::Clock> take_part_in_clock(ros::NodeHandle& nh, ClockRole role);

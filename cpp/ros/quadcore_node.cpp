@@ -35,13 +35,9 @@ void describe(const Simulation& simulation) {
 }
 
 /// What others ask the parameter server for, to be there again after a restart of the master.
-MasterWatch::Parameters public_parameters(const ros::NodeHandle& nh, const Settings& settings,
-                                          bool leads_clock) {
-  const std::string use_sim_time = "/use_sim_time";
-  // As gazebo_ros does: whoever makes the time says that there is one.
-  if (leads_clock && !nh.hasParam(use_sim_time)) nh.setParam(use_sim_time, true);
+MasterWatch::Parameters public_parameters(const ros::NodeHandle& nh, const Settings& settings) {
   MasterWatch::Parameters parameters;
-  for (const std::string& key : {use_sim_time, settings.plant.description}) {
+  for (const std::string& key : {std::string(use_sim_time), settings.plant.description}) {
     if (!key.empty()) nh.getParam(key, parameters[key]);
   }
   return parameters;
@@ -107,7 +103,7 @@ int run(const EndSignal& end_signal) {
   const CommandSubscriber commands(nh, topics, flight_settings.lockstep, flight);
   const Services services(nh, simulation, flight, model, wrenches, known);
   ParameterWatch parameters(flight, !clock, std::move(given));
-  MasterWatch master_watch(services.names(), public_parameters(nh, settings, !!clock),
+  MasterWatch master_watch(services.names(), public_parameters(nh, settings),
                            [&parameters] { parameters.look(); });
   Diagnostics diagnostics(nh, flight.report(), described(topics));
   ros::AsyncSpinner spinner(1);

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """One clock: who leads it, who follows, and what pause and reset do to either."""
 
+import time
 import unittest
 
 import harness
 import numpy as np
+import rosgraph
 import rospy
 from harness import Process, Recording, call, flight, step
 from nav_msgs.msg import Odometry
@@ -20,6 +22,11 @@ def seconds(message):
 
 def nanoseconds(messages):
     return [m.clock.to_nsec() for m in messages]
+
+
+def has_services(node):
+    _, _, services = rosgraph.Master(rospy.get_name()).getSystemState()
+    return any(node in providers for name, providers in services if "logger" not in name)
 
 
 class TestClock(unittest.TestCase):
@@ -137,6 +144,16 @@ class TestClock(unittest.TestCase):
             with flight("_paused:=true"):
                 self.assertEqual(rospy.get_param("/use_sim_time"), after)
         rospy.delete_param("/use_sim_time")
+
+    def test_it_is_said_before_the_first_service_can_be_found(self):
+        deadline = time.monotonic() + harness.LONG
+        rospy.set_param("/robot_description", harness.description())
+        with Process("quadcore_node", "_paused:=true"):
+            while not has_services("/quadcore"):
+                self.assertLess(time.monotonic(), deadline)
+            said = rospy.has_param("/use_sim_time")
+        rospy.delete_param("/use_sim_time")
+        self.assertTrue(said)
 
 
 if __name__ == "__main__":
