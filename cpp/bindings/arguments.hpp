@@ -5,6 +5,7 @@
 #include <string>
 #include <type_traits>
 
+#include "built.hpp"
 #include "older_pybind11.hpp"
 #include "quadcore/error.hpp"
 
@@ -49,7 +50,7 @@ struct type_caster<quadcore::bindings::Given<T>> {
       using Given = quadcore::bindings::Given<T>;
       std::string told = std::string("give ") + Given::kind;
       if (!isinstance<typename Given::Python>(source)) {
-        told += std::string(", not a '") + Py_TYPE(source.ptr())->tp_name + "'";
+        told += quadcore::bindings::not_a(source);
       }
       throw quadcore::InputError(told);
     }

@@ -21,6 +21,11 @@ struct Built {
   const T* operator->() const { return held.get(); }
 };
 
+/// Of what type an object is that should be of another, behind "give a Model".
+inline std::string not_a(pybind11::handle object) {
+  return std::string(", not a '") + Py_TYPE(object.ptr())->tp_name + "'";
+}
+
 /// Reads what an object holds. Throws InputError for another class, or if it holds nothing.
 template <class T>
 bool load_built(pybind11::handle source, bool convert, std::shared_ptr<T>& held,
@@ -28,7 +33,7 @@ bool load_built(pybind11::handle source, bool convert, std::shared_ptr<T>& held,
   if (!pybind11::isinstance<T>(source)) {
     const pybind11::handle wanted = pybind11::detail::get_type_handle(typeid(T), true);
     throw InputError("give a " + pybind11::cast<std::string>(wanted.attr("__name__")) +
-                     ", not a '" + Py_TYPE(source.ptr())->tp_name + "'");
+                     not_a(source));
   }
   auto* const instance = reinterpret_cast<pybind11::detail::instance*>(source.ptr());
   if (!instance->get_value_and_holder().holder_constructed()) throw InputError(if_empty);
