@@ -211,7 +211,7 @@ class Log(Trajectory):
         """
         folder = _named(directory, "directory")
         with LOCK:
-            from .plots import draw  # matplotlib is slow to import
+            from .log_pictures import draw  # matplotlib is slow to import
 
         return draw(self, folder)
 

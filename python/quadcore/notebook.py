@@ -40,7 +40,8 @@ def log_html(log: Log) -> str:
     head = f"<p>{escape(repr(log)[1:-1])}</p>"
     if len(log) == 0:
         return head
-    from .plots import glance, png
+    from .log_pictures import glance
+    from .plots import png
     from .report import picture
 
     return head + str(picture(png(glance(log)), "position and attitude over time"))
