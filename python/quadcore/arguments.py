@@ -51,6 +51,11 @@ def several(value: Any) -> List[Any]:
     return [value] if _is_text(value) or callable(value) else list(value)
 
 
+def read_once(value: Any) -> Any:
+    """Make a list of what comes one by one, so that it can be checked and is there afterwards."""
+    return list(value) if isinstance(value, Iterator) else value
+
+
 def brief(value: Any) -> str:
     """Write a value in one line, shortened if it is long."""
     return " ".join(reprlib.repr(value).split())

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Iterator, Mapping, Optional, Sequence, Tuple, Union
+from typing import Mapping, Optional, Sequence, Tuple, Union
 
 from . import _core, resources, xml_source
 from ._core import Document, InputError, Model, World
-from .arguments import LIST, NAME, OPTIONS, check
+from .arguments import LIST, NAME, OPTIONS, check, read_once
 from .files import is_file, shown
 from .forks import LOCK
 from .parameters import did_you_mean
@@ -97,7 +97,7 @@ def read_both(
 
 def list_of_names(argument: str, names: Sequence[str]) -> list[str]:
     """Check names given as an argument, which may come one by one."""
-    names = list(names) if isinstance(names, Iterator) else names
+    names = read_once(names)
     check({argument: names}, {argument: LIST})
     return list(map(str, names))
 

@@ -13,7 +13,6 @@ import numpy as np
 from . import _core, interrupts
 from .arguments import brief
 from .commands import CommandsLike, as_commands
-from .given import whole
 from .log import Log
 from .trajectory import per_command
 
@@ -87,7 +86,7 @@ def fly(
         The flight failed, or what the pilot gave after the start was no command.
     """
     total = steps_within(duration, simulation.dt)
-    log_every = whole(log_every, "log_every", bits=63)
+    log_every = _row_every(log_every)
     table = None if commands is None else as_commands(commands, simulation.command_width)
     if pilot is not None:
         pilot.reset(simulation)
@@ -239,12 +238,18 @@ def steps_within(duration: float, dt: float) -> int:
     return steps
 
 
+def _row_every(log_every: object) -> int:
+    """Check after how many steps a log has a row."""
+    is_whole = isinstance(log_every, (int, np.integer)) and not isinstance(log_every, bool)
+    if not is_whole or not 1 <= log_every < 2**63:  # type: ignore[operator]
+        raise _core.InputError(f"log_every is {brief(log_every)}; give a whole number >= 1")
+    return int(log_every)  # type: ignore[call-overload,no-any-return]
+
+
 def check_logged(duration: float, dt: float, log_every: int) -> None:
     """Raise `InputError` if a log would hold the start alone: nothing could be told from it."""
     steps = steps_within(duration, dt)
-    if not isinstance(log_every, (int, np.integer)) or log_every < 1:
-        raise _core.InputError(f"log_every is {brief(log_every)}; give a whole number >= 1")
-    if log_every > steps:
+    if _row_every(log_every) > steps:
         raise _core.InputError(
             f"log_every is {log_every} but the flight has {steps} steps; log more often"
         )

@@ -85,17 +85,12 @@ def write(gains: Gains, path: Union[str, Path]) -> None:
 
 
 def of_file(path: Union[str, Path]) -> Law:
-    """Make the law of a gains file.
+    """Make the law of a gains file; raises as `read`.
 
     Parameters
     ----------
     path : str or path
-        A YAML file with the law, its parameters, rate and delay.
-
-    Raises
-    ------
-    InputError
-        A missing file, or one that is wrong: one line with file and line.
+        As for `read`.
     """
     return read(path).make()
 

@@ -142,7 +142,7 @@ def compare(
     KeyboardInterrupt
         With the attribute `comparison`, whose missing rows say so.
     """
-    models = list(models) if isinstance(models, Iterator) else models
+    models = arguments.read_once(models)
     given = locals()
     arguments.check({**{name: given[name] for name in _ARGUMENTS}, **options}, _KINDS)
     plan = Plan(arguments.several(models), vary or {}, commands, duration, log_every, options)
