@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Dict, Mapping, Optional, Sequence
+from typing import Any, Dict, Mapping, Optional, Sequence
 
 import numpy as np
 
 from ._core import InputError, Simulation, log_columns, rates_per_command
+from .arguments import brief
 from .rotation import roll_pitch_yaw
 
 _STATE_SIZE = len(log_columns(0))
@@ -21,6 +22,16 @@ def per_command(simulation: Simulation) -> float:
 def is_slow(size: float) -> bool:
     """Tell whether joints of this size per commanded speed are known to turn otherwise."""
     return size not in (0.0, 1.0)
+
+
+def _states(table: Any) -> np.ndarray:
+    if isinstance(table, np.ndarray) and table.ndim == 2 and table.shape[1] >= _STATE_SIZE:
+        return table
+    given = f"an array {table.shape}" if isinstance(table, np.ndarray) else brief(table)
+    raise InputError(
+        f"table: give an array (rows, {_STATE_SIZE} + rotors), not {given}; "
+        "files are read by Log.of_file"
+    )
 
 
 class Wrenches(Dict[str, np.ndarray]):
@@ -40,7 +51,7 @@ class Trajectory:
     table : ndarray, shape (rows, 14 + n)
         Columns as `columns` names them.
     wrenches : mapping of str to ndarray, shape (rows, 6)
-        Force (N), then torque (N m), frame axes, about the vehicle's centre of mass; empty unless
+        Force (N), then torque (N m), frame axes, about the vehicle's centre of mass; none unless
         they were asked for.
     title : str
         What flew, for the plots.
@@ -49,6 +60,11 @@ class Trajectory:
     topics : mapping of str to mapping of str to ndarray, shape (rows,)
         Of each topic that was logged, by field, the message that is the last at that time, and its
         ``stamp`` (s); NaN before the first.
+
+    Raises
+    ------
+    InputError
+        The table is none of states.
 
     Attributes
     ----------
@@ -62,13 +78,13 @@ class Trajectory:
     def __init__(
         self,
         table: np.ndarray,
-        wrenches: Mapping[str, np.ndarray],
+        wrenches: Optional[Mapping[str, np.ndarray]] = None,
         title: str = "",
         ignored: Sequence[str] = (),
         topics: Optional[Mapping[str, Mapping[str, np.ndarray]]] = None,
     ) -> None:
-        self.table = table
-        self.wrenches = Wrenches(wrenches)
+        self.table = _states(table)
+        self.wrenches = Wrenches(wrenches or {})
         self.title = title
         self.ignored = list(ignored)
         self.topics = {name: dict(fields) for name, fields in (topics or {}).items()}

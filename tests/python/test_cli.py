@@ -144,6 +144,8 @@ def test_the_same_seed_gives_the_same_bytes():
     [
         ("fly quadrotor", "invalid choice: 'fly'"),
         ("runn quadrotor", "(did you mean 'run')"),
+        ("--verison", "unrecognized arguments: --verison (did you mean '--version')"),
+        ("--options", "unrecognized arguments: --options; see quadcore --help"),
         ("run", "required: MODEL"),
         ("run nope.urdf", "nope.urdf: no such file"),
         ("run qudrotor", "(did you mean 'quadrotor')"),

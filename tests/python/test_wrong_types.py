@@ -52,6 +52,7 @@ CALLS = {
     ),
     "step": (lambda **given: quadrotor("eigen").step(**given), {"n": NO_WHOLE}),
     "reset": (lambda **given: quadrotor("eigen").reset(**given), {"seed": NO_WHOLE[:-1]}),
+    "log": (qc.Log, {"table": (*TEXTS, *NUMBERS, *LISTS, *OTHERS, None)}),
     "set_state": (lambda **given: quadrotor("eigen").set_state(**given), {"state": NO_NAME}),
     "restore": (
         lambda snapshot=None, allow=(): quadrotor("eigen").restore(

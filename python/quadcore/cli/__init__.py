@@ -101,6 +101,8 @@ def _act(argv: Sequence[str] | None) -> int:
             if not words:
                 parser.print_help()
             arguments = parser.parse_args(words)
+            if "action" not in arguments:
+                parser.error("name a COMMAND")
             arguments.words = words
             arguments.action(arguments)
             sys.stdout.flush()
@@ -128,7 +130,7 @@ def _parser() -> argparse.ArgumentParser:
         allow_abbrev=False,
     )
     parser.add_argument("--version", action="version", version=f"quadcore {__version__}")
-    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+    commands = parser.add_subparsers(metavar="COMMAND")
     for command in _COMMANDS:
         command.register(commands)
     return parser
