@@ -95,19 +95,25 @@ int run(const EndSignal& end_signal) {
            simulation.engine_name().c_str(), described(topics).c_str(),
            flight_settings.lockstep ? ", one for each odometry message" : "");
   FlightThread flight(simulation, flight_settings, listener);
-  gazebo_states.for_newcomers(
-      [&] { flight.tell([&](const Simulation& now) { gazebo_states.send(now); }); });
+  gazebo_states.for_newcomers([&] {
+    try {
+      flight.tell([&](const Simulation& now) { gazebo_states.send(now); });
+    } catch (const InputError&) {
+      // The flight ends; who comes now has nothing more to see.
+    }
+  });
   std::optional<ClockLeader> leader;
   if (clock) leader.emplace(nh, flight, clock);
   if (follower) follower->follow(flight);
   const CommandSubscriber commands(nh, topics, flight_settings.lockstep, flight);
-  const Services services(nh, simulation, flight, model, wrenches, known);
   ParameterWatch parameters(flight, !clock, std::move(given));
-  MasterWatch master_watch(services.names(), public_parameters(nh, settings),
-                           [&parameters] { parameters.look(); });
   Diagnostics diagnostics(nh, flight.report(), described(topics));
   ros::AsyncSpinner spinner(1);
   spinner.start();
+  // Last: whoever has waited for a service finds everything else there.
+  const Services services(nh, simulation, flight, model, wrenches, known);
+  MasterWatch master_watch(services.names(), public_parameters(nh, settings),
+                           [&parameters] { parameters.look(); });
 
   Wall::time_point due = Wall::now() + std::chrono::seconds(1);
   while (ros::ok() && !end_signal.has_come()) {

@@ -9,6 +9,7 @@ import unittest
 
 import harness
 import rosbag
+from gazebo_msgs.msg import ModelStates
 from harness import Recording, commander, description, flight, step
 from nav_msgs.msg import Odometry
 from test_lockstep import LOCKSTEP, altitude_controller
@@ -60,6 +61,17 @@ class TestLogs(unittest.TestCase):
 
     def names(self):
         return sorted(path.name for path in self.folder.iterdir())
+
+    def test_who_comes_to_see_while_a_log_is_written_does_not_end_it(self):
+        log = self.folder / "flight.mat"
+        with flight("_paused:=true", f"_log:={log}") as node:
+            step(100000)
+            node.process.send_signal(signal.SIGINT)
+            while node.process.poll() is None:
+                with Recording("/gazebo/model_states", ModelStates):
+                    pass
+            status, error = node.result()
+        self.assertEqual((status, self.names()), (0, ["flight.mat"]), error)
 
     def test_each_format_holds_every_bit_of_the_flight(self):
         logs = [self.folder / f"flight.{suffix}" for suffix in ("csv", "mat", "bag")]
