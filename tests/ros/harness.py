@@ -21,6 +21,7 @@ import roslib.packages
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
+from gazebo_msgs.srv import GetModelState
 from quadcore.srv import Step
 from std_msgs.msg import Float64MultiArray
 from std_srvs.srv import Empty
@@ -150,21 +151,27 @@ class Recording:
         self.messages.clear()
         return self
 
-    def wait_for_connection(self) -> Recording:
-        """Return once a publisher is known on this side."""
-        wait_until(lambda: self._subscriber.get_num_connections() > 0)
+    def wait_for_connection(self, publishers: int = 1) -> Recording:
+        """Return once so many publishers are known on this side."""
+        wait_until(lambda: self._subscriber.get_num_connections() >= publishers)
         return self
 
 
 @contextmanager
 def commander(topic: str = "/quadrotor/vel_cmd", listeners: int = 1):
     """Give a function that sends commands, once so many listen."""
-    publisher = rospy.Publisher(topic, Float64MultiArray, queue_size=1000, tcp_nodelay=True)
+    publisher = rospy.Publisher(topic, Float64MultiArray, queue_size=0, tcp_nodelay=True)
     try:
         wait_until(lambda: publisher.get_num_connections() >= listeners)
         yield lambda speeds: publisher.publish(data=speeds)
     finally:
         publisher.unregister()
+
+
+def time_of_flight(namespace: str = "") -> rospy.Time:
+    """The time that the vehicle has reached; what came before is on its way or there."""
+    get = rospy.ServiceProxy(f"{namespace}/gazebo/get_model_state", GetModelState)
+    return get("quadrotor", "").header.stamp
 
 
 def settled(recording: Recording):

@@ -102,7 +102,7 @@ class TestFaults(unittest.TestCase):
         topic = Recording("/joint_states", JointState)
         with flight(urdf=urdf), commander() as send, topic as joints:
             send(HOVER)
-            joints.wait(lambda m: m and m[-1].velocity[0] > 400)
+            joints.wait(lambda m: any(joint.velocity[0] > 400 for joint in m))
             joints.wait(lambda m: abs(m[-1].velocity[0]) < 10)
 
     def test_a_subscriber_that_is_stuck_holds_up_nobody(self):

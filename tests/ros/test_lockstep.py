@@ -127,7 +127,7 @@ class TestLockstep(unittest.TestCase):
                 send(table[tick(message), 1:])
 
             with self.subTest(answers_the_old_message=answers_the_old_message):
-                odometry = fly_with(act, 120, "_lockstep_timeout:=0.5")
+                odometry = fly_with(act, 120, "_lockstep_timeout:=2")
                 self.assertEqual([tick(m) for m in odometry[20:23]], [20, 0, 1])
                 self.assert_flown(odometry[21:], table[:100])
 
@@ -135,7 +135,7 @@ class TestLockstep(unittest.TestCase):
         table = random_commands(101)
         flown = table[:100].copy()
         flown[50, 1:] = flown[49, 1:]
-        for delay in (0.75, None):  # late by half a timeout, or never there
+        for delay in (3, None):  # late by half a timeout, or never there
 
             def act(message, send, delay=delay):
                 if tick(message) == 50:
@@ -145,7 +145,7 @@ class TestLockstep(unittest.TestCase):
                 send(table[tick(message), 1:])
 
             with self.subTest(delay=delay):
-                odometry = fly_with(act, 100, "_lockstep_timeout:=0.5")
+                odometry = fly_with(act, 100, "_lockstep_timeout:=2")
                 self.assert_flown(odometry, flown)
 
     def test_one_command_per_odometry_message_at_its_rate(self):
@@ -155,13 +155,13 @@ class TestLockstep(unittest.TestCase):
                 odometry.wait_for_connection()
                 step(200)
                 odometry.wait_for_count(21)
-            self.assertEqual(diagnostic("commands", lambda count: count >= 20), 21)
+            self.assertEqual(diagnostic("commands", lambda count: count >= 21), 21)
 
     def test_a_command_that_does_not_come_is_reported_and_done_without(self):
         late = ("_lockstep_timeout:=0.2", "_real_time_factor:=1", "_paused:=false")
         with flight(*LOCKSTEP, *late), commander() as send:
             with Recording("/odom", Odometry, act=answer_until(3, send)) as odometry:
-                odometry.wait(lambda m: m and m[-1].header.stamp.to_nsec() == 5000000)
+                odometry.wait(lambda m: m and m[-1].header.stamp.to_nsec() >= 5000000)
             diagnostic("late commands", lambda count: count >= 2)
 
     def test_surplus_commands_wait_in_order_for_their_messages(self):

@@ -3,6 +3,7 @@
 
 import contextlib
 import os
+import random
 import signal
 import socket
 import subprocess
@@ -20,9 +21,12 @@ from harness import (
 
 
 def free_port():
-    with socket.socket() as probe:
-        probe.bind(("localhost", 0))
-        return probe.getsockname()[1]
+    """A port that nobody has, and that the system gives to nobody who asks for any."""
+    while True:
+        port = random.randrange(20000, 32000)
+        with socket.socket() as probe, contextlib.suppress(OSError):
+            probe.bind(("localhost", port))
+            return port
 
 
 @contextlib.contextmanager
@@ -55,6 +59,10 @@ class TestMasters(unittest.TestCase):
             text=True,
             check=True,
         ).stdout
+
+    def wait_until_it_flies(self, port):
+        """Wait for a node that is set up as a whole: before that it sends no diagnostics."""
+        self.shell(port, "rostopic", "echo", "-n1", "/diagnostics")
 
     def odometry(self, port):
         """Time (s) and altitude (m) that a subscriber who comes now is told."""
@@ -134,7 +142,7 @@ class TestMasters(unittest.TestCase):
                 rosgraph.Master("/test", uri).setParam("/robot_description", text)
                 node = Process("quadcore_node", "_paused:=true", ROS_MASTER_URI=uri)
                 stack.enter_context(node)
-                harness.wait_until(lambda: "/odom" in self.shell(port, "rostopic", "list"))
+                self.wait_until_it_flies(port)
             with master(port):
                 again = rosgraph.Master("/test", uri)
                 harness.wait_until(lambda: again.hasParam("/use_sim_time"))
@@ -149,7 +157,7 @@ class TestMasters(unittest.TestCase):
         uri = f"http://localhost:{port}"
         command = ("quadcore_node", f"_model:={model}", *arguments)
         with master(port) as hanging, Process(*command, ROS_MASTER_URI=uri) as node:
-            harness.wait_until(lambda: "/odom" in self.shell(port, "rostopic", "list"))
+            self.wait_until_it_flies(port)
             hanging.send_signal(signal.SIGSTOP)
             time.sleep(1.5)
             yield node

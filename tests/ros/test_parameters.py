@@ -121,7 +121,7 @@ class TestParameters(unittest.TestCase):
             "parameter ~real_time_factor: give a number >= 0",
         )
         with flight("_engine:=ode") as node, Recording("/rosout", Log) as told:
-            told.wait_for_connection()
+            told.wait_for_connection(publishers=2)  # the node, and this test itself
             rospy.set_param("/quadcore/engine", "eigen")
             rospy.set_param("/quadcore/paused", "yes")
             rospy.set_param("/quadcore/real_time_factor", -1)

@@ -32,19 +32,15 @@ def times(messages):
     return [message.clock.to_nsec() for message in messages]
 
 
-def last(recording):
-    """Newest message once all that were sent have come."""
-    rospy.sleep(0.2)
-    return recording.messages[-1]
-
-
 class TestServices(unittest.TestCase):
     def test_pause_and_unpause(self):
         with flight(), Recording("/clock", Clock) as clock:
             clock.wait_for_count(10)
             call("/gazebo/pause_physics")
-            paused_at = last(clock).clock
-            self.assertEqual(last(clock).clock, paused_at)
+            paused_at = harness.time_of_flight()
+            clock.wait(lambda messages: messages[-1].clock == paused_at)
+            rospy.sleep(0.2)
+            self.assertEqual(clock.messages[-1].clock, paused_at)
             call("/gazebo/unpause_physics")
             clock.wait(lambda messages: messages[-1].clock > paused_at)
 
