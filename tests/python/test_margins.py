@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
 from evaluations import evaluate
 
 import quadcore as qc
 from quadcore import laws
+from quadcore._core import rates_per_command
+from quadcore.cli import main
+from quadcore.evaluation import trial
 from quadcore.evaluation.flights import NAN, Outcome
 from quadcore.evaluation.plan import Plan
 from quadcore.evaluation.robustness import ENDS, Searches, margin_text
-from quadcore.evaluation.trial import Trial
+from quadcore.evaluation.trial import Trial, lacking
+from quadcore.vehicle_tags import SAID
 
 
 def test_margins_are_found(capsys):
@@ -66,6 +73,60 @@ def test_the_inner_loop_of_an_own_law_believes_in_the_vehicle_as_it_is_described
     assert flight.controller.inner_loop.spins == [1, -1, 1, -1]
 
 
+URDF = Path(__file__).resolve().parents[2] / "urdf"
+
+
+@pytest.mark.parametrize("model", sorted(path.name.split(".")[0] for path in URDF.glob("*.xacro")))
+def test_of_every_shipped_model_thrust_drag_and_lag_can_be_varied(model):
+    assert lacking(qc.Simulation(model, engine="eigen")) == []
+
+
+@pytest.mark.parametrize("motor", ["pid", "first_order"])
+def test_the_motors_of_either_kind_say_how_they_lag(motor):
+    simulation = qc.Simulation("hexarotor", engine="eigen", xacro_args={"motor": motor})
+    assert lacking(simulation) == []
+
+
+@pytest.mark.parametrize("model", ["quadrotor", "hexarotor", "firefly"])
+def test_the_vehicle_of_a_trial_pushes_resists_and_lags_by_the_factors_asked_for(model):
+    plan = Plan({"own": Own()}, "hover", ["eigen"], [model], 1, {}, 1.0, *[None] * 4, {"dt": 1e-4})
+
+    def flown(**factors):
+        return Trial(0, **factors).flight(plan).simulation()
+
+    plain = flown()
+    hover = plain.hover_speed
+    assert flown(thrust=4.0).hover_speed == pytest.approx(hover / 2, rel=1e-9)
+    assert flown(drag=3.0, lag=2.0).hover_speed == pytest.approx(hover, rel=1e-9)
+    assert resistance(plain) > 0
+    assert resistance(flown(drag=3.0)) == pytest.approx(3 * resistance(flown()), rel=1e-6)
+    assert rise(flown(lag=2.0)) == pytest.approx(2 * rise(flown()), rel=0.02)
+
+
+def in_hover(simulation):
+    """Rates of the joints, rad/s."""
+    return simulation.hover_speed * rates_per_command(simulation)
+
+
+def resistance(simulation):
+    """Force of still air on a vehicle that slides sideways, rotors at hover, N."""
+    state = simulation.state.copy()
+    state.linear_velocity[0] = 1e-3
+    state.rotor_velocity[:] = in_hover(simulation)
+    simulation.set_state(state)
+    wrenches = simulation.run(simulation.dt, wrenches=True).wrenches
+    return -sum(wrench[0, 0] for wrench in wrenches.values())
+
+
+def rise(simulation):
+    """Time in which the rotors reach 63 % of a speed that is commanded at rest, s."""
+    target = np.abs(in_hover(simulation))
+    simulation.command(simulation.hover_speed)
+    while (np.abs(simulation.state.rotor_velocity) < 0.632 * target).any():
+        simulation.step()
+    return simulation.time
+
+
 def test_a_margin_at_the_end_of_its_search_is_told_as_larger():
     row = {"gain_low": 0.1, "gain_high": 10.0, "delay_margin": 0.5}
     assert [margin_text(row, name, "{:g}".format) for name in ENDS] == ["< 0.1", "> 10", "> 0.5"]
@@ -79,6 +140,36 @@ def test_a_margin_at_the_end_of_its_search_is_told_as_larger():
     (row,) = searches.rows()
     assert {name: row[name] for name in ENDS} == ENDS
     assert row["box_worst"] == pytest.approx(0.1 / 0.9)
+
+
+def modules():
+    """Simulations that fly every module between them that says how a vehicle moves."""
+    yield qc.Simulation("quadrotor", engine="eigen")
+    yield qc.Simulation("firefly", engine="eigen")
+    yield qc.Simulation("hexarotor", engine="eigen", xacro_args={"motor": "first_order"})
+
+
+def test_every_tag_that_says_thrust_drag_or_lag_is_one_of_a_plugin():
+    known = {tag.name for s in modules() for plugin in s.plugins for tag in plugin.parameters}
+    assert {tag for said in SAID.values() for tag in said} <= known
+
+
+def test_what_no_tag_says_is_told_on_the_terminal_and_on_the_page(monkeypatch, tmp_path, capsys):
+    """As of a vehicle whose motors and air are plugins of one's own."""
+    known = {"thrust": {"ownThrust": 1}, "drag": SAID["drag"], "lag": {"ownLag": 1}}
+    monkeypatch.setattr(trial, "SAID", known)
+    told = (
+        "margins: no tag of 'quadrotor' says its thrust and its lag; gain and box are not searched"
+    )
+    out = tmp_path / "out"
+    command = "evaluate --controller geometric --reference hover --duration 0.1 --margins --out"
+    assert main([*command.split(), str(out)]) == 0
+    assert f"warning: {told}\n" in capsys.readouterr().err
+    assert told in (out / "report.html").read_text().replace("&#39;", "'")
+    content = json.loads((out / "evaluation.json").read_text())
+    assert content["unsearched"] == told
+    assert content["margins"][0]["gain_high"] is None
+    assert content["margins"][0]["delay_margin"] > 0
 
 
 def test_the_search_finds_the_edge():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -24,6 +25,7 @@ from ..study.axes import Values
 from ..study.executor import conducted
 from ..study.sampling import evenly
 from ..study.table import flown_and_failed
+from ..warning import QuadcoreWarning
 from .entries import Named
 from .flights import Outcome, flown
 from .plan import Case, Plan
@@ -186,6 +188,8 @@ def conduct(
     kept = set(_to_draw(plan, cases))
     outcomes = [Outcome()] * len(cases)
     searches = Searches(plan.controllers, plan.lacking) if margins else None
+    if margins and plan.unsearched:
+        warnings.warn(plan.unsearched, QuadcoreWarning, stacklevel=3)
     in_hover = _poles(plan)
     done = 0
 

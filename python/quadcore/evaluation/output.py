@@ -208,6 +208,7 @@ def _content(evaluation: Evaluation, plan: Plan) -> Dict[str, Any]:
         "combinations": [_finite(group) for group in evaluation.groups],
         "margins": [_finite(row) for row in evaluation.margins],
         "searched": {**ENDS, "box": BOX},
+        "unsearched": plan.unsearched if evaluation.margins else "",
         "poles": [
             {
                 **row,
@@ -276,6 +277,7 @@ def _page(evaluation: Evaluation, plan: Plan, images: Mapping[str, bytes]) -> Di
             for row in losses(evaluation.groups)
         ],
         "margins": margins_to_read(evaluation),
+        "unsearched": plan.unsearched,
         "causes": causes(evaluation),
         "poles": [
             {

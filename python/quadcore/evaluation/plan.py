@@ -21,7 +21,7 @@ from ..scenario_events import Event
 from ..study.axes import LARGEST, Values
 from ..study.variation import Variation, give_all, of_controller
 from ..warning import unheard
-from . import entries, trial
+from . import entries, robustness, trial
 from .entries import Named
 
 LOG_RATE = 100.0
@@ -137,6 +137,11 @@ class Plan:
         begun = [self._begun(model) for model in range(len(models))]
         self.lacking = trial.lacking(begun[0])
         self._check_logs()
+
+    @property
+    def unsearched(self) -> str:
+        """What is left out of the margins, and why, in one line; "" if nothing is."""
+        return robustness.unsearched(self.models[0], self.lacking)
 
     @property
     def apart(self) -> bool:

@@ -65,7 +65,7 @@ class Searches:
             {"controller": name, "failure": NOT_FLOWN, **dict.fromkeys(NAMES, math.nan)}
             for name in controllers
         ]
-        self._kinds = [kind for kind, varied in _KINDS.items() if not varied & set(lacking)]
+        self._kinds = [kind for kind in _KINDS if not _KINDS[kind] & set(lacking)]
         self._done: Dict[Trial, Outcome] = {}
 
     @property
@@ -164,6 +164,18 @@ def _box(own: Trial) -> Search:
 
 _KINDS = {_gain: {"thrust"}, _delay: set(), _rates: set(), _box: set(BOX)}
 """Searches, and what they vary."""
+
+
+def unsearched(model: str, lacking: Collection[str]) -> str:
+    """Tell in one line what cannot be searched for a vehicle, and why; "" if everything can."""
+    left_out = [kind.__name__[1:] for kind, varied in _KINDS.items() if varied & set(lacking)]
+    if not left_out:
+        return ""
+    verb = "is" if len(left_out) == 1 else "are"
+    return (
+        f"margins: no tag of '{model}' says its {' and its '.join(lacking)}; "
+        f"{' and '.join(left_out)} {verb} not searched"
+    )
 
 
 def _flies(trial: Trial) -> Generator[List[Trial], List[Outcome], bool]:

@@ -11,25 +11,10 @@ from ..controller import check_callable, give
 from ..flight_plan import FlightPlan
 from ..inner_loop import InnerLoop
 from ..simulation import Simulation
+from ..vehicle_tags import SAID
 
 if TYPE_CHECKING:
     from .plan import Plan
-
-_TAGS = {
-    "thrust": {"rotorThrustCoeff": 1, "rotorTorqueCoeff": 1},
-    "drag": dict.fromkeys(
-        [
-            "inducedDragCoeff",
-            "translationalDragCoeff",
-            "profileDragCoeff",
-            "parasiticDragCoeff",
-        ],
-        1,
-    ),
-    "lag": {"kp": -1},
-}
-"""Tags that say how hard the rotors push, how the air resists and how motors lag, with the power of
-the factor that they take."""
 
 
 class Trial(NamedTuple):
@@ -70,14 +55,14 @@ class Trial(NamedTuple):
         """Give the tags of the vehicle as it flies."""
         return {
             key: repr(_number(tag) * getattr(self, name) ** powers[tag.name])
-            for name, powers in _TAGS.items()
+            for name, powers in SAID.items()
             for key, tag in _found(simulation, powers)
         }
 
 
 def lacking(simulation: Simulation) -> List[str]:
     """Name what no tag of a vehicle says: of thrust, drag and lag."""
-    return [name for name, powers in _TAGS.items() if not list(_found(simulation, powers))]
+    return [name for name, powers in SAID.items() if not list(_found(simulation, powers))]
 
 
 def _found(simulation: Simulation, names: Collection[str]) -> Iterator[Tuple[str, Any]]:

@@ -1,8 +1,9 @@
 """The thesis' chapter 6.1 as one call: plant against mathematical model, and why they differ."""
 
+from ..vehicle_tags import DRAGS
 from .chain import Chain, Link
 from .damping import Damping
-from .experiment import DRAGS, MODEL, TERMS, Case, Experiment, Flight
+from .experiment import MODEL, TERMS, Case, Experiment, Flight
 from .states import STATES, compare, states
 from .study import Row, Study, conduct
 

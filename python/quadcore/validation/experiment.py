@@ -17,17 +17,9 @@ from ..given import Value, text_of
 from ..log import Log
 from ..simulation import Simulation
 from ..state import State
+from ..vehicle_tags import DRAGS
 from .ascent import ascent
 from .given_speeds import fly_given_speeds, stiff_gain
-
-# The drags, in the order of chapter 6, by the tags that switch them off.
-DRAGS: Mapping[str, Tuple[str, ...]] = {
-    "profile": ("profileDragCoeff",),
-    "parasitic": ("parasiticDragCoeff",),
-    "translational": ("translationalDragCoeff",),
-    "induced": ("inducedDragCoeff",),
-    "flapping": ("flappingA1c", "flappingA1s", "flappingB1", "flappingB2"),
-}
 
 MODEL = "model"
 LAG, NO_LAG = "motors that lag", "motors without lag"
