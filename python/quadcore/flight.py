@@ -83,7 +83,7 @@ def fly(
     InputError
         An argument is at fault; nothing was flown.
     FlightError
-        The flight failed, or what the pilot gave after the start was no command.
+        The flight failed, or what the pilot gave was no command, be it at the start.
     """
     total = steps_within(duration, simulation.dt)
     log_every = _row_every(log_every)
@@ -122,6 +122,8 @@ class _Piloted:
 
     def __init__(self, simulation: _core.Simulation, flight: _core.Flight, pilot: Pilot) -> None:
         self._simulation, self._flight, self._pilot = simulation, flight, pilot
+        command = simulation.topics.get(simulation.command_topic)
+        self._takes_commands = command is not None and command.writer is None
         # By the count of steps: the sum of their times would slip.
         self._per_step = pilot.rate * simulation.dt
         self._delay = math.ceil(pilot.delay / simulation.dt - _ROUNDING)
@@ -150,11 +152,14 @@ class _Piloted:
         try:
             self._simulation.command(speeds)
         except _core.InputError as error:
-            if self._steps == 0:
+            if not self._takes_commands:  # not what was given is at fault
                 raise
-            time = self._simulation.time
-            failure = _core.FlightError(f"the flight failed at t = {time:f} s: {error}")
-            failure.time = time
+            simulation, fault = self._simulation, str(error).partition("; give")[0]
+            failure = _core.FlightError(
+                f"the flight failed at t = {simulation.time:f} s: the controller returned "
+                f"{brief(speeds)}: {fault}; return {simulation.command_width} rotor speeds (rad/s)"
+            )
+            failure.time = simulation.time
             raise failure from error
 
 

@@ -222,9 +222,10 @@ class Simulation(_core.Simulation):
         InputError
             An argument is at fault; nothing was flown.
         FlightError
-            The flight failed, or the controller gave no command. Its attribute `log` is the log so
-            far, as it is of whatever else ends a run: the KeyboardInterrupt, the MemoryError when a
-            log has no more room, the error that a controller raises.
+            The flight failed, or the controller gave no command, be it at its first call. Its
+            attribute `log` is the log so far, as it is of whatever else ends a run: the
+            KeyboardInterrupt, the MemoryError when a log has no more room, the error that a
+            controller raises.
         """
         if commands is not None and controller is not None:
             raise _core.InputError("a flight takes commands or a controller; give one of them")

@@ -65,6 +65,13 @@ def test_a_flight_goes_on_from_a_snapshot_bit_for_bit_with_every_law(law, hangar
     assert first.run(0.4).table.tobytes() == expected.table.tobytes()
 
 
+def test_a_controller_beside_one_that_is_a_plugin_is_bad_input(hangar):
+    simulation = hangar(guided({"law": "pd"}), G, engine="eigen")
+    with pytest.raises(qc.InputError, match=r"vel_cmd.*controller"):
+        simulation.run(0.1, controller=lambda *_: [0] * 4)
+    assert simulation.time == 0
+
+
 def test_velocities_in_the_body_are_understood(hangar):
     logs = []
     for frame in ("world", "body"):

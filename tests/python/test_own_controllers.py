@@ -89,7 +89,7 @@ def test_faults_of_a_controller_are_rows_and_the_other_flights_finish(capsys):
         "nomodule:X": "there is no module 'nomodule'",
         "own:Raises": "ValueError: no idea",
         "own:Nan": "rotor 1 is not a finite number",
-        "own:Short": "holds 2 rotor speeds; give 4",
+        "own:Short": "holds 2 rotor speeds; return 4",
         "own:Wrong": "cannot be called as controller(t, state, reference)",
         "own:Asks": "missing 1 required positional argument",
         "own:Nope": "module 'own' has no 'Nope'",
@@ -141,6 +141,16 @@ def test_a_controller_that_leaves_the_program_ends_its_flight_alone(capsys):
     Path("quits.py").write_text("import sys\nsys.exit()\n")
     assert main([*command, "quits:Law", "--quiet"]) == 2
     assert "error: controller 'quits:Law': SystemExit" in capsys.readouterr().err
+
+
+def test_a_controller_that_returns_nothing_fails_its_first_flight_with_status_3(capsys):
+    Path("forgot.py").write_text("def law(t, state, reference):\n    speeds = [471] * 4\n")
+    command = ["run", "quadrotor", "--engine", "eigen", "--controller", "forgot:law", "--quiet"]
+    assert main(command) == 3
+    assert capsys.readouterr().err.startswith(
+        "error: the flight failed at t = 0.000000 s: the controller returned None: command is "
+        "not a 1-dimensional array of numbers; return 4 rotor speeds (rad/s)"
+    )
 
 
 def test_what_is_no_python_is_told_with_its_line(capsys):
