@@ -22,8 +22,9 @@ using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 /// in the InputError otherwise. No texts, no complex numbers, no masks.
 Numbers numbers(const py::object& object, int dimensions, const char* what);
 
-/// A whole number or a name that is refused in one line of quadcore's own if it is none.
-template <class T>
+/// A whole number or a name that is refused in one line of quadcore's own if it is none; `what`
+/// names it there.
+template <class T, const char* what>
 struct Given {
   using Python = std::conditional_t<std::is_integral_v<T>, py::int_, py::str>;
   static constexpr const char* kind =
@@ -40,15 +41,15 @@ py::str file_name(const std::string& path);
 
 namespace pybind11::detail {
 
-template <class T>
-struct type_caster<quadcore::bindings::Given<T>> {
-  PYBIND11_TYPE_CASTER(quadcore::bindings::Given<T>, make_caster<T>::name);
+template <class T, const char* what>
+struct type_caster<quadcore::bindings::Given<T, what>> {
+  using Given = quadcore::bindings::Given<T, what>;
+  PYBIND11_TYPE_CASTER(Given, make_caster<T>::name);
 
   bool load(handle source, bool convert) {
     make_caster<T> caster;
     if (!caster.load(source, convert)) {
-      using Given = quadcore::bindings::Given<T>;
-      std::string told = std::string("give ") + Given::kind;
+      std::string told = std::string(what) + ": give " + Given::kind;
       if (!isinstance<typename Given::Python>(source)) {
         told += quadcore::bindings::not_a(source);
       }

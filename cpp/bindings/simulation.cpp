@@ -36,7 +36,9 @@ void set_command(const Self& self, const py::object& speeds) {
   self->command(array.data(), static_cast<std::size_t>(array.size()));
 }
 
-void step(const Self& self, const Given<std::int64_t>& steps) {
+constexpr char step_count[] = "steps";
+
+void step(const Self& self, const Given<std::int64_t, step_count>& steps) {
   std::int64_t n = steps.value;
   using Clock = std::chrono::steady_clock;
   const Lock lock(*self);

@@ -36,7 +36,9 @@ py::dict topics(const Self& self) {
   return infos;
 }
 
-py::dict topic(const Self& self, const Given<std::string>& name) {
+constexpr char topic_name[] = "topic";
+
+py::dict topic(const Self& self, const Given<std::string, topic_name>& name) {
   const Lock lock(*self);
   const Topic& topic = self->topics()[self->topics().at(name.value)];
   py::dict message;
@@ -48,7 +50,8 @@ py::dict topic(const Self& self, const Given<std::string>& name) {
   return message;
 }
 
-void publish(const Self& self, const Given<std::string>& given, const py::object& values) {
+void publish(const Self& self, const Given<std::string, topic_name>& given,
+             const py::object& values) {
   const std::string& name = given.value;
   const Numbers array = numbers(values, 1, ("publish: topic '" + name + "'").c_str());
   const Lock lock(*self);

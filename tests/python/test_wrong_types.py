@@ -123,9 +123,9 @@ def test_lists_that_come_one_by_one_are_read_once():
 
 
 def test_numbers_and_names_that_cannot_be_meant_are_told():
-    with pytest.raises(qc.InputError, match=r"^give a whole number below 2\^63$"):
+    with pytest.raises(qc.InputError, match=r"^steps: give a whole number below 2\^63$"):
         quadrotor("eigen").step(2**63)
-    with pytest.raises(qc.InputError, match=r"^give a name in UTF-8$"):
+    with pytest.raises(qc.InputError, match=r"^topic: give a name in UTF-8$"):
         quadrotor("eigen").topic("\udc80")
 
 
