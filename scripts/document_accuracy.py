@@ -15,18 +15,15 @@ import numpy as np
 from measured import figures, put
 
 import quadcore as qc
+from quadcore.validation import Experiment
+from quadcore.validation.damping import measure
 
 DATA = Path(__file__).resolve().parents[1] / "tests" / "data"
 CASES = DATA / "gazebo11" / "cases"
 HOVER = 471.0  # rad/s
 SPIN = np.array([1, -1, 1, -1])
-NO_AIR = {
-    f"drone_plugin.{name}": 0
-    for name in (
-        *("rotorThrustCoeff", "rotorTorqueCoeff", "profileDragCoeff", "parasiticDragCoeff"),
-        *("translationalDragCoeff", "inducedDragCoeff"),
-    )
-}
+ENGINES = [engine for engine, _ in qc.engines()]
+LATER = ("gazebo11", "ode")  # those that lose more while their hinges settle
 # What real Gazebo 11.1.0 did; recorded by plugins made for it.
 GAZEBO_DECAY = {1: 0.812, 8: 0.0128, 10: 0.0082, 18: 0.0025}
 GAZEBO_SWEEPS = {20: 4e-10, 15: 5e-7, 10: 2e-4, 7: 7e-3, 5: 0.06, 3: 0.42}
@@ -96,41 +93,20 @@ def fourth_order() -> Iterator[Any]:
         yield rate, *(figures(one) for one in apart)
 
 
-def pitching(engine: str, slow: float) -> Any:
-    """Let a vehicle without air and weight pitch for 2 s; it and the logarithm of its rate."""
-    world = "<sdf version='1.6'><world name='w'><gravity>0 0 0</gravity></world></sdf>"
-    with tempfile.NamedTemporaryFile("w", suffix=".world") as file:
-        file.write(world)
-        file.flush()
-        simulation = qc.Simulation(
-            "quadrotor", engine, file.name, parameters=NO_AIR, xacro_args={"sim_slow": slow}
-        )
-    state = simulation.state.copy()
-    state.rotor_velocity[:] = HOVER * SPIN / slow
-    state.angular_velocity[1] = 0.01
-    simulation.set_state(state)
-    simulation.command(HOVER * SPIN)
-    return simulation, np.log(np.abs(simulation.run(2.0).angular_velocity[:, 1]))
-
-
 def decay(value: float) -> str:
     """Write a decay, or that it is none."""
     return figures(value, 3) if abs(value) > 1e-9 else "below 1e-9"
 
 
 def decays() -> Iterator[Any]:
-    """Tabulate the loss of a pitch rate in its first second, and in gazebo11 in its second."""
+    """Tabulate the loss of a pitch rate in its first second, and of some in its second."""
+    experiment = Experiment.of(commands=[[0, *HOVER * SPIN]])
     for slow, recorded in GAZEBO_DECAY.items():
-        found, later = {}, {}
-        for engine, _ in qc.engines():
-            simulation, rate = pitching(engine, slow)
-            found[engine] = rate[0] - rate[1000]
-            later[engine] = rate[1000] - rate[2000]
-        flat = 2.8125e-5 - 1.40625e-5
-        formula = 4 * flat * (HOVER / slow) ** 2 * 1e-3 / (2 * simulation.inertia[1, 1])
-        first = [decay(found[engine]) for engine, _ in qc.engines()]
-        then = [decay(later[engine]) for engine in ("gazebo11", "ode")]
-        yield slow, figures(formula, 3), recorded, *first, *then
+        first = measure(experiment, ENGINES, slow, (0, 1))
+        then = measure(experiment, LATER, slow, (1, 2))
+        found = [decay(first.measured[engine]) for engine in ENGINES]
+        later = [decay(then.measured[engine]) for engine in LATER]
+        yield slow, figures(first.formula, 3), recorded, *found, *later
 
 
 def sweeps(folder: Path) -> Iterator[Any]:
@@ -158,9 +134,10 @@ def main() -> None:
         put("engines.md", "order", heading, fourth_order())
         heading = ("sweeps", "real Gazebo", "`gazebo11`")
         put("gazebo.md", "sweeps", heading, sweeps(folder))
-    engines = [f"`{engine}`" for engine, _ in qc.engines()]
-    later = [f"next second: `{engine}`" for engine in ("gazebo11", "ode")]
-    put("gazebo.md", "decay", ("sim_slow", "formula", "real Gazebo", *engines, *later), decays())
+    formula = f"formula, {HOVER:g} rad/s / sim_slow"
+    heading = ("sim_slow", formula, "real Gazebo", *(f"`{engine}`" for engine in ENGINES))
+    later = [f"next second: `{engine}`" for engine in LATER]
+    put("gazebo.md", "decay", (*heading, *later), decays())
 
 
 if __name__ == "__main__":

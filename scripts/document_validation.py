@@ -81,6 +81,11 @@ def decays(study: Study) -> Iterator[Any]:
         yield f"{entry.sim_slow:g}", size(entry.formula), *shown
 
 
+def hover(experiment: Experiment) -> float:
+    """Speed of the rotors at which the flights begin (rad/s)."""
+    return float(np.abs(experiment.commands[0, 1:]).mean())
+
+
 def slowed(study: Study) -> Iterator[Any]:
     """Tabulate what slowing down changes in itself."""
     for drag in ("none", "all"):
@@ -152,7 +157,8 @@ def write_tables(study: Study) -> None:
     titles = [kind.title.lower() for kind in KINDS.values()]
     put(page, "figures", ("drag", *titles), numbers(study))
     engines = [f"`{engine}`" for engine in study.engines]
-    put(page, "decays", ("sim_slow", "formula", *engines), decays(study))
+    formula = f"formula, {hover(study.experiment):.4g} rad/s / sim_slow"
+    put(page, "decays", ("sim_slow", formula, *engines), decays(study))
     put(page, "slowed", ("sim_slow", "drag", "distance (m)", "yaw (degrees)"), slowed(study))
     heading = ("term", "in the thesis", "moves the model by (m)")
     put(page, "left out", heading, left_out(study))

@@ -10,6 +10,8 @@ import pytest
 
 import quadcore as qc
 from quadcore.chapter2 import Vehicle
+from quadcore.validation import Experiment
+from quadcore.validation.damping import measure
 from quadcore.validation.output import size
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -68,6 +70,24 @@ def test_drag_makes_the_open_loop_unstable_as_the_docs_say():
     tip = -v.gravity[2] * drag * v.arms[0, 2] / v.inertia[0, 0]
     growth = np.roots([1, drag / v.mass, 0, tip]).real.max()
     assert (round(1 / growth, 1), round(np.log(10) / growth, 1)) == (1.8, 4.2)
+
+
+def damper(page, name):
+    """Speed in the heading of a table of the damper, rad/s, and its formula by sim_slow, 1/s."""
+    text = (ROOT / "docs" / page).read_text()
+    table = text.split(f"<!-- measured: {name} -->")[1].split("<!-- end -->")[0]
+    speed = re.search(r"\| formula, ([\d.]+) rad/s / sim_slow \|", table)
+    rows = re.findall(r"^\| (\d+) \| ([\d.]+) \|", table, re.MULTILINE)
+    return float(speed[1]), {float(slow): float(formula) for slow, formula in rows}
+
+
+@pytest.mark.parametrize(("page", "name"), [("gazebo.md", "decay"), ("validation.md", "decays")])
+def test_both_tables_of_the_damper_are_the_one_formula_at_the_speed_in_their_heading(page, name):
+    speed, formulas = damper(page, name)
+    assert list(formulas) == [1, 8, 10, 18]
+    experiment = Experiment.of(commands=[[0, speed, -speed, speed, -speed]])
+    for slow, formula in formulas.items():
+        assert formula == pytest.approx(measure(experiment, [], slow).formula, rel=0.005)
 
 
 def test_real_gazebo_and_gazebo11_are_measured_alike_in_the_docs():

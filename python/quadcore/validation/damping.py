@@ -11,7 +11,7 @@ air; it is no physics.
 
 from __future__ import annotations
 
-from typing import Dict, NamedTuple, Sequence
+from typing import Dict, NamedTuple, Sequence, Tuple
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from ..simulation import Simulation
 from .experiment import Case, Experiment
 
 _RATE = 0.01  # rad/s
-_SETTLED, _END = 0.1, 1.0  # s; until the hinges of ODE have settled the rate drops once
+_SETTLED = (0.1, 1.0)  # s; until the hinges of ODE have settled the rate drops once
 
 
 class Damping(NamedTuple):
@@ -33,16 +33,24 @@ class Damping(NamedTuple):
     """1/s, by engine; without those that cannot fly so."""
 
 
-def measure(experiment: Experiment, engines: Sequence[str], sim_slow: float) -> Damping:
-    """Let a vehicle fall and pitch for a second, without air, its rotors spinning as commanded.
+def measure(
+    experiment: Experiment,
+    engines: Sequence[str],
+    sim_slow: float,
+    window: Tuple[float, float] = _SETTLED,
+) -> Damping:
+    """Let a vehicle fall and pitch, without air, its rotors spinning as first commanded.
 
-    The decay is that of the tilting rate from 0.1 to 1 s.
+    Parameters
+    ----------
+    window
+        Times between which the decay of the tilting rate is measured, s.
     """
     case = Case("eigen", sim_slow, "none")
     measured = {}
     for engine in engines:
         try:
-            measured[engine] = _decay(_falling(experiment, case._replace(plant=engine)))
+            measured[engine] = _decay(_falling(experiment, case._replace(plant=engine)), *window)
         except QuadcoreError:  # the rows of its flights say why
             continue
     return Damping(sim_slow, _formula(_falling(experiment, case)), measured)
@@ -59,11 +67,11 @@ def _falling(experiment: Experiment, case: Case) -> Simulation:
     return simulation
 
 
-def _decay(simulation: Simulation) -> float:
-    log = simulation.run(_END)
-    begin = int(np.searchsorted(log.time, _SETTLED - 1e-9))
-    tilting = np.linalg.norm(log.angular_velocity[[begin, -1], :2], axis=1)
-    return float(np.log(tilting[0] / tilting[1]) / (log.time[-1] - log.time[begin]))
+def _decay(simulation: Simulation, begin: float, end: float) -> float:
+    log = simulation.run(end)
+    first = int(np.searchsorted(log.time, begin - 1e-9))
+    tilting = np.linalg.norm(log.angular_velocity[[first, -1], :2], axis=1)
+    return float(np.log(tilting[0] / tilting[1]) / (log.time[-1] - log.time[first]))
 
 
 def _formula(simulation: Simulation) -> float:
