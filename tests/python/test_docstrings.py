@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import doctest
 import inspect
 import re
 
 import pytest
 
 import quadcore as qc
-from quadcore import _core
+from quadcore import _core, chapter2
 
 PUBLIC = {
     f"{module.__name__}.{name}": getattr(module, name)
@@ -92,6 +93,14 @@ def test_each_argument_is_told(name):
             if not re.search(rf"^(\w+, )*{argument}(, \w+)*( :|$)", told_of, re.MULTILINE)
         ]
     assert untold == []
+
+
+@pytest.mark.parametrize("module", [qc, chapter2], ids=lambda module: module.__name__)
+def test_the_example_that_help_begins_with_does_what_it_says(module):
+    [example] = doctest.DocTestFinder(recurse=False).find(module)
+    said = []
+    ran = doctest.DocTestRunner().run(example, out=said.append)
+    assert ran.attempted > 2 and not ran.failed, "".join(said)
 
 
 def test_a_public_object_does_not_show_as_an_address():
