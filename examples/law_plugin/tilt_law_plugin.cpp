@@ -3,6 +3,7 @@
 #include <optional>
 #include <quadcore/control/allocation.hpp>
 #include <quadcore/control/belief.hpp>
+#include <quadcore/elementary.hpp>
 #include <quadcore/plugin.hpp>
 
 namespace {
@@ -67,9 +68,9 @@ class TiltLawPlugin final : public quadcore::Plugin {
     // The shortest turn that brings z of F to the wanted thrust, as a vector of the angle's size.
     const Vector3d z_wanted_F = R_WF.transpose() * f_W.normalized();
     const Vector3d across_F = Vector3d::UnitZ().cross(z_wanted_F);
-    const double angle = std::atan2(across_F.norm(), z_wanted_F.z());
+    const double angle = quadcore::elementary::atan2(across_F.norm(), z_wanted_F.z());
     const Vector3d tilt_F = across_F.norm() > 0 ? (angle * across_F.normalized()).eval() : across_F;
-    const double yaw = std::atan2(R_WF(1, 0), R_WF(0, 0));
+    const double yaw = quadcore::elementary::atan2(R_WF(1, 0), R_WF(0, 0));
     const Vector3d& w_F = now.angular_velocity;
     Vector3d turn_F = k_tilt_ * tilt_F - k_rate_ * w_F;  // rad/s^2
     turn_F.z() = k_yaw_ * std::remainder(wanted.yaw - yaw, 2 * M_PI) +

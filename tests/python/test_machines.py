@@ -29,6 +29,10 @@ NOISE = {
     "linearVelocityNoise": 0.3,
     "angularVelocityNoise": 0.4,
 }
+TRANSCENDENTAL = (
+    "sin|cos|sincos|tan|a(sin|cos|tan)h?|atan2|(sin|cos|tan)h|sinpi|cospi|exp(2|10|m1)?"
+    "|log(2|10|1p|b)?|pow|cbrt|hypot|erfc?|[lt]gamma|j[01n]|y[01n]"
+)
 FLY = """
 import hashlib, sys
 import quadcore as qc
@@ -102,8 +106,15 @@ def test_no_library_asks_libm_for_what_it_does_not_round_exactly(library):
     )
     names = {line.split()[-1].split("@")[0] for line in listed.stdout.splitlines()}
     assert names
-    transcendental = re.compile(
-        r"(__)?(sin|cos|sincos|tan|a(sin|cos|tan)h?|atan2|(sin|cos|tan)h|sinpi|cospi|exp(2|10|m1)?"
-        r"|log(2|10|1p|b)?|pow|cbrt|hypot|erfc?|[lt]gamma|j[01n]|y[01n])(_finite|f|l)?"
-    )
-    assert not sorted(name for name in names if transcendental.fullmatch(name))
+    named = re.compile(rf"(__)?({TRANSCENDENTAL})(_finite|f|l)?")
+    assert not sorted(name for name in names if named.fullmatch(name))
+
+
+def test_no_plugin_that_is_shown_asks_libm_for_what_it_does_not_round_exactly():
+    pages = sorted((TESTS.parents[1] / "docs").rglob("*.md"))
+    shown = [page.read_text() for page in pages]
+    shown = [code for text in shown for code in re.findall(r"```cpp\n(.*?)```", text, re.DOTALL)]
+    shown += [file.read_text() for file in sorted((TESTS.parents[1] / "examples").rglob("*.cpp"))]
+    asked = re.compile(rf"std::({TRANSCENDENTAL})\(|AngleAxis")
+    assert len(shown) > 10
+    assert [line for code in shown for line in code.splitlines() if asked.search(line)] == []
