@@ -6,13 +6,13 @@
 
 from __future__ import annotations
 
-import re
 import sys
 import warnings
 from pathlib import Path
-from typing import Iterable, Iterator, Sequence
+from typing import Iterator
 
-from world_elements import WORLD
+from markdown_table import table
+from world_elements import world_section
 
 import quadcore as qc
 from quadcore import _core
@@ -68,16 +68,6 @@ TOPICS = {
 }
 
 
-def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Lay out a Markdown table."""
-    lines = [heads, ["---"] * len(heads), *rows]
-    return "".join("| " + " | ".join(_cell(cell) for cell in line) + " |\n" for line in lines)
-
-
-def _cell(text: str) -> str:
-    return text.replace("|", "\\|")
-
-
 def plugin_sections(*simulations: qc.Simulation) -> Iterator[str]:
     """One section for each module of the simulations' plugins."""
     told = set()
@@ -107,32 +97,6 @@ def _sentence(text: str) -> str:
     return text[0].upper() + text[1:] + "."
 
 
-def world_section() -> str:
-    """Tabulate the elements that the reader accepts, each with the range that it states."""
-    accepted = set(_accepted("", "world"))
-    described = {f"/{path}" for path in WORLD}
-    # physics:ode is physics under another name; a place without an entry must lead to one.
-    missing = {
-        path
-        for path in accepted
-        if not path.startswith("/physics:ode")
-        and not any(d == path or d.startswith(path + "/") for d in described)
-    }
-    if missing or described - accepted:
-        sys.exit(f"worlds: not described: {missing}; not read: {described - accepted}")
-    rows = (
-        (f"`{path}`", unit, default, _range(path), meaning)
-        for path, (unit, default, meaning) in WORLD.items()
-    )
-    return (
-        "\n## Worlds\n\n"
-        "An SDF file with one `<world>`. Of it these elements are read; any other is an error\n"
-        "that names it, unless [nothing feels it](#seen-or-sensed). `empty` and `default` are\n"
-        "shipped: Gazebo's defaults without and with ground.\n\n"
-        + table(("element", "unit", "default", "range", "meaning"), rows)
-    )
-
-
 def unfelt_section() -> str:
     """Tabulate what is passed over."""
     everything = _core.everything_unfelt()
@@ -150,34 +114,6 @@ def unfelt_section() -> str:
         + "\nModules of Gazebo, where no library of that name lies in a plugin folder:\n\n"
         + table(("what it tells", "modules"), ((k, ", ".join(v)) for k, v in modules.items()))
     )
-
-
-def _accepted(path: str, element: str) -> Iterator[str]:
-    """Every path below `path`, from what the reader says to an element that it does not know."""
-    message = _refusal(path, "<unknown/>")
-    takes = re.search(rf"<{element}> takes ([^;]*)", message)
-    for name in takes.group(1).split(", ") if takes else ():
-        yield f"{path}/{name}"
-        yield from _accepted(f"{path}/{name}", name)
-
-
-def _range(path: str) -> str:
-    found = re.search(r"write a number (.*)|must be a (whole number .*)", _refusal(path, "-1"))
-    return (found.group(1) or found.group(2)) if found else ""
-
-
-def _refusal(path: str, content: str) -> str:
-    """Return what the reader says to `content` at `path`."""
-    names = [name for name in path.split("/") if name]
-    opened = "".join(f"<{name}>" for name in names)
-    closed = "".join(f"</{name}>" for name in reversed(names))
-    # The core reads a prefix as part of the name, so that physics:ode needs no namespace.
-    text = f"<sdf><world>{opened}{content}{closed}</world></sdf>"
-    try:
-        _core.read_world(_core.Document("world", text))
-    except qc.InputError as error:
-        return str(error)
-    return ""
 
 
 def reference_section() -> str:

@@ -13,16 +13,17 @@ import re
 from pathlib import Path
 from typing import Iterable, Sequence
 
+from markdown_table import table
+
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 
 
 def put(page: str, name: str, heading: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
     """Write a table to its place in docs/PAGE."""
     path = DOCS / page
-    lines = [heading, ["---"] * len(heading), *rows]
-    table = "".join(f"| {' | '.join(map(str, line))} |\n" for line in lines)
+    laid_out = table(heading, rows)
     place = re.compile(rf"(<!-- measured: {name} -->\n).*?(<!-- end -->)", re.DOTALL)
-    text, count = place.subn(lambda found: found[1] + table + found[2], path.read_text())
+    text, count = place.subn(lambda found: found[1] + laid_out + found[2], path.read_text())
     if count != 1:
         raise SystemExit(f"docs/{page}: {count} places for the table '{name}'")
     path.write_text(text)

@@ -1,6 +1,21 @@
-"""What docs/tags.md says of the elements of a world."""
+"""What docs/tags.md says of worlds."""
 
 from __future__ import annotations
+
+import re
+import sys
+from typing import Iterator
+
+from markdown_table import table
+
+import quadcore as qc
+from quadcore import _core, resources
+
+SHIPPED = {
+    "empty": "Gazebo's defaults without ground; what there is unless another is named",
+    "default": "the thesis': Gazebo's defaults with ground",
+    "basic": "RotorS': ground, steps of 10 ms, a thousand sweeps of the solver",
+}
 
 _FIELD = ("T", "`5.5645e-6 22.8758e-6 -42.3884e-6`")
 
@@ -89,3 +104,60 @@ WORLD = {
         "hinge's, see [gazebo.md](gazebo.md#random-vehicles)",
     ),
 }
+
+
+def world_section() -> str:
+    """Tabulate the elements that the reader accepts, each with the range that it states."""
+    accepted = set(_accepted("", "world"))
+    described = {f"/{path}" for path in WORLD}
+    # physics:ode is physics under another name; a place without an entry must lead to one.
+    missing = {
+        path
+        for path in accepted
+        if not path.startswith("/physics:ode")
+        and not any(d == path or d.startswith(path + "/") for d in described)
+    }
+    if missing or described - accepted:
+        sys.exit(f"worlds: not described: {missing}; not read: {described - accepted}")
+    if set(SHIPPED) != set(resources.shipped("worlds")):
+        sys.exit(f"worlds: shipped, says this file, are {list(SHIPPED)}")
+    rows = (
+        (f"`{path}`", unit, default, _range(path), meaning)
+        for path, (unit, default, meaning) in WORLD.items()
+    )
+    return (
+        "\n## Worlds\n\n"
+        "An SDF file with one `<world>`. Of it these elements are read; any other is an error\n"
+        "that names it, unless [nothing feels it](#seen-or-sensed).\n\n"
+        + table(("element", "unit", "default", "range", "meaning"), rows)
+        + "\nShipped, and known by name:\n\n"
+        + table(("world", "what it is"), ((f"`{name}`", what) for name, what in SHIPPED.items()))
+    )
+
+
+def _accepted(path: str, element: str) -> Iterator[str]:
+    """Every path below `path`, from what the reader says to an element that it does not know."""
+    message = _refusal(path, "<unknown/>")
+    takes = re.search(rf"<{element}> takes ([^;]*)", message)
+    for name in takes.group(1).split(", ") if takes else ():
+        yield f"{path}/{name}"
+        yield from _accepted(f"{path}/{name}", name)
+
+
+def _range(path: str) -> str:
+    found = re.search(r"write a number (.*)|must be a (whole number .*)", _refusal(path, "-1"))
+    return (found.group(1) or found.group(2)) if found else ""
+
+
+def _refusal(path: str, content: str) -> str:
+    """Return what the reader says to `content` at `path`."""
+    names = [name for name in path.split("/") if name]
+    opened = "".join(f"<{name}>" for name in names)
+    closed = "".join(f"</{name}>" for name in reversed(names))
+    # The core reads a prefix as part of the name, so that physics:ode needs no namespace.
+    text = f"<sdf><world>{opened}{content}{closed}</world></sdf>"
+    try:
+        _core.read_world(_core.Document("world", text))
+    except qc.InputError as error:
+        return str(error)
+    return ""
