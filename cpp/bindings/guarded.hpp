@@ -63,10 +63,8 @@ void raising_warnings(const Guarded& guarded, const Call& call) {
   const std::size_t before = simulation.warnings().size();
   const auto raise = [&] {
     for (std::size_t i = before; i < simulation.warnings().size(); ++i) {
-      const py::object category = py::module_::import("quadcore").attr("QuadcoreWarning");
-      if (PyErr_WarnEx(category.ptr(), simulation.warnings()[i].c_str(), 1) != 0) {
-        throw py::error_already_set();  // the user has made an error of it
-      }
+      // Raises where the user has made an error of it.
+      py::module_::import("quadcore.warning").attr("warn")(simulation.warnings()[i]);
     }
   };
   try {

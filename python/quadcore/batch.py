@@ -15,7 +15,6 @@ from typing import (
     Tuple,
     Union,
 )
-from warnings import warn
 
 import numpy as np
 
@@ -28,7 +27,7 @@ from .flight import check_logged, steps_within
 from .given import Value, engine_and_step, poses, seeds, text_of, whole
 from .log import Log
 from .overrides import check_names, with_links, without_xacro
-from .warning import QuadcoreWarning
+from .warning import warn
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -113,7 +112,7 @@ class BatchSimulation(_core.Batch):
             0 if threads is None else whole(threads, "threads", bits=31),
         )
         for warning in self.warnings(0):
-            warn(warning, QuadcoreWarning, stacklevel=2)
+            warn(warning)
 
     @property
     def state(self) -> BatchState:

@@ -7,7 +7,6 @@ import json
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, Dict, Mapping, Optional, Sequence, Tuple, Union
-from warnings import warn
 
 import numpy as np
 
@@ -25,7 +24,7 @@ from .references import ReferenceLike
 from .scenarios import Scenario
 from .scenarios import read as read_scenario
 from .simulation import Simulation
-from .warning import QuadcoreWarning, unheard
+from .warning import unheard, warn
 
 _VERSION = 1  # of what a fingerprint stands for
 
@@ -177,7 +176,7 @@ class FlightPlan:
             build(**plan._vehicle())
         unseen = read.unseen(self.duration)
         if unseen:
-            warn(unseen, QuadcoreWarning, stacklevel=2)
+            warn(unseen)
         return plan
 
     def commanded(self, commands: CommandsLike) -> FlightPlan:

@@ -7,7 +7,6 @@ parameters. ``NAMES`` holds them all. `of_file` makes one of a gains file.
 from __future__ import annotations
 
 from typing import Any, Callable, List, Optional, Sequence
-from warnings import warn
 
 from . import _core, gains
 from .gains import law_for, of_file
@@ -15,7 +14,7 @@ from .imported import imported
 from .law import Law
 from .parameters import did_you_mean, docstring, read_values
 from .timing import DELAY, RATE
-from .warning import QuadcoreWarning
+from .warning import warn
 
 
 def parse(text: str, vehicle: str = "") -> Any:
@@ -45,9 +44,7 @@ def parse(text: str, vehicle: str = "") -> Any:
         if vehicle and read.vehicle not in ("", vehicle):
             warn(
                 f"{text}: these gains are for '{read.vehicle}', but '{vehicle}' flies with them; "
-                "tune some for it (quadcore tune)",
-                QuadcoreWarning,
-                stacklevel=2,
+                "tune some for it (quadcore tune)"
             )
         return read.make()
     name, _, rest = text.partition(":")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Mapping, Optional, Sequence, Union
-from warnings import warn
 
 import numpy as np
 
@@ -20,7 +19,7 @@ from .log import Log
 from .overrides import check_names, with_links, without_xacro
 from .references import ReferenceLike
 from .state import LiveState
-from .warning import QuadcoreWarning
+from .warning import warn
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -99,7 +98,7 @@ class Simulation(_core.Simulation):
         )
         self._live = LiveState(self)
         for warning in self.warnings:
-            warn(warning, QuadcoreWarning, stacklevel=2)
+            warn(warning)
 
     # attrgetter, not a function: reading the state is part of every step of a Python loop.
     state: LiveState = property(  # type: ignore[assignment]

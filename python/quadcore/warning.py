@@ -1,12 +1,27 @@
-"""The category of quadcore's warnings."""
+"""quadcore's warnings."""
 
+import sys
 import warnings
 from contextlib import contextmanager
+from types import FrameType
 from typing import Iterator
 
 
 class QuadcoreWarning(UserWarning):
     """What is allowed but was perhaps not meant."""
+
+
+def warn(message: str) -> None:
+    """Warn of the line that called the package, however deep in it the doubt arose."""
+    frame, level = sys._getframe(1), 2
+    while _is_ours(frame) and frame.f_back is not None:
+        frame, level = frame.f_back, level + 1
+    warnings.warn(message, QuadcoreWarning, stacklevel=level)
+
+
+def _is_ours(frame: FrameType) -> bool:
+    name = str(frame.f_globals.get("__name__"))
+    return name.partition(".")[0] in ("quadcore", "xacro")  # xacro warns through us
 
 
 @contextmanager

@@ -14,7 +14,6 @@ import traceback
 from pathlib import Path
 from types import FrameType, SimpleNamespace
 from typing import Any, Dict, Iterable, Iterator, List, Mapping, Set, Tuple
-from warnings import warn
 
 import rospkg
 import xacro
@@ -23,7 +22,7 @@ from . import resources, xml_origins, xml_source
 from ._core import InputError, QuadcoreError
 from .forks import LOCK
 from .kept_expansions import Kept, Outside, content
-from .warning import QuadcoreWarning
+from .warning import warn
 
 _MOST_ELEMENTS = 20000  # a few lines of macros can ask for billions
 
@@ -65,7 +64,7 @@ def expand(path: str, arguments: Mapping[str, str]) -> _Lines:
     for name in arguments:
         if name not in asked:
             what = f"there is no xacro argument {_named(name, asked)}: it has no effect"
-            warn(f"{path}: {what}", QuadcoreWarning, stacklevel=2)
+            warn(f"{path}: {what}")
     return lines
 
 
@@ -153,7 +152,7 @@ def _replaced_hooks(arguments: _Arguments, outside: Outside) -> Iterator[None]:
     def warning(message: str) -> None:
         outside.may_be_kept = False  # it would not be told again
         place = _place(frame for frame, _ in traceback.walk_stack(None))
-        warn(f"{place}: {message}" if place else message, QuadcoreWarning, stacklevel=2)
+        warn(f"{place}: {message}" if place else message)
 
     new = {
         "parse": parse,

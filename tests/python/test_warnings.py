@@ -161,3 +161,45 @@ def test_joint_damping_counts_as_stiffness(hangar):
     messages = stiff(lambda: hangar(vehicle(damped, motor={"kp": 0.02})))
     assert len(messages) == 4
     assert "take <kp> below 0.01625 N m s/rad" in messages[0]
+
+
+INCOMPLETE = """<robot name="incomplete" xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:include filename="$(find quadcore)/urdf/quadrotor.urdf.xacro"/>
+<xacro:include filename="nothing_*.xacro"/>
+</robot>"""
+DOUBTS = {
+    "an argument of a simulation": lambda: qc.Simulation(xacro_args={"simslow": 1}),
+    "of a batch": lambda: qc.BatchSimulation(n=2, xacro_args={"simslow": 1}),
+    "of a model that is read": lambda: qc.read_model("quadrotor", {"simslow": 1}),
+    "of a flight that is described": lambda: qc.FlightPlan.of(xacro_args={"simslow": 1}),
+    "of a study": lambda: qc.evaluate("pd", "hover", duration=0.02, xacro_args={"simslow": 1}),
+    "a tag": lambda: qc.Simulation(parameters={"motorpid_plugin.ki": 1}),
+    "a flight": lambda: qc.Simulation(spawn=UPSIDE_DOWN).run(0.1),
+    "a step": lambda: qc.Simulation(spawn=UPSIDE_DOWN).step(),
+    "a plan that is flown": lambda: qc.FlightPlan.of(spawn=UPSIDE_DOWN, duration=0.1).fly(),
+    "an event too late": lambda: qc.FlightPlan.of(scenario="lost_rotor", duration=0.1),
+    "a file that xacro does not find": lambda: qc.Simulation("incomplete.xacro"),
+    "gains of another": lambda: qc.laws.parse("other.yaml", "quadrotor"),
+}
+
+
+@pytest.mark.parametrize("doubt", DOUBTS)
+def test_a_warning_shows_the_line_that_called_quadcore(doubt, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "incomplete.xacro").write_text(INCOMPLETE)
+    (tmp_path / "other.yaml").write_text("law: geometric\nvehicle: hexarotor\n")
+    with pytest.warns(qc.QuadcoreWarning) as shown:
+        DOUBTS[doubt]()
+    line = DOUBTS[doubt].__code__.co_firstlineno
+    assert {(warning.filename, warning.lineno) for warning in shown} == {(__file__, line)}
+
+
+def test_a_warning_within_a_controller_shows_its_line():
+    def controller(t, state, reference):
+        qc.Simulation(xacro_args={"simslow": 1})
+        return [471, -471, 471, -471]
+
+    with pytest.warns(qc.QuadcoreWarning) as shown:
+        qc.Simulation(engine="eigen").run(0.002, controller=controller)
+    line = controller.__code__.co_firstlineno + 1
+    assert {(warning.filename, warning.lineno) for warning in shown} == {(__file__, line)}

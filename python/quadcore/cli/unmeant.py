@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from warnings import warn
-
 import numpy as np
 
 from .._core import InputError
 from ..flight_plan import FlightPlan
 from ..simulation import Simulation
-from ..warning import QuadcoreWarning
+from ..warning import warn
 
 
 def warn_of_commands(simulation: Simulation, plan: FlightPlan, otherwise: str) -> None:
@@ -21,7 +19,7 @@ def warn_of_commands(simulation: Simulation, plan: FlightPlan, otherwise: str) -
     if plan.controller is not None or topic is None or topic.writer is not None:
         return
     if plan.commands is None:
-        _warn(
+        warn(
             "nothing commands the rotors, so that the vehicle falls; give --commands FILE, or "
             + otherwise
         )
@@ -32,7 +30,7 @@ def warn_of_commands(simulation: Simulation, plan: FlightPlan, otherwise: str) -
             return
         if not _one_way(hover[None]):
             told = ", ".join(f"{speed:.0f}" for speed in hover)
-            _warn(
+            warn(
                 "the commands turn all rotors one way, so that their reaction torques add up and "
                 f"the vehicle yaws; the sign of a speed is its sense: it hovers at {told} rad/s"
             )
@@ -40,7 +38,3 @@ def warn_of_commands(simulation: Simulation, plan: FlightPlan, otherwise: str) -
 
 def _one_way(speeds: np.ndarray) -> bool:
     return speeds.shape[1] > 1 and bool(np.all(speeds > 0) or np.all(speeds < 0))
-
-
-def _warn(what: str) -> None:
-    warn(what, QuadcoreWarning, stacklevel=2)
