@@ -11,20 +11,21 @@ import time
 from pathlib import Path
 
 import numpy as np
+import yaml
 
 import quadcore as qc
 from quadcore.evaluation.evaluate import conduct
 from quadcore.evaluation.output import write
 from quadcore.evaluation.plan import Plan
 
+SPIRAL = yaml.safe_load((Path(__file__).parents[1] / "config" / "spiral.yaml").read_text())
 LONGEST = 45.0  # s, on two cores
 LONGEST_IN_NUMPY = 2.5  # s a flight
 PROCESSES = 2
 
 
 def seconds_of_evaluation():
-    noise = {"odometry.positionNoise": 0.2106e-3, "odometry.orientationNoise": 0.2e-3}
-    options = {"xacro_args": {"sim_slow": 1}, "parameters": noise}
+    options = {"xacro_args": SPIRAL["xacro"]}
     laws = ["pd", "pd_compensated", "geometric", "indi"]
     shapes = ["spiral", "circle", "eight", "waypoints"]
     start, used = time.perf_counter(), os.times()

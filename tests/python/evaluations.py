@@ -7,7 +7,6 @@ import csv
 import quadcore as qc
 
 FLY = ["evaluate", "--xacro", "sim_slow:=1", "--duration", "1"]
-NOISE = {"odometry.positionNoise": 0.2106e-3, "odometry.orientationNoise": 0.2e-3}
 
 
 def evaluate(*arguments, **options):

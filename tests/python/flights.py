@@ -17,6 +17,9 @@ ENGINES = [name for name, _ in qc.engines()]
 HOVER = np.array([471, -471, 471, -471])
 MANOEUVRE = np.array([[0.0, 0, 0, 0, 0], [0.02, 480, -475, 485, -470], [0.4, 470, -480, 470, -480]])
 
+# Of the thesis' odometry.
+NOISE = {"odometry.positionNoise": 0.2106e-3, "odometry.orientationNoise": 0.2e-3}
+
 # All that a simulation has to remember: integral and derivative, noise, a timeout.
 BUSY = {
     "motorpid_plugin.ki": 2e-4,

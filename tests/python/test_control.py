@@ -7,14 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from flights import ENGINES, quadrotor
+from flights import ENGINES, NOISE, quadrotor
 from twin_law import Twin
 
 import quadcore as qc
 from quadcore import laws, references
 
 ROOT = Path(__file__).resolve().parents[2]
-NOISE = {"odometry.positionNoise": 0.2106e-3, "odometry.orientationNoise": 0.2e-3}
 FLYING = [name for name in laws.NAMES if name != "pid_thesis"]
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from evaluations import NOISE, evaluate
+from evaluations import evaluate
+from flights import NOISE
 
 import quadcore as qc
 from quadcore import laws, references

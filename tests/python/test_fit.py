@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from flights import NOISE
 from processes import ran, refused
 
 import quadcore as qc
@@ -33,7 +34,6 @@ LINEAR = {
 SUM = " + ".join(LINEAR)
 WRONG = [1.0e-5, 3.2e-7, 4e-4, 0.008, 0.0058, 0.016, 0.004, 0.004, 0.004, 0.004]
 BEGIN = dict(zip([*TRUE, *LINEAR], WRONG))
-NOISE = {"odometry.positionNoise": 0.2106e-3, "odometry.orientationNoise": 0.2e-3}
 
 
 class Excited:

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from flights import NOISE
 from hooked import with_plugins
 from vehicles import (
     AIR,
@@ -29,7 +30,7 @@ from quadcore.cli import main
 from quadcore.plants import build
 
 CHAPTER_2 = {
-    "parameters": {"drone_plugin.dragModel": "chapter2", "odometry.positionNoise": 0.2106e-3},
+    "parameters": {"drone_plugin.dragModel": "chapter2", **NOISE},
     "xacro_args": {"sim_slow": 1},
     "seed": 5,
 }

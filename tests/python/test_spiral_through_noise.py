@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import pytest
+from flights import NOISE
 
 import quadcore as qc
 
-THESIS = {"odometry.positionNoise": 0.2106e-3, "odometry.orientationNoise": 0.2e-3}
 VELOCITIES = {"odometry.linearVelocityNoise": 5e-3, "odometry.angularVelocityNoise": 5e-3}
 
 
@@ -30,11 +30,11 @@ def worst(engine, slow, noise, seeds):
 )
 def test_the_noise_of_the_thesis_leaves_it_close(engine, slow, seeds, bar):
     """scripts/fly_laws.py flies 20 seeds of each."""
-    assert 0 < worst(engine, slow, THESIS, seeds) <= bar
+    assert 0 < worst(engine, slow, NOISE, seeds) <= bar
 
 
 @pytest.mark.parametrize(
     ("engine", "slow"), [("eigen", 1), ("ode", 1), ("gazebo11", 1), ("gazebo11", 10)]
 )
 def test_noisy_velocities_besides_leave_it_within_a_millimetre(engine, slow):
-    assert 0.15e-3 < worst(engine, slow, {**THESIS, **VELOCITIES}, 2) < 1e-3
+    assert 0.15e-3 < worst(engine, slow, {**NOISE, **VELOCITIES}, 2) < 1e-3
