@@ -24,7 +24,7 @@ from .arguments import brief
 from .batch_state import BatchState as BatchState
 from .description import read_both
 from .flight import check_logged, steps_within
-from .given import Value, engine_and_step, poses, seeds, text_of, whole
+from .given import SPAWN, Value, engine_and_step, poses, seeds, text_of, whole
 from .log import Log
 from .overrides import check_names, with_links, without_xacro
 from .warning import warn
@@ -81,7 +81,7 @@ class BatchSimulation(_core.Batch):
         n: int = 1,
         engine: str = "eigen",
         parameters: Optional[Mapping[str, Union[Value, np.ndarray]]] = None,
-        spawn: npt.ArrayLike = (0, 0, 10),
+        spawn: npt.ArrayLike = SPAWN,
         seed: Union[int, npt.ArrayLike] = 0,
         threads: Optional[int] = None,
         world: Union[str, Path, _core.World, None] = None,

@@ -16,10 +16,10 @@ from .commands import CommandsLike, as_commands
 from .controller import Guided
 from .description import read_both
 from .flight import Progress
-from .given import Number, Value, pose, text_of, whole
+from .given import SPAWN, Number, Value, pose, text_of, whole
 from .log import Log
 from .overrides import check_names, with_links, without_xacro
-from .plants import build
+from .plants import ENGINE, build
 from .references import ReferenceLike
 from .scenarios import Scenario
 from .scenarios import read as read_scenario
@@ -64,11 +64,11 @@ class FlightPlan:
 
     model: Model
     world: World
-    engine: str = "gazebo11"
+    engine: str = ENGINE
     dt: Optional[float] = None
     seed: int = 0
     parameters: Mapping[str, str] = field(default_factory=dict)
-    spawn: Tuple[float, ...] = (0.0, 0.0, 10.0, 0.0, 0.0, 0.0)
+    spawn: Tuple[float, ...] = pose(SPAWN)
     rotor_velocity: Optional[Tuple[float, ...]] = None
     duration: float = 10.0
     commands: Optional[np.ndarray] = field(default=None, repr=False)
@@ -107,7 +107,7 @@ class FlightPlan:
         xacro_args: Optional[Mapping[str, object]] = None,
         ignore: Sequence[str] = (),
         parameters: Optional[Mapping[str, Value]] = None,
-        spawn: Sequence[Number] = (0, 0, 10),
+        spawn: Sequence[Number] = SPAWN,
         seed: int = 0,
         commands: Optional[CommandsLike] = None,
         scenario: Union[str, Path, Scenario, None] = None,

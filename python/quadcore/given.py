@@ -9,12 +9,16 @@ import numpy as np
 
 from . import _core
 from .arguments import brief
+from .plants import LAGRANGE
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
 Number = Union[float, str]
 Value = Union[float, str, bool, Path, Sequence[str], Sequence[float], np.ndarray]
+
+SPAWN = (0.0, 0.0, 10.0)
+"""Where a flight begins unless told, m in the world."""
 
 
 def whole(seed: object, name: str = "seed", bits: int = 64) -> int:
@@ -29,9 +33,14 @@ def whole(seed: object, name: str = "seed", bits: int = 64) -> int:
 
 def engine_and_step(engine: object, dt: object) -> Tuple[str, Optional[float]]:
     """Check an engine's name, known or not, and the length of a step or None."""
+    known = ", ".join(name for name, _ in _core.engines())
     if not isinstance(engine, str):
-        known = ", ".join(name for name, _ in _core.engines())
         raise _core.InputError(f"engine is {brief(engine)}; give one of {known}")
+    if engine == LAGRANGE:
+        raise _core.InputError(
+            f"engine '{engine}' is flown by quadcore.chapter2.plant.Plant, quadcore.FlightPlan and "
+            f"the commands that offer it; here choose one of {known}"
+        )
     if dt is None:
         return engine, None
     try:

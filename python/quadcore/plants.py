@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, List, Tuple
+from typing import TYPE_CHECKING, Any, List, Tuple
 
 from ._core import engines
-from .simulation import Simulation
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
+
+ENGINE = engines()[0][0]
+"""What flies unless told."""
 
 LAGRANGE = "lagrange"
 
@@ -32,6 +37,8 @@ def build(engine: str, **options: Any) -> Simulation:
         As from `Simulation`; or a vehicle that the mathematical model has no equation for.
     """
     if engine != LAGRANGE:
+        from .simulation import Simulation  # which checks what it is given by what is known here
+
         return Simulation(engine=engine, **options)
     from .chapter2.plant import Plant  # scipy is slow to import
 

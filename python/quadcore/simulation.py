@@ -13,10 +13,11 @@ from .arguments import PROGRESS, check, or_none
 from .controller import Controller, Guided
 from .description import list_of_names, read_both
 from .flight import Progress, Rows, columns_of, fly
-from .given import Number, Value, engine_and_step, pose, text_of, whole
+from .given import SPAWN, Number, Value, engine_and_step, pose, text_of, whole
 from .law import Law
 from .log import Log
 from .overrides import check_names, with_links, without_xacro
+from .plants import ENGINE
 from .references import ReferenceLike
 from .state import LiveState
 from .warning import warn
@@ -73,13 +74,13 @@ class Simulation(_core.Simulation):
     def __init__(
         self,
         model: Union[str, Path, _core.Model] = "quadrotor",
-        engine: str = "gazebo11",
+        engine: str = ENGINE,
         world: Union[str, Path, _core.World, None] = None,
         dt: Optional[float] = None,
         seed: int = 0,
         parameters: Optional[Mapping[str, Value]] = None,
         xacro_args: Optional[Mapping[str, object]] = None,
-        spawn: Sequence[Number] = (0, 0, 10),
+        spawn: Sequence[Number] = SPAWN,
         ignore: Sequence[str] = (),
     ) -> None:
         engine, dt = engine_and_step(engine, dt)

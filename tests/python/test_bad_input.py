@@ -188,6 +188,7 @@ def test_parameters_that_are_wrong(parameters, says):
         ("spawn", (0, 0, "up"), "give x, y, z[, roll, pitch, yaw] in m and rad"),
         ("spawn", (0, 0, math.nan), "write x,y,z[,roll,pitch,yaw]"),
         ("engine", "gazebo", "engine 'gazebo' is not there (did you mean 'gazebo11'?)"),
+        ("engine", "lagrange", "engine 'lagrange' is flown by quadcore.chapter2.plant.Plant"),
         ("seed", -1, "seed is -1; give a whole number from 0"),
         ("seed", 1.5, "seed is 1.5; give a whole number from 0"),
         ("seed", 2**64, "give a whole number from 0 to 2^64 - 1"),

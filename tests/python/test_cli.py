@@ -14,6 +14,7 @@ import pytest
 import scipy.io
 
 import quadcore as qc
+from quadcore import resources
 from quadcore.cli import info, main, terminal
 from quadcore.formats import mat
 
@@ -255,6 +256,17 @@ def test_help_and_the_module_work_from_a_shell():
     )
     assert shown.returncode == 0
     assert "--log-every" in shown.stdout
+
+
+def test_help_names_what_is_shipped_and_where_a_flight_begins(capsys):
+    with pytest.raises(SystemExit):
+        main(["run", "--help"])
+    told = " ".join(capsys.readouterr().out.split())
+    models, worlds = (", ".join(resources.shipped(folder)) for folder in ("urdf", "worlds"))
+    assert "quadrotor" in models and f"or a shipped model: {models} " in told
+    assert "default" in worlds and f"or a shipped world: {worlds} (empty) " in told
+    x, y, z = qc.FlightPlan.of().spawn[:3]
+    assert f"in m and rad ({x:g},{y:g},{z:g})" in told
 
 
 def test_a_reader_that_stops_early_is_no_error():

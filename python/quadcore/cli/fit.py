@@ -65,7 +65,7 @@ def register(commands: Any) -> None:
     )
     names = [name for name, _ in engines()]
     parser.add_argument("--engine", choices=names, default="eigen", help="what flies (eigen)")
-    parser.add_argument("--world", metavar="FILE", help="world file or shipped world (empty)")
+    options.add_world(parser)
     parser.add_argument("--dt", metavar="S", type=values.positive, help="step in s (the world's)")
     parser.add_argument(
         "-o", "--out", metavar="FITTED.urdf", type=Path, required=True, help="the file to write"

@@ -11,12 +11,10 @@ from .. import laws, references, resources
 from .._core import InputError, engines
 from ..controller import give
 from ..flight_plan import FlightPlan
-from ..given import pose
+from ..given import SPAWN, pose
+from ..plants import ENGINE
 from ..study.axes import parse_axis
 from . import values
-
-SPAWN = (0.0, 0.0, 10.0)
-"""Where a flight begins unless told, m."""
 
 
 def subparser(commands: Any, name: str, summary: str, action: Callable[..., None]) -> Any:
@@ -34,7 +32,7 @@ def add_model(parser: argparse.ArgumentParser, nargs: str | None = None) -> None
         "model",
         metavar="MODEL",
         nargs=nargs,
-        help="URDF or xacro file, or a shipped model: quadrotor",
+        help="URDF or xacro file, or a shipped model: " + ", ".join(resources.shipped("urdf")),
     )
     add_changes(parser)
 
@@ -86,8 +84,8 @@ def add_flight(
             "--engine", metavar="LIST", type=values.several(names), default=names, help=summaries
         )
     else:
-        parser.add_argument("--engine", choices=names, default="gazebo11", help=summaries)
-    parser.add_argument("--world", metavar="FILE", help="world file or shipped world (empty)")
+        parser.add_argument("--engine", choices=names, default=ENGINE, help=summaries)
+    add_world(parser)
     parser.add_argument("--dt", metavar="S", type=values.positive, help="step in s (the world's)")
     if seconds is not None:
         parser.add_argument(
@@ -108,7 +106,7 @@ def add_flight(
         "--spawn",
         metavar="X,Y,Z[,ROLL,PITCH,YAW]",
         type=values.pose,
-        help="start pose of the frame in m and rad (0,0,10)",
+        help="start pose of the frame in m and rad " + "({:g},{:g},{:g})".format(*SPAWN),
     )
     parser.add_argument(
         "--log-every",
@@ -118,6 +116,14 @@ def add_flight(
         help=f"log each N-th step ({log_every or 'each hundredth of a second'})",
     )
     parser.add_argument("--quiet", action="store_true", help="print warnings and errors only")
+
+
+def add_world(parser: argparse.ArgumentParser) -> None:
+    """Add the option that names a world."""
+    known = ", ".join(resources.shipped("worlds"))
+    parser.add_argument(
+        "--world", metavar="FILE", help=f"world file, or a shipped world: {known} (empty)"
+    )
 
 
 def add_commands(parser: argparse.ArgumentParser) -> None:

@@ -12,6 +12,7 @@ from .. import interrupts
 from .._core import FlightError, InputError, QuadcoreError
 from ..files import atomic_write, prepare_folder
 from ..flight_plan import FlightPlan
+from ..given import SPAWN
 from ..study.executor import conducted
 from . import options, terminal, values
 from .kept import kept
@@ -78,7 +79,7 @@ def run(arguments: argparse.Namespace) -> None:
         world=arguments.world,
         dt=arguments.dt,
         duration=arguments.duration,
-        spawn=arguments.spawn or options.SPAWN,
+        spawn=arguments.spawn or SPAWN,
         commands=arguments.commands,
         motor_lag=arguments.motors == "lag",
         log_every=arguments.log_every,

@@ -13,7 +13,7 @@ from ..chapter2.vehicle import air_of, command_order, motor_of, parameters_of
 from ..commands import CommandsLike, as_commands
 from ..flight import check_logged
 from ..flight_plan import FlightPlan
-from ..given import Value, text_of
+from ..given import SPAWN, Value, text_of
 from ..log import Log
 from ..simulation import Simulation
 from ..state import State
@@ -80,7 +80,7 @@ class Experiment:
         ignore: Sequence[str] = (),
         dt: Optional[float] = None,
         duration: float = 10.0,
-        spawn: Sequence[float] = (0.0, 0.0, 10.0),
+        spawn: Sequence[float] = SPAWN,
         commands: Optional[CommandsLike] = None,
         motor_lag: bool = True,
         log_every: int = 10,
