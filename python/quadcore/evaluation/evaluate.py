@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -25,7 +24,7 @@ from ..study.axes import Values
 from ..study.executor import conducted
 from ..study.sampling import evenly
 from ..study.table import flown_and_failed
-from ..warning import QuadcoreWarning
+from ..warning import warn
 from .entries import Named
 from .flights import Outcome, flown
 from .plan import Case, Plan
@@ -189,7 +188,7 @@ def conduct(
     outcomes = [Outcome()] * len(cases)
     searches = Searches(plan.controllers, plan.lacking) if margins else None
     if margins and plan.unsearched:
-        warnings.warn(plan.unsearched, QuadcoreWarning, stacklevel=3)
+        warn(plan.unsearched)
     in_hover = _poles(plan)
     done = 0
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 from typing import (
+    AbstractSet,
     Any,
     Callable,
     Collection,
@@ -18,6 +19,7 @@ from typing import (
     Iterator,
     List,
     Mapping,
+    NamedTuple,
     Sequence,
     Tuple,
 )
@@ -65,7 +67,7 @@ class Searches:
             {"controller": name, "failure": NOT_FLOWN, **dict.fromkeys(NAMES, math.nan)}
             for name in controllers
         ]
-        self._kinds = [kind for kind in _KINDS if not _KINDS[kind] & set(lacking)]
+        self._kinds = [kind.search for kind in _KINDS if not kind.varies & set(lacking)]
         self._done: Dict[Trial, Outcome] = {}
 
     @property
@@ -162,13 +164,25 @@ def _box(own: Trial) -> Search:
     return {"box_median": float(np.median(errors)), "box_worst": max(errors)}
 
 
-_KINDS = {_gain: {"thrust"}, _delay: set(), _rates: set(), _box: set(BOX)}
-"""Searches, and what they vary."""
+class _Kind(NamedTuple):
+    """What is searched for, how, and what of the vehicle that varies."""
+
+    name: str
+    search: Callable[[Trial], Search]
+    varies: AbstractSet[str] = frozenset()
+
+
+_KINDS = (
+    _Kind("gain", _gain, {"thrust"}),
+    _Kind("delay", _delay),
+    _Kind("rates", _rates),
+    _Kind("box", _box, set(BOX)),
+)
 
 
 def unsearched(model: str, lacking: Collection[str]) -> str:
     """Tell in one line what cannot be searched for a vehicle, and why; "" if everything can."""
-    left_out = [kind.__name__[1:] for kind, varied in _KINDS.items() if varied & set(lacking)]
+    left_out = [kind.name for kind in _KINDS if kind.varies & set(lacking)]
     if not left_out:
         return ""
     verb = "is" if len(left_out) == 1 else "are"
