@@ -17,6 +17,11 @@ NOISY = {**THESIS, "odometry.linearVelocityNoise": 5e-3, "odometry.angularVeloci
 WIND = "plugins:\n  drone_plugin: {dragModel: chapter2}\n  wind: {velocity: [3, 0, 0]}\n"
 
 
+def millimetres(error: float) -> str:
+    """Write an error (m) in mm."""
+    return figures(1e3 * error, 3 if error < 1 else 4)
+
+
 def fly(
     law: str, reference: str, measure: str = "tail_position", slow: int = 1, **options: Any
 ) -> List[str]:
@@ -26,7 +31,7 @@ def fly(
     for engine in ENGINES:
         rows = [row for row in found.table if row["engine"] == engine]
         lost = [row["failure"].split(",")[0].replace("t = ", "") for row in rows if row["failure"]]
-        cells.append(lost[0] if lost else figures(1e3 * max(row[measure] for row in rows), 3))
+        cells.append(lost[0] if lost else millimetres(max(row[measure] for row in rows)))
     return cells
 
 

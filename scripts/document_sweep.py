@@ -1,5 +1,8 @@
 #!/usr/bin/env python3
-"""Draw the picture of docs/sweep.md into docs/images: ``scripts/document`` runs it."""
+"""Draw the picture of docs/sweep.md and of its tutorial into docs/images.
+
+``scripts/document`` runs it.
+"""
 
 from __future__ import annotations
 
@@ -15,22 +18,22 @@ from quadcore.sweeps.sensitivity import sensitivities
 from quadcore.sweeps.sweep import conduct
 from quadcore.sweeps.table import table
 
+# Those of the tutorial: what the law believes over what is so.
 AXES = {
-    "frame.mass": "uniform:0.9:1.1",
-    "drone_plugin.rotorThrustCoeff": "normal:1.1487e-5:3e-7",
-    "drone_plugin.inducedDragCoeff": "uniform:0:0.03",
-    "motorpid_plugin.kp": "uniform:2.5e-4:7.5e-4",
+    "controller.believed_mass": "normal:1:0.05",
+    "controller.believed_thrust": "uniform:0.95:1.05",
 }
 
 
 def main() -> None:
     """Fly a law that is wrong about its vehicle, and draw what that costs."""
-    design = Design(AXES, None, "sobol", 512)
-    plan = Plan(design, "geometric", "circle:rate=1.5", options={"xacro_args": {"sim_slow": 1}})
+    design = Design(AXES, None, "latin", 500)
+    options = {"xacro_args": {"sim_slow": 1}}
+    plan = Plan(design, "geometric", "circle", duration=5.0, options=options)
     with tempfile.TemporaryDirectory() as folder:
         columns = table(conduct(plan, Path(folder)))
     pictures = draw(plan, columns, sensitivities(plan, columns), "rms_position")
-    save("sweep_parallel", pictures["parallel"])
+    save("sweep_surface", pictures["surface"])
 
 
 if __name__ == "__main__":
