@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fly what docs/control.md tells of the laws, and hold the errors against their bars.
+"""Fly much of what docs/control.md tells of the laws, and hold the errors against bars.
 
 Prints a row per case: the largest error of all its flights [mm], and the bar. Exit status 1 if one
 is missed. Takes some minutes.
