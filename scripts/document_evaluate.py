@@ -3,21 +3,18 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
-import yaml
 from images import save
+from noise import THESIS
 
 import quadcore as qc
 from quadcore.evaluation.pictures import draw
 
 LAWS = ["pd", "pd_compensated", "pid", "geometric", "indi", "lqr"]
-SPIRAL = yaml.safe_load((Path(__file__).parents[1] / "config" / "spiral.yaml").read_text())
 
 
 def main() -> None:
     """Fly 20 seeds of each law and draw them."""
-    found = qc.evaluate(LAWS, "circle", seeds=20, xacro_args=SPIRAL["xacro"])
+    found = qc.evaluate(LAWS, "circle", seeds=20, parameters=THESIS, xacro_args={"sim_slow": 1})
     pictures = draw(found)
     for name, of in (("evaluate_errors", "errors_1"), ("evaluate_seeds", "seeds")):
         save(name, pictures[of])

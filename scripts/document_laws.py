@@ -8,12 +8,11 @@ from pathlib import Path
 from typing import Any, Iterator, List
 
 from measured import figures, put
+from noise import NOISY, THESIS
 
 import quadcore as qc
 
 ENGINES = [name for name, _ in qc.engines()]
-THESIS = {"odometry.positionNoise": 0.2106e-3, "odometry.orientationNoise": 0.2e-3}
-NOISY = {**THESIS, "odometry.linearVelocityNoise": 5e-3, "odometry.angularVelocityNoise": 5e-3}
 WIND = "plugins:\n  drone_plugin: {dragModel: chapter2}\n  wind: {velocity: [3, 0, 0]}\n"
 
 

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Callable, Dict, List, Mapping, Tuple, Union
 
 import numpy as np
+from noise import NOISY, THESIS
 
 import quadcore as qc
 from quadcore import laws, references
@@ -20,8 +21,6 @@ from quadcore.study.executor import each
 from quadcore.warning import unheard
 
 WAYPOINTS = Path(__file__).resolve().parents[1] / "config" / "waypoints.yaml"
-THESIS = {"odometry.positionNoise": 0.2106e-3, "odometry.orientationNoise": 0.2e-3}
-NOISY = {**THESIS, "odometry.linearVelocityNoise": 5e-3, "odometry.angularVelocityNoise": 5e-3}
 LOST = 5.0  # m
 
 

@@ -1,0 +1,16 @@
+"""Noise of the odometry: the thesis', as config/spiral.yaml has it, and of velocities besides."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import yaml
+
+_SPIRAL = Path(__file__).resolve().parents[1] / "config" / "spiral.yaml"
+_XACRO = yaml.safe_load(_SPIRAL.read_text())["xacro"]
+
+THESIS = {
+    "odometry.positionNoise": _XACRO["position_noise"],
+    "odometry.orientationNoise": _XACRO["orientation_noise"],
+}
+NOISY = {**THESIS, "odometry.linearVelocityNoise": 5e-3, "odometry.angularVelocityNoise": 5e-3}
