@@ -21,6 +21,7 @@ def program(monkeypatch):
         spec = importlib.util.spec_from_file_location(Path(path).stem, ROOT / path)
         module = importlib.util.module_from_spec(spec)
         monkeypatch.setitem(sys.modules, spec.name, module)
+        monkeypatch.syspath_prepend((ROOT / path).parent)  # as Python does for what it starts
         spec.loader.exec_module(module)
         return module
 
