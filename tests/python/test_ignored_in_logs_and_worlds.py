@@ -82,8 +82,10 @@ def test_the_usual_readers_read_such_a_log(log, tmp_path):
 def test_pandas_reads_such_a_log_when_told_of_comments(log, tmp_path):
     pandas = pytest.importorskip("pandas")
     log.to_csv(tmp_path / "log.csv")
-    table = pandas.read_csv(tmp_path / "log.csv", comment="#", float_precision="round_trip")
-    assert np.array_equal(table.to_numpy(), log.table)
+    table = pandas.read_csv(tmp_path / "log.csv", comment="#")
+    # Its own reader of numbers may miss the last bit.
+    np.testing.assert_allclose(table.to_numpy(), log.table, rtol=1e-15, atol=0)
+    assert list(table.columns) == log.columns
 
 
 def test_a_mat_log_holds_what_was_ignored(log, tmp_path):
