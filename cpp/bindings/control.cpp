@@ -8,16 +8,15 @@
 #include "quadcore/control/gains_file.hpp"
 #include "quadcore/control/inner_loop.hpp"
 #include "quadcore/control/rotor_health.hpp"
-#include "quadcore/control/rows_file.hpp"
 #include "quadcore/control/second_vehicle.hpp"
 #include "quadcore/control/start.hpp"
 #include "quadcore/rotor_shares.hpp"
+#include "reference.hpp"
 
 namespace quadcore::bindings {
 namespace {
 
 using control::Controller;
-using control::Reference;
 using control::ReferenceShape;
 using control::Values;
 
@@ -92,25 +91,8 @@ py::array_t<double> command_at(FlownLaw& flown, double period, const Self& self,
   return flown.command(period, now, shape.at(self->time()));
 }
 
-/// Position and yaw at each of these times, shape (n, 4).
-control::Rows places(const ReferenceShape& shape, const Numbers& times) {
-  if (times.ndim() != 1) throw InputError("times are no row of numbers");
-  control::Rows rows(times.shape(0), 4);
-  for (py::ssize_t i = 0; i < times.shape(0); ++i) {
-    const Reference wanted = shape.at(times.data()[i]);
-    rows.row(i) << wanted.position.transpose(), wanted.yaw;
-  }
-  return rows;
-}
-
-control::Rows rows_of(const py::object& rows) {
-  if (rows.is_none()) return {};
-  const Numbers table = numbers(rows, 2, "rows");
-  return Eigen::Map<const control::Rows>(table.data(), table.shape(0), table.shape(1));
-}
-
-py::dict start(const Self& self, const Reference& wanted, const std::vector<double>& spins) {
-  const VehicleState state = control::start_on(wanted, describe(self), spins);
+py::dict start(const Self& self, const py::object& wanted, const std::vector<double>& spins) {
+  const VehicleState state = control::start_on(to_reference(wanted), describe(self), spins);
   py::dict members;
   members["position"] = state.position;
   members["orientation"] = Eigen::Vector4d(state.orientation.coeffs());
@@ -138,34 +120,6 @@ void bind_control(py::module_& m) {
           "range", [](const TagSpec& spec) { return spec.range(); },
           "Values that it may have, for a person.");
 
-  py::class_<Reference>(m, "Reference", "Where a vehicle is to be, with derivatives, world axes.")
-      .def("__repr__",
-           [](const Reference& r) {
-             return py::str("Reference(position={}, velocity={}, acceleration={}, yaw={:.6g}, ...)")
-                 .format(r.position, r.velocity, r.acceleration, r.yaw);
-           })
-      .def(py::init<>())
-      .def_readwrite("position", &Reference::position, "Of the frame's origin, m; shape (3,).")
-      .def_readwrite("velocity", &Reference::velocity, "m/s; shape (3,).")
-      .def_readwrite("acceleration", &Reference::acceleration, "m/s^2; shape (3,).")
-      .def_readwrite("jerk", &Reference::jerk, "m/s^3; shape (3,).")
-      .def_readwrite("snap", &Reference::snap, "m/s^4; shape (3,).")
-      .def_readwrite("yaw", &Reference::yaw, "rad.")
-      .def_readwrite("yaw_rate", &Reference::yaw_rate, "rad/s.")
-      .def_readwrite("yaw_acceleration", &Reference::yaw_acceleration, "rad/s^2.");
-
-  py::class_<ReferenceShape>(m, "ReferenceShape", "A reference at any time.")
-      .def(py::init([](const std::string& name, const Values& values, const py::object& rows) {
-             return control::make_reference(name, values, rows_of(rows));
-           }),
-           py::arg("name"), py::arg("values"), py::arg("rows") = py::none())
-      .def("at", &ReferenceShape::at, py::arg("t"), "Where the vehicle is to be at a time [s].")
-      .def("places", &places, py::arg("times"),
-           "Position [m] and yaw [rad] at each of some times [s]; shape (n, 4).")
-      .def_property_readonly(
-          "end", &ReferenceShape::end,
-          "From when on nothing moves any more, s; infinite if that never comes.");
-
   py::class_<FlownLaw>(m, "Controller", "A law that flies one vehicle.")
       .def(
           py::init([](const std::string& law, const Self& believed, const Self& flown,
@@ -181,12 +135,12 @@ void bind_control(py::module_& m) {
           py::arg("spins"))
       .def(
           "command",
-          [](FlownLaw& flown, double period, const py::object& state, const Reference& wanted) {
+          [](FlownLaw& flown, double period, const py::object& state, const py::object& wanted) {
             {
               const Lock lock(*flown.flown);
               flown.hear();
             }
-            return flown.command(period, odometry(state), wanted);
+            return flown.command(period, odometry(state), to_reference(wanted));
           },
           py::arg("period"), py::arg("state"), py::arg("reference"),
           "Rotor speeds to command for a period [s], signed, rad/s; shape (n,). The state is what "
@@ -251,14 +205,6 @@ void bind_control(py::module_& m) {
       "Of each joint, its velocity in the long run per commanded speed: 0.1 at a sim_slow of 10.");
   m.def("start_on", &start, py::arg("simulation"), py::arg("reference"), py::arg("spins"),
         "Members of the state of a vehicle that follows a reference exactly.");
-  m.def(
-      "on_vehicle",
-      [](const std::string& name, const Values& values, const Self& simulation) {
-        const Lock lock(*simulation);
-        return control::on_vehicle(name, values, simulation->model());
-      },
-      py::arg("name"), py::arg("values"), py::arg("simulation"),
-      "Parameters of a reference, and what a vehicle says where they do not.");
   m.def("timing", &control::timing_table, "When a controller is called, and how late it acts.");
   m.def(
       "is_timing",
@@ -278,7 +224,6 @@ void bind_control(py::module_& m) {
         return py::make_tuple(gains.law, gains.vehicle, gains.rate, gains.delay, gains.values);
       },
       py::arg("path"), "Law, vehicle, rate, delay and parameters of a gains file.");
-  m.def("read_rows", &control::read_rows, py::arg("path"), "Rows of a .csv or .yaml file.");
   m.def(
       "laws",
       [] {
@@ -289,16 +234,6 @@ void bind_control(py::module_& m) {
         return all;
       },
       "Name, summary and parameters of every law.");
-  m.def(
-      "references",
-      [] {
-        py::list all;
-        for (const control::ReferenceInfo& info : control::references()) {
-          all.append(py::make_tuple(info.name, info.summary, info.table, info.takes_rows));
-        }
-        return all;
-      },
-      "Name, summary, parameters of every reference, and whether it takes rows.");
 }
 
 }  // namespace quadcore::bindings

@@ -9,5 +9,6 @@ PYBIND11_MODULE(_core, m) {
   quadcore::bindings::bind_simulation(m);
   quadcore::bindings::bind_batch(m);
   quadcore::bindings::bind_flight(m);
+  quadcore::bindings::bind_reference(m);
   quadcore::bindings::bind_control(m);
 }

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Protocol,
 import numpy as np
 
 from . import _core, resources
+from .arguments import brief
 from .formats import bag, mat
 from .parameters import did_you_mean, docstring, read_values, values
 from .state import State
@@ -136,8 +137,18 @@ def places(reference: ReferenceLike, times: np.ndarray) -> np.ndarray:
     """Give x, y, z [m] and yaw [rad] of a reference at each of some times [s]; shape (n, 4)."""
     if isinstance(reference, Shape):
         return np.asarray(reference.shape.places(times))
-    wanted = map(reference, times.tolist())
-    return np.array([[*at.position, at.yaw] for at in wanted], dtype=float).reshape(-1, 4)
+    return np.array([_place(reference(t)) for t in times.tolist()], dtype=float).reshape(-1, 4)
+
+
+def _place(wanted: Any) -> List[float]:
+    try:
+        x, y, z = wanted.position
+        return [float(x), float(y), float(z), float(wanted.yaw)]
+    except (AttributeError, TypeError, ValueError):
+        raise _core.InputError(
+            f"the reference gave {brief(wanted)}; give a quadcore.Reference, or what has the "
+            "members of one"
+        ) from None
 
 
 _SHIPPED = resources.root() / "config" / "waypoints.yaml"

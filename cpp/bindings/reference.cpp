@@ -1,0 +1,136 @@
+#include "reference.hpp"
+
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <initializer_list>
+#include <string>
+
+#include "arguments.hpp"
+#include "bindings.hpp"
+#include "guarded.hpp"
+#include "quadcore/control/controller.hpp"
+#include "quadcore/control/rows_file.hpp"
+
+namespace quadcore::bindings {
+
+using control::Reference;
+using control::ReferenceShape;
+using control::Values;
+
+namespace {
+
+/// Reads the members that get(name) gives.
+template <class Get>
+Reference read_members(const Get& get) {
+  Reference read;
+  Reference::for_each_field(
+      read, [&get](const char* name, std::initializer_list<const char*> fields, double* data) {
+        const std::string what = std::string("reference.") + name;
+        const Numbers array = numbers(get(name), fields.size() == 1 ? 0 : 1, what.c_str());
+        if (array.size() != static_cast<py::ssize_t>(fields.size())) {
+          throw InputError(what + " holds " + std::to_string(array.size()) + " numbers; give " +
+                           std::to_string(fields.size()));
+        }
+        std::copy_n(array.data(), fields.size(), data);
+      });
+  return read;
+}
+
+Reference reference_of(const py::object& position, const py::object& velocity,
+                       const py::object& acceleration, const py::object& jerk,
+                       const py::object& snap, const py::object& yaw, const py::object& yaw_rate,
+                       const py::object& yaw_acceleration) {
+  const py::object* member[] = {&position, &velocity, &acceleration, &jerk,
+                                &snap,     &yaw,      &yaw_rate,     &yaw_acceleration};
+  const py::object** next = member;
+  return read_members([&next](const char*) { return **next++; });
+}
+
+/// Position and yaw at each of these times, shape (n, 4).
+control::Rows places(const ReferenceShape& shape, const Numbers& times) {
+  if (times.ndim() != 1) throw InputError("times are no row of numbers");
+  control::Rows rows(times.shape(0), 4);
+  for (py::ssize_t i = 0; i < times.shape(0); ++i) {
+    const Reference wanted = shape.at(times.data()[i]);
+    rows.row(i) << wanted.position.transpose(), wanted.yaw;
+  }
+  return rows;
+}
+
+control::Rows rows_of(const py::object& rows) {
+  if (rows.is_none()) return {};
+  const Numbers table = numbers(rows, 2, "rows");
+  return Eigen::Map<const control::Rows>(table.data(), table.shape(0), table.shape(1));
+}
+
+}  // namespace
+
+messages::Reference to_reference(const py::object& object) {
+  if (py::isinstance<Reference>(object)) return object.cast<Reference>();
+  return read_members([&object](const char* name) -> py::object {
+    try {
+      return object.attr(name);
+    } catch (const py::error_already_set& error) {
+      if (!error.matches(PyExc_AttributeError)) throw;
+      throw InputError(std::string("the reference has no member ") + name +
+                       "; give a quadcore.Reference, or what has the members of one");
+    }
+  });
+}
+
+void bind_reference(py::module_& m) {
+  const Vector3d zero = Vector3d::Zero();
+  py::class_<Reference>(m, "Reference", "Where a vehicle is to be, with derivatives, world axes.")
+      .def("__repr__",
+           [](const Reference& r) {
+             return py::str("Reference(position={}, velocity={}, acceleration={}, yaw={:.6g}, ...)")
+                 .format(r.position, r.velocity, r.acceleration, r.yaw);
+           })
+      .def(py::init(&reference_of), py::arg("position") = zero, py::arg("velocity") = zero,
+           py::arg("acceleration") = zero, py::arg("jerk") = zero, py::arg("snap") = zero,
+           py::arg("yaw") = 0, py::arg("yaw_rate") = 0, py::arg("yaw_acceleration") = 0)
+      .def_readwrite("position", &Reference::position, "Of the frame's origin, m; shape (3,).")
+      .def_readwrite("velocity", &Reference::velocity, "m/s; shape (3,).")
+      .def_readwrite("acceleration", &Reference::acceleration, "m/s^2; shape (3,).")
+      .def_readwrite("jerk", &Reference::jerk, "m/s^3; shape (3,).")
+      .def_readwrite("snap", &Reference::snap, "m/s^4; shape (3,).")
+      .def_readwrite("yaw", &Reference::yaw, "rad.")
+      .def_readwrite("yaw_rate", &Reference::yaw_rate, "rad/s.")
+      .def_readwrite("yaw_acceleration", &Reference::yaw_acceleration, "rad/s^2.");
+
+  py::class_<ReferenceShape>(m, "ReferenceShape", "A reference at any time.")
+      .def(py::init([](const std::string& name, const Values& values, const py::object& rows) {
+             return control::make_reference(name, values, rows_of(rows));
+           }),
+           py::arg("name"), py::arg("values"), py::arg("rows") = py::none())
+      .def("at", &ReferenceShape::at, py::arg("t"), "Where the vehicle is to be at a time [s].")
+      .def("places", &places, py::arg("times"),
+           "Position [m] and yaw [rad] at each of some times [s]; shape (n, 4).")
+      .def_property_readonly(
+          "end", &ReferenceShape::end,
+          "From when on nothing moves any more, s; infinite if that never comes.");
+
+  m.def(
+      "on_vehicle",
+      [](const std::string& name, const Values& values, const Self& simulation) {
+        const Lock lock(*simulation);
+        return control::on_vehicle(name, values, simulation->model());
+      },
+      py::arg("name"), py::arg("values"), py::arg("simulation"),
+      "Parameters of a reference, and what a vehicle says where they do not.");
+  m.def("read_rows", &control::read_rows, py::arg("path"), "Rows of a .csv or .yaml file.");
+  m.def(
+      "references",
+      [] {
+        py::list all;
+        for (const control::ReferenceInfo& info : control::references()) {
+          all.append(py::make_tuple(info.name, info.summary, info.table, info.takes_rows));
+        }
+        return all;
+      },
+      "Name, summary, parameters of every reference, and whether it takes rows.");
+}
+
+}  // namespace quadcore::bindings
