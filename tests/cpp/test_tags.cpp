@@ -116,6 +116,12 @@ TEST_CASE("a refusal names place, plugin and tag") {
   CHECK(refused({gain}, {{"rte", "1"}}).rfind("set p.rte: plugin 'p': unknown tag <rte>", 0) == 0);
 }
 
+TEST_CASE("a tag is set by one of its names, and a refusal names both") {
+  CHECK(refused({gain}, {{"rate", "1"}, {"updateRate", "1"}}) ==
+        "set p.updateRate: plugin 'p': is the same tag as <rate>, which is set, too; keep one");
+  CHECK(read({gain, {"rate", "1", "a:1"}}, {{"updateRate", "2"}}).number("rate") == 2);
+}
+
 TEST_CASE("an override does not excuse a tag that is wrong in the file") {
   CHECK_THROWS_AS(read({gain, gain}, {{"gain", "1"}}), InputError);
 }

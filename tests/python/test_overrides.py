@@ -7,6 +7,7 @@ import pytest
 from vehicles import AIR, MOTOR, SKEW, vehicle
 
 import quadcore as qc
+from quadcore.cli import main
 
 ARGUMENTS = """<robot name="x" xmlns:xacro="http://www.ros.org/wiki/xacro">
 <xacro:arg name="heavy" default="1"/>
@@ -122,3 +123,15 @@ def test_a_model_that_is_read_takes_values_of_links_but_no_arguments(model):
     assert read.links[0].mass == 1.3
     with pytest.raises(qc.InputError, match="the model is read already"):
         qc.Simulation(read, parameters={"xacro.heavy": 2})
+
+
+def test_a_tag_that_goes_by_two_names_is_set_by_one_of_them(capsys):
+    both = {"odometry.updateRate": 100, "odometry.rate": 50}
+    says = "set odometry.updateRate: plugin 'odometry': is the same tag as <rate>, which is set"
+    for make in (qc.Simulation, qc.BatchSimulation):
+        with pytest.raises(qc.InputError, match=says):
+            make(parameters=both)
+    given = [word for name, value in both.items() for word in ("--set", f"{name}={value}")]
+    assert main(["info", "quadrotor", *given]) == 2
+    assert capsys.readouterr().err.startswith(f"error: {says}")
+    assert main(["info", "quadrotor", *given[:2]]) == 0

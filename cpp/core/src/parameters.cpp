@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <stdexcept>
 #include <system_error>
 
@@ -202,8 +203,15 @@ Parameters::Parameters(const std::vector<TagSpec>& table, const PluginElement& e
     parameter.text = trimmed(tag.text);
     parameter.origin = tag.where;
   }
+  std::map<const Parameter*, std::string> overridden;  // as what
   for (const auto& [tag, text] : overrides) {
-    Parameter& parameter = find(tag, "set " + element.name + "." + tag);
+    const std::string where = "set " + element.name + "." + tag;
+    Parameter& parameter = find(tag, where);
+    const auto [before, is_new] = overridden.try_emplace(&parameter, tag);
+    if (!is_new) {
+      const std::string other = "<" + before->second + ">";
+      fail(where, element.name, "is the same tag as " + other + ", which is set, too; keep one");
+    }
     parameter.text = trimmed(text);
     parameter.origin = "set";
   }
