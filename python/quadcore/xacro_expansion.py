@@ -13,7 +13,7 @@ import os
 import traceback
 from pathlib import Path
 from types import FrameType, SimpleNamespace
-from typing import Any, Dict, Iterable, Iterator, List, Mapping, Set, Tuple
+from typing import Any, Dict, Iterable, Iterator, List, Mapping, NamedTuple, Set, Tuple
 
 import rospkg
 import xacro
@@ -22,15 +22,23 @@ from . import resources, xml_origins, xml_source
 from ._core import InputError, QuadcoreError
 from .forks import LOCK
 from .kept_expansions import Kept, Outside, content
-from .warning import warn
+from .warning import unheard, warn
+from .xacro_faults import reason
 
 _MOST_ELEMENTS = 20000  # a few lines of macros can ask for billions
 
 
 _Lines = List[Tuple[str, xml_source.Origin]]
 
-_KEPT: Kept[Tuple[_Lines, Set[str]]] = Kept()
-"""Lines, and the arguments that were asked for."""
+
+class _Expansion(NamedTuple):
+    lines: _Lines
+    arguments: Dict[str, str]
+    """What each argument of the file was taken to be."""
+    asked: Set[str]
+
+
+_KEPT: Kept[_Expansion] = Kept()
 
 
 def expand(path: str, arguments: Mapping[str, str]) -> _Lines:
@@ -58,28 +66,59 @@ def expand(path: str, arguments: Mapping[str, str]) -> _Lines:
     QuadcoreWarning
         What xacro itself warns of, and an argument that the file does not know.
     """
+    expansion = _kept(path, arguments)
+    for name in arguments:
+        if name not in expansion.asked:
+            what = f"there is no xacro argument {_named(name, expansion.asked)}: it has no effect"
+            warn(f"{path}: {what}")
+    return expansion.lines
+
+
+def arguments_of(path: str, given: Mapping[str, str]) -> Dict[str, str]:
+    """Tell what each argument of a xacro file is: as given, or its default.
+
+    Raises
+    ------
+    InputError
+        As of `expand`.
+    """
+    expansion = _kept(path, given)
+    return {name: text for name, text in expansion.arguments.items() if name in expansion.asked}
+
+
+def _kept(path: str, arguments: Mapping[str, str]) -> _Expansion:
     key = (path, tuple(sorted(arguments.items())))
     with LOCK:
-        lines, asked = _KEPT.get(key, lambda outside: _expanded(path, arguments, outside))
-    for name in arguments:
-        if name not in asked:
-            what = f"there is no xacro argument {_named(name, asked)}: it has no effect"
-            warn(f"{path}: {what}")
-    return lines
+        return _KEPT.get(key, lambda outside: _expanded(path, arguments, outside))
 
 
-def _expanded(path: str, arguments: Mapping[str, str], outside: Outside) -> Tuple[_Lines, Set[str]]:
+def _expanded(path: str, arguments: Mapping[str, str], outside: Outside) -> _Expansion:
     table = _Arguments(arguments)
-    with _replaced_hooks(table, outside):
-        try:
+    try:
+        with _replaced_hooks(table, outside):
             document = xacro.process_file(path, mappings=table)
-        except QuadcoreError:
-            raise
-        except Exception as error:  # xacro has no common base class for what it raises
-            frames = [frame for frame, _ in traceback.walk_tb(error.__traceback__)]
-            place = _place(reversed(frames)) or path
-            raise InputError(f"{place}: {_reason(error)}") from error
-    return xml_origins.write(document), table.asked
+    except QuadcoreError:
+        raise
+    except Exception as error:  # xacro has no common base class for what it raises
+        frames = [frame for frame, _ in traceback.walk_tb(error.__traceback__)]
+        place = _place(reversed(frames)) or path
+        raise InputError(f"{place}: {_blamed(path, arguments, reason(error))}") from error
+    return _Expansion(xml_origins.write(document), dict(table), table.asked)
+
+
+def _blamed(path: str, arguments: Mapping[str, str], what: str) -> str:
+    """Name the argument without which the file would expand, if there is one."""
+    for name, value in arguments.items():
+        table = _Arguments({other: text for other, text in arguments.items() if other != name})
+        try:
+            with _replaced_hooks(table, Outside()), unheard():
+                xacro.process_file(path, mappings=table)
+            default = table[name]
+        except Exception:  # it is not this one, or not it alone
+            continue
+        given = " ".join(value.split())
+        return f"xacro argument '{name}' is '{given}': {what}; its default is '{default}'"
+    return what
 
 
 class _Arguments(Dict[str, str]):
@@ -193,19 +232,6 @@ def _place(frames: Iterable[FrameType]) -> xml_source.Origin | None:
             if found is not None:
                 return found
     return None
-
-
-def _reason(error: BaseException) -> str:
-    cause = error
-    while isinstance(getattr(cause, "exc", None), Exception):
-        cause = cause.exc  # type: ignore[attr-defined]
-    if isinstance(cause, OSError) and cause.filename is not None:
-        return f"{os.path.normpath(cause.filename)}: cannot be read: {cause.strerror}"
-    if isinstance(cause, RecursionError):
-        return "a macro or an include contains itself without end"
-    text = str(cause if "<class" in str(error) else error)
-    hint = "; define it with <xacro:property>" if isinstance(cause, NameError) else ""
-    return (" ".join(text.split()) or type(error).__name__) + hint
 
 
 def _named(name: str, known: set[str]) -> str:

@@ -87,6 +87,13 @@ def test_a_link_on_a_fixed_joint_may_be_massless_but_not_negative(broken):
         fault(INERTIA, inertia(iyz="inf"), "iyz of <inertia> is 'inf'", "one finite number"),
         fault(INERTIA, '<inertia ixx="1"/>', '<inertia> needs the attribute iyy="..."'),
         fault(INERTIA, inertia(ixx="0", izz="1e-5"), "moment", "> 0", at=PROPELLER),
+        fault(
+            INERTIA,
+            inertia(ixx="1e9"),
+            "the principal moments of inertia 1e-05, 2e-05, 1000000000 kg m^2",
+            "none of them next to nothing beside another",
+            at=PROPELLER,
+        ),
         fault(INERTIA, inertia(ixx="0", iyy="0", izz="0"), "moment", "> 0", at=PROPELLER),
         fault(INERTIA, "", "<inertial> needs a <inertia>", at=f"<inertial>\n      {MASS}"),
     ],

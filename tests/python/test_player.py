@@ -255,7 +255,7 @@ class TestCommand:
             (["a.txt", "-o", "b.html"], "a.txt: logs are read from .csv, .mat, .bag files"),
             (["no.csv", "-o", "b.html"], "no.csv: cannot be read"),
             (["t.csv", "-o", "b.html"], "t.csv:1: no log of quadcore: the columns are 't,w1'"),
-            (["word.csv", "-o", "b.html"], "word.csv:3: could not convert string to float: 'x'"),
+            (["word.csv", "-o", "b.html"], "word.csv:3: column 't' holds 'x'; write"),
             (["nan.csv", "-o", "b.html"], "nan.csv:4: the state is not finite"),
             (["back.csv", "-o", "b.html"], "back.csv:5: the time is not later than before"),
             (["empty.csv", "-o", "b.html"], "empty.csv:2: no row"),

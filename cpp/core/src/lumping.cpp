@@ -1,6 +1,7 @@
 #include <set>
 
 #include "quadcore/error.hpp"
+#include "quadcore/text.hpp"
 #include "quadcore/urdf_tree.hpp"
 #include "references.hpp"
 
@@ -28,9 +29,14 @@ void check_body(const Link& link, bool has_inertial) {
     throw InputError(who + "no mass; write <mass value=\"...\"/> in kg, > 0");
   }
   if (!link.inertial.is_positive()) {
-    throw InputError(who +
-                     "a zero or negative moment of inertia; write an inertia in kg m^2, all "
-                     "principal moments > 0");
+    std::string moments;
+    for (const double moment : link.inertial.principal_moments()) {
+      moments += moments.empty() ? "" : ", ";
+      append_shortest(with_digits(moment, 4), moments);
+    }
+    throw InputError(who + "the principal moments of inertia " + moments +
+                     " kg m^2; write an inertia that has all of them > 0, none of them next to "
+                     "nothing beside another");
   }
 }
 

@@ -90,6 +90,11 @@ void Xml::pass_over(const Element& parent, const Element& child,
   const Verdict verdict = verdict_on_element(path(parent), name);
   if (verdict != Verdict::felt && passed_over_.ignores({name})) return;
   if (verdict == Verdict::unfelt) return passed_over_.add_unfelt("<" + name + ">", where(child));
+  if (name.rfind("xacro:", 0) == 0 && root().Name() == std::string("robot")) {
+    fail(child, "<" + name +
+                    "> is for xacro to expand, as files are whose names end in .xacro; "
+                    "name this one so");
+  }
   const std::vector<std::string> names(allowed.begin(), allowed.end());
   fail(child, "<" + name + "> in <" + parent.Name() + "> is not supported" +
                   did_you_mean(name, names) + takes(parent, names) +

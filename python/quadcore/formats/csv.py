@@ -39,7 +39,7 @@ def read_commands(path: Path, names: Sequence[str]) -> Table:
             f"{path}:1: the header is '{header[:80]}'; this model with {len(names) - 1} rotors "
             f"takes '{','.join(names)}'"
         )
-    rows = _numbers(path, lines, 2, len(names))
+    rows = _numbers(path, lines, 2, names)
     return Table(rows, lambda row: f"{path}:{2 + row}", "")
 
 
@@ -59,27 +59,41 @@ def read_log(path: Path) -> LogRows:
     if lines and lines[0].startswith(_REMARK):
         ignored = lines.pop(0)[len(_REMARK) :].split(", ")
     first = 3 if ignored else 2
-    rows = _numbers(path, lines, first, len(columns))
+    rows = _numbers(path, lines, first, columns)
     check_log_rows(lambda row: f"{path}:{first + row}", rows, of_state)
     own = len(columns) - 6 * len(terms)
     wrenches = {name: rows[:, own + 6 * i :][:, :6] for i, name in enumerate(terms)}
     return LogRows(columns[:own], rows[:, :own], wrenches, ignored)
 
 
-def _numbers(path: Path, lines: Sequence[str], first: int, width: int) -> np.ndarray:
+def _numbers(path: Path, lines: Sequence[str], first: int, columns: Sequence[str]) -> np.ndarray:
     """Read rows of numbers; `first` is the number of the first line."""
     values = array.array("d")
     for number, line in enumerate(lines, start=first):
         cells = line.split(",")
-        if len(cells) != width:
-            raise InputError(f"{path}:{number}: {len(cells)} columns instead of {width}")
+        if len(cells) != len(columns):
+            raise InputError(f"{path}:{number}: {len(cells)} columns instead of {len(columns)}")
         try:
-            if "_" in line or not line.isascii():  # 1_000 and other scripts' digits, to Python
-                raise ValueError(f"'{line[:80]}' holds what is no number; write digits 0 to 9")
+            if not _is_plain(line):
+                raise ValueError
             values.extend([float(cell) for cell in cells])
-        except ValueError as error:
-            raise InputError(f"{path}:{number}: {error}") from error
-    return np.array(values).reshape(-1, width)
+        except ValueError:
+            raise InputError(f"{path}:{number}: {_first_fault(columns, cells)}") from None
+    return np.array(values).reshape(-1, len(columns))
+
+
+def _is_plain(text: str) -> bool:
+    """Whether there is none of 1_000 and other scripts' digits, which Python takes for numbers."""
+    return "_" not in text and text.isascii()
+
+
+def _first_fault(columns: Sequence[str], cells: Sequence[str]) -> str:
+    for column, cell in zip(columns, cells):
+        try:
+            float(cell if _is_plain(cell) else "")
+        except ValueError:
+            return f"column '{column}' holds '{cell.strip()[:80]}'; write a number such as -471.5"
+    return "no numbers; write some"  # not reached: one of the cells is at fault
 
 
 def write_log(

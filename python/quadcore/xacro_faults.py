@@ -1,0 +1,49 @@
+"""Why xacro could not expand a file, in words."""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+from typing import List
+
+_EXPRESSION = re.compile(r"when evaluating expression '(.*)'", re.DOTALL)
+
+
+def reason(error: BaseException) -> str:
+    """Say in one line what went wrong, as far as xacro tells."""
+    cause, inner = error, error
+    while isinstance(getattr(cause, "exc", None), Exception):
+        cause, inner = cause.exc, cause  # type: ignore[attr-defined]
+    if isinstance(cause, OSError) and cause.filename is not None:
+        return f"{os.path.normpath(cause.filename)}: cannot be read: {cause.strerror}"
+    if isinstance(cause, RecursionError):
+        return "a macro or an include contains itself without end"
+    if isinstance(cause, KeyError):
+        return _no_key(cause, str(getattr(inner, "suffix", "")))
+    text = str(cause if "<class" in str(error) else error)
+    hint = "; define it with <xacro:property>" if isinstance(cause, NameError) else ""
+    return (" ".join(text.split()) or type(error).__name__) + hint
+
+
+def _no_key(error: KeyError, suffix: str) -> str:
+    found = _EXPRESSION.search(suffix)
+    expression = " ".join(found[1].split()) if found else ""
+    keys = _keys(expression)
+    instead = f"write one of {', '.join(keys)}" if keys else f"mend '{expression or error}'"
+    return f"there is no {' '.join(str(error).split())}; {instead}"
+
+
+def _keys(expression: str) -> List[str]:
+    """Names that an expression chooses from: of dict(name=...)[...]."""
+    try:
+        tree = ast.parse(expression, mode="eval")
+    except SyntaxError:
+        return []
+    return [
+        keyword.arg
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Subscript) and isinstance(node.value, ast.Call)
+        for keyword in node.value.keywords
+        if keyword.arg
+    ]
