@@ -5,14 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import (
     TYPE_CHECKING,
-    Any,
-    Dict,
     Iterable,
     List,
     Mapping,
     Optional,
     Sequence,
-    Tuple,
     Union,
 )
 
@@ -22,11 +19,10 @@ from . import _core
 from ._core import InputError
 from .arguments import brief
 from .batch_state import BatchState as BatchState
-from .description import read_both
+from .batch_vehicles import refusal, vehicles
 from .flight import check_logged, steps_within
-from .given import SPAWN, Value, engine_and_step, poses, seeds, text_of, whole
+from .given import SPAWN, Value, engine_and_step, poses, seeds, whole
 from .log import Log
-from .overrides import check_names, with_links, without_xacro
 from .warning import warn
 
 if TYPE_CHECKING:
@@ -47,7 +43,8 @@ class BatchSimulation(_core.Batch):
     n : int
         Vehicles.
     parameters : mapping of str to value or array (n,), optional
-        As of `Simulation`; an array has one for each vehicle.
+        As of `Simulation`; an array has one for each vehicle, which ``xacro.ARG`` takes, too: the
+        file is expanded for each value. Of a tag that is a row of k numbers an array is (n, k).
     spawn : array_like (n, 6), (n, 3), (6,) or (3,)
         x, y, z (m), and roll, pitch, yaw (rad), of each vehicle or of all.
     seed : int or array_like (n,)
@@ -93,24 +90,22 @@ class BatchSimulation(_core.Batch):
         if self.n < 1:
             raise InputError("n is 0; give the number of vehicles")
         engine, dt = engine_and_step(engine, dt)
-        arguments, others = without_xacro(parameters, xacro_args)
-        model, self.world = read_both(model, world, arguments, ignore)
-        check_names(model, parameters or {})
-        built: List[Tuple[_core.Model, Dict[str, str]]] = []
-        before: Dict[str, str] = {}
-        for values in self._of_each(others):
-            built.append(built[-1] if built and values == before else with_links(model, values))
-            before = values
-        super().__init__(
-            [model for model, _ in built],
-            self.world,
-            engine,
-            dt,
-            [tags for _, tags in built],
-            poses(spawn, self.n),
-            seeds(seed, self.n),
-            0 if threads is None else whole(threads, "threads", bits=31),
-        )
+        try:
+            models, tags, self.world = vehicles(
+                self.n, model, world, parameters, xacro_args, ignore
+            )
+            super().__init__(
+                models,
+                self.world,
+                engine,
+                dt,
+                tags,
+                poses(spawn, self.n),
+                seeds(seed, self.n),
+                0 if threads is None else whole(threads, "threads", bits=31),
+            )
+        except InputError as error:
+            raise refusal(error, parameters, self.n) from error.__cause__
         for warning in self.warnings(0):
             warn(warning)
 
@@ -276,21 +271,3 @@ class BatchSimulation(_core.Batch):
     def __repr__(self) -> str:
         failed = sum(map(bool, self.failures))
         return f"<BatchSimulation of {self.n} vehicles, {failed} failed, steps of {self.dt:g} s>"
-
-    def _of_each(self, parameters: Mapping[str, Any]) -> List[Dict[str, str]]:
-        """Write out the parameters of each vehicle."""
-        common, own = {}, {}
-        for key, value in parameters.items():
-            if isinstance(value, np.ndarray) and value.ndim > 0:
-                if len(value) != self.n:
-                    raise InputError(
-                        f"set {key}: {len(value)} values for {self.n} vehicles; give one for each, "
-                        "or one number"
-                    )
-                own[key] = value
-            else:
-                common[key] = text_of(value)
-        return [
-            {**common, **{key: text_of(values[i]) for key, values in own.items()}}
-            for i in range(self.n)
-        ]

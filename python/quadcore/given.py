@@ -53,6 +53,8 @@ def engine_and_step(engine: object, dt: object) -> Tuple[str, Optional[float]]:
 
 def text_of(value: Value) -> str:
     """Write a parameter's value as a URDF would."""
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value.item()
     if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
     if isinstance(value, (list, tuple, np.ndarray)):
