@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Mapping, Optional, Sequence, Tuple, Union
+from typing import Dict, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _core, resources, xml_source
 from ._core import Document, InputError, Model, World
@@ -11,6 +11,9 @@ from .arguments import LIST, NAME, OPTIONS, check, read_once
 from .files import is_file, shown
 from .forks import LOCK
 from .parameters import did_you_mean
+
+_XACRO = (".xacro", ".gazebo")
+"""Ends of names of files that are expanded; RotorS has the second."""
 
 
 def read_model(
@@ -124,7 +127,7 @@ def load_description(model: str, xacro_args: Mapping[str, str]) -> Document:
         An argument that the xacro file does not have.
     """
     path = _find("model", model, "urdf")
-    if path.suffix not in (".xacro", ".gazebo"):
+    if path.suffix not in _XACRO:
         if xacro_args:
             raise InputError(f"{path}: takes no xacro arguments: it is no .xacro file")
         return _plain(path)
@@ -138,6 +141,23 @@ def load_description(model: str, xacro_args: Mapping[str, str]) -> Document:
         "\n".join(text for text, _ in lines),
         [(shown(place.file), place.line) for _, place in lines],
     )
+
+
+def xacro_arguments(model: Union[str, Path], given: Mapping[str, object]) -> Dict[str, str]:
+    """Tell what each argument of a model's xacro file is: as given, or its default.
+
+    Raises
+    ------
+    InputError
+        As of `load_description`; a file that is no xacro file has none.
+    """
+    path = _find("model", str(model), "urdf")
+    if path.suffix not in _XACRO:
+        return {}
+    with LOCK:
+        from .xacro_expansion import arguments_of
+
+    return arguments_of(str(path), {name: str(value) for name, value in given.items()})
 
 
 def load_world(world: str | None) -> Document:

@@ -31,7 +31,8 @@ def register(commands: Any) -> None:
         metavar="NAME,NAME",
         type=values.names,
         required=True,
-        help="what to find: PLUGIN.TAG, LINK.mass, LINK.ixx ... LINK.izz; --set says from where",
+        help="what to find: PLUGIN.TAG, LINK.mass, LINK.ixx ... LINK.izz, xacro.ARG; --set and "
+        "--xacro say from where",
     )
     parser.add_argument(
         "--bound",

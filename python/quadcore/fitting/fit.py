@@ -9,18 +9,15 @@ import numpy as np
 
 from .. import arguments
 from .._core import FlightError, InputError, Model
-from ..description import read_both
-from ..given import text_of
 from ..log import Log
-from ..overrides import check_names, with_links, without_xacro
 from ..simulation import Simulation
 from ..warning import unheard
 from . import record as records
-from .document import with_values
 from .horizons import Horizons
 from .identify import Combination, Identified, identify
 from .problem import Problem, free_parameter, names_of
 from .search import search
+from .subject import Subject
 
 Progress = Callable[[int, int], None]
 
@@ -134,7 +131,7 @@ def fit(
     log
         A log, or its file: pose and velocities; rotor speeds.
     free
-        Names, ``PLUGIN.TAG``, ``LINK.mass``, ``LINK.ixx``.
+        Names, ``PLUGIN.TAG``, ``LINK.mass``, ``LINK.ixx``, ``xacro.ARG``.
     commands
         As for `Simulation.run`. None: what the log has as topic ``vel_cmd``; without that, what the
         measured rotor speeds must have been commanded by.
@@ -171,25 +168,21 @@ def fit(
     told = dict(locals())
     options = ("parameters", "world", "dt", "xacro_args", "ignore")
     arguments.check({name: told[name] for name in (*_KINDS, *options)}, _KINDS)
-    of_xacro, given = without_xacro(parameters, xacro_args)
-    read, read_world = read_both(model, world, of_xacro, ignore)
-    check_names(read, parameters or {})
-    read, tags = with_links(read, {name: text_of(value) for name, value in given.items()})
-    simulation = Simulation(read, engine=engine, world=read_world, dt=dt, parameters=tags)
+    named = names_of(free)
+    subject = Subject(named, model, engine, world, dt, parameters, xacro_args, ignore)
+    simulation = subject.simulation
     known = dict(bounds or {})
     for name in known:
-        if name not in free:
+        if name not in named:
             raise InputError(f"bound {name}: it is not free; free it, or leave the bound out")
-    wanted = [free_parameter(name, read, simulation, known.get(name)) for name in names_of(free)]
+    wanted = [free_parameter(name, subject, known.get(name)) for name in named]
     flown = records.read(log, simulation.rotor_count, commands, sensed)
     names = records.channels(channels, flown)
-    make = {"model": read, "engine": engine, "world": read_world}
     lag, slow = _motors(simulation)
-    fixed = {name: value for name, value in tags.items() if name not in free}
 
     def problem(is_held_out: bool) -> Problem:
         pieces = Horizons(
-            flown, make, fixed, simulation.dt, horizon, names, lag, slow,
+            flown, subject.make, subject.fixed, simulation.dt, horizon, names, lag, slow,
             lambda i: (i % _HELD_OUT == _HELD_OUT - 1) == is_held_out,
         )  # fmt: skip
         return Problem(pieces, wanted)
@@ -201,13 +194,13 @@ def fit(
             found = search(train, progress=progress)
         except KeyboardInterrupt as stop:
             best = dict(zip([p.name for p in wanted], stop.values.tolist()))  # type: ignore[attr-defined]
-            stop.model = with_values(read, best)  # type: ignore[attr-defined]
+            stop.model = subject.with_values(best)  # type: ignore[attr-defined]
             raise
-        return _told(train, problem, found, read, simulation.dt)
+        return _told(train, problem, found, subject)
 
 
 def _told(
-    train: Problem, problem: Callable[[bool], Problem], found: np.ndarray, model: Model, dt: float
+    train: Problem, problem: Callable[[bool], Problem], found: np.ndarray, subject: Subject
 ) -> Fit:
     wanted = train.parameters
     names = [p.name for p in wanted]
@@ -238,10 +231,10 @@ def _told(
         dict(zip(names, start.tolist())),
         {p.name: p.unit for p in wanted},
         identified,
-        train.horizons.shift * dt,
+        train.horizons.shift * subject.simulation.dt,
         residuals[0],
         residuals[1],
-        with_values(model, values),
+        subject.with_values(values),
     )
 
 

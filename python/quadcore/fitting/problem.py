@@ -7,12 +7,11 @@ from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 import numpy as np
 
 from .. import arguments
-from .._core import FlightError, InputError, Model, parse_number
-from ..overrides import XACRO
+from .._core import FlightError, InputError, parse_number
 from ..parameters import did_you_mean
-from ..simulation import Simulation
 from .document import written
 from .horizons import Horizons
+from .subject import Subject
 
 _STEP = 1e-4  # of a parameter, for its derivative
 _START_STEPS = (1e-5, 1e-5, 1e-5, 1e-4, 1e-2)
@@ -33,8 +32,8 @@ class Parameter:
     Parameters
     ----------
     name
-        ``PLUGIN.TAG``, ``LINK.mass``, ``LINK.ixx`` or the like.
-    model, simulation
+        ``PLUGIN.TAG``, ``LINK.mass``, ``LINK.ixx`` or the like, ``xacro.ARG``.
+    subject
         With the value from which the search begins.
     bounds
         Between which it must stay.
@@ -48,18 +47,20 @@ class Parameter:
     def __init__(
         self,
         name: str,
-        model: Model,
-        simulation: Simulation,
+        subject: Subject,
         bounds: Tuple[float, float] = (-np.inf, np.inf),
     ) -> None:
-        tags = {f"{p.name}.{tag.name}": tag for p in simulation.plugins for tag in p.parameters}
+        plugins, model = subject.simulation.plugins, subject.model
+        tags = {f"{p.name}.{tag.name}": tag for p in plugins for tag in p.parameters}
         links = written(model.document)
-        if name in tags:
+        if name in subject.arguments:
+            text, self.unit = subject.arguments[name], ""
+        elif name in tags:
             text, self.unit = tags[name].value, tags[name].unit
         elif name in links:
             text, self.unit = links[name], "kg" if name.endswith(".mass") else "kg m^2"
         else:
-            known = [*tags, *links]
+            known = [*tags, *links, *subject.arguments]
             raise InputError(f"free {name}: model {model.name} has none{did_you_mean(name, known)}")
         value = parse_number(text)
         if value is None:
@@ -75,11 +76,6 @@ def names_of(free: Sequence[str]) -> List[str]:
     """List what is free; raises `InputError` for what cannot be."""
     names = [str(name) for name in arguments.several(free)]
     for name in names:
-        if name.partition(".")[0] == XACRO:
-            raise InputError(
-                f"free {name}: arguments of xacro are given, not found; name PLUGIN.TAG, "
-                "LINK.mass, LINK.ixx or the like"
-            )
         if names.count(name) > 1:
             raise InputError(f"free {name}: it is named twice; keep one")
     if not names:
@@ -87,13 +83,11 @@ def names_of(free: Sequence[str]) -> List[str]:
     return names
 
 
-def free_parameter(
-    name: str, model: Model, simulation: Simulation, bounds: Optional[Tuple[float, float]]
-) -> Parameter:
+def free_parameter(name: str, subject: Subject, bounds: Optional[Tuple[float, float]]) -> Parameter:
     """Make one; without bounds what is not negative stays so."""
     if bounds is not None:
-        return Parameter(name, model, simulation, bounds)
-    made = Parameter(name, model, simulation)
+        return Parameter(name, subject, bounds)
+    made = Parameter(name, subject)
     if made.start >= 0 and not name.endswith((".ixy", ".ixz", ".iyz")):
         made.bounds = (0.0, np.inf)
     return made
