@@ -71,6 +71,19 @@ def test_an_interrupted_fit_has_the_document_with_the_best_argument(flown):
     assert qc.Simulation(stop.value.model).mass == pytest.approx(1.07 + 0.04 + 0.043, rel=1e-4)
 
 
+def test_the_document_has_what_was_set_besides(flown, tmp_path):
+    log, commands = flown
+    with_rate = tmp_path / "model.urdf"
+    text = qc.read_model("quadrotor", xacro_args={**KNOWN, "arm_length": 0.12}).document.text
+    with_rate.write_text(text.replace("<rate>1000.0</rate>", "<updateRate>1000.0</updateRate>"))
+    assert "<updateRate>" in with_rate.read_text()
+    besides = {"odometry.rate": 200, "odometry.twistFrame": "body", "motorpid_plugin.kp": 5e-4}
+    found = qc.fit(with_rate, log, "frame.mass", commands, parameters={**OTHER, **besides})
+    written = found.model.document.text
+    assert "<updateRate>200</updateRate>" in written  # under the name that stands there
+    assert "<twistFrame>body</twistFrame>" in written and "<kp>0.0005</kp>" in written
+
+
 def test_the_command_writes_the_expanded_document(flown, in_empty_folder):
     log, commands = flown
     log.to_csv("log.csv")

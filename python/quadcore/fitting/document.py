@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Dict, List, Mapping, Tuple
+from typing import Collection, Dict, List, Mapping, Optional, Tuple
 from xml.parsers import expat
+from xml.sax.saxutils import escape
 
 from .. import _core
 from .._core import Document, Model
+from ..given import Value, text_of
 from ..overrides import link_values, with_links
 
 
@@ -35,17 +37,29 @@ def written(document: Document) -> Dict[str, str]:
     return found
 
 
-def with_values(model: Model, values: Mapping[str, float]) -> Model:
+def with_values(
+    model: Model, values: Mapping[str, Value], aliases: Optional[Mapping[str, str]] = None
+) -> Model:
     """Write values of plugins' tags and links into a model's text, and read it.
+
+    Parameters
+    ----------
+    model
+        Which has the text.
+    values
+        By ``PLUGIN.TAG``, ``LINK.mass`` and the like.
+    aliases
+        Of names in `values`, under which the text may have them.
 
     Raises
     ------
     InputError
         The model cannot have them.
     """
-    changed, tags = with_links(model, {name: repr(value) for name, value in values.items()})
+    changed, tags = with_links(model, {name: text_of(value) for name, value in values.items()})
     text = changed.document.text.encode()
-    edits = [(*_place(text, key), key, value) for key, value in tags.items()]
+    names = {key: {key, (aliases or {}).get(key, key)} for key in tags}
+    edits = [(*_place(text, names[key]), key, escape(value)) for key, value in tags.items()]
     for begin, end, key, value in sorted(edits, reverse=True):
         tag = key.rpartition(".")[2]
         new = value if begin < end else f"<{tag}>{value}</{tag}>"
@@ -54,9 +68,10 @@ def with_values(model: Model, values: Mapping[str, float]) -> Model:
     return _core.read_model(document, list(model.passed_over.ignored))
 
 
-def _place(text: bytes, key: str) -> Tuple[int, int]:
+def _place(text: bytes, keys: Collection[str]) -> Tuple[int, int]:
     """Find the value of a plugin's tag, or where the tag may be put: begin and end in bytes."""
-    plugin, _, tag = key.rpartition(".")
+    plugin = next(iter(keys)).rpartition(".")[0]
+    tags = [[key.rpartition(".")[2]] for key in keys]
     parser = expat.ParserCreate()
     found: Dict[str, int] = {}
     inside: List[str] = []
@@ -64,7 +79,7 @@ def _place(text: bytes, key: str) -> Tuple[int, int]:
     def start(element: str, attributes: Mapping[str, str]) -> None:
         if inside:
             inside.append(element)
-            if inside[1:] == [tag]:
+            if inside[1:] in tags:
                 found["begin"] = text.index(b">", parser.CurrentByteIndex) + 1
         elif element == "plugin" and attributes.get("name") == plugin:
             inside.append(element)
@@ -72,7 +87,7 @@ def _place(text: bytes, key: str) -> Tuple[int, int]:
     def end(element: str) -> None:
         if not inside:
             return
-        if inside[1:] == [tag]:
+        if inside[1:] in tags:
             found["end"] = parser.CurrentByteIndex
         inside.pop()
         if not inside:

@@ -83,9 +83,16 @@ class Subject:
         }
 
     def with_values(self, values: Mapping[str, float]) -> Model:
-        """Read the model that has values of what is free."""
+        """Read the model that has values of what is free, and what was set besides."""
         make = self.make
         of_xacro, others = without_xacro(values, make["xacro_args"])
         read, _ = read_both(make["model"], make["world"], of_xacro, make["ignore"])
-        model, _ = with_links(read, self.fixed)
-        return with_values(model, others)
+        aliases = {
+            f"{plugin.name}.{tag.name}": f"{plugin.name}.{tag.alias}"
+            for plugin in self.simulation.plugins
+            for tag in plugin.parameters
+            if tag.alias
+        }
+        names = {alias: name for name, alias in aliases.items()}
+        fixed = {names.get(name, name): value for name, value in self.fixed.items()}
+        return with_values(read, {**fixed, **others}, aliases)
