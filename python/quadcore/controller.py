@@ -224,6 +224,9 @@ def check_callable(controller: Any) -> None:
             f"controller is {brief(controller)}; give a function, or an object, that is called as "
             f"{form}"
         )
+    if inspect.isclass(controller):
+        name = controller.__name__
+        raise InputError(f"controller is the class {name}; give an instance: {name}()")
     try:
         signature = inspect.signature(controller)
     except (TypeError, ValueError):  # of a compiled one nobody can tell

@@ -10,6 +10,7 @@ import pytest
 from evaluations import FLY, evaluate, rows
 from test_guided_runs import OWN
 
+import quadcore as qc
 from quadcore import references
 from quadcore.cli import main
 
@@ -71,6 +72,18 @@ def test_objects_and_functions_are_evaluated_each_flight_anew():
     found = evaluate([Counting()], "hover", seeds=3, duration=0.5, processes=1)
     assert [row["failure"] for row in found.table] == ["", "", ""]
     assert found.table[0]["controller"] == "Counting"
+
+
+def test_a_class_in_the_place_of_its_instance_is_told_what_to_write():
+    class My:
+        def __call__(self, t, state, reference):
+            return [471, -471, 471, -471]
+
+    says = r"controller is the class My; give an instance: My\(\)"
+    with pytest.raises(qc.InputError, match=says):
+        evaluate([My], ["hover"])
+    with pytest.raises(qc.InputError, match=says):
+        qc.Simulation("quadrotor", "eigen").run(0.1, controller=My)
 
 
 def test_faults_of_a_controller_are_rows_and_the_other_flights_finish(capsys):
