@@ -14,6 +14,7 @@ from . import _core, interrupts
 from .arguments import brief
 from .commands import CommandsLike, as_commands
 from .log import Log
+from .plants import check_wrenches
 from .trajectory import per_command
 
 if TYPE_CHECKING:
@@ -85,6 +86,8 @@ def fly(
     FlightError
         The flight failed, or what the pilot gave was no command, be it at the start.
     """
+    if wrenches:
+        check_wrenches(simulation.engine)
     total = steps_within(duration, simulation.dt)
     log_every = _row_every(log_every)
     table = None if commands is None else as_commands(commands, simulation.command_width)

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, List, Tuple
 
-from ._core import engines
+from ._core import InputError, engines
 
 if TYPE_CHECKING:
     from .simulation import Simulation
 
 ENGINE = engines()[0][0]
 """What flies unless told."""
+
+STUDIED = "eigen"
+"""What flies where many flights are asked for, unless told."""
 
 LAGRANGE = "lagrange"
 
@@ -19,6 +22,15 @@ def plants() -> List[Tuple[str, str]]:
     """Name each, with a summary."""
     summary = "the mathematical model of chapter 2: no contact, no forces of plugins"
     return [*engines(), (LAGRANGE, summary)]
+
+
+def check_wrenches(engine: str) -> None:
+    """Raise `InputError` if wrenches are asked of what has none to tell."""
+    if engine == LAGRANGE:
+        raise InputError(
+            f"engine {LAGRANGE}: wrenches are told of plugins, none of whose forces acts on the "
+            "mathematical model; leave wrenches out, or fly another engine"
+        )
 
 
 def build(engine: str, **options: Any) -> Simulation:

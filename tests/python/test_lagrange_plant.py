@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -128,14 +129,23 @@ def test_a_pitch_of_90_degrees_ends_the_flight():
     [
         ("--set motorpid_plugin.ki=1 --set motorpid_plugin.iMax=1", "proportional motors"),
         ("--world default", "ground"),
+        ("--wrenches --out out", "leave wrenches out, or fly another engine"),
     ],
 )
-def test_what_it_cannot_represent_is_refused_in_one_line(capsys, arguments, says):
+def test_what_it_cannot_represent_is_refused_in_one_line(capsys, in_empty_folder, arguments, says):
     command = ["run", "quadrotor", "--engine", "lagrange", "--duration", "0.1"]
     assert main([*command, *arguments.split()]) == 2
     errors = capsys.readouterr().err.splitlines()
     assert len(errors) == 1
     assert says in errors[0]
+    assert not any(Path().iterdir())
+
+
+def test_wrenches_that_it_has_not_are_refused_in_python_too():
+    plant = build("lagrange", dt=4e-3, **CHAPTER_2)
+    with pytest.raises(qc.InputError, match="engine lagrange: wrenches are told of plugins"):
+        plant.run(0.1, wrenches=True)
+    assert plant.time == 0
 
 
 def test_a_force_that_it_does_not_know_is_refused():

@@ -18,7 +18,7 @@ from ..flight import columns_of, fly, steps_within
 from ..flight_plan import FlightPlan
 from ..formats.rows import Recorder
 from ..log import check_log_path, log_file
-from ..plants import plants
+from ..plants import check_wrenches, plants
 from ..recording import TAIL, Errors, Fastest, Recording, Thinned
 from ..rotation import roll_pitch_yaw
 from ..simulation import Simulation
@@ -62,6 +62,8 @@ def run(arguments: argparse.Namespace) -> None:
     if pilot is not None:
         errors = Errors(columns)
         others.append(errors)
+    if arguments.wrenches:
+        check_wrenches(simulation.engine)
     terms = simulation.wrench_terms if arguments.wrenches else []
     if arguments.out is not None and not arguments.no_plots:
         steps = steps_within(plan.duration, simulation.dt)
