@@ -39,7 +39,8 @@ from .state import State
 from .warning import QuadcoreWarning
 
 if TYPE_CHECKING:
-    from .comparison.compare import Comparison, compare
+    from .comparison.compare import compare
+    from .comparison.result import Comparison
     from .evaluation.evaluate import Evaluation, evaluate
     from .fitting.fit import Fit, fit
     from .flight_plan import FlightPlan
@@ -90,7 +91,7 @@ __all__ = [
 ]
 
 _STUDIES = {
-    "Comparison": "comparison.compare",
+    "Comparison": "comparison.result",
     "Evaluation": "evaluation.evaluate",
     "Fit": "fitting.fit",
     "FlightPlan": "flight_plan",

@@ -232,7 +232,11 @@ class FlightPlan:
         Log
             Of the whole flight, from the state in which it begins.
         """
-        return self.simulation().run(
+        return self.flown_by(self.simulation(), progress)
+
+    def flown_by(self, simulation: Simulation, progress: Optional[Progress] = None) -> Log:
+        """Do as `fly` with what `simulation()` made."""
+        return simulation.run(
             self.duration,
             self.commands,
             self.log_every,

@@ -11,7 +11,7 @@ from .rotation import roll_pitch_yaw
 from .study.table import number_text, shown_in
 
 if TYPE_CHECKING:
-    from .comparison.compare import Comparison
+    from .comparison.result import Comparison
     from .evaluation.evaluate import Evaluation
     from .log import Log
     from .simulation import Simulation

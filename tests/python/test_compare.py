@@ -16,7 +16,7 @@ from processes import outcomes
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.comparison.compare import Comparison
+from quadcore.comparison import Comparison
 from quadcore.rotation import roll_pitch_yaw
 from quadcore.study import metrics
 
@@ -225,22 +225,22 @@ def test_a_variant_that_fails_is_a_row_and_the_others_finish(capsys):
 
 def test_the_first_that_flew_is_what_the_others_are_compared_with():
     result = qc.compare("toy.urdf", {"motor.kp": [-1, 1e-4, 2e-4]}, **SPIN)
-    assert result.reference == 1
+    assert result.against == 1
     assert result.logs[0] is None
     assert result.table["largest_position"][1] == 0
     assert result.table["largest_yaw"][2] > 0
     nothing = qc.compare("toy.urdf", {"motor.kp": [-1, -2]}, **SPIN)
-    assert nothing.reference is None
-    assert main(["compare", "toy.urdf", "--vary", "motor.kp=-1", "--out", "out"]) == 3
+    assert nothing.against is None
+    assert (result.refused, nothing.refused) == (1, 2)
 
 
 @pytest.mark.parametrize("processes", [1, 2])
 def test_any_flight_can_be_what_the_others_are_compared_with(processes):
     first = qc.compare("toy.urdf", {"motor.kp": [1e-4, 2e-4, 3e-4]}, **SPIN)
     last = qc.compare(
-        "toy.urdf", {"motor.kp": [1e-4, 2e-4, 3e-4]}, reference=2, processes=processes, **SPIN
+        "toy.urdf", {"motor.kp": [1e-4, 2e-4, 3e-4]}, against=2, processes=processes, **SPIN
     )
-    assert last.reference == 2
+    assert last.against == 2
     for one, other in zip(first.logs, last.logs):
         assert np.array_equal(one.table, other.table)
     assert last.table["largest_position"][2] == 0
@@ -250,12 +250,26 @@ def test_any_flight_can_be_what_the_others_are_compared_with(processes):
 
 def test_a_flight_to_compare_with_that_is_none_or_fails_is_said(capsys):
     vary = ["--vary", "motor.kp=1e-4,-1"]
-    assert main(["compare", "toy.urdf", *FLIGHT, *vary, "--reference", "3"]) == 2
-    assert capsys.readouterr().err == "error: --reference 3: there are 2 flights\n"
-    assert main(["compare", "toy.urdf", *FLIGHT, *vary, "--reference", "2"]) == 3
+    assert main(["compare", "toy.urdf", *FLIGHT, *vary, "--against", "3"]) == 2
+    assert capsys.readouterr().err == "error: --against 3: there are 2 flights\n"
+    assert main(["compare", "toy.urdf", *FLIGHT, *vary, "--against", "2"]) == 2
+    assert "error: no. 2, to compare the others with, is refused: " in capsys.readouterr().err
+    assert main(["compare", "toy.urdf", *FLIGHT, *vary, "--against", "1", "--out", "out"]) == 3
+    assert json.loads(Path("out/comparison.json").read_text())["against"] == 1
+    Path("fast.csv").write_text("t,w1\n0,400\n0.05,9000\n")
+    diverging = [*FLIGHT[:-1], "fast.csv", "--vary", "motor.kp=1e-4,0.05", "--against", "2"]
+    unslowed = [f"--set={name}=1" for name in SLOW.split(",")]
+    assert main(["compare", "toy.urdf", *diverging, *unslowed]) == 3
     assert "error: no. 2, to compare the others with, failed: " in capsys.readouterr().err
-    assert main(["compare", "toy.urdf", *FLIGHT, *vary, "--reference", "1", "--out", "out"]) == 3
-    assert json.loads(Path("out/comparison.json").read_text())["reference"] == 1
+
+
+def test_vehicles_are_compared_with_one_of_more_rotors():
+    flight = {"engine": "eigen", "duration": 0.01}
+    found = qc.compare(["quadrotor", "firefly"], against=1, **flight)
+    assert list(found.table["failure"]) == ["", ""]
+    assert list(found.states)[-6:] == [f"j{i}" for i in range(1, 7)]
+    assert np.isnan(found.table["largest_j6"][0]) and found.table["largest_j6"][1] == 0
+    assert found.table["largest_z"][0] > 0
 
 
 def test_people_read_degrees_and_files_hold_radians(capsys):

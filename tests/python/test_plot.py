@@ -41,6 +41,18 @@ def test_one_log_gives_the_pictures_of_its_flight():
     assert all(Path("a", name).read_bytes() == Path("b", name).read_bytes() for name in ONE)
 
 
+def test_pictures_go_to_a_folder_that_the_help_names(capsys):
+    with pytest.raises(SystemExit):
+        main(["plot", "--help"])
+    assert "(out/plot)" in capsys.readouterr().out
+    for log in ("fall.csv", "climb.csv"):  # of which the second overwrites
+        assert main(["plot", log]) == 0
+        assert capsys.readouterr().out.count("written out/plot/") == len(ONE)
+    assert pictures("out/plot") == ONE
+    assert main(["plot", "climb.csv", "--out", "b"]) == 0
+    assert all(Path("out/plot", n).read_bytes() == Path("b", n).read_bytes() for n in ONE)
+
+
 def test_several_logs_are_drawn_over_each_other(capsys):
     assert main(["plot", "fall.csv", "climb.csv", "--out", "both"]) == 0
     assert pictures("both") == ONE | {"differences.png"}
@@ -117,7 +129,7 @@ def test_flights_over_each_other_tell_commands_and_what_they_are_compared_with(m
     monkeypatch.setattr(plots, "png", lambda figure: drawn.setdefault(len(drawn), figure) and b"")
     flight = ["compare", "quadrotor", "--duration", "0.01", "--commands", "c.csv", "--out", "o"]
     Path("c.csv").write_text("t,w1,w2,w3,w4\n0,471,-471,471,-471\n")
-    vary = ["--vary", "motorpid_plugin.kp=0.0005,0.001", "--reference", "2", "--quiet"]
+    vary = ["--vary", "motorpid_plugin.kp=0.0005,0.001", "--against", "2", "--quiet"]
     assert main([*flight, *vary]) == 0
     *_, rotors, differences = drawn.values()
     (beside,) = rotors.axes[0].child_axes

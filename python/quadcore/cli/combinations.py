@@ -28,7 +28,11 @@ def add(parser: argparse.ArgumentParser) -> None:
         help=f"{', '.join(references.NAMES)}, NAME:KEY=VALUE,..., or files",
     )
     parser.add_argument(
-        "--model", metavar="A,B", type=values.names, default=["quadrotor"], help="(quadrotor)"
+        "--model",
+        metavar="A,B",
+        type=values.names,
+        default=["quadrotor"],
+        help="what flies, files or shipped (quadrotor)",
     )
     options.add_changes(parser)
     parser.add_argument(
@@ -39,5 +43,5 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="A,B",
         type=values.names,
         help="what befalls the vehicle, files or shipped: "
-        + ", ".join([NONE, *resources.shipped("config/scenarios")]),
+        + f"{', '.join([NONE, *resources.shipped('config/scenarios')])} ({NONE})",
     )

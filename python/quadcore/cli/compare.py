@@ -7,15 +7,17 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from .._core import FlightError, InputError, QuadcoreError
-from ..comparison.compare import Comparison, fly
+from .._core import InputError, QuadcoreError
+from ..comparison.compare import fly
 from ..comparison.output import FILES, drawn, listed, summary, write
 from ..comparison.plan import Plan
+from ..comparison.result import Comparison
 from ..files import make_folder, prepare_folder
 from ..log import Log
 from ..study.sampling import thinned
 from ..study.table import number_text, shown_in
 from . import options, terminal, values
+from .failures import failure
 from .kept import kept
 from .unmeant import warn_of_commands
 
@@ -32,10 +34,11 @@ def register(commands: Any) -> None:
     options.add_vary(parser, " and engine")
     options.add_flight(parser)
     options.add_commands(parser)
+    options.add_controller(parser)
     options.add_scenario(parser)
     options.add_jobs(parser)
     parser.add_argument(
-        "--reference",
+        "--against",
         metavar="N",
         type=values.integer(1),
         help="number of the flight that the others are compared with (the first that flies)",
@@ -54,8 +57,8 @@ def register(commands: Any) -> None:
 def compare(arguments: argparse.Namespace) -> None:
     """Print how the models differ, fly them, and print how the flights differ."""
     plan = _plan(arguments)
-    if arguments.reference is not None and arguments.reference > plan.count:
-        raise InputError(f"--reference {arguments.reference}: there are {plan.count} flights")
+    if arguments.against is not None and arguments.against > plan.count:
+        raise InputError(f"--against {arguments.against}: there are {plan.count} flights")
     out = arguments.out
     if out is not None:
         prepare_folder(out, FILES)  # after the flights would be too late
@@ -72,7 +75,7 @@ def compare(arguments: argparse.Namespace) -> None:
             _keeper(arguments, plan),
             arguments.jobs,
             progress,
-            None if arguments.reference is None else arguments.reference - 1,
+            None if arguments.against is None else arguments.against - 1,
         )
     files = put(comparison, not arguments.no_plots)
     if not arguments.quiet:
@@ -82,6 +85,12 @@ def compare(arguments: argparse.Namespace) -> None:
 
 def _plan(arguments: argparse.Namespace) -> Plan:
     axes = options.varied(arguments)
+    if arguments.reference is not None and arguments.reference.isdigit():
+        number = arguments.reference
+        raise InputError(
+            f"--reference {number}: names where to fly; the number of the flight that the others "
+            f"are compared with is --against {number}"
+        )
     if len(arguments.model) == 1 and not axes:
         raise InputError("one model and nothing varied; name another model, or use --vary")
     if arguments.logs and arguments.out is None:
@@ -98,21 +107,23 @@ def _plan(arguments: argparse.Namespace) -> Plan:
         {
             **model,
             **options.flight_arguments(arguments),
+            "spawn": arguments.spawn,
             "scenario": arguments.scenario,
             "wrenches": arguments.wrenches,
         },
+        options.guidance_arguments(arguments),
     )
 
 
 def _warn_of_commands(plan: Plan) -> None:
+    if plan.guidance.is_given:
+        return
     first = plan.flight(next(iter(plan)))
     try:
         simulation = first.simulation()
     except QuadcoreError:  # a row of the table, with its reason
         return
-    warn_of_commands(
-        simulation, first, "fly with a controller: quadcore evaluate takes --vary, too"
-    )
+    warn_of_commands(simulation, first, "--controller geometric, which hovers")
 
 
 def _keeper(arguments: argparse.Namespace, plan: Plan) -> Any:
@@ -138,16 +149,23 @@ def _keeper(arguments: argparse.Namespace, plan: Plan) -> Any:
 
 def _flight(arguments: argparse.Namespace, plan: Plan) -> dict[str, str]:
     """Describe what all flights share."""
+    guided = plan.guidance.is_given
+    given = options.flight_arguments(arguments)
+    begins = ", ".join(f"{part:g}" for part in given.pop("spawn"))
+    if guided and arguments.spawn is None and arguments.reference is not None:
+        begins = "on the reference"
     shared = {
-        "commands": arguments.commands or "none",
+        "commands": None if guided else arguments.commands or "none",
+        **options.guidance_arguments(arguments),
         "scenario": arguments.scenario,
         "duration": f"{arguments.duration:g} s",
-        **options.flight_arguments(arguments),
+        **given,
+        "spawn": begins,
     }
     varied = [axis.name for axis in plan.axes]
     return {
         **{
-            name: ", ".join(f"{part:g}" for part in value) if name == "spawn" else str(value)
+            name: str(value)
             for name, value in shared.items()
             if value not in (None, 0) and name not in varied
         },
@@ -173,10 +191,12 @@ def _show_models(plan: Plan) -> None:
 def _show_flights(plan: Plan, comparison: Comparison, files: list[Path]) -> None:
     console = terminal.console()
     whole = list(comparison.states)[:4]
-    if comparison.reference is not None:
-        console.print(f"differences from no. {comparison.reference + 1}, final / largest")
+    if comparison.against is not None:
+        console.print(f"differences from no. {comparison.against + 1}, final / largest")
     units = {state: shown_in(comparison.states[state]) for state in whole}
     headings = [f"{state} ({unit})" for state, (unit, _) in units.items()]
+    if plan.guidance.is_given:
+        headings.insert(0, "to the reference (m), RMS / largest")
     table = terminal.table("no.", "variant", *headings)
     for number, (row, variant) in enumerate(zip(comparison.table, plan), start=1):
         if number > _ROWS:
@@ -186,6 +206,9 @@ def _show_flights(plan: Plan, comparison: Comparison, files: list[Path]) -> None
             " / ".join(number_text(row[f"{k}_{state}"] * factor) for k in ("final", "largest"))
             for state, (_, factor) in units.items()
         ]
+        if plan.guidance.is_given:
+            errors = [number_text(row[f"{kind}_error"]) for kind in ("rms", "largest")]
+            cells.insert(0, " / ".join(errors))
         table.add_row(
             str(number), plan.label(variant), *([row["failure"]] if row["failure"] else cells)
         )
@@ -199,7 +222,5 @@ def _report_failures(plan: Plan, comparison: Comparison) -> None:
     if failed:
         first = failed[0]
         label = plan.label(next(islice(plan, first, None)))
-        raise FlightError(
-            f"{len(failed)} of {plan.count} flights failed; the first, no. {first + 1} ({label}): "
-            f"{comparison.table['failure'][first]}"
-        )
+        told = f"no. {first + 1} ({label}): {comparison.table['failure'][first]}"
+        raise failure(len(failed), plan.count, comparison.refused, told)

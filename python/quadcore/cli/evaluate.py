@@ -6,10 +6,11 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .._core import FlightError, InputError
+from .._core import InputError
 from ..files import prepare_folder
-from ..plants import plants
+from ..plants import STUDIED, plants
 from . import combinations, options, terminal, values
+from .failures import failure
 from .kept import kept
 from .options_file import OptionsFile
 
@@ -27,7 +28,14 @@ def register(commands: Any) -> None:
     )
     combinations.add(parser)
     options.add_vary(parser, " and controller.KEY, its rate, delay or a parameter of the laws")
-    options.add_flight(parser, several_engines=True, log_every=None, flown=plants(), seconds=30.0)
+    options.add_flight(
+        parser,
+        [STUDIED],
+        log_every=None,
+        flown=plants(),
+        seconds=30.0,
+        begins="on the reference",
+    )
     options.add_timing(parser)
     parser.add_argument(
         "--margins", action="store_true", help="search for gain and delay margins, too"
@@ -44,7 +52,7 @@ def register(commands: Any) -> None:
         "--out", metavar="DIR", type=Path, help="write tables, pictures and a page here"
     )
     parser.add_argument("--no-plots", action="store_true", help="no pictures in --out")
-    parser.set_defaults(engine=["eigen"], parser=parser)
+    parser.set_defaults(parser=parser)
 
 
 def evaluate(arguments: argparse.Namespace) -> None:
@@ -151,8 +159,9 @@ def _report_failures(evaluation: Evaluation) -> None:
     failed = [row for row in evaluation.table if row["failure"]]
     if failed:
         first = failed[0]
-        raise FlightError(
-            f"{len(failed)} of {len(evaluation.table)} flights failed; the first, "
+        refused = sum(outcome.refused for outcome in evaluation.outcomes)
+        told = (
             f"{first['controller']} on {first['reference']} in {first['engine']}, seed "
             f"{first['seed']}: {first['failure']}"
         )
+        raise failure(len(failed), len(evaluation.table), refused, told)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from .._core import InputError, engines, parse_number
 from ..files import atomic_write, check_writable, text_bytes
 from ..fitting.record import CHANNELS
+from ..plants import STUDIED
 from . import options, terminal, values
 from .kept import kept
 
@@ -42,7 +43,7 @@ def register(commands: Any) -> None:
         default=[],
         help="between which a free number must stay (what is not negative stays so); repeatable",
     )
-    options.add_commands(parser)
+    options.add_commands(parser, " (topic vel_cmd of the log, or what its rotor speeds tell)")
     parser.add_argument(
         "--sensed",
         metavar="TOPIC",
@@ -65,7 +66,7 @@ def register(commands: Any) -> None:
         help="find by how much, at most, what was measured lags behind the commands, s (0)",
     )
     names = [name for name, _ in engines()]
-    parser.add_argument("--engine", choices=names, default="eigen", help="what flies (eigen)")
+    parser.add_argument("--engine", choices=names, default=STUDIED, help=f"what flies ({STUDIED})")
     options.add_world(parser)
     parser.add_argument("--dt", metavar="S", type=values.positive, help="step in s (the world's)")
     parser.add_argument(

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import argparse
 import re
-from dataclasses import replace
 from typing import Any, Callable, Sequence
 
 from .. import laws, references, resources
 from .._core import InputError, engines
-from ..controller import give
 from ..flight_plan import FlightPlan
-from ..given import SPAWN, pose
+from ..given import SPAWN
 from ..plants import ENGINE
+from ..scenarios import NONE
 from ..study.axes import parse_axis
+from ..study.guidance import Guidance
 from . import values
+
+SPAWNED = "{:g},{:g},{:g}".format(*SPAWN)
+"""Where a flight begins unless told, as --spawn takes it."""
 
 
 def subparser(commands: Any, name: str, summary: str, action: Callable[..., None]) -> Any:
@@ -26,13 +29,17 @@ def subparser(commands: Any, name: str, summary: str, action: Callable[..., None
     return parser
 
 
-def add_model(parser: argparse.ArgumentParser, nargs: str | None = None) -> None:
-    """Add MODEL and the options that change it; `nargs` as argparse has it."""
+def add_model(
+    parser: argparse.ArgumentParser, nargs: str | None = None, default: str | None = None
+) -> None:
+    """Add MODEL and the options that change it; `nargs` and `default` as argparse has them."""
+    shipped = "URDF or xacro file, or a shipped model: " + ", ".join(resources.shipped("urdf"))
     parser.add_argument(
         "model",
         metavar="MODEL",
         nargs=nargs,
-        help="URDF or xacro file, or a shipped model: " + ", ".join(resources.shipped("urdf")),
+        default=default,
+        help=shipped if default is None else f"{shipped} ({default})",
     )
     add_changes(parser)
 
@@ -68,23 +75,31 @@ def add_changes(parser: argparse.ArgumentParser) -> None:
 
 def add_flight(
     parser: argparse.ArgumentParser,
-    several_engines: bool = False,
+    engine: str | list[str] = ENGINE,
     log_every: int | None = 1,
     flown: Sequence[tuple[str, str]] = tuple(engines()),
     seconds: float | None = 10.0,
+    begins: str = SPAWNED,
 ) -> None:
     """Add the options of everything that flies; some differ between commands.
 
-    Without `seconds` there is no --duration.
+    `engine` is the default; where it is a list, several may be given. Without `seconds` there is no
+    --duration. `begins` says where flights begin without --spawn.
     """
     names = [name for name, _ in flown]
     summaries = "; ".join(f"{name}: {summary}" for name, summary in flown)
-    if several_engines:
+    if isinstance(engine, list):
         parser.add_argument(
-            "--engine", metavar="LIST", type=values.several(names), default=names, help=summaries
+            "--engine",
+            metavar="LIST",
+            type=values.several(names),
+            default=engine,
+            help=f"{summaries} ({','.join(engine)})",
         )
     else:
-        parser.add_argument("--engine", choices=names, default=ENGINE, help=summaries)
+        parser.add_argument(
+            "--engine", choices=names, default=engine, help=f"{summaries} ({engine})"
+        )
     add_world(parser)
     parser.add_argument("--dt", metavar="S", type=values.positive, help="step in s (the world's)")
     if seconds is not None:
@@ -106,7 +121,7 @@ def add_flight(
         "--spawn",
         metavar="X,Y,Z[,ROLL,PITCH,YAW]",
         type=values.pose,
-        help="start pose of the frame in m and rad " + "({:g},{:g},{:g})".format(*SPAWN),
+        help=f"start pose of the frame in m and rad ({begins})",
     )
     parser.add_argument(
         "--log-every",
@@ -126,12 +141,12 @@ def add_world(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_commands(parser: argparse.ArgumentParser) -> None:
-    """Add the option that names an open-loop flight."""
+def add_commands(parser: argparse.ArgumentParser, default: str = "") -> None:
+    """Add the option that names an open-loop flight; `default` says what is flown without."""
     parser.add_argument(
         "--commands",
         metavar="FILE",
-        help="rotor speeds to fly, .csv, .mat or .bag: t,w1..wn (rad/s)",
+        help=f"rotor speeds to fly, .csv, .mat or .bag: t,w1..wn (rad/s){default}",
     )
 
 
@@ -161,7 +176,7 @@ def add_controller(parser: argparse.ArgumentParser) -> None:
         "--reference",
         metavar="NAME[:KEY=VALUE,...]|FILE",
         help=f"where to: one of {', '.join(references.NAMES)}, or a file with columns t,x,y,z "
-        "(hover at the spawn); without --spawn the flight begins in the reference's full state",
+        "(hover at the spawn); without --spawn a flight begins in its full state",
     )
     add_timing(parser)
 
@@ -188,7 +203,7 @@ def add_scenario(parser: argparse.ArgumentParser) -> None:
         "--scenario",
         metavar="FILE",
         help="what befalls the vehicle: a file, or a shipped scenario: "
-        + ", ".join(resources.shipped("config/scenarios")),
+        + f"{', '.join([NONE, *resources.shipped('config/scenarios')])} ({NONE})",
     )
 
 
@@ -244,28 +259,23 @@ def flight_plan(arguments: argparse.Namespace) -> FlightPlan:
         log_every=arguments.log_every,
         topics=tuple(arguments.log_topics),
     )
-    return replace(plan, **_guidance(arguments, plan.model.name))
+    guidance = Guidance(
+        spawn=arguments.spawn, vehicles=[plan.model.name], **guidance_arguments(arguments)
+    )
+    return guidance.onto(plan)
 
 
-def _guidance(arguments: argparse.Namespace, vehicle: str) -> dict[str, Any]:
-    """Members of a `FlightPlan` that `add_controller` asked for."""
+def guidance_arguments(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Arguments of `Guidance` that `add_controller` asked for."""
+    names = ("controller", "reference", "controller_rate", "delay")
+    given = {name: getattr(arguments, name) for name in names}
     if arguments.controller is None:
-        for name in ("reference", "controller_rate", "delay"):
-            if getattr(arguments, name) is not None:
+        for name, value in given.items():
+            if value is not None:
                 raise InputError(f"--{name.replace('_', '-')} needs a --controller; name one")
-        return {}
-    if arguments.commands is not None:
+    elif arguments.commands is not None:
         raise InputError("a flight takes --commands or a --controller; give one of them")
-    controller = laws.parse(arguments.controller, vehicle)
-    for name, value in (("rate", arguments.controller_rate), ("delay", arguments.delay)):
-        if value is not None:
-            give(controller, name, value)
-    if arguments.reference is None:
-        reference = references.hover_at(pose(arguments.spawn or SPAWN))
-    else:
-        reference = references.parse(arguments.reference)
-    on_reference = arguments.reference is not None and arguments.spawn is None
-    return {"controller": controller, "reference": reference, "on_reference": on_reference}
+    return given
 
 
 def varied(arguments: argparse.Namespace) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from ..study.table import save
 from . import options, terminal
 from .play import add_names, names_of
 
+_OUT = Path("out/plot")
 _ROWS = 20_000  # of several logs, more than a picture shows
 
 
@@ -21,9 +22,13 @@ def register(commands: Any) -> None:
     parser = options.subparser(
         commands, "plot", "Draw a log, or several over each other, from the first on.", plot
     )
-    parser.add_argument("logs", metavar="LOG", nargs="+", type=Path, help="log, .csv or .mat")
+    parser.add_argument("logs", metavar="LOG", nargs="+", type=Path, help="log, .csv, .mat or .bag")
     parser.add_argument(
-        "--out", metavar="DIR", type=Path, required=True, help="where to; made if missing"
+        "--out",
+        metavar="DIR",
+        type=Path,
+        default=_OUT,
+        help=f"write pictures here; made if missing ({_OUT})",
     )
     add_names(parser)
     parser.add_argument("--quiet", action="store_true", help="print warnings and errors only")

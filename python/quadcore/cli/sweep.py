@@ -6,17 +6,20 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .._core import FlightError
+from ..evaluation import measures as of_guided
 from ..files import prepare_folder
-from ..plants import plants
+from ..plants import STUDIED, plants
+from ..sweeps import motion
 from ..sweeps.distributions import DESIGNS, forms
 from . import combinations, options, terminal, values
+from .failures import failure
 from .options_file import OptionsFile
 
 if TYPE_CHECKING:
     from ..sweeps.plan import Plan
 
 
+_OUT = Path("out/sweep")
 _UNTOLD = ("measure", "first_interval", "total_interval")
 
 
@@ -38,13 +41,21 @@ def register(commands: Any) -> None:
     parser.add_argument(
         "--samples", metavar="N", type=values.integer(1), help="points of the axes that are drawn"
     )
+    default = next(iter(DESIGNS))
     parser.add_argument(
         "--design",
         choices=list(DESIGNS),
-        default="latin",
-        help="; ".join(f"{name}: {meaning}" for name, (meaning, _) in DESIGNS.items()),
+        default=default,
+        help="; ".join(f"{name}: {meaning}" for name, (meaning, _) in DESIGNS.items())
+        + f" ({default})",
     )
-    options.add_flight(parser, several_engines=True, log_every=None, flown=plants())
+    options.add_flight(
+        parser,
+        [STUDIED],
+        log_every=None,
+        flown=plants(),
+        begins=f"on the reference; with --commands {options.SPAWNED}",
+    )
     options.add_timing(parser)
     parser.add_argument(
         "--time-limit",
@@ -58,7 +69,11 @@ def register(commands: Any) -> None:
         "--dask", metavar="ADDRESS", help="fly on the cluster of this scheduler, tcp://HOST:PORT"
     )
     parser.add_argument(
-        "--out", metavar="DIR", type=Path, help="write rows, sums, pictures and a page here"
+        "--out",
+        metavar="DIR",
+        type=Path,
+        default=_OUT,
+        help=f"write rows, sums, pictures and a page here ({_OUT})",
     )
     parser.add_argument(
         "--resume", action="store_true", help="go on with the rows that are in --out"
@@ -67,10 +82,13 @@ def register(commands: Any) -> None:
         "--parquet", action="store_true", help="write the rows as table.parquet, too"
     )
     parser.add_argument(
-        "--measure", metavar="NAME", help="what is drawn, and what the worst rows are worst in"
+        "--measure",
+        metavar="NAME",
+        help="what is drawn, and what the worst rows are worst in "
+        f"({next(iter(of_guided.UNITS))}; with --commands {next(iter(motion.UNITS))})",
     )
     parser.add_argument("--no-plots", action="store_true", help="no pictures in --out")
-    parser.set_defaults(engine=["eigen"], parser=parser)
+    parser.set_defaults(parser=parser)
 
 
 def sweep(arguments: argparse.Namespace) -> None:
@@ -87,7 +105,7 @@ def sweep(arguments: argparse.Namespace) -> None:
         with file.blamed():
             plan = _plan(arguments)
     measure = main_measure(plan, arguments.measure)
-    out = arguments.out or Path("out/sweep")
+    out = arguments.out
     prepare_folder(out, FILES)  # after the flights would be too late
     try:
         with terminal.progress(arguments.quiet) as progress:
@@ -107,7 +125,7 @@ def sweep(arguments: argparse.Namespace) -> None:
     files = write(plan, columns, out, measure, not arguments.no_plots)
     if not arguments.quiet:
         _show(plan, columns, measure, files)
-    _report_failures(columns)
+    _report_failures(columns, rows.refused)
 
 
 def _plan(arguments: argparse.Namespace) -> Plan:
@@ -167,10 +185,8 @@ def _cell(value: Any, number_text: Any) -> str:
     return number_text(value) if isinstance(value, float) else str(value)
 
 
-def _report_failures(columns: Any) -> None:
+def _report_failures(columns: Any, refused: int) -> None:
     failed = [i for i, failure in enumerate(columns["failure"]) if failure]
     if failed:
-        raise FlightError(
-            f"{len(failed)} of {len(columns['row'])} flights failed; the first, row "
-            f"{int(columns['row'][failed[0]])}: {columns['failure'][failed[0]]}"
-        )
+        told = f"row {int(columns['row'][failed[0]])}: {columns['failure'][failed[0]]}"
+        raise failure(len(failed), len(columns["row"]), refused, told)

@@ -9,7 +9,7 @@ from typing import Any
 from .. import gains
 from .._core import InputError
 from ..files import check_writable
-from ..plants import plants
+from ..plants import STUDIED, plants
 from . import options, terminal, values
 from .kept import kept
 
@@ -49,7 +49,7 @@ def register(commands: Any) -> None:
         metavar="A,B",
         type=values.names,
         default=[],
-        help="models that fly everything to judge",
+        help="models that fly everything to judge, too (none)",
     )
     parser.add_argument(
         "--only",
@@ -65,9 +65,8 @@ def register(commands: Any) -> None:
         help="gains to try, at least (300)",
     )
     options.add_changes(parser)
-    options.add_flight(parser, log_every=None, flown=plants())
+    options.add_flight(parser, STUDIED, log_every=None, flown=plants(), begins="on the reference")
     options.add_jobs(parser)
-    parser.set_defaults(engine="eigen")
 
 
 def tune(arguments: argparse.Namespace) -> None:

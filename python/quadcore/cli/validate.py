@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, Union
 from rich.table import Table
 
 from .. import interrupts
-from .._core import FlightError, InputError, QuadcoreError
+from .._core import FlightError, InputError, QuadcoreError, engines
 from ..files import atomic_write, prepare_folder
 from ..flight_plan import FlightPlan
 from ..given import SPAWN
@@ -30,8 +30,8 @@ def register(commands: Any) -> None:
     parser = options.subparser(
         commands, "validate", "Compare engines with the mathematical model, and say why.", run
     )
-    options.add_model(parser, nargs="?")
-    options.add_flight(parser, several_engines=True, log_every=10)
+    options.add_model(parser, nargs="?", default="quadrotor")
+    options.add_flight(parser, [name for name, _ in engines()], log_every=10)
     options.add_commands(parser)
     parser.add_argument(
         "--sim-slow",
@@ -64,7 +64,7 @@ def register(commands: Any) -> None:
     )
     parser.add_argument("--no-plots", action="store_true", help="no figures in --out")
     of_flights = {name: parser.get_default(name) for name in _OF_FLIGHTS}
-    parser.set_defaults(model="quadrotor", of_flights=of_flights)
+    parser.set_defaults(of_flights=of_flights)
 
 
 def run(arguments: argparse.Namespace) -> None:

@@ -1,6 +1,7 @@
 """The same flight under many models and parameters, and how the flights differ."""
 
-from .compare import Comparison, compare
+from .compare import compare
 from .difference import Difference
+from .result import Comparison
 
 __all__ = ["Comparison", "Difference", "compare"]

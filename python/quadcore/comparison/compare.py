@@ -4,36 +4,18 @@ from __future__ import annotations
 
 from itertools import islice
 from pathlib import Path
-from typing import (
-    Any,
-    Callable,
-    Dict,
-    Iterator,
-    List,
-    Mapping,
-    NamedTuple,
-    Optional,
-    Sequence,
-    Tuple,
-    Union,
-)
-
-import numpy as np
+from typing import Any, Callable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 from .. import arguments, interrupts
 from .._core import FlightError, InputError, QuadcoreError
 from ..commands import CommandsLike
+from ..controller import Controller
 from ..log import Log
+from ..references import ReferenceLike
 from ..study.axes import Values
 from ..study.executor import conducted
-from ..study.metrics import metrics, states
-from ..study.table import NOT_FLOWN, flown_and_failed
-from .difference import Difference
 from .plan import Plan, Variant
-
-Progress = Callable[[int, int], None]
-Keep = Callable[[int, Log], Any]
-Outcome = Tuple[np.ndarray, Any]
+from .result import Comparison, Keep, Measured, Outcome, Progress, Tally, measured
 
 _ARGUMENTS = {
     "models": arguments.SOME,
@@ -44,8 +26,14 @@ _ARGUMENTS = {
     "logs": arguments.FLAG,
     "processes": arguments.or_none(arguments.COUNT),
     "progress": arguments.or_none(arguments.PROGRESS),
-    "reference": arguments.or_none(arguments.WHOLE),
+    "against": arguments.or_none(arguments.WHOLE),
+    "reference": (
+        lambda value: value is None or isinstance(value, str) or callable(value),
+        "where to fly: a name, or a function that is called as reference(t); the row that the "
+        "others are compared with is `against`",
+    ),
 }
+_GUIDED = ("controller", "reference", "controller_rate", "delay")
 _KINDS = {
     **_ARGUMENTS,
     "engine": arguments.NAME,
@@ -54,40 +42,6 @@ _KINDS = {
     "scenario": arguments.ANY,
 }
 _LARGEST_LOGS = 2 * 2**30  # bytes
-
-
-class Comparison(NamedTuple):
-    """What became of the flights.
-
-    Attributes
-    ----------
-    table : ndarray
-        Structured, a row per variant: ``model``, each axis, ``failure`` ("" if it flew), and
-        ``final_STATE`` and ``largest_STATE`` for each of `states`, NaN where it did not fly.
-    logs : list
-        `Log` of each variant, None where it did not fly; empty if logs were not asked for.
-    states : dict of str to str
-        Unit of each state that is compared, by name. ``position``, ``velocity`` and ``rates`` are
-        lengths of difference vectors, ``attitude`` is the angle between both.
-    reference : int or None
-        Row that all others are compared with: the one asked for, or the first that flew.
-    differences : dict of str to list of Difference
-        What each further model's file differs in from the first's.
-    """
-
-    table: np.ndarray
-    logs: List[Any]
-    states: Dict[str, str]
-    reference: Optional[int]
-    differences: Dict[str, List[Difference]]
-
-    def __repr__(self) -> str:
-        return f"<Comparison, {flown_and_failed(self.table['failure'].tolist())}>"
-
-    def _repr_html_(self) -> str:
-        from ..notebook import comparison_html
-
-        return comparison_html(self)
 
 
 def compare(
@@ -99,7 +53,11 @@ def compare(
     logs: bool = True,
     processes: Optional[int] = None,
     progress: Optional[Progress] = None,
-    reference: Optional[int] = None,
+    against: Optional[int] = None,
+    controller: Union[Controller, Callable[..., Any], str, None] = None,
+    reference: Union[ReferenceLike, str, None] = None,
+    controller_rate: Optional[float] = None,
+    delay: Optional[float] = None,
     **options: Any,
 ) -> Comparison:
     """Fly the same flight with several models or parameters, in parallel.
@@ -120,8 +78,13 @@ def compare(
         How many; None takes one per core.
     progress
         Called as progress(flights_done, flights_total).
-    reference
+    against
         Row of the table that all others are compared with; None: the first that flies.
+    controller, reference
+        As for `Simulation.run`: each flight is guided, and begins on the reference unless `spawn`
+        is given. Without a reference it hovers at the spawn.
+    controller_rate, delay
+        Of the controller; None leaves it its own.
     **options
         As for `Simulation`: engine, world, dt, seed, parameters, xacro_args, spawn; and scenario, a
         file or the name of a shipped one.
@@ -129,26 +92,31 @@ def compare(
     Returns
     -------
     Comparison
-        The same whatever the number of processes.
+        The same whatever the number of processes: flights of a controller or reference that is none
+        of quadcore's have processes of their own, which begin as this one is when they begin.
 
     Raises
     ------
     InputError
         Nothing was flown: too many variants, logs that would take more than 2 GiB, an unreadable
-        file, an unknown tag, or models with different numbers of rotors under the same commands. A
-        variant that fails by itself is a row of the table with its reason instead.
+        file, an unknown tag, models with different numbers of rotors under the same commands, or
+        a law that can fly none of them. A variant that fails by itself is a row of the table with
+        its reason instead.
     FlightError
-        The reference failed.
+        The flight to compare the others with failed.
     KeyboardInterrupt
         With the attribute `comparison`, whose missing rows say so.
     """
     models = arguments.read_once(models)
     given = locals()
     arguments.check({**{name: given[name] for name in _ARGUMENTS}, **options}, _KINDS)
-    plan = Plan(arguments.several(models), vary or {}, commands, duration, log_every, options)
+    guided = {name: given[name] for name in _GUIDED}
+    plan = Plan(
+        arguments.several(models), vary or {}, commands, duration, log_every, options, guided
+    )
     if logs:
         _check_memory(plan, duration, log_every)
-    return fly(plan, (lambda _, log: log) if logs else None, processes, progress, reference)
+    return fly(plan, (lambda _, log: log) if logs else None, processes, progress, against)
 
 
 def fly(
@@ -156,7 +124,7 @@ def fly(
     keep: Optional[Keep] = None,
     processes: Optional[int] = None,
     progress: Optional[Progress] = None,
-    reference: Optional[int] = None,
+    against: Optional[int] = None,
 ) -> Comparison:
     """Fly a plan.
 
@@ -166,50 +134,50 @@ def fly(
         What to fly.
     keep
         Called as keep(row, log) in the process that flew; what it returns stands in for the log.
-    processes, progress, reference
+    processes, progress, against
         As for `compare`.
     """
-    if reference is not None and not 0 <= reference < plan.count:
-        raise InputError(f"reference is {reference}; give a row from 0 to {plan.count - 1}")
-    tally = _Tally(plan, keep, progress)
-    flights = _reference_first(plan, reference)
+    if against is not None and not 0 <= against < plan.count:
+        raise InputError(f"against is {against}; give a row from 0 to {plan.count - 1}")
+    tally = Tally(plan, keep, progress)
+    flights = _first(plan, against)
     try:
-        compared_with = _first_flown(plan, flights, tally, reference)
+        compared_with = _first_flown(plan, flights, tally, against)
         if compared_with is not None:
 
             def flown(flight: Tuple[int, Variant]) -> Any:
                 row, variant = flight
                 log = plan.fly(variant)
-                return row, metrics(compared_with, log), log
+                return row, measured(plan, compared_with, log), log
 
             def kept(result: Any) -> Outcome:
-                row, measured, log = result
-                return _kept(row, measured, log, keep)
+                row, found, log = result
+                return _kept(row, found, log, keep)
 
             start = tally.done
 
             def note(i: int, outcome: Any) -> None:
                 row = start + i
-                tally.note(row - 1 if reference is not None and row <= reference else row, outcome)
+                tally.note(row - 1 if against is not None and row <= against else row, outcome)
 
-            conducted(flown, flights, note, processes, kept)
+            conducted(flown, flights, note, processes, kept, apart=plan.guidance.apart)
     except KeyboardInterrupt as stop:
         stop.comparison = tally.result()  # type: ignore[attr-defined]
         raise
     return tally.result()
 
 
-def _reference_first(plan: Plan, reference: Optional[int]) -> Iterator[Tuple[int, Variant]]:
-    """Give each variant with its row, the reference before all others."""
-    if reference is not None:
-        yield reference, next(islice(plan, reference, None))
+def _first(plan: Plan, against: Optional[int]) -> Iterator[Tuple[int, Variant]]:
+    """Give each variant with its row, the one to compare with before all others."""
+    if against is not None:
+        yield against, next(islice(plan, against, None))
     for row, variant in enumerate(plan):
-        if row != reference:
+        if row != against:
             yield row, variant
 
 
 def _first_flown(
-    plan: Plan, flights: Iterator[Tuple[int, Variant]], tally: _Tally, wanted: Optional[int]
+    plan: Plan, flights: Iterator[Tuple[int, Variant]], tally: Tally, wanted: Optional[int]
 ) -> Optional[Log]:
     """Take flights until one succeeds, which all later ones are compared with.
 
@@ -221,77 +189,20 @@ def _first_flown(
         conducted(plan.fly, [variant], lambda _, outcome: outcomes.append(outcome), 1)
         log = outcomes.pop()
         if isinstance(log, Log):
-            tally.reference = row
+            tally.compare_with(row, log)
             with interrupts.held():
-                tally.note(row, _kept(row, metrics(log, log), log, tally.keep))
+                tally.note(row, _kept(row, measured(plan, log, log), log, tally.keep))
             return log
         if wanted is not None:
+            if isinstance(log, InputError):
+                raise InputError(f"no. {row + 1}, to compare the others with, is refused: {log}")
             raise FlightError(f"no. {row + 1}, to compare the others with, failed: {log}")
         tally.note(row, log)
     return None
 
 
-def _kept(row: int, measured: np.ndarray, log: Log, keep: Optional[Keep]) -> Outcome:
-    return measured, None if keep is None else keep(row, log)
-
-
-class _Tally:
-    """What is known of the flights so far."""
-
-    def __init__(self, plan: Plan, keep: Optional[Keep], progress: Optional[Progress]) -> None:
-        self.keep = keep
-        self.done = 0
-        self.reference: Optional[int] = None
-        self._plan, self._progress = plan, progress
-        self._states = states(plan.rotor_count)
-        self._metrics = np.full((plan.count, 2, len(self._states)), np.nan)
-        self._failures = [NOT_FLOWN] * plan.count
-        self._kept: List[Any] = [] if keep is None else [None] * plan.count
-
-    def note(self, row: int, outcome: Union[Outcome, QuadcoreError]) -> None:
-        if isinstance(outcome, QuadcoreError):
-            self._failures[row] = str(outcome)
-        else:
-            self._metrics[row] = outcome[0]
-            if self._kept:
-                self._kept[row] = outcome[1]
-            self._failures[row] = ""
-        self.done += 1
-        if self._progress is not None:
-            self._progress(self.done, self._plan.count)
-
-    def result(self) -> Comparison:
-        plan = self._plan
-        axes = list(zip(*(values for _, values in plan)))
-        columns: Dict[str, Any] = {
-            "model": [plan.names[model] for model, _ in plan],
-            **{axis.name: _numbers(values) for axis, values in zip(plan.axes, axes)},
-            "failure": self._failures,
-        }
-        for i, kind in enumerate(("final", "largest")):
-            for j, state in enumerate(self._states):
-                columns[f"{kind}_{state}"] = self._metrics[:, i, j]
-        return Comparison(
-            _structured(columns), self._kept, self._states, self.reference, plan.differences()
-        )
-
-
-def _numbers(values: Sequence[str]) -> np.ndarray:
-    """Numbers if all are, else texts."""
-    try:
-        return np.array([float(value) for value in values])
-    except ValueError:
-        return np.array(values)
-
-
-def _structured(columns: Mapping[str, Sequence[Any]]) -> np.ndarray:
-    arrays = {name: np.asarray(values) for name, values in columns.items()}
-    table = np.empty(
-        len(arrays["model"]), dtype=[(name, array.dtype) for name, array in arrays.items()]
-    )
-    for name, array in arrays.items():
-        table[name] = array
-    return table
+def _kept(row: int, found: Measured, log: Log, keep: Optional[Keep]) -> Outcome:
+    return found, None if keep is None else keep(row, log)
 
 
 def _check_memory(plan: Plan, duration: float, log_every: int) -> None:

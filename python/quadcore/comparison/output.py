@@ -7,8 +7,8 @@ from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
 from ..study.sampling import evenly
 from ..study.table import csv_bytes, flown_and_failed, json_bytes, number_text, save, shown_in
-from .compare import Comparison
 from .plan import Plan
+from .result import Comparison
 
 _ROWS_OF_PAGE = 200
 _DRAWN = 40  # flights in one picture
@@ -65,14 +65,14 @@ def _images(comparison: Comparison, plan: Plan) -> Dict[str, bytes]:
     from ..plots import png
     from . import pictures
 
-    curves, reference = [], None
+    curves, against = [], None
     for row, (log, variant) in enumerate(zip(comparison.logs, plan)):
         if log is not None:
             curves.append(pictures.Curve(plan.label(variant), log))
-            reference = curves[-1] if row == comparison.reference else reference
-    if reference is None:
+            against = curves[-1] if row == comparison.against else against
+    if against is None:
         return {}
-    figures = pictures.draw(curves, reference.log, reference.label)
+    figures = pictures.draw(curves, against.log, against.label)
     return {name: png(figure) for name, figure in figures.items()}
 
 
@@ -91,7 +91,7 @@ def _content(comparison: Comparison, flight: Mapping[str, str]) -> Dict[str, Any
             for model, found in comparison.differences.items()
         },
         "units": comparison.states,
-        "reference": _number(comparison),
+        "against": _number(comparison),
         "rows": [
             {"number": number, **dict(zip(names, row))}
             for number, row in enumerate(comparison.table.tolist(), start=1)
@@ -100,7 +100,7 @@ def _content(comparison: Comparison, flight: Mapping[str, str]) -> Dict[str, Any
 
 
 def _number(comparison: Comparison) -> Optional[int]:
-    return None if comparison.reference is None else comparison.reference + 1
+    return None if comparison.against is None else comparison.against + 1
 
 
 def _page(
@@ -108,9 +108,11 @@ def _page(
 ) -> Dict[str, Any]:
     units = {state: shown_in(unit) for state, unit in comparison.states.items()}
     rows = []
+    guided = plan.guidance.is_given
     for number, (row, variant) in enumerate(zip(comparison.table, plan), start=1):
         if number > _ROWS_OF_PAGE:
             break
+        errors = [number_text(row[f"{kind}_error"]) for kind in ("largest", "rms") if guided]
         cells = {
             kind: {
                 state: number_text(row[f"{kind}_{state}"] * factor)
@@ -119,7 +121,8 @@ def _page(
             for kind in ("final", "largest")
         }
         label = plan.label(variant)
-        rows.append({"number": number, "label": label, "failure": row["failure"], **cells})
+        told = {"number": number, "label": label, "failure": row["failure"], "errors": errors}
+        rows.append({**told, **cells})
     shown = len(drawn(plan.count))
     return {
         "title": "Comparison of flights",
@@ -127,13 +130,14 @@ def _page(
         "flight": flight,
         "differences": comparison.differences,
         "first": plan.names[0],
+        "guided": guided,
         "axes": [
             {"name": axis.name, "listed": listed(axis.values), "written": plan.as_written(axis)}
             for axis in plan.axes
         ],
         "pictures": [{"name": name, "data": data} for name, data in images.items()],
         "thinned": f"{shown} of {plan.count} are drawn." if shown < plan.count else "",
-        "reference": comparison.reference is not None and f"no. {_number(comparison)}",
+        "against": comparison.against is not None and f"no. {_number(comparison)}",
         "units": {state: unit for state, (unit, _) in units.items()},
         "groups": _groups(list(comparison.states)),
         "rows": rows,

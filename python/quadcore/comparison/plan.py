@@ -10,16 +10,18 @@ from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from .._core import InputError, QuadcoreError, World, check_ignored, engines
 from ..commands import CommandsLike, as_commands
+from ..controller import faults_told
 from ..description import list_of_names, read_model, read_world
 from ..files import shown
 from ..flight import check_logged
 from ..flight_plan import FlightPlan
-from ..given import text_of
+from ..given import SPAWN, text_of
 from ..log import Log
 from ..overrides import XACRO, check_names, link_values, without_xacro
 from ..scenarios import read as read_scenario
 from ..simulation import Simulation
 from ..study.axes import WHOLE, Axis, Values, axes_of, check_size, variants
+from ..study.guidance import Guidance
 from .difference import Difference, differences, facts
 
 Variant = Tuple[int, Tuple[str, ...]]
@@ -41,7 +43,10 @@ class Plan:
     duration, log_every
         As for `Simulation.run`.
     options
-        As for `Simulation`, and `scenario`, which all fly in.
+        As for `Simulation`, and `scenario`, which all fly in. Flights that are guided begin on the
+        reference, if one is given, and no spawn.
+    guided
+        Arguments of `Guidance`: controller, reference, controller_rate, delay.
 
     Raises
     ------
@@ -58,6 +63,7 @@ class Plan:
         duration: float,
         log_every: int,
         options: Mapping[str, Any],
+        guided: Mapping[str, Any],
     ) -> None:
         self.axes = axes_of(vary)
         self.count = check_size(len(models), self.axes)
@@ -84,10 +90,16 @@ class Plan:
         readings += [each.passed_over for each in (*self._worlds.values(), world)]
         check_ignored(list_of_names("ignore", ignore), readings)
         self._check_engines()
+        spawn = own.pop("spawn", None)
+        vehicles = [model.name for model in self._models]
+        self.guidance = Guidance(spawn=spawn, vehicles=vehicles, **guided)
+        if commands is not None and self.guidance.is_given:
+            raise InputError("a flight takes commands or a controller; give one of them")
         self._base = FlightPlan.of(
             self._models[0],
             world,
             parameters=self._set,
+            spawn=SPAWN if spawn is None else spawn,
             duration=duration,
             log_every=log_every,
             **own,
@@ -97,6 +109,7 @@ class Plan:
         """s, of the first model as it is."""
         check_logged(duration, self.dt, log_every)
         self._check_tags(built)
+        self.guidance.check(built)
         self.rotor_count = len(self._models[0].joints)
         if commands is not None:
             self._check_rotors()
@@ -122,11 +135,14 @@ class Plan:
         model = self._read(index, tuple(varied.items()))
         check_names(model, parameters)
         plan = replace(self._base, model=model, parameters={**self._set, **tags}, **changed)
-        return plan.befallen(scenario)
+        return self.guidance.onto(plan.befallen(scenario))
 
     def fly(self, variant: Variant) -> Log:
         """Fly a variant; raises what building or flying it raises."""
-        return self.flight(variant).fly()
+        flight = self.flight(variant)
+        simulation = flight.simulation()
+        with faults_told(simulation):
+            return flight.flown_by(simulation)
 
     def label(self, variant: Variant) -> str:
         """Name of a variant for a person: what sets it apart from the others."""

@@ -1,15 +1,14 @@
-"""What a plan is made of: things with labels, makers of controllers, conditions."""
+"""What a plan is made of: things with labels, conditions."""
 
 from __future__ import annotations
 
 import itertools
 from contextlib import contextmanager
-from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Sequence, Tuple, Union
+from typing import Any, Dict, Iterable, Iterator, List, Mapping, Sequence, Tuple, Union
 
 from .. import laws, references
 from .._core import InputError
 from ..arguments import brief
-from ..controller import check_callable
 from ..plants import plants
 from ..study.axes import Values, axes_of
 from ..study.variation import OF_CONTROLLER
@@ -28,41 +27,6 @@ def labelled(kind: str, things: Named, one: type) -> List[Tuple[str, Any]]:
             f"{kind} is {brief(things)}; give a name, what is called, or several of these"
         )
     return [(_name(thing), thing) for thing in things]
-
-
-def maker(thing: Any, vehicle: str) -> Callable[[], Any]:
-    """Make what makes a controller for a flight; one of the user's own is brought in then.
-
-    An object is given as it is: flights of what others wrote have processes of their own.
-    """
-    if names_own(thing):
-        return lambda: laws.parse(thing, vehicle)
-    if isinstance(thing, str):
-        thing = laws.parse(thing, vehicle)
-    check_callable(thing)
-    return thing.copy if isinstance(thing, laws.Law) else lambda: thing
-
-
-def shape(thing: Any) -> Any:
-    """Make a reference of its name; what is one already is given as it is."""
-    if isinstance(thing, str):
-        return references.parse(thing)
-    if not callable(thing):
-        raise InputError(
-            f"reference is {brief(thing)}; give one of quadcore.references, or a function that is "
-            "called as reference(t)"
-        )
-    return thing
-
-
-def names_own(thing: Any) -> bool:
-    """Whether a text names a module of the user's own."""
-    return isinstance(thing, str) and ":" in thing and thing.partition(":")[0] not in laws.NAMES
-
-
-def is_own(thing: Any) -> bool:
-    """Whether a controller is none of quadcore's laws."""
-    return names_own(thing) if isinstance(thing, str) else not isinstance(thing, laws.Law)
 
 
 def scenarios(vary: Mapping[str, Values]) -> List[Dict[str, str]]:

@@ -18,8 +18,9 @@ from typing import (
 )
 
 from .. import arguments
-from .._core import QuadcoreError
+from .._core import InputError, QuadcoreError
 from ..flight_plan import FlightPlan
+from ..plants import STUDIED
 from ..study.axes import Values
 from ..study.executor import conducted
 from ..study.sampling import evenly
@@ -93,7 +94,7 @@ class Evaluation(NamedTuple):
 def evaluate(
     controllers: Named,
     references: Named,
-    engines: Union[str, Sequence[str]] = "eigen",
+    engines: Union[str, Sequence[str]] = STUDIED,
     models: Union[str, Path, Sequence[Union[str, Path]]] = "quadrotor",
     seeds: int = 1,
     vary: Optional[Mapping[str, Values]] = None,
@@ -204,8 +205,9 @@ def conduct(
 
         def take(i: int, outcome: Union[Outcome, QuadcoreError]) -> None:
             nonlocal done
-            failed = isinstance(outcome, QuadcoreError)
-            into[i] = Outcome(str(outcome)) if failed else outcome  # type: ignore[assignment]
+            if isinstance(outcome, QuadcoreError):
+                outcome = Outcome(str(outcome), refused=isinstance(outcome, InputError))
+            into[i] = outcome
             done += 1
             if progress is not None:
                 progress(done, total)

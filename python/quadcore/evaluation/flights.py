@@ -54,6 +54,8 @@ class Outcome(NamedTuple):
     """Of the rotors, as the log has them, rad/s."""
     rotors: Optional[np.ndarray] = None
     """Where they are in the frame, if it was asked for, m; (n, 3)."""
+    refused: bool = False
+    """Whether it never flew, being bad input."""
 
     @property
     def flew(self) -> bool:

@@ -18,6 +18,7 @@ from ..flight_plan import FlightPlan
 from ..given import whole
 from ..plants import LAGRANGE
 from ..scenario_events import Event
+from ..study import guidance
 from ..study.axes import LARGEST, Values
 from ..study.variation import Variation, give_all, of_controller
 from ..warning import unheard
@@ -98,11 +99,11 @@ class Plan:
         self._timing = {"rate": controller_rate, "delay": delay}
         things = entries.labelled("controller", controllers, laws.Law)
         self.controllers = [label for label, _ in things]
-        self._are_own = [entries.is_own(thing) for _, thing in things]
+        self._are_own = [guidance.is_own(thing) for _, thing in things]
         self.references, self._shapes = [], []
         for label, thing in entries.labelled("reference", references_, references.Shape):
             self.references.append(label)
-            self._shapes.append(entries.shape(thing))
+            self._shapes.append(guidance.shape(thing))
         self._scenarios = entries.scenarios(vary)
         self.scenarios = [entries.label_of(scenario) for scenario in self._scenarios]
         own = dict(options)
@@ -130,7 +131,7 @@ class Plan:
         check_ignored(list_of_names("ignore", self._ignore), passed_over)
         self._plans = [FlightPlan.of(model, world, **common) for model in read]
         vehicles = [plan.model.name for plan in self._plans]
-        self._makers = [[entries.maker(thing, name) for name in vehicles] for _, thing in things]
+        self._makers = [[guidance.maker(thing, name) for name in vehicles] for _, thing in things]
         self._variation.provide(
             *([each[name] for each in self._scenarios if name in each] for name in _NAMED)
         )

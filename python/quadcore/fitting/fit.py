@@ -10,6 +10,7 @@ import numpy as np
 from .. import arguments
 from .._core import FlightError, InputError, Model
 from ..log import Log
+from ..plants import STUDIED
 from ..simulation import Simulation
 from ..warning import unheard
 from . import record as records
@@ -106,7 +107,7 @@ def fit(
     log: Union[Log, str, Path],
     free: Sequence[str],
     commands: Union[np.ndarray, str, Path, None] = None,
-    engine: str = "eigen",
+    engine: str = STUDIED,
     horizon: float = 1.0,
     channels: Optional[Sequence[str]] = None,
     sensed: Optional[str] = None,

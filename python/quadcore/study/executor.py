@@ -14,7 +14,7 @@ from multiprocessing.connection import Connection, wait
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Tuple, TypeVar, Union
 
 from .. import interrupts
-from .._core import QuadcoreError
+from .._core import InputError, QuadcoreError
 from ..imported import told
 
 Case = TypeVar("Case")
@@ -54,8 +54,8 @@ def each(
         Taken one by one as processes fall idle, so that they may come from a generator.
     take
         Called as take(index, result) for each case, in the order in which they end. A QuadcoreError
-        that `function` raised, and one made for a process that died, come in place of the result:
-        the other cases go on. An interrupt waits for it.
+        that `function` raised, without what it carries, and one made for a process that died, come
+        in place of the result: the other cases go on. An interrupt waits for it.
     processes
         How many; None takes one per core that this process may use. Fewer if the system gives no
         more.
@@ -270,6 +270,8 @@ def _outcome(function: Callable[[Any], Any], argument: Any) -> Tuple[Any, Option
     """Give the result or the QuadcoreError in its place, and the traceback of any other fault."""
     try:
         return function(argument), None
+    except InputError as error:
+        return InputError(str(error)), None
     except QuadcoreError as error:
         return QuadcoreError(str(error)), None
     except MemoryError:

@@ -17,7 +17,7 @@ from typing import (
 )
 
 from .. import interrupts
-from .._core import QuadcoreError
+from .._core import InputError, QuadcoreError
 from ..study.executor import Died, each, usable_cores
 from .batches import fly_together
 from .plan import AnyPlan
@@ -201,7 +201,8 @@ def _spec(plan: AnyPlan, number: int) -> Union[Spec, Row]:
     try:
         return plan.spec(number)
     except QuadcoreError as error:
-        return Row(number, str(error), None, digest(str(error).encode()))
+        refused = isinstance(error, InputError)
+        return Row(number, str(error), None, digest(str(error).encode()), refused)
 
 
 def _tasks(plan: AnyPlan, rows: Iterable[int], processes: int) -> Iterator[Sequence[int]]:

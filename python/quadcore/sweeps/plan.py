@@ -20,6 +20,8 @@ from ..files import shown
 from ..flight import check_logged
 from ..flight_plan import FlightPlan
 from ..given import whole
+from ..plants import STUDIED
+from ..study import guidance
 from ..study.variation import Variation, give_all, is_of_controller, of_controller
 from ..warning import unheard
 from . import motion
@@ -76,7 +78,7 @@ class Plan:
         controllers: Any = None,
         references_: Any = None,
         commands: Optional[CommandsLike] = None,
-        engines: Sequence[str] = ("eigen",),
+        engines: Sequence[str] = (STUDIED,),
         models: Sequence[Union[str, Path]] = ("quadrotor",),
         seeds: int = 1,
         duration: float = 10.0,
@@ -99,7 +101,7 @@ class Plan:
             shapes = entries.labelled("reference", references_, references.Shape)
         self._things = [thing for _, thing in things]
         self.controllers, self.references = [one for one, _ in things], [one for one, _ in shapes]
-        self._shapes = [thing and entries.shape(thing) for _, thing in shapes]
+        self._shapes = [thing and guidance.shape(thing) for _, thing in shapes]
         own = dict(options or {})
         self.first_seed = whole(own.pop("seed", 0))
         self.seeds = whole(seeds, "seeds")
@@ -124,7 +126,7 @@ class Plan:
         self._makers = [
             [_maker(thing, plan.model.name) for plan in self._plans] for _, thing in things
         ]
-        self._own = [thing if entries.names_own(thing) else "" for _, thing in things]
+        self._own = [thing if guidance.names_own(thing) else "" for _, thing in things]
         self._check()
 
     whole = ("seed",)
@@ -138,7 +140,7 @@ class Plan:
     @property
     def apart(self) -> bool:
         """Whether flights call what others wrote, which may remember one when it flies another."""
-        own = any(map(entries.is_own, self._things)) if self.is_guided else False
+        own = any(map(guidance.is_own, self._things)) if self.is_guided else False
         return own or not all(
             isinstance(one, (references.Shape, type(None))) for one in self._shapes
         )
@@ -296,4 +298,4 @@ def _is_guided(controllers: Any, references_: Any, commands: Any) -> bool:
 
 
 def _maker(thing: Any, vehicle: str) -> Callable[[], Any]:
-    return (lambda: None) if thing is None else entries.maker(thing, vehicle)
+    return (lambda: None) if thing is None else guidance.maker(thing, vehicle)

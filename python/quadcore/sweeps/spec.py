@@ -115,22 +115,24 @@ class Row(NamedTuple):
     """Why there are no measures; "" if there are."""
     measures: Optional[Measures]
     fingerprint: str
+    refused: bool = False
+    """Whether it never flew, being bad input."""
 
 
 def done(spec: Spec) -> Row:
     """Fly a row, whatever becomes of it."""
-    fingerprint = spec.fingerprint()
+    fingerprint, refused = spec.fingerprint(), False
     try:
         return Row(spec.row, "", spec.measured(), fingerprint)
     except QuadcoreError as error:
-        failure = str(error)
+        failure, refused = str(error), isinstance(error, InputError)
     except MemoryError:
         failure = "no memory left"
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # SystemExit, too: it is not for code that flies to end all
         failure = told(error)
-    return Row(spec.row, " ".join(failure.split()), None, fingerprint)
+    return Row(spec.row, " ".join(failure.split()), None, fingerprint, refused)
 
 
 def digest(data: bytes) -> str:

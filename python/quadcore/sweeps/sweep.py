@@ -25,6 +25,7 @@ from .._core import InputError
 from ..commands import CommandsLike
 from ..files import make_folder
 from ..given import whole
+from ..plants import STUDIED
 from ..study.table import flown_and_failed
 from .dask import cluster
 from .design import Design
@@ -94,7 +95,7 @@ def sweep(
     points: Optional[Union[str, Path]] = None,
     design: str = "latin",
     samples: Optional[int] = None,
-    engines: Union[str, Sequence[str]] = "eigen",
+    engines: Union[str, Sequence[str]] = STUDIED,
     models: Union[str, Path, Sequence[Union[str, Path]]] = "quadrotor",
     seeds: int = 1,
     duration: float = 10.0,

@@ -9,6 +9,7 @@ from .. import arguments, laws
 from .._core import FlightError
 from ..arguments import several
 from ..extras import needed
+from ..plants import STUDIED
 from .problem import Problem
 from .search import Progress, Search, Tuning
 
@@ -34,7 +35,7 @@ def tune(
     held_out: Sequence[Any] = ("circle", "eight"),
     held_out_models: Sequence[Union[str, Path]] = (),
     only: Optional[Sequence[str]] = None,
-    engine: str = "eigen",
+    engine: str = STUDIED,
     duration: float = 10.0,
     budget: int = 300,
     seed: int = 0,
