@@ -235,7 +235,15 @@ class FlightPlan:
         return self.flown_by(self.simulation(), progress)
 
     def flown_by(self, simulation: Simulation, progress: Optional[Progress] = None) -> Log:
-        """Do as `fly` with what `simulation()` made."""
+        """Do as `fly` with what is made already.
+
+        Parameters
+        ----------
+        simulation : Simulation
+            As `simulation()` makes it.
+        progress : callable, optional
+            As for `fly`.
+        """
         return simulation.run(
             self.duration,
             self.commands,
