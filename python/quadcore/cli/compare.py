@@ -123,7 +123,7 @@ def _warn_of_commands(plan: Plan) -> None:
         simulation = first.simulation()
     except QuadcoreError:  # a row of the table, with its reason
         return
-    warn_of_commands(simulation, first, "--controller geometric, which hovers")
+    warn_of_commands(simulation, first)
 
 
 def _keeper(arguments: argparse.Namespace, plan: Plan) -> Any:

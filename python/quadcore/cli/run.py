@@ -110,7 +110,7 @@ def run(arguments: argparse.Namespace) -> None:
             table.add_row(*row)
         terminal.console().print(table)
     recording.check()
-    warn_of_commands(simulation, plan, "--controller geometric, which hovers")
+    warn_of_commands(simulation, plan)
 
 
 def _log_files(arguments: argparse.Namespace) -> list[Path]:

@@ -10,18 +10,15 @@ from ..simulation import Simulation
 from ..warning import warn
 
 
-def warn_of_commands(simulation: Simulation, plan: FlightPlan, otherwise: str) -> None:
-    """Warn of a flight that can hardly be meant: no commands, or all rotors turning one way.
-
-    `otherwise` is what may be given instead of commands.
-    """
+def warn_of_commands(simulation: Simulation, plan: FlightPlan) -> None:
+    """Warn of a flight that can hardly be meant: no commands, or all rotors turning one way."""
     topic = simulation.topics.get(simulation.command_topic)
     if plan.controller is not None or topic is None or topic.writer is not None:
         return
     if plan.commands is None:
         warn(
             "nothing commands the rotors, so that the vehicle falls; give --commands FILE, or "
-            + otherwise
+            "--controller geometric, which hovers"
         )
     elif _one_way(plan.commands[:, 1:]):
         try:

@@ -90,7 +90,8 @@ class Guidance:
         for vehicle in vehicles:
             try:
                 law = self._controller(vehicle.model.name)
-                return Guided(law, vehicle, self._reference).reset(vehicle)
+                Guided(law, vehicle, self._reference).reset(vehicle)
+                return
             except InputError as error:
                 refused = refused or error
         if refused is not None:
