@@ -6,6 +6,7 @@ import argparse
 import inspect
 
 import pytest
+from processes import refused
 
 import quadcore as qc
 from quadcore.cli import _COMMANDS, _parser, main
@@ -43,3 +44,14 @@ def test_help_tells_what_studies_fly_where_from_and_where_to(capsys):
         assert "pose of the frame in m and rad (on the reference)" in told(capsys, command)
     assert "(on the reference; with --commands 0,0,10)" in told(capsys, "sweep")
     assert "a page here (out/sweep)" in told(capsys, "sweep")
+
+
+@pytest.mark.parametrize(
+    "words, told",
+    [
+        (["tune", "pd", "-o", "gains.yaml"], "tuning writes no log; leave --log-every out"),
+        (["export-fmu", "quadrotor", "-o", "x.fmu"], "an FMU writes no log; leave --log-every out"),
+    ],
+)
+def test_what_writes_no_log_thins_none(words, told, in_empty_folder):
+    assert told in refused(*words, "--log-every", "5")

@@ -10,6 +10,7 @@ from typing import Any
 from .._core import InputError
 from ..flight_plan import FlightPlan
 from . import options
+from .unmeant import refuse_log_every
 
 
 def register(commands: Any) -> None:
@@ -31,8 +32,7 @@ def export(arguments: argparse.Namespace) -> None:
 
     if arguments.output.suffix.lower() != ".fmu":
         raise InputError(f"-o {arguments.output}: name a file that ends in .fmu")
-    if arguments.log_every is not None:
-        raise InputError("an FMU writes no log; leave --log-every out")
+    refuse_log_every(arguments, "an FMU")
     plan = FlightPlan.of(
         **options.model_arguments(arguments),
         **options.flight_arguments(arguments),

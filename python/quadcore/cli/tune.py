@@ -12,6 +12,7 @@ from ..files import check_writable
 from ..plants import STUDIED, plants
 from . import options, terminal, values
 from .kept import kept
+from .unmeant import refuse_log_every
 
 
 def register(commands: Any) -> None:
@@ -76,6 +77,7 @@ def tune(arguments: argparse.Namespace) -> None:
     out = arguments.out
     if out.suffix.lower() not in (".yaml", ".yml"):
         raise InputError(f"{out}: name a file that ends in .yaml, which it would hold")
+    refuse_log_every(arguments, "tuning")
     check_writable(out)
     shared = {**options.model_arguments(arguments), **options.flight_arguments(arguments)}
     shared.update(model=arguments.model, spawn=arguments.spawn)

@@ -1,6 +1,8 @@
-"""Flights that can hardly be meant."""
+"""What can hardly be meant."""
 
 from __future__ import annotations
+
+import argparse
 
 import numpy as np
 
@@ -31,6 +33,12 @@ def warn_of_commands(simulation: Simulation, plan: FlightPlan) -> None:
                 "the commands turn all rotors one way, so that their reaction torques add up and "
                 f"the vehicle yaws; the sign of a speed is its sense: it hovers at {told} rad/s"
             )
+
+
+def refuse_log_every(arguments: argparse.Namespace, what: str) -> None:
+    """Raise `InputError` if --log-every was given to what writes no log."""
+    if arguments.log_every is not None:
+        raise InputError(f"{what} writes no log; leave --log-every out")
 
 
 def _one_way(speeds: np.ndarray) -> bool:
