@@ -87,7 +87,7 @@ def test_every_law_settles_at_a_place_through_noise(engine, law):
 
 def test_the_law_and_its_twin_in_numpy_fly_one_flight():
     spiral = references.spiral()
-    logs = [on(spiral).run(5, controller=law, reference=spiral) for law in ("geometric", Twin())]
+    logs = [on(spiral).run(2, controller=law, reference=spiral) for law in ("geometric", Twin())]
     assert np.abs(logs[0].position - logs[1].position).max() < 1e-9
 
 

@@ -29,6 +29,8 @@ def served():
         thread = threading.Thread(target=server.serve, args=(said.append,), daemon=True)
         thread.start()
         yield int(server.address.rpartition(":")[2]), said
+    thread.join(60)
+    assert not thread.is_alive()  # closed, it serves nobody any more
 
 
 def ends(said):

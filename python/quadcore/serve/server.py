@@ -6,6 +6,7 @@ import errno
 import os
 import socket
 import stat
+from contextlib import suppress
 from functools import partial
 from typing import Callable, List, Optional, Sequence, Tuple, Union
 
@@ -58,13 +59,14 @@ class Server:
         self._start = simulation.snapshot()  # whose seed is each client's, whatever others asked
         self.columns = columns_of(simulation, topics)
         self._socket, self._path = _listen(address)
+        self._is_closed = False
         if self._path is None:
             self.address = "{}:{}".format(*self._socket.getsockname())
         else:
             self.address = self._path
 
     def serve(self, tell: Callable[[str], None], clients: Optional[int] = None) -> None:
-        """Serve so many clients, or whoever comes, one after the other.
+        """Serve so many clients, or whoever comes, one after the other, until `close`.
 
         Parameters
         ----------
@@ -73,7 +75,12 @@ class Server:
         """
         served = 0
         while served != clients:
-            connection, _ = self._socket.accept()
+            try:
+                connection, _ = self._socket.accept()
+            except OSError:
+                if self._is_closed:
+                    return
+                raise
             served += 1
             with connection:
                 try:
@@ -82,7 +89,10 @@ class Server:
                     tell(f"client {served}: {error}")
 
     def close(self) -> None:
-        """Listen no longer."""
+        """Listen no longer, in whatever thread it is."""
+        self._is_closed = True
+        with suppress(OSError):  # on some systems only connections can be shut down
+            self._socket.shutdown(socket.SHUT_RDWR)  # wakes who waits for a client
         self._socket.close()
         if self._path is not None:
             os.unlink(self._path)
