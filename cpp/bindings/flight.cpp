@@ -17,6 +17,29 @@ struct BoundFlight {
   py::ssize_t columns;
 };
 
+/// The time in which a run flies a simulation, and refuses whoever else would move it.
+class Run {
+ public:
+  explicit Run(const Self& self) : guarded_(self.guarded) {}
+  ~Run() { end(); }
+  Run(const Run&) = delete;
+  Run& operator=(const Run&) = delete;
+
+  void begin() {
+    const Lock lock(*guarded_, "run()");
+    guarded_->flown_by = PyThread_get_thread_ident();
+    is_begun_ = true;
+  }
+  void end() {
+    if (is_begun_) guarded_->flown_by.reset();
+    is_begun_ = false;
+  }
+
+ private:
+  std::shared_ptr<Guarded> guarded_;
+  bool is_begun_ = false;
+};
+
 /// Names of the columns of a flight that logs these topics.
 std::vector<std::string> columns(const Self& self, const std::vector<std::string>& topics) {
   std::vector<std::string> names = log_columns(self->model().joints.size());
@@ -45,6 +68,12 @@ std::unique_ptr<BoundFlight> create_flight(const Self& self, const py::object& c
 void advance(BoundFlight& bound, std::int64_t n) {
   const Lock lock(*bound.guarded);
   raising_warnings(*bound.guarded, [&] { without_gil([&] { bound.flight.advance(n); }); });
+}
+
+void command(const BoundFlight& bound, const py::object& speeds) {
+  const Numbers array = numbers(speeds, 1, "command");
+  const Lock lock(*bound.guarded);
+  bound.guarded->simulation.command(array.data(), static_cast<std::size_t>(array.size()));
 }
 
 /// An array that owns the numbers: rows of a log are many, and are copied nowhere.
@@ -85,9 +114,17 @@ void bind_flight(py::module_& m) {
            py::arg("log_every"), py::arg("wrenches") = true,
            py::arg("topics") = std::vector<std::string>{})
       .def("advance", &advance, py::arg("n"), "Flies n steps; raises as `Simulation.step` does.")
+      .def("command", &command, py::arg("speeds"),
+           "As `Simulation.command`, which is refused while a run flies.")
       .def("take", &take,
            "Hands over what was logged since the last call: table (rows, columns) and wrenches "
            "(rows, terms, 6), the latter without rows unless asked for.");
+
+  py::class_<Run>(m, "Run", "The time in which a run flies a simulation, for a with statement.")
+      .def(py::init<const Self&>(), py::arg("simulation"))
+      .def("__enter__", &Run::begin,
+           "Refuses from now on what moves the simulation, but for its flight.")
+      .def("__exit__", [](Run& run, const py::args&) { run.end(); });
 
   m.def(
       "fault_of_commands",

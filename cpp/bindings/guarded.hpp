@@ -3,6 +3,8 @@
 #include <atomic>
 #include <exception>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "built.hpp"
 #include "older_pybind11.hpp"
@@ -17,22 +19,36 @@ namespace quadcore::bindings {
 namespace py = pybind11;
 
 /// A simulation that refuses to be used by two Python threads at once: the GIL does not guard it
-/// while it steps.
+/// while it steps. Nor may what a run calls back, such as a controller, move what is being flown.
 struct Guarded {
   Simulation simulation;
   std::atomic<bool> busy{false};
+  std::optional<unsigned long> flown_by;  ///< the thread that is within a run; by the GIL
 
   Guarded(const Model& model, const World& world, const SimulationOptions& options)
       : simulation(model, world, options) {}
 };
 
+[[noreturn]] inline void refuse_another_thread() {
+  throw InputError("this simulation is being used by another thread; give each its own");
+}
+
+/// Throws InputError within a run: `call` is what was called, and is the run's alone.
+inline void refuse_in_flight(const Guarded& guarded, const char* call) {
+  if (!guarded.flown_by) return;
+  if (*guarded.flown_by != PyThread_get_thread_ident()) refuse_another_thread();
+  throw InputError(std::string(call) +
+                   ": a run is flying this simulation, and what it calls back may only read it and "
+                   "publish; return the command, and try things out on a simulation of its own");
+}
+
 class Lock {
  public:
   explicit Lock(Guarded& guarded) : guarded_(guarded) {
-    if (guarded.busy.exchange(true)) {
-      throw InputError("this simulation is being used by another thread; give each its own");
-    }
+    if (guarded.busy.exchange(true)) refuse_another_thread();
   }
+  /// To do what is the run's alone while one flies.
+  Lock(Guarded& guarded, const char* call) : Lock((refuse_in_flight(guarded, call), guarded)) {}
   ~Lock() { guarded_.busy = false; }
   Lock(const Lock&) = delete;
   Lock& operator=(const Lock&) = delete;

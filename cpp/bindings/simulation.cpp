@@ -32,7 +32,7 @@ std::shared_ptr<Guarded> create_simulation(const Built<Model>& model, const Buil
 
 void set_command(const Self& self, const py::object& speeds) {
   const Numbers array = numbers(speeds, 1, "command");
-  const Lock lock(*self);
+  const Lock lock(*self, "command()");
   self->command(array.data(), static_cast<std::size_t>(array.size()));
 }
 
@@ -41,7 +41,7 @@ constexpr char step_count[] = "steps";
 void step(const Self& self, const Given<std::int64_t, step_count>& steps) {
   std::int64_t n = steps.value;
   using Clock = std::chrono::steady_clock;
-  const Lock lock(*self);
+  const Lock lock(*self, "step()");
   // A single step is over sooner than the GIL is handed over and back.
   if (n == 1) return raising_warnings(*self, [&] { self->step(); });
   do {
@@ -71,7 +71,7 @@ auto locked(const Get& get) {
 
 /// Lets Python move the vehicle: motion(dt, command, members) gives the state at a step's end.
 void move_by(const Self& self, const py::function& motion) {
-  const Lock lock(*self);
+  const Lock lock(*self, "_move_by()");
   self->move_by([motion](double dt, const VectorXd& command, VehicleState& state) {
     const py::gil_scoped_acquire gil;
     try {
@@ -102,7 +102,8 @@ speeds : array_like (n,)
 Raises
 ------
 InputError
-    Another count, a number that is not finite, or a plugin that commands; nothing was changed.)")
+    Another count, a number that is not finite, a plugin that commands, or a run that flies, whose
+    controller returns the command; nothing was changed.)")
       .def("step", &step, py::arg("n") = 1, R"(Advance by whole steps of `dt`, without the GIL.
 
 Parameters
@@ -115,12 +116,12 @@ Raises
 FlightError
     The flight failed, with `time` and reason; restore, reset and set_state go on from there.
 InputError
-    Another thread is stepping this simulation.)")
+    Another thread is stepping this simulation, or a run flies it.)")
       .def(
           "set_state",
           [](const Self& self, const py::object& object) {
             const VehicleState state = to_state(object);
-            const Lock lock(*self);
+            const Lock lock(*self, "set_state()");
             raising_warnings(*self, [&] { self->set_state(state); });
           },
           py::arg("state"), R"(Move the vehicle into a state; what plugins remember stays.
@@ -151,7 +152,7 @@ Snapshot
           "restore",
           [](const Self& self, const Built<Snapshot>& snapshot,
              const std::vector<std::string>& allow) {
-            const Lock lock(*self);
+            const Lock lock(*self, "restore()");
             self->restore(*snapshot, Allowed::of(allow));
           },
           py::arg("snapshot"), py::arg("allow"),
@@ -159,7 +160,7 @@ Snapshot
       .def(
           "reset",
           [](const Self& self, const std::optional<std::uint64_t>& seed) {
-            const Lock lock(*self);
+            const Lock lock(*self, "reset()");
             seed ? self->reset(*seed) : self->reset();
           },
           py::arg("seed"),

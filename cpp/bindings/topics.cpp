@@ -54,6 +54,7 @@ void publish(const Self& self, const Given<std::string, topic_name>& given,
              const py::object& values) {
   const std::string& name = given.value;
   const Numbers array = numbers(values, 1, ("publish: topic '" + name + "'").c_str());
+  if (name == Simulation::command_topic) refuse_in_flight(*self, "publish()");
   const Lock lock(*self);
   self->publish(name, array.data(), static_cast<std::size_t>(array.size()));
 }

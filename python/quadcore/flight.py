@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections import deque
+from contextlib import nullcontext
 from numbers import Real
 from typing import TYPE_CHECKING, Any, Callable, Deque, List, Optional, Protocol, Sequence, Tuple
 
@@ -39,6 +40,8 @@ class Pilot(Protocol):
 
     columns: Sequence[str] = ()
     """Names of what it tells of its own, beside the state, ``TOPIC.FIELD``."""
+    moves: bool = False
+    """Whether it moves the vehicle itself, which what a flight calls back may not."""
 
     def reset(self, simulation: Any) -> None:
         """Begin; the `Simulation` stands at its first step."""
@@ -82,7 +85,8 @@ def fly(
     Raises
     ------
     InputError
-        An argument is at fault; nothing was flown.
+        An argument is at fault, or a run flies the simulation already; nothing was flown. Or what
+        is called back moves the simulation, which ends the flight.
     FlightError
         The flight failed, or what the pilot gave was no command, be it at the start.
     """
@@ -91,22 +95,43 @@ def fly(
     total = steps_within(duration, simulation.dt)
     log_every = _row_every(log_every)
     table = None if commands is None else as_commands(commands, simulation.command_width)
-    if pilot is not None:
-        pilot.reset(simulation)
     wrenches = wrenches and len(simulation.wrench_terms) > 0
-    flight = _core.Flight(simulation, table, log_every, wrenches, topics)
+    moves = pilot is not None and pilot.moves
+    with nullcontext() if moves else _core.Run(simulation):
+        if pilot is not None:
+            pilot.reset(simulation)
+        flight = _core.Flight(simulation, table, log_every, wrenches, topics)
+        _advance(simulation, flight, total, _ROWS * log_every, receive, progress, pilot)
+
+
+def _advance(
+    simulation: _core.Simulation,
+    flight: _core.Flight,
+    total: int,
+    most: int,
+    receive: Receive,
+    progress: Optional[Progress],
+    pilot: Optional[Pilot],
+) -> None:
+    """Fly so many steps, in pieces of so many at most."""
     advance = flight.advance if pilot is None else _Piloted(simulation, flight, pilot).advance
 
     def hand_over() -> None:
         with interrupts.held():
             table, wrenches = flight.take()
-            receive(table if pilot is None else pilot.beside(table), wrenches)
+            try:
+                whole = table if pilot is None else pilot.beside(table)
+            except BaseException:  # what was flown is known even so
+                beside = 0 if pilot is None else len(pilot.columns)
+                receive(np.hstack([table, np.full((len(table), beside), np.nan)]), wrenches)
+                raise
+            receive(whole, wrenches)
 
     done, steps, told = 0, 1, 0.0
     try:
         while done < total:
             hand_over()
-            steps = min(steps, total - done, _ROWS * log_every)
+            steps = min(steps, total - done, most)
             started = time.perf_counter()
             advance(steps)
             done += steps
@@ -153,7 +178,7 @@ class _Piloted:
 
     def _command(self, speeds: npt.ArrayLike) -> None:
         try:
-            self._simulation.command(speeds)
+            self._flight.command(speeds)
         except _core.InputError as error:
             if not self._takes_commands:  # not what was given is at fault
                 raise

@@ -262,7 +262,9 @@ class Simulation(_core.Simulation):
         if isinstance(reference, str):
             reference = references.parse(reference)
         spins = controller.spins if isinstance(controller, Law) else ()
-        self.set_state(references.start(self, reference, spins))
+        with _core.Run(self):
+            start = references.start(self, reference, spins)
+        self.set_state(start)
         return reference
 
 

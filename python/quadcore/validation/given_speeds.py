@@ -71,6 +71,7 @@ class GivenSpeeds(Pilot):
     """
 
     delay = 0.0
+    moves = True
 
     def __init__(
         self, vehicle: Vehicle, commands: np.ndarray, lag: bool, duration: float, dt: float
