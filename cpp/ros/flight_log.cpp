@@ -5,6 +5,7 @@
 
 #include "bag_log.hpp"
 #include "csv_log.hpp"
+#include "log_per_flight.hpp"
 #include "mat_log.hpp"
 #include "quadcore/log.hpp"
 
@@ -39,11 +40,14 @@ std::unique_ptr<FlightLog> open_log(const std::string& path, const Simulation& s
     return path.size() >= end.size() &&
            path.compare(path.size() - end.size(), end.size(), end) == 0;
   };
-  LogRow row(simulation, topics);
-  if (has(".mat")) return std::make_unique<MatLog>(path, simulation, std::move(row));
-  if (has(".bag"))
-    return std::make_unique<BagLog>(path, simulation, std::move(row), nh, frame_prefix);
-  return std::make_unique<CsvLog>(path, simulation, std::move(row));
+  const bool is_mat = has(".mat"), is_bag = has(".bag");
+  const auto open = [=, &simulation, &nh]() -> std::unique_ptr<FlightLog> {
+    LogRow row(simulation, topics);
+    if (is_mat) return std::make_unique<MatLog>(path, simulation, std::move(row));
+    if (is_bag) return std::make_unique<BagLog>(path, simulation, std::move(row), nh, frame_prefix);
+    return std::make_unique<CsvLog>(path, simulation, std::move(row));
+  };
+  return std::make_unique<LogPerFlight>(path, open);
 }
 
 std::string unwritable(const std::string& path) {

@@ -53,7 +53,8 @@ class FlightLog {
   std::string error_;
 };
 
-/// The log of the format that a file's name asks for: .mat, .bag or else CSV.
+/// The log of the format that a file's name asks for: .mat, .bag or else CSV. It refers to
+/// simulation and node.
 /// \param nh  whose names the topics of a bag have
 /// \param frame_prefix  of the vehicle's frames there
 /// Throws InputError if the file cannot be written or a topic is not declared.

@@ -111,7 +111,7 @@ add_ros_node(quadcore_node
   cpp/ros/flight_loop.cpp cpp/ros/flight_thread.cpp cpp/ros/gazebo_bodies.cpp cpp/ros/gazebo_neighbours.cpp
   cpp/ros/gazebo_physics.cpp
   cpp/ros/gazebo_services.cpp cpp/ros/gazebo_states.cpp cpp/ros/gazebo_wrenches.cpp
-  cpp/ros/listener.cpp cpp/ros/master_api.cpp cpp/ros/master_check.cpp
+  cpp/ros/listener.cpp cpp/ros/log_per_flight.cpp cpp/ros/master_api.cpp cpp/ros/master_check.cpp
   cpp/ros/master_watch.cpp cpp/ros/mat_file.cpp cpp/ros/mat_log.cpp cpp/ros/odometry_topic.cpp
   cpp/ros/parameter_watch.cpp cpp/ros/path.cpp
   cpp/ros/plant.cpp cpp/ros/private_parameters.cpp cpp/ros/quadcore_node.cpp cpp/ros/ros_types.cpp
