@@ -10,7 +10,7 @@
 namespace quadcore::fmu {
 namespace {
 
-constexpr int version = 1;
+constexpr int version = 2;
 
 /// In the order of Variable::Kind.
 constexpr std::array<const char*, 8> kinds = {"state",     "topic", "wrench", "input",
@@ -55,6 +55,7 @@ FlightFile read(const std::string& folder) {
   for (const auto& [tag, name] : root["files"].as<Texts>()) {
     file.options.parameters[tag] = file.tags[tag] = folder + "/" + name;
   }
+  file.inputs = root["inputs"].as<std::map<std::string, std::vector<double>>>();
   const auto spawn = root["spawn"].as<std::vector<double>>();
   std::copy_n(spawn.begin(), 3, file.options.spawn.xyz.data());
   std::copy_n(spawn.begin() + 3, 3, file.options.spawn.rpy.data());

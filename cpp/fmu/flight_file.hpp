@@ -40,7 +40,8 @@ struct FlightFile {
   SimulationOptions options;
   std::map<std::string, std::string> tags;  ///< PLUGIN.TAG -> text, of all that are variables
   std::vector<Variable> variables;
-  std::string folder;  ///< of the resources
+  std::map<std::string, std::vector<double>> inputs;  ///< topic -> what it holds at first
+  std::string folder;                                 ///< of the resources
 };
 
 /// FMI's name of a type.

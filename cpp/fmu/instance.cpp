@@ -80,11 +80,16 @@ void Instance::step(double time, double length) {
   outputs_.forget();
   tune();
   for (auto& [topic, message] : settings_.inputs) {
-    if (!message.is_set) continue;
-    simulation_->publish(topic, message.values.data(), message.values.size());
-    message.is_set = false;
+    if (std::exchange(message.is_set, false) && is_said(topic, message)) {
+      simulation_->publish(topic, message.values.data(), message.values.size());
+    }
   }
   simulation_->step(static_cast<std::int64_t>(count));
+}
+
+bool Instance::is_said(const std::string& topic, const Waiting& message) const {
+  const Topics& topics = simulation_->topics();
+  return message.values != file_.inputs.at(topic) || topics[topics.at(topic)].count > 0;
 }
 
 void Instance::reset() {

@@ -52,6 +52,9 @@ class Instance {
   std::unique_ptr<Simulation> made() const;
   /// Makes the simulation anew if a parameter changed.
   void tune();
+  /// Whether a message was ever more than the start values, with which importers that know of no
+  /// input without a value begin: nobody has said anything then.
+  bool is_said(const std::string& topic, const Waiting& message) const;
 
   const FlightFile file_;
   Settings settings_;

@@ -26,11 +26,7 @@ double& component(Pose& pose, std::size_t index) {
 
 Settings::Settings(const FlightFile& file)
     : spawn(file.options.spawn), seed(file.options.seed), tags(file.tags) {
-  for (const Variable& v : file.variables) {
-    if (v.kind != Variable::input) continue;
-    std::vector<double>& values = inputs[v.key].values;
-    if (values.size() <= v.index) values.resize(v.index + 1);
-  }
+  for (const auto& [topic, values] : file.inputs) inputs[topic].values = values;
 }
 
 bool is_output(const Variable& variable) { return variable.kind <= Variable::wrench; }

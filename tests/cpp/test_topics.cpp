@@ -69,6 +69,47 @@ TEST_CASE("plugins that disagree about the kind of a topic are refused by name")
         "has it as 'wind' (east, north); make them agree");
 }
 
+TEST_CASE("before the first message a topic holds what its takers go by") {
+  const MessageKind left{"left", {"one", "other"}, {1, 0.5}};
+  Declared topics;
+  topics.plugin("writer");
+  const std::size_t written = topics.publishes("written", {"left", {"one", "other"}});
+  topics.plugin("listener");  // who says nothing goes by what others say
+  const std::size_t open = topics.takes("open", {"left", {"one", "other"}});
+  const std::size_t heard_late = topics.takes("written", left, late);
+  topics.plugin("taker");
+  topics.takes("open", left);
+  topics.takes("written", left);
+  const std::size_t silent = topics.takes("silent", wind);
+  topics.settle();
+  for (const std::size_t topic : {open, written, heard_late}) {
+    CHECK(topics[topic].values == std::vector<double>{1, 0.5});
+    CHECK(topics[topic].count == 0);
+  }
+  CHECK(topics[silent].values == std::vector<double>{0, 0});
+
+  // Of a simulation with other tags only what was said is taken over.
+  std::vector<Message> messages = topics.messages();
+  for (Message& message : messages) message.values.assign(2, 7.0);
+  messages[open].count = 1;
+  topics.restore(messages);
+  CHECK(topics[open].values == std::vector<double>{7, 7});
+  CHECK(topics[written].values == std::vector<double>{1, 0.5});
+}
+
+TEST_CASE("takers that go by other numbers before the first message are refused by name") {
+  for (const std::vector<double>& other : {std::vector<double>{0}, std::vector<double>{1, 1}}) {
+    Declared topics;
+    topics.plugin("one");
+    topics.takes("riding", {"switch", {"riding"}, {1}});
+    topics.plugin("two");
+    topics.takes("riding", {"switch", {"riding"}, other});
+    CHECK(refusal([&] { topics.settle(); }) ==
+          "a.urdf:2: plugin 'two' has other numbers of topic 'riding' before the first message "
+          "than a.urdf:1: plugin 'one'; give one for each field, and let them agree");
+  }
+}
+
 TEST_CASE("a topic has one writer") {
   Declared topics;
   topics.plugin("one");

@@ -40,7 +40,29 @@ std::vector<std::size_t> Topics::settle() {
                      "' as " + describe(declared.kind) + ", but " + name_of(other.plugin) +
                      " has it as " + describe(other.kind) + "; make them agree");
   }
+  hold_what_is_unsaid();
   return order();
+}
+
+/// Lets each topic hold what whoever takes it goes by before the first message.
+void Topics::hold_what_is_unsaid() {
+  for (const Declaration& declared : declarations_) {
+    const std::vector<double>& unsaid = declared.kind.unsaid;
+    Topic& topic = topics_[declared.topic];
+    if (unsaid.empty()) continue;
+    std::vector<double>& known = topic.kind.unsaid;
+    if (unsaid.size() != topic.values.size() || (!known.empty() && known != unsaid)) {
+      throw InputError(name_of(declared.plugin) + " has other numbers of topic '" + topic.name +
+                       "' before the first message than " +
+                       name_of(authority(declared.topic).plugin) +
+                       "; give one for each field, and let them agree");
+    }
+    topic.values = known = unsaid;
+  }
+  for (const LateCopy& late : late_) {
+    topics_[late.copy].kind.unsaid = topics_[late.original].kind.unsaid;
+    topics_[late.copy].values = topics_[late.original].values;
+  }
 }
 
 /// Gives a topic the fields of the first who takes it as this kind.

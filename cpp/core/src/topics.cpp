@@ -145,7 +145,10 @@ void Topics::check(const std::vector<Message>& messages) const {
 
 void Topics::restore(const std::vector<Message>& messages) {
   for (std::size_t i = 0; i < topics_.size(); ++i) {
-    static_cast<Message&>(topics_[i]) = messages[i];
+    Topic& topic = topics_[i];
+    static_cast<Message&>(topic) = messages[i];
+    // What nobody has said is what this simulation's plugins go by, whose tags may be others.
+    if (topic.count == 0 && !topic.kind.unsaid.empty()) topic.values = topic.kind.unsaid;
   }
 }
 

@@ -37,7 +37,7 @@ class Effectiveness {
     for (std::size_t j = 0; j < config_.rotors.size(); ++j) {
       double* rows = state.data() + rotor_offset(CoefficientRow::count, config_.rotors[j]);
       for (const std::size_t row : {CoefficientRow::k, CoefficientRow::b}) {
-        rows[row * widest_lanes] *= share_of(left, j);
+        rows[row * widest_lanes] *= left.values[j];
       }
     }
   }

@@ -80,7 +80,7 @@ class BatteryPlugin final : public Plugin {
   };
 
   double share_of_fault(const Sample& sample, std::size_t j) const {
-    return has_faults_ ? share_of(sample.topics[faults_], j) : 1;
+    return has_faults_ ? sample.topics[faults_].values[j] : 1;
   }
 
   /// What the rotors would take from a full battery [W].
@@ -90,7 +90,7 @@ class BatteryPlugin final : public Plugin {
       const double rate = sample.kinematics.rotors.number(MotionRow::rate, rotors_[j]);
       const Coefficients& c = coefficients_[j];
       const double cube = std::abs(rate) * rate * rate;
-      const double driven = share_of(sample.topics[power_], j);
+      const double driven = sample.topics[power_].values[j];
       power += driven * share_of_fault(sample, j) * (rate < 0 ? c.backward : c.forward) * cube;
     }
     return power / efficiency_;

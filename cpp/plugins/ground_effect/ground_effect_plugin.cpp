@@ -38,7 +38,7 @@ class GroundEffectPlugin final : public Plugin {
   void update(const Sample& sample, PluginState state) const override {
     const Topic& left = sample.topics[effectiveness_];
     for (std::size_t j = 0; j < rotors_.size(); ++j) {
-      state[static_cast<Eigen::Index>(j)] = share_of(left, j);
+      state[static_cast<Eigen::Index>(j)] = left.values[j];
     }
   }
 

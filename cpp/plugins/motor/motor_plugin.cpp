@@ -70,7 +70,7 @@ class MotorPlugin final : public Plugin {
     for (std::size_t j = 0; j < rotors_.size(); ++j) {
       const auto at = static_cast<Eigen::Index>(j);
       state[1 + at] = limit_.clamped(then[1 + at]) / sim_slow_;
-      state[1 + n + at] = share_of(power, j);
+      state[1 + n + at] = power.values[j];
     }
     steps += 1;
   }

@@ -94,7 +94,7 @@ class MotorPidPlugin final : public Plugin {
       if (j == 0) check_shares(power, sample.time);
       memory(MemoryRow::followed) = number;
       const double wanted = stale ? 0 : command.values[j];
-      memory(MemoryRow::active) = share_of(power, j);
+      memory(MemoryRow::active) = power.values[j];
       memory(MemoryRow::target) = laws::motor_target(wanted, limit_.fastest(), config_.sim_slow);
       if (!config_.samples || memory(MemoryRow::active) == 0) continue;
       const double error =

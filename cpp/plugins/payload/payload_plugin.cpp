@@ -21,7 +21,8 @@ class PayloadPlugin final : public Plugin {
       : name_(setup.name),
         pick_up_(event(setup.parameters, "pickUp")),
         release_(event(setup.parameters, "release")),
-        topic_(setup.topics.takes(setup.parameters.text("topic"), switch_kind("riding"))),
+        topic_(setup.topics.takes(setup.parameters.text("topic"),
+                                  switch_kind("riding", rides_at_the_start()))),
         carried_(
             setup.topics.publishes(setup.parameters.text("topic") + "_carried", carried_kind())) {
     const Parameters& p = setup.parameters;

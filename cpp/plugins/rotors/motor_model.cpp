@@ -102,8 +102,8 @@ class MotorModel final : public Plugin {
     const Topic &effectiveness = sample.topics[effectiveness_], &power = sample.topics[power_];
     check_shares(effectiveness, sample.time);
     check_shares(power, sample.time);
-    state[kLost] = 1 - share_of(effectiveness, joint_);
-    const double input = state[kInput], left = share_of(power, joint_);
+    state[kLost] = 1 - effectiveness.values[joint_];
+    const double input = state[kInput], left = power.values[joint_];
     if (type_ == Type::force) {
       state[kTorque] = left * input;
     } else if (type_ == Type::position) {

@@ -21,7 +21,7 @@ from .description import description
 from .libraries import Libraries
 from .variables import Variable, spawn_and_seed, variables_of
 
-_VERSION = 1  # of flight.yaml, which cpp/fmu/flight_file.cpp reads
+_VERSION = 2  # of flight.yaml, which cpp/fmu/flight_file.cpp reads
 _OPTIONS = (
     "engine", "world", "dt", "seed", "parameters", "xacro_args", "spawn", "ignore", "scenario",
 )  # fmt: skip
@@ -118,6 +118,10 @@ def _flight(
         "parameters": {key: value for key, value in plan.parameters.items() if key not in files},
         "tags": {tag.key: str(tag.start) for tag in tags if tag.key not in files},
         "files": files,
+        "inputs": {
+            topic: [float(v.start or 0) for v in variables if v.kind == "input" and v.key == topic]
+            for topic in sorted({v.key for v in variables if v.kind == "input"})
+        },
         "variables": [[*v[:4], v.variability, v.type] for v in variables],
     }
 

@@ -83,10 +83,12 @@ def _inputs(simulation: Simulation) -> Iterator[Variable]:
     for topic in simulation.topics.values():
         if topic.writer is None:
             is_command = topic.name == simulation.command_topic
+            start = simulation.topic(topic.name)  # nobody has published yet
             for i, field in enumerate(topic.fields):
                 name = field if is_command else f"{topic.name}.{field}"
                 yield Variable(
-                    name, "input", topic.name, i, "Real", "input", "discrete", "0",
+                    name, "input", topic.name, i, "Real", "input", "discrete",
+                    repr(start[field]),
                     "rad/s" if is_command else "",
                 )  # fmt: skip
 

@@ -20,7 +20,11 @@ namespace quadcore QUADCORE_EXPORT {
 struct MessageKind {
   std::string name;                 ///< by which bridges and errors know it
   std::vector<std::string> fields;  ///< names of the numbers, in order
+  /// What whoever takes the topic goes by before the first message, a number for each field; empty
+  /// where no number says it, and the topic holds zeros then.
+  std::vector<double> unsaid = {};
 
+  /// Whether messages mean the same.
   bool operator==(const MessageKind& other) const {
     return name == other.name && fields == other.fields;
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "quadcore/error.hpp"
 #include "quadcore/topics.hpp"
@@ -13,16 +14,12 @@ namespace quadcore {
 /// Topic on which control laws are told what is left of the rotors.
 constexpr const char* health_topic = "health";
 
-/// The kind of message that tells them of so many rotors: s1, s2 and so on, each from 0 to 1.
+/// The kind of message that tells them of so many rotors: s1, s2 and so on, each from 0 to 1; all
+/// of each rotor before the first message.
 inline MessageKind shares(std::size_t rotors) {
-  MessageKind kind{"shares", {}};
+  MessageKind kind{"shares", {}, std::vector<double>(rotors, 1.0)};
   for (std::size_t i = 1; i <= rotors; ++i) kind.fields.push_back("s" + std::to_string(i));
   return kind;
-}
-
-/// Of the j-th rotor; all of it before the first message.
-inline double share_of(const Topic& topic, std::size_t j) {
-  return topic.count > 0 ? topic.values[j] : 1;
 }
 
 /// Throws FlightError on a share that is none.

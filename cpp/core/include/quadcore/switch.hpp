@@ -12,6 +12,11 @@ namespace quadcore {
 /// One number, 1 or 0.
 inline MessageKind switch_kind(const std::string& field) { return {"switch", {field}}; }
 
+/// The same, of which is known what holds before the first message.
+inline MessageKind switch_kind(const std::string& field, bool unsaid) {
+  return {"switch", {field}, {unsaid ? 1.0 : 0.0}};
+}
+
 /// Whether a kind, of at least one field, is a switch, whatever its field is called.
 inline bool is_switch(const MessageKind& kind) { return kind == switch_kind(kind.fields.front()); }
 

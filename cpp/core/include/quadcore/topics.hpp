@@ -15,9 +15,10 @@ constexpr int the_caller = -1;  ///< of Simulation::publish()
 
 /// What a topic holds at one moment, as snapshots keep it.
 struct Message {
-  std::vector<double> values;  ///< in the order of MessageKind::fields
-  double stamp = 0;            ///< time of the last message [s]
-  double count = 0;            ///< messages so far; 0 = none yet
+  std::vector<double>
+      values;        ///< in the order of MessageKind::fields, at first MessageKind::unsaid
+  double stamp = 0;  ///< time of the last message [s]
+  double count = 0;  ///< messages so far; 0 = none yet
 };
 
 /// A named message inside the simulation: a row of numbers of one kind.
@@ -133,6 +134,7 @@ class Topics {
   [[noreturn]] void refuse_writer(const Topic& topic) const;
   [[noreturn]] void refuse_loop(const std::vector<bool>& placed) const;
   void close(Declaration& open);
+  void hold_what_is_unsaid();
   const Declaration& authority(std::size_t topic) const;
   std::vector<std::size_t> order() const;
   const Declaration* awaited(std::size_t plugin, const std::vector<bool>& placed) const;
