@@ -90,7 +90,8 @@ name : str
 Returns
 -------
 dict of str to float
-    ``stamp`` (s), ``count`` (of the messages so far), and each field of the topic.
+    ``stamp`` (s), ``count`` (of the messages so far), and each field of the topic: before the first
+    message what plugins go by until then, 0 where no number says it.
 
 Raises
 ------

@@ -47,6 +47,8 @@ class Controller(Protocol):
     def __call__(self, t: float, state: Odometry, reference: Any) -> Any:
         """Give the speeds for the steps until the next call.
 
+        It may read the simulation that flies, and publish; to move or command it is refused.
+
         Parameters
         ----------
         t : float

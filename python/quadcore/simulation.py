@@ -160,8 +160,8 @@ class Simulation(_core.Simulation):
         Raises
         ------
         InputError
-            No such topic, a plugin that writes it, other fields than the topic's, or a number that
-            is not finite; nothing was changed.
+            No such topic, a plugin that writes it, other fields than the topic's, a number that is
+            not finite, or the command's topic while a run flies; nothing was changed.
         """
         if isinstance(values, Mapping):
             known = self.topics.get(topic)
@@ -220,7 +220,8 @@ class Simulation(_core.Simulation):
         Raises
         ------
         InputError
-            An argument is at fault; nothing was flown.
+            An argument is at fault; nothing was flown. Or what is called back, such as the
+            controller, would move the vehicle or command it, which ends the flight.
         FlightError
             The flight failed, or the controller gave no command, be it at its first call. Its
             attribute `log` is the log so far, as it is of whatever else ends a run: the
