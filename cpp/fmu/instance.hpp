@@ -53,7 +53,7 @@ class Instance {
   /// Makes the simulation anew if a parameter changed.
   void tune();
   /// Whether a message was ever more than the start values, with which importers that know of no
-  /// input without a value begin: nobody has said anything then.
+  /// input without a value begin: nobody has said anything then. Speeds of 0 are said, too.
   bool is_said(const std::string& topic, const Waiting& message) const;
 
   const FlightFile file_;

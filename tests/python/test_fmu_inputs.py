@@ -115,12 +115,11 @@ def test_inputs_that_are_set_to_their_declared_starts_fly_as_if_nobody_had(
 ):
     """Before the initialisation, after it, and anew at each step."""
     untouched, before, after, always = (imported(model, initialise=False) for _ in range(4))
-    own = starts(before)
-    motors = [name for name in own if name[0] == "w" and name[1:].isdigit()]
+    motors = [name for name in starts(before) if name[0] == "w" and name[1:].isdigit()]
     speeds = [400.0, -410.0, 420.0, -430.0, 415.0, -405.0][: len(motors)] if commanded else None
     if commanded and not motors:
         pytest.skip("nobody but its plugin commands it")
-    others = starts(before, without=motors) if commanded else own
+    own = starts(before, without=motors)
     set_all(before, own)
     for instance in (untouched, before, after, always):
         instance.initialise()
@@ -129,7 +128,18 @@ def test_inputs_that_are_set_to_their_declared_starts_fly_as_if_nobody_had(
     assert len(set(expected)) == len(expected)
     assert rows(before, speeds) == expected
     assert rows(after, speeds) == expected
-    assert rows(always, speeds, each=lambda: set_all(always, others)) == expected
+    assert rows(always, speeds, each=lambda: set_all(always, own)) == expected
+
+
+def test_speeds_of_0_are_a_command_from_the_start_on(imported):
+    instance, simulation = imported("quadrotor"), qc.Simulation("quadrotor", "eigen")
+    for speeds in (0 * HOVER, HOVER):
+        for fly in (instance, simulation):
+            fly.command(speeds)
+        instance.step(0.1)
+        simulation.step(100)
+    assert instance.row()[:3] == list(simulation.state.position)
+    assert instance.row()[-4:] == list(simulation.state.rotor_velocity)
 
 
 def test_a_start_is_what_the_topic_holds_before_anybody_publishes(imported, tmp_path):
@@ -177,7 +187,7 @@ def test_what_was_said_may_be_taken_back_to_the_start(imported):
 
 def test_saved_restored_and_reset_inputs_are_still_unsaid(imported):
     instance, other = imported("lab"), imported("lab")
-    own = starts(instance)
+    own = starts(instance, without=("w1", "w2", "w3", "w4"))
     set_all(instance, own)
     slave = instance.slave
     state = slave.getFMUstate()
