@@ -67,18 +67,19 @@ def test_who_moves_a_vehicle_in_flight_ends_the_flight_and_its_log_stays(who, ca
     MOVES[call](simulation)  # the run is over
 
 
-def test_a_controller_that_moves_the_vehicle_as_it_begins_is_refused():
-    class Stirs:
+def test_a_controller_may_put_the_vehicle_where_the_flight_begins():
+    class Lifts:
         def reset(self, simulation):
-            simulation.step(5)
+            state = simulation.state.copy()
+            state.position[:] = 1, -2, 13
+            simulation.set_state(state)
 
         def __call__(self, t, state, reference):
             return HOVER
 
-    simulation = quadrotor("eigen")
-    with pytest.raises(qc.InputError, match=r"^step\(\): a run is flying this simulation"):
-        simulation.run(0.1, controller=Stirs())
-    assert simulation.time == 0
+    log = quadrotor("eigen").run(0.1, controller=Lifts())
+    other = quadrotor("eigen", spawn=(1, -2, 13)).run(0.1, controller=lambda *_: HOVER)
+    assert (log.table == other.table).all()
 
 
 def test_a_reference_that_moves_the_vehicle_which_is_put_onto_it_is_refused():
