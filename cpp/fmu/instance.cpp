@@ -87,10 +87,11 @@ void Instance::step(double time, double length) {
   simulation_->step(static_cast<std::int64_t>(count));
 }
 
-bool Instance::is_said(const std::string& topic, const Waiting& message) const {
+bool Instance::is_said(const std::string& name, const Waiting& message) const {
   const Topics& topics = simulation_->topics();
-  return topic == Simulation::command_topic || message.values != file_.inputs.at(topic) ||
-         topics[topics.at(topic)].count > 0;
+  const Topic& topic = topics[topics.at(name)];
+  return simulation_->time() > 0 || topic.count > 0 || message.values != topic.values ||
+         name == Simulation::command_topic;
 }
 
 void Instance::reset() {

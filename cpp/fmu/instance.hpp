@@ -52,8 +52,8 @@ class Instance {
   std::unique_ptr<Simulation> made() const;
   /// Makes the simulation anew if a parameter changed.
   void tune();
-  /// Whether a message was ever more than the start values, with which importers that know of no
-  /// input without a value begin: nobody has said anything then. Speeds of 0 are said, too.
+  /// Whether a message says something. Before the first step importers that know of no input
+  /// without a value set each to its start: that says nothing, but of speeds.
   bool is_said(const std::string& topic, const Waiting& message) const;
 
   const FlightFile file_;

@@ -113,13 +113,14 @@ MODELS = ["quadrotor", "hexarotor", "neo11", "crazyflie", "ardrone", "firefly", 
 def test_inputs_that_are_set_to_their_declared_starts_fly_as_if_nobody_had(
     model, commanded, imported
 ):
-    """Before the initialisation, after it, and anew at each step."""
+    """Before the initialisation, after it, and shares and pushes anew at each step."""
     untouched, before, after, always = (imported(model, initialise=False) for _ in range(4))
     motors = [name for name in starts(before) if name[0] == "w" and name[1:].isdigit()]
     speeds = [400.0, -410.0, 420.0, -430.0, 415.0, -405.0][: len(motors)] if commanded else None
     if commanded and not motors:
         pytest.skip("nobody but its plugin commands it")
     own = starts(before, without=motors)
+    idle = {n: v for n, v in own.items() if n.split(".")[0] in ("effectiveness", "power", "push")}
     set_all(before, own)
     for instance in (untouched, before, after, always):
         instance.initialise()
@@ -128,7 +129,7 @@ def test_inputs_that_are_set_to_their_declared_starts_fly_as_if_nobody_had(
     assert len(set(expected)) == len(expected)
     assert rows(before, speeds) == expected
     assert rows(after, speeds) == expected
-    assert rows(always, speeds, each=lambda: set_all(always, own)) == expected
+    assert rows(always, speeds, each=lambda: set_all(always, idle)) == expected
 
 
 def test_speeds_of_0_are_a_command_from_the_start_on(imported):
@@ -183,6 +184,39 @@ def test_what_was_said_may_be_taken_back_to_the_start(imported):
         simulation.step(100)
     assert instance.row()[:3] == list(simulation.state.position)
     assert instance.row()[-4:] == list(simulation.state.rotor_velocity)
+
+
+def test_a_start_that_is_set_later_is_said(imported):
+    """What was taken up in the meantime can be let go, what was let go taken up."""
+    instance = imported("lab")
+    instance.step(0.1)
+    assert instance.get("payload_carried.mass", "later_carried.mass") == [0.0, 0.1]
+    instance.set("payload.riding", 1.0)
+    instance.set("later.riding", 0.0)
+    instance.step(0.1)
+    assert instance.get("payload_carried.mass", "later_carried.mass") == [0.2, 0.0]
+
+
+def test_what_was_tuned_is_not_taken_for_the_start(imported):
+    instance = imported("lab", initialise=False)
+    instance.set("payload.pickUp", 10.0)
+    instance.set("payload.riding", 1.0)
+    instance.initialise()
+    instance.step(0.01)
+    assert instance.get("payload_carried.mass") == [0.2]
+
+
+def test_a_reference_of_zeros_is_one_once_the_flight_is_under_way(imported):
+    waiting, called = (imported("piloted") for _ in range(2))
+    names = [name for name in starts(called) if name.startswith("reference.")]
+    assert names
+    for instance in (waiting, called):
+        instance.step(0.1)
+    for name in names:
+        called.set(name, 0.0)
+    for instance in (waiting, called):
+        instance.step(0.5)
+    assert called.get("z")[0] > waiting.get("z")[0] + 0.05  # where nobody calls it falls
 
 
 def test_saved_restored_and_reset_inputs_are_still_unsaid(imported):
