@@ -20,7 +20,7 @@ struct BoundFlight {
 /// The time in which a run flies a simulation, and refuses whoever else would move it.
 class Run {
  public:
-  explicit Run(const Self& self) : guarded_(self.guarded) {}
+  explicit Run(const Self& self) : guarded_(self.guarded) { const Lock lock(*guarded_, "run()"); }
   ~Run() { end(); }
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;

@@ -38,13 +38,15 @@ class BatchSimulation(_core.Batch):
 
     Parameters
     ----------
-    model, engine, world, dt, xacro_args, ignore
+    model, engine, world, dt, ignore
         As of `Simulation`; the engine is "eigen" unless another is named.
     n : int
         Vehicles.
     parameters : mapping of str to value or array (n,), optional
         As of `Simulation`; an array has one for each vehicle, which ``xacro.ARG`` takes, too: the
         file is expanded for each value. Of a tag that is a row of k numbers an array is (n, k).
+    xacro_args : mapping of str to value or array (n,), optional
+        As of `Simulation`; the same as ``xacro.ARG``.
     spawn : array_like (n, 6), (n, 3), (6,) or (3,)
         x, y, z (m), and roll, pitch, yaw (rad), of each vehicle or of all.
     seed : int or array_like (n,)
@@ -105,7 +107,7 @@ class BatchSimulation(_core.Batch):
                 0 if threads is None else whole(threads, "threads", bits=31),
             )
         except InputError as error:
-            raise refusal(error, parameters, self.n) from error.__cause__
+            raise refusal(error, (parameters, xacro_args), self.n) from error.__cause__
         for warning in self.warnings(0):
             warn(warning)
 

@@ -61,14 +61,26 @@ def _argument(value: Any) -> str:
     return text_of(value) if isinstance(value, np.ndarray) and value.ndim else str(value)
 
 
-def refusal(error: InputError, parameters: Any, n: int) -> InputError:
-    """Say how each vehicle has a value of its own, if a row of them was taken for one value."""
-    for key, value in parameters.items() if isinstance(parameters, Mapping) else ():
-        is_row = isinstance(value, (list, tuple)) or np.ndim(value) > 1
-        owner, _, name = str(key).rpartition(".")
-        blamed = f"xacro argument '{name}'" if owner == XACRO else f"set {key}:"
-        if is_row and blamed in str(error):
-            return InputError(f"{error}; a value for each vehicle is an array of shape ({n},)")
+def refusal(error: InputError, given: Sequence[Any], n: int) -> InputError:
+    """Say how each vehicle has a value of its own, if a row of them was taken for one value.
+
+    Parameters
+    ----------
+    error
+        Which tells the value.
+    given
+        Mappings of names to values.
+    n
+        How many vehicles there are.
+    """
+    for values in given:
+        for value in values.values() if isinstance(values, Mapping) else ():
+            is_table = isinstance(value, np.ndarray) and value.ndim > 1
+            if not is_table and not isinstance(value, (list, tuple)):
+                continue
+            rows = value if is_table else [value]
+            if any(text in str(error) for row in rows for text in (text_of(row), _argument(row))):
+                return InputError(f"{error}; a value for each vehicle is an array of shape ({n},)")
     return error
 
 

@@ -96,10 +96,11 @@ def fly(
     log_every = _row_every(log_every)
     table = None if commands is None else as_commands(commands, simulation.command_width)
     wrenches = wrenches and len(simulation.wrench_terms) > 0
+    moves = pilot is not None and pilot.moves
+    run = nullcontext() if moves else _core.Run(simulation)
     if pilot is not None:
         pilot.reset(simulation)  # which may yet put the vehicle where it is to begin
-    moves = pilot is not None and pilot.moves
-    with nullcontext() if moves else _core.Run(simulation):
+    with run:
         flight = _core.Flight(simulation, table, log_every, wrenches, topics)
         _advance(simulation, flight, total, _ROWS * log_every, receive, progress, pilot)
 

@@ -43,7 +43,9 @@ def _keys(expression: str) -> List[str]:
     return [
         keyword.arg
         for node in ast.walk(tree)
-        if isinstance(node, ast.Subscript) and isinstance(node.value, ast.Call)
+        if isinstance(node, ast.Subscript)
+        and isinstance(node.value, ast.Call)
+        and getattr(node.value.func, "id", "") == "dict"
         for keyword in node.value.keywords
         if keyword.arg
     ]

@@ -124,6 +124,23 @@ def test_a_controller_that_catches_the_error_flies_as_if_it_had_not_tried():
     assert (simulation.run(0.03, controller=stubborn).table == plain.table).all()
 
 
+def test_a_run_that_is_refused_leaves_its_controller_alone():
+    class Counts:
+        begun = 0
+
+        def reset(self, simulation):
+            self.simulation, self.begun = simulation, self.begun + 1
+
+        def __call__(self, t, state, reference):
+            with pytest.raises(qc.InputError):
+                self.simulation.run(0.01, controller=self)
+            return HOVER
+
+    law = Counts()
+    quadrotor("eigen").run(0.01, controller=law)
+    assert law.begun == 1
+
+
 def test_another_thread_is_told_that_it_is_another_one():
     simulation, told = quadrotor("eigen"), []
 

@@ -116,6 +116,7 @@ def test_an_array_without_length_is_a_number():
         ({TAG: (1e-5, 2e-5)}, "a value for each vehicle is an array of shape (2,)"),
         ({"frame.mass": [1, 2]}, "a value for each vehicle is an array of shape (2,)"),
         ({"xacro.arm_length": [0.1, 0.2]}, "a value for each vehicle is an array of shape (2,)"),
+        ({"xacro.sim_slow": [1, 10]}, "a value for each vehicle is an array of shape (2,)"),
         ({TAG: np.full((2, 1), 1e-5)}, f"set {TAG}: an array of shape (2, 1) for 2 vehicles; give"),
         ({TAG: np.full((2, 3, 1), 1e-5)}, f"set {TAG}: an array of shape (2, 3, 1) for 2 vehicles"),
         (
@@ -130,6 +131,10 @@ def test_values_that_are_not_one_for_each_vehicle_are_refused(parameters, told):
     with pytest.raises(InputError, match=re.escape(told)) as refusal:
         BatchSimulation(n=2, parameters=parameters)
     assert "\n" not in str(refusal.value)
+    arguments = {key[6:]: value for key, value in parameters.items() if key.startswith("xacro.")}
+    if arguments:
+        with pytest.raises(InputError, match=re.escape(told)):
+            BatchSimulation(n=2, xacro_args=arguments)
 
 
 def test_rows_of_numbers_are_one_of_each_vehicle(relays, toy):

@@ -87,13 +87,17 @@ def _is_plain(text: str) -> bool:
     return "_" not in text and text.isascii()
 
 
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return _is_plain(cell)
+
+
 def _first_fault(columns: Sequence[str], cells: Sequence[str]) -> str:
-    for column, cell in zip(columns, cells):
-        try:
-            float(cell if _is_plain(cell) else "")
-        except ValueError:
-            return f"column '{column}' holds '{cell.strip()[:80]}'; write a number such as -471.5"
-    return "no numbers; write some"  # not reached: one of the cells is at fault
+    column, cell = next(pair for pair in zip(columns, cells) if not _is_number(pair[1]))
+    return f"column '{column}' holds '{cell.strip()[:80]}'; write a number such as -471.5"
 
 
 def write_log(

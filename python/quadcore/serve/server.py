@@ -89,7 +89,7 @@ class Server:
                     tell(f"client {served}: {error}")
 
     def close(self) -> None:
-        """Listen no longer, in whatever thread it is."""
+        """Listen no longer, in whatever thread; a client that is there is served to its end."""
         self._is_closed = True
         with suppress(OSError):  # on some systems only connections can be shut down
             self._socket.shutdown(socket.SHUT_RDWR)  # wakes who waits for a client
