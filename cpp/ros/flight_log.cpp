@@ -33,9 +33,9 @@ const std::vector<double>& LogRow::of(const Simulation& simulation) {
   return row_;
 }
 
-std::unique_ptr<FlightLog> open_log(const std::string& path, const Simulation& simulation,
-                                    const std::vector<std::string>& topics,
-                                    const ros::NodeHandle& nh, const std::string& frame_prefix) {
+std::unique_ptr<LogPerFlight> open_log(const std::string& path, const Simulation& simulation,
+                                       const std::vector<std::string>& topics,
+                                       const ros::NodeHandle& nh, const std::string& frame_prefix) {
   const auto has = [&path](const std::string& end) {
     return path.size() >= end.size() &&
            path.compare(path.size() - end.size(), end.size(), end) == 0;

@@ -53,14 +53,16 @@ class FlightLog {
   std::string error_;
 };
 
-/// The log of the format that a file's name asks for: .mat, .bag or else CSV. It refers to
-/// simulation and node.
+class LogPerFlight;
+
+/// The log, a file per flight, of the format that a file's name asks for: .mat, .bag or else CSV.
+/// It refers to simulation and node.
 /// \param nh  whose names the topics of a bag have
 /// \param frame_prefix  of the vehicle's frames there
 /// Throws InputError if the file cannot be written or a topic is not declared.
-std::unique_ptr<FlightLog> open_log(const std::string& path, const Simulation& simulation,
-                                    const std::vector<std::string>& topics,
-                                    const ros::NodeHandle& nh, const std::string& frame_prefix);
+std::unique_ptr<LogPerFlight> open_log(const std::string& path, const Simulation& simulation,
+                                       const std::vector<std::string>& topics,
+                                       const ros::NodeHandle& nh, const std::string& frame_prefix);
 
 /// How a file that cannot be written is told, for the reason that errno has.
 std::string unwritable(const std::string& path);

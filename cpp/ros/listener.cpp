@@ -7,7 +7,7 @@ namespace quadcore::node {
 
 Listener::Listener(Broadcast& broadcast, TopicInlets& inlets, GazeboWrenches& wrenches,
                    const Simulation& simulation, std::vector<CommandTopic> command_topics,
-                   std::unique_ptr<FlightLog> log, ClockFollower* follower)
+                   std::unique_ptr<LogPerFlight> log, ClockFollower* follower)
     : broadcast_(broadcast),
       inlets_(inlets),
       wrenches_(wrenches),
@@ -17,7 +17,7 @@ Listener::Listener(Broadcast& broadcast, TopicInlets& inlets, GazeboWrenches& wr
       warnings_told_(simulation.warnings().size()) {}
 
 void Listener::observe(const Simulation& simulation, bool jumped) {
-  if (log_) log_->add(simulation);
+  if (log_) log_->add(simulation, jumped);
   if (log_ && !log_->error().empty()) ROS_ERROR_ONCE("%s", log_->error().c_str());
   broadcast_.send(simulation, jumped);
   if (follower_) follower_->reached(simulation.time());

@@ -7,9 +7,9 @@
 #include "broadcast.hpp"
 #include "clock.hpp"
 #include "command_topics.hpp"
-#include "flight_log.hpp"
 #include "flight_thread.hpp"
 #include "gazebo_wrenches.hpp"
+#include "log_per_flight.hpp"
 #include "sayer.hpp"
 #include "topic_inlets.hpp"
 
@@ -22,7 +22,7 @@ class Listener final : public FlightListener {
   /// \param follower  to be told of each step; null = this node leads the clock
   Listener(Broadcast& broadcast, TopicInlets& inlets, GazeboWrenches& wrenches,
            const Simulation& simulation, std::vector<CommandTopic> command_topics,
-           std::unique_ptr<FlightLog> log, ClockFollower* follower);
+           std::unique_ptr<LogPerFlight> log, ClockFollower* follower);
 
   void feed(Simulation& simulation) override {
     inlets_.take(simulation);
@@ -41,7 +41,7 @@ class Listener final : public FlightListener {
   TopicInlets& inlets_;
   GazeboWrenches& wrenches_;
   const std::vector<CommandTopic> command_topics_;
-  const std::unique_ptr<FlightLog> log_;
+  const std::unique_ptr<LogPerFlight> log_;
   ClockFollower* const follower_;
   std::size_t warnings_told_;  ///< of the simulation
   Sayer sayer_;

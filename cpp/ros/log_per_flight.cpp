@@ -24,8 +24,9 @@ LogPerFlight::LogPerFlight(const std::string& path,
                            std::function<std::unique_ptr<FlightLog>()> open)
     : path_(path), open_(std::move(open)), log_(open_()) {}
 
-void LogPerFlight::add(const Simulation& simulation) {
-  if (rows_ > 0 && simulation.time() <= time_) begin_anew();
+void LogPerFlight::add(const Simulation& simulation, bool jumped) {
+  // A clock that is followed may be set back without a jump of the motion; times grow in a log.
+  if (rows_ > 0 && (jumped || simulation.time() <= time_)) begin_anew();
   if (!log_) return;
   log_->add(simulation);
   if (!log_->error().empty()) fail(log_->error());
@@ -46,7 +47,7 @@ void LogPerFlight::begin_anew() {
   using Kind = std::filesystem::file_type;
   if (kind != Kind::regular && kind != Kind::not_found) return;  // nobody can rename a pipe
   if (rows_ > 1) keep();
-  if (!this->error().empty()) log_.reset();  // else what was flown would be overwritten
+  if (!error_.empty()) log_.reset();  // else what was flown would be overwritten
   rows_ = 0;
   if (!log_) return;
   log_.reset();
@@ -59,14 +60,24 @@ void LogPerFlight::begin_anew() {
 
 void LogPerFlight::keep() {
   close();
-  if (!this->error().empty()) return;
+  if (!error_.empty()) return;
+  const std::string time = seconds(time_);
   std::error_code error;
+  if (!std::filesystem::exists(path_, error) && !error) {
+    ROS_INFO("%s was moved or removed with what was flown until t = %s s; the log goes on there",
+             path_.c_str(), time.c_str());
+    return;
+  }
   const std::filesystem::path file = std::filesystem::weakly_canonical(path_, error);
   const std::filesystem::path kept = free_name(file);
   if (!error) std::filesystem::rename(file, kept, error);
   if (error) return fail(path_ + ": cannot be renamed, so the log ends: " + error.message());
-  ROS_INFO("what was flown until t = %s s is in %s; the log goes on in %s", seconds(time_).c_str(),
+  ROS_INFO("what was flown until t = %s s is in %s; the log goes on in %s", time.c_str(),
            kept.c_str(), path_.c_str());
+}
+
+void LogPerFlight::fail(const std::string& what) {
+  if (error_.empty()) error_ = what;
 }
 
 }  // namespace quadcore::node

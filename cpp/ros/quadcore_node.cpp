@@ -85,7 +85,7 @@ int run(const EndSignal& end_signal) {
   taken.push_back(GazeboWrenches::topic);
   TopicInlets inlets(nh, simulation, taken, flight_settings.lockstep);
   GazeboWrenches wrenches;
-  std::unique_ptr<FlightLog> log;
+  std::unique_ptr<LogPerFlight> log;
   if (!settings.log.empty()) {
     log = open_log(settings.log, simulation, settings.log_topics, nh, prefix);
   }
