@@ -143,10 +143,10 @@ if(CATKIN_ENABLE_TESTING)
   find_package(rostest QUIET)
   if(rostest_FOUND)
     add_ros_node(simulink_stand_in tests/ros/simulink_stand_in.cpp)
-    foreach(test topics services lockstep playing logs clock several parameters faults masters launch
-                 fly_from_python controller controller_faults set_points pid joystick sensors
-                 disturbances markers tutorial rotors rotors_topics rotors_hover gazebo gazebo_launch
-                 pages)
+    foreach(test topics services lockstep playing logs log_per_flight clock several parameters faults
+                 masters launch fly_from_python controller controller_faults set_points pid joystick
+                 sensors disturbances markers tutorial rotors rotors_topics rotors_hover gazebo
+                 gazebo_launch pages)
       add_rostest(tests/ros/${test}.test)
     endforeach()
   endif()

@@ -9,12 +9,9 @@ import unittest
 
 import harness
 import rosbag
-import rospy
 from gazebo_msgs.msg import ModelStates
-from geometry_msgs.msg import Point, Pose, Quaternion
 from harness import Recording, call, commander, description, flight, step
 from nav_msgs.msg import Odometry
-from quadcore.srv import SetState
 from test_lockstep import LOCKSTEP, altitude_controller
 
 STEPS = 1000
@@ -47,14 +44,6 @@ def converted(log, target):
     if done.returncode != 0:
         raise AssertionError(done.stderr)
     return target
-
-
-def move(z):
-    """Put the vehicle to a height, at rest."""
-    pose = Pose(position=Point(z=z), orientation=Quaternion(w=1))
-    answer = rospy.ServiceProxy("/quadcore/set_state", SetState)(pose=pose)
-    if not answer.success:
-        raise AssertionError(answer.message)
 
 
 def messages(bag):
@@ -149,54 +138,6 @@ class TestLogs(unittest.TestCase):
         cut = converted(self.folder / "cut.bag", self.folder / "cut.csv").read_bytes()
         self.assertTrue(flown.read_bytes().startswith(cut))
         self.assertGreater(cut.count(b"\n"), STEPS // 10)
-
-    def test_what_was_flown_before_a_jump_is_kept_beside_the_log(self):
-        """Each flight can be read by itself, in every format, and no file is replaced."""
-        rows = {}
-        for suffix in ("csv", "mat", "bag"):
-            folder = self.folder / suffix
-            folder.mkdir()
-            (folder / f"flight.before_1.{suffix}").write_text("of another day")
-            with flight("_paused:=true", f"_log:={folder / 'flight'}.{suffix}", urdf=NOISY) as node:
-                step(50)
-                call("/gazebo/reset_simulation")
-                step(30)
-                call("/gazebo/reset_world")
-                step(20)
-                move(8.0)
-                step(10)
-                node.end()
-            self.assertEqual(node.process.returncode, 0, node.error)
-            names = ["flight", *(f"flight.before_{i}" for i in range(1, 5))]
-            self.assertEqual(
-                sorted(path.name for path in folder.iterdir()),
-                sorted(f"{name}.{suffix}" for name in names),
-            )
-            self.assertEqual((folder / f"{names[1]}.{suffix}").read_text(), "of another day")
-            rows[suffix] = [
-                converted(folder / f"{name}.{suffix}", folder / f"{name}.out.csv").read_text()
-                for name in [*names[2:], names[0]]
-            ]
-        first, second, third, last = (text.splitlines()[1:] for text in rows["csv"])
-        self.assertEqual([len(x) for x in (first, second, third, last)], [51, 31, 21, 11])
-        self.assertEqual(first[:31], second)
-        times = [float(row.split(",")[0]) for row in (second[-1], third[0], third[-1], last[0])]
-        self.assertEqual((times[0], times[2]), (times[1], times[3]))
-        self.assertEqual(float(last[0].split(",")[3]), 8.0)
-        self.assertEqual(rows["csv"], rows["mat"])
-        self.assertEqual(rows["csv"], rows["bag"])
-
-    def test_a_start_from_which_nothing_was_flown_is_no_flight_to_keep(self):
-        log = self.folder / "flight.csv"
-        with flight("_paused:=true", f"_log:={log}") as node:
-            move(7.0)
-            call("/gazebo/reset_simulation")
-            move(8.0)
-            step(10)
-            node.end()
-        self.assertEqual(self.names(), ["flight.csv"])
-        rows = log.read_text().splitlines()[1:]
-        self.assertEqual((len(rows), rows[0].split(",")[3]), (11, "8"))
 
     def test_a_log_that_cannot_be_kept_is_not_overwritten(self):
         """A full disk, for which a limit of the size of files stands."""
