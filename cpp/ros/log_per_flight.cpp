@@ -64,7 +64,7 @@ void LogPerFlight::keep() {
   const std::string time = seconds(time_);
   std::error_code error;
   if (!std::filesystem::exists(path_, error) && !error) {
-    ROS_INFO("%s was moved or removed with what was flown until t = %s s; the log goes on there",
+    ROS_INFO("%s begins anew; what was flown until t = %s s was moved away or removed",
              path_.c_str(), time.c_str());
     return;
   }
