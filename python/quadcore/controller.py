@@ -265,18 +265,27 @@ def faults_told(simulation: _core.Simulation) -> Iterator[None]:
     Raises
     ------
     FlightError
-        In the place of anything that is no error of quadcore's.
+        In the place of anything that is no error of quadcore's, and of bad input with which a
+        flight ended that had begun.
     """
+    begin = simulation.time
     try:
         yield
+    except InputError as error:
+        # Without a time it is not what flies that is at fault: a full disk, say.
+        if simulation.time > begin and hasattr(error, "time"):
+            raise _failure(simulation, str(error)) from error
+        raise
     except (QuadcoreError, MemoryError, KeyboardInterrupt):
         raise
     except BaseException as error:  # SystemExit, too: a controller ends its flight, not the program
-        failure = FlightError(
-            f"the flight failed at t = {simulation.time:f} s: controller: {told(error)}"
-        )
-        failure.time = simulation.time
-        raise failure from error
+        raise _failure(simulation, f"controller: {told(error)}") from error
+
+
+def _failure(simulation: _core.Simulation, reason: str) -> FlightError:
+    failure = FlightError(f"the flight failed at t = {simulation.time:f} s: {reason}")
+    failure.time = simulation.time
+    return failure
 
 
 def _fastest(simulation: _core.Simulation) -> float:

@@ -86,7 +86,8 @@ def fly(
     ------
     InputError
         An argument is at fault, or a run flies the simulation already; nothing was flown. Or what
-        is called back moves the simulation, which ends the flight.
+        is called back moves the simulation, or gives what it may not, which ends the flight; when
+        the pilot did it is the error's attribute `time`, s.
     FlightError
         The flight failed, or what the pilot gave was no command, be it at the start.
     """
@@ -121,7 +122,7 @@ def _advance(
         with interrupts.held():
             table, wrenches = flight.take()
             try:
-                whole = table if pilot is None else pilot.beside(table)
+                whole = table if pilot is None else _called(simulation, pilot.beside, table)
             except BaseException:  # what was flown is known even so
                 beside = 0 if pilot is None else len(pilot.columns)
                 receive(np.hstack([table, np.full((len(table), beside), np.nan)]), wrenches)
@@ -134,7 +135,7 @@ def _advance(
             hand_over()
             steps = min(steps, total - done, most)
             started = time.perf_counter()
-            advance(steps)
+            _called(simulation, advance, steps)
             done += steps
             now = time.perf_counter()
             if now - started < _PIECE:
@@ -144,6 +145,15 @@ def _advance(
                 told = now
     finally:
         hand_over()
+
+
+def _called(simulation: _core.Simulation, act: Callable[[Any], Any], given: Any) -> Any:
+    """Call, and add to bad input the time at which it ended the flight, as a `FlightError` has."""
+    try:
+        return act(given)
+    except _core.InputError as error:
+        error.time = simulation.time  # type: ignore[attr-defined]
+        raise
 
 
 class _Piloted:

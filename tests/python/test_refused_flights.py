@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+import quadcore as qc
 from quadcore.cli import main
 
 SLOW = "drone_plugin.sim_slow"
@@ -19,6 +20,14 @@ def flies(in_empty_folder):
     Path("flies.py").write_text(
         "def hover(t, state, reference):\n    return [471, -471, 471, -471]\n"
         "def fails(t, state, reference):\n    raise ValueError('no idea')\n"
+        "class Meddles:\n"
+        "    def __init__(self, begin):\n        self.begin = begin\n"
+        "    def reset(self, simulation):\n        self.simulation = simulation\n"
+        "    def __call__(self, t, state, reference):\n"
+        "        if t > self.begin:\n            self.simulation.step(1)\n"
+        "        return hover(t, state, reference)\n"
+        "class Early(Meddles):\n    def __init__(self):\n        super().__init__(-1)\n"
+        "class Late(Meddles):\n    def __init__(self):\n        super().__init__(0.0595)\n"
     )
 
 
@@ -62,3 +71,50 @@ def test_flights_that_are_all_refused_are_bad_input(capsys, command, told):
 def test_flights_of_which_some_flew_are_flights_that_failed(capsys, command):
     assert main(command.split()) == 3
     assert " flights failed; the first, " in capsys.readouterr().err
+
+
+LATE = "the flight failed at t = 0.060000 s: step(): a run is flying this simulation"
+
+
+@pytest.mark.parametrize(
+    ("command", "told"),
+    [
+        (f"run quadrotor --controller flies:Late {SPIRAL}", LATE),
+        (
+            f"compare quadrotor --vary engine=eigen,ode --controller flies:Late {SPIRAL}",
+            f"2 of 2 flights failed; the first, no. 1 (engine eigen): {LATE}",
+        ),
+        (
+            f"compare quadrotor --against 2 --vary engine=eigen,ode --controller flies:Late "
+            f"{SPIRAL}",
+            f"no. 2, to compare the others with, failed: {LATE}",
+        ),
+        (
+            f"evaluate --controller flies:Late {SPIRAL} --seeds 2",
+            "2 of 2 flights failed; the first, flies:Late on spiral in eigen, seed 0: " + LATE,
+        ),
+        (
+            f"sweep --controller flies:Late {SPIRAL} --seeds 2",
+            f"2 of 2 flights failed; the first, row 0: {LATE}",
+        ),
+    ],
+)
+def test_bad_input_that_ends_a_flight_under_way_is_a_flight_that_failed(capsys, command, told):
+    assert main(command.split()) == 3
+    error = capsys.readouterr().err
+    assert error.startswith(f"error: {told}") and error.count("\n") == 1
+    assert main(command.replace("Late", "Early").split()) == 2  # it never flew
+
+
+def test_a_reference_that_is_none_later_ends_a_flight_that_had_begun():
+    hover = qc.references.hover(height=10)
+    options = {"controller": "pd", "duration": 0.1, "processes": 1}
+    for begin, refused in ((-1, 2), (0.0595, 0)):
+        found = qc.compare(
+            "quadrotor",
+            {"engine": ["eigen", "ode"]},
+            reference=lambda t, begin=begin: None if t > begin else hover(t),
+            spawn=(0, 0, 10),
+            **options,
+        )
+        assert all(found.table["failure"]) and found.refused == refused, found.table["failure"]
