@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 from pathlib import Path
 
 import pytest
@@ -118,3 +119,27 @@ def test_a_reference_that_is_none_later_ends_a_flight_that_had_begun():
             **options,
         )
         assert all(found.table["failure"]) and found.refused == refused, found.table["failure"]
+
+
+@pytest.mark.parametrize(
+    ("controllers", "status", "reasons"),
+    [
+        ("nowhere:law", 2, ["refused: controller 'nowhere:law'"] * 2),
+        ("flies:Late", 3, [LATE] * 2),
+        ("flies:Late,nowhere:law", 3, [LATE] * 2 + ["refused: controller 'nowhere:law'"] * 2),
+    ],
+)
+def test_a_sweep_that_goes_on_with_what_is_there_ends_as_it_did(
+    capsys, controllers, status, reasons
+):
+    command = f"sweep --controller {controllers} {SPIRAL} --seeds 2 --out out".split()
+    assert main(command) == status
+    told, table = capsys.readouterr().err, Path("out/table.csv").read_bytes()
+    with open("out/table.csv", newline="") as stream:
+        failures = [row["failure"] for row in csv.DictReader(stream)]
+    assert [why[: len(begin)] for why, begin in zip(failures, reasons)] == reasons
+    for kept in (len(reasons), len(reasons) - 1):
+        Path("out/table.csv").write_bytes(b"".join(table.splitlines(keepends=True)[: 1 + kept]))
+        assert main([*command, "--resume"]) == status
+        assert capsys.readouterr().err == told
+        assert Path("out/table.csv").read_bytes() == table

@@ -125,7 +125,7 @@ def sweep(arguments: argparse.Namespace) -> None:
     files = write(plan, columns, out, measure, not arguments.no_plots)
     if not arguments.quiet:
         _show(plan, columns, measure, files)
-    _report_failures(columns, rows.refused)
+    _report_failures(columns)
 
 
 def _plan(arguments: argparse.Namespace) -> Plan:
@@ -185,8 +185,13 @@ def _cell(value: Any, number_text: Any) -> str:
     return number_text(value) if isinstance(value, float) else str(value)
 
 
-def _report_failures(columns: Any, refused: int) -> None:
+def _report_failures(columns: Any) -> None:
+    from ..sweeps.spec import REFUSED
+
     failed = [i for i, failure in enumerate(columns["failure"]) if failure]
     if failed:
-        told = f"row {int(columns['row'][failed[0]])}: {columns['failure'][failed[0]]}"
-        raise failure(len(failed), len(columns["row"]), refused, told)
+        reasons = [str(columns["failure"][i]) for i in failed]
+        refused = [reason.startswith(REFUSED) for reason in reasons]
+        first = reasons[0][len(REFUSED) if refused[0] else 0 :]
+        told = f"row {int(columns['row'][failed[0]])}: {first}"
+        raise failure(len(failed), len(columns["row"]), sum(refused), told)

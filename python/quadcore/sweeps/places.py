@@ -17,12 +17,12 @@ from typing import (
 )
 
 from .. import interrupts
-from .._core import InputError, QuadcoreError
+from .._core import QuadcoreError
 from ..study.executor import Died, each, usable_cores
 from .batches import fly_together
 from .plan import AnyPlan
 from .rows import fingerprint
-from .spec import Row, Spec, digest, done
+from .spec import Row, Spec, digest, done, failure_of
 
 if TYPE_CHECKING:
     import concurrent.futures
@@ -201,8 +201,7 @@ def _spec(plan: AnyPlan, number: int) -> Union[Spec, Row]:
     try:
         return plan.spec(number)
     except QuadcoreError as error:
-        refused = isinstance(error, InputError)
-        return Row(number, str(error), None, digest(str(error).encode()), refused)
+        return Row(number, failure_of(error), None, digest(str(error).encode()))
 
 
 def _tasks(plan: AnyPlan, rows: Iterable[int], processes: int) -> Iterator[Sequence[int]]:

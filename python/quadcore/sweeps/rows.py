@@ -54,8 +54,6 @@ class Rows:
                 )
         self._where = np.full((len(plan), 2), -1, dtype=np.int64)  # begin and length of each
         self.whole = ("row", *plan.whole)
-        self.refused = 0
-        """Rows that were taken and are bad input: they never flew."""
         self._head = _line(self.columns)
         check_writable(path)
         if path.exists() and path.stat().st_size > 0 and not resume:
@@ -89,7 +87,6 @@ class Rows:
         begin = self._end
         self._append(line)
         self._where[row.row] = begin, len(line)
-        self.refused += row.refused
 
     def close(self) -> None:
         """Put the rows in order if they are all there, and close the file."""

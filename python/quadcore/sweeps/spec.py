@@ -22,6 +22,9 @@ from . import motion
 
 Measures = Mapping[str, float]
 
+REFUSED = "refused: "
+"""Begins the failure of a row that is bad input: it never flew."""
+
 
 @dataclass(frozen=True)
 class Own:
@@ -112,27 +115,30 @@ class Row(NamedTuple):
 
     row: int
     failure: str
-    """Why there are no measures; "" if there are."""
+    """Why there are no measures, after `REFUSED` if it never flew; "" if there are."""
     measures: Optional[Measures]
     fingerprint: str
-    refused: bool = False
-    """Whether it never flew, being bad input."""
 
 
 def done(spec: Spec) -> Row:
     """Fly a row, whatever becomes of it."""
-    fingerprint, refused = spec.fingerprint(), False
+    fingerprint = spec.fingerprint()
     try:
         return Row(spec.row, "", spec.measured(), fingerprint)
     except QuadcoreError as error:
-        failure, refused = str(error), isinstance(error, InputError)
+        failure = failure_of(error)
     except MemoryError:
         failure = "no memory left"
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # SystemExit, too: it is not for code that flies to end all
         failure = told(error)
-    return Row(spec.row, " ".join(failure.split()), None, fingerprint, refused)
+    return Row(spec.row, " ".join(failure.split()), None, fingerprint)
+
+
+def failure_of(error: QuadcoreError) -> str:
+    """Tell why a row has no measures."""
+    return f"{REFUSED if isinstance(error, InputError) else ''}{error}"
 
 
 def digest(data: bytes) -> str:
