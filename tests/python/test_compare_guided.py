@@ -94,6 +94,19 @@ def test_distances_to_the_reference_are_told_in_table_page_and_terminal(capsys):
     assert "commands" not in flight
 
 
+def test_failures_are_told_below_the_table(capsys):
+    command = "compare quadrotor --controller own:Raises --reference hover --duration 0.2"
+    assert main([*command.split(), "--vary", "odometry.positionNoise=0,0.1"]) == 3
+    reason = "the flight failed at t = 0.100000 s: controller: ValueError: no idea"
+    *table, first, second, _ = capsys.readouterr().out.partition("\nno.")[2].splitlines()
+    assert first.startswith(f"no. 1 (positionNoise 0): {reason}")
+    assert second.startswith(f"no. 2 (positionNoise 0.1): {reason}")
+    assert [line.split() for line in table[1:3]] == [
+        ["1", "positionNoise", "0", "failed"],
+        ["2", "positionNoise", "0.1", "failed"],
+    ]
+
+
 def test_from_python_laws_objects_and_references_are_given_as_for_run():
     class Hover:
         rate = 100

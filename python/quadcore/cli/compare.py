@@ -197,7 +197,7 @@ def _show_flights(plan: Plan, comparison: Comparison, files: list[Path]) -> None
     headings = [f"{state} ({unit})" for state, (unit, _) in units.items()]
     if plan.guidance.is_given:
         headings.insert(0, "to the reference (m), RMS / largest")
-    table = terminal.table("no.", "variant", *headings)
+    table, failures = terminal.table("no.", "variant", *headings), []
     for number, (row, variant) in enumerate(zip(comparison.table, plan), start=1):
         if number > _ROWS:
             table.add_row("...", f"{plan.count - _ROWS} more")
@@ -209,10 +209,11 @@ def _show_flights(plan: Plan, comparison: Comparison, files: list[Path]) -> None
         if plan.guidance.is_given:
             errors = [number_text(row[f"{kind}_error"]) for kind in ("rms", "largest")]
             cells.insert(0, " / ".join(errors))
-        table.add_row(
-            str(number), plan.label(variant), *([row["failure"]] if row["failure"] else cells)
-        )
-    console.print(table, "", summary(comparison), sep="\n")
+        if row["failure"]:
+            cells = ["failed"]
+            failures.append(f"no. {number} ({plan.label(variant)}): {row['failure']}")
+        table.add_row(str(number), plan.label(variant), *cells)
+    console.print(table, "", *failures, summary(comparison), sep="\n")
     for file in files:
         console.print(f"written {file}")
 
