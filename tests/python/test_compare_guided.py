@@ -94,6 +94,22 @@ def test_distances_to_the_reference_are_told_in_table_page_and_terminal(capsys):
     assert "commands" not in flight
 
 
+def test_distances_to_the_reference_are_those_of_an_evaluation():
+    options = {"duration": 0.5, "log_every": 7, "xacro_args": {"sim_slow": 1}, "processes": 1}
+    found = qc.compare(
+        "quadrotor",
+        {"engine": ["eigen", "ode"]},
+        controller="geometric",
+        reference="spiral",
+        **options,
+    )
+    known = qc.evaluate("geometric", "spiral", engines=["eigen", "ode"], **options).table
+    assert 0 < known[0]["rms_position"] < known[0]["largest_position"]
+    for name in ("rms", "largest"):
+        measured = [row[f"{name}_position"] for row in known]
+        assert found.table[f"{name}_error"].tolist() == measured
+
+
 def test_failures_are_told_below_the_table(capsys):
     command = "compare quadrotor --controller own:Raises --reference hover --duration 0.2"
     assert main([*command.split(), "--vary", "odometry.positionNoise=0,0.1"]) == 3

@@ -18,7 +18,7 @@ from typing import (
 import numpy as np
 
 from .._core import InputError, QuadcoreError
-from ..evaluation.measures import distance
+from ..evaluation.measures import distance, rms_and_largest
 from ..log import Log
 from ..study.metrics import metrics, states
 from ..study.table import NOT_FLOWN, flown_and_failed
@@ -73,7 +73,7 @@ class Comparison(NamedTuple):
 def measured(plan: Plan, against: Log, log: Log) -> Measured:
     """Measure a flight by its reference, and by the flight that all are compared with."""
     away = distance(log) if plan.guidance.is_given else np.array([np.nan])
-    return (float(np.sqrt(np.mean(away**2))), float(away.max())), metrics(against, log)
+    return rms_and_largest(away), metrics(against, log)
 
 
 class Tally:

@@ -74,6 +74,11 @@ def distance(log: Log) -> np.ndarray:
     return length
 
 
+def rms_and_largest(away: np.ndarray) -> Tuple[float, float]:
+    """Root of the mean square of a distance, and the largest."""
+    return float(np.sqrt(np.mean(away**2))), float(away.max())
+
+
 def measure(
     log: Log, saturated: float, drag_power: np.ndarray, slow: float = 1.0
 ) -> Dict[str, float]:
@@ -104,9 +109,10 @@ def measure(
     speeds = slow * np.abs(log.rotor_velocity)
     span = max(time[-1], np.finfo(float).tiny)
     rise, overshoot, settling = _step(log, away)
+    rms, largest = rms_and_largest(away)
     return {
-        "rms_position": float(np.sqrt(np.mean(away**2))),
-        "largest_position": float(away.max()),
+        "rms_position": rms,
+        "largest_position": largest,
         "tail_position": float(away[tail].max()),
         "steady_position": float(np.linalg.norm(errors[late].mean(axis=0))),
         "iae_position": _integral(away, time),
