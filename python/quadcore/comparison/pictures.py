@@ -25,17 +25,17 @@ class Curve(NamedTuple):
     log: Log
 
 
-def draw(curves: Sequence[Curve], reference: Log, name: str) -> Dict[str, Figure]:
-    """Draw the flights, and how far each is from the reference.
+def draw(curves: Sequence[Curve], against: Log, name: str) -> Dict[str, Figure]:
+    """Draw the flights, and how far each is from one of them.
 
     Parameters
     ----------
     curves
         At least one.
-    reference
-        Thinned as they are.
+    against
+        The one, thinned as they are.
     name
-        Of the reference, for the title.
+        Of that one, for the title.
     """
     styles = _styles(curves)
     return {
@@ -44,7 +44,7 @@ def draw(curves: Sequence[Curve], reference: Log, name: str) -> Dict[str, Figure
         "attitude": _attitude(curves, styles),
         "rates": _rates(curves, styles),
         "rotors": _rotors(curves, styles),
-        "differences": _differences(curves, styles, reference, name),
+        "differences": _differences(curves, styles, against, name),
     }
 
 
@@ -114,10 +114,10 @@ def _rotors(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure
 
 
 def _differences(
-    curves: Sequence[Curve], styles: Sequence[Dict[str, Any]], reference: Log, name: str
+    curves: Sequence[Curve], styles: Sequence[Dict[str, Any]], against: Log, name: str
 ) -> Figure:
     scale = np.array([1, 180 / np.pi, 1, 1])
-    values = [differences(reference, curve.log)[:, :4] * scale for curve in curves]
+    values = [differences(against, curve.log)[:, :4] * scale for curve in curves]
     labels = ["position (m)", "attitude (deg)", "velocity (m/s)", "rates (rad/s)"]
     title = f"Distance from {name}"
     return _figure(title, curves, styles, [(values, labels)], _NO_DIFFERENCE)
@@ -143,7 +143,7 @@ def _figure(
     figure, grid = panels(title, len(sides[0][1]), len(sides), above=above, right=right)
     for column, (values, labels) in zip(grid.T, sides):
         for curve, style, table in zip(curves, styles, values):
-            # Differences end where the reference does.
+            # Differences end where the flight does that they are from.
             for axes, state in zip(column, table.T):
                 axes.plot(curve.log.time[: len(state)], state, **style)
         for axes, label in zip(column, labels):

@@ -24,33 +24,33 @@ def states(rotor_count: int) -> Dict[str, str]:
     return {**_WHOLE, **_PARTS, **{f"j{i}": "rad/s" for i in range(1, 1 + rotor_count)}}
 
 
-def differences(reference: Log, log: Log) -> np.ndarray:
-    """Differences of each state from a reference over the time that both cover.
+def differences(against: Log, log: Log) -> np.ndarray:
+    """Differences of each state from that of another flight, over the time that both cover.
 
-    Where the flights were logged at other times, the reference is interpolated.
+    Where the flights were logged at different times, the other one is interpolated.
 
     Returns
     -------
     ndarray, shape (rows, 16 + n)
-        Columns as `states` names them for the reference's n rotors; angles within [-pi, pi], of
-        the two triples that an attitude has the nearer. A flight with another number of rotors has
-        NaN for them.
+        Columns as `states` names them for the other's n rotors; angles within [-pi, pi], of the
+        two triples that an attitude has the nearer. A flight with another number of rotors has NaN
+        for them.
     """
-    log = Log(log.table[log.time <= reference.time[-1] + 1e-9], {})
-    reference = _at(log.time, reference)
-    position = log.position - reference.position
-    angles = angles_between(log.rpy, reference.rpy)
+    log = Log(log.table[log.time <= against.time[-1] + 1e-9], {})
+    against = _at(log.time, against)
+    position = log.position - against.position
+    angles = angles_between(log.rpy, against.rpy)
     # |q - p| and |q + p| are 2 sin and 2 cos of a quarter of the angle: exact for small angles too,
     # and blind to the sign of a quaternion.
-    apart = np.linalg.norm(log.orientation - reference.orientation, axis=1)
-    together = np.linalg.norm(log.orientation + reference.orientation, axis=1)
+    apart = np.linalg.norm(log.orientation - against.orientation, axis=1)
+    together = np.linalg.norm(log.orientation + against.orientation, axis=1)
     attitude = 4 * np.arctan2(np.minimum(apart, together), np.maximum(apart, together))
-    velocity = log.linear_velocity - reference.linear_velocity
-    rates = log.angular_velocity - reference.angular_velocity
-    if log.rotor_velocity.shape == reference.rotor_velocity.shape:
-        rotors = log.rotor_velocity - reference.rotor_velocity
+    velocity = log.linear_velocity - against.linear_velocity
+    rates = log.angular_velocity - against.angular_velocity
+    if log.rotor_velocity.shape == against.rotor_velocity.shape:
+        rotors = log.rotor_velocity - against.rotor_velocity
     else:
-        rotors = np.full_like(reference.rotor_velocity, np.nan)
+        rotors = np.full_like(against.rotor_velocity, np.nan)
     lengths = [np.linalg.norm(vector, axis=1) for vector in (position, velocity, rates)]
     whole = np.stack([lengths[0], attitude, *lengths[1:]], axis=1)
     return np.hstack([whole, position, angles, velocity, rates, rotors])
@@ -73,10 +73,10 @@ def sizes(rows: np.ndarray, names: Sequence[str]) -> Sizes:
     return Sizes(*(dict(zip(names, values.tolist())) for values in found))
 
 
-def metrics(reference: Log, log: Log) -> np.ndarray:
+def metrics(against: Log, log: Log) -> np.ndarray:
     """Find the final and the largest difference of each state; shape (2, 16 + n)."""
-    names = states(reference.rotor_velocity.shape[1])
-    found = sizes(differences(reference, log), list(names))
+    names = states(against.rotor_velocity.shape[1])
+    found = sizes(differences(against, log), list(names))
     return np.array([list(found.final.values()), list(found.largest.values())])
 
 
