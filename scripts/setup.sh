@@ -1,5 +1,13 @@
-# Sourced by fly and test: installs what is missing and says so. Asks nothing.
+# Sourced by fly, test and others: installs what is missing, says so, and asks nothing.
 # Afterwards .venv/bin/python has quadcore as it lies in this checkout.
+# With --help, the script that sources this file prints the comment that it begins with.
+
+case "${1:-}" in
+  -h | --help)
+    sed -n '2,/^[^#]/s/^# \{0,1\}//p' "scripts/${0##*/}"
+    exit
+    ;;
+esac
 
 apt_packages="g++ make cmake ninja-build pkg-config python3-dev python3-venv
   libode-dev libeigen3-dev libtinyxml2-dev libyaml-cpp-dev ${extra_apt_packages:-}"
@@ -39,34 +47,40 @@ install_apt_packages() {
   $as_root env DEBIAN_FRONTEND=noninteractive $install >/dev/null
 }
 
-# How far the compiler is, where somebody sees it.
+# Shows ninja's count and the time: on a terminal at once, elsewhere a line every 20 s.
 show_compiling() {
-  if [ -t 1 ]; then
-    local line
-    while IFS= read -r line; do
-      [[ $line =~ ^\ *(\[[0-9]+/[0-9]+\])\  ]] &&
-        printf '\rquadcore: compiling %s ' "${BASH_REMATCH[1]}"
-    done
-    printf '\r\033[K'
-  else
-    cat >/dev/null
-  fi
+  local line began=$SECONDS shown=$SECONDS
+  while IFS= read -r line; do
+    [[ $line =~ ^\ *(\[[0-9]+/[0-9]+\])\  ]] || continue
+    if [ -t 1 ]; then
+      printf '\rquadcore: compiling %s, %s s ' "${BASH_REMATCH[1]}" $((SECONDS - began))
+    elif [ $((SECONDS - shown)) -ge 20 ]; then
+      shown=$SECONDS
+      say "compiling ${BASH_REMATCH[1]}, $((SECONDS - began)) s"
+    fi
+  done
+  if [ -t 1 ]; then printf '\r\033[K'; fi
 }
 
-# Installs with pip, in the versions that were tested, and says what was not there.
+# Installs with pip, in the tested versions, and lists what it installed.
 pip_install() {
   local log=.venv/pip.log
   .venv/bin/python -m pip install --verbose --constraint constraints.txt "$@" 2>&1 |
     tee $log | show_compiling ||
-    { cat $log >&2; say "pip could not install $*" >&2; exit 2; }
+    { tail -n 40 $log >&2; say "pip could not install $*. The whole log is $log." >&2; exit 2; }
   { grep '^Successfully installed' $log || true; } | sed 's/^S/quadcore: pip s/'
 }
 
-# The interpreter of the distribution, because that is the one for which ROS' packages are built.
+# The distribution's interpreter, but none of its Python packages: an older matplotlib there would
+# lend its mpl_toolkits to the one that is installed here.
 create_venv() {
+  if grep -qs '^include-system-site-packages = true' .venv/pyvenv.cfg; then
+    say "replacing .venv, which sees the system's Python packages"
+    rm -rf .venv
+  fi
   [ -x .venv/bin/python ] || {
     say "creating a virtual environment in .venv"
-    /usr/bin/python3 -m venv --system-site-packages .venv
+    /usr/bin/python3 -m venv .venv
   }
 }
 

@@ -4,9 +4,26 @@ from __future__ import annotations
 
 import io
 import os
+import sys
 from typing import Any, Sequence, Tuple
 
 import numpy as np
+
+from ._core import InputError
+
+
+def _describe_mix() -> str:
+    """Name both installations of matplotlib that meet here, and the command that repairs it."""
+    import matplotlib
+
+    folder = os.path.dirname(matplotlib.__path__[0])
+    others = ", ".join(sys.modules["mpl_toolkits"].__path__)
+    return (
+        f"matplotlib {matplotlib.__version__} in {folder} finds the mpl_toolkits of another "
+        f"matplotlib in {others}. Run '{sys.executable} -m pip uninstall matplotlib' to use the "
+        "other, or install quadcore in a virtual environment without system packages."
+    )
+
 
 # Files need no window, and a wrong name of a toolkit for windows must not end a flight.
 _toolkit = os.environ.pop("MPLBACKEND", None)
@@ -15,6 +32,10 @@ try:
     from matplotlib.figure import Figure
     from matplotlib.ticker import ScalarFormatter
     from mpl_toolkits.mplot3d import Axes3D  # noqa: F401  (matplotlib < 3.2 needs it for "3d")
+except ImportError as error:
+    if "mpl_toolkits" not in sys.modules:
+        raise
+    raise InputError(_describe_mix()) from error
 finally:
     if _toolkit is not None:
         os.environ["MPLBACKEND"] = _toolkit

@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import html
 import json
+import os
 import re
 import shutil
 import subprocess
 
 import pytest
 
+# Readers' browsers have narrow fonts or wide ones; scripts/test installs these.
+FONTS = {  # proportional twice: sans-serif, system-ui; monospace
+    "narrow": ("FreeSans", "FreeSans", "FreeMono"),
+    "wide": ("DejaVu Sans", "DejaVu Sans", "DejaVu Sans Mono"),
+}
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 CATCH = """<script>
 window.faults = [];
@@ -124,24 +130,28 @@ def told(page, script, folder):
     )
 
 
-def seen(look, files, widths, folder):
+def seen(look, files, widths, folder, fonts="wide"):
     """Open files at some widths (px): what a script finds in each, by (file, width)."""
     pages = [(str(file), file.as_uri(), width) for file in files for width in widths]
     script = f"const PAGES = {json.dumps(pages)};{IN_FRAMES}{look}"
     whole = f"<html><head>{CATCH}<script>{script}</script></head><body></body></html>"
     # As much time as the pages want; none passes while nothing happens.
     options = "--allow-file-access-from-files", "--virtual-time-budget=1000000"
-    found = opened(whole, folder, *options)
+    found = opened(whole, folder, *options, fonts=fonts)
     return {(name, width): found[f"{name} {width}"] for name, _, width in pages}
 
 
 def what_sticks_out(files, widths, folder):
-    """What reaches beyond an edge of a page, by (file, width).
+    """What reaches beyond an edge of a page, by (file, width, fonts).
 
     Where there is room, no table and no formula may have to be scrolled either, and nowhere a
     page within a page.
     """
-    return seen(STICK_OUT, files, widths, folder)
+    return {
+        (*page, fonts): out
+        for fonts in FONTS
+        for page, out in seen(STICK_OUT, files, widths, folder, fonts).items()
+    }
 
 
 def assert_it_plays(file, widths, folder):
@@ -153,7 +163,22 @@ def assert_it_plays(file, widths, folder):
         assert found["clock"] == "{0:.2f} of {0:.2f} s".format(found["ended"])
 
 
-def opened(page, folder, *options):
+def choose_fonts(fonts, folder):
+    """Write a configuration of fontconfig in which generic names stand for one set of fonts."""
+    generic = zip(("sans-serif", "system-ui", "monospace"), FONTS[fonts])
+    aliases = "".join(
+        f"<alias><family>{name}</family><prefer><family>{font}</family></prefer></alias>"
+        for name, font in generic
+    )
+    file = folder / f"{fonts}.conf"
+    file.write_text(
+        f"<fontconfig><dir>/usr/share/fonts</dir><cachedir>{folder}/{fonts}</cachedir>"
+        f"{aliases}</fontconfig>"
+    )
+    return file
+
+
+def opened(page, folder, *options, fonts="wide"):
     """What a page has written into its element #told."""
     program = next(filter(None, map(shutil.which, NAMES)), None)
     if program is None:
@@ -163,6 +188,7 @@ def opened(page, folder, *options):
     answer = subprocess.run(
         [program, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder}/user",
          "--window-size=1000,900", *options, "--dump-dom", file.as_uri()],
+        env={**os.environ, "FONTCONFIG_FILE": str(choose_fonts(fonts, folder))},
         capture_output=True, check=True, timeout=1200,
     )  # fmt: skip
     found = re.search(r'<pre id="told">(.*?)</pre>', answer.stdout.decode(), re.DOTALL)

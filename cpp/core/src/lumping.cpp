@@ -29,10 +29,11 @@ void check_body(const Link& link, bool has_inertial) {
     throw InputError(who + "no mass; write <mass value=\"...\"/> in kg, > 0");
   }
   if (!link.inertial.is_positive()) {
+    const Vector3d principal = link.inertial.principal_moments();
     std::string moments;
-    for (const double moment : link.inertial.principal_moments()) {
+    for (int i = 0; i < 3; ++i) {
       moments += moments.empty() ? "" : ", ";
-      append_shortest(with_digits(moment, 4), moments);
+      append_shortest(with_digits(principal[i], 4), moments);
     }
     throw InputError(who + "the principal moments of inertia " + moments +
                      " kg m^2; write an inertia that has all of them > 0, none of them next to "
