@@ -65,7 +65,7 @@ std::optional<double> reach_of(const Model& model, const std::vector<Reach>& rea
 /// Whether the vehicle can be put.
 bool put_hinged(const Model& model, const World& world, LaneVehicle& vehicle) {
   const OdeEngine engine(model, world, gazebo11_recipe);
-  const HingedModel hinged(engine.model());
+  const HingedModel hinged(engine.bodies());
   if (!engine.may_float() || !hinged.is_star()) return false;
   if (world.ground_plane) {
     const std::optional<double> reach = reach_of(engine.model(), engine.reaches());

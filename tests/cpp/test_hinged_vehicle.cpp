@@ -16,12 +16,12 @@ const Vector3d gravity_W{0.3, -0.2, -9.7};
 
 /// A vehicle in a world of its own, away from any engine, whose hinges are a little off.
 struct Thrown {
-  Model model;
+  Bodies bodies;
   std::unique_ptr<dxWorld, void (*)(dWorldID)> world;
   OdeVehicle vehicle;
 
-  Thrown(const Model& thrown, double erp, double cfm)
-      : model(thrown), world(create(erp, cfm)), vehicle(model, world.get()) {
+  Thrown(const Bodies& thrown, double erp, double cfm)
+      : bodies(thrown), world(create(erp, cfm)), vehicle(bodies, world.get()) {
     double count = 0;
     const auto draw = [&count] { return random_normal(5, count); };
     VehicleState state;
@@ -30,7 +30,7 @@ struct Thrown {
       state.linear_velocity[i] = 3 * draw();
       state.angular_velocity[i] = 2 * draw();
     }
-    const auto n = static_cast<Eigen::Index>(vehicle.hinges());
+    const auto n = static_cast<Eigen::Index>(vehicle.rotors());
     state.rotor_velocity = state.rotor_angle = VectorXd::Zero(n);
     for (Eigen::Index i = 0; i < n; ++i) {
       state.rotor_velocity[i] = 40 * draw();
@@ -54,7 +54,7 @@ struct Thrown {
     return {world, &dWorldDestroy};
   }
 
-  /// Of the rotors.
+  /// Of the bodies on hinges.
   std::vector<Matrix3d> rotations() const {
     std::vector<Matrix3d> all;
     for (std::size_t i = 0; i < vehicle.hinges(); ++i) {
@@ -91,14 +91,14 @@ void check_alike(const GazeboStep::Multipliers& a, const GazeboStep::Multipliers
 }
 
 /// Of two seconds.
-void check_against_ode(const Model& model, double erp, double cfm, double dt) {
-  Thrown direct(model, erp, cfm), found(model, erp, cfm);
+void check_against_ode(const Bodies& bodies, double erp, double cfm, double dt) {
+  Thrown direct(bodies, erp, cfm), found(bodies, erp, cfm);
   direct.vehicle.report_hinge_forces();
   World world;
   world.gravity_W = gravity_W;
   world.erp = erp;
   world.cfm = cfm;
-  HingedVehicle hinged(model, world);
+  HingedVehicle hinged(bodies, world);
   double count = 0, again = 0;
   const std::vector<Matrix3d> R_WC = direct.rotations();
   for (int n = 0; n * dt < 2; ++n) {
@@ -123,24 +123,26 @@ void check_against_ode(const Model& model, double erp, double cfm, double dt) {
 }  // namespace
 
 TEST_CASE("bodies on hinges move as by ODE's direct solver") {
-  check_against_ode(lopsided(false), 0.2, 0, 1e-3);
-  check_against_ode(lopsided(true), 0.2, 0, 1e-3);  // a rotor on a rotor, centres off the axes
-  check_against_ode(hexarotor(), 0.3, 0, 5e-4);
+  check_against_ode(Bodies(lopsided(false)), 0.2, 0, 1e-3);
+  // A rotor on a rotor, centres off the axes.
+  check_against_ode(Bodies(lopsided(true)), 0.2, 0, 1e-3);
+  check_against_ode(Bodies(hexarotor()), 0.3, 0, 5e-4);
 }
 
-TEST_CASE("what hinges exerted under the torques of motors is what ODE's did") {
+namespace {
+
+void check_motors_against_ode(const Bodies& bodies) {
   const double dt = 1e-3;
-  const Model model = lopsided(true);
-  Thrown direct(model, 0.2, 0), found(model, 0.2, 0);
+  Thrown direct(bodies, 0.2, 0), found(bodies, 0.2, 0);
   direct.vehicle.report_hinge_forces();
   World world;
   world.gravity_W = gravity_W;
-  HingedVehicle hinged(model, world);
+  HingedVehicle hinged(bodies, world);
   hinged.take(found.vehicle.bodies());
-  Kinematics k(model.joints.size(), true);
+  Kinematics k(bodies.rotors.size(), true);
   hinged.show(k);
-  Loads loads(model.joints.size());
-  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+  Loads loads(bodies.rotors.size());
+  for (std::size_t i = 0; i < bodies.rotors.size(); ++i) {
     loads.add_joint_torque(i, i % 2 ? 2.0 : -3.0);
     loads.add_rotor_force(0, i, {0.1, -0.2, 3.0 + static_cast<double>(i)});
   }
@@ -154,15 +156,31 @@ TEST_CASE("what hinges exerted under the torques of motors is what ODE's did") {
   });
 }
 
+}  // namespace
+
+TEST_CASE("what hinges exerted under the torques of motors is what ODE's did") {
+  check_motors_against_ode(Bodies(lopsided(true)));
+  check_motors_against_ode(Bodies(lopsided(true), {0, 2}));  // a rotor on a locked body
+}
+
 TEST_CASE("bodies on hinges give way at their hinges as cfm asks") {
-  check_against_ode(lopsided(true), 0.2, 1e-4, 1e-3);
-  check_against_ode(lopsided(false), 0.4, 1e-7, 2e-3);
+  check_against_ode(Bodies(lopsided(true)), 0.2, 1e-4, 1e-3);
+  check_against_ode(Bodies(lopsided(false)), 0.4, 1e-7, 2e-3);
 }
 
 TEST_CASE("bodies on hinges are braked implicitly as ODE's stops brake") {
   for (const double cfm : {0.0, 1e-5}) {
     Model model = lopsided(true);
     for (Joint& joint : model.joints) joint.implicit_damping = true;
-    check_against_ode(model, 0.2, cfm, 1e-3);
+    check_against_ode(Bodies(model), 0.2, cfm, 1e-3);
+  }
+}
+
+TEST_CASE("locked bodies keep their angles as ODE's stops hold them") {
+  // The last joint is on the second: locked on a rotor, and a rotor on a locked body.
+  for (const std::vector<std::size_t>& rotors : {std::vector<std::size_t>{1}, {0, 2}, {}}) {
+    for (const double cfm : {0.0, 1e-5}) {
+      check_against_ode(Bodies(lopsided(true), rotors), 0.2, cfm, 1e-3);
+    }
   }
 }

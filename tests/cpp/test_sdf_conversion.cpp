@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "ode/sdf_conversion.hpp"
@@ -33,6 +34,13 @@ const std::string odd =
     joint("a_foot", "fixed", "frame", "c_foot", "xyz=\"0.2 0.3 -0.1\" rpy=\"0.1 0.2 0.3\"") +
     link("rotor", 0.01, round_rotor) +
     joint("turn", "continuous", "a_foot", "rotor", "xyz=\"0.01 0.02 0.05\" rpy=\"0.1 0 0\"");
+
+std::string locked(const std::string& name, const std::string& parent, const std::string& child,
+                   const std::string& origin = "xyz=\"0 0 0\"", const std::string& axis = "0 0 1") {
+  return "<joint name=\"" + name + "\" type=\"revolute\"><parent link=\"" + parent +
+         "\"/><child link=\"" + child + "\"/><origin " + origin + "/><axis xyz=\"" + axis +
+         "\"/><limit lower=\"0\" upper=\"0\" effort=\"1\" velocity=\"1\"/></joint>\n";
+}
 
 Vector3d rounded_rpy(double roll, double pitch, double yaw) {
   return sdf_pose(SdfPose(Pose{{0, 0, 0}, {roll, pitch, yaw}})).rpy;
@@ -168,9 +176,7 @@ TEST_CASE("mounts that carry nothing that turns, or something heavy, may be mass
 }
 
 TEST_CASE("a locked joint is fixed, and the link behind it is rounded by itself") {
-  std::string weld = joint("weld", "revolute", "frame", "sensor", "xyz=\"0.1234567 0 0\"");
-  weld.replace(weld.find("</joint>"), 0,
-               "<limit lower=\"0\" upper=\"0\" effort=\"1\" velocity=\"1\"/>");
+  const std::string weld = locked("weld", "frame", "sensor", "xyz=\"0.1234567 0 0\"");
   const Model m =
       model(shaped("frame", "", inertial("1.0000001", round_body)) +
             shaped("sensor", "", inertial("0.1000004", round_rotor, "xyz=\"0 0 0.0000004\"")) +
@@ -188,12 +194,49 @@ TEST_CASE("a locked joint is fixed, and the link behind it is rounded by itself"
 }
 
 TEST_CASE("a link behind a locked joint needs no mass where nothing hangs on it") {
-  std::string weld = joint("weld", "revolute", "frame", "mark", "xyz=\"0.1 0 0\"");
-  weld.insert(weld.find("</joint>"),
-              "<limit lower=\"0\" upper=\"0\" effort=\"1\" velocity=\"1\"/>");
+  const std::string weld = locked("weld", "frame", "mark", "xyz=\"0.1 0 0\"");
   for (const std::string& mark :
        {shaped("mark", ""), shaped("mark", "", inertial("9e-7", round_rotor))}) {
     const Model m = model(link("frame", 1, round_body) + mark + weld + turning_rotor);
     CHECK(converted_to_sdf(m).links[0].inertial.mass == 1);
+    CHECK(sdf_bodies(m).model.links.size() == 2);
+    CHECK(sdf_bodies(m).model.warnings.empty());
   }
+}
+
+TEST_CASE("Gazebo makes a body of a link behind a locked joint, with what is fixed to the link") {
+  const Model m = model(link("frame", 1, round_body) + link("mast", 0.1, round_body) +
+                        link("tip", 0.2, round_body) + link("eye", 0.1, round_rotor) +
+                        link("second", 0.1, round_rotor) + turning_rotor +
+                        joint("z", "continuous", "tip", "second") + locked("a", "second", "eye") +
+                        locked("weld", "frame", "mast", "xyz=\"0.1234567 0 0\"", "0 3 4") +
+                        joint("glue", "fixed", "mast", "tip", "xyz=\"0 0 1\""));
+  const Bodies bodies = sdf_bodies(m);
+  const Model& b = bodies.model;
+  std::vector<std::string> rotors, names;
+  for (const std::size_t i : bodies.rotors) rotors.push_back(b.joints[i].name);
+  CHECK(rotors == m.joint_names());
+  for (const std::size_t i : sdf_order(b)) names.push_back(b.links[i].name);
+  CHECK(names == std::vector<std::string>{"frame", "rotor", "mast", "second", "eye"});
+  const auto weld = std::find_if(b.joints.begin(), b.joints.end(),
+                                 [](const Joint& joint) { return joint.name == "weld"; });
+  REQUIRE(weld != b.joints.end());
+  CHECK(bodies.is_locked(static_cast<std::size_t>(weld - b.joints.begin())));
+  CHECK(weld->pose.xyz == Vector3d(0.123457, 0, 0));
+  CHECK((weld->axis - Vector3d(0, 0.6, 0.8)).norm() < 1e-15);
+  const Link& mast = b.links[static_cast<std::size_t>(weld - b.joints.begin()) + 1];
+  CHECK(mast.name == "mast");
+  CHECK(mast.inertial.mass == doctest::Approx(0.3).epsilon(1e-15));
+  CHECK(b.links[0].inertial.mass == 1);
+}
+
+TEST_CASE("a link behind a locked joint that no torque can turn stays lumped, with a warning") {
+  const Model m =
+      model(link("frame", 1, round_body) +
+            link("eye", 0.1, "ixx=\"0\" ixy=\"0\" ixz=\"0\" iyy=\"0\" iyz=\"0\" izz=\"0\"") +
+            locked("weld", "frame", "eye") + turning_rotor);
+  const Bodies bodies = sdf_bodies(m);
+  CHECK(bodies.model.links.size() == 2);
+  REQUIRE(bodies.model.warnings.size() == 1);
+  CHECK(contains(bodies.model.warnings[0], "link 'eye' behind the locked joint 'weld' has a zero"));
 }

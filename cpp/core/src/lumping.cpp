@@ -41,7 +41,7 @@ void check_body(const Link& link, bool has_inertial) {
   }
 }
 
-/// A link behind a locked joint is a body of its own in Gazebo, but one with its parent here.
+/// Every engine but gazebo11 makes one body of a link behind a locked joint and its parent.
 void check_locked(const UrdfJoint& joint, const UrdfLink& link, const Link& body) {
   if (link.tags.gravity == body.tags.gravity &&
       link.tags.damping_factor == body.tags.damping_factor) {

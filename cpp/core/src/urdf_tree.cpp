@@ -109,7 +109,7 @@ UrdfLink read_link(const Xml& xml, const Element& element, std::vector<std::stri
   return link;
 }
 
-/// A revolute joint without any travel is a fixed one; one that turns has no model.
+/// A revolute joint without any travel is locked; one that turns has no model.
 void check_locked(const Xml& xml, const Element& element, const std::string& name) {
   const Element* limit = xml.child(element, "limit");
   if (limit) {
@@ -145,7 +145,7 @@ UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::st
   joint.child = linked("child");
   joint.pose = read_origin(xml, element);
   if (joint.locked) check_locked(xml, element, joint.name);
-  if (joint.fixed) return joint;
+  if (type == "fixed") return joint;
 
   if (const Element* axis = xml.child(element, "axis")) {
     xml.attributes_alone(*axis, {"xyz"});
@@ -154,6 +154,7 @@ UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::st
       xml.fail(*axis, "joint '" + joint.name + "' has no axis; write a direction such as 0 0 1");
     }
   }
+  if (joint.locked) return joint;
   if (const Element* dynamics = xml.child(element, "dynamics")) {
     xml.attributes_alone(*dynamics, {"damping", "friction"});
     joint.damping = xml.number(*dynamics, "damping", 0);

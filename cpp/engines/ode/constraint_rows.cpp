@@ -2,12 +2,26 @@
 
 #include <algorithm>
 
+#include "hinge_angle.hpp"
 #include "ode_math.hpp"
 
 namespace quadcore {
 namespace {
 
 constexpr std::size_t rows_per_contact = 3;  // normal, and friction in two directions
+
+laws::Quaternion<double> orientation(dBodyID body) {
+  const dReal* const q = dBodyGetQuaternion(body);
+  return {q[1], q[2], q[3], q[0]};
+}
+
+/// Of a hinge, from where it is locked [rad].
+double angle(const Hinge& hinge, dBodyID child, dBodyID parent) {
+  const Quaterniond& q = hinge.q_PC_at_zero;
+  const Vector3d& axis = hinge.axis_C;
+  return hinge_angle(orientation(child), orientation(parent), {q.x(), q.y(), q.z(), q.w()},
+                     {axis.x(), axis.y(), axis.z()});
+}
 
 }  // namespace
 
@@ -102,13 +116,15 @@ void ConstraintRows::add_hinge(std::size_t index, double dt) {
     ++row.hinge_row;
     rows_.push_back(row);
   }
-  if (hinge.friction == 0 && hinge.implicit_damping == 0) return;
+  if (hinge.friction == 0 && hinge.implicit_damping == 0 && !hinge.locked) return;
   // The joint stands still, as far as friction can hold it or damping is stiff.
   row.J[0] << Vector3d::Zero(), place.axis_W;
   row.J[1] = -row.J[0];
   row.correction = 0;
   ++row.hinge_row;
-  if (hinge.implicit_damping > 0) {
+  if (hinge.locked) {
+    row.correction = -rate * angle(hinge, child, parent);
+  } else if (hinge.implicit_damping > 0) {
     row.cfm = 1 / hinge.implicit_damping / dt;
   } else {
     row.low = -hinge.friction;

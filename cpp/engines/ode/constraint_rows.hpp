@@ -10,11 +10,13 @@ namespace quadcore {
 
 /// A hinge between two bodies; vectors in the axes of the body they belong to.
 struct Hinge {
-  std::size_t child, parent;    ///< indices of the bodies
-  Vector3d anchor_C, anchor_P;  ///< from each body's centre of mass [m]
-  Vector3d axis_C, axis_P;      ///< unit
-  double friction = 0;          ///< dry, about the axis [N m]
-  double implicit_damping = 0;  ///< about the axis [N m s/rad]
+  std::size_t child, parent;                           ///< indices of the bodies
+  Vector3d anchor_C, anchor_P;                         ///< from each body's centre of mass [m]
+  Vector3d axis_C, axis_P;                             ///< unit
+  double friction = 0;                                 ///< dry, about the axis [N m]
+  double implicit_damping = 0;                         ///< about the axis [N m s/rad]
+  bool locked = false;                                 ///< held at angle zero
+  Quaterniond q_PC_at_zero = Quaterniond::Identity();  ///< orientation of the child there
 };
 
 /// Where a hinge is; vectors in W.
@@ -61,7 +63,8 @@ struct ConstraintRow {
   int hinge_row = 0;         ///< of a hinge row: which of them
 };
 
-/// Rows of a hinge: three for the anchor, two for the axis, one for friction or implicit damping.
+/// Rows of a hinge: three for the anchor, two for the axis, one for friction, implicit damping or a
+/// lock.
 constexpr int rows_per_hinge = 6;
 
 /// Writes the rows of hinges and contacts in the order in which Gazebo 11's ODE does: it walks an

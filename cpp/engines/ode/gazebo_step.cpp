@@ -29,6 +29,10 @@ GazeboStep::GazeboStep(const std::vector<dBodyID>& bodies, std::vector<Hinge> hi
       bodies_(bodies.size()) {
   sweeps_.bodies.resize(bodies.size());
   sweeps_.smoothing = Sweeps::Two{0, contact_smoothing};
+  simple_hinges_ = options.rows.cfm == 0;
+  for (const Hinge& hinge : constraints_.hinges()) {
+    simple_hinges_ &= hinge.friction == 0 && hinge.implicit_damping == 0;
+  }
   reserve(0);
 }
 
@@ -96,10 +100,6 @@ void GazeboStep::prepare_rows() {
   solved_.clear();
   place_.clear();
   prepared_.clear();
-  const auto of_hinges = std::count_if(rows_->begin(), rows_->end(),
-                                       [](const ConstraintRow& row) { return row.hinge >= 0; });
-  const bool simple = options_.rows.cfm == 0 && static_cast<std::size_t>(of_hinges) ==
-                                                    Sweeps::rows_of_hinge * warm_start.size();
   for (std::size_t i = 0; i < rows_->size(); ++i) {
     const ConstraintRow& row = (*rows_)[i];
     Prepared& prepared = prepared_.emplace_back();
@@ -109,7 +109,7 @@ void GazeboStep::prepare_rows() {
       diagonal += row.J[side].dot(prepared.inverse_mass_J[side]);
     }
     prepared.relaxation = options_.sor * (row.normal >= 0 ? friction_relaxation : 1.0) / diagonal;
-    if (simple && row.hinge >= 0) {
+    if (simple_hinges_ && row.hinge >= 0) {
       put_hinge(i);
     } else {
       put_row(i);
@@ -121,7 +121,10 @@ void GazeboStep::prepare_rows() {
 void GazeboStep::put_hinge(std::size_t index) {
   const ConstraintRow& row = (*rows_)[index];
   const Prepared& prepared = prepared_[index];
-  if (row.hinge_row == 0) sweeps_.hinges.push_back({row.body[0], row.body[1], {}});
+  if (row.hinge_row == 0) {
+    const bool locked = constraints_.hinges()[static_cast<std::size_t>(row.hinge)].locked;
+    sweeps_.hinges.push_back({row.body[0], row.body[1], locked, {}});
+  }
   const auto k = static_cast<std::size_t>(row.hinge_row);
   Sweeps::HingeRow& to = sweeps_.hinges.back().rows[k];
   const Vector6 &of_C = prepared.inverse_mass_J[0], &of_P = prepared.inverse_mass_J[1];

@@ -88,6 +88,7 @@ class GazeboStep {
   std::vector<Sweeps::Solved*> solved_;  ///< of each row, in sweeps_
   std::vector<int> place_;               ///< of each row, among the rows of sweeps_
   std::vector<Prepared> prepared_;       ///< of each row
+  bool simple_hinges_ = true;            ///< whether Sweeps::Hinge has all rows of the hinges
   std::size_t friction_begin_ = 0;       ///< in the order of sweeps_
 };
 

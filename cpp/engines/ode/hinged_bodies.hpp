@@ -1,6 +1,7 @@
 #pragma once
 
 #include "body_work.hpp"
+#include "hinge_angle.hpp"
 #include "hinged_tree.hpp"
 #include "lanes/table.hpp"
 #include "laws/turned_by.hpp"
@@ -131,6 +132,18 @@ class HingedBodies {
     return {state.number(BodyRow::orientation), state.number(BodyRow::orientation + 1),
             state.number(BodyRow::orientation + 2), state.number(BodyRow::orientation + 3)};
   }
+  /// Of the hinge of a body, as ODE's stops see it; lanes have none of these.
+  QUADCORE_LAW T joint_angle(std::size_t i) const {
+    if constexpr (laws::lanes_of<T> > 1) {
+      return T{};
+    } else {
+      const Table at = constants(i);
+      const std::size_t q = BodyConstant::q_PC_at_zero;
+      return hinge_angle(q_WB(state(i)), q_WB(state(carrier(i))),
+                         {at.number(q), at.number(q + 1), at.number(q + 2), at.number(q + 3)},
+                         at.vector(BodyConstant::axis_C));
+    }
+  }
   QUADCORE_LAW static Spatial<T> none() { return {Vec3<T>{T{}, T{}, T{}}, Vec3<T>{T{}, T{}, T{}}}; }
 
   /// R I R^T
@@ -203,6 +216,10 @@ class HingedBodies {
       // At the end of the step, rate + torque of the hinge/damping = 0.
       const T softness = 1 / (dt * constants(i).number(BodyConstant::implicit_damping));
       body.turn = laws::soft_to(turn, load, force, -joint_rate(i) / dt, softness);
+    } else if (tree_.locks[i]) {
+      // A sixth row: the joint is at angle zero.
+      const T wanted = (-(tree_.erp / dt) * joint_angle(i) - joint_rate(i)) / dt;
+      body.turn = laws::soft_to(turn, load, force, wanted, T{} + tree_.cfm / dt);
     } else {
       body.turn = laws::free_to(turn, load, force);
     }

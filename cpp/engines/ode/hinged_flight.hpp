@@ -9,10 +9,12 @@ namespace quadcore {
 /// filled with a rotor as well. The equations stand in hinged_bodies.hpp.
 struct HingedFlight {
   HingedTree tree;
-  const double* constants;  ///< table of BodyConstant
-  double* state;            ///< table of BodyRow
-  double* work;             ///< of each pack of bodies
-  double* soft;             ///< the same for rows that give way; null if none does
+  std::size_t rotors;
+  const std::size_t* joints;  ///< of the rotors, all joints but locked ones
+  const double* constants;    ///< table of BodyConstant
+  double* state;              ///< table of BodyRow
+  double* work;               ///< of each pack of bodies
+  double* soft;               ///< the same for rows that give way; null if none does
 };
 
 /// Where a vehicle's motion is shown, and the loads on it are: FrameNumber, MotionRow, LoadRow.

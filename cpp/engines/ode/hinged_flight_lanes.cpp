@@ -15,6 +15,17 @@ QUADCORE_LAW Bodies<W> bodies_of(const HingedFlight& flight) {
           reinterpret_cast<SoftRows<T>*>(flight.soft)};
 }
 
+template <int W>
+QUADCORE_LAW std::size_t packs_of_rotors(const HingedFlight& flight) {
+  return (flight.rotors + W - 1) / W;
+}
+
+/// Of the i-th pack of rotors: packs are for vehicles all of whose joints are rotors'.
+template <int W>
+QUADCORE_LAW std::size_t joint_of(const HingedFlight& flight, std::size_t i) {
+  return W > 1 ? i : flight.joints[i];
+}
+
 /// Of the frame, which is the same in all lanes.
 template <class T>
 QUADCORE_LAW void store_one(double* to, const Vec3<T>& a) {
@@ -44,11 +55,12 @@ void push_hinged(const HingedFlight& flight, const FlightLoads& loads) {
   const HingedFrame<T> frame(bodies);
   push_frame(bodies, frame, laws::broadcast<T>(loads.frame_force_F),
              laws::broadcast<T>(loads.frame_torque_F));
-  for (std::size_t i = 0; i + 1 < bodies.size(); ++i) {
+  for (std::size_t i = 0; i < packs_of_rotors<W>(flight); ++i) {
+    const std::size_t joint = joint_of<W>(flight, i);
     const double* rows = loads.rotors + rotor_offset(LoadRow::count, i * W);
-    push_rotor(bodies, frame, i, laws::load3<T>(rows + LoadRow::force * widest_lanes),
+    push_rotor(bodies, frame, joint, laws::load3<T>(rows + LoadRow::force * widest_lanes),
                laws::load<T>(rows + LoadRow::joint_torque * widest_lanes),
-               bodies.joint_rate(i + 1));
+               bodies.joint_rate(joint + 1));
   }
 }
 
@@ -75,8 +87,8 @@ void show_hinged(const HingedFlight& flight, const ShownFlight& shown) {
   store_one(shown.frame + FrameNumber::w_WF_F, frame.w_WF_F);
   store_one(shown.frame + FrameNumber::v_WF_F, frame.v_WF_F);
   store_one(shown.frame + FrameNumber::p_WF, frame.p_WF);
-  for (std::size_t i = 0; i + 1 < bodies.size(); ++i) {
-    const HingedRotor<T, Lanes::rotors> rotor{bodies, frame, i};
+  for (std::size_t i = 0; i < packs_of_rotors<W>(flight); ++i) {
+    const HingedRotor<T, Lanes::rotors> rotor{bodies, frame, joint_of<W>(flight, i)};
     double* const to = shown.motion + rotor_offset(MotionRow::count, i * W);
     const auto put = [to](std::size_t row, const Vec3<T>& v)
                          QUADCORE_INLINED { laws::store3(to + row * widest_lanes, v); };

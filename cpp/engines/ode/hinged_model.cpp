@@ -28,30 +28,36 @@ std::vector<double> body_constants(const Model& model, std::size_t body) {
   const auto across_C = plane_space(joint.axis);
   put(Row::across_C, across_C[0]);
   put(Row::across_C + 3, across_C[1]);
+  std::copy_n(joint.pose.rotation().coeffs().data(), 4, &rows[Row::q_PC_at_zero]);
   return rows;
 }
 
-HingedModel::HingedModel(const Model& model)
-    : carriers(model.links.size()), carries(model.links.size()), brakes(model.links.size()) {
-  for (std::size_t i = 0; i < model.joints.size(); ++i) {
-    const Joint& joint = model.joints[i];
+HingedModel::HingedModel(const Bodies& bodies)
+    : carriers(bodies.model.links.size()),
+      carries(carriers.size()),
+      brakes(carriers.size()),
+      locks(carriers.size()) {
+  for (std::size_t i = 0; i + 1 < carriers.size(); ++i) {
+    const Joint& joint = bodies.model.joints[i];
     carriers[i + 1] = joint.parent;
     carries[joint.parent] = true;
     brakes[i + 1] = joint.implicit_damping && joint.damping > 0;
+    locks[i + 1] = bodies.is_locked(i);
   }
 }
 
 HingedTree HingedModel::tree(const World& world) const {
   const Vector3d& g_W = world.gravity_W;
-  return {
-      carriers.size(), carriers.data(), carries.data(), brakes.data(), {g_W.x(), g_W.y(), g_W.z()},
-      world.erp,       world.cfm};
+  return {carriers.size(), carriers.data(), carries.data(),
+          brakes.data(),   locks.data(),    {g_W.x(), g_W.y(), g_W.z()},
+          world.erp,       world.cfm};
 }
 
 bool HingedModel::is_star() const {
   const auto is_zero = [](auto number) { return number == 0; };
   return std::all_of(carriers.begin(), carriers.end(), is_zero) &&
-         std::all_of(brakes.begin(), brakes.end(), is_zero);
+         std::all_of(brakes.begin(), brakes.end(), is_zero) &&
+         std::all_of(locks.begin(), locks.end(), is_zero);
 }
 
 }  // namespace quadcore

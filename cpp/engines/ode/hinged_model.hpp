@@ -2,20 +2,20 @@
 
 #include <vector>
 
+#include "bodies.hpp"
 #include "hinged_tree.hpp"
-#include "quadcore/model.hpp"
 #include "quadcore/world.hpp"
 
 namespace quadcore {
 
-/// What a HingedTree takes of a model.
+/// What a HingedTree takes of bodies.
 struct HingedModel {
   std::vector<std::size_t> carriers;
-  std::vector<char> carries, brakes;
+  std::vector<char> carries, brakes, locks;
 
-  explicit HingedModel(const Model& model);
+  explicit HingedModel(const Bodies& bodies);
   HingedTree tree(const World& world) const;
-  /// Whether all hinges are on the frame, and none brakes.
+  /// Whether all hinges are on the frame, and none brakes or is locked.
   bool is_star() const;
 };
 

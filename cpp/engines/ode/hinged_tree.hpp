@@ -28,7 +28,8 @@ struct BodyConstant {
     damping = 20,           ///< of the joint, as a torque [N m s/rad]
     implicit_damping = 21,  ///< the same as a row of the solver
     across_C = 22,          ///< two unit vectors across the axis and each other
-    count = 28
+    q_PC_at_zero = 28,      ///< orientation in the carrier at angle zero: x, y, z, w
+    count = 32
   };
 };
 
@@ -38,6 +39,7 @@ struct HingedTree {
   const std::size_t* carriers;  ///< of each body but the frame, which comes before it
   const char* carries;          ///< whether any hinge hangs on a body
   const char* brakes;           ///< whether a body's hinge has implicit damping
+  const char* locks;            ///< whether a body's hinge is locked
   double gravity_W[3];
   double erp, cfm;
 };

@@ -39,16 +39,23 @@ constexpr std::size_t numbers = sizeof(Member) / sizeof(double);
 
 #define QUADCORE_NUMBER_OF(member) (offsetof(Work, member) / sizeof(double))
 
-HingedVehicle::HingedVehicle(const Model& model, const World& world)
-    : model_(model),
-      constants_(table_size(BodyConstant::count, model.links.size())),
-      state_(table_size(BodyRow::count, model.links.size())),
-      work_(numbers<Work> * (model.links.size() + 2 * widest_lanes)),
-      soft_(world.cfm > 0 ? numbers<SoftRows<double>> * (model.links.size() + 2 * widest_lanes)
+HingedVehicle::HingedVehicle(const Bodies& bodies, const World& world)
+    : model_(bodies),
+      rotors_(bodies.rotors),
+      constants_(table_size(BodyConstant::count, model_.carriers.size())),
+      state_(table_size(BodyRow::count, model_.carriers.size())),
+      work_(numbers<Work> * (model_.carriers.size() + 2 * widest_lanes)),
+      soft_(world.cfm > 0 ? numbers<SoftRows<double>> * (model_.carriers.size() + 2 * widest_lanes)
                           : 0),
-      flight_{model_.tree(world), constants_.data(), state_.data(), work_.data(),
+      flight_{model_.tree(world),
+              rotors_.size(),
+              rotors_.data(),
+              constants_.data(),
+              state_.data(),
+              work_.data(),
               soft_.empty() ? nullptr : soft_.data()},
-      calls_(calls(model_.is_star() ? lane_width(model.joints.size()) : 1)) {
+      calls_(calls(model_.is_star() ? lane_width(rotors_.size()) : 1)) {
+  const Model& model = bodies.model;
   for (const Joint& joint : model.joints) {
     R_PC_at_zero_.push_back(joint.pose.rotation().toRotationMatrix());
   }
@@ -151,10 +158,19 @@ void HingedVehicle::push(const Loads& loads) {
 void HingedVehicle::show(Kinematics& k) const {
   calls_.show(flight_, {k.numbers(), k.rotors.data()});
   for (std::size_t i = 0; i < k.rotors.size(); ++i) {
-    const std::size_t carrier = model_.carriers[i + 1];
+    const std::size_t carrier = model_.carriers[rotors_[i] + 1];
     if (carrier == 0) continue;  // the carrier turns as well
-    k.rotors.set_matrix(MotionRow::R_FR_at_zero, i, k.R_FR(carrier - 1) * R_PC_at_zero_[i]);
+    const Matrix3d R_FP = k.R_WF.transpose() * R_WB(carrier);
+    k.rotors.set_matrix(MotionRow::R_FR_at_zero, i, R_FP * R_PC_at_zero_[rotors_[i]]);
   }
+}
+
+Matrix3d HingedVehicle::R_WB(std::size_t i) const {
+  const auto width = static_cast<std::size_t>(calls_.width);
+  const double* const from = work_of(i, QUADCORE_NUMBER_OF(R_WB));
+  Matrix3d R;
+  for (std::size_t k = 0; k < 9; ++k) R(k / 3, k % 3) = from[k * width];
+  return R;
 }
 
 GazeboStep::Multipliers HingedVehicle::multipliers(std::size_t hinge) const {

@@ -15,7 +15,7 @@ namespace quadcore {
 /// A vehicle's bodies as HingedFlight takes them, beside those in an ODE world.
 class HingedVehicle {
  public:
-  HingedVehicle(const Model& model, const World& world);
+  HingedVehicle(const Bodies& bodies, const World& world);
 
   /// Takes over the state of bodies in ODE, one for each link.
   void take(const std::vector<dBodyID>& bodies);
@@ -38,6 +38,9 @@ class HingedVehicle {
     for (std::size_t i = 0; i + 1 < flight_.tree.bodies; ++i) work(i, multipliers(i));
   }
 
+  /// Orientation of body i in the world.
+  Matrix3d R_WB(std::size_t i) const;
+
   /// Whether body i keeps further than `reach` [m] above the ground for a time [s], falling freely.
   bool is_high(std::size_t i, double reach, double time, double gravity_z) const;
 
@@ -58,6 +61,7 @@ class HingedVehicle {
   double* work_of(std::size_t body, std::size_t number) const;
 
   HingedModel model_;
+  std::vector<std::size_t> rotors_;     ///< of each, its joint
   std::vector<Matrix3d> R_PC_at_zero_;  ///< of each hinge
   LaneNumbers constants_, state_, work_, soft_;
   HingedFlight flight_;  ///< points into the members above

@@ -33,8 +33,10 @@ bool is_clear_of_contact(const std::vector<double>& saved) {
 
 OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& recipe)
     : model_(recipe.like_gazebo ? converted_to_sdf(model) : model),
+      bodies_(recipe.like_gazebo ? sdf_bodies(model) : Bodies(model)),
       recipe_(recipe),
-      hinged_(model_, world),
+      warnings_(recipe.like_gazebo ? bodies_.model.warnings : std::vector<std::string>()),
+      hinged_(bodies_, world),
       steps_since_contact_(steps_beside_contact),
       kinematics_(model.joints.size(), true),
       loads_(model.joints.size()) {
@@ -44,20 +46,20 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
   dWorldSetGravity(world_.get(), world.gravity_W.x(), world.gravity_W.y(), world.gravity_W.z());
   dWorldSetERP(world_.get(), world.erp);
   dWorldSetCFM(world_.get(), world.cfm);
-  vehicle_ = std::make_unique<OdeVehicle>(model_, world_.get());
+  vehicle_ = std::make_unique<OdeVehicle>(bodies_, world_.get());
   const std::vector<dBodyID>& bodies = vehicle_->bodies();
-  gyroscopic_ = std::make_unique<GyroscopicVehicle>(model_, bodies);
+  gyroscopic_ = std::make_unique<GyroscopicVehicle>(bodies_.model, bodies);
   const std::vector<Hinge> hinges = vehicle_->hinge_rows();
   const double max_correction = world.contact_max_correcting_vel;
   gazebo_step_ = std::make_unique<GazeboStep>(
-      bodies, hinges, sdf_order(model_),
+      bodies, hinges, sdf_order(bodies_.model),
       GazeboStep::Options{world.solver_iterations,
                           world.solver_sor,
                           world.gravity_W,
                           {world.erp, world.cfm, recipe.like_gazebo ? max_correction : dInfinity}});
   for (const Hinge& hinge : hinges) rubs_ |= hinge.friction > 0;
   if (world.ground_plane) {
-    ground_ = std::make_unique<GroundContact>(model_, bodies, max_correction);
+    ground_ = std::make_unique<GroundContact>(bodies_.model, bodies, max_correction);
     gazebo_step_->reserve(ground_->most());
     if (rubs_) vehicle_->report_hinge_forces();
   }
@@ -91,7 +93,7 @@ void OdeEngine::choose_method(const World& world) {
   if (ground_) method << "; on the ground " << world.solver_iterations << " of Gazebo's sweeps";
   method_ = method.str();
   may_float_ = recipe_.like_gazebo && !iterate_ && !rubs_;
-  for (const Link& link : model_.links) may_float_ &= link.tags.damping_factor == 0;
+  for (const Link& link : bodies_.model.links) may_float_ &= link.tags.damping_factor == 0;
   if (ground_ && !quick) {
     warnings_.push_back(world.solver_type_where +
                         ": on the ground the solver type world is flown as quick; Gazebo's ends in "
@@ -99,7 +101,7 @@ void OdeEngine::choose_method(const World& world) {
   }
   VehicleState rest;
   rest.rotor_velocity = rest.rotor_angle =
-      VectorXd::Zero(static_cast<Eigen::Index>(vehicle_->hinges()));
+      VectorXd::Zero(static_cast<Eigen::Index>(vehicle_->rotors()));
   set_state(rest);
 }
 
@@ -110,7 +112,7 @@ double OdeEngine::remaining_error(double dt) {
     double count = 0;
     VehicleState state;
     for (int i = 0; i < 4; ++i) state.orientation.coeffs()[i] = random_normal(seed, count);
-    const auto n = static_cast<Eigen::Index>(vehicle_->hinges());
+    const auto n = static_cast<Eigen::Index>(vehicle_->rotors());
     state.rotor_velocity = state.rotor_angle = VectorXd::Zero(n);
     for (Eigen::Index i = 0; i < n; ++i) state.rotor_angle[i] = random_normal(seed, count);
     set_state(state);
@@ -218,7 +220,7 @@ void OdeEngine::remember_hinge_forces() const {
   };
   if (!rubs_) return hinged_.for_each_hinge(remember);
   for (std::size_t i = 0; i < vehicle_->hinges(); ++i) {
-    remember(i, vehicle_->multipliers(i, kinematics_.R_WF * kinematics_.R_FR(i)));
+    remember(i, vehicle_->multipliers(i, hinged_.R_WB(i + 1)));
   }
 }
 
@@ -234,7 +236,7 @@ void OdeEngine::get_state(VehicleState& state) const {
   state.orientation = kinematics_.q_WF;
   state.linear_velocity = kinematics_.R_WF * kinematics_.v_WF_F;
   state.angular_velocity = kinematics_.w_WF_F;
-  for (std::size_t i = 0; i < vehicle_->hinges(); ++i) {
+  for (std::size_t i = 0; i < vehicle_->rotors(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     state.rotor_velocity[row] = kinematics_.rotors[i].rate;
     state.rotor_angle[row] = kinematics_.angle(i);

@@ -45,6 +45,8 @@ class OdeEngine final : public Engine {
   std::string method() const override { return method_; }
   std::vector<std::string> warnings() const override { return warnings_; }
 
+  /// What moves: the bodies of model(), and in gazebo11 those behind locked joints.
+  const Bodies& bodies() const { return bodies_; }
   /// Whether HingedVehicle alone moves it, while it is well above the ground.
   bool may_float() const { return may_float_; }
   /// Of its shapes, if there is a ground.
@@ -71,6 +73,7 @@ class OdeEngine final : public Engine {
   std::size_t saved_size() const;
 
   Model model_;
+  Bodies bodies_;  ///< see bodies()
   OdeRecipe recipe_;
   /// The world's own: ODE's default job list is shared by all worlds, without a lock.
   std::unique_ptr<dxThreadingImplementation, FreeThreading> threading_;

@@ -10,7 +10,8 @@ double implicit_damping(const Joint& joint) { return joint.implicit_damping ? jo
 
 }  // namespace
 
-OdeVehicle::OdeVehicle(const Model& model, dWorldID world) : model_(model) {
+OdeVehicle::OdeVehicle(const Bodies& vehicle, dWorldID world)
+    : vehicle_(vehicle), model_(vehicle.model) {
   create_bodies(world);
   create_hinges(world);
 }
@@ -43,8 +44,11 @@ void OdeVehicle::create_hinges(dWorldID world) {
     dJointAttach(hinge, bodies_[i + 1], bodies_[joint.parent]);
     dJointSetHingeAnchor(hinge, anchor.x(), anchor.y(), anchor.z());
     dJointSetHingeAxis(hinge, axis.x(), axis.y(), axis.z());
-    if (const double damping = implicit_damping(joint);
-        damping > 0) {  // a stop on either side of where the joint is
+    if (vehicle_.is_locked(i)) {
+      dJointSetHingeParam(hinge, dParamLoStop, 0);
+      dJointSetHingeParam(hinge, dParamHiStop, 0);
+    } else if (const double damping = implicit_damping(joint);
+               damping > 0) {  // a stop on either side of where the joint is
       dJointSetHingeParam(hinge, dParamLoStop, 0);
       dJointSetHingeParam(hinge, dParamHiStop, 0);
       dJointSetHingeParam(hinge, dParamStopERP, 0);
@@ -64,7 +68,8 @@ std::vector<Hinge> OdeVehicle::hinge_rows() const {
     const Vector3d& c_C = model_.links[i + 1].inertial.pose.xyz;
     const Vector3d& c_P = model_.links[joint.parent].inertial.pose.xyz;
     rows.push_back({i + 1, joint.parent, -c_C, joint.pose.xyz - c_P, joint.axis,
-                    joint.pose.rotation() * joint.axis, joint.friction, implicit_damping(joint)});
+                    joint.pose.rotation() * joint.axis, joint.friction, implicit_damping(joint),
+                    vehicle_.is_locked(i), joint.pose.rotation()});
   }
   return rows;
 }
@@ -106,15 +111,18 @@ void OdeVehicle::place(const VehicleState& state) {
   X_WL[0] = Eigen::Translation3d(state.position) * q;
   v_W[0] = state.linear_velocity;
   w_W[0] = q * state.angular_velocity;
+  Eigen::Index rotor = 0;
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     const Joint& joint = model_.joints[i];
-    const auto row = static_cast<Eigen::Index>(i);
+    const bool locked = vehicle_.is_locked(i);
+    const double angle = locked ? 0 : state.rotor_angle[rotor];
+    const double rate = locked ? 0 : state.rotor_velocity[rotor++];
     const std::size_t parent = joint.parent, child = i + 1;
     X_WL[child] = X_WL[parent] * Eigen::Translation3d(joint.pose.xyz) * joint.pose.rotation() *
-                  quaternion_about(joint.axis, state.rotor_angle[row]);
+                  quaternion_about(joint.axis, angle);
     const Vector3d arm_W = X_WL[child].translation() - X_WL[parent].translation();
     v_W[child] = v_W[parent] + w_W[parent].cross(arm_W);
-    w_W[child] = w_W[parent] + X_WL[child].linear() * joint.axis * state.rotor_velocity[row];
+    w_W[child] = w_W[parent] + X_WL[child].linear() * joint.axis * rate;
   }
   for (std::size_t i = 0; i < bodies_.size(); ++i) place(i, X_WL[i], v_W[i], w_W[i]);
 }
@@ -127,53 +135,56 @@ void OdeVehicle::apply(const Loads& loads, const Kinematics& k, double dt) {
       R_WF * (frame.torque_F - model_.links[0].inertial.pose.xyz.cross(frame.force_F));
   dBodyAddForce(bodies_[0], f_W.x(), f_W.y(), f_W.z());
   dBodyAddTorque(bodies_[0], tau_Fcm_W.x(), tau_Fcm_W.y(), tau_Fcm_W.z());
-  for (std::size_t i = 0; i < hinges_.size(); ++i) {
+  for (std::size_t i = 0; i < rotors(); ++i) {
+    const std::size_t hinge = vehicle_.rotors[i];
     const Vector3d f_R_W = R_WF * loads.rotor_force_F(i);
-    dBodyAddForce(bodies_[i + 1], f_R_W.x(), f_R_W.y(), f_R_W.z());
-    const Joint& joint = model_.joints[i];
+    dBodyAddForce(bodies_[hinge + 1], f_R_W.x(), f_R_W.y(), f_R_W.z());
+    const Joint& joint = model_.joints[hinge];
     if (const auto& rate = loads.joint_rate(i)) {
       if (!rate->reacts) continue;
-      const Vector3d tau_W = moment_about_joint(model_, i) *
+      const Vector3d tau_W = moment_about_joint(model_, hinge) *
                              (k.rotors.number(MotionRow::rate, i) - rate->at_end) / dt *
                              (R_WF * k.rotors.vector(MotionRow::axis, i));
       dBodyAddTorque(bodies_[joint.parent], tau_W.x(), tau_W.y(), tau_W.z());
       continue;
     }
     const double damping = joint.implicit_damping ? 0 : -joint.damping * k.rotors[i].rate;
-    dJointAddHingeTorque(hinges_[i], damping + loads.joint_torque(i));
+    dJointAddHingeTorque(hinges_[hinge], damping + loads.joint_torque(i));
   }
 }
 
 void OdeVehicle::turn(const Loads& loads) {
-  for (std::size_t i = 0; i < hinges_.size(); ++i) {
+  for (std::size_t i = 0; i < rotors(); ++i) {
     const auto& rate = loads.joint_rate(i);
     if (!rate) continue;
-    const dBodyID child = bodies_[i + 1], parent = bodies_[model_.joints[i].parent];
+    const std::size_t hinge = vehicle_.rotors[i];
+    const dBodyID child = bodies_[hinge + 1], parent = bodies_[model_.joints[hinge].parent];
     const Matrix3d R_WC = rotation(dBodyGetRotation(child));
-    const Vector3d axis_W = R_WC * model_.joints[i].axis;
+    const Vector3d axis_W = R_WC * model_.joints[hinge].axis;
     const Vector3d w_WC_W = vec(dBodyGetAngularVel(child)), v_WC_W = vec(dBodyGetLinearVel(child));
     const double now = axis_W.dot(w_WC_W - vec(dBodyGetAngularVel(parent)));
     const Vector3d more_W = (rate->at_end - now) * axis_W;
     const Vector3d w_W = w_WC_W + more_W;
-    const Vector3d v_W = v_WC_W + more_W.cross(R_WC * model_.links[i + 1].inertial.pose.xyz);
+    const Vector3d v_W = v_WC_W + more_W.cross(R_WC * model_.links[hinge + 1].inertial.pose.xyz);
     dBodySetLinearVel(child, v_W.x(), v_W.y(), v_W.z());
     dBodySetAngularVel(child, w_W.x(), w_W.y(), w_W.z());
   }
 }
 
 void OdeVehicle::turn_like_gazebo(const Loads& loads) {
-  for (std::size_t i = 0; i < hinges_.size(); ++i) {
+  for (std::size_t i = 0; i < rotors(); ++i) {
     const auto& rate = loads.joint_rate(i);
     if (!rate) continue;
-    const Joint& joint = model_.joints[i];
-    const dBodyID child = bodies_[i + 1], parent = bodies_[joint.parent];
+    const std::size_t hinge = vehicle_.rotors[i];
+    const Joint& joint = model_.joints[hinge];
+    const dBodyID child = bodies_[hinge + 1], parent = bodies_[joint.parent];
     const Matrix3d R_WC = rotation(dBodyGetRotation(child));
     const Matrix3d R_WP = rotation(dBodyGetRotation(parent));
     const Vector3d w_WP_W = vec(dBodyGetAngularVel(parent));
     const Vector3d w_W = w_WP_W + rate->at_end * (R_WC * joint.axis);
     // Each body has its own anchor, between which a step leaves a gap.
     const Vector3d arm_P_W = R_WP * (joint.pose.xyz - model_.links[joint.parent].inertial.pose.xyz);
-    const Vector3d arm_C_W = R_WC * model_.links[i + 1].inertial.pose.xyz;
+    const Vector3d arm_C_W = R_WC * model_.links[hinge + 1].inertial.pose.xyz;
     const Vector3d v_W =
         vec(dBodyGetLinearVel(parent)) + w_WP_W.cross(arm_P_W) + w_W.cross(arm_C_W);
     dBodySetLinearVel(child, v_W.x(), v_W.y(), v_W.z());

@@ -4,26 +4,28 @@
 
 #include <vector>
 
+#include "bodies.hpp"
 #include "constraint_rows.hpp"
 #include "gazebo_step.hpp"
 #include "quadcore/kinematics.hpp"
 #include "quadcore/loads.hpp"
-#include "quadcore/model.hpp"
 #include "quadcore/state.hpp"
 
 namespace quadcore {
 
-/// A model's links and joints as bodies and hinges of an ODE world, which destroys them: bodies sit
-/// at their centres of mass along their link's axes, hinges are attached as (child, parent).
+/// A vehicle's bodies and joints as bodies and hinges of an ODE world, which destroys them: bodies
+/// sit at their centres of mass along their link's axes, hinges are attached as (child, parent).
 class OdeVehicle {
  public:
-  /// The model must outlive it.
-  OdeVehicle(const Model& model, dWorldID world);
+  /// The vehicle must outlive it.
+  OdeVehicle(const Bodies& vehicle, dWorldID world);
 
   /// One for each link.
   const std::vector<dBodyID>& bodies() const { return bodies_; }
   /// One for each joint.
   std::size_t hinges() const { return hinges_.size(); }
+  /// Of the rotors, the hinges that are not locked.
+  std::size_t rotors() const { return vehicle_.rotors.size(); }
   /// The hinges as ConstraintRows takes them.
   std::vector<Hinge> hinge_rows() const;
 
@@ -43,7 +45,7 @@ class OdeVehicle {
   /// ODE's direct solver is to report the forces of the hinges.
   void report_hinge_forces();
   /// Of the solver's last step, as reported.
-  /// \param R_WC  of the rotor as that step began
+  /// \param R_WC  of the child as that step began
   GazeboStep::Multipliers multipliers(std::size_t hinge, const Matrix3d& R_WC) const;
 
  private:
@@ -52,6 +54,7 @@ class OdeVehicle {
   void place(std::size_t link, const Eigen::Isometry3d& X_WL, const Vector3d& v_WL_W,
              const Vector3d& w_WL_W);
 
+  const Bodies& vehicle_;
   const Model& model_;
   std::vector<dBodyID> bodies_;
   std::vector<dJointID> hinges_;

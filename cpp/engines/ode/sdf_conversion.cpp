@@ -30,7 +30,8 @@ class Conversion {
     }
   }
 
-  /// Only locked joints are left to lump; those that turn come in the order of `joints`.
+  /// No joint is left to lump but locked ones. These come first: lump() then keeps the others in
+  /// the order of `joints`, also where these hang on links behind locked joints.
   UrdfTree convert(const std::vector<Joint>& joints) {
     UrdfTree sdf;
     sdf.name = tree_.name;
@@ -100,7 +101,7 @@ class Conversion {
     joint.pose = sdf_pose(lifted(links_[link], part, SdfPose(joint.pose)));
     joint.parent = links_[link].parts.front().link;
     joint.axis = sdf_vector(joint.axis);
-    if (!joint.locked && joint.axis.isZero(0)) {
+    if (joint.axis.isZero(0)) {
       throw InputError(joint.where + ": joint '" + joint.name +
                        "': rounded to 6 decimals, as Gazebo does, its axis is zero; write it with "
                        "length 1");
@@ -172,11 +173,39 @@ Model converted_to_sdf(const Model& model) {
   return converted;
 }
 
+Bodies sdf_bodies(const Model& model) {
+  UrdfTree sdf = Conversion(*model.urdf).convert(model.joints);
+  std::map<std::string, const UrdfLink*> links;
+  for (const UrdfLink& link : sdf.links) links[link.name] = &link;
+  std::vector<std::string> warnings;
+  for (UrdfJoint& joint : sdf.joints) {
+    const UrdfLink& link = *links.at(joint.child);
+    if (!joint.locked || !link.inertial) continue;  // without mass Gazebo has no such link
+    joint.fixed = !link.inertial->is_positive();
+    if (!joint.fixed) continue;
+    warnings.push_back(link.where + ": link '" + link.name + "' behind the locked joint '" +
+                       joint.name +
+                       "' has a zero or negative principal moment of inertia, and moves as if it "
+                       "were fixed. Write an <inertia> that has all of them > 0");
+  }
+  Model bodies = lump(sdf);
+  bodies.urdf = model.urdf;
+  bodies.warnings = std::move(warnings);
+  std::set<std::string> turning;
+  for (const Joint& joint : model.joints) turning.insert(joint.name);
+  std::vector<std::size_t> rotors;
+  for (std::size_t i = 0; i < bodies.joints.size(); ++i) {
+    if (turning.count(bodies.joints[i].name)) rotors.push_back(i);
+  }
+  return {std::move(bodies), std::move(rotors)};
+}
+
 std::vector<std::size_t> sdf_order(const Model& model) {
   std::vector<std::size_t> order;
   for (const SdfLink& link : sdf_links(*model.urdf)) {
-    if (link.joint && link.joint->locked) continue;
-    order.push_back(model.body_of_link.at(link.parts.front().link));
+    const std::string& name = link.parts.front().link;
+    const std::size_t body = model.body_of_link.at(name);
+    if (model.links[body].name == name) order.push_back(body);  // or it is lumped
   }
   return order;
 }

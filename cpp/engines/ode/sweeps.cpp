@@ -70,6 +70,7 @@ QUADCORE_LAW void relax(Sweeps::Hinge& hinge, Sweeps::Acceleration& child, InReg
   turn(by);
   turn(relax(*row, of_turn(row->turn_C, c), of_turn(row->turn_P, p)));
   turn(relax(*row, of_turn(row->turn_C, c), of_turn(row->turn_P, p)));
+  if (hinge.locked) turn(relax(*row, of_turn(row->turn_C, c), of_turn(row->turn_P, p)));
   c.store(child);
 }
 

@@ -17,7 +17,7 @@ class Sweeps {
   using Two = laws::Pack<2>;
   /// Linear, angular.
   using Acceleration = std::array<Two, 6>;
-  static constexpr std::size_t rows_of_hinge = 5;
+  static constexpr std::size_t most_rows_of_hinge = 6;
 
   /// What every row has of its own in the two solves.
   struct Solved {
@@ -45,10 +45,11 @@ class Sweeps {
     double linear_C, linear_P;
     double relaxation;
   };
-  /// Three rows for the anchor, along the world's axes, two for the axis.
+  /// Three rows for the anchor, along the world's axes, two for the axis, one for a lock.
   struct Hinge {
     int child, parent;
-    std::array<HingeRow, rows_of_hinge> rows;
+    bool locked;
+    std::array<HingeRow, most_rows_of_hinge> rows;
   };
 
   std::vector<Acceleration> bodies;  ///< by the constraints

@@ -20,12 +20,11 @@ struct UrdfLink {
   BodyTags tags = {};                 ///< of the body that begins with this link
 };
 
-/// A joint as the URDF writes it: continuous, or fixed.
+/// A joint as the URDF writes it: continuous, fixed or locked.
 struct UrdfJoint {
   std::string name;    ///< of the joint
-  bool fixed = false;  ///< or continuous
-  /// Of a fixed joint: written as a revolute one without any travel. Gazebo keeps its child as a
-  /// link, though it does not move.
+  bool fixed = false;  ///< whether the child is lumped into the parent
+  /// Whether it is written as a revolute joint without any travel, which Gazebo keeps.
   bool locked = false;
   std::string parent;                 ///< name of a link
   std::string child;                  ///< name of a link

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include "quadcore/model.hpp"
+
+namespace quadcore {
+
+/// What an ODE engine moves: the links of a model on its joints, some of which may be locked at
+/// angle zero. Those carry no rotor.
+struct Bodies {
+  Model model;
+  std::vector<std::size_t> rotors;  ///< of each rotor, its joint; ascending
+
+  /// None is locked.
+  explicit Bodies(const Model& m) : model(m), rotors(m.joints.size()) {
+    std::iota(rotors.begin(), rotors.end(), std::size_t{0});
+  }
+  Bodies(Model m, std::vector<std::size_t> r) : model(std::move(m)), rotors(std::move(r)) {}
+
+  bool is_locked(std::size_t joint) const {
+    return !std::binary_search(rotors.begin(), rotors.end(), joint);
+  }
+};
+
+}  // namespace quadcore
