@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -16,9 +17,11 @@ HIGH, LOW = (0, 0, 20, 0.3, 0.2, 0.1), (0, 0, 1.5, 0.3, 0.2, 0.1)
 
 
 def vehicle(folder, joints="revolute", **changes):
-    """The recorded vehicle, whose two sensors hang on joints of this type."""
+    """The recorded vehicle, whose two sensors hang on joints of this type, with round rotors."""
     text = (CASE / "model.urdf").read_text()
     assert text.count("revolute") == 2
+    inertias = re.findall("<inertia [^>]*>", text)
+    text = text.replace(inertias[5], inertias[4])
     for part, other in changes.items():
         text = text.replace(f'<link name="{part}">', f'<link name="{part}">{other}')
     file = folder / f"{joints}.urdf"
@@ -38,13 +41,12 @@ def test_users_see_the_vehicle_that_they_see_with_fixed_joints(tmp_path):
         for joints in ("revolute", "fixed")
     }
     locked, fixed = simulations["revolute"], simulations["fixed"]
-    assert locked.rotor_count == fixed.rotor_count
-    assert locked.joint_names == fixed.joint_names
+    assert locked.rotor_names == fixed.rotor_names
     names = [[link.name for link in simulation.model.links] for simulation in (locked, fixed)]
     assert names[0] == names[1]
     assert locked.mass == pytest.approx(fixed.mass, rel=1e-5)
     assert np.allclose(locked.inertia, fixed.inertia, rtol=1e-4, atol=1e-6)
-    columns = [simulation.run(0.1).names for simulation in (locked, fixed)]
+    columns = [simulation.run(0.1).columns for simulation in (locked, fixed)]
     assert columns[0] == columns[1]
     assert np.allclose(locked.state.position, fixed.state.position, rtol=0, atol=1e-4)
 
@@ -64,7 +66,7 @@ def test_restoring_repeats_the_bytes(tmp_path, spawn):
 
 def test_a_batch_flies_each_vehicle_as_it_flies_alone(locked):
     batch = qc.BatchSimulation(locked, 3, engine="gazebo11", spawn=HIGH)
-    commands = np.linspace(150, 250, 3 * batch.rotor_count).reshape(3, -1)
+    commands = np.linspace(150, 250, 15).reshape(3, 5)
     batch.step(commands, 200)
     for i in range(3):
         alone = qc.Simulation(locked, spawn=HIGH)
@@ -77,15 +79,14 @@ def test_a_batch_flies_each_vehicle_as_it_flies_alone(locked):
 def test_the_shapes_of_a_locked_link_touch_the_ground_with_it(tmp_path):
     """The one shape is a ball on a sensor: the ground stops the vehicle there."""
     ball = '<collision><geometry><sphere radius="0.8"/></geometry></collision>'
-    heights = []
+    stopped = []
     for joints in ("revolute", "fixed"):
         model = vehicle(tmp_path, joints, sens1=ball)
-        simulation = qc.Simulation(model, world="default", spawn=LOW)
-        log = simulation.run(0.6)
-        heights.append(log.position[:, 2])
-    fallen = LOW[2] - 4.9 * log.time**2
-    assert heights[0][-1] > fallen[-1] + 0.1
-    assert np.abs(heights[0] - heights[1]).max() < 2e-3
+        log = qc.Simulation(model, world="default", spawn=LOW).run(0.6)
+        above = log.position[:, 2] - (LOW[2] - 4.9 * log.time**2)
+        stopped.append(np.argmax(above > 0.01))
+        assert above[-1] > 0.1
+    assert stopped[0] == stopped[1] > 100
 
 
 @pytest.mark.parametrize("engine", ["gazebo11", "ode", "eigen"])
@@ -100,12 +101,13 @@ def test_a_rotor_on_a_locked_arm_lifts_and_turns_as_on_a_fixed_one(tmp_path, eng
         model.write_text(text)
         simulation = qc.Simulation(model, engine=engine, spawn=HIGH)
         simulation.command(np.linspace(20, 30, simulation.rotor_count))
-        flights.append(simulation.run(0.2))
+        simulation.step(200)
+        flights.append(simulation.state)
     locked, fixed = flights
     assert np.allclose(locked.position, fixed.position, rtol=0, atol=1e-3)
     assert np.allclose(locked.rotor_velocity, fixed.rotor_velocity, rtol=0, atol=0.05)
     assert np.allclose(locked.rotor_angle, fixed.rotor_angle, rtol=0, atol=0.01)
-    assert np.abs(fixed.rotor_angle[:, 0]).max() > 0.5
+    assert np.abs(fixed.rotor_angle).min() > 0.1
 
 
 @pytest.mark.parametrize("engine", ["ode", "eigen"])

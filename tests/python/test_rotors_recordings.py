@@ -73,7 +73,7 @@ def bar(case, told):
         return 1e-10  # as in RotorS' own world
     if told["iters"] == "10":
         return 1e-9
-    return 1e-7 if told["imu_link"] != "None" else 1e-8
+    return 1e-8
 
 
 def test_every_vehicle_that_was_recorded_is_flown():

@@ -219,8 +219,12 @@ void OdeEngine::remember_hinge_forces() const {
     gazebo_step_->warm_start[i] = {multipliers, multipliers};
   };
   if (!rubs_) return hinged_.for_each_hinge(remember);
+  std::size_t rotor = 0;
   for (std::size_t i = 0; i < vehicle_->hinges(); ++i) {
-    remember(i, vehicle_->multipliers(i, hinged_.R_WB(i + 1)));
+    Matrix3d R_WC = hinged_.R_WB(i + 1);
+    // A rotor's is rounded by way of the frame's.
+    if (!bodies_.is_locked(i)) R_WC = kinematics_.R_WF * kinematics_.R_FR(rotor++);
+    remember(i, vehicle_->multipliers(i, R_WC));
   }
 }
 
