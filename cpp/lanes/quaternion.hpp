@@ -10,6 +10,15 @@ struct Quaternion {
   T x, y, z, w;
 };
 
+/// Hamilton's product: the rotation b, then a.
+template <class T>
+QUADCORE_LAW Quaternion<T> operator*(const Quaternion<T>& a, const Quaternion<T>& b) {
+  return {a.w * b.x + a.x * b.w + (a.y * b.z - a.z * b.y),
+          a.w * b.y + a.y * b.w + (a.z * b.x - a.x * b.z),
+          a.w * b.z + a.z * b.w + (a.x * b.y - a.y * b.x),
+          a.w * b.w - (a.x * b.x + a.y * b.y + a.z * b.z)};
+}
+
 /// Of a unit quaternion.
 template <class T>
 QUADCORE_LAW Matrix3<T> rotation(const Quaternion<T>& q) {

@@ -230,6 +230,13 @@ TEST_CASE("Gazebo makes a body of a link behind a locked joint, with what is fix
   CHECK(b.links[0].inertial.mass == 1);
 }
 
+TEST_CASE("a locked joint needs an axis in Gazebo alone") {
+  const Model m = model(link("frame", 1, round_body) + link("eye", 0.1, round_rotor) +
+                        locked("weld", "frame", "eye", "xyz=\"0 0 0\"", "0 0 0"));
+  CHECK(m.links.size() == 1);
+  CHECK(contains(refusal([&] { sdf_bodies(m); }), "joint 'weld': rounded to 6 decimals"));
+}
+
 TEST_CASE("a link behind a locked joint that no torque can turn stays lumped, with a warning") {
   const Model m =
       model(link("frame", 1, round_body) +

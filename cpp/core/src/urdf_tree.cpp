@@ -150,7 +150,7 @@ UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::st
   if (const Element* axis = xml.child(element, "axis")) {
     xml.attributes_alone(*axis, {"xyz"});
     joint.axis = xml.vector(*axis, "xyz", Vector3d::UnitX());
-    if (!(joint.axis.norm() > 1e-9)) {
+    if (!joint.locked && !(joint.axis.norm() > 1e-9)) {
       xml.fail(*axis, "joint '" + joint.name + "' has no axis; write a direction such as 0 0 1");
     }
   }

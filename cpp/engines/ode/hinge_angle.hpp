@@ -5,15 +5,6 @@
 
 namespace quadcore {
 
-/// Hamilton's product.
-QUADCORE_LAW laws::Quaternion<double> operator*(const laws::Quaternion<double>& a,
-                                                const laws::Quaternion<double>& b) {
-  return {a.w * b.x + a.x * b.w + (a.y * b.z - a.z * b.y),
-          a.w * b.y + a.y * b.w + (a.z * b.x - a.x * b.z),
-          a.w * b.z + a.z * b.w + (a.x * b.y - a.y * b.x),
-          a.w * b.w - (a.x * b.x + a.y * b.y + a.z * b.z)};
-}
-
 /// Angle of a hinge as ODE's stops see it (getHingeAngle()) [rad]: the whole angle from where the
 /// child is at angle zero to where it is, with the sign of its part about the axis.
 QUADCORE_LAW double hinge_angle(const laws::Quaternion<double>& q_WC,
