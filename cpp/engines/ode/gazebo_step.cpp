@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "body_damping.hpp"
 #include "body_state.hpp"
 #include "ode_math.hpp"
 #include "quadcore/random.hpp"
@@ -66,6 +67,7 @@ void GazeboStep::step(const std::vector<Contact>& contacts, double dt) {
     b.moving = b.velocity + dt * (b.free_acceleration + constraint(i, pose));
     b.velocity += dt * (b.free_acceleration + constraint(i, velocity));
   }
+  damp();
   move(dt);
 }
 
@@ -256,6 +258,20 @@ double GazeboStep::remaining_error(double dt, std::uint64_t seed) {
     part = std::sqrt(std::abs(energy() / first));
   }
   return part;
+}
+
+/// Gazebo damps the velocity with which a pose moves, the correction of a penetration included, and
+/// takes what that loses off the velocity.
+void GazeboStep::damp() {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const double factor = options_.damping_factors[i];
+    if (factor == 0) continue;
+    Body& b = bodies_[i];
+    Vector6 damped;
+    damped << part_left_by_damping(b.moving.head<3>(), factor) * b.moving.head<3>(),
+        part_left_by_damping(b.moving.tail<3>(), factor) * b.moving.tail<3>();
+    b.velocity = damped + (b.velocity - b.moving);
+  }
 }
 
 void GazeboStep::move(double dt) {

@@ -25,6 +25,7 @@ class GazeboStep {
     double sor;
     Vector3d gravity_W;
     ConstraintRows::Options rows;
+    std::vector<double> damping_factors;  ///< of each body
   };
 
   /// Multipliers of a hinge's rows: force, and torque across the axis.
@@ -77,6 +78,7 @@ class GazeboStep {
   Vector6 inverse_mass_J(const ConstraintRow& row, int side) const;
   Vector6 constraint(std::size_t body, int solve) const;
   void add_multiplier(std::size_t row, const Sweeps::Two& multiplier);
+  void damp();
   void move(double dt);
 
   const std::vector<dBodyID>& ode_bodies_;

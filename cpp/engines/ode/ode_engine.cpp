@@ -51,12 +51,15 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
   gyroscopic_ = std::make_unique<GyroscopicVehicle>(bodies_.model, bodies);
   const std::vector<Hinge> hinges = vehicle_->hinge_rows();
   const double max_correction = world.contact_max_correcting_vel;
+  std::vector<double> damping_factors;
+  for (const Link& link : model_.links) damping_factors.push_back(link.tags.damping_factor);
   gazebo_step_ = std::make_unique<GazeboStep>(
       bodies, hinges, sdf_order(bodies_.model),
       GazeboStep::Options{world.solver_iterations,
                           world.solver_sor,
                           world.gravity_W,
-                          {world.erp, world.cfm, recipe.like_gazebo ? max_correction : dInfinity}});
+                          {world.erp, world.cfm, recipe.like_gazebo ? max_correction : dInfinity},
+                          damping_factors});
   for (const Hinge& hinge : hinges) rubs_ |= hinge.friction > 0;
   if (world.ground_plane) {
     ground_ = std::make_unique<GroundContact>(bodies_.model, bodies, max_correction);
@@ -179,8 +182,8 @@ void OdeEngine::step_in_ode(double dt) {
   } else {
     solve(dt);
     if (ground_) remember_hinge_forces();
+    vehicle_->damp();
   }
-  vehicle_->damp();
   hinged_.take(vehicle_->bodies());
 }
 

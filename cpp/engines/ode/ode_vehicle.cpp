@@ -1,5 +1,6 @@
 #include "ode_vehicle.hpp"
 
+#include "body_damping.hpp"
 #include "body_state.hpp"
 #include "ode_math.hpp"
 
@@ -193,13 +194,12 @@ void OdeVehicle::turn_like_gazebo(const Loads& loads) {
 }
 
 void OdeVehicle::damp() {
-  constexpr double slow = 0.01;  // m/s, rad/s
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const double factor = model_.links[i].tags.damping_factor;
     if (factor == 0) continue;
     const Vector3d v = vec(dBodyGetLinearVel(bodies_[i])), w = vec(dBodyGetAngularVel(bodies_[i]));
-    const double keep_v = v.squaredNorm() > slow * slow ? 1 - factor : 1;
-    const double keep_w = w.squaredNorm() > slow * slow ? 1 - factor : 1;
+    const double keep_v = part_left_by_damping(v, factor);
+    const double keep_w = part_left_by_damping(w, factor);
     dBodySetLinearVel(bodies_[i], keep_v * v.x(), keep_v * v.y(), keep_v * v.z());
     dBodySetAngularVel(bodies_[i], keep_w * w.x(), keep_w * w.y(), keep_w * w.z());
   }

@@ -39,7 +39,7 @@ class OdeVehicle {
   /// by what its carrier's is at the start of the step, so that the carrier bears nothing of what
   /// turns the rotor along with it.
   void turn_like_gazebo(const Loads& loads);
-  /// <dampingFactor>: ODE's damping of bodies, after the poses have moved.
+  /// <dampingFactor>: damps the velocities that a step in flight has left.
   void damp();
 
   /// ODE's direct solver is to report the forces of the hinges.
