@@ -38,6 +38,8 @@ const std::vector<Unfelt>& everything_unfelt() {
       {"provideFeedback", "robot/gazebo", "what a joint's sensor is told"},
       {"sensor", "robot/gazebo", "a sensor"},
       {"laserRetro", "robot/gazebo", "how bright a laser finds it"},
+      {"self_collide", "robot/gazebo",
+       "links of one vehicle do not collide; of no effect in Gazebo, either"},
       {"gui", "sdf/world", "the window"},
       {"scene", "sdf/world", "sky, fog and shadows"},
       {"light", "sdf/world", "light"},
