@@ -146,6 +146,7 @@ QUADCORE_LAW void fly(const Block& block, std::size_t first, std::int64_t count,
     if (!laws::any(flies)) break;
     push(block, at, bodies, frame);
     bodies.turn_inertias(true);
+    flies &= mask<T>(bodies.read_hinges(dt) <= bodies.max_correction_squared());
     bodies.advance(dt);
     bodies.read();
     flies &= is_sound(block.bounds, outcome(bodies));

@@ -47,7 +47,7 @@ LaneBlocks::LaneBlocks(const std::vector<std::shared_ptr<const LaneVehicle>>& ve
   places_ = first->places;
   hinged_ = first->hinged;
   if (are_hinged()) {
-    tree_ = hinged_->tree(world);
+    tree_ = hinged_->tree(world, world.contact_max_correcting_vel);
     has_ground_ = world.ground_plane;
     if (has_ground_) of_ground_.resize(vehicles.size());
   }

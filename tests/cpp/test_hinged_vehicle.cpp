@@ -98,7 +98,7 @@ void check_against_ode(const Bodies& bodies, double erp, double cfm, double dt) 
   world.gravity_W = gravity_W;
   world.erp = erp;
   world.cfm = cfm;
-  HingedVehicle hinged(bodies, world);
+  HingedVehicle hinged(bodies, world, dInfinity);
   double count = 0, again = 0;
   const std::vector<Matrix3d> R_WC = direct.rotations();
   for (int n = 0; n * dt < 2; ++n) {
@@ -137,7 +137,7 @@ void check_motors_against_ode(const Bodies& bodies) {
   direct.vehicle.report_hinge_forces();
   World world;
   world.gravity_W = gravity_W;
-  HingedVehicle hinged(bodies, world);
+  HingedVehicle hinged(bodies, world, dInfinity);
   hinged.take(found.vehicle.bodies());
   Kinematics k(bodies.rotors.size(), true);
   hinged.show(k);

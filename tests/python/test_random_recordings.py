@@ -88,6 +88,42 @@ def test_restoring_beside_a_contact_repeats_the_bytes(name):
     assert other.run(0.3).table.tobytes() == first.tobytes()
 
 
+@pytest.mark.parametrize("ground", ["", "<include><uri>model://ground_plane</uri></include>"])
+def test_a_batch_caps_the_corrections_of_hinges_as_single_flights_do(ground, tmp_path):
+    case = next(case for case in FLOWN if case.name == "F_cmv_3100")
+    world, uncapped = tmp_path / "case.world", tmp_path / "uncapped.world"
+    text = (case / "case.world").read_text().replace("</world>", f"{ground}</world>")
+    world.write_text(text)
+    uncapped.write_text(text.replace(">10.0<", ">1e6<"))
+    n, spawn, twist = 9, (0, 0, 200), np.array(parameters(case)["twist"], dtype=float)
+    commands = 404 * np.linspace(0.99, 1.01, n)[:, None] * [1, -1, 1]
+
+    def single(i, world):
+        simulation = qc.Simulation(case / "model.urdf", world=world, spawn=spawn)
+        state = simulation.state.copy()
+        state.linear_velocity, state.angular_velocity = twist[:3], (1 + 0.01 * i) * twist[3:]
+        simulation.set_state(state)
+        simulation.command(commands[i])
+        return simulation
+
+    batch = qc.BatchSimulation(case / "model.urdf", n, engine="gazebo11", world=world, spawn=spawn)
+    rows = batch.read_state()
+    singles = [single(i, world) for i in range(n)]
+    for row, simulation in zip(rows, singles):
+        row[7:13] = [*simulation.state.linear_velocity, *simulation.state.angular_velocity]
+    batch.set_state(rows)
+    for steps in (1, 1, 900, 200, *20 * [1], 200):
+        batch.step(commands, steps)
+        for simulation in singles:
+            simulation.step(steps)
+        for i, simulation in enumerate(singles):
+            assert batch.state.position[i].tolist() == simulation.state.position.tolist()
+            assert batch.state.rotor_angle[i].tolist() == simulation.state.rotor_angle.tolist()
+    free = single(0, uncapped)
+    free.step(1322)
+    assert np.linalg.norm(free.state.position - singles[0].state.position) > 1e-6
+
+
 def test_friction_that_depends_on_the_direction_turns_with_the_vehicle():
     """Sliding along fdir1 is braked by mu1, across it by mu2, whatever the heading."""
     case = next(case for case in FLOWN if case.name == "s_fdir45")

@@ -19,6 +19,8 @@ constexpr double contact_smoothing = 0.01;  ///< of contact multipliers, where v
 
 constexpr int pose = 0, velocity = 1;  ///< which of the two solves
 
+bool is_capped(const ConstraintRow& row) { return std::abs(row.correction) > row.max_correction; }
+
 }  // namespace
 
 GazeboStep::GazeboStep(const std::vector<dBodyID>& bodies, std::vector<Hinge> hinges,
@@ -192,6 +194,11 @@ void GazeboStep::add_multiplier(std::size_t index, const Sweeps::Two& multiplier
   }
 }
 
+bool GazeboStep::caps_hinges(double dt) {
+  const std::vector<ConstraintRow>& rows = constraints_.build({}, dt);
+  return std::any_of(rows.begin(), rows.end(), is_capped);
+}
+
 /// Begins both solves.
 void GazeboStep::begin(double dt) {
   for (Sweeps::Acceleration& body : sweeps_.bodies) body.fill(Sweeps::Two{});
@@ -205,8 +212,8 @@ void GazeboStep::begin(double dt) {
           Sweeps::Two{warm_start_factor * start.pose[k], warm_start_factor * start.velocity[k]};
     }
     // Gazebo forgets the sign of what it caps.
-    const bool capped = std::abs(row.correction) > row.max_correction;
-    Sweeps::Two wanted{row.correction / dt, (capped ? row.max_correction : row.correction) / dt};
+    const double kept = is_capped(row) ? row.max_correction : row.correction;
+    Sweeps::Two wanted{row.correction / dt, kept / dt};
     for (int side = 0; side < 2 && row.body[side] >= 0; ++side) {
       const Body& body = bodies_[static_cast<std::size_t>(row.body[side])];
       wanted -= row.J[side].dot(body.velocity / dt + body.free_acceleration);

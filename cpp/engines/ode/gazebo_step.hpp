@@ -45,6 +45,9 @@ class GazeboStep {
   /// Advances the bodies by dt under the forces that have been added to them.
   void step(const std::vector<Contact>& contacts, double dt);
 
+  /// Whether a hinge's correction in the present poses is beyond its cap.
+  bool caps_hinges(double dt);
+
   /// The part of an error of the hinges' multipliers that the sweeps leave in the present poses, at
   /// least 1e-16; measured by the energy of the accelerations that it causes, from the random
   /// errors of a seed. The warm start is forgotten.

@@ -99,10 +99,24 @@ class HingedBodies {
     }
   }
 
-  /// Advances by dt under the forces that have been added.
-  QUADCORE_LAW void advance(double dt) {
+  /// Finds how the hinges stand in a step of dt. Gives the square of the largest correction that
+  /// one of them asks for [m/s, rad/s].
+  QUADCORE_LAW T read_hinges(double dt) {
     work(0).p_OBcm_W = {T{}, T{}, T{}};
-    for (std::size_t i = 1; i < size(); ++i) read_hinge(i, dt);
+    T largest{};
+    for (std::size_t i = 1; i < size(); ++i) {
+      const T square = read_hinge(i, dt);
+      largest = laws::chosen_by(square > largest, square, largest);
+    }
+    return largest;
+  }
+  /// Of corrections that this step makes as Gazebo does.
+  QUADCORE_LAW double max_correction_squared() const {
+    return tree_.max_correction * tree_.max_correction;
+  }
+
+  /// Advances by dt, for which the hinges were read, under the forces that have been added.
+  QUADCORE_LAW void advance(double dt) {
     for (std::size_t i = size(); i-- > 1;) eliminate(i, dt);
     work(0).acceleration = laws::solve(felt(0), at_O(0, {T{}, T{}, T{}}));
     move(0, dt);
@@ -155,7 +169,8 @@ class HingedBodies {
             laws::dot(y, I_y), laws::dot(y, I_z), laws::dot(z, I_z)};
   }
 
-  QUADCORE_LAW void read_hinge(std::size_t i, double dt) {
+  /// Gives the square of the largest of its corrections.
+  QUADCORE_LAW T read_hinge(std::size_t i, double dt) {
     const Table at = constants(i), child = state(i), parent = state(carrier(i));
     BodyWork<T>& body = work(i);
     const BodyWork<T>& of_parent = work(carrier(i));
@@ -177,6 +192,13 @@ class HingedBodies {
     body.wanted.angular = per_step * (rate * tilt_W - bent_W);
     body.wanted.linear =
         per_step * (rate * gap_W - slip_W) + laws::cross(body.p_OA_W, body.wanted.angular);
+    const T gap = laws::dot(gap_W, gap_W), tilt = laws::dot(tilt_W, tilt_W);
+    T largest = laws::chosen_by(gap > tilt, gap, tilt);
+    if (tree_.locks[i]) {
+      const T angle = joint_angle(i);
+      largest = laws::chosen_by(angle * angle > largest, angle * angle, largest);
+    }
+    return (rate * rate) * largest;
   }
 
   /// Forces on a body itself and by what it carries, at O; about the axis the torque of its joint.

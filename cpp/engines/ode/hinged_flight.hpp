@@ -37,9 +37,10 @@ void clear_hinged(const HingedFlight& flight);
 /// Adds loads.
 template <int W>
 void push_hinged(const HingedFlight& flight, const FlightLoads& loads);
-/// Advances by dt [s], with the gyroscopic torque of each body by itself or without.
+/// Advances by dt [s], with the gyroscopic torque of each body by itself or without. False, and no
+/// body has moved, if a hinge asks for a correction beyond the largest.
 template <int W>
-void advance_hinged(const HingedFlight& flight, double dt, bool gyroscopic);
+bool advance_hinged(const HingedFlight& flight, double dt, bool gyroscopic);
 template <int W>
 void show_hinged(const HingedFlight& flight, const ShownFlight& shown);
 /// Finds what the hinges have exerted in the last step.

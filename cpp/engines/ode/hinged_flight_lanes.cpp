@@ -65,11 +65,13 @@ void push_hinged(const HingedFlight& flight, const FlightLoads& loads) {
 }
 
 template <int W>
-void advance_hinged(const HingedFlight& flight, double dt, bool gyroscopic) {
+bool advance_hinged(const HingedFlight& flight, double dt, bool gyroscopic) {
   Bodies<W> bodies = bodies_of<W>(flight);
   bodies.turn_inertias(gyroscopic);
+  if (laws::any(bodies.read_hinges(dt) > bodies.max_correction_squared())) return false;
   bodies.advance(dt);
   bodies.read();
+  return true;
 }
 
 template <int W>
@@ -119,7 +121,7 @@ void find_hinge_loads(const HingedFlight& flight) {
 template void read_hinged<QUADCORE_LANES>(const HingedFlight&);
 template void clear_hinged<QUADCORE_LANES>(const HingedFlight&);
 template void push_hinged<QUADCORE_LANES>(const HingedFlight&, const FlightLoads&);
-template void advance_hinged<QUADCORE_LANES>(const HingedFlight&, double, bool);
+template bool advance_hinged<QUADCORE_LANES>(const HingedFlight&, double, bool);
 template void show_hinged<QUADCORE_LANES>(const HingedFlight&, const ShownFlight&);
 template void find_hinge_loads<QUADCORE_LANES>(const HingedFlight&);
 

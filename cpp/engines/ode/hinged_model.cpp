@@ -46,11 +46,13 @@ HingedModel::HingedModel(const Bodies& bodies)
   }
 }
 
-HingedTree HingedModel::tree(const World& world) const {
+HingedTree HingedModel::tree(const World& world, double max_correction) const {
+  // Finite, and so is its square: the compiler of the steps may be told that numbers are.
+  constexpr double unlimited = 1e100;
   const Vector3d& g_W = world.gravity_W;
   return {carriers.size(), carriers.data(), carries.data(),
           brakes.data(),   locks.data(),    {g_W.x(), g_W.y(), g_W.z()},
-          world.erp,       world.cfm};
+          world.erp,       world.cfm,       std::min(max_correction, unlimited)};
 }
 
 bool HingedModel::is_star() const {

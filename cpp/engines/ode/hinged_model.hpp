@@ -14,7 +14,7 @@ struct HingedModel {
   std::vector<char> carries, brakes, locks;
 
   explicit HingedModel(const Bodies& bodies);
-  HingedTree tree(const World& world) const;
+  HingedTree tree(const World& world, double max_correction) const;
   /// Whether all hinges are on the frame, and none brakes or is locked.
   bool is_star() const;
 };

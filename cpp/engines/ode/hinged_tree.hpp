@@ -42,6 +42,7 @@ struct HingedTree {
   const char* locks;            ///< whether a body's hinge is locked
   double gravity_W[3];
   double erp, cfm;
+  double max_correction;  ///< of a hinge that Gazebo does not cap [m/s, rad/s]
 };
 
 }  // namespace quadcore

@@ -39,7 +39,7 @@ constexpr std::size_t numbers = sizeof(Member) / sizeof(double);
 
 #define QUADCORE_NUMBER_OF(member) (offsetof(Work, member) / sizeof(double))
 
-HingedVehicle::HingedVehicle(const Bodies& bodies, const World& world)
+HingedVehicle::HingedVehicle(const Bodies& bodies, const World& world, double max_correction)
     : model_(bodies),
       rotors_(bodies.rotors),
       constants_(table_size(BodyConstant::count, model_.carriers.size())),
@@ -47,7 +47,7 @@ HingedVehicle::HingedVehicle(const Bodies& bodies, const World& world)
       work_(numbers<Work> * (model_.carriers.size() + 2 * widest_lanes)),
       soft_(world.cfm > 0 ? numbers<SoftRows<double>> * (model_.carriers.size() + 2 * widest_lanes)
                           : 0),
-      flight_{model_.tree(world),
+      flight_{model_.tree(world, max_correction),
               rotors_.size(),
               rotors_.data(),
               constants_.data(),

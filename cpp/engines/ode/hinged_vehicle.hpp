@@ -15,7 +15,8 @@ namespace quadcore {
 /// A vehicle's bodies as HingedFlight takes them, beside those in an ODE world.
 class HingedVehicle {
  public:
-  HingedVehicle(const Bodies& bodies, const World& world);
+  /// \param max_correction  of a hinge [m/s, rad/s]
+  HingedVehicle(const Bodies& bodies, const World& world, double max_correction);
 
   /// Takes over the state of bodies in ODE, one for each link.
   void take(const std::vector<dBodyID>& bodies);
@@ -26,8 +27,9 @@ class HingedVehicle {
 
   /// Puts loads on the vehicle in place of all forces; joints damp themselves.
   void push(const Loads& loads);
-  /// Advances by dt, with the gyroscopic torque of each body by itself or without.
-  void advance(double dt, bool gyroscopic) { calls_.advance(flight_, dt, gyroscopic); }
+  /// Advances by dt, with the gyroscopic torque of each body by itself or without. False, and the
+  /// vehicle stays where it is, if a hinge asks for a larger correction than is solved for.
+  bool advance(double dt, bool gyroscopic) { return calls_.advance(flight_, dt, gyroscopic); }
   /// Writes how the vehicle moves.
   void show(Kinematics& kinematics) const;
 
@@ -50,7 +52,7 @@ class HingedVehicle {
     void (*read)(const HingedFlight&);
     void (*clear)(const HingedFlight&);
     void (*push)(const HingedFlight&, const FlightLoads&);
-    void (*advance)(const HingedFlight&, double, bool);
+    bool (*advance)(const HingedFlight&, double, bool);
     void (*show)(const HingedFlight&, const ShownFlight&);
     void (*find_hinge_loads)(const HingedFlight&);
   };

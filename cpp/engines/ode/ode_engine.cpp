@@ -25,6 +25,11 @@ constexpr double converged = 1e-14;
 /// Attitudes in which convergence is tried: it depends on them, a little.
 constexpr std::uint64_t tried_attitudes = 8;
 
+/// Cap of a hinge's correction where velocities are solved for [m/s, rad/s].
+double max_hinge_correction(const World& world, const OdeRecipe& recipe) {
+  return recipe.like_gazebo ? world.contact_max_correcting_vel : dInfinity;
+}
+
 }  // namespace
 
 bool is_clear_of_contact(const std::vector<double>& saved) {
@@ -36,7 +41,7 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
       bodies_(recipe.like_gazebo ? sdf_bodies(model) : Bodies(model)),
       recipe_(recipe),
       warnings_(recipe.like_gazebo ? bodies_.model.warnings : std::vector<std::string>()),
-      hinged_(bodies_, world),
+      hinged_(bodies_, world, max_hinge_correction(world, recipe)),
       steps_since_contact_(steps_beside_contact),
       kinematics_(model.joints.size(), true),
       loads_(model.joints.size()) {
@@ -58,7 +63,7 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
       GazeboStep::Options{world.solver_iterations,
                           world.solver_sor,
                           world.gravity_W,
-                          {world.erp, world.cfm, recipe.like_gazebo ? max_correction : dInfinity},
+                          {world.erp, world.cfm, max_hinge_correction(world, recipe)},
                           damping_factors});
   for (const Hinge& hinge : hinges) rubs_ |= hinge.friction > 0;
   if (world.ground_plane) {
@@ -135,14 +140,16 @@ void OdeEngine::step(double time, double dt, const ForceField& forces) {
   loads_.clear();
   forces.evaluate(kinematics_, loads_);
   if (!loads_.all_finite()) forces.refuse(kinematics_, loads_);  // ODE ends the process for less
-  if (is_afloat(dt)) {
-    behind_ = true;
-    hinged_.push(loads_);
-    hinged_.advance(dt, true);
-  } else {
-    step_in_ode(dt);
-  }
+  if (!is_afloat(dt) || !float_by(dt)) step_in_ode(dt);
   hinged_.show(kinematics_);
+}
+
+/// False, and nothing has moved, if a hinge is so far out that Gazebo caps its correction.
+bool OdeEngine::float_by(double dt) {
+  hinged_.push(loads_);
+  if (!hinged_.advance(dt, true)) return false;
+  behind_ = true;
+  return true;
 }
 
 /// Whether nothing in this step needs the bodies in ODE.
@@ -179,10 +186,14 @@ void OdeEngine::step_in_ode(double dt) {
   const std::vector<Contact>& contacts = ground_ ? ground_->find() : none;
   if (iterate_ || is_near_contact(dt, !contacts.empty())) {
     gazebo_step_->step(contacts, dt);
-  } else {
-    solve(dt);
+  } else if (solve(dt)) {
     if (ground_) remember_hinge_forces();
     vehicle_->damp();
+  } else {
+    // From nothing, so that the pose and the velocities are all that the step depends on: vehicles
+    // of a batch have no more.
+    forget_hinge_forces();
+    gazebo_step_->step(contacts, dt);
   }
   hinged_.take(vehicle_->bodies());
 }
@@ -196,18 +207,21 @@ bool OdeEngine::is_near_contact(double dt, bool touching) {
   return recipe_.like_gazebo && (after || ground_->is_ahead(steps_beside_contact * dt, gravity_z_));
 }
 
-/// A step in flight. Where ODE gives up (see start_ode), it leaves the step half done: jobs and
-/// memory.
-void OdeEngine::solve(double dt) {
+/// A step in flight, unless Gazebo caps the correction of a hinge: then false. Where ODE gives up
+/// (see start_ode), it leaves the step half done: jobs and memory.
+bool OdeEngine::solve(double dt) {
   if (!rubs_) {
     const std::vector<dBodyID>& bodies = vehicle_->bodies();
     hinged_.take(bodies);  // whose rates may have been prescribed
     hinged_.take_forces(bodies);
-    hinged_.advance(dt, false);
-    return hinged_.give(bodies);
+    if (!hinged_.advance(dt, false)) return false;
+    hinged_.give(bodies);
+    return true;
   }
+  if (recipe_.like_gazebo && gazebo_step_->caps_hinges(dt)) return false;
   try {
     dWorldStep(world_.get(), dt);
+    return true;
   } catch (...) {
     dWorldCleanupWorkingMemory(world_.get());
     threading_.release();  // ODE does not free a job list that is not empty
@@ -231,6 +245,11 @@ void OdeEngine::remember_hinge_forces() const {
   }
 }
 
+void OdeEngine::forget_hinge_forces() {
+  std::fill(gazebo_step_->warm_start.begin(), gazebo_step_->warm_start.end(),
+            GazeboStep::WarmStart{});
+}
+
 /// Shows the motion of the bodies in ODE.
 void OdeEngine::show() {
   behind_ = false;
@@ -252,8 +271,7 @@ void OdeEngine::get_state(VehicleState& state) const {
 
 void OdeEngine::set_state(const VehicleState& state) {
   vehicle_->place(state);
-  std::fill(gazebo_step_->warm_start.begin(), gazebo_step_->warm_start.end(),
-            GazeboStep::WarmStart{});
+  forget_hinge_forces();
   steps_since_contact_ = steps_beside_contact;
   show();
 }

@@ -64,11 +64,13 @@ class OdeEngine final : public Engine {
   double remaining_error(double dt);
   void take_threading();
   bool is_afloat(double dt) const;
+  bool float_by(double dt);
   void settle() const;
   void step_in_ode(double dt);
-  void solve(double dt);
+  bool solve(double dt);
   bool is_near_contact(double dt, bool touching);
   void remember_hinge_forces() const;
+  void forget_hinge_forces();
   void show();
   std::size_t saved_size() const;
 
