@@ -227,7 +227,7 @@ class Batch::Implementation {
     if (!member.in_lanes) return;
     lanes_->set_engine_state(i, flown.engine);
     lanes_->let_fly(i, failures_[i].empty());
-    lanes_->let_tilt(i, !flown.warnings.empty());
+    lanes_->lift_bounds(i, simulation.force_laws().quiet);
   }
 
   const std::shared_ptr<const void> identity_ = std::make_shared<int>();

@@ -100,6 +100,7 @@ struct Block {
   const double* constants;
   const double* motors;          ///< table of MotorRow, rotor by rotor
   const std::int64_t* flies;     ///< of each vehicle -1, or 0 for one that stays where it is
+  const std::int64_t* may_spin;  ///< -1 for a vehicle that `fastest` does not bind
   const std::int64_t* may_tilt;  ///< -1 for a vehicle that no_tilt does not bind
   double* state;
   double* work;         ///< room for two states and the sines and cosines of the rotors

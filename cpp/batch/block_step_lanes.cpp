@@ -137,11 +137,12 @@ QUADCORE_LAW void normalise(const Block& block, double* state) {
 /// Vehicles of which no plugin has to be asked about the state in which a step begins.
 template <class T>
 QUADCORE_LAW Mask<T> is_quiet(const Block& block, const Table<T>& constants, const Table<T>& state,
-                              const std::int64_t* tilts, double dt) {
+                              std::size_t first, double dt) {
   Mask<T> good = ~Mask<T>{};
+  const Mask<T> spins = laws::load_bits<T>(block.may_spin + first);
   for (std::size_t i = 0; i < block.rotors; ++i) {
     const T rate = state.number(StateRow::joint(StateRow::joint_rate, i));
-    good &= mask<T>(laws::absolute(rate) < block.bounds.fastest);
+    good &= mask<T>(laws::absolute(rate) < block.bounds.fastest) | spins;
   }
   const T z = state.number(StateRow::position + 2), v_z = state.number(StateRow::velocity + 2);
   good &= mask<T>(z >= block.bounds.reach + laws::ahead(laws::absolute(v_z), dt));
@@ -150,7 +151,7 @@ QUADCORE_LAW Mask<T> is_quiet(const Block& block, const Table<T>& constants, con
   const Vec3<T> up_F{frames.R_WF.zx, frames.R_WF.zy, frames.R_WF.zz};
   for (std::size_t i = 0; i < block.rotors; ++i) {
     const Vec3<T> normal_F = constants.vector(ConstantRow::rotor(ConstantRow::R_FR_at_zero + 6, i));
-    good &= mask<T>(laws::dot(up_F, normal_F) >= 0) | laws::load_bits<T>(tilts);
+    good &= mask<T>(laws::dot(up_F, normal_F) >= 0) | laws::load_bits<T>(block.may_tilt + first);
   }
   return good;
 }
@@ -179,7 +180,7 @@ QUADCORE_LAW void fly(const Block& block, std::size_t first, std::int64_t count,
   Mask<T> flies = laws::load_bits<T>(block.flies + first);
   Mask<T> steps{};
   for (std::int64_t n = 0; n < count && laws::any(flies); ++n) {
-    flies &= is_quiet(block, constants, state, block.may_tilt + first, dt);
+    flies &= is_quiet(block, constants, state, first, dt);
     if (block.laws.turn) turn<T>(block, at, at.state);
     differentiate<T, Stage::first, upright>(block, at, at.state, {1, dt / 2});
     differentiate<T, Stage::between, upright>(block, at, at.stage, {2, dt / 2});

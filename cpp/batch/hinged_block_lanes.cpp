@@ -84,11 +84,12 @@ QUADCORE_LAW void push(const Block& block, const Places<T>& at, Bodies<T>& bodie
 /// are not to come near the ground soon.
 template <class T>
 QUADCORE_LAW Mask<T> is_quiet(const Block& block, const Bodies<T>& bodies,
-                              const HingedFrame<T>& frame, const std::int64_t* tilts, double dt) {
+                              const HingedFrame<T>& frame, std::size_t first, double dt) {
   const Bounds& bounds = block.bounds;
   Mask<T> good = ~Mask<T>{};
+  const Mask<T> spins = laws::load_bits<T>(block.may_spin + first);
   for (std::size_t i = 0; i < block.rotors; ++i) {
-    good &= mask<T>(laws::absolute(bodies.joint_rate(i + 1)) < bounds.fastest);
+    good &= mask<T>(laws::absolute(bodies.joint_rate(i + 1)) < bounds.fastest) | spins;
   }
   if (bounds.reach > 0) {
     // Earlier than OdeEngine looks closer, so that it has taken a step by itself before.
@@ -106,7 +107,8 @@ QUADCORE_LAW Mask<T> is_quiet(const Block& block, const Bodies<T>& bodies,
   const Vec3<T> up_F{R.zx, R.zy, R.zz};
   for (std::size_t i = 0; i < block.rotors; ++i) {
     const MovingRotor<T> rotor(bodies, frame, i);
-    good &= mask<T>(laws::dot(up_F, rotor.normal_F()) >= 0) | laws::load_bits<T>(tilts);
+    good &= mask<T>(laws::dot(up_F, rotor.normal_F()) >= 0) |
+            laws::load_bits<T>(block.may_tilt + first);
   }
   return good;
 }
@@ -142,7 +144,7 @@ QUADCORE_LAW void fly(const Block& block, std::size_t first, std::int64_t count,
   Mask<T> steps{};
   for (std::int64_t n = 0; n < count; ++n) {
     const HingedFrame<T> frame(bodies);
-    flies &= is_quiet(block, bodies, frame, block.may_tilt + first, dt);
+    flies &= is_quiet(block, bodies, frame, first, dt);
     if (!laws::any(flies)) break;
     push(block, at, bodies, frame);
     bodies.turn_inertias(true);

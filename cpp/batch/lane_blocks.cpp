@@ -1,6 +1,7 @@
 #include "lane_blocks.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "eigen/gyrostat_step.hpp"
 #include "hinged_block.hpp"
@@ -57,6 +58,7 @@ LaneBlocks::LaneBlocks(const std::vector<std::shared_ptr<const LaneVehicle>>& ve
   constants_.resize(rows * (constants_differ_ ? places : widest_lanes));
   state_.resize(state_rows() * places);
   motors_.resize(MotorRow::count * rotors * places);
+  may_spin_.resize(places);
   may_tilt_.resize(places);
   for (std::size_t i = 0; i < places; ++i) {
     const bool is_in = i < vehicles.size() && vehicles[i];
@@ -107,11 +109,23 @@ std::size_t LaneBlocks::work_size() const {
 void LaneBlocks::begin(std::size_t vehicle, const std::vector<double>& engine_state) {
   set_engine_state(vehicle, engine_state);
   let_fly(vehicle, true);
-  let_tilt(vehicle, false);
+  may_spin_[vehicle] = may_tilt_[vehicle] = 0;
   double* motors = column(motors_, MotorRow::count * rotors_, vehicle);
   for (std::size_t i = 0; i < rotors_; ++i) {
     motors[(i * MotorRow::count + MotorRow::active) * widest_lanes] = 0;
   }
+}
+
+void LaneBlocks::lift_bounds(std::size_t vehicle, const std::vector<Quiet>& quiet) {
+  const auto is_lifted = [](const double* has_said) { return has_said && *has_said != 0; };
+  const bool spins = std::all_of(quiet.begin(), quiet.end(), [&](const Quiet& of) {
+    return std::isinf(of.fastest) || is_lifted(of.has_said_fast);
+  });
+  const bool tilts = std::all_of(quiet.begin(), quiet.end(), [&](const Quiet& of) {
+    return !of.no_tilt || is_lifted(of.has_said_tilt);
+  });
+  may_spin_[vehicle] |= -std::int64_t{spins};
+  may_tilt_[vehicle] |= -std::int64_t{tilts};
 }
 
 void LaneBlocks::command(std::size_t vehicle, const double* speeds) {
@@ -141,6 +155,7 @@ Block LaneBlocks::view(std::size_t block, double* work, std::int64_t* steps) {
           part(constants_, constants_differ_ ? constant_rows() : 0),
           part(motors_, MotorRow::count * rotors_),
           &flies_[first],
+          &may_spin_[first],
           &may_tilt_[first],
           part(state_, state_rows()),
           work,

@@ -28,8 +28,8 @@ class LaneBlocks {
   void command(std::size_t vehicle, const double* speeds);
   /// Whether a vehicle moves in steps of its block.
   void let_fly(std::size_t vehicle, bool flies);
-  /// Whether a vehicle may turn over without anybody being asked.
-  void let_tilt(std::size_t vehicle, bool may) { may_tilt_[vehicle] = -std::int64_t{may}; }
+  /// Lifts the bounds of a vehicle beyond which its plugins have no more to say.
+  void lift_bounds(std::size_t vehicle, const std::vector<Quiet>& quiet);
   /// \param work   room of its own for each thread
   /// \param steps  of each vehicle of the block: how many of `count` it has flown
   void step(std::size_t block, std::int64_t count, double dt, double* work, std::int64_t* steps);
@@ -43,14 +43,15 @@ class LaneBlocks {
   /// All that changes.
   struct Saved {
     LaneNumbers state, motors;
-    std::vector<std::int64_t> flies, may_tilt;
+    std::vector<std::int64_t> flies, may_spin, may_tilt;
     std::vector<std::vector<double>> of_ground;
   };
-  Saved save() const { return {state_, motors_, flies_, may_tilt_, of_ground_}; }
+  Saved save() const { return {state_, motors_, flies_, may_spin_, may_tilt_, of_ground_}; }
   void restore(const Saved& saved) {
     state_ = saved.state;
     motors_ = saved.motors;
     flies_ = saved.flies;
+    may_spin_ = saved.may_spin;
     may_tilt_ = saved.may_tilt;
     of_ground_ = saved.of_ground;
   }
@@ -80,7 +81,7 @@ class LaneBlocks {
   Vector3d gravity_W_;
   bool constants_differ_;  ///< or all blocks share one
   LaneNumbers constants_, motors_, state_;
-  std::vector<std::int64_t> flies_, may_tilt_;
+  std::vector<std::int64_t> flies_, may_spin_, may_tilt_;
   std::vector<int> places_;  ///< as LaneVehicle has them
   std::shared_ptr<const HingedModel> hinged_;
   HingedTree tree_ = {};     ///< of hinged ones

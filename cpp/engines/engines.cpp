@@ -21,19 +21,19 @@ struct EngineEntry {
 const std::vector<EngineEntry>& table() {
   static const std::vector<EngineEntry> entries = {
       {{"gazebo11", "ODE set up to do what Gazebo 11 does to the last digit, faults included",
-        decay_limit_of_euler},
+        decay_limit_of_euler, false},
        [](const Model& model, const World& world) -> std::unique_ptr<Engine> {
          return std::make_unique<OdeEngine>(model, world, gazebo11_recipe);
        }},
       {{"ode", "the same ODE world with the right gyroscopic torque and the URDF's own numbers",
-        decay_limit_of_euler},
+        decay_limit_of_euler, false},
        [](const Model& model, const World& world) -> std::unique_ptr<Engine> {
          return std::make_unique<OdeEngine>(model, world, ode_recipe);
        }},
       {{"eigen",
         "exact reduced coordinates, fourth order: the accurate and the fast one, approximate on "
         "the ground",
-        decay_limit_of_rk4},
+        decay_limit_of_rk4, true},
        [](const Model& model, const World& world) -> std::unique_ptr<Engine> {
          return std::make_unique<EigenEngine>(model, world);
        }},

@@ -73,8 +73,8 @@ struct PluginBench {
   std::vector<std::string> warnings;
 
   PluginBench(const std::string& plugin, const std::string& tags, std::size_t rotors,
-              std::uint64_t seed = 0)
-      : simulation(vehicle_with(plugin, tags, rotors), World{}, options(seed)) {}
+              std::uint64_t seed = 0, const std::string& engine = "gazebo11")
+      : simulation(vehicle_with(plugin, tags, rotors), World{}, options(seed, engine)) {}
 
   PluginState state() { return {memory.data(), memory.size()}; }
   Sample sample(const Kinematics& kinematics, double time, double dt, bool jumped = false) {
@@ -97,9 +97,10 @@ struct PluginBench {
   }
 
  private:
-  static SimulationOptions options(std::uint64_t seed) {
+  static SimulationOptions options(std::uint64_t seed, const std::string& engine) {
     SimulationOptions options;
     options.seed = seed;
+    options.engine = engine;
     return options;
   }
 };

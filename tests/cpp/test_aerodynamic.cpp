@@ -193,7 +193,7 @@ TEST_CASE("each flapping coefficient alone flaps") {
   }
 }
 
-TEST_CASE("a rotor that turns more than half a turn per step ends the flight, and is named") {
+TEST_CASE("a rotor on a hinge that turns more than half a turn per step ends the flight") {
   PluginBench bench("aerodynamic", everything, rotor_count);
   constexpr double dt = 0.004;
   Kinematics motion(rotor_count);
@@ -209,4 +209,18 @@ TEST_CASE("a rotor that turns more than half a turn per step ends the flight, an
                          "slower command",
                          FlightError);
   }
+}
+
+TEST_CASE(
+    "an engine without hinges warns once of a rotor that turns more than half a turn per step") {
+  PluginBench bench("aerodynamic", everything, rotor_count, 0, "eigen");
+  constexpr double dt = 0.004;
+  Kinematics motion(rotor_count);
+  bench.update(motion, 1.5, dt);
+  CHECK(bench.warnings.empty());
+  motion.rotors.number(MotionRow::rate, 2) = 3.1417 / dt;
+  for (int n = 0; n < 3; ++n) bench.update(motion, 1.5 + n * dt, dt);
+  REQUIRE(bench.warnings.size() == 1);
+  CHECK(
+      contains(bench.warnings.front(), "rotor 'c' turns more than half a turn per step, so that"));
 }

@@ -93,10 +93,10 @@ def test_neither_threads_nor_neighbours_nor_the_length_of_calls_change_a_bit(odd
     np.testing.assert_array_equal(piecewise.read_state(), expected)
 
 
-@pytest.mark.parametrize("engine", ["eigen", "gazebo11"])
-def test_a_vehicle_that_fails_is_told_of_and_the_others_fly_on(engine):
+@pytest.mark.parametrize(("engine", "too_fast"), [("eigen", 9e5), ("gazebo11", 4000)])
+def test_a_vehicle_that_fails_is_told_of_and_the_others_fly_on(engine, too_fast):
     commands = COMMANDS.copy()
-    commands[5] = 3300, -500, 500, -500  # half a turn per step, as if it could
+    commands[5] = too_fast, -500, 500, -500
     parameters = {"drone_plugin.sim_slow": 1, "motorpid_plugin.sim_slow": 1}
     free = {**parameters, "motorpid_plugin.maxVelocity": 1e6}
     batch = BatchSimulation(n=N, engine=engine, spawn=SPAWN, parameters=free)
@@ -118,6 +118,24 @@ def test_a_vehicle_that_fails_is_told_of_and_the_others_fly_on(engine):
     batch.reset(batch.failed)
     assert not batch.failed.any()
     assert batch.time[5] == 0 and batch.time[4] == pytest.approx(0.31)
+
+
+def test_vehicles_beyond_half_a_turn_per_step_fly_in_eigen_as_they_do_alone():
+    """They leave the lanes for the warning and come back."""
+    free = {"motorpid_plugin.maxVelocity": 1e6}
+    commands = np.linspace(2900, 5000, 9)[:, None] * [1, -1, 1, -1]
+    batch = BatchSimulation("crazyflie", 9, spawn=(0, 0, 5), parameters=free)
+    for _ in range(30):
+        batch.step(commands, 10)
+    assert not batch.failed.any()
+    for i in range(9):
+        sim = Simulation("crazyflie", engine="eigen", spawn=(0, 0, 5), parameters=free)
+        sim.command(commands[i])
+        sim.step(300)
+        assert_same(batch, i, sim)
+        assert batch.warnings(i) == sim.warnings
+        assert len(sim.warnings) == (np.abs(sim.state.rotor_velocity).max() * sim.dt > np.pi)
+    assert len(batch.warnings(0)) == 0 and len(batch.warnings(8)) == 1
 
 
 def test_what_only_a_simulation_can_say_is_said_of_a_vehicle_of_a_batch():

@@ -31,12 +31,14 @@ def program(monkeypatch):
 def test_the_picture_of_the_engines_is_drawn_of_flights_that_end_early_too(program):
     spiral = program("examples/spiral.py")
     spiral.SETTINGS["duration"] = 1
-    # The rotors turn more than half a turn per step once the vehicle is a kilometre off.
+    # The rotors turn more than half a turn per step once the vehicle is a kilometre off, which ends
+    # the flights of the engines with hinges.
     spiral.SETTINGS["reference"] = "step:dx=1000,time=0.5"
     spiral.SETTINGS["xacro"]["max_velocity"] = 1e6
     logs = spiral.fly()
     assert len(logs) == 9
-    assert {log.time[-1] < 0.99 for (law, _), log in logs.items() if law == "pid_thesis"} == {True}
+    ends_early = {engine: logs["pid_thesis", engine].time[-1] < 0.99 for _, engine in logs}
+    assert ends_early == {"gazebo11": True, "ode": True, "eigen": False}
     figure = spiral.picture(logs)
     drawn = [line for axes in figure.axes for line in axes.lines if len(line.get_xdata()) > 1]
     assert len(drawn) == 18

@@ -134,7 +134,7 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
   const std::vector<Found> found_plugins = find_plugins(model, passed_over, warnings_);
   warn(passed_over.warning());
   const auto overrides = by_plugin(options.parameters, found_plugins);
-  const double fastest_decay = engine_info(options.engine).largest_decay_per_step / dt_;
+  const EngineInfo& engine = engine_info(options.engine);
   Eigen::Index state_size = 0;
   for (const Found& found : found_plugins) {
     const PluginElement& element = found.element;
@@ -167,7 +167,8 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
     try {
       std::vector<std::string> warnings;
       loaded.plugin = library.descriptor->create.make(
-          {element.name, loaded.parameters, model, world_, topics_, warnings, fastest_decay, dt_});
+          {element.name, loaded.parameters, model, world_, topics_, warnings,
+           engine.largest_decay_per_step / dt_, dt_, engine.follows_any_turn});
       if (!loaded.plugin) throw Error("its create() returned no plugin");
       const std::size_t numbers = loaded.plugin->state_size();
       if (numbers > max_plugin_state) {

@@ -18,7 +18,7 @@ enum Term { kThrust, kReaction, kInduced, kTranslational, kProfile, kParasitic, 
 
 /// Which warnings this flight has heard, behind the coefficients; filled up to a whole block, so
 /// that the tables of other plugins begin where a pack can be read at once.
-enum Memory { kDriven, kUnfelt, kMemorySize = widest_lanes - 1 };
+enum Memory { kDriven, kUnfelt, kAliased, kMemorySize = widest_lanes - 1 };
 
 /// rad
 constexpr double surely_below_half_a_turn = 3;
@@ -77,6 +77,7 @@ class AerodynamicPlugin final : public Plugin {
         joint_names_(setup.model.joint_names()),
         law_(config_.law()),
         fastest_(surely_below_half_a_turn / setup.dt),
+        follows_any_turn_(setup.follows_any_turn),
         effectiveness_(setup, config_) {
     static constexpr laws::ForEachWidth<void(const RotorForces&, const ShownMotion&)> widths{
         &add_rotor_forces<1>, &add_rotor_forces<2>, &add_rotor_forces<4>, &add_rotor_forces<8>};
@@ -90,13 +91,13 @@ class AerodynamicPlugin final : public Plugin {
     return static_cast<std::size_t>(effectiveness_.size()) + kMemorySize;
   }
 
-  /// The thesis' plugin falls silent for a rotor that turns more than half a turn per step; here
-  /// such a speed ends the flight.
+  /// The thesis' plugin falls silent for a rotor that turns more than half a turn per step. Here
+  /// such a speed ends the flight of an engine that turns rotors by hinges; others warn.
   void update(const Sample& sample, PluginState state) const override {
     effectiveness_.follow(sample, state);
     auto memory = state.tail<kMemorySize>();
     if (!sample.kinematics.rotors.slower_than(surely_below_half_a_turn / sample.dt))
-      refuse_half_turns(sample);
+      look_for_half_turns(sample, memory[kAliased]);
     if (memory[kUnfelt] == 0 && config_.appendix && !sample.kinematics.v_WA_F.isZero(0)) {
       memory[kUnfelt] = 1;
       sample.warnings.push_back(
@@ -133,7 +134,9 @@ class AerodynamicPlugin final : public Plugin {
 
   void laws(ConstPluginState state, ForceLaws& laws) const override {
     laws.rotor_forces.push_back(law_in_force(state));
-    laws.quiet.push_back({fastest_, drag_may_drive()});
+    const double* const memory = state.data() + effectiveness_.size();
+    laws.quiet.push_back({fastest_, drag_may_drive(),
+                          follows_any_turn_ ? memory + kAliased : nullptr, memory + kDriven});
     if (drags_frame()) laws.frame_drags.push_back({config_.parasitic});
   }
 
@@ -167,13 +170,22 @@ class AerodynamicPlugin final : public Plugin {
     }
   }
 
-  void refuse_half_turns(const Sample& sample) const {
+  void look_for_half_turns(const Sample& sample, double& has_warned) const {
+    if (has_warned != 0) return;
     for (const std::size_t i : config_.rotors) {
-      if (std::abs(sample.kinematics.rotors.number(MotionRow::rate, i)) * sample.dt > M_PI) {
-        throw FlightError(sample.time, "rotor '" + joint_names_[i] +
-                                           "' turns more than half a turn per step; take a smaller "
-                                           "step or a slower command");
+      if (std::abs(sample.kinematics.rotors.number(MotionRow::rate, i)) * sample.dt <= M_PI)
+        continue;
+      const std::string what =
+          "rotor '" + joint_names_[i] + "' turns more than half a turn per step";
+      if (!follows_any_turn_) {
+        throw FlightError(sample.time, what + "; take a smaller step or a slower command");
       }
+      has_warned = 1;
+      sample.warnings.push_back(
+          what +
+          ", so that its angles from step to step do not show its sense of rotation; take a "
+          "smaller step if you need them");
+      return;
     }
   }
 
@@ -198,6 +210,7 @@ class AerodynamicPlugin final : public Plugin {
   std::vector<std::string> joint_names_;
   RotorForces law_;  ///< while all rotors are whole
   double fastest_;   ///< rate of a joint below which update() does not look at it [rad/s]
+  bool follows_any_turn_;
   Effectiveness effectiveness_;
   void (*add_)(const RotorForces&, const ShownMotion&);
 };

@@ -66,6 +66,8 @@ struct EngineInfo {
   std::string summary;  ///< one line
   /// A decay at rate r is followed without growing while r dt is below this.
   double largest_decay_per_step;
+  /// Whether a rotor may turn by any angle in a step. Otherwise it may turn by half a turn at most.
+  bool follows_any_turn;
 };
 
 /// The engines there are, the default first.

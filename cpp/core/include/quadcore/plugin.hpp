@@ -103,6 +103,8 @@ struct PluginSetup {
   /// makes it decay faster than this [1/s].
   double fastest_decay;
   double dt;  ///< length of the step [s]
+  /// Whether the engine lets a rotor turn by more than half a turn in a step.
+  bool follows_any_turn;
 };
 
 /// Makes plugins of one class.
