@@ -54,6 +54,23 @@ def test_a_unit_at_rest_feels_what_holds_it_up_in_every_engine(engine, hangar):
     assert np.allclose(row[1:7], felt, rtol=0, atol=0.05)
 
 
+@pytest.mark.parametrize("engine", ["gazebo11", "ode"])
+def test_in_the_engines_of_ode_a_unit_measures_the_rate_at_the_end_of_a_step(engine, hangar):
+    simulation, _ = spinning(hangar, {"rate": 1000}, engine)
+    state = simulation.state.copy()
+    state.angular_velocity = (8.0, -5.0, 3.0)  # about no axis of the inertia, so that it changes
+    simulation.set_state(state)
+    R_FS = Rotation.from_euler("xyz", RPY)
+    row = rows_of(simulation, "imu", 3)[-1]
+    w_end = R_FS.inv().apply(simulation.state.angular_velocity.copy())
+    simulation.set_state(state)
+    simulation.step(2)
+    w_begin = R_FS.inv().apply(simulation.state.angular_velocity.copy())
+    assert np.linalg.norm(row[1:4] - w_end) < 0.05 * np.linalg.norm(w_end - w_begin)
+    (unit,) = (plugin for plugin in simulation.plugins if plugin.filename == "libimu_plugin.so")
+    assert "in gazebo11 and ode it measures the rate at the end of each step" in unit.summary
+
+
 def still_unit(hangar, tags, seconds, seed=0, dt=0.01):
     """Errors of a unit that floats at rest: (n, 6)."""
     simulation = hangar(mounted("imu", {"rate": 1 / dt, **tags}), engine="eigen", dt=dt, seed=seed)

@@ -122,7 +122,12 @@ PluginDescriptor describe() {
   Triad::add_tags(tags, "accelerometer", "the specific force", "m/s^2");
   tags.push_back(sensing::Channel::delay_tag());
   tags.push_back(sensing::Channel::dropout_tag());
-  return {"an inertial measurement unit on a link of the frame", tags, {}, create<ImuPlugin>};
+  return {
+      "an inertial measurement unit on a link of the frame; in gazebo11 and ode it measures the "
+      "rate at the end of each step, with which the step turns the vehicle",
+      tags,
+      {},
+      create<ImuPlugin>};
 }
 
 }  // namespace
