@@ -57,7 +57,7 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
   const std::vector<Hinge> hinges = vehicle_->hinge_rows();
   const double max_correction = world.contact_max_correcting_vel;
   std::vector<double> damping_factors;
-  for (const Link& link : model_.links) damping_factors.push_back(link.tags.damping_factor);
+  for (const Link& link : bodies_.model.links) damping_factors.push_back(link.tags.damping_factor);
   gazebo_step_ = std::make_unique<GazeboStep>(
       bodies, hinges, sdf_order(bodies_.model),
       GazeboStep::Options{world.solver_iterations,
