@@ -65,6 +65,13 @@ def test_a_vehicle_of_which_gazebo_loses_a_rotor_is_refused(case):
     spawned(case, "ode").step(10)
 
 
+def test_self_collide_of_a_model_is_warned_of():
+    case = next(case for case in FLOWN if case.name == "C_selfcol_3100")
+    (warning,) = (w for w in spawned(case).warnings if "self_collide" in w)
+    assert "nothing that flies feels it: <self_collide> (" in warning
+    assert "model.urdf:25" in warning
+
+
 @pytest.mark.parametrize("name", ["F_onrotor_03", "F_twoblade_04c"])
 def test_fifty_sweeps_that_do_not_converge_are_told(name):
     case = next(case for case in FLOWN if case.name == name)
