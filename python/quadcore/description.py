@@ -8,9 +8,10 @@ from typing import Dict, Mapping, Optional, Sequence, Tuple, Union
 from . import _core, resources, xml_source
 from ._core import Document, InputError, Model, World
 from .arguments import LIST, NAME, OPTIONS, check, read_once
-from .files import is_file, shown
+from .files import shown
 from .forks import LOCK
 from .parameters import did_you_mean
+from .reading import check_regular, is_file
 
 _XACRO = (".xacro", ".gazebo")
 """Ends of names of files that are expanded; RotorS has the second."""
@@ -181,6 +182,8 @@ def _find(kind: str, name: str, folder: str) -> Path:
         return by_name[name]
     if path.is_dir():
         raise InputError(f"{name}: is a folder; name the {kind} file in it")
+    if path.exists():
+        check_regular(path)
     known = f"({', '.join(shipped) or 'none'})"
     near = did_you_mean(name, list(by_name))
     raise InputError(f"{name}: no such file, and no shipped {kind} of that name {known}{near}")

@@ -1,4 +1,4 @@
-"""Text files read and output files written, with one clear line when that fails."""
+"""Output files written, with one clear line when that fails."""
 
 from __future__ import annotations
 
@@ -6,70 +6,14 @@ import contextlib
 import glob
 import os
 import shutil
-import stat
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, Iterable, Iterator, Optional, Tuple, Union
+from typing import IO, Iterable, Iterator, Tuple, Union
 
 from . import interrupts
 from ._core import InputError
 
 _PART = ".part"
-
-
-def read_text(path: Path, largest: Optional[int] = None) -> str:
-    """Text of a UTF-8 file, without byte-order mark.
-
-    Parameters
-    ----------
-    path
-        The file.
-    largest
-        Bytes that it may have; None sets no limit.
-
-    Raises
-    ------
-    InputError
-        The file is missing, unreadable, too large or no text.
-    """
-    try:
-        check_regular(path)
-        with path.open("rb") as stream:
-            data = stream.read(-1 if largest is None else largest + 1)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
-    if largest is not None and len(data) > largest:
-        raise InputError(f"{path}: is larger than {largest / 1e6:g} MB, the most that is read")
-    try:
-        if b"\0" in data:
-            raise InputError(f"{path}: a binary file where text is expected")
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        raise InputError(f"{path}:{line}: not UTF-8 text; save the file as UTF-8") from error
-
-
-def is_file(path: Path) -> bool:
-    """Whether `path` is a regular file.
-
-    Raises
-    ------
-    InputError
-        Nobody can tell: a folder above may not be entered, or the name is too long.
-    """
-    try:
-        return stat.S_ISREG(path.stat().st_mode)
-    except (FileNotFoundError, NotADirectoryError, ValueError):
-        return False
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
-
-
-def check_regular(path: Path) -> None:
-    """Raise `InputError` for a pipe or a device, which could be waited for without end."""
-    mode = path.stat().st_mode
-    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
-        raise InputError(f"{path}: is no regular file; save what it gives in one")
 
 
 def shown(name: Union[str, Path]) -> str:

@@ -12,9 +12,10 @@ from pathlib import Path
 from typing import Any, Dict, Mapping, Optional, Union
 
 from . import _core, resources
-from .files import atomic_write, is_file, text_bytes
+from .files import atomic_write, text_bytes
 from .forks import LOCK
 from .law import Law
+from .reading import is_file
 from .timing import DELAY, RATE, checked
 
 

@@ -18,8 +18,9 @@ import yaml
 
 from . import resources
 from ._core import Document, InputError, Model, read_model
-from .files import is_file, shown
+from .files import shown
 from .parameters import did_you_mean
+from .reading import check_regular, is_file
 from .scenario_events import Event, events_of
 from .yaml_nodes import line_of, pairs, root, scalar
 
@@ -163,6 +164,8 @@ def _find(name: str) -> Path:
     known = resources.shipped("config/scenarios")
     if name in known:
         return known[name]
+    if Path(name).exists():
+        check_regular(Path(name))
     names = [NONE, *known]
     near = did_you_mean(name, names)
     raise InputError(

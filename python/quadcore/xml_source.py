@@ -7,7 +7,7 @@ from typing import NamedTuple, Sized
 from xml.parsers import expat
 
 from ._core import Document, InputError
-from .files import read_text
+from .reading import read_text
 
 # The core's limits.
 LARGEST = Document.largest

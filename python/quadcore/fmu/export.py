@@ -16,6 +16,7 @@ from .. import __version__, _core
 from .._core import Document, InputError
 from ..files import atomic_write
 from ..flight_plan import FlightPlan
+from ..reading import read_bytes
 from ..simulation import Simulation
 from .description import description
 from .libraries import Libraries
@@ -25,6 +26,7 @@ _VERSION = 2  # of flight.yaml, which cpp/fmu/flight_file.cpp reads
 _OPTIONS = (
     "engine", "world", "dt", "seed", "parameters", "xacro_args", "spawn", "ignore", "scenario",
 )  # fmt: skip
+_LARGEST = 10**8  # bytes of a file that a tag names, as in the core
 _LONG_AGO = (1980, 1, 1, 0, 0, 0)  # the same FMU, the same bytes
 
 
@@ -100,7 +102,7 @@ def _files(simulation: Simulation) -> Iterator[Tuple[str, Tuple[str, bytes]]]:
         for tag in plugin.parameters:
             if tag.file:
                 key = f"{plugin.name}.{tag.name}"
-                yield key, (f"{key}{Path(tag.file).suffix}", Path(tag.file).read_bytes())
+                yield key, (f"{key}{Path(tag.file).suffix}", read_bytes(Path(tag.file), _LARGEST))
 
 
 def _flight(

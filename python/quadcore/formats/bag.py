@@ -12,7 +12,8 @@ import numpy as np
 from .. import interrupts
 from .._core import InputError, QuadcoreError, log_columns
 from ..extras import needed
-from ..files import atomic_write, beside, check_regular, unwritable
+from ..files import atomic_write, beside, unwritable
+from ..reading import check_regular
 from ..rotation import roll_pitch_yaw
 from .at_the_end import AtTheEnd
 from .bag_messages import ARRAY, Messages

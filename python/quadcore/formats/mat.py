@@ -11,7 +11,8 @@ from .._core import InputError, log_columns
 from ..files import atomic_write
 from ..forks import LOCK
 from .mat_tables import listed, read_table, together
-from .mat_variables import Value, load
+from .mat_types import Value
+from .mat_variables import load
 from .rows import LogRows, Table, check_log_columns, check_log_rows, split_columns
 
 _OF_PATH = ("t", "x", "y", "z", "yaw")

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Any, Callable, Dict, Mapping, Sequence
+from typing import IO, Any, Dict
 
 import h5py
 import numpy as np
 
-from .mat_variables import Held, Value
+from .mat_types import Choose, Held, Value
 
 _OF_MATLAB = "#"  # begins the names of groups for its own use
 
 
-def load_73(path: Path, choose: Callable[[Mapping[str, Held]], Sequence[str]]) -> Dict[str, Value]:
+def load_73(stream: IO[bytes], choose: Choose) -> Dict[str, Value]:
     """Load the variables that `choose` picks; raises as h5py does."""
-    with h5py.File(path, "r") as file:
+    with h5py.File(stream, "r") as file:
         items = {name: _content(item) for name, item in file.items() if name[0] != _OF_MATLAB}
         held = {name: _held(item) for name, item in items.items()}
         return {name: _value(file, items[name]) for name in choose(held)}

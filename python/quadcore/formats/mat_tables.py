@@ -8,7 +8,8 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence
 import numpy as np
 
 from .._core import InputError
-from .mat_variables import Held, Value, load
+from .mat_types import Held, Value
+from .mat_variables import load
 
 
 def read_table(path: Path, names: Sequence[str], needed: int, expected: str) -> np.ndarray:

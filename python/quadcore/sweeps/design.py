@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 from .._core import InputError
-from ..files import read_text
+from ..reading import read_text
 from ..study.axes import Axis, axes_of, parse_axis
 from . import distributions
 

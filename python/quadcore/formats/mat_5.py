@@ -1,0 +1,162 @@
+"""Variables of MATLAB files of versions 5, 6 and 7.
+
+scipy's reader trusts the sizes and types in a file, and ends the process where they are wrong. This
+one checks each of them before use.
+"""
+
+from __future__ import annotations
+
+import math
+import zlib
+from typing import Dict, List, NamedTuple, Tuple
+
+import numpy as np
+
+from .mat_elements import COMPRESSED, HEADER, MATRIX, Elements, byte_order
+from .mat_types import Choose, Held, Value, complex_of
+
+_LARGEST = 10**9  # bytes of a variable
+_DEEPEST = 32  # levels of cells and structs in each other
+_BEGINNING = 4096  # bytes, which hold the dimensions and the name of any variable
+
+_CLASSES = {
+    1: "cell",
+    2: "struct",
+    3: "object",
+    4: "char",
+    5: "sparse",
+    6: "double",
+    7: "single",
+    8: "int8",
+    9: "uint8",
+    10: "int16",
+    11: "uint16",
+    12: "int32",
+    13: "uint32",
+    14: "int64",
+    15: "uint64",
+    16: "function",
+    17: "opaque",
+}
+_UNREAD = ("sparse", "function", "opaque")
+_LOGICAL, _COMPLEX = 0x200, 0x800
+
+
+def is_5(data: bytes) -> bool:
+    """Whether this is such a file."""
+    return byte_order(data) is not None
+
+
+def load_5(data: bytes, choose: Choose) -> Dict[str, Value]:
+    """Load the variables that `choose` picks; raises ValueError where the file is damaged."""
+    elements = Elements(memoryview(data)[HEADER:], byte_order(data) or "<")
+    found: Dict[str, Tuple[int, Elements]] = {}
+    held: Dict[str, Held] = {}
+    while elements:
+        kind, content = elements.take()
+        matrix = _begin(_inflated(content, _BEGINNING) if kind == COMPRESSED else content)
+        if matrix.name:  # only what MATLAB's objects share has none
+            found[matrix.name] = kind, Elements(content.data, content.order)
+            held[matrix.name] = Held(matrix.shape, matrix.kind)
+    return {name: _variable(*found[name]) for name in choose(held)}
+
+
+def _variable(kind: int, content: Elements) -> Value:
+    return _value(_inflated(content, _LARGEST) if kind == COMPRESSED else content)
+
+
+def _inflated(content: Elements, most: int) -> Elements:
+    """Decompress a variable, or its beginning of `most` bytes."""
+    stream = zlib.decompressobj()
+    try:
+        head = Elements(memoryview(stream.decompress(content.data, 8)), content.order)
+        size = head.take_size(MATRIX)
+        if size > _LARGEST:
+            raise ValueError(f"a variable of {size} bytes; at most {_LARGEST} are read")
+        data = stream.decompress(stream.unconsumed_tail, min(size, most)) if size else b""
+        if size <= most:
+            stream.decompress(stream.unconsumed_tail, 1)  # its end, and with it the checksum
+            if len(data) < size or not stream.eof:
+                raise ValueError("a compressed variable is not whole")
+    except zlib.error as error:
+        raise ValueError(f"a compressed variable is damaged ({error})") from error
+    return Elements(memoryview(data), content.order)
+
+
+class _Matrix(NamedTuple):
+    """A variable, or what a cell or a field holds, up to its content."""
+
+    kind: str
+    shape: Tuple[int, ...]
+    name: str
+    is_complex: bool
+    content: Elements
+
+
+def _begin(parts: Elements) -> _Matrix:
+    flags = parts.take_numbers("u4")
+    kind = _CLASSES.get(int(flags[0]) & 0xFF) if len(flags) == 2 else None
+    if kind is None:
+        raise ValueError("a variable is of no class of MATLAB")
+    shape: Tuple[int, ...] = (1, 1)
+    if kind != "opaque":
+        shape = tuple(parts.take_numbers("i4").tolist())
+    if not 2 <= len(shape) <= 32 or min(shape) < 0:
+        raise ValueError(f"a variable has the dimensions {shape}")
+    name = parts.take_text()
+    is_logical, is_complex = (bool(flags[0] & flag) for flag in (_LOGICAL, _COMPLEX))
+    return _Matrix("logical" if is_logical else kind, shape, name, is_complex, parts)
+
+
+def _value(parts: Elements, level: int = 0) -> Value:
+    if not parts:
+        return np.empty((0, 0))
+    if level > _DEEPEST:
+        raise ValueError(f"cells and structs are nested deeper than {_DEEPEST} levels")
+    matrix = _begin(parts)
+    if matrix.kind in _UNREAD:
+        return f"of class {matrix.kind}"
+    if matrix.kind == "char":
+        text = parts.take_text()
+        return text if matrix.shape[0] == 1 else ""
+    if matrix.kind == "cell":
+        return _contents(matrix, 1, level)
+    if matrix.kind in ("struct", "object"):
+        return _structs(matrix, level)
+    numbers = _array(matrix)
+    return complex_of(numbers, _array(matrix)) if matrix.is_complex else numbers
+
+
+def _array(matrix: _Matrix) -> np.ndarray:
+    """Take real numbers, in the type in which they are held: often a smaller one than the class."""
+    numbers = matrix.content.take_numbers()
+    if len(numbers) != math.prod(matrix.shape):
+        raise ValueError(f"{len(numbers)} numbers for the dimensions {matrix.shape}")
+    return numbers.reshape(matrix.shape, order="F")
+
+
+def _contents(matrix: _Matrix, each: int, level: int) -> List[Value]:
+    """Take what so many variables for each element hold."""
+    count = each * math.prod(matrix.shape)
+    if 8 * count > len(matrix.content.data):  # the tag alone has 8 bytes
+        raise ValueError(f"{len(matrix.content.data)} bytes hold no {count} variables")
+    return [_value(matrix.content.take_matrix(), level + 1) for _ in range(count)]
+
+
+def _structs(matrix: _Matrix, level: int) -> Value:
+    """Take a struct, or an array of them."""
+    parts = matrix.content
+    if matrix.kind == "object":
+        parts.take_text()  # the name of its class
+    lengths = parts.take_numbers("i4")
+    names = parts.take_bytes()
+    if len(lengths) != 1 or lengths[0] < 1 or len(names) % lengths[0]:
+        raise ValueError("a struct has damaged names of fields")
+    width = int(lengths[0])
+    fields = [names[i : i + width].split(b"\0")[0].decode() for i in range(0, len(names), width)]
+    values = _contents(matrix, len(fields), level)
+    if not fields:
+        return {}
+    starts = range(0, len(values), len(fields))
+    structs: List[Value] = [dict(zip(fields, values[i : i + len(fields)])) for i in starts]
+    return structs[0] if len(structs) == 1 else structs

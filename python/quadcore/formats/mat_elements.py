@@ -1,0 +1,108 @@
+"""The data elements that MATLAB files of versions 5, 6 and 7 consist of."""
+
+from __future__ import annotations
+
+import struct
+from typing import Optional, Tuple
+
+import numpy as np
+
+HEADER = 128
+"""Bytes before the first element."""
+
+MATRIX, COMPRESSED = 14, 15
+
+_NUMBERS = {
+    1: "i1",
+    2: "u1",
+    3: "i2",
+    4: "u2",
+    5: "i4",
+    6: "u4",
+    7: "f4",
+    9: "f8",
+    12: "i8",
+    13: "u8",
+}
+_CODECS = {1: "utf-8", 2: "utf-8", 4: "utf-16", 16: "utf-8", 17: "utf-16", 18: "utf-32"}
+_ORDERS = {b"\x00\x01IM": "<", b"\x01\x00MI": ">"}  # the version and the order end the header
+
+
+def byte_order(data: bytes) -> Optional[str]:
+    """Give "<" or ">", or None if this is no such file."""
+    return _ORDERS.get(data[HEADER - 4 : HEADER])
+
+
+class Elements:
+    """Elements that follow each other, and are taken one by one.
+
+    Each of the methods raises ValueError if the next element is damaged or of another type.
+    """
+
+    def __init__(self, data: memoryview, order: str) -> None:
+        self.data, self.order = data, order
+        self._at = 0
+
+    def __bool__(self) -> bool:
+        return self._at < len(self.data)
+
+    def take(self) -> Tuple[int, Elements]:
+        """Take the type and the content of the next element."""
+        kind, size, begin, end = self._tag()
+        if begin + size > len(self.data):
+            raise ValueError(f"an element of {size} bytes is longer than what holds it")
+        self._at = min(end, len(self.data))  # the padding of the last one may be missing
+        return kind, Elements(self.data[begin : begin + size], self.order)
+
+    def take_size(self, expected: int) -> int:
+        """Take the tag of an element of this type, whose content follows elsewhere."""
+        kind, size, self._at, _ = self._tag()
+        if kind != expected:
+            raise ValueError(f"an element of type {kind} instead of {expected}")
+        return size
+
+    def take_matrix(self) -> Elements:
+        """Take the content of a matrix."""
+        kind, content = self.take()
+        if kind != MATRIX:
+            raise ValueError(f"an element of type {kind} instead of a matrix")
+        return content
+
+    def take_bytes(self) -> bytes:
+        """Take bytes of characters."""
+        kind, content = self.take()
+        if kind not in _CODECS:
+            raise ValueError(f"an element of type {kind} instead of characters")
+        return bytes(content.data)
+
+    def take_text(self) -> str:
+        """Take a text."""
+        kind, content = self.take()
+        codec = _CODECS.get(kind)
+        if codec is None:
+            raise ValueError(f"an element of type {kind} instead of characters")
+        suffix = {"<": "-le", ">": "-be"}[self.order] if codec != "utf-8" else ""
+        return bytes(content.data).decode(codec + suffix)
+
+    def take_numbers(self, expected: Optional[str] = None) -> np.ndarray:
+        """Take numbers, shape (n,), of a type such as "i4", or of any."""
+        kind, content = self.take()
+        held = _NUMBERS.get(kind)
+        if held is None or expected not in (None, held):
+            wanted = np.dtype(expected).name if expected else "numbers"
+            raise ValueError(f"an element of type {kind} instead of {wanted}")
+        return np.frombuffer(content.data, f"{self.order}{held}")
+
+    def _tag(self) -> Tuple[int, int, int, int]:
+        """Give type, size, and where the content begins and the next element does."""
+        at = self._at
+        if at + 8 > len(self.data):
+            raise ValueError("it ends within a tag")
+        kind, size = struct.unpack_from(f"{self.order}2I", self.data, at)
+        if kind >> 16:  # a small one: its content is in the tag
+            kind, size = kind & 0xFFFF, kind >> 16
+            if size > 4:
+                raise ValueError(f"a small element of {size} bytes; it has room for 4")
+            return kind, size, at + 4, at + 8
+        padding = 0 if kind in (MATRIX, COMPRESSED) else -size % 8
+        return kind, size, at + 8, at + 8 + size + padding
