@@ -166,6 +166,146 @@ def test_steps_of_a_client_that_has_gone_are_not_flown(served):
         np.testing.assert_array_equal(client.step(SPEEDS[0], 3), in_process()[0])
 
 
+def test_steps_of_a_client_that_sent_more_and_went_are_not_flown(served):
+    port, said = served
+    with socket.create_connection(("127.0.0.1", port)) as gone:
+        gone.sendall(struct.pack("<3d", 2, 1, 1e9) + b"x")
+    assert ends(said)
+    with Client(port) as client:
+        np.testing.assert_array_equal(client.step(SPEEDS[0], 3), in_process()[0])
+
+
+@pytest.fixture
+def impatient():
+    """As `served`, with a short time-out."""
+    said = []
+    with Server(qc.Simulation("quadrotor", engine="eigen"), timeout=0.2) as server:
+        thread = threading.Thread(target=server.serve, args=(said.append,), daemon=True)
+        thread.start()
+        yield int(server.address.rpartition(":")[2]), said
+    thread.join(60)
+    assert not thread.is_alive()
+
+
+@pytest.mark.parametrize(
+    ("sent", "why"),
+    [
+        (b"", "has sent nothing for 0.2 s"),
+        (b"half", "stopped within a message for 0.2 s"),
+        (message(2, 5, 1), "stopped within a message for 0.2 s"),
+    ],
+)
+def test_a_silent_client_is_dropped_and_the_next_one_served(impatient, sent, why):
+    port, said = impatient
+    with socket.create_connection(("127.0.0.1", port)) as silent:
+        silent.sendall(sent)
+        with Client(port) as client:
+            client.step(SPEEDS[0])
+        assert silent.recv(1) == b""
+    assert said == [f"client 1: {why}"]
+
+
+def test_a_client_that_reads_no_answer_is_dropped(impatient):
+    port, said = impatient
+    with socket.create_connection(("127.0.0.1", port)) as deaf:
+        deaf.settimeout(60)
+        with pytest.raises(ConnectionError):
+            while True:
+                deaf.sendall(message(1, 0) * 1000)
+    assert ends(said) and said == ["client 1: has read no answer for 0.2 s"]
+
+
+def test_a_client_may_think_for_as_long_as_nobody_else_waits(impatient):
+    port, said = impatient
+    with Client(port) as thinking:
+        first = thinking.step(SPEEDS[0])
+        threading.Event().wait(0.5)  # longer than the time-out
+        assert thinking.step(steps=0) == first
+        with Client(port) as client:
+            client.step(SPEEDS[0])
+        with pytest.raises((ConnectionError, ServerError)):
+            thinking.step(steps=0)
+    assert said == ["client 1: has sent nothing for 0.2 s"]
+
+
+def test_a_thinking_client_outlives_the_end_of_the_server():
+    server = Server(qc.Simulation("quadrotor", engine="eigen"), timeout=0.05)
+    thread = threading.Thread(target=server.serve, args=(print,), daemon=True)
+    thread.start()
+    with Client(int(server.address.rpartition(":")[2])) as client:
+        server.close()
+        threading.Event().wait(0.2)  # longer than the time-out
+        client.step(SPEEDS[0])
+    thread.join(60)
+    assert not thread.is_alive()
+
+
+def test_a_time_out_is_positive():
+    for timeout in (0, -1, float("nan"), float("inf")):
+        with pytest.raises(qc.InputError, match="the time-out is"):
+            Server(qc.Simulation("quadrotor", engine="eigen"), timeout=timeout)
+
+
+class Disk:
+    """Takes so many rows, and is full then."""
+
+    def __init__(self, room):
+        self.room, self.wrenches = room, False
+
+    def receive(self, table, wrenches):
+        self.room -= len(table)
+        if self.room < 0:
+            raise qc.InputError("log.csv: cannot be written: No space left on device")
+
+    def close(self):
+        pass
+
+
+def test_a_flight_whose_log_is_not_written_further_has_failed():
+    said = []
+    disks = [Disk(10), Disk(1000)]
+    with Server(qc.Simulation("quadrotor", engine="eigen"), record=lambda: disks.pop(0)) as server:
+        thread = threading.Thread(target=server.serve, args=(said.append, 1))
+        thread.start()
+        with Client(int(server.address.rpartition(":")[2])) as client:
+            before = client.step(SPEEDS[0], 5)
+            for _ in range(2):
+                with pytest.raises(ServerError, match="No space left") as refused:
+                    client.step(SPEEDS[0], 20)
+                assert refused.value.failed
+            client.reset()
+            assert client.step(SPEEDS[0], 5) == before
+        thread.join(60)
+    assert said == ["client 1: log.csv: cannot be written: No space left on device"]
+
+
+def test_a_full_disk_refuses_the_first_step_and_changes_nothing(tmp_path):
+    disks = [Disk(0), Disk(1000)]
+    with Server(qc.Simulation("quadrotor", engine="eigen"), record=lambda: disks.pop(0)) as server:
+        thread = threading.Thread(target=server.serve, args=(print, 1))
+        thread.start()
+        with Client(int(server.address.rpartition(":")[2])) as client:
+            with pytest.raises(ServerError, match="No space left") as refused:
+                client.step(SPEEDS[0], 5)
+            assert not refused.value.failed and client.step(steps=0)[0] == 0
+            client.step(SPEEDS[0], 5)
+        thread.join(60)
+
+
+def test_a_full_disk_is_told_to_the_client_of_the_command(tmp_path):
+    log = tmp_path / "log.csv"
+    log.symlink_to("/dev/full")
+    command = [sys.executable, "-m", "quadcore", "serve", "quadrotor", "--engine", "eigen"]
+    server = subprocess.Popen([*command, "--log", log], stdout=subprocess.PIPE, text=True)
+    port = int(server.stdout.readline().rpartition(":")[2])
+    with Client(port) as client:
+        with pytest.raises(ServerError, match=r"log\.csv: cannot be written: No space left"):
+            client.step(SPEEDS[0])
+        assert client.step(steps=0)[0] == 0
+    server.send_signal(signal.SIGTERM)
+    assert server.wait() == 143
+
+
 def test_a_flight_that_fails_stands_until_a_reset(served):
     port, _ = served
     with Client(port) as client:
@@ -252,6 +392,21 @@ def test_the_command_serves_logs_and_ends_at_a_signal(suffix, tmp_path):
         log = qc.Log.of_file(tmp_path / name)
         np.testing.assert_allclose(log.time, np.arange(5) * 0.005, atol=1e-15)
         assert tuple(log.table[-1]) == row
+
+
+def test_logs_that_are_there_are_not_written_over_by_later_flights(tmp_path):
+    (tmp_path / "flown-2.csv").write_text("of somebody else")
+    command = [sys.executable, "-m", "quadcore", "serve", "quadrotor", "--engine", "eigen"]
+    options = ["--log", str(tmp_path / "flown.csv")]
+    server = subprocess.Popen([*command, *options], stdout=subprocess.PIPE, text=True)
+    port = int(server.stdout.readline().rpartition(":")[2])
+    for _ in range(2):
+        with Client(port) as client:
+            client.step(SPEEDS[0])
+    server.send_signal(signal.SIGTERM)
+    assert server.wait() == 143
+    assert sorted(os.listdir(tmp_path)) == ["flown-2.csv", "flown-3.csv", "flown.csv"]
+    assert (tmp_path / "flown-2.csv").read_text() == "of somebody else"
 
 
 def test_a_client_needs_the_standard_library_alone():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import os
 from pathlib import Path
 from typing import Any, Sequence
 
@@ -12,6 +13,7 @@ from ..flight_plan import FlightPlan
 from ..formats.rows import LogFile
 from ..log import check_log_path, log_file
 from ..serve import Server
+from ..serve.server import TIMEOUT
 from . import options, terminal, values
 
 
@@ -39,6 +41,14 @@ def register(commands: Any) -> None:
         help="write the log of the first flight here, .csv, .mat or .bag, of others to NAME-2 ...",
     )
     options.add_log_topics(parser)
+    parser.add_argument(
+        "--timeout",
+        metavar="S",
+        type=values.positive,
+        default=TIMEOUT,
+        help=f"drop a client that is silent for S seconds before its first request, within a "
+        f"message, or while another one waits ({TIMEOUT:g})",
+    )
 
 
 def serve(arguments: argparse.Namespace) -> None:
@@ -56,14 +66,16 @@ def serve(arguments: argparse.Namespace) -> None:
     if arguments.log is not None:
         check_log_path(arguments.log)
         record = _Logs(arguments.log, columns_of(simulation, topics), simulation.ignored).begin
-    with Server(simulation, address, topics, record, arguments.log_every) as server:
+    with Server(
+        simulation, address, topics, record, arguments.log_every, arguments.timeout
+    ) as server:
         if not arguments.quiet:
             print(f"serving {simulation.model.name} at {server.address}", flush=True)
         server.serve(terminal.say)
 
 
 class _Logs:
-    """A file for each flight: NAME.csv, NAME-2.csv ..."""
+    """A file for each flight: NAME.csv, NAME-2.csv ...; numbers that are taken are left out."""
 
     def __init__(self, first: Path, columns: Sequence[str], ignored: Sequence[str]) -> None:
         self._first, self._columns, self._ignored = first, columns, ignored
@@ -72,8 +84,11 @@ class _Logs:
     def begin(self) -> LogFile:
         """Open the next."""
         self._begun += 1
-        name = self._first.name if self._begun == 1 else self._numbered()
-        return log_file(self._first.with_name(name), self._columns, (), self._ignored)
+        path = self._first if self._begun == 1 else self._numbered()
+        while self._begun > 1 and os.path.lexists(path):  # of an earlier server, perhaps
+            self._begun += 1
+            path = self._numbered()
+        return log_file(path, self._columns, (), self._ignored)
 
-    def _numbered(self) -> str:
-        return f"{self._first.stem}-{self._begun}{self._first.suffix}"
+    def _numbered(self) -> Path:
+        return self._first.with_name(f"{self._first.stem}-{self._begun}{self._first.suffix}")

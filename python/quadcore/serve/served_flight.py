@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Callable, List, Optional, Sequence
 
 import numpy as np
@@ -38,6 +39,7 @@ class ServedFlight:
         self._check_there = check_there
         self._recorder: Optional[Recorder] = None
         self._failure: Optional[_core.FlightError] = None
+        self._unwritten: Optional[_core.InputError] = None
         self._begin(None)
 
     def step(self, numbers: Sequence[float]) -> List[float]:
@@ -53,7 +55,7 @@ class ServedFlight:
         InputError
             They are at fault; nothing has changed.
         FlightError
-            The flight failed, now or before.
+            The flight failed, now or before, or its log cannot be written further.
         """
         if not numbers:
             raise _core.InputError("a step needs the number of steps, and a command or none")
@@ -83,19 +85,37 @@ class ServedFlight:
         ----------
         numbers
             A seed, or nothing: that of the flight before.
+
+        Raises
+        ------
+        FlightError
+            The log of the flight before cannot be written.
         """
         if len(numbers) > 1:
             raise _core.InputError(f"a reset takes a seed or nothing, not {len(numbers)} numbers")
         seed = _whole(numbers[0], "the seed", 2**53) if numbers else None
-        self.close()
+        before = self._unwritten
+        self._finish()
         self._begin(seed)
+        if self._unwritten is not before:
+            self._failure = _core.FlightError(f"the log of the flight before: {self._unwritten}")
+            raise self._failure
         return self._row
 
     def close(self) -> None:
-        """Finish what is recorded."""
+        """Finish what is recorded; raises `InputError` if a log is not whole."""
+        self._finish()
+        if self._unwritten is not None:
+            raise self._unwritten
+
+    def _finish(self) -> None:
         recorder, self._recorder = self._recorder, None
-        if recorder is not None:
+        if recorder is None:
+            return
+        try:
             recorder.close()
+        except _core.InputError as error:
+            self._unwritten = self._unwritten or error
 
     def _begin(self, seed: Optional[int]) -> None:
         self._simulation.reset(seed)
@@ -116,14 +136,25 @@ class ServedFlight:
             self._first = logged, wrenches
             return
         if self._recorder is not None and len(logged):
-            self._recorder.receive(logged, wrenches)
+            try:
+                self._recorder.receive(logged, wrenches)
+            except _core.InputError as error:
+                self._unwritten = error
+                self._finish()
+                raise _core.FlightError(f"{error}; the flight ends here") from error
 
     def _record_from_the_start(self) -> None:
         """Open what records, unless it is open: a flight that is not flown leaves nothing."""
         if self._record is None or self._recorder is not None:
             return
-        self._recorder = self._record()
-        self._recorder.receive(*self._first)
+        recorder = self._record()
+        try:
+            recorder.receive(*self._first)
+        except _core.InputError:
+            with suppress(_core.InputError):
+                recorder.close()
+            raise
+        self._recorder = recorder
 
 
 def _whole(number: float, what: str, largest: int) -> int:

@@ -7,7 +7,6 @@ import os
 import socket
 import stat
 from contextlib import suppress
-from functools import partial
 from typing import Callable, List, Optional, Sequence, Tuple, Union
 
 from .. import _core
@@ -15,8 +14,14 @@ from ..flight import columns_of
 from ..formats.rows import Recorder
 from ..simulation import Simulation
 from . import protocol
+from .connection import Connection
 from .protocol import ProtocolError, Reply, Request
 from .served_flight import ServedFlight
+
+TIMEOUT = 60.0
+"""Seconds that a client may be silent, unless another number is given."""
+
+_LONGEST = 1e6  # s
 
 
 class Server:
@@ -34,6 +39,8 @@ class Server:
         Called as each flight begins; returns what takes its rows.
     log_every : int
         Steps between recorded rows.
+    timeout : float
+        Seconds after which a silent client is dropped; see `Connection`.
 
     Attributes
     ----------
@@ -43,7 +50,7 @@ class Server:
     Raises
     ------
     InputError
-        The address is taken, or a topic is none.
+        The address is taken, a topic is none, or the time-out is not positive.
     """
 
     def __init__(
@@ -53,7 +60,11 @@ class Server:
         topics: Sequence[str] = (),
         record: Optional[Callable[[], Recorder]] = None,
         log_every: int = 1,
+        timeout: float = TIMEOUT,
     ) -> None:
+        if not 0 < timeout <= _LONGEST:
+            raise _core.InputError(f"the time-out is {timeout:g} s; give 0 to {_LONGEST:g}")
+        self._timeout = timeout
         self._simulation, self._topics = simulation, list(topics)
         self._record, self._log_every = record, log_every
         self._start = simulation.snapshot()  # whose seed is each client's, whatever others asked
@@ -71,7 +82,7 @@ class Server:
         Parameters
         ----------
         tell
-            Called with a line about each client whose messages are none.
+            Called with a line about each client that was dropped, or whose log is not whole.
         """
         served = 0
         while served != clients:
@@ -84,7 +95,7 @@ class Server:
             served += 1
             with connection:
                 try:
-                    self._serve(connection)
+                    self._serve(Connection(connection, self._socket, self._timeout))
                 except (ProtocolError, ConnectionError, _core.InputError) as error:
                     tell(f"client {served}: {error}")
 
@@ -104,27 +115,25 @@ class Server:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def _serve(self, connection: socket.socket) -> None:
-        if connection.family != socket.AF_UNIX:
-            connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    def _serve(self, client: Connection) -> None:
         self._simulation.restore(self._start)
         flown = ServedFlight(
             self._simulation,
             self._topics,
             self._record,
             self._log_every,
-            partial(_check_there, connection),
+            client.check_there,
         )
         try:
             while True:
                 try:
-                    kind, numbers = protocol.read(connection.recv)
+                    kind, numbers = client.receive()
                 except EOFError:
                     return
                 except ProtocolError as error:
-                    connection.sendall(_text(Reply.REFUSED, str(error)))
+                    client.send(_text(Reply.REFUSED, str(error)))
                     raise
-                connection.sendall(self._answer(flown, Request(kind), numbers))
+                client.send(self._answer(flown, Request(kind), numbers))
         finally:
             flown.close()
 
@@ -150,16 +159,6 @@ class Server:
             )
         simulation = self._simulation
         return [protocol.VERSION, simulation.dt, simulation.command_width, len(self.columns)]
-
-
-def _check_there(connection: socket.socket) -> None:
-    """Raise `ConnectionError` if the client has closed its end."""
-    try:
-        there = connection.recv(1, socket.MSG_PEEK | socket.MSG_DONTWAIT)
-    except BlockingIOError:
-        return
-    if not there:
-        raise ConnectionError("has gone before its steps were flown")
 
 
 def _text(reply: Reply, text: str) -> bytes:

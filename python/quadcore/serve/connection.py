@@ -1,0 +1,92 @@
+"""The connection to a client, which may not keep others out by its silence."""
+
+from __future__ import annotations
+
+import select
+import socket
+import time
+from typing import Tuple
+
+from . import protocol
+
+_GONE = select.POLLRDHUP | select.POLLHUP | select.POLLERR
+
+
+class Connection:
+    """Messages from and to one client.
+
+    Parameters
+    ----------
+    client : socket
+        What it is connected by.
+    others : socket
+        Where other clients wait.
+    timeout : float
+        Longest silence, s: before the first message, within any, of a client that does not read its
+        answers, and between messages while another client waits.
+
+    Raises
+    ------
+    ConnectionError
+        By each method: the client has gone, or has been silent for too long.
+    """
+
+    def __init__(self, client: socket.socket, others: socket.socket, timeout: float) -> None:
+        self._client, self._others, self._timeout = client, others, timeout
+        self._has_asked = False
+        if client.family != socket.AF_UNIX:
+            client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+
+    def receive(self) -> Tuple[int, Tuple[float, ...]]:
+        """Wait for a message; returns its kind and numbers, and raises as `protocol.read` does."""
+        self._wait()
+        end = time.monotonic() + self._timeout
+
+        def receive(count: int) -> bytes:
+            self._client.settimeout(max(end - time.monotonic(), 1e-3))
+            return self._client.recv(count)
+
+        try:
+            message = protocol.read(receive)
+        except socket.timeout:
+            raise ConnectionError(f"stopped within a message for {self._timeout:g} s") from None
+        self._has_asked = True
+        return message
+
+    def send(self, message: bytes) -> None:
+        """Send a message."""
+        self._client.settimeout(self._timeout)
+        try:
+            self._client.sendall(message)
+        except socket.timeout:
+            raise ConnectionError(f"has read no answer for {self._timeout:g} s") from None
+
+    def check_there(self) -> None:
+        """Raise if the client has closed its end, whatever it has sent before."""
+        poll = select.poll()
+        poll.register(self._client, _GONE)
+        if poll.poll(0):
+            raise ConnectionError("has gone before its steps were flown")
+
+    def _wait(self) -> None:
+        """Wait until a message begins, or the client closes its end."""
+        poll = select.poll()
+        poll.register(self._client, select.POLLIN)
+        if poll.poll(1000 * self._timeout):
+            return
+        if self._has_asked and self._comes_first(poll):
+            return
+        raise ConnectionError(f"has sent nothing for {self._timeout:g} s")
+
+    def _comes_first(self, poll: select.poll) -> bool:
+        """Wait on; whether the client sends something before another one waits."""
+        others = self._others.fileno()
+        if others >= 0:  # else the server is closed, and nobody else can come
+            poll.register(others, select.POLLIN)
+        while True:
+            ready = dict(poll.poll())
+            if ready.pop(self._client.fileno(), 0):
+                return True
+            if ready.get(others, 0) & select.POLLIN:
+                return False
+            poll.unregister(others)
