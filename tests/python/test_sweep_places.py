@@ -70,6 +70,69 @@ def test_an_executor_that_breaks_is_one_line_and_its_rows_stay():
     assert len(lines("out")) == 201
 
 
+class Long:
+    """A function whose pickle is longer than what fits into a pipe."""
+
+    def __init__(self):
+        self.ballast = b"x" * 10**6
+
+    def __call__(self, point):
+        return point["a"]
+
+
+BROKEN = """
+import concurrent.futures, os, signal
+import quadcore as qc
+from test_sweep_places import Long
+
+processes = concurrent.futures.ProcessPoolExecutor(1)
+with processes:
+    def fell(done, _):
+        if done == 1:
+            for pid in processes._processes:
+                os.kill(pid, signal.SIGKILL)
+    try:
+        qc.sweep(function=Long(), vary={"a": list(range(40))}, executor=processes, progress=fell)
+    except qc.QuadcoreError as error:
+        print(error)
+"""
+
+
+def test_an_executor_that_breaks_under_a_full_pipe_does_not_hang():
+    paths = [str(Path(__file__).parent), *filter(None, [os.environ.get("PYTHONPATH")])]
+    ran = subprocess.run(
+        [sys.executable, "-c", BROKEN],
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)},
+        stdout=subprocess.PIPE,
+        text=True,
+        timeout=120,
+    )
+    assert ran.returncode == 0 and "the executor failed (BrokenProcessPool" in ran.stdout
+
+
+def test_a_pool_is_given_few_tasks_at_a_time():
+    class Counting(concurrent.futures.ThreadPoolExecutor):
+        under_way = most = 0
+
+        def submit(self, *task):
+            self.under_way += 1
+            self.most = max(self.most, self.under_way)
+            return super().submit(*task)
+
+    with Counting(2) as threads:
+
+        def ended(*_):
+            threads.under_way -= 1
+
+        qc.sweep(
+            function=lambda point: point["a"],
+            vary={"a": list(range(50))},
+            executor=threads,
+            progress=ended,
+        )
+    assert threads.most <= 5
+
+
 def test_models_travel_as_documents():
     """What a row is pickled to flies where neither model nor gains, commands or world lie."""
     here = Path("here")

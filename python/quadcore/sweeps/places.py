@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import queue
+from contextlib import suppress
 from typing import (
     TYPE_CHECKING,
     Any,
@@ -33,7 +34,10 @@ _ATTEMPTS = 3
 """Of a row whose process was killed: by the system, perhaps, for want of memory."""
 
 _AHEAD = 1024
-"""Tasks that are handed out at a time: enough for many workers, and few to hold, 25 kB each."""
+"""Tasks that a cluster is given at a time: enough for many workers, and few to hold, 25 kB each."""
+
+_AHEAD_OF_EACH = 2
+"""Tasks that a pool is given for each worker: one to fly and one to go on with."""
 
 _WORKERS = 16
 """That an executor, which does not say, may be thought to have."""
@@ -123,6 +127,7 @@ def fly_over(
         The executor failed; the rows that it gave were taken.
     """
     waiting = _tasks(plan, rows, _WORKERS)
+    at_most = _AHEAD_OF_EACH * getattr(executor, "_max_workers", _AHEAD // _AHEAD_OF_EACH)
     under_way: Dict[Any, Sequence[int]] = {}
     ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
 
@@ -135,7 +140,7 @@ def fly_over(
     try:
         for numbers in waiting:
             hand_out(numbers)
-            if len(under_way) >= _AHEAD:
+            if len(under_way) >= at_most:
                 break
         while under_way:
             try:
@@ -156,11 +161,29 @@ def fly_over(
     except (QuadcoreError, KeyboardInterrupt, MemoryError):
         raise
     except Exception as error:
+        _shut_down_broken(executor, error)
         check()
         raise QuadcoreError(_gone(error)) from error
     finally:
         for future in under_way:
             future.cancel()
+
+
+def _shut_down_broken(executor: concurrent.futures.Executor, error: Exception) -> None:
+    """Shut a broken pool down without waiting for it, as its own ``with`` would.
+
+    It may never end by itself: its thread may be stuck in a full pipe that no process reads any
+    more (CPython issue 94777). Without a reader the thread goes on, and ends.
+    """
+    from concurrent.futures import BrokenExecutor
+
+    if not isinstance(error, BrokenExecutor):
+        return
+    calls = getattr(executor, "_call_queue", None)
+    if calls is not None:
+        with suppress(OSError):
+            calls._reader.close()
+    executor.shutdown(wait=False)
 
 
 def fly_all(specs: Sequence[Union[Spec, Row]], apart: bool) -> List[Row]:
