@@ -1,7 +1,8 @@
 #include "plant.hpp"
 
 #include <cmath>
-#include <fstream>
+#include <filesystem>
+#include <system_error>
 
 #include "drag_choice.hpp"
 #include "quadcore/error.hpp"
@@ -14,7 +15,9 @@ std::string world_path(const std::string& world, const std::string& shipped_worl
                        const std::string& folder) {
   const std::string shipped = shipped_worlds + "/" + world + ".world";
   const bool is_name = world.find_first_of("/.") == std::string::npos;
-  return is_name && std::ifstream(shipped) ? shipped : path_from(folder, world);
+  std::error_code ignored;
+  return is_name && std::filesystem::is_regular_file(shipped, ignored) ? shipped
+                                                                       : path_from(folder, world);
 }
 
 /// "PLUGIN.TAG=VALUE" ... as the command line takes it.

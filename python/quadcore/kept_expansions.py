@@ -7,6 +7,9 @@ from collections import OrderedDict
 from pathlib import Path
 from typing import Any, Callable, Generic, List, NamedTuple, Optional, Tuple, TypeVar
 
+from ._core import InputError
+from .reading import LARGEST, read_bytes
+
 Expansion = TypeVar("Expansion")
 Answer = TypeVar("Answer")
 
@@ -37,8 +40,8 @@ class Outside:
 def content(path: str) -> Optional[bytes]:
     """Give what a regular file holds; None if there is none to be read."""
     try:
-        return Path(path).read_bytes() if os.path.isfile(path) else None
-    except OSError:
+        return read_bytes(Path(path), LARGEST)
+    except InputError:
         return None
 
 

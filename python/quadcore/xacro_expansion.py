@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import difflib
 import glob
+import io
 import os
 import traceback
 from pathlib import Path
@@ -22,6 +23,7 @@ from . import resources, xml_origins, xml_source
 from ._core import InputError, QuadcoreError
 from .forks import LOCK
 from .kept_expansions import Kept, Outside, content
+from .reading import read_text
 from .warning import unheard, warn
 from .xacro_faults import reason
 
@@ -147,7 +149,7 @@ def _replaced_hooks(arguments: _Arguments, outside: Outside) -> Iterator[None]:
             outside.ask(content, filename)
         if filename is None or not Path(filename).exists():
             return old_parse(source, filename)  # it raises what <xacro:include optional=""> expects
-        if not Path(filename).is_file():  # a pipe could be waited for without end
+        if not Path(filename).is_file():
             raise xacro.XacroException(f"{filename}: is no regular file; include a xacro file")
         return xml_origins.parse(filename, xml_source.read(Path(filename)))
 
@@ -184,9 +186,14 @@ def _replaced_hooks(arguments: _Arguments, outside: Outside) -> Iterator[None]:
             )
         return str(old_extension(text))
 
-    def opened(filename: str, *how: Any) -> Any:
+    def opened(filename: str) -> io.StringIO:  # for load_yaml
         outside.ask(content, filename)
-        return open(filename, *how)
+        try:
+            return io.StringIO(read_text(Path(filename)))
+        except InputError as error:  # xacro expects what open raises: an include may be optional
+            if isinstance(error.__cause__, OSError):
+                raise error.__cause__ from None
+            raise
 
     def warning(message: str) -> None:
         outside.may_be_kept = False  # it would not be told again

@@ -1,3 +1,4 @@
+#include "quadcore/text_file.hpp"
 #include "vehicle.hpp"
 
 using namespace quadcore;
@@ -14,6 +15,14 @@ std::string refused(const std::string& text) {
 TEST_CASE("a file that cannot be read is named") {
   CHECK(contains(refusal([] { Document::read("/nowhere/a.urdf"); }),
                  "/nowhere/a.urdf: cannot be read"));
+}
+
+TEST_CASE("only a regular file of a bounded size is read") {
+  CHECK(contains(refusal([] { read_text_file("/dev/zero"); }), "/dev/zero: is no regular file"));
+  CHECK(contains(refusal([] { read_text_file("/"); }), "/: is a folder"));
+  const std::string world = std::string(TEST_DATA) + "/../../worlds/empty.world";
+  CHECK(contains(refusal([&] { read_text_file(world, 5); }), "is larger than 5e-06 MB"));
+  CHECK(read_text_file(world).find("<sdf") != std::string::npos);
 }
 
 TEST_CASE("malformed XML is refused with its line") {

@@ -4,11 +4,11 @@
 #include <optional>
 #include <sstream>
 
-#include "control/files/text_file.hpp"
 #include "control/files/yaml_file.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/spatial.hpp"
 #include "quadcore/text.hpp"
+#include "quadcore/text_file.hpp"
 
 namespace quadcore::control {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "control/files/text_file.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/text.hpp"
+#include "quadcore/text_file.hpp"
 
 namespace quadcore::control {
 namespace {

@@ -1,8 +1,6 @@
 #include "quadcore/document.hpp"
 
-#include <fstream>
-
-#include "quadcore/error.hpp"
+#include "quadcore/text_file.hpp"
 
 namespace quadcore {
 
@@ -14,14 +12,6 @@ std::string Document::at(int line) const {
   return name + ":" + std::to_string(line);
 }
 
-Document Document::read(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text(largest + 1, '\0');
-  if (!file.read(text.data(), static_cast<std::streamsize>(text.size())) && file.gcount() == 0) {
-    throw InputError(path + ": cannot be read; give the path of an existing, non-empty file");
-  }
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  return {path, text};
-}
+Document Document::read(const std::string& path) { return {path, read_text_file(path, largest)}; }
 
 }  // namespace quadcore

@@ -97,6 +97,9 @@ void interpret_file(const Given& given) {
   parameter.file = path.lexically_normal().string();
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) given.refuse("is a folder; name a file in it");
+  if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
+    given.refuse("is no regular file; save what it gives in one");
+  }
   if (!std::ifstream(path)) {
     given.refuse(
         "cannot be read: " + parameter.file + "; give the path of an existing file" +

@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "quadcore/error.hpp"
 #include "quadcore/spatial.hpp"
 #include "quadcore/text.hpp"
+#include "quadcore/text_file.hpp"
 
 namespace quadcore::rotors {
 
@@ -86,8 +87,7 @@ class WindField {
     const std::vector<std::string> names = {
         "min_x",    "min_y", "n_x", "n_y", "res_x", "res_y", "vertical_spacing_factors",
         "bottom_z", "top_z", "u",   "v",   "w"};
-    std::ifstream file(path);
-    if (!file) throw InputError(path + ": cannot be read; give the path of an existing file");
+    std::istringstream file(read_text_file(path));
     Row* row = nullptr;
     std::string text;
     for (int line = 1; std::getline(file, text); ++line) {

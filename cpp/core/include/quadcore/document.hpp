@@ -26,7 +26,7 @@ struct Document {
 
   /// "FILE:LINE" of a line of the text, counted from 1.
   std::string at(int line) const;
-  /// Reads a file, of one that is too large the beginning; throws InputError if it cannot be read.
+  /// Reads a file; throws InputError as read_text_file() does.
   static Document read(const std::string& path);
 };
 
