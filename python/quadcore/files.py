@@ -83,17 +83,9 @@ class Appended:
         except OSError as error:
             raise unwritable(self._path, error) from error
 
-    def is_at(self, path: Path) -> bool:
-        """Whether this is the file that has the name now."""
-        try:
-            return os.path.samestat(os.fstat(self.fileno()), path.stat())
-        except OSError:
-            return False
-
     def lines(self) -> Iterator[bytes]:
         """Give its lines from the start."""
         self._stream.seek(0)
-        # Another descriptor's end would let go of a lock.
         with open(self.fileno(), "rb", closefd=False) as stream:
             yield from stream
 
@@ -121,7 +113,7 @@ class Appended:
             raise unwritable(self._path, error) from error
 
     def fileno(self) -> int:
-        """Give the number of the open file, for locks."""
+        """Give the number of the open file."""
         return self._stream.fileno()
 
     @property

@@ -199,6 +199,18 @@ def test_flights_logged_at_other_times_are_compared_in_between():
     assert metrics.differences(fine, coarse)[:, 0].max() < 1e-12
 
 
+def test_logs_of_a_comparison_before_are_gone_and_others_stay():
+    Path("out/logs").mkdir(parents=True)
+    Path("out/logs/01.csv").write_text("of somebody else")
+    words = ["compare", "toy.urdf", *FLIGHT, "--out", "out", "--no-plots", "--quiet", "--vary"]
+    assert main([*words, "motor.kp=0.03,0.04,0.05"]) == 0
+    logs = ["01.csv", "1.csv", "2.csv", "3.csv"]
+    assert sorted(path.name for path in Path("out/logs").iterdir()) == logs
+    assert main([*words, "motor.kp=0.03,0.04"]) == 0
+    assert sorted(path.name for path in Path("out/logs").iterdir()) == logs[:-1]
+    assert Path("out/logs/01.csv").read_text() == "of somebody else"
+
+
 # What fails
 
 

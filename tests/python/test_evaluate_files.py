@@ -84,10 +84,26 @@ def test_the_file_tells_all_that_flew():
 def test_pictures_of_an_evaluation_before_are_gone_and_others_stay():
     command = [*FLY, "--controller", "pd", "--reference", "hover", "--quiet", "--out", "out"]
     Path("out").mkdir()
-    for name in ("tracks_7.png", "rates.png", "engines.png"):
-        Path("out", name).write_bytes(b"")
+    foreign = ["engines.png", "margins.png", "tracks_7.png"]
+    for name in foreign:
+        Path("out", name).write_bytes(b"of somebody else")
+    assert main(command) == 0
+    listed = json.loads(Path("out/evaluation.json").read_text())["pictures"]
+    found = {path.name for path in Path("out").glob("*.png")}
+    assert len(listed) > 1 and found == {*foreign, *listed}
     assert main([*command, "--no-plots"]) == 0
-    assert [path.name for path in Path("out").glob("*.png")] == ["engines.png"]
+    assert sorted(path.name for path in Path("out").glob("*.png")) == foreign
+    assert all(Path("out", name).read_bytes() == b"of somebody else" for name in foreign)
+
+
+def test_a_document_cannot_make_an_evaluation_remove_other_files():
+    names = ["../mine.png", "/tmp/x", "mine.txt", 3, "rates.png/../mine.png"]
+    Path("out").mkdir()
+    Path("mine.png").write_bytes(b"")
+    Path("out/evaluation.json").write_text(json.dumps({"pictures": names}))
+    command = [*FLY, "--controller", "pd", "--reference", "hover", "--quiet", "--out", "out"]
+    assert main([*command, "--no-plots"]) == 0
+    assert Path("mine.png").exists()
 
 
 @pytest.mark.parametrize("name", ["table.csv", "evaluation.json", "timing.csv", "report.html"])

@@ -19,6 +19,8 @@ from processes import LONG, QUADCORE, ran, refused, script
 from sweeps import lines, rows, sweep
 
 import quadcore as qc
+from quadcore.cli import main
+from quadcore.study.folder import output_folder
 
 FLY = ["sweep", "--controller=geometric", "--reference=circle", "--xacro=sim_slow:=1", "--quiet"]
 SMALL = [*FLY, "--vary=frame.mass=uniform:0.9:1.1", "--samples=40", "--duration=1", "--no-plots"]
@@ -189,23 +191,89 @@ def test_a_flight_that_never_ends_is_one_row():
     assert found.columns["failure"].tolist() == ["", "not done within the time limit of 2 s"]
 
 
-def test_two_sweeps_do_not_write_one_file(monkeypatch):
-    monkeypatch.setattr("quadcore.sweeps.rows._PATIENCE", 0.0)
-    sweep(out="out")
-    holder = """
-import fcntl, sys, time
-stream = open("out/table.csv", "r+b")
-fcntl.lockf(stream, fcntl.LOCK_EX)
-print("held", flush=True)
-sys.stdin.read()
+HOLDER = """
+import sys
+from pathlib import Path
+from quadcore.study.folder import output_folder
+
+with output_folder(Path("out")):
+    print("held", flush=True)
+    sys.stdin.read()
 """
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["sweep", "--controller=pd", "--reference=hover"],
+        ["evaluate", "--controller=pd", "--reference=hover"],
+        ["compare", "quadrotor", "--vary=frame.mass=1,1.1"],
+    ],
+)
+def test_two_studies_do_not_write_into_one_folder(command, monkeypatch, capsys):
+    monkeypatch.setattr("quadcore.study.folder._PATIENCE", 0.0)
+    words = [*command, "--duration=0.05", "--no-plots", "--quiet", "--out=out"]
     with subprocess.Popen(
-        [sys.executable, "-c", holder], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+        [sys.executable, "-c", HOLDER], stdin=subprocess.PIPE, stdout=subprocess.PIPE
     ) as process:
         process.stdout.readline()
-        with pytest.raises(qc.InputError, match="another sweep is writing it; wait"):
-            sweep(out="out", resume=True)
+        assert main(words) == 2
+        assert capsys.readouterr().err == (
+            "error: out: another study is writing there; wait, or name another folder\n"
+        )
         process.stdin.close()
+    assert not any(Path("out").iterdir())
+    assert main(words) == 0
+    assert not [path for path in Path("out").iterdir() if path.name.startswith(".")]
+
+
+def test_two_threads_do_not_write_into_one_folder():
+    with output_folder(Path("out")), pytest.raises(qc.InputError, match="another study is writing"):
+        sweep(out="out")
+    sweep(out="out")
+
+
+def test_the_lock_that_a_killed_study_left_is_taken_over():
+    holder = subprocess.Popen(
+        [sys.executable, "-c", HOLDER], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    )
+    holder.stdout.readline()
+    holder.kill()
+    holder.wait()
+    holder.stdin.close()
+    assert any(Path("out").iterdir())
+    sweep(out="out")
+
+
+@pytest.mark.parametrize(
+    ("column", "value"),
+    [
+        ("rms_position", "abc"),
+        ("rms_position", "nan"),
+        ("rms_position", "1e999"),
+        ("row", "1" * 5000),
+        ("row", "\u00b2"),
+        ("row", "-1"),
+    ],
+)
+def test_a_damaged_table_is_refused_with_its_line(column, value):
+    sweep(out="out")
+    head, first, *others = Path("out/table.csv").read_text().splitlines(keepends=True)
+    cells = first.split(",")
+    cells[head.rstrip().split(",").index(column)] = value
+    Path("out/table.csv").write_text("".join([head, ",".join(cells), *others]), encoding="utf-8")
+    with pytest.raises(qc.InputError, match=r"table\.csv:2: .*take the line out"):
+        sweep(out="out", resume=True)
+
+
+def test_a_model_whose_name_has_a_line_break_is_resumed():
+    name = "of two\nlines\r.urdf"
+    Path(name).write_text(qc.read_model("quadrotor").document.text)
+    options = {"models": ["quadrotor", name], "samples": 4, "xacro_args": {}, "duration": 0.05}
+    for resume in (False, True):
+        found = sweep(out="out", resume=resume, **options)
+        assert found.columns["failure"].tolist() == [""] * 8
+        assert len(lines("out")) == 9
 
 
 def test_ctrl_c_keeps_the_rows_and_says_how_to_go_on():

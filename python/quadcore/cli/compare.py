@@ -9,11 +9,20 @@ from typing import Any
 
 from .._core import InputError, QuadcoreError
 from ..comparison.compare import fly
-from ..comparison.output import FILES, drawn, listed, summary, write
+from ..comparison.output import (
+    FILES,
+    drawn,
+    listed,
+    log_name,
+    remove_logs,
+    summary,
+    write,
+)
 from ..comparison.plan import Plan
 from ..comparison.result import Comparison
-from ..files import make_folder, prepare_folder
+from ..files import make_folder
 from ..log import Log
+from ..study.folder import output_folder
 from ..study.sampling import thinned
 from ..study.table import number_text, shown_in
 from . import options, terminal, values
@@ -59,15 +68,21 @@ def compare(arguments: argparse.Namespace) -> None:
     plan = _plan(arguments)
     if arguments.against is not None and arguments.against > plan.count:
         raise InputError(f"--against {arguments.against}: there are {plan.count} flights")
+    with output_folder(arguments.out, FILES):  # after the flights would be too late
+        _compare(arguments, plan)
+
+
+def _compare(arguments: argparse.Namespace, plan: Plan) -> None:
     out = arguments.out
-    if out is not None:
-        prepare_folder(out, FILES)  # after the flights would be too late
     _warn_of_commands(plan)
     if not arguments.quiet:
         _show_models(plan)
 
     def put(flown: Comparison, plots: bool = False) -> list[Path]:
-        return write(flown, plan, _flight(arguments, plan), out, plots) if out is not None else []
+        if out is None:
+            return []
+        flight = _flight(arguments, plan)
+        return write(flown, plan, flight, out, plots, _has_logs(arguments, plan))
 
     with kept("comparison", out, put), terminal.progress(arguments.quiet) as progress:
         comparison = fly(
@@ -126,22 +141,24 @@ def _warn_of_commands(plan: Plan) -> None:
     warn_of_commands(simulation, first)
 
 
+def _has_logs(arguments: argparse.Namespace, plan: Plan) -> bool:
+    return arguments.logs or plan.count <= _FEW
+
+
 def _keeper(arguments: argparse.Namespace, plan: Plan) -> Any:
     """Make what is done with each log: write it, and keep enough of some to draw."""
     out = arguments.out
     if out is None:
         return None
     to_draw = set() if arguments.no_plots else set(drawn(plan.count))
-    folder = out / "logs" if arguments.logs or plan.count <= _FEW else None
-    if folder is not None:
-        make_folder(folder)
-        for old in folder.glob("[0-9]*.csv"):  # of a comparison before
-            old.unlink()
-    digits = len(str(plan.count))
+    has_logs = _has_logs(arguments, plan)
+    remove_logs(out)
+    if has_logs:
+        make_folder(out / "logs")
 
     def keep(row: int, log: Log) -> Log | None:
-        if folder is not None:
-            log.to_csv(folder / f"{row + 1:0{digits}}.csv")
+        if has_logs:
+            log.to_csv(out / log_name(row, plan.count))
         return thinned(log) if row in to_draw else None
 
     return keep

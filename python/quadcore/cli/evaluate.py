@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._core import InputError
-from ..files import prepare_folder
 from ..plants import STUDIED, plants
+from ..study.folder import output_folder
 from . import combinations, options, terminal, values
 from .failures import failure
 from .kept import kept
@@ -57,8 +57,7 @@ def register(commands: Any) -> None:
 
 def evaluate(arguments: argparse.Namespace) -> None:
     """Fly everything, print how well, and write it."""
-    from ..evaluation.evaluate import conduct
-    from ..evaluation.output import FILES, write
+    from ..evaluation.output import FILES
 
     if arguments.file is None:
         plan = _plan(arguments)
@@ -67,9 +66,15 @@ def evaluate(arguments: argparse.Namespace) -> None:
         arguments = file.beneath(arguments)
         with file.blamed():
             plan = _plan(arguments)
+    with output_folder(arguments.out, FILES):  # after the flights would be too late
+        _evaluate(arguments, plan)
+
+
+def _evaluate(arguments: argparse.Namespace, plan: Plan) -> None:
+    from ..evaluation.evaluate import conduct
+    from ..evaluation.output import write
+
     out = arguments.out
-    if out is not None:
-        prepare_folder(out, FILES)  # after the flights would be too late
 
     def put(flown: Evaluation, plots: bool = False) -> list[Path]:
         return write(flown, plan, out, plots) if out is not None else []

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..evaluation import measures as of_guided
-from ..files import prepare_folder
 from ..plants import STUDIED, plants
+from ..study.folder import output_folder
 from ..sweeps import motion
 from ..sweeps.distributions import DESIGNS, forms
 from . import combinations, options, terminal, values
@@ -93,9 +93,7 @@ def register(commands: Any) -> None:
 
 def sweep(arguments: argparse.Namespace) -> None:
     """Fly what is missing, and tell what came of it."""
-    from ..sweeps.output import FILES, main_measure, write
-    from ..sweeps.sweep import TABLE, conduct
-    from ..sweeps.table import table
+    from ..sweeps.output import FILES, main_measure
 
     if arguments.file is None:
         plan = _plan(arguments)
@@ -105,8 +103,16 @@ def sweep(arguments: argparse.Namespace) -> None:
         with file.blamed():
             plan = _plan(arguments)
     measure = main_measure(plan, arguments.measure)
+    with output_folder(arguments.out, FILES):  # after the flights would be too late
+        _sweep(arguments, plan, measure)
+
+
+def _sweep(arguments: argparse.Namespace, plan: Plan, measure: str) -> None:
+    from ..sweeps.output import write
+    from ..sweeps.sweep import TABLE, conduct
+    from ..sweeps.table import table
+
     out = arguments.out
-    prepare_folder(out, FILES)  # after the flights would be too late
     try:
         with terminal.progress(arguments.quiet) as progress:
             rows = conduct(

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
+from ..study.folder import remove_listed
 from ..study.sampling import evenly
 from ..study.table import csv_bytes, flown_and_failed, json_bytes, number_text, save, shown_in
 from .plan import Plan
@@ -22,8 +24,23 @@ def drawn(count: int) -> List[int]:
 FILES = ("table.csv", "comparison.json", "report.html")
 
 
+def log_name(row: int, count: int) -> str:
+    """Name the log of one of so many flights, within the folder."""
+    return f"logs/{row + 1:0{len(str(count))}}.csv"
+
+
+def remove_logs(folder: Path) -> None:
+    """Remove the logs of an earlier comparison, and no others."""
+    remove_listed(folder, "comparison.json", "logs", re.compile(r"logs/[0-9]+\.csv").fullmatch)
+
+
 def write(
-    comparison: Comparison, plan: Plan, flight: Mapping[str, str], folder: Path, plots: bool
+    comparison: Comparison,
+    plan: Plan,
+    flight: Mapping[str, str],
+    folder: Path,
+    plots: bool,
+    has_logs: bool,
 ) -> List[Path]:
     """Write ``table.csv``, ``comparison.json``, ``report.html`` and, if asked, pictures.
 
@@ -39,13 +56,15 @@ def write(
         Where to.
     plots
         Whether to draw.
+    has_logs
+        Whether the logs of the flights were written.
     """
     from ..report import write_page  # not every command should pay for jinja2
 
     # What was flown comes first: pictures can fail, and take their time.
     tables = {
         "table.csv": csv_bytes(_rows(comparison)),
-        "comparison.json": json_bytes(_content(comparison, flight)),
+        "comparison.json": json_bytes(_content(comparison, flight, has_logs)),
     }
     written = save(folder, tables)
     images = _images(comparison, plan) if plots else {}
@@ -82,9 +101,11 @@ def _rows(comparison: Comparison) -> Iterable[Sequence[Any]]:
         yield [number, *row]
 
 
-def _content(comparison: Comparison, flight: Mapping[str, str]) -> Dict[str, Any]:
+def _content(comparison: Comparison, flight: Mapping[str, str], has_logs: bool) -> Dict[str, Any]:
     names = comparison.table.dtype.names or ()
+    flown = [row for row, reason in enumerate(comparison.table["failure"]) if not reason]
     return {
+        "logs": [log_name(row, len(comparison.table)) for row in flown if has_logs],
         "flight": dict(flight),
         "differences": {
             model: [difference._asdict() for difference in found]

@@ -9,6 +9,7 @@ from typing import Any, Dict, List, Mapping, Sequence
 import numpy as np
 
 from .. import __version__
+from ..study.folder import remove_pictures, save_pictures
 from ..study.sampling import evenly
 from ..study.table import NOT_FLOWN, csv_bytes, flown_and_failed, json_bytes, number_text, save
 from .evaluate import Evaluation
@@ -34,7 +35,7 @@ FILES = ("table.csv", "evaluation.json", "timing.csv", "report.html")
 
 
 def write(evaluation: Evaluation, plan: Plan, folder: Path, plots: bool) -> List[Path]:
-    """Write `FILES` and pictures, and remove the pictures of an evaluation before.
+    """Write `FILES` and pictures, and remove the pictures of an earlier evaluation.
 
     Parameters
     ----------
@@ -47,18 +48,17 @@ def write(evaluation: Evaluation, plan: Plan, folder: Path, plots: bool) -> List
     """
     from ..report import write_page  # not every command should pay for jinja2
 
+    remove_pictures(folder, "evaluation.json", is_picture)
     # What was flown comes first: pictures can fail, and take their time.
+    content = _content(evaluation, plan)
     tables = {
         "table.csv": csv_bytes(_csv(evaluation.table)),
-        "evaluation.json": json_bytes(_content(evaluation, plan)),
+        "evaluation.json": json_bytes(content),
         "timing.csv": csv_bytes(_timing(evaluation, plan)),
     }
     written = save(folder, tables)
-    for old in folder.glob("*.png"):
-        if is_picture(old.stem):
-            old.unlink()
     images = draw(evaluation, plan.events()) if plots else {}
-    written += save(folder, {f"{name}.png": data for name, data in images.items()})
+    written += save_pictures(folder, "evaluation.json", content, images)
     page = folder / "report.html"
     players = _players(evaluation) if plots else []
     values = _page(evaluation, plan, images)

@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import __version__
 from .._core import InputError
+from ..study.folder import remove_pictures, save_pictures
 from ..study.table import json_bytes, number_text, save
 from . import pictures
 from .again import command
@@ -60,13 +61,10 @@ def write(plan: AnyPlan, columns: Columns, folder: Path, measure: str, plots: bo
         "measure": measure,
         "worst": worst(plan, columns, measure),
     }
+    remove_pictures(folder, "sweep.json", pictures.NAMES.__contains__)
     written = save(folder, {"sweep.json": json_bytes(content)})
-    for name in pictures.NAMES:
-        old = folder / f"{name}.png"
-        if old.exists():
-            old.unlink()
     images = pictures.draw(plan, columns, found, measure) if plots else {}
-    written += save(folder, {f"{name}.png": data for name, data in images.items()})
+    written += save_pictures(folder, "sweep.json", content, images)
     page = folder / "report.html"
     write_page(
         page,

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import contextlib
 import csv
-import fcntl
 import io
 import os
-import time
+import re
 from pathlib import Path
 from typing import Any, Dict, Iterator, List, Sequence, Tuple
 
@@ -17,8 +15,6 @@ from .._core import InputError, QuadcoreError, parse_number
 from ..files import Appended, atomic_write, cell, check_writable, text_bytes
 from .plan import AnyPlan
 from .spec import Row, digest
-
-_PATIENCE = 10.0  # s; for one that was killed a moment ago and has not let go yet
 
 
 class Rows:
@@ -39,8 +35,8 @@ class Rows:
     Raises
     ------
     InputError
-        There are rows and `resume` does not ask for them; or they were flown with other inputs, are
-        damaged, or are being written.
+        There are rows and `resume` does not ask for them; or they were flown with other inputs, or
+        are damaged.
     """
 
     def __init__(self, path: Path, plan: AnyPlan, resume: bool) -> None:
@@ -58,7 +54,7 @@ class Rows:
         check_writable(path)
         if path.exists() and path.stat().st_size > 0 and not resume:
             raise self._taken()
-        self._file = self._locked()
+        self._file = Appended(path, older=True)
         try:
             self.is_resumed = os.fstat(self._file.fileno()).st_size > 0
             if self.is_resumed and not resume:
@@ -101,7 +97,6 @@ class Rows:
 
     def read(self) -> Iterator[Dict[str, str]]:
         """Give the rows that are there, by number."""
-        # While it is written, by its own descriptor: closing another one would drop the lock.
         file = Appended(self.path, older=True) if self._file.closed else self._file
         try:
             for line in file.parts(self._places()):
@@ -133,23 +128,6 @@ class Rows:
         self._file.write(line)
         self._end += len(line)
 
-    def _locked(self) -> Appended:
-        """Open the file and keep others from it; what forked processes inherit does not hold that.
-
-        One that ended in the meantime may have put another in its place.
-        """
-        end = time.monotonic() + _PATIENCE
-        while True:
-            file = Appended(self.path, older=True)
-            with contextlib.suppress(OSError):
-                fcntl.lockf(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
-                if file.is_at(self.path):
-                    return file
-            file.close()
-            if time.monotonic() > end:
-                raise InputError(f"{self.path}: another sweep is writing it; wait")
-            time.sleep(0.1)
-
     def _note(self) -> int:
         """Note where rows are, and give the bytes that stay: what a kill cut off does not."""
         lines = self._file.lines()
@@ -173,7 +151,7 @@ class Rows:
     def _checked(self, number: int, cells: Sequence[str]) -> int:
         """Give the number of a row; raise `InputError` unless it is the plan's."""
         place = f"{self.path}:{number}"
-        if len(cells) != len(self.columns) or not cells[0].isdigit():
+        if len(cells) != len(self.columns) or not re.fullmatch(r"[0-9]{1,18}", cells[0]):
             raise InputError(f"{place}: is no row of a sweep; take the line out")
         row = int(cells[0])
         if row >= len(self._plan):
@@ -181,6 +159,12 @@ class Rows:
         if self._where[row, 0] >= 0:
             raise InputError(f"{place}: row {row} is there twice; take one out")
         known, planned = dict(zip(self.columns, cells)), self._plan.cells(row)
+        for name in self._plan.measures:
+            if not _is_measure(known[name]):
+                raise InputError(
+                    f"{place}: column '{name}' holds '{known[name][:80]}', which is no number; "
+                    "take the line out"
+                )
         for name, value in planned.items():
             if known[name] != _split(_line([value]))[0]:
                 raise InputError(
@@ -211,9 +195,17 @@ def _line(cells: Sequence[Any]) -> bytes:
     return text_bytes(stream.getvalue())
 
 
+def _is_measure(text: str) -> bool:
+    """Whether a cell is as `_line` writes the value of a measure."""
+    return text in ("", "inf", "-inf") or parse_number(text) is not None
+
+
 def _plain(value: Any) -> Any:
     if isinstance(value, str):
-        return value if parse_number(value) is not None else cell(value)
+        if parse_number(value) is not None:
+            return value
+        # A row is a line, by which it is found again.
+        return cell(value.replace("\n", "\\n").replace("\r", "\\r"))
     return "" if value != value else value
 
 

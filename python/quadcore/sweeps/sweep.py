@@ -23,9 +23,9 @@ import numpy as np
 from .. import arguments, interrupts
 from .._core import InputError
 from ..commands import CommandsLike
-from ..files import make_folder
 from ..given import whole
 from ..plants import STUDIED
+from ..study.folder import output_folder
 from ..study.table import flown_and_failed
 from .dask import cluster
 from .design import Design
@@ -197,7 +197,7 @@ def sweep(
                 raise InputError("resume and parquet need out; name a folder")
             out = stack.enter_context(tempfile.TemporaryDirectory())
         folder = Path(out)
-        make_folder(folder)
+        stack.enter_context(output_folder(folder))
         rows = conduct(plan, folder, resume, parquet, processes, executor, dask, progress)
         columns = table(rows)
     return Sweep(columns, sensitivities(plan, columns))
