@@ -70,7 +70,7 @@ ControllerSettings read_controller_settings(const ros::NodeHandle& nh) {
   const std::string node = nh.resolveName(own.text("plant", "quadcore"));
   const PlantWatch watch(node);
   PrivateParameters flown(node);
-  const double velocity_timeout = own.no_negative("velocity_timeout").value_or(0.5);
+  const double velocity_timeout = own.positive("velocity_timeout").value_or(0.5);
   own.check_all_known();
 
   Plant plant = read_plant(flown);

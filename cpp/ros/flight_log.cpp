@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 
 #include "bag_log.hpp"
 #include "csv_log.hpp"
@@ -10,6 +11,21 @@
 #include "quadcore/log.hpp"
 
 namespace quadcore::node {
+namespace {
+
+bool ends_with(const std::string& path, const std::string& end) {
+  return path.size() >= end.size() && path.compare(path.size() - end.size(), end.size(), end) == 0;
+}
+
+}  // namespace
+
+bool is_log(const std::string& path) {
+  for (const char* const end : {".csv", ".mat", ".bag"}) {
+    if (ends_with(path, end)) return true;
+  }
+  std::error_code error;
+  return std::filesystem::is_other(path, error);
+}
 
 LogRow::LogRow(const Simulation& simulation, const std::vector<std::string>& names)
     : topics_(simulation.topics().at(names)),
@@ -36,11 +52,7 @@ const std::vector<double>& LogRow::of(const Simulation& simulation) {
 std::unique_ptr<LogPerFlight> open_log(const std::string& path, const Simulation& simulation,
                                        const std::vector<std::string>& topics,
                                        const ros::NodeHandle& nh, const std::string& frame_prefix) {
-  const auto has = [&path](const std::string& end) {
-    return path.size() >= end.size() &&
-           path.compare(path.size() - end.size(), end.size(), end) == 0;
-  };
-  const bool is_mat = has(".mat"), is_bag = has(".bag");
+  const bool is_mat = ends_with(path, ".mat"), is_bag = ends_with(path, ".bag");
   const auto open = [=, &simulation, &nh]() -> std::unique_ptr<FlightLog> {
     LogRow row(simulation, topics);
     if (is_mat) return std::make_unique<MatLog>(path, simulation, std::move(row));

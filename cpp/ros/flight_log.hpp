@@ -55,7 +55,10 @@ class FlightLog {
 
 class LogPerFlight;
 
-/// The log, a file per flight, of the format that a file's name asks for: .mat, .bag or else CSV.
+/// Whether a name is one of a log: it ends in .csv, .mat or .bag, or belongs to a pipe or a device.
+bool is_log(const std::string& path);
+
+/// The log, a file per flight, of the format that a file's name asks for; CSV into a pipe.
 /// It refers to simulation and node.
 /// \param nh  whose names the topics of a bag have
 /// \param frame_prefix  of the vehicle's frames there

@@ -1,5 +1,6 @@
 #include "gazebo_physics.hpp"
 
+#include <cmath>
 #include <string>
 
 #include "messages.hpp"
@@ -52,8 +53,8 @@ void check_physics(const Simulation& simulation,
                     wanted.contact_max_correcting_vel == now.contact_max_correcting_vel &&
                     wanted.auto_disable_bodies == now.auto_disable_bodies;
   check_same(same, "ode_config", "start with a world:= that has these");
-  if (!(request.max_update_rate >= 0)) {
-    throw InputError("max_update_rate is negative; give a rate, 0 for as fast as possible");
+  if (!(request.max_update_rate >= 0 && std::isfinite(request.max_update_rate))) {
+    throw InputError("max_update_rate is no rate. Give a number >= 0; 0 is as fast as possible.");
   }
 }
 

@@ -188,11 +188,12 @@ void GazeboServices::offer_wrenches() {
   offer<gazebo_msgs::ApplyBodyWrench>("apply_body_wrench", [this](auto& request, auto&) {
     flight_.tell([&](const Simulation& simulation) {
       check_frame(simulation, model_, request.body_name);
+      const messages::Wrench wrench = wrench_of(simulation, model_, request);
+      check_wrench(simulation, wrench);
       const double duration = request.duration.toSec();
       if (duration == 0) return;  // as gazebo_ros
       const double begin = std::max(request.start_time.toSec(), simulation.time());
-      wrenches_.add(wrench_of(simulation, model_, request), begin,
-                    duration < 0 ? INFINITY : begin + duration);
+      wrenches_.add(wrench, begin, duration < 0 ? INFINITY : begin + duration);
     });
   });
   offer<gazebo_msgs::BodyRequest>("clear_body_wrenches", [this](auto& request, auto&) {

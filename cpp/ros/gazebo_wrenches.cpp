@@ -1,12 +1,28 @@
 #include "gazebo_wrenches.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cstdio>
+
+#include "quadcore/error.hpp"
 
 namespace quadcore::node {
 namespace {
 
 constexpr double time_rounding = 1e-9;  ///< s
+/// By this much a wrench may change a motion in one step; a flight counts as diverged at 1000 times
+/// as much.
+constexpr double most_speed = 1e3;  ///< m/s
+constexpr double most_rate = 1e3;   ///< rad/s
+
+void refuse_beyond(double size, double most, const char* what, const char* unit) {
+  if (size <= most) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "The %s of %g %s is no physical one for this vehicle. Give at most %.3g %s.", what,
+                size, unit, most, unit);
+  throw InputError(text);
+}
 
 std::string written(const Vector3d& vector) {
   std::string text;
@@ -19,6 +35,18 @@ std::string written(const Vector3d& vector) {
 }
 
 }  // namespace
+
+void check_wrench(const Simulation& simulation, const messages::Wrench& wrench) {
+  if (!wrench.force.allFinite() || !wrench.torque.allFinite()) {
+    throw InputError("A force or a torque is not a finite number. Give N and N m.");
+  }
+  const MassProperties vehicle = mass_properties(simulation.model());
+  const double least_inertia =
+      vehicle.inertia_Ccm_F.selfadjointView<Eigen::Lower>().eigenvalues()[0];
+  const double dt = simulation.dt();
+  refuse_beyond(wrench.force.norm(), vehicle.mass * most_speed / dt, "force", "N");
+  refuse_beyond(wrench.torque.norm(), least_inertia * most_rate / dt, "torque", "N m");
+}
 
 PluginElement GazeboWrenches::plugin(const Model& model) {
   const std::string who = "quadcore_node";

@@ -8,6 +8,10 @@
 
 namespace quadcore::node {
 
+/// Throws InputError on a wrench that is not finite, or that would end the flight as diverged soon
+/// after it acts.
+void check_wrench(const Simulation& simulation, const messages::Wrench& wrench);
+
 /// Forces and torques that act on the frame for a time, as gazebo_ros' service applies them: on its
 /// centre of mass, in axes of the world.
 class GazeboWrenches {

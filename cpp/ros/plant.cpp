@@ -10,6 +10,8 @@
 namespace quadcore::node {
 namespace {
 
+constexpr double longest_step = 0.1;  ///< s; no controller of a multirotor works at a longer one
+
 /// The path of a world, or of the one of this name among the shipped ones.
 std::string world_path(const std::string& world, const std::string& shipped_worlds,
                        const std::string& folder) {
@@ -62,7 +64,10 @@ Plant read_plant(PrivateParameters& p) {
   SimulationOptions& s = plant.simulation;
   s.parameters = assignments("set", p.words("set"));
   s.engine = p.text("engine", s.engine);
-  const double dt = p.no_negative("dt", "; 0 is that of the world").value_or(0);
+  const double dt = p.number("dt", 0);
+  if (dt != 0 && !(dt >= shortest_step && dt <= longest_step)) {
+    refuse_parameter("dt", "a step from 1e-9 to 0.1 s, or 0 for that of the world");
+  }
   if (dt > 0) s.dt = dt;
   constexpr double greatest_seed = 9007199254740992;  // all whole numbers below are doubles
   const double seed = p.number("seed", 0);

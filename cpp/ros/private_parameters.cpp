@@ -101,6 +101,12 @@ std::optional<double> PrivateParameters::no_negative(const std::string& name,
   return to_no_negative(called(name), value, hint);
 }
 
+std::optional<double> PrivateParameters::positive(const std::string& name) {
+  const std::optional<double> value = number(name);
+  if (value && !(*value > 0)) refuse_parameter(called(name), "a number > 0");
+  return value;
+}
+
 std::vector<std::string> PrivateParameters::words(const std::string& name) {
   XmlRpcValue value;
   if (!get(name, value)) return {};

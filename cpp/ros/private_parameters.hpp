@@ -40,6 +40,7 @@ class PrivateParameters {
     return number(name).value_or(fallback);
   }
   std::optional<double> no_negative(const std::string& name, const std::string& hint = "");
+  std::optional<double> positive(const std::string& name);
   /// Text of words with blanks between them, or a list of texts, which may hold blanks.
   std::vector<std::string> words(const std::string& name);
   /// What is given of a table of tags, as if the URDF said it. Empty text gives nothing.

@@ -1,5 +1,6 @@
 #include "settings.hpp"
 
+#include "flight_log.hpp"
 #include "private_parameters.hpp"
 #include "quadcore/error.hpp"
 
@@ -20,6 +21,9 @@ Settings read_settings(const ros::NodeHandle& nh) {
   Settings s;
   s.plant = read_plant(p);
   s.log = path_from(s.plant.folder, p.text("log", ""));
+  if (!s.log.empty() && !is_log(s.log)) {
+    refuse_parameter("log", "a file that ends in .csv, .mat or .bag, not " + s.log);
+  }
   s.log_topics = p.words("log_topics");
   if (s.log.empty() && !s.log_topics.empty()) {
     throw InputError("parameter ~log_topics: names topics, but there is no log; set ~log");
@@ -30,7 +34,7 @@ Settings read_settings(const ros::NodeHandle& nh) {
   s.real_time_factor = p.no_negative("real_time_factor", "; 0 is as fast as possible");
   s.flight.paused = p.flag("paused", false);
   s.flight.lockstep = p.flag("lockstep", false);
-  s.flight.lockstep_timeout = p.no_negative("lockstep_timeout").value_or(s.flight.lockstep_timeout);
+  s.flight.lockstep_timeout = p.positive("lockstep_timeout").value_or(s.flight.lockstep_timeout);
   s.flight.answered = p.text("lockstep_topic", s.flight.answered);
   p.check_all_known();
   read_description(nh, s.plant);

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "answer.hpp"
+#include "gazebo_wrenches.hpp"
 #include "messages.hpp"
 #include "quadcore/switch.hpp"
 
@@ -16,13 +17,23 @@ namespace {
 std::vector<double> numbers(const std_srvs::SetBool::Request& request) {
   return {request.data ? 1.0 : 0.0};
 }
+messages::Wrench wrench_of(const ApplyWrench::Request& request) {
+  return {vector_of(request.wrench.force), vector_of(request.wrench.torque)};
+}
 std::vector<double> numbers(const ApplyWrench::Request& request) {
-  const messages::Wrench wrench{vector_of(request.wrench.force), vector_of(request.wrench.torque)};
+  const messages::Wrench wrench = wrench_of(request);
   std::vector<double> row(messages::kind_of<messages::Wrench>().fields.size());
   messages::write(wrench, row.data());
   return row;
 }
 std::vector<double> numbers(const Publish::Request& request) { return request.values; }
+
+/// What publishing does not check.
+template <class Request>
+void check(const Simulation&, const Request&) {}
+void check(const Simulation& simulation, const ApplyWrench::Request& request) {
+  check_wrench(simulation, wrench_of(request));
+}
 
 template <class Service>
 ros::ServiceServer offer(ros::NodeHandle& nh, const std::string& name, FlightThread& flight) {
@@ -30,8 +41,10 @@ ros::ServiceServer offer(ros::NodeHandle& nh, const std::string& name, FlightThr
       [name, &flight](typename Service::Request& request, typename Service::Response& response) {
         answer(response, [&] {
           const std::vector<double> row = numbers(request);
-          flight.tell(
-              [&](Simulation& simulation) { simulation.publish(name, row.data(), row.size()); });
+          flight.tell([&](Simulation& simulation) {
+            check(simulation, request);
+            simulation.publish(name, row.data(), row.size());
+          });
         });
         return true;
       };

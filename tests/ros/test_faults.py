@@ -167,7 +167,7 @@ class TestFaults(unittest.TestCase):
             ("_z:=high", "parameter ~z: give a number"),
             ("_real_time_factor:=-1", "parameter ~real_time_factor: give a number >= 0"),
             ("_seed:=1e30", "parameter ~seed: give a whole number from 0 to 9007199254740992"),
-            ("_dt:=-1", "parameter ~dt: give a number >= 0"),
+            ("_dt:=-1", "parameter ~dt: give a step from 1e-9 to 0.1 s"),
             ("_engine:=gazebo12", "engine 'gazebo12' is not there (did you mean 'gazebo11'?)"),
             ("_world:=/none.world", "/none.world: cannot be read"),
             ("_log:=/none/log.csv", "/none/log.csv: cannot be written"),

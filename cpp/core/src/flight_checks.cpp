@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <locale>
+#include <sstream>
 #include <string>
 
 #include "quadcore/error.hpp"
@@ -16,6 +18,16 @@ constexpr double max_rate = Simulation::max_rate;  // rad/s
 constexpr double max_speed = 1e6;                  // m/s
 constexpr double max_distance = 1e9;               // m
 constexpr double max_time = 1e9;  // s; far beyond, a step no longer moves the clock
+
+/// Throws InputError on a size at which is_sane() calls the motion diverged.
+void refuse_diverged(const char* what, double size, double limit, const char* unit) {
+  if (size < limit) return;
+  std::ostringstream message;
+  message.imbue(std::locale::classic());
+  message << what << " is " << size << ' ' << unit << ", but a flight counts as diverged from "
+          << limit << ' ' << unit << " on. Give a smaller one.";
+  throw InputError(message.str());
+}
 
 }  // namespace
 
@@ -62,6 +74,20 @@ void check_state(const VehicleState& state, Eigen::Index rotors) {
   if (!(state.orientation.norm() > 1e-6)) {
     throw InputError("state: the orientation is no quaternion; give a unit (x, y, z, w)");
   }
+  refuse_diverged("state: the distance from the origin", state.position.norm(), max_distance, "m");
+  refuse_diverged("state: the velocity", state.linear_velocity.norm(), max_speed, "m/s");
+  refuse_diverged("state: the angular velocity", state.angular_velocity.norm(), max_rate, "rad/s");
+  for (Eigen::Index i = 0; i < rotors; ++i) {
+    const double rate = std::abs(state.rotor_velocity[i]);
+    refuse_diverged("state: the velocity of a rotor", rate, max_rate, "rad/s");
+  }
+}
+
+void check_spawn(const Pose& spawn) {
+  if (!spawn.xyz.allFinite() || !spawn.rpy.allFinite()) {
+    throw InputError("spawn holds a number that is not finite; write x,y,z[,roll,pitch,yaw]");
+  }
+  refuse_diverged("spawn: the distance from the origin", spawn.xyz.norm(), max_distance, "m");
 }
 
 }  // namespace quadcore

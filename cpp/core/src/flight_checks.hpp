@@ -18,7 +18,12 @@ bool is_sane(const Kinematics& kinematics);
 /// numbers.
 void check_snapshot(const Snapshot& snapshot, Eigen::Index plugin_state);
 
-/// Throws InputError on a state that no vehicle of so many rotors can be in.
+/// Throws InputError on a state that no vehicle of so many rotors can be in, or from which the next
+/// step would end the flight as diverged.
 void check_state(const VehicleState& state, Eigen::Index rotors);
+
+/// Throws InputError on a start that is not finite, or so far away that a flight counts as
+/// diverged.
+void check_spawn(const Pose& spawn);
 
 }  // namespace quadcore

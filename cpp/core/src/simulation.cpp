@@ -23,9 +23,7 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
     what << "dt is " << dt_ << "; write a step in s, from " << shortest_step << " up";
     throw InputError(what.str());
   }
-  if (!options.spawn.xyz.allFinite() || !options.spawn.rpy.allFinite()) {
-    throw InputError("spawn holds a number that is not finite; write x,y,z[,roll,pitch,yaw]");
-  }
+  check_spawn(options.spawn);
   load_plugins(model_, options);
   note_hooks();
   warn(world.passed_over.warning());
