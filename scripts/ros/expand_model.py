@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""Print a model as plain URDF: ``expand_model.py MODEL [ARG:=VALUE ...]``.
+"""Print a model as plain URDF: ``expand_model.py MODEL [ARG=VALUE ...]``.
 
-MODEL is a URDF or xacro file, or the name of a shipped model. For launch files, which load the
-output as robot_description. With quadcore installed for Python its errors name file and line;
+MODEL is a URDF or xacro file, or the name of a shipped model. ARG:=VALUE means the same, but in an
+argument of roslaunch it makes ROS print errors about a bad remapping. For launch files, which load
+the output as robot_description. With quadcore installed for Python its errors name file and line;
 without, the xacro of the ROS distribution does the work.
 """
 
+import re
 import sys
 from pathlib import Path
 
@@ -47,6 +49,7 @@ def expand(path, arguments):
     return xacro.process_file(path, mappings=arguments).toprettyxml(indent="  ")
 
 
-if len(sys.argv) < 2 or any(":=" not in argument for argument in sys.argv[2:]):
+if len(sys.argv) < 2 or any("=" not in argument for argument in sys.argv[2:]):
     sys.exit(__doc__)
-print(expand(shipped(sys.argv[1]), dict(argument.split(":=", 1) for argument in sys.argv[2:])))
+arguments = dict(re.split(":?=", word, maxsplit=1) for word in sys.argv[2:])
+print(expand(shipped(sys.argv[1]), arguments))

@@ -90,4 +90,24 @@ class TestLaunch(unittest.TestCase):
 
 
 if __name__ == "__main__":
+    def test_arguments_of_xacro_are_given_without_an_error_of_ros(self):
+        arguments = ("gui:=false", "name:=plain", "xacro_args:=sim_slow=1")
+        launch = subprocess.Popen(
+            ["roslaunch", "quadcore", "quadrotor.launch", *arguments],
+            env={**os.environ, "ROS_NAMESPACE": "plain"},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        try:
+            with Recording("/plain/odom", Odometry) as odometry:
+                odometry.wait_for_count(1)
+        finally:
+            launch.send_signal(signal.SIGINT)
+            printed, _ = launch.communicate(timeout=harness.LONG)
+        self.assertNotIn("ERROR", printed)
+        self.assertNotIn("Invalid", printed)
+        urdf = rospy.get_param("/plain/robot_description")
+        self.assertIn("<sim_slow>1<", urdf)
+
     harness.run("launch", TestLaunch)
