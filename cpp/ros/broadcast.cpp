@@ -2,6 +2,7 @@
 
 #include "messages.hpp"
 #include "plant.hpp"
+#include "quadcore/urdf_tree.hpp"
 #include "vehicle_messages.hpp"
 
 namespace quadcore::node {
@@ -26,6 +27,7 @@ Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
   } else {
     ROS_WARN("no plugin of the model publishes odometry on topic odom: odom and tf are not sent");
   }
+  send_static_frames(nh, model, frame_prefix);
   // Last, so that none takes the name of one of these.
   others_.emplace(nh, simulation, frame_prefix, OdometryTopic::name);
 }
@@ -43,12 +45,25 @@ void Broadcast::advertise_odometry(ros::NodeHandle& nh, const std::string& frame
   tf_publisher_ = nh.advertise<tf2_msgs::TFMessage>("/tf", 100, kept);
   transforms_.transforms.push_back(same_place(world_frame, vehicle_frame));
   if (rotor_tf) add_rotor_frames(model, frame_prefix);
-  const std::string root_frame = frame_of(frame_prefix, model.links.front().name);
-  if (root_frame == vehicle_frame) return;
-  // robot_state_publisher begins at the URDF's root link, tf at the thesis' "drone".
-  static_tf_publisher_ = nh.advertise<tf2_msgs::TFMessage>("/tf_static", 100, kept);
+}
+
+/// Links whose joints do not move, which robot_state_publisher would not send without joint states.
+void Broadcast::send_static_frames(ros::NodeHandle& nh, const Model& model,
+                                   const std::string& frame_prefix) {
   tf2_msgs::TFMessage message;
-  message.transforms.push_back(same_place(vehicle_frame, root_frame));
+  const std::string vehicle_frame = frame_prefix + vehicle_name;
+  const std::string root_frame = frame_of(frame_prefix, model.links.front().name);
+  // The URDF begins at its root link, tf at the thesis' "drone".
+  if (tf_publisher_ && root_frame != vehicle_frame) {
+    message.transforms.push_back(same_place(vehicle_frame, root_frame));
+  }
+  for (const UrdfJoint& joint : model.urdf->joints) {
+    if (!joint.fixed && !joint.locked) continue;
+    message.transforms.push_back(placed(frame_of(frame_prefix, joint.parent),
+                                        frame_of(frame_prefix, joint.child), joint.pose));
+  }
+  if (message.transforms.empty()) return;
+  static_tf_publisher_ = nh.advertise<tf2_msgs::TFMessage>("/tf_static", 100, kept);
   static_tf_publisher_.publish(message);
 }
 
@@ -87,10 +102,9 @@ void Broadcast::send_odometry(const Simulation& simulation, const Topic& topic) 
 void Broadcast::add_rotor_frames(const Model& model, const std::string& frame_prefix) {
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint& joint = model.joints[i];
-    transforms_.transforms.push_back(
-        same_place(frame_of(frame_prefix, model.links[joint.parent].name),
-                   frame_of(frame_prefix, model.links[i + 1].name)));
-    set_vector(transforms_.transforms.back().transform.translation, joint.pose.xyz.data());
+    transforms_.transforms.push_back(placed(frame_of(frame_prefix, model.links[joint.parent].name),
+                                            frame_of(frame_prefix, model.links[i + 1].name),
+                                            joint.pose));
   }
 }
 

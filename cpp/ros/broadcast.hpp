@@ -28,7 +28,7 @@ class Broadcast {
  public:
   /// \param clock  where the clock is sent; an empty publisher = somebody else sends it
   /// \param frame_prefix  of the vehicle's frames, "" or such as "uav1/"
-  /// \param rotor_tf  whether tf holds the rotors' links, too. What robot_state_publisher says of
+  /// \param rotor_tf  whether tf holds the rotors' links, too. What robot_state_publisher sends of
   ///                  them is not kept for those who come later.
   Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
             const KeptPublisher<rosgraph_msgs::Clock>& clock, const std::string& frame_prefix,
@@ -45,6 +45,7 @@ class Broadcast {
   void send_odometry(const Simulation& simulation, const Topic& topic);
   void add_rotor_frames(const Model& model, const std::string& frame_prefix);
   void send_transforms(const Simulation& simulation);
+  void send_static_frames(ros::NodeHandle& nh, const Model& model, const std::string& frame_prefix);
   void send_joint_states(const VehicleState& state);
 
   const OdometryTopic odometry_topic_;

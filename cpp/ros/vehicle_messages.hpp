@@ -26,6 +26,16 @@ inline geometry_msgs::TransformStamped same_place(const std::string& parent,
   return same;
 }
 
+/// A frame at a pose in another.
+inline geometry_msgs::TransformStamped placed(const std::string& parent, const std::string& child,
+                                              const Pose& pose) {
+  geometry_msgs::TransformStamped placed = same_place(parent, child);
+  set_vector(placed.transform.translation, pose.xyz.data());
+  const Quaterniond rotation = pose.rotation();
+  set_quaternion(placed.transform.rotation, rotation.coeffs().data());
+  return placed;
+}
+
 inline void to_ros(const VehicleState& state, geometry_msgs::Transform& vehicle) {
   set_vector(vehicle.translation, state.position.data());
   set_quaternion(vehicle.rotation, state.orientation.coeffs().data());

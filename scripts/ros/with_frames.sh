@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs robot_state_publisher or rviz on the frames of this namespace: "with_frames.sh PROGRAM ...".
-# In uav1 they begin with uav1/, which the first knows as a parameter, the second by its file only.
+# Runs rviz on the frames of this namespace: "with_frames.sh PROGRAM ...". In uav1 they begin with
+# uav1/, which rviz reads from its file only.
 set -euo pipefail
 
 frames=${ROS_NAMESPACE:-}
@@ -9,22 +9,17 @@ frames=${frames#/}
 # The links of RotorS' vehicles have the namespace in their names already.
 links=$frames
 if rosparam get -p robot_description | grep "<link name=\"$frames/" >/dev/null; then links=""; fi
-case $1 in
-  *robot_state_publisher) exec "$@" "_tf_prefix:=$links" ;;
-  *)
-    copy=$(mktemp --suffix .rviz)
-    trap 'rm -f "$copy"' EXIT
-    arguments=()
-    for argument in "$@"; do
-      if [[ $argument = *.rviz ]]; then
-        sed -e "s|TF Prefix: .*|TF Prefix: $links|" -e "s|Target Frame: |&$frames/|" \
-          -e "/world:/!s|[a-z0-9]*: {Value: |$frames/&|" "$argument" >"$copy"
-        argument=$copy
-      fi
-      arguments+=("$argument")
-    done
-    "${arguments[@]}" &
-    trap 'kill -INT $!' INT TERM
-    wait || wait
-    ;;
-esac
+copy=$(mktemp --suffix .rviz)
+trap 'rm -f "$copy"' EXIT
+arguments=()
+for argument in "$@"; do
+  if [[ $argument = *.rviz ]]; then
+    sed -e "s|TF Prefix: .*|TF Prefix: $links|" -e "s|Target Frame: |&$frames/|" \
+      -e "/world:/!s|[a-z0-9]*: {Value: |$frames/&|" "$argument" >"$copy"
+    argument=$copy
+  fi
+  arguments+=("$argument")
+done
+"${arguments[@]}" &
+trap 'kill -INT $!' INT TERM
+wait || wait

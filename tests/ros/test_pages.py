@@ -25,7 +25,7 @@ import quadcore as qc
 
 FOLDER = Path(rospkg.RosPack().get_path("quadcore"))
 PAGES = [FOLDER / "README.md", *sorted((FOLDER / "docs").glob("*.md"))]
-NOT_EVERYWHERE = {"rviz", "robot_state_publisher", "joy", "teleop_twist_joy"}
+NOT_EVERYWHERE = {"rviz", "joy", "teleop_twist_joy"}
 SHELL = re.compile(r"^```sh\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 COMMAND = re.compile(r"^(?:`|\s*)((?:roslaunch|rosrun) quadcore [^`#\n]*)")
 
