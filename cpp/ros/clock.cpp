@@ -11,46 +11,23 @@
 namespace quadcore::node {
 namespace {
 
-using XmlRpc::XmlRpcValue;
 using Wall = std::chrono::steady_clock;
 
-/// Followers tell how far they are at least so often.
+/// Followers tell how far they are at least so often, or they are not waited for.
 constexpr auto longest_silence = std::chrono::seconds(1);
+/// After this they have gone: on a busy machine a second of silence is no sign of that.
+constexpr auto longest_absence = std::chrono::seconds(5);
 /// By then a connection to the leader has been made, or has failed.
 constexpr auto longest_connecting = std::chrono::seconds(5);
 /// They tell it after each such piece of time [s of simulation].
 constexpr double telling_period = longest_lead / 4;
-
-bool is_alive(const std::string& node) {
-  XmlRpcValue uri, pid;
-  return call_master("lookupNode", {node}, uri) &&
-         call_node(static_cast<std::string>(uri), "getPid", {}, pid);
-}
-
-/// The first living node that publishes a topic; the master lists them in the order in which they
-/// came. "" = none before this one.
-std::string first_publisher(const std::string& topic) {
-  XmlRpcValue state;
-  if (!call_master("getSystemState", {}, state)) return "";
-  XmlRpcValue& topics = state[0];
-  for (int i = 0; i < topics.size(); ++i) {
-    if (static_cast<std::string>(topics[i][0]) != topic) continue;
-    XmlRpcValue& publishers = topics[i][1];
-    for (int j = 0; j < publishers.size(); ++j) {
-      const std::string node = publishers[j];
-      if (node == ros::this_node::getName()) return "";
-      if (is_alive(node)) return node;
-    }
-  }
-  return "";
-}
 
 }  // namespace
 
 KeptPublisher<rosgraph_msgs::Clock> take_part_in_clock(ros::NodeHandle& nh, ClockRole role) {
   if (role == ClockRole::follow) return {};
   KeptPublisher<rosgraph_msgs::Clock> publisher(nh, "/clock", 1000, Again::to_all);
-  const std::string leader = first_publisher("/clock");
+  const std::string leader = earlier_publisher("/clock");
   if (leader.empty()) {
     // As gazebo_ros does; before there are services, so that whoever waits for one finds it.
     if (!nh.hasParam(use_sim_time)) nh.setParam(use_sim_time, true);
@@ -81,13 +58,12 @@ void ClockLeader::take(const std_msgs::Header& needs) {
 
 void ClockLeader::look() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const auto silent_since = Wall::now() - longest_silence;
-  const std::size_t before = followers_.size();
+  const auto gone_since = Wall::now() - longest_absence;
   for (auto follower = followers_.begin(); follower != followers_.end();) {
     follower =
-        follower->second.heard < silent_since ? followers_.erase(follower) : std::next(follower);
+        follower->second.heard < gone_since ? followers_.erase(follower) : std::next(follower);
   }
-  if (followers_.size() != before) hold();
+  hold();
 }
 
 std::vector<std::string> ClockLeader::spaces() const {
@@ -99,8 +75,13 @@ std::vector<std::string> ClockLeader::spaces() const {
 }
 
 void ClockLeader::hold() {
+  const auto silent_since = Wall::now() - longest_silence;
   double slowest = std::numeric_limits<double>::infinity();
-  for (const auto& [name, follower] : followers_) slowest = std::min(slowest, follower.needs);
+  for (const auto& [name, follower] : followers_) {
+    if (follower.heard >= silent_since) slowest = std::min(slowest, follower.needs);
+  }
+  if (slowest == slowest_) return;
+  slowest_ = slowest;
   flight_.hold(slowest + longest_lead);
 }
 

@@ -5,6 +5,7 @@
 #include <std_msgs/Header.h>
 
 #include <chrono>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <string>
@@ -43,7 +44,8 @@ class ClockLeader {
  public:
   ClockLeader(ros::NodeHandle& nh, FlightThread& flight,
               const KeptPublisher<rosgraph_msgs::Clock>& clock);
-  /// Forgets followers that have gone. To be called now and then.
+  /// Waits no longer for followers that are silent, and forgets those that have gone. To be called
+  /// now and then.
   void look();
   /// Namespaces of the nodes that follow now.
   std::vector<std::string> spaces() const;
@@ -60,6 +62,7 @@ class ClockLeader {
   KeptPublisher<rosgraph_msgs::Clock> clock_;
   mutable std::mutex mutex_;
   std::map<std::string, Follower> followers_;
+  double slowest_ = std::numeric_limits<double>::infinity();  ///< of what they need [s]
   ros::Subscriber subscriber_;
 };
 

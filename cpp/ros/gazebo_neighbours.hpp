@@ -4,6 +4,7 @@
 #include <gazebo_msgs/ModelStates.h>
 #include <ros/ros.h>
 
+#include <functional>
 #include <map>
 #include <mutex>
 #include <string>
@@ -17,10 +18,16 @@ class GazeboNeighbours {
  public:
   explicit GazeboNeighbours(const ros::NodeHandle& nh) : nh_(nh) {}
 
+  /// What is done, in any thread, with each message of a neighbour from the moment on at which all
+  /// have been heard. The argument: whether this is that moment.
+  void when_heard(const std::function<void(bool)>& action);
+
   /// Who they are now, by namespace.
   /// \param listen  whether to hear where their models are
   void look(const std::vector<std::string>& spaces, bool listen);
   std::vector<std::string> spaces() const;
+  /// Whether each has been heard since somebody listens, so that no model is missing.
+  bool complete() const;
   /// Adds what they told last.
   void add_to(gazebo_msgs::ModelStates& states) const;
   void add_to(gazebo_msgs::LinkStates& states) const;
@@ -33,9 +40,13 @@ class GazeboNeighbours {
   };
   template <class States>
   ros::Subscriber subscribe(const std::string& topic, States& newest);
+  bool all_heard() const;
+  void act_on_news(std::unique_lock<std::mutex> lock);
 
   ros::NodeHandle nh_;
   mutable std::mutex mutex_;
+  std::function<void(bool)> when_heard_;
+  bool complete_ = false;
   std::vector<std::string> spaces_;
   std::map<std::string, Told> told_;  ///< by namespace
 };

@@ -83,7 +83,7 @@ void GazeboStates::send(const Simulation& simulation) {
 template <class States>
 void GazeboStates::publish(Sent<States>& sent) {
   if (has_listener(sent.own)) sent.own.publish(sent.states);
-  if (!has_listener(sent.of_all)) return;
+  if (!has_listener(sent.of_all) || !neighbours_->complete()) return;
   States all = sent.states;
   neighbours_->add_to(all);
   sent.of_all.publish(all);

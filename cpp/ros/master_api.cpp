@@ -16,6 +16,12 @@ XmlRpcValue list(const XmlRpcValue& first, std::initializer_list<XmlRpcValue> ot
   return all;
 }
 
+bool is_alive(const std::string& node) {
+  XmlRpcValue uri, pid;
+  return call_master("lookupNode", {node}, uri) &&
+         call_node(static_cast<std::string>(uri), "getPid", {}, pid);
+}
+
 }  // namespace
 
 bool call_master(const std::string& method, std::initializer_list<XmlRpcValue> arguments,
@@ -43,6 +49,22 @@ bool call_node(const std::string& uri, const std::string& method,
     return false;
   result = response[2];
   return true;
+}
+
+std::string earlier_publisher(const std::string& topic) {
+  XmlRpcValue state;
+  if (!call_master("getSystemState", {}, state)) return "";
+  XmlRpcValue& topics = state[0];
+  for (int i = 0; i < topics.size(); ++i) {
+    if (static_cast<std::string>(topics[i][0]) != topic) continue;
+    XmlRpcValue& publishers = topics[i][1];
+    for (int j = 0; j < publishers.size(); ++j) {
+      const std::string node = publishers[j];
+      if (node == ros::this_node::getName()) return "";
+      if (is_alive(node)) return node;
+    }
+  }
+  return "";
 }
 
 }  // namespace quadcore::node

@@ -20,5 +20,8 @@ bool call_master(const std::string& method, std::initializer_list<XmlRpc::XmlRpc
 /// answered; `result` is what it said.
 bool call_node(const std::string& uri, const std::string& method,
                std::initializer_list<XmlRpc::XmlRpcValue> arguments, XmlRpc::XmlRpcValue& result);
+/// The first living node that has published a topic for longer than this one, by the order in which
+/// the master lists them; "" = none.
+std::string earlier_publisher(const std::string& topic);
 
 }  // namespace quadcore::node

@@ -119,16 +119,16 @@ Simulation make_simulation(const Plant& plant, const World& world, const Guests&
 }
 
 std::string model_name(const Plant& plant, const Model& model) {
-  return plant.name.empty() ? model.name : plant.name;
-}
-
-std::string command_topic(const ros::NodeHandle& nh, const Plant& plant, const Model& model) {
-  const std::string name = model_name(plant, model);
+  const std::string& name = plant.name.empty() ? model.name : plant.name;
   std::string why;
   if (!ros::names::validate(name, why)) {
     throw InputError("model name '" + name + "' cannot name a topic (" + why + "); set ~name");
   }
-  return nh.resolveName(name + "/" + Simulation::command_topic);
+  return name;
+}
+
+std::string command_topic(const ros::NodeHandle& nh, const Plant& plant, const Model& model) {
+  return nh.resolveName(model_name(plant, model) + "/" + Simulation::command_topic);
 }
 
 std::string frame_prefix(const ros::NodeHandle& nh) {

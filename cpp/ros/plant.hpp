@@ -43,7 +43,7 @@ World read_world_of(const Plant& plant);
 /// The simulation that was asked for.
 Simulation make_simulation(const Plant& plant, const World& world, const Guests& guests);
 
-/// What the model is called in topics and services.
+/// What the model is called in topics and services. Throws InputError on a name that cannot be one.
 std::string model_name(const Plant& plant, const Model& model);
 /// Where commands come in: below the model's name, as Gazebo has it.
 std::string command_topic(const ros::NodeHandle& nh, const Plant& plant, const Model& model);

@@ -11,6 +11,7 @@
 #include "listener.hpp"
 #include "master_check.hpp"
 #include "master_watch.hpp"
+#include "model_claim.hpp"
 #include "no_delay.hpp"
 #include "parameter_watch.hpp"
 #include "quadcore/error.hpp"
@@ -64,6 +65,7 @@ int run(const EndSignal& end_signal) {
   });
   const std::string model = model_name(settings.plant, simulation.model());
   describe(simulation);
+  const ros::Publisher claim = claim_model(nh, model);
 
   const KeptPublisher<rosgraph_msgs::Clock> clock = take_part_in_clock(nh, settings.clock);
   FlightSettings flight_settings = settings.flight;
@@ -95,13 +97,20 @@ int run(const EndSignal& end_signal) {
            simulation.engine_name().c_str(), described(topics).c_str(),
            flight_settings.lockstep ? ", one for each odometry message" : "");
   FlightThread flight(simulation, flight_settings, listener);
-  gazebo_states.for_newcomers([&] {
+  const auto send_gazebo_states = [&] {
     try {
       flight.tell([&](const Simulation& now) { gazebo_states.send(now); });
     } catch (const InputError&) {
       // The flight ends; who comes now has nothing more to see.
     }
-  });
+  };
+  gazebo_states.for_newcomers(send_gazebo_states);
+  if (neighbours) {
+    neighbours->when_heard([&](bool complete) {
+      // In flight the next step sends them.
+      if (complete || flight.report().paused) send_gazebo_states();
+    });
+  }
   std::optional<ClockLeader> leader;
   if (clock) leader.emplace(nh, flight, clock);
   if (follower) follower->follow(flight);

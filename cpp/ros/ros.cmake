@@ -112,7 +112,8 @@ add_ros_node(quadcore_node
   cpp/ros/gazebo_physics.cpp
   cpp/ros/gazebo_services.cpp cpp/ros/gazebo_states.cpp cpp/ros/gazebo_wrenches.cpp
   cpp/ros/listener.cpp cpp/ros/log_per_flight.cpp cpp/ros/master_api.cpp cpp/ros/master_check.cpp
-  cpp/ros/master_watch.cpp cpp/ros/mat_file.cpp cpp/ros/mat_log.cpp cpp/ros/odometry_topic.cpp
+  cpp/ros/master_watch.cpp cpp/ros/mat_file.cpp cpp/ros/mat_log.cpp
+  cpp/ros/model_claim.cpp cpp/ros/odometry_topic.cpp
   cpp/ros/parameter_watch.cpp cpp/ros/path.cpp
   cpp/ros/plant.cpp cpp/ros/private_parameters.cpp cpp/ros/quadcore_node.cpp cpp/ros/ros_types.cpp
   cpp/ros/rotors_types.cpp cpp/ros/services.cpp cpp/ros/settings.cpp

@@ -33,7 +33,7 @@ class TestClock(unittest.TestCase):
     def test_the_second_node_follows_the_first(self):
         with flight("_paused:=true", namespace="/a"):
             step(1000, "/a")
-            with flight("_z:=20", namespace="/b"), Recording("/b/odom", Odometry) as b:
+            with flight("_name:=b", "_z:=20", namespace="/b"), Recording("/b/odom", Odometry) as b:
                 self.assertEqual(harness.publishers("/clock"), ["/a/quadcore"])
                 start = b.wait_for_count(1)[0]  # a leader that is paused has a time, too
                 self.assertEqual(seconds(start), 1)
@@ -49,7 +49,7 @@ class TestClock(unittest.TestCase):
     def test_a_leader_in_a_hurry_waits_for_its_followers(self):
         with flight("_paused:=true", FAST, namespace="/a"):
             topics = Recording("/clock", Clock), Recording("/b/odom", Odometry)
-            with flight(FAST, namespace="/b"), topics[0] as clock, topics[1] as b:
+            with flight("_name:=b", FAST, namespace="/b"), topics[0] as clock, topics[1] as b:
                 b.wait_for_publisher()
                 call("/a/gazebo/unpause_physics")
                 clock.wait(lambda m: m and m[-1].clock.to_sec() > 5)
@@ -61,7 +61,8 @@ class TestClock(unittest.TestCase):
 
     def test_a_follower_that_is_paused_stands_alone_and_goes_on_at_the_time_of_the_clock(self):
         topic = Recording("/b/odom", Odometry)
-        with flight("_paused:=true", namespace="/a"), flight(namespace="/b"), topic as b:
+        follower = flight("_name:=b", namespace="/b")
+        with flight("_paused:=true", namespace="/a"), follower, topic as b:
             b.wait_for_publisher()
             step(100, "/a")
             stood = b.wait(lambda m: m and seconds(m[-1]) == 0.1)[-1]
@@ -78,7 +79,7 @@ class TestClock(unittest.TestCase):
         self.assertAlmostEqual(fall, 0.98 * flown + 4.9 * flown**2, delta=1e-4)
 
     def test_resets_are_independent_and_never_set_a_shared_clock_back(self):
-        with flight("_paused:=true", namespace="/a"), flight(namespace="/b"):
+        with flight("_paused:=true", namespace="/a"), flight("_name:=b", namespace="/b"):
             flights = Recording("/a/odom", Odometry), Recording("/b/odom", Odometry)
             with Recording("/clock", Clock) as clock, flights[0] as a, flights[1] as b:
                 for recording in (clock, a, b):
@@ -101,7 +102,7 @@ class TestClock(unittest.TestCase):
 
     def test_a_clock_that_is_set_back_is_followed(self):
         topic = Recording("/b/odom", Odometry)
-        with flight("_paused:=true"), flight(namespace="/b"), topic as b:
+        with flight("_paused:=true"), flight("_name:=b", namespace="/b"), topic as b:
             b.wait_for_publisher()
             step(300)
             high = b.wait(lambda m: m and seconds(m[-1]) == 0.3)[-1]
@@ -113,7 +114,7 @@ class TestClock(unittest.TestCase):
     def test_there_is_one_leader_only(self):
         with flight("_paused:=true", namespace="/a"):
             rospy.set_param("/b/robot_description", harness.description())
-            with Process("quadcore_node", "__ns:=/b", "_clock:=lead") as second:
+            with Process("quadcore_node", "__ns:=/b", "_name:=b", "_clock:=lead") as second:
                 status, error = second.result()
             rospy.delete_param("/b/quadcore")
         self.assertEqual(status, 2)

@@ -119,7 +119,8 @@ class TestControllerFaults(unittest.TestCase):
     def test_vehicles_in_namespaces_have_controllers_of_their_own(self):
         topics, urdf = [], description()
         for space, height in (("/uav1", 10.3), ("/uav2", 9.8)):
-            self.stack.enter_context(flight(*FAST, namespace=space, urdf=urdf))
+            name = f"_name:={space[1:]}"
+            self.stack.enter_context(flight(*FAST, name, namespace=space, urdf=urdf))
             own = (f"__ns:={space}", "_law:=geometric", "_reference/shape:=hover")
             node = Process("controller_node", *own, f"_reference/height:={height}")
             self.stack.enter_context(node)

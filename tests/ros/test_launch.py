@@ -73,7 +73,7 @@ class TestLaunch(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             (Path(folder) / "my.urdf").write_text(harness.description())
             (Path(folder) / "my.world").write_text((worlds / "empty.world").read_text())
-            paths = ["model:=my.urdf", "world:=my.world", "log:=my.csv"]
+            paths = ["name:=relative", "model:=my.urdf", "world:=my.world", "log:=my.csv"]
             launch = subprocess.Popen(
                 ["roslaunch", "quadcore", "quadrotor.launch", "gui:=false", *paths],
                 env={**os.environ, "ROS_NAMESPACE": "relative"},

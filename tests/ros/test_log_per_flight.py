@@ -91,7 +91,8 @@ class TestLogPerFlight(unittest.TestCase):
         """What follows the clock and is paused falls behind it, and joins it with the jump."""
         log = f"_log:={self.folder / 'flight.csv'}"
         topic = Recording("/b/odom", Odometry)
-        with flight("_paused:=true", namespace="/a"), flight(log, namespace="/b") as node:
+        leader = flight("_paused:=true", "_name:=leader", namespace="/a")
+        with leader, flight(log, namespace="/b") as node:
             with topic as b:
                 b.wait_for_publisher()
                 step(50, "/a")
@@ -107,7 +108,7 @@ class TestLogPerFlight(unittest.TestCase):
     def test_a_jump_that_waits_for_a_controller_begins_another_flight(self):
         """In lockstep it is seen once someone can answer; the clock may have gone on by then."""
         log = f"_log:={self.folder / 'flight.csv'}"
-        with flight("_paused:=true", namespace="/a"):
+        with flight("_paused:=true", "_name:=leader", namespace="/a"):
             step(10, "/a")
             with flight(*LOCKSTEP[1:], log, namespace="/b") as node:
                 wait_until(lambda: time_of_flight("/b").to_sec() == 0.01)
