@@ -36,7 +36,7 @@ void Broadcast::advertise_odometry(ros::NodeHandle& nh, const std::string& frame
                                    const Simulation& simulation, bool rotor_tf) {
   const Model& model = simulation.model();
   const bool of_plugin = simulation.topics().find(truth_topic) >= 0;  // as RotorS' vehicles have it
-  odometry_publisher_ = nh.advertise<nav_msgs::Odometry>(OdometryTopic::name, 1000, kept);
+  odometry_publisher_ = {nh, OdometryTopic::name, 1000};
   if (!of_plugin) truth_publisher_ = nh.advertise<nav_msgs::Odometry>(truth_topic, 1000, kept);
   const std::string vehicle_frame = frame_prefix + vehicle_name;
   set_frames(odometry_, vehicle_frame);
@@ -84,19 +84,37 @@ void Broadcast::show(const Simulation& simulation) {
   clock_.clock = to_ros(simulation.time());
   if (clock_publisher_) clock_publisher_.publish(clock_);
   send_joint_states(simulation.state());
+  send_truth(simulation.state());
   if (tf_publisher_) send_transforms(simulation);
   gazebo_states_.send(simulation);
 }
 
+void Broadcast::offer(const Simulation& simulation) {
+  if (!odometry_topic_.exists()) return;
+  const Topic& topic = odometry_topic_.in(simulation);
+  if (topic.count == 0) return;
+  fill_odometry(topic);
+  odometry_publisher_.offer(odometry_);
+}
+
 void Broadcast::send_odometry(const Simulation& simulation, const Topic& topic) {
   sent_ = topic.count;
-  odometry_.header.stamp = to_ros(topic.stamp);  // earlier where it was delayed
-  truth_.header.stamp = clock_.clock;
-  to_ros(messages::read<messages::Odometry>(topic.values.data()), odometry_);
+  fill_odometry(topic);
   odometry_publisher_.publish(odometry_);
-  to_ros(odometry_topic_.truth(simulation.state()), truth_);
-  if (truth_publisher_) truth_publisher_.publish(truth_);
+  send_truth(simulation.state());
   if (tf_publisher_) send_transforms(simulation);
+}
+
+void Broadcast::fill_odometry(const Topic& topic) {
+  odometry_.header.stamp = to_ros(topic.stamp);  // earlier where it was delayed
+  to_ros(messages::read<messages::Odometry>(topic.values.data()), odometry_);
+}
+
+void Broadcast::send_truth(const VehicleState& state) {
+  if (!truth_publisher_) return;
+  truth_.header.stamp = clock_.clock;
+  to_ros(odometry_topic_.truth(state), truth_);
+  truth_publisher_.publish(truth_);
 }
 
 void Broadcast::add_rotor_frames(const Model& model, const std::string& frame_prefix) {

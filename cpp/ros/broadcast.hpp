@@ -12,6 +12,7 @@
 #include "gazebo_states.hpp"
 #include "kept_publisher.hpp"
 #include "odometry_topic.hpp"
+#include "offering_publisher.hpp"
 #include "path.hpp"
 #include "quadcore/simulation.hpp"
 #include "thinned.hpp"
@@ -36,16 +37,20 @@ class Broadcast {
 
   /// After a step; `jumped`: after the start, a reset or a new state.
   void send(const Simulation& simulation, bool jumped);
-  /// Sends what is there to see, but no odometry, which somebody might answer.
+  /// Sends what is there to see, but nothing of the plugins, which somebody might answer.
   void show(const Simulation& simulation);
+  /// Sends the odometry of now to those who have waited for some for long.
+  void offer(const Simulation& simulation);
 
  private:
   void advertise_odometry(ros::NodeHandle& nh, const std::string& frame_prefix,
                           const Simulation& simulation, bool rotor_tf);
+  void send_static_frames(ros::NodeHandle& nh, const Model& model, const std::string& frame_prefix);
   void send_odometry(const Simulation& simulation, const Topic& topic);
+  void fill_odometry(const Topic& topic);
+  void send_truth(const VehicleState& state);
   void add_rotor_frames(const Model& model, const std::string& frame_prefix);
   void send_transforms(const Simulation& simulation);
-  void send_static_frames(ros::NodeHandle& nh, const Model& model, const std::string& frame_prefix);
   void send_joint_states(const VehicleState& state);
 
   const OdometryTopic odometry_topic_;
@@ -53,7 +58,7 @@ class Broadcast {
   Thinned joint_states_due_{50};
 
   KeptPublisher<rosgraph_msgs::Clock> clock_publisher_;
-  ros::Publisher odometry_publisher_;
+  OfferingPublisher<nav_msgs::Odometry> odometry_publisher_;
   ros::Publisher truth_publisher_;
   ros::Publisher tf_publisher_;
   ros::Publisher static_tf_publisher_;

@@ -14,8 +14,11 @@ namespace {
 
 /// The longest sleep, so that a slow simulation still hears at once what is asked of it.
 constexpr auto longest_sleep = std::chrono::milliseconds(20);
-/// After this a connection that this side has is one that the other side has, too.
-constexpr auto time_to_connect = std::chrono::milliseconds(100);
+/// After this a connection that this side has is one that the other side has, too, on a busy
+/// machine as well.
+constexpr auto time_to_connect = std::chrono::milliseconds(300);
+/// How long nobody may be there to send commands before it is said, and said again.
+constexpr auto time_between_reminders = std::chrono::seconds(5);
 /// No controller takes so long for its first answer: it must have been lost.
 constexpr auto time_to_begin = std::chrono::seconds(10);
 /// Part of a step by which two clocks may differ in rounding.
@@ -155,7 +158,16 @@ void FlightThread::observe_jump() {
 
 void FlightThread::wait_for_commander(Lock& lock) {
   const auto is_disturbed = [this] { return disturbed(); };
-  if (!listener_.has_commander()) {
+  const Pacer::Clock::time_point now = Pacer::Clock::now();
+  if (listener_.has_commander()) {
+    reminded_.reset();
+    if (!wait(lock, time_to_connect, is_disturbed)) unlocked(lock, [this] { observe_jump(); });
+  } else if (!reminded_) {
+    reminded_ = now;
+  } else if (now - *reminded_ > time_between_reminders) {
+    reminded_ = now;
+    unlocked(lock, [this] { listener_.remind(simulation_); });
+  } else {
     wait(lock, longest_sleep, is_disturbed);
   } else if (!wait(lock, time_to_connect, is_disturbed)) {
     unlocked(lock, [this] { observe_jump(); });

@@ -39,6 +39,9 @@ class FlightListener {
   /// The simulation waits at its start or at a jump for someone who can answer; it will be observed
   /// then. Until then it may be looked at.
   virtual void show(const Simulation& simulation) = 0;
+  /// For seconds nobody has come who can answer. Nodes that wait for odometry may be given one
+  /// message, which counts as none that a command answers.
+  virtual void remind(const Simulation& simulation) = 0;
   /// What was observed last is to be sent once more.
   virtual void repeat(const Simulation& simulation) = 0;
   virtual void warn(const std::string& what) = 0;
@@ -134,7 +137,9 @@ class FlightThread {
   std::int64_t steps_allowed_ = 0;  ///< by step(), while paused
   std::deque<std::packaged_task<void()>> changes_;
   CommandQueue commands_;
-  bool jump_observed_ = false;   ///< the present start or jump has been observed
+  bool jump_observed_ = false;  ///< the present start or jump has been observed
+  /// When somebody who can answer was last seen, or others were last reminded that nobody is there.
+  std::optional<Pacer::Clock::time_point> reminded_;
   std::optional<double> clock_;  ///< of somebody else [s]
   bool joined_ = false;          ///< the simulation goes by clock_
   double hold_ = std::numeric_limits<double>::infinity();

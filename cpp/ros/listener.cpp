@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "quadcore/text.hpp"
+
 namespace quadcore::node {
 
 Listener::Listener(Broadcast& broadcast, TopicInlets& inlets, GazeboWrenches& wrenches,
@@ -26,6 +28,13 @@ void Listener::observe(const Simulation& simulation, bool jumped) {
   for (; warnings_told_ < simulation.warnings().size(); ++warnings_told_) {
     ROS_WARN("%s", simulation.warnings()[warnings_told_].c_str());
   }
+}
+
+void Listener::remind(const Simulation& simulation) {
+  sayer_.warn("lockstep: nobody publishes on " + described(command_topics_) + ", so the flight " +
+              "waits at t = " + seconds(simulation.time()) +
+              ". Start the node that commands it, or fly without lockstep.");
+  broadcast_.offer(simulation);
 }
 
 bool Listener::has_commander() const { return commanders(command_topics_) > 0; }

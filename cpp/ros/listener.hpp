@@ -30,6 +30,7 @@ class Listener final : public FlightListener {
   }
   void observe(const Simulation& simulation, bool jumped) override;
   void show(const Simulation& simulation) override { broadcast_.show(simulation); }
+  void remind(const Simulation& simulation) override;
   void repeat(const Simulation& simulation) override { broadcast_.send(simulation, true); }
   void warn(const std::string& what) override { sayer_.warn(what); }
   bool has_commander() const override;
