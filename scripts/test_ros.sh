@@ -12,16 +12,11 @@ skip() { say "ROS tests skipped: $*"; [ "$asked" = no ]; exit; }
 asked=no
 [ "${1:-}" = --with-ros ] && asked=yes
 
-debian_packages="catkin rosout python3-rosbag python3-roslaunch python3-rosnode python3-rosparam
-  python3-rostest python3-rostopic python3-rosservice python3-rospy python3-diagnostic-msgs
-  python3-geometry-msgs python3-nav-msgs python3-sensor-msgs python3-std-srvs python3-tf2-msgs
-  python3-trajectory-msgs python3-visualization-msgs ros-diagnostic-msgs ros-geometry-msgs
-  ros-nav-msgs ros-rosgraph-msgs ros-sensor-msgs ros-std-msgs ros-std-srvs ros-tf2-msgs
-  ros-trajectory-msgs ros-visualization-msgs ros-message-generation ros-message-runtime
-  libdiagnostic-msgs-dev libgeometry-msgs-dev libnav-msgs-dev libroscpp-dev
-  libros-rosgraph-msgs-dev librostest-dev libsensor-msgs-dev libstd-msgs-dev libstd-srvs-dev
-  libtf2-msgs-dev libtrajectory-msgs-dev libvisualization-msgs-dev
-  pybind11-dev python3-dev python3-numpy python3-scipy python3-setuptools"
+# What docs/ros.md has its reader install, so that a package that it lacks is missing here, too.
+page_packages() {
+  sed -n '/^sudo apt-get install .* git /,/[^\\]$/p' docs/ros.md | tr -d '\\\n' | sed 's/.*-recommends//'
+}
+debian_packages="$(page_packages) librostest-dev python3-rostest"
 noetic_packages="ros-noetic-ros-base ros-noetic-rostest ros-noetic-tf2-msgs ros-noetic-diagnostic-msgs
   ros-noetic-nav-msgs ros-noetic-sensor-msgs ros-noetic-std-srvs ros-noetic-trajectory-msgs
   ros-noetic-visualization-msgs ros-noetic-xacro
@@ -148,7 +143,7 @@ SECONDS=0
 (run_in devel topics services lockstep playing logs log_per_flight clock several parameters faults \
   masters fly_from_python controller controller_faults set_points pid joystick launch plugin_by_others \
   plugin_topics sensors disturbances markers tutorial rotors rotors_topics rotors_hover gazebo \
-  gazebo_launch pages)
+  gazebo_launch pages refusals links one_world waiting building)
 (run_in install launch playing fly_from_python plugin_by_others)
 [ ! -e $workspace/failed ]
 say "the ROS tests passed in $SECONDS s"

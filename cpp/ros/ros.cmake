@@ -22,40 +22,71 @@ if(POLICY CMP0148)
   cmake_policy(SET CMP0148 OLD)  # catkin asks FindPythonInterp
 endif()
 
-set(ros_missing "")
-if(NOT PYTHON_EXECUTABLE)
-  set(ros_missing "a python3 with catkin_pkg, empy and genmsg")
+# Who builds a catkin workspace wants its nodes. Asked before catkin is loaded, which sets the second.
+if(CATKIN_TOPLEVEL OR CATKIN_DEVEL_PREFIX OR QUADCORE_WITH_ROS STREQUAL "ON")
+  set(ros_wanted ON)
+else()
+  set(ros_wanted OFF)
 endif()
-foreach(package ${ros_packages})
-  if(NOT ros_missing)
-    find_package(${package} QUIET NO_MODULE)
-    if(NOT ${package}_FOUND)
-      set(ros_missing ${package})
-    endif()
+
+# need(WHAT DEBIAN_PACKAGE NOETIC_PACKAGE): notes what is not there, and how to install it.
+set(ros_missing "")
+set(ros_to_install "")
+macro(need what debian noetic)
+  list(APPEND ros_missing "${what}")
+  if(EXISTS /opt/ros/noetic)
+    string(APPEND ros_to_install " ${noetic}")
+  else()
+    string(APPEND ros_to_install " ${debian}")
   endif()
-endforeach()
+endmacro()
+if(NOT PYTHON_EXECUTABLE)
+  need("a python3 with catkin_pkg, empy and genmsg" "catkin ros-message-generation"
+       "ros-noetic-catkin ros-noetic-message-generation")
+else()
+  foreach(package ${ros_packages})
+    find_package(${package} QUIET NO_MODULE)
+    string(REPLACE _ - dashed ${package})
+    if(package STREQUAL message_generation)
+      set(debian ros-message-generation)
+    else()
+      set(debian lib${dashed}-dev)
+    endif()
+    if(NOT ${package}_FOUND)
+      need(${package} ${debian} ros-noetic-${dashed})
+    endif()
+  endforeach()
+endif()
 # Debian packages them apart.
-if(NOT ros_missing)
+if(geometry_msgs_FOUND)
   include(${geometry_msgs_DIR}/geometry_msgs-msg-paths.cmake OPTIONAL)
   if(NOT EXISTS ${geometry_msgs_MSG_INCLUDE_DIRS}/Pose.msg)
-    set(ros_missing "the .msg files of geometry_msgs")
+    need("the .msg files of geometry_msgs" ros-geometry-msgs ros-noetic-geometry-msgs)
   endif()
 endif()
-if(NOT ros_missing)
+if(PYTHON_EXECUTABLE)
   set(Python_EXECUTABLE ${PYTHON_EXECUTABLE})
   include(cpp/bindings/python.cmake)
-  set(ros_missing ${python_missing})
+  if(python_missing)
+    need("${python_missing}" "python3-dev pybind11-dev" "python3-dev pybind11-dev")
+  endif()
 endif()
 if(NOT BUILD_SHARED_LIBS)
-  set(ros_missing "a shared core (BUILD_SHARED_LIBS)")
+  need("a shared core (BUILD_SHARED_LIBS)" "" "")
 endif()
 
 if(ros_missing)
-  if(QUADCORE_WITH_ROS STREQUAL "ON")
-    message(FATAL_ERROR "quadcore's ROS node: not found: ${ros_missing}; install ROS 1 and source "
-                        "its setup.bash, or configure with -DQUADCORE_WITH_ROS=OFF")
+  string(REPLACE ";" ", " ros_missing "${ros_missing}")
+  set(remedy "not found: ${ros_missing}.\nInstall it, or source the setup.bash of ROS:\n"
+             "  apt-get install${ros_to_install}\n")
+  if(ros_wanted)
+    message(FATAL_ERROR "quadcore's ROS node cannot be built; " ${remedy}
+                        "To build quadcore without it, configure with -DQUADCORE_WITH_ROS=OFF.")
+  elseif(roscpp_FOUND)
+    message(WARNING "quadcore is built without its ROS node; " ${remedy})
+  else()
+    message(STATUS "quadcore: without the ROS node (there is no ROS 1)")
   endif()
-  message(STATUS "quadcore: without the ROS node (not found: ${ros_missing})")
   return()
 endif()
 
@@ -72,8 +103,11 @@ catkin_python_setup()
 add_message_files(FILES AttitudeThrust.msg RateThrust.msg)
 add_service_files(FILES ApplyWrench.srv Publish.srv SetState.srv Step.srv)
 generate_messages(DEPENDENCIES geometry_msgs std_msgs)
+# catkin warns of exported headers that lie in the build folder.
+configure_file(${PROJECT_BINARY_DIR}/cpp/core/include/quadcore/plugin_interface.hpp
+               ${CATKIN_DEVEL_PREFIX}/include/quadcore/plugin_interface.hpp COPYONLY)
 catkin_package(
-  INCLUDE_DIRS cpp/core/include ${PROJECT_BINARY_DIR}/cpp/core/include
+  INCLUDE_DIRS cpp/core/include ${CATKIN_DEVEL_PREFIX}/include
   LIBRARIES quadcore
   CATKIN_DEPENDS diagnostic_msgs geometry_msgs message_runtime nav_msgs roscpp rosgraph_msgs
                  sensor_msgs std_msgs std_srvs tf2_msgs trajectory_msgs visualization_msgs
@@ -147,7 +181,7 @@ if(CATKIN_ENABLE_TESTING)
     foreach(test topics services lockstep playing logs log_per_flight clock several parameters faults
                  masters launch fly_from_python controller controller_faults set_points pid joystick
                  sensors disturbances markers tutorial rotors rotors_topics rotors_hover gazebo
-                 gazebo_launch pages)
+                 gazebo_launch pages refusals links one_world waiting building)
       add_rostest(tests/ros/${test}.test)
     endforeach()
   endif()
