@@ -13,10 +13,11 @@
 namespace quadcore::node {
 
 /// Waits for SIGINT, SIGTERM and SIGHUP. Make one before any other thread starts, so that all of
-/// them leave these signals alone. A process that has not ended by itself within most of a second
-/// after the signal, because a master or a name server hangs, is ended here: with the flight's
-/// status if its log was closed by then, with status 2 if not. A log that is being written is
-/// waited for, until a second signal.
+/// them leave these signals alone. A process whose flight has ended, but which has not ended by
+/// itself within most of a second after the signal, because a master or a name server hangs, is
+/// ended here with the flight's status. A flight whose step does not return, because nobody reads
+/// the pipe that its log goes to, is ended with status 2; a busy machine is no reason for that. A
+/// log that is being written is waited for, until a second signal.
 class EndSignal {
  public:
   EndSignal() {
@@ -28,18 +29,21 @@ class EndSignal {
       int signal = 0;
       sigwait(&signals, &signal);
       state->came = true;
-      std::this_thread::sleep_for(patience);
+      auto begun = Clock::now();
+      while (state->status == kFlying && Clock::now() - begun < longest_step) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      }
       if (state->status == kFlying) {
         give_up("the flight could not be ended in time; its log may be cut short");
       }
-      if (state->status == kWriting) {
-        const timespec moment{0, 10'000'000};
-        while (state->status == kWriting) {
-          if (sigtimedwait(&signals, nullptr, &moment) < 0) continue;
+      const timespec moment{0, 10'000'000};
+      while (state->status == kWriting) {
+        if (sigtimedwait(&signals, nullptr, &moment) >= 0) {
           give_up("ended again while the log was being written, which is lost");
         }
-        std::this_thread::sleep_for(patience);
+        begun = Clock::now();
       }
+      std::this_thread::sleep_until(begun + patience);
       std::_Exit(state->status);
     }).detach();
   }
@@ -53,7 +57,9 @@ class EndSignal {
  private:
   static constexpr int kFlying = -1;
   static constexpr int kWriting = -2;
+  using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::milliseconds patience{800};
+  static constexpr std::chrono::seconds longest_step{10};  // roslaunch kills after 15 s
   struct State {
     std::atomic<bool> came{false};
     std::atomic<int> status{kFlying};  // with which to exit

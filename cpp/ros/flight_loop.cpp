@@ -169,8 +169,6 @@ void FlightThread::wait_for_commander(Lock& lock) {
     unlocked(lock, [this] { listener_.remind(simulation_); });
   } else {
     wait(lock, longest_sleep, is_disturbed);
-  } else if (!wait(lock, time_to_connect, is_disturbed)) {
-    unlocked(lock, [this] { observe_jump(); });
   }
 }
 
