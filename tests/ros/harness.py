@@ -132,9 +132,9 @@ class Recording:
             self._came.notify_all()
 
     def wait(self, until: Callable[[list], bool], seconds: float = LONG) -> list:
-        """Messages once `until` holds of them."""
+        """Messages once there are some and `until` holds of them."""
         with self._came:
-            if not self._came.wait_for(lambda: until(self.messages), seconds):
+            if not self._came.wait_for(lambda: self.messages and until(self.messages), seconds):
                 raise AssertionError(f"{self._subscriber.name}: {len(self.messages)} messages")
             return list(self.messages)
 
@@ -174,13 +174,10 @@ def time_of_flight(namespace: str = "") -> rospy.Time:
     return get("quadrotor", "").header.stamp
 
 
-def settled(recording: Recording):
-    """Newest message, once none has come for a while."""
-    count = -1
-    while count != len(recording.messages):
-        count = len(recording.messages)
-        time.sleep(0.3)
-    return recording.messages[-1]
+def wait_for_status(message: str) -> None:
+    """Return once the diagnostics of a flight say so."""
+    with Recording("/diagnostics", DiagnosticArray) as recording:
+        recording.wait(lambda messages: messages[-1].status[0].message == message)
 
 
 def step(n: int, namespace: str = "") -> rospy.Time:

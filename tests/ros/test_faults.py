@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 import xmlrpc.client
 from functools import partial
@@ -16,7 +17,7 @@ import numpy as np
 import rosgraph
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
-from harness import HOVER, Recording, call, commander, description, diagnostic, flight, outcome
+from harness import HOVER, Recording, commander, description, diagnostic, flight, outcome, step
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
 
@@ -46,11 +47,14 @@ class TestFaults(unittest.TestCase):
 
     def test_bad_commands_are_reported_once_a_second(self):
         with flight() as node, commander() as send:
+            begun = time.monotonic()
             for i in range(300):
                 send([1.0] * (i % 3))
             diagnostic("rejected commands", lambda count: count == 300)
+            seconds = time.monotonic() - begun
             node.end()
-        self.assertLess(node.error.count("command holds"), 20)
+        # Of each of the three kinds one in each second that has begun.
+        self.assertLessEqual(node.error.count("command holds"), 3 * (seconds + 1))
 
     def test_a_model_without_motors_takes_no_commands(self):
         urdf = re.sub(
@@ -114,9 +118,10 @@ class TestFaults(unittest.TestCase):
             try:
                 stuck.stdout.readline()  # it has got a message, so it is connected
                 stuck.send_signal(signal.SIGSTOP)
-                call("/gazebo/unpause_physics")
-                odometry.wait(lambda m: m and m[-1].header.stamp.to_sec() >= 4)
-                diagnostic("real-time factor", lambda factor: factor > 0.9)
+                # In pieces of which a node keeps all for who is slow, so that none is lost.
+                for flown in range(500, 8001, 500):
+                    step(500)
+                    odometry.wait_for_count(flown)
             finally:
                 stuck.kill()
                 stuck.communicate()

@@ -8,7 +8,7 @@ import unittest
 
 import harness
 import rospy
-from harness import Process, Recording, flight, settled, wait_until
+from harness import Process, Recording, flight, wait_for_status, wait_until
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Joy
@@ -63,7 +63,7 @@ class TestJoystick(unittest.TestCase):
                 press(7)  # goes on
                 clock.wait(lambda m: m[-1].clock.to_nsec() > 150_000_000)
                 press(7)
-                settled(clock)
+                wait_for_status("paused")
                 press(6)
                 clock.wait(lambda m: m[-1].clock.to_nsec() == 0)
 

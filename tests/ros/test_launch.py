@@ -45,7 +45,7 @@ class TestLaunch(unittest.TestCase):
 
     def test_the_model_can_be_changed_by_arguments(self):
         changes = ("name:=blue", "set:=odometry.rate=50 odometry.twistFrame=body", "drag:=none")
-        start = ("roll:=0.5", "pitch:=-0.5", "z:=50", "dt:=0.002", "engine:=eigen")
+        start = ("roll:=0.5", "pitch:=-0.5", "z:=50", "dt:=0.002", "engine:=eigen", "paused:=true")
         launch = subprocess.Popen(
             ["roslaunch", "quadcore", "quadrotor.launch", "gui:=false", *changes, *start],
             env={**os.environ, "ROS_NAMESPACE": "changed"},
@@ -54,6 +54,8 @@ class TestLaunch(unittest.TestCase):
         try:
             topic = Recording("/changed/odom", Odometry)
             with harness.commander("/changed/blue/vel_cmd"), topic as odometry:
+                odometry.wait_for_count(1)  # before it falls
+                harness.call("/changed/gazebo/unpause_physics")
                 messages = odometry.wait_for_count(20)
         finally:
             launch.send_signal(signal.SIGINT)
@@ -88,8 +90,6 @@ class TestLaunch(unittest.TestCase):
                 launch.wait(harness.LONG)
             self.assertGreater(len((Path(folder) / "my.csv").read_text().splitlines()), 100)
 
-
-if __name__ == "__main__":
     def test_arguments_of_xacro_are_given_without_an_error_of_ros(self):
         arguments = ("gui:=false", "name:=plain", "xacro_args:=sim_slow=1")
         launch = subprocess.Popen(
@@ -110,4 +110,6 @@ if __name__ == "__main__":
         urdf = rospy.get_param("/plain/robot_description")
         self.assertIn("<sim_slow>1<", urdf)
 
+
+if __name__ == "__main__":
     harness.run("launch", TestLaunch)

@@ -7,7 +7,6 @@ import unittest
 
 import harness
 import numpy as np
-import rospy
 from harness import HOVER, Recording, call, commander, diagnostic, flight, step
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
@@ -22,6 +21,7 @@ LOCKSTEP = (
     "_real_time_factor:=0",
     "_lockstep_timeout:=30",  # a busy machine is no fault
 )
+TIMEOUT = "_lockstep_timeout:=10"  # no answer takes so long, and tests that wait for it end
 
 
 def altitude_controller(message):
@@ -127,7 +127,7 @@ class TestLockstep(unittest.TestCase):
                 send(table[tick(message), 1:])
 
             with self.subTest(answers_the_old_message=answers_the_old_message):
-                odometry = fly_with(act, 120, "_lockstep_timeout:=2")
+                odometry = fly_with(act, 120, TIMEOUT)
                 self.assertEqual([tick(m) for m in odometry[20:23]], [20, 0, 1])
                 self.assert_flown(odometry[21:], table[:100])
 
@@ -135,17 +135,17 @@ class TestLockstep(unittest.TestCase):
         table = random_commands(101)
         flown = table[:100].copy()
         flown[50, 1:] = flown[49, 1:]
-        for delay in (3, None):  # late by half a timeout, or never there
+        for comes in (True, False):  # late, or never
 
-            def act(message, send, delay=delay):
+            def act(message, send, comes=comes):
                 if tick(message) == 50:
-                    if delay is None:
+                    if not comes:
                         return
-                    time.sleep(delay)
+                    diagnostic("late commands", lambda count: count == 1)
                 send(table[tick(message), 1:])
 
-            with self.subTest(delay=delay):
-                odometry = fly_with(act, 100, "_lockstep_timeout:=2")
+            with self.subTest(comes=comes):
+                odometry = fly_with(act, 100, TIMEOUT)
                 self.assert_flown(odometry, flown)
 
     def test_one_command_per_odometry_message_at_its_rate(self):
@@ -203,10 +203,10 @@ class TestLockstep(unittest.TestCase):
 
     def test_too_many_surplus_commands_are_refused_and_counted(self):
         with flight(*LOCKSTEP) as node, commander() as send:
-            for _ in range(10003):  # a paused flight takes none of them
+            for sent in range(1, 10004):  # a paused flight takes none of them
                 send(HOVER)
-                rospy.sleep(1e-5)
-            diagnostic("waiting commands", lambda count: count == 10000)
+                if sent % 1000 == 0:  # before roscpp's own queue is full
+                    diagnostic("waiting commands", lambda count, sent=sent: count == sent)
             diagnostic("rejected commands", lambda count: count == 3)
             node.end()
         self.assertIn("10000 commands wait for their odometry already", node.error)
@@ -220,12 +220,12 @@ class TestLockstep(unittest.TestCase):
 
     def test_without_a_controller_the_plant_waits(self):
         with flight(*LOCKSTEP, "_paused:=false"), Recording("/odom", Odometry) as odometry:
-            rospy.sleep(1.5)
-            self.assertEqual(odometry.messages, [])
+            harness.wait_for_status("waiting for a command on /quadrotor/vel_cmd")
+            self.assertEqual(diagnostic("steps"), 0)
             with commander() as send:
                 odometry.wait_for_count(1)
                 send(HOVER)
-                odometry.wait_for_count(2)
+                odometry.wait(lambda m: tick(m[-1]) == 1)
 
 
 if __name__ == "__main__":
