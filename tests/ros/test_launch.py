@@ -56,7 +56,7 @@ class TestLaunch(unittest.TestCase):
             with harness.commander("/changed/blue/vel_cmd"), topic as odometry:
                 odometry.wait_for_count(1)  # before it falls
                 harness.call("/changed/gazebo/unpause_physics")
-                messages = odometry.wait_for_count(20)
+                messages = odometry.wait_for_count(22)[1:]  # from when it has joined the clock
         finally:
             launch.send_signal(signal.SIGINT)
             launch.wait(harness.LONG)
