@@ -18,7 +18,10 @@ function(quadcore_compile_lanes target source)
                                              -fno-trapping-math
                                              -fno-tree-vectorize
                                              -fno-tree-slp-vectorize
-                                             -fno-tree-loop-distribute-patterns -Wno-psabi ${ARGN})
+                                             -Wno-psabi ${ARGN})
+    if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+      target_compile_options(${object} PRIVATE -fno-tree-loop-distribute-patterns)
+    endif()
     if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
       if(lanes EQUAL 4)
         target_compile_options(${object} PRIVATE -mavx2)

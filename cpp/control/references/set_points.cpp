@@ -34,7 +34,8 @@ class Drive final : public ReferenceShape {
       : position_(from.position), yaw_(from.yaw), heading_(heading), lasts_(lasts) {}
 
   Reference at(double t) const override {
-    const auto& [v, rate] = heading_;
+    const Vector3d& v = heading_.velocity;
+    const double rate = heading_.yaw_rate;
     const double time = std::min(t, lasts_), turn = rate * time;
     Reference wanted;
     wanted.yaw = yaw_ + turn;
