@@ -3,8 +3,8 @@
 #include <cmath>
 #include <string>
 
+#include "lumping.hpp"
 #include "quadcore/error.hpp"
-#include "quadcore/urdf_tree.hpp"
 
 namespace quadcore {
 namespace {

@@ -1,8 +1,9 @@
+#include "lumping.hpp"
+
 #include <set>
 
 #include "quadcore/error.hpp"
 #include "quadcore/text.hpp"
-#include "quadcore/urdf_tree.hpp"
 #include "references.hpp"
 
 namespace quadcore {

@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "lumping.hpp"
 #include "quadcore/error.hpp"
 #include "sdf_lumping.hpp"
 

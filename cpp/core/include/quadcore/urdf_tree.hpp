@@ -56,9 +56,6 @@ UrdfTree read_urdf_tree(const Document& document, const std::vector<std::string>
 /// Checks how links and joints hang together, and finds the root.
 void check_topology(UrdfTree& tree);
 
-/// Lumps fixed links and checks the moving bodies. The topology has been checked.
-Model lump(const UrdfTree& tree);
-
 /// \name The order of Gazebo, which walks a model depth first and the joints of a link by name
 /// @{
 
