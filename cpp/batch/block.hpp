@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "quadcore/lane_laws.hpp"
 #include "quadcore/rotor_layout.hpp"
 
 /// \file
@@ -38,10 +39,10 @@ struct ConstantRow {
     frame_drag = 22,
     sim_slow = 23,
     flapping = 24,  ///< A1c, A1s, B1, B2, radius
-    kp = 29,
-    fastest = 30,          ///< speed that the motors follow
-    motors_sim_slow = 31,  ///< by which a commanded speed is divided
-    rotors = 32
+    kp = flapping + sizeof(Flapping) / sizeof(double),
+    fastest,          ///< speed that the motors follow
+    motors_sim_slow,  ///< by which a commanded speed is divided
+    rotors
   };
   enum : std::size_t {
     axis_F = 0,
@@ -52,7 +53,7 @@ struct ConstantRow {
     damping = 11,
     R_FR_at_zero = 12,
     coefficients = 21,  ///< as CoefficientRow says
-    rotor_rows = 28
+    rotor_rows = coefficients + CoefficientRow::count
   };
 
   static constexpr std::size_t rotor(std::size_t row, std::size_t i) {
