@@ -17,6 +17,9 @@ void bind_flight(py::module_& m);
 void bind_batch(py::module_& m);
 void bind_reference(py::module_& m);
 void bind_control(py::module_& m);
+/// Makes errors of what would crash: objects of bound classes whose constructor has not run, and
+/// old protocols of pickle. To be called when all classes are bound.
+void guard_classes(py::module_& m);
 
 struct Guarded;
 /// Adds to the class of simulations.

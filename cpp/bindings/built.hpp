@@ -7,10 +7,14 @@
 #include "quadcore/error.hpp"
 
 /// \file
-/// Guards against Python objects whose __init__ or __setstate__ was not called: pybind11 would give
-/// memory that nothing was built in.
+/// Arguments that are objects of bound classes.
 
 namespace quadcore::bindings {
+
+/// Error about an object whose __init__ or __setstate__ was not called.
+constexpr char empty_object[] =
+    "the object is empty, because its constructor has not run. In a subclass, call "
+    "super().__init__() first.";
 
 /// What a Python object of a bound class holds, never null.
 template <class T>
@@ -28,15 +32,15 @@ inline std::string not_a(pybind11::handle object) {
 
 /// Reads what an object holds. Throws InputError for another class, or if it holds nothing.
 template <class T>
-bool load_built(pybind11::handle source, bool convert, std::shared_ptr<T>& held,
-                const char* if_empty) {
+bool load_built(pybind11::handle source, bool convert, std::shared_ptr<T>& held) {
   if (!pybind11::isinstance<T>(source)) {
     const pybind11::handle wanted = pybind11::detail::get_type_handle(typeid(T), true);
     throw InputError("give a " + pybind11::cast<std::string>(wanted.attr("__name__")) +
                      not_a(source));
   }
   auto* const instance = reinterpret_cast<pybind11::detail::instance*>(source.ptr());
-  if (!instance->get_value_and_holder().holder_constructed()) throw InputError(if_empty);
+  const pybind11::detail::type_info* const type = pybind11::detail::get_type_info(typeid(T));
+  if (!instance->get_value_and_holder(type).holder_constructed()) throw InputError(empty_object);
   pybind11::detail::make_caster<std::shared_ptr<T>> caster;
   if (!caster.load(source, convert)) return false;
   held = pybind11::detail::cast_op<std::shared_ptr<T>&>(caster);
@@ -52,9 +56,7 @@ struct type_caster<quadcore::bindings::Built<T>> {
   PYBIND11_TYPE_CASTER(quadcore::bindings::Built<T>, make_caster<T>::name);
 
   bool load(handle source, bool convert) {
-    return quadcore::bindings::load_built(source, convert, value.held,
-                                          "nothing was read into this object; use read_model, "
-                                          "read_world or a simulation's snapshot()");
+    return quadcore::bindings::load_built(source, convert, value.held);
   }
 };
 

@@ -109,9 +109,7 @@ struct type_caster<quadcore::bindings::Self> {
   PYBIND11_TYPE_CASTER(quadcore::bindings::Self, const_name("quadcore._core.Simulation"));
 
   bool load(handle source, bool convert) {
-    return quadcore::bindings::load_built(
-        source, convert, value.guarded,
-        "this simulation is not made yet; call super().__init__() first");
+    return quadcore::bindings::load_built(source, convert, value.guarded);
   }
 };
 

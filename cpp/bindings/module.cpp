@@ -11,4 +11,5 @@ PYBIND11_MODULE(_core, m) {
   quadcore::bindings::bind_flight(m);
   quadcore::bindings::bind_reference(m);
   quadcore::bindings::bind_control(m);
+  quadcore::bindings::guard_classes(m);
 }

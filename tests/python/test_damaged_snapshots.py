@@ -77,12 +77,12 @@ def test_no_snapshot_is_none():
 @pytest.mark.parametrize("name", ["Model", "World", "Snapshot"])
 def test_objects_that_nothing_was_read_into_are_refused(name):
     empty = getattr(_core, name).__new__(getattr(_core, name))
-    with pytest.raises(qc.InputError, match="nothing was read into this object"):
+    with pytest.raises(qc.InputError, match="the object is empty"):
         if name == "Snapshot":
             quadrotor().restore(empty)
         else:
             qc.Simulation(**{"model": "quadrotor", name.lower(): empty})
-    with pytest.raises(qc.InputError, match="nothing was read"):
+    with pytest.raises(qc.InputError, match="the object is empty"):
         pickle.dumps(empty)
 
 

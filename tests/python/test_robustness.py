@@ -85,7 +85,7 @@ def test_a_simulation_that_is_not_made_yet_says_so():
 
     with pytest.raises(qc.InputError, match=r"call super\(\).__init__\(\) first"):
         Early()
-    with pytest.raises(qc.InputError, match="not made yet"):
+    with pytest.raises(qc.InputError, match="the object is empty"):
         _core.Flight(qc.Simulation.__new__(qc.Simulation), None, 1)
 
 
