@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "quadcore/counts.hpp"
+
 namespace quadcore::control {
 
 /// When a controller is asked and when its commands act: at a rate, and after a delay. Immutable;
@@ -37,10 +39,11 @@ class Schedule {
       state[kSent] += 1;
     }
     const double* arrived = nullptr;
-    for (; state[kArrived] < state[kSent]; state[kArrived] += 1) {
+    for (auto waiting = count_of(state[kSent] - state[kArrived], places_); waiting > 0; --waiting) {
       const double* const order = place(state, state[kArrived]);
       if (order[0] > step) break;
       arrived = order + 1;
+      state[kArrived] += 1;
     }
     return arrived;
   }
@@ -54,8 +57,7 @@ class Schedule {
 
   std::size_t place_size() const { return 1 + rotors_; }
   double* place(double* state, double count) const {
-    const auto index = static_cast<std::size_t>(std::fmod(count, static_cast<double>(places_)));
-    return state + kUnderWay + index * place_size();
+    return state + kUnderWay + ring_index(count, places_) * place_size();
   }
 
   double rate_, delay_;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "quadcore/counts.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
 #include "quadcore/random.hpp"
@@ -45,7 +46,7 @@ class Channel {
   /// \param rate  of the messages [1/s]
   Channel(const PluginSetup& setup, std::size_t topic, const MessageKind& kind, double rate)
       : topic_(topic),
-        row_(static_cast<Eigen::Index>(kind.fields.size()) + 1),
+        row_(kind.fields.size() + 1),
         delay_(setup.parameters.number("delay")),
         dropout_(setup.parameters.number("dropout")) {
     // A message arrives with the first step that ends when it is old enough.
@@ -54,10 +55,10 @@ class Channel {
     if (waiting * static_cast<double>(row_) > most_numbers) {
       throw InputError("<delay> lets more messages wait than can be kept; write a shorter one");
     }
-    places_ = delay_ > 0 ? static_cast<Eigen::Index>(waiting) : 0;
+    places_ = delay_ > 0 ? static_cast<std::size_t>(waiting) : 0;
   }
 
-  std::size_t state_size() const { return static_cast<std::size_t>(kRing + places_ * row_); }
+  std::size_t state_size() const { return kRing + places_ * row_; }
 
   /// Whether every message arrives, at once.
   bool is_direct() const { return delay_ == 0 && dropout_ == 0; }
@@ -85,11 +86,11 @@ class Channel {
   /// Publishes what has arrived; at the end of each step.
   void deliver(const Sample& sample, PluginState memory) const {
     if (delay_ == 0) return;
-    while (memory[kWaiting] > 0) {
+    for (auto waiting = count_of(memory[kWaiting], places_); waiting > 0; --waiting) {
       const double* row = at(memory, memory[kFirst]);
       if (sample.time < row[0] + delay_ - 1e-9) return;  // the clock is a sum of steps
       std::copy_n(row + 1, row_ - 1, sample.topics.publish(topic_, row[0]));
-      memory[kFirst] = std::fmod(memory[kFirst] + 1, static_cast<double>(places_));
+      memory[kFirst] = static_cast<double>(ring_index(memory[kFirst] + 1, places_));
       memory[kWaiting] -= 1;
     }
   }
@@ -109,23 +110,21 @@ class Channel {
  private:
   /// How many numbers of chance are drawn, the place of the message that has waited longest, how
   /// many wait; then their places, each a time and a message.
-  enum Memory { kDraws, kFirst, kWaiting, kRing };
+  enum Memory : std::size_t { kDraws, kFirst, kWaiting, kRing };
   static constexpr double most_numbers = 500000;
 
   static double uniform(std::uint64_t seed, double& draws) {
-    const std::uint64_t bits =
-        random_bits(stream_seed(seed, "dropout"), static_cast<std::uint64_t>(draws));
+    const std::uint64_t bits = random_bits(stream_seed(seed, "dropout"), count_of(draws));
     draws += 1;
     return static_cast<double>(bits >> 11) / 9007199254740992.0;  // 2^53
   }
   double* at(PluginState& memory, double place) const {
-    const double index = std::fmod(place, static_cast<double>(places_));
-    return memory.data() + kRing + static_cast<Eigen::Index>(index) * row_;
+    return memory.data() + kRing + ring_index(place, places_) * row_;
   }
 
   std::size_t topic_;
-  Eigen::Index row_, places_;  ///< numbers of a place, and places
-  double delay_;               ///< s
+  std::size_t row_, places_;  ///< numbers of a place, and places
+  double delay_;              ///< s
   double dropout_;
 };
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -44,6 +45,30 @@ def test_a_damaged_snapshot_is_refused_and_changes_nothing(changed):
         simulation.restore(damaged(snapshot, **changed))
     assert bits(simulation) == before
     simulation.restore(damaged(snapshot))  # whole
+
+
+VEHICLES = Path(__file__).parents[1] / "fuzz" / "vehicles"
+
+
+@pytest.mark.parametrize("number", [-1, -0.5, 1e18, 1e300, np.inf, np.nan])
+@pytest.mark.parametrize("vehicle", ["sensors", "flown", "rotors"])
+def test_any_number_in_a_plugins_memory_flies_or_ends_the_flight(vehicle, number):
+    simulation = qc.Simulation(VEHICLES / f"{vehicle}.urdf", "eigen")
+    simulation.step(20)
+    snapshot = simulation.snapshot()
+    memory = snapshot.__getstate__()["plugins"]
+    told = set()
+    for i in range(len(memory)):
+        numbers = memory.copy()
+        numbers[i] = number
+        try:
+            simulation.restore(damaged(snapshot, plugins=numbers))
+            simulation.step(3)
+        except qc.FlightError as error:
+            told.add(str(error))
+    assert any("a count in the plugin's memory is damaged" in why for why in told)
+    simulation.restore(snapshot)
+    simulation.step(3)
 
 
 @pytest.mark.usefixtures("hook_plugins")

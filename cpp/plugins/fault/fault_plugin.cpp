@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "plugins/rotor_shares.hpp"
+#include "quadcore/counts.hpp"
 #include "quadcore/plugin.hpp"
 
 namespace quadcore::fault {
@@ -130,8 +131,8 @@ class FaultPlugin final : public Plugin {
   /// A message holds what the last one held, but for what happened since.
   static void let_happen(const std::vector<Event>& events, std::size_t topic, const Sample& sample,
                          double& past) {
-    for (; past < static_cast<double>(events.size()); ++past) {
-      const Event& event = events[static_cast<std::size_t>(past)];
+    for (std::size_t i = count_of(past, events.size()); i < events.size(); ++i, ++past) {
+      const Event& event = events[i];
       if (sample.time < event.time - 1e-9) return;  // the clock is a sum of steps
       sample.topics.publish(topic, sample.time)[event.rotor] = event.share;
     }

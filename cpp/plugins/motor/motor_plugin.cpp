@@ -4,6 +4,7 @@
 
 #include "plugins/rotor_shares.hpp"
 #include "plugins/speed_limit.hpp"
+#include "quadcore/counts.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
 
@@ -57,8 +58,8 @@ class MotorPlugin final : public Plugin {
     const auto n = static_cast<Eigen::Index>(rotors_.size());
     double& steps = state[state.size() - 1];
     const auto slot = [&](double step) {
-      const double index = std::fmod(step, static_cast<double>(late_ + 1));
-      return state.segment(1 + 2 * n + static_cast<Eigen::Index>(index) * (n + 1), n + 1);
+      const auto index = static_cast<Eigen::Index>(ring_index(step, late_ + 1));
+      return state.segment(1 + 2 * n + index * (n + 1), n + 1);
     };
     const Topic& command = sample.topics[command_];
     auto now = slot(steps);

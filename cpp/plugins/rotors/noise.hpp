@@ -15,7 +15,7 @@ inline Vector3d vector_of(const Parameters& p, const std::string& tag) {
 /// Uniform between -bound and bound.
 inline double uniform_within(double bound, std::uint64_t seed, double& draws) {
   if (bound == 0) return 0;
-  const std::uint64_t bits = random_bits(seed, static_cast<std::uint64_t>(draws));
+  const std::uint64_t bits = random_bits(seed, count_of(draws));
   draws += 1;
   return bound * (static_cast<double>(bits >> 11) / 4503599627370496.0 - 1);  // 2^52
 }

@@ -3,6 +3,7 @@
 #include "center_of_mass.hpp"
 #include "naming.hpp"
 #include "noise.hpp"
+#include "quadcore/counts.hpp"
 #include "quadcore/plugin.hpp"
 
 namespace quadcore::rotors {
@@ -96,7 +97,8 @@ class Odometry final : public Plugin {
   }
 
   Eigen::Map<VectorXd> slot(PluginState& state, double step) const {
-    const auto place = static_cast<Eigen::Index>(std::fmod(step, delay_ + 1));
+    const auto places = static_cast<std::size_t>(delay_) + 1;
+    const auto place = static_cast<Eigen::Index>(ring_index(step, places));
     return {state.data() + kRing + place * row_, row_};
   }
 

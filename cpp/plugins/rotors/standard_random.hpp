@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "quadcore/counts.hpp"
 #include "quadcore/elementary.hpp"
 #include "quadcore/spatial.hpp"
 
@@ -42,8 +43,10 @@ class StandardRandom {
  private:
   /// One of 2^31 - 2 numbers from 0 on.
   double next() {
-    const auto engine = static_cast<std::uint64_t>(memory_[kEngine]);
-    memory_[kEngine] = static_cast<double>(16807 * engine % 2147483647);
+    constexpr std::uint64_t modulus = 2147483647;
+    // Less 1, because from 0 the generator would give 0 for ever.
+    const std::uint64_t engine = 1 + count_of(memory_[kEngine] - 1, modulus - 2);
+    memory_[kEngine] = static_cast<double>(16807 * engine % modulus);
     return memory_[kEngine] - 1;
   }
   /// From 0 to below 1, of as many bits as a double has: two of the engine's.

@@ -1,8 +1,10 @@
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "control/schedule.hpp"
+#include "quadcore/error.hpp"
 
 using quadcore::control::Schedule;
 
@@ -63,4 +65,26 @@ TEST_CASE("a schedule that is asked once a step tells that period and not its ow
     schedule.update(0, 1e-3, state.data(), ask);
     CHECK(told == doctest::Approx(rate == 100 ? 0.01 : 0.001));
   }
+}
+
+TEST_CASE("a schedule whose memory is damaged says so and writes nowhere else") {
+  const Schedule schedule(500, 0.01, 1);
+  const std::size_t size = schedule.state_size();
+  int refused = 0;
+  for (const double damage : {-1.0, -0.5, 1e18, 1e300, std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    for (std::size_t place = 0; place < size; ++place) {
+      std::vector<double> state(size + 2, 0.0);
+      double* const own = state.data() + 1;
+      own[place] = damage;
+      const auto ask = [](double, double* speeds) { speeds[0] = 1; };
+      try {
+        for (int step = 0; step < 30; ++step) schedule.update(step, 1e-3, own, ask);
+      } catch (const quadcore::Error&) {
+        ++refused;
+      }
+      CHECK(state.front() == 0);
+      CHECK(state.back() == 0);
+    }
+  }
+  CHECK(refused > 0);
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "quadcore/counts.hpp"
 #include "quadcore/elementary.hpp"
 
 /// \file
@@ -22,7 +23,7 @@ inline std::uint64_t random_bits(std::uint64_t seed, std::uint64_t count) {
 
 /// Standard normal number by Box and Muller; advances `count` (a whole number) by two.
 inline double random_normal(std::uint64_t seed, double& count) {
-  const auto n = static_cast<std::uint64_t>(count);
+  const std::uint64_t n = count_of(count);
   count += 2;
   const double scale = 1.0 / 9007199254740992.0;  // 2^-53
   const double u = (static_cast<double>(random_bits(seed, n) >> 11) + 0.5) * scale;
