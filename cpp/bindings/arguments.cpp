@@ -17,6 +17,14 @@ bool is_masked(const py::object& object) {
   return py::isinstance(object, py::module_::import("numpy.ma").attr("MaskedArray"));
 }
 
+std::string written(const Shape& shape) {
+  std::string text;
+  for (const py::ssize_t size : shape) text += (text.empty() ? "" : ", ") + std::to_string(size);
+  return "(" + text + (shape.size() == 1 ? ",)" : ")");
+}
+
+Shape shape_of(const py::array& array) { return {array.shape(), array.shape() + array.ndim()}; }
+
 }  // namespace
 
 Numbers numbers(const py::object& object, int dimensions, const char* what) {
@@ -35,6 +43,23 @@ Numbers numbers(const py::object& object, int dimensions, const char* what) {
                           : "a " + std::to_string(dimensions) + "-dimensional array of numbers"));
   }
   return Numbers(array);
+}
+
+void check_shape(const py::array& array, const Shape& shape, const char* what) {
+  if (shape_of(array) == shape) return;
+  throw InputError(std::string(what) + " has the shape " + written(shape_of(array)) +
+                   ". Give an array of shape " + written(shape) + ".");
+}
+
+double* writable(const py::object& object, const Shape& shape, const char* what) {
+  constexpr int as_read = py::array::c_style | py::detail::npy_api::NPY_ARRAY_ALIGNED_;
+  if (py::isinstance<py::array_t<double>>(object)) {
+    auto array = py::reinterpret_borrow<py::array_t<double>>(object);
+    const bool fits = (array.flags() & as_read) == as_read && shape_of(array) == shape;
+    if (fits && array.writeable()) return array.mutable_data();
+  }
+  throw InputError(std::string(what) + " is not a writable, contiguous array of " + written(shape) +
+                   " float64. Give one.");
 }
 
 py::str text(const std::string& text) { return one_line(text); }

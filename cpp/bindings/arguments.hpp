@@ -4,6 +4,7 @@
 
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "built.hpp"
 #include "older_pybind11.hpp"
@@ -16,11 +17,23 @@ namespace quadcore::bindings {
 
 namespace py = pybind11;
 
-using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+/// Numbers as C++ reads them: row after row, each where a double may lie.
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast |
+                                        static_cast<int>(py::detail::npy_api::NPY_ARRAY_ALIGNED_)>;
+/// A shape as Python writes it, "(2, 13)".
+using Shape = std::vector<py::ssize_t>;
 
 /// Real numbers from anything that numpy makes an array of so many dimensions of; `what` names it
 /// in the InputError otherwise. No texts, no complex numbers, no masks.
 Numbers numbers(const py::object& object, int dimensions, const char* what);
+
+/// Throws InputError unless an array has this shape; `what` names it there. To be called for every
+/// array whose size C++ does not take from the array itself.
+void check_shape(const py::array& array, const Shape& shape, const char* what);
+
+/// The array that C++ is to write to, as it lies in memory: no copy, which would take what is
+/// written. Throws InputError unless it is a writable, contiguous array of doubles of this shape.
+double* writable(const py::object& object, const Shape& shape, const char* what);
 
 /// A whole number or a name that is refused in one line of quadcore's own if it is none; `what`
 /// names it there.

@@ -19,6 +19,8 @@ namespace {
 /// not after each step of very many, whose numbers would go through the cache once for each.
 constexpr std::int64_t between_signals = 100000, steps_between_signals = 10;
 
+constexpr char vehicle_number[] = "vehicle";
+
 /// A batch that refuses to be used by two Python threads at once.
 struct GuardedBatch {
   Batch batch;
@@ -40,13 +42,27 @@ class BatchLock {
   GuardedBatch& guarded_;
 };
 
-using Flags = py::array_t<bool, py::array::c_style | py::array::forcecast>;
 using Seeds = py::array_t<std::uint64_t, py::array::c_style>;
+
+Shape row_of_each(const GuardedBatch& self) {
+  return {static_cast<py::ssize_t>(self.batch.size())};
+}
+
+Shape rows_of_each(const GuardedBatch& self, std::size_t width) {
+  return {static_cast<py::ssize_t>(self.batch.size()), static_cast<py::ssize_t>(width)};
+}
 
 std::shared_ptr<GuardedBatch> create_batch(
     const std::vector<Built<Model>>& models, const Built<World>& world, std::string engine,
     std::optional<double> dt, const std::vector<std::map<std::string, std::string>>& parameters,
     const Numbers& spawn, const Seeds& seeds, unsigned threads) {
+  const auto n = static_cast<py::ssize_t>(models.size());
+  if (parameters.size() != models.size()) {
+    throw InputError("there are " + std::to_string(models.size()) + " models, but parameters of " +
+                     std::to_string(parameters.size()) + " vehicles. Give as many.");
+  }
+  check_shape(spawn, {n, 6}, "spawn");
+  check_shape(seeds, {n}, "seeds");
   std::vector<BatchVehicle> vehicles;
   const auto places = spawn.unchecked<2>();
   const auto numbers = seeds.unchecked<1>();
@@ -73,13 +89,7 @@ void step(GuardedBatch& self, const py::object& commands, std::int64_t steps) {
   Numbers rows;
   if (!commands.is_none()) {
     rows = numbers(commands, 2, "commands");
-    const auto n = static_cast<py::ssize_t>(self.batch.size());
-    const auto width = static_cast<py::ssize_t>(self.batch.command_width());
-    if (rows.shape(0) != n || rows.shape(1) != width) {
-      throw InputError("commands are an array of " + std::to_string(rows.shape(0)) + " x " +
-                       std::to_string(rows.shape(1)) + " numbers; give " + std::to_string(n) +
-                       " x " + std::to_string(width));
-    }
+    check_shape(rows, rows_of_each(self, self.batch.command_width()), "commands");
   }
   const BatchLock lock(self);
   const double* told = commands.is_none() ? nullptr : rows.data();
@@ -94,15 +104,30 @@ void step(GuardedBatch& self, const py::object& commands, std::int64_t steps) {
   } while (steps > 0);
 }
 
-void write_state(GuardedBatch& self, py::array_t<double, py::array::c_style>& rows) {
+void write_state(GuardedBatch& self, const py::object& out) {
+  double* const rows = writable(out, rows_of_each(self, self.batch.state_width()), "out");
   const BatchLock lock(self);
-  double* const to = rows.mutable_data();
-  without_gil([&] { self.batch.get_state(to); });
+  without_gil([&] { self.batch.get_state(rows); });
 }
 
-void take_state(GuardedBatch& self, const Numbers& rows) {
+void take_state(GuardedBatch& self, const py::object& states) {
+  const Numbers rows = numbers(states, 2, "states");
+  check_shape(rows, rows_of_each(self, self.batch.state_width()), "states");
   const BatchLock lock(self);
   without_gil([&] { self.batch.set_state(rows.data()); });
+}
+
+void reset(GuardedBatch& self, const py::object& mask, const std::optional<Seeds>& seeds) {
+  using Flags = py::array_t<bool, py::array::c_style>;
+  const py::array given = py::array::ensure(mask);
+  if (!given || !py::isinstance<py::array_t<bool>>(given)) {
+    throw InputError("mask is not an array of booleans. Give one for each vehicle.");
+  }
+  check_shape(given, row_of_each(self), "mask");
+  if (seeds) check_shape(*seeds, row_of_each(self), "seeds");
+  const Flags flags(given);
+  const BatchLock lock(self);
+  self.batch.reset(flags.data(), seeds ? seeds->data() : nullptr);
 }
 
 template <class Get>
@@ -124,16 +149,10 @@ void bind_batch(py::module_& m) {
            py::arg("threads"))
       .def("step", &step, py::arg("commands"), py::arg("steps"),
            "Advances all vehicles that have not failed; commands (n, rotors) in rad/s, or None.")
-      .def("_write_state", &write_state, py::arg("rows"))
-      .def("_take_state", &take_state, py::arg("rows"))
-      .def(
-          "reset",
-          [](GuardedBatch& self, const Flags& mask, const std::optional<Seeds>& seeds) {
-            const BatchLock lock(self);
-            self.batch.reset(mask.data(), seeds ? seeds->data() : nullptr);
-          },
-          py::arg("mask"), py::arg("seeds"),
-          "Takes the vehicles of a mask back to their start, with other seeds unless None.")
+      .def("_write_state", &write_state, py::arg("out"))
+      .def("_take_state", &take_state, py::arg("states"))
+      .def("reset", &reset, py::arg("mask"), py::arg("seeds"),
+           "Takes the vehicles of a mask back to their start, with other seeds unless None.")
       .def(
           "snapshot",
           [](GuardedBatch& self) {
@@ -160,6 +179,8 @@ Raises
 InputError
     It was taken of another; nothing has changed then.)")
       .def_property_readonly(
+          "n", [](const GuardedBatch& self) { return self.batch.size(); }, "Number of vehicles.")
+      .def_property_readonly(
           "dt", [](const GuardedBatch& self) { return self.batch.dt(); }, "Length of a step, s.")
       .def_property_readonly(
           "command_width", [](const GuardedBatch& self) { return self.batch.command_width(); },
@@ -183,16 +204,26 @@ InputError
           "Why each flight ended, list of str; \"\" while it goes on.")
       .def(
           "warnings",
-          [](GuardedBatch& self, std::size_t vehicle) {
+          [](GuardedBatch& self, const Given<std::int64_t, vehicle_number>& vehicle) {
             const BatchLock lock(self);
-            return self.batch.warnings(vehicle);
+            const auto n = static_cast<std::int64_t>(self.batch.size());
+            if (vehicle.value < 0 || vehicle.value >= n) {
+              throw InputError("vehicle is " + std::to_string(vehicle.value) +
+                               ". Give a number from 0 to " + std::to_string(n - 1) + ".");
+            }
+            return self.batch.warnings(static_cast<std::size_t>(vehicle.value));
           },
-          py::arg("vehicle"), R"(Tell what was said of a vehicle's flight, list of str.
+          py::arg("vehicle"), R"(Return the warnings about a vehicle's flight, list of str.
 
 Parameters
 ----------
 vehicle : int
-    Counted from 0.)");
+    Counted from 0.
+
+Raises
+------
+InputError
+    If there is no such vehicle.)");
 }
 
 }  // namespace quadcore::bindings

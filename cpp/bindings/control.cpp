@@ -85,8 +85,14 @@ messages::Odometry odometry(const py::object& state) {
 py::array_t<double> command_at(FlownLaw& flown, double period, const Self& self,
                                const std::string& sensed, const ReferenceShape& shape) {
   const Lock lock(*self);
+  static const MessageKind odometry = messages::kind_of<messages::Odometry>();
   const Topics& topics = self->topics();
-  const auto now = topics.read<messages::Odometry>(topics.at(sensed));
+  const std::size_t topic = topics.at(sensed);
+  const MessageKind& kind = topics[topic].kind;
+  if (kind.name != odometry.name || kind.fields.size() != odometry.fields.size()) {
+    throw InputError("topic '" + sensed + "' holds no odometry. Name one that does.");
+  }
+  const auto now = topics.read<messages::Odometry>(topic);
   flown.hear();
   return flown.command(period, now, shape.at(self->time()));
 }

@@ -94,8 +94,8 @@ py::tuple take(BoundFlight& bound) {
                         array_of(std::move(rows.wrenches), {with_wrenches, terms, 6}));
 }
 
-py::bytes csv_rows(const Numbers& table) {
-  if (table.ndim() != 2) throw InputError("a table has rows and columns");
+py::bytes csv_rows(const py::object& rows) {
+  const Numbers table = numbers(rows, 2, "the table");
   const auto columns = static_cast<std::size_t>(table.shape(1));
   std::string text;
   without_gil([&] {
@@ -128,7 +128,8 @@ void bind_flight(py::module_& m) {
 
   m.def(
       "fault_of_commands",
-      [](const Numbers& table) -> std::optional<std::pair<Eigen::Index, std::string>> {
+      [](const py::object& commands) -> std::optional<std::pair<Eigen::Index, std::string>> {
+        const Numbers table = numbers(commands, 2, "commands");
         const auto fault = Commands::fault(
             Eigen::Map<const Commands::Table>(table.data(), table.shape(0), table.shape(1)));
         if (!fault) return std::nullopt;

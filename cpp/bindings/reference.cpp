@@ -49,8 +49,8 @@ Reference reference_of(const py::object& position, const py::object& velocity,
 }
 
 /// Position and yaw at each of these times, shape (n, 4).
-control::Rows places(const ReferenceShape& shape, const Numbers& times) {
-  if (times.ndim() != 1) throw InputError("times are no row of numbers");
+control::Rows places(const ReferenceShape& shape, const py::object& given) {
+  const Numbers times = numbers(given, 1, "times");
   control::Rows rows(times.shape(0), 4);
   for (py::ssize_t i = 0; i < times.shape(0); ++i) {
     const Reference wanted = shape.at(times.data()[i]);

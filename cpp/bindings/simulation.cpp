@@ -75,7 +75,12 @@ void move_by(const Self& self, const py::function& motion) {
   self->move_by([motion](double dt, const VectorXd& command, VehicleState& state) {
     const py::gil_scoped_acquire gil;
     try {
-      state = to_state(motion(dt, command, copies(state)));
+      VehicleState moved = to_state(motion(dt, command, copies(state)));
+      if (moved.rotor_velocity.size() != state.rotor_velocity.size() ||
+          moved.rotor_angle.size() != state.rotor_angle.size()) {
+        throw Error("the motion gave a state of another number of rotors. Give each rotor's.");
+      }
+      state = std::move(moved);
     } catch (const py::error_already_set& error) {
       throw Error(py::cast<std::string>(py::str(error.value())));
     }

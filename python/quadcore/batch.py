@@ -19,7 +19,7 @@ from . import _core
 from ._core import InputError
 from .arguments import brief
 from .batch_state import BatchState as BatchState
-from .batch_vehicles import refusal, vehicles
+from .batch_vehicles import refusal, vehicle_count, vehicles
 from .flight import check_logged, steps_within
 from .given import SPAWN, Value, engine_and_step, poses, seeds, whole
 from .log import Log
@@ -56,6 +56,8 @@ class BatchSimulation(_core.Batch):
 
     Attributes
     ----------
+    n : int
+        Number of vehicles.
     time : ndarray (n,)
         Of each vehicle, s.
     dt : float
@@ -88,26 +90,22 @@ class BatchSimulation(_core.Batch):
         xacro_args: Optional[Mapping[str, object]] = None,
         ignore: Sequence[str] = (),
     ) -> None:
-        self.n = whole(n, "n")
-        if self.n < 1:
-            raise InputError("n is 0; give the number of vehicles")
+        n = vehicle_count(n)
         engine, dt = engine_and_step(engine, dt)
         try:
-            models, tags, self.world = vehicles(
-                self.n, model, world, parameters, xacro_args, ignore
-            )
+            models, tags, self.world = vehicles(n, model, world, parameters, xacro_args, ignore)
             super().__init__(
                 models,
                 self.world,
                 engine,
                 dt,
                 tags,
-                poses(spawn, self.n),
-                seeds(seed, self.n),
+                poses(spawn, n),
+                seeds(seed, n),
                 0 if threads is None else whole(threads, "threads", bits=31),
             )
         except InputError as error:
-            raise refusal(error, (parameters, xacro_args), self.n) from error.__cause__
+            raise refusal(error, (parameters, xacro_args), n) from error.__cause__
         for warning in self.warnings(0):
             warn(warning)
 
@@ -132,14 +130,10 @@ class BatchSimulation(_core.Batch):
         Raises
         ------
         InputError
-            `out` is no such array of float64, row behind row.
+            If `out` is not a writable, contiguous array of float64 of this shape.
         """
-        shape = (self.n, self.state_width)
         if out is None:
-            out = np.empty(shape)
-        is_fit = isinstance(out, np.ndarray) and out.dtype == np.float64 and out.shape == shape
-        if not (is_fit and out.flags.c_contiguous and out.flags.writeable):
-            raise InputError(f"out is no writable, contiguous array of {shape} float64; give one")
+            out = np.empty((self.n, self.state_width))
         self._write_state(out)
         return out
 
@@ -157,14 +151,7 @@ class BatchSimulation(_core.Batch):
             Another shape, a number that is not finite, or a quaternion that is none; nothing has
             changed then.
         """
-        shape = (self.n, self.state_width)
-        try:
-            given = np.ascontiguousarray(rows, dtype=float)
-        except (TypeError, ValueError):
-            raise InputError(f"states are no numbers; give an array of {shape}") from None
-        if given.shape != shape:
-            raise InputError(f"states are an array of shape {given.shape}; give {shape}")
-        self._take_state(given)
+        self._take_state(rows)
 
     def step(self, commands: Optional[npt.ArrayLike] = None, steps: int = 1) -> None:
         """Advance all vehicles that have not failed.
@@ -265,9 +252,7 @@ class BatchSimulation(_core.Batch):
         InputError
             Another shape or kind; nothing has changed then.
         """
-        chosen = np.ones(self.n, bool) if mask is None else np.asarray(mask)
-        if chosen.shape != (self.n,) or chosen.dtype != bool:
-            raise InputError(f"mask is no array of {self.n} booleans; give one")
+        chosen = np.ones(self.n, bool) if mask is None else mask
         super().reset(chosen, None if seed is None else seeds(seed, self.n))
 
     def __repr__(self) -> str:

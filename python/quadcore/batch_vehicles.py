@@ -9,7 +9,7 @@ import numpy as np
 
 from ._core import InputError, Model, World
 from .description import read_both
-from .given import text_of
+from .given import text_of, whole
 from .overrides import XACRO, check_names, with_links, without_xacro
 
 
@@ -19,6 +19,18 @@ class Vehicles(NamedTuple):
     models: List[Model]
     tags: List[Dict[str, str]]
     world: World
+
+
+MOST = 1_000_000
+"""Vehicles of a batch, at most. Each takes some kilobytes."""
+
+
+def vehicle_count(n: object) -> int:
+    """Check the number of vehicles."""
+    count = whole(n, "n")
+    if not 1 <= count <= MOST:
+        raise InputError(f"n is {count}. Give a number of vehicles from 1 to {MOST}.")
+    return count
 
 
 def vehicles(

@@ -241,18 +241,26 @@ def test_the_state_is_written_into_the_callers_array():
 @pytest.mark.parametrize(
     ("call", "what"),
     [
-        (lambda: BatchSimulation(n=0), "n is 0"),
+        (lambda: BatchSimulation(n=0), "n is 0. Give a number of vehicles from 1 to 1000000"),
+        (lambda: BatchSimulation(n=10**9), "n is 1000000000. Give a number of vehicles from 1"),
         (
             lambda: BatchSimulation(n=2, parameters={"drone_plugin.sim_slow": np.ones(3)}),
             "3 values",
         ),
         (lambda: BatchSimulation(n=2, spawn=np.zeros((3, 6))), "poses of 2 vehicles"),
         (lambda: BatchSimulation(n=2, seed=[1, 2, 3]), "no 2 whole numbers"),
-        (lambda: BatchSimulation(n=2).step(np.zeros((2, 3))), "give 2 x 4"),
+        (
+            lambda: BatchSimulation(n=2).step(np.zeros((2, 3))),
+            r"commands has the shape \(2, 3\). Give an array of shape \(2, 4\)",
+        ),
         (lambda: BatchSimulation(n=2).step(np.zeros(4)), "commands"),
         (lambda: BatchSimulation(n=2).step([[0] * 4, [0, np.nan, 0, 0]]), "vehicle 1, rotor 2"),
         (lambda: BatchSimulation(n=2).step(None, -1), "steps is -1"),
-        (lambda: BatchSimulation(n=2).reset([True]), "mask"),
+        (lambda: BatchSimulation(n=2).reset([True]), r"mask has the shape \(1,\)"),
+        (lambda: BatchSimulation(n=2).reset([1, 0]), "mask is not an array of booleans"),
+        (lambda: BatchSimulation(n=64).warnings(64), "vehicle is 64. Give a number from 0 to 63"),
+        (lambda: BatchSimulation(n=64).warnings(-1), "vehicle is -1. Give a number from 0 to 63"),
+        (lambda: BatchSimulation(n=2).warnings("a"), "vehicle: give a whole number"),
         (lambda: BatchSimulation(n=2, engine="eigne"), "eigne"),
     ],
 )
@@ -260,6 +268,56 @@ def test_what_makes_no_batch_is_refused(call, what):
     with pytest.raises(InputError, match=what) as refusal:
         call()
     assert "\n" not in str(refusal.value)
+
+
+def test_the_number_of_vehicles_is_that_of_the_core_whatever_python_does():
+    class Renumbered(BatchSimulation):
+        n = 1
+
+    batch = BatchSimulation(n=200)
+    with pytest.raises(AttributeError):
+        batch.n = 1
+    batch.__init__(n=1)
+    assert batch.n == len(batch.state.position) == len(batch.time) == 200
+    with pytest.raises(InputError, match=r"of \(200, 21\) float64"):
+        batch.read_state(np.empty((1, 21)))
+    with pytest.raises(InputError, match=r"out is not a writable, contiguous array of \(3, 21\)"):
+        _ = Renumbered(n=3).state
+
+
+def test_the_core_checks_the_size_of_every_array_by_itself():
+    batch = BatchSimulation(n=3)
+    core = super(BatchSimulation, batch)
+    seeds = np.arange(3, dtype=np.uint64)
+    for mask in (np.ones(2, bool), np.ones((3, 1), bool)):
+        with pytest.raises(InputError, match=r"mask has the shape"):
+            core.reset(mask, None)
+    with pytest.raises(InputError, match=r"seeds has the shape \(2,\)"):
+        core.reset(np.ones(3, bool), seeds[:2])
+    model, world = qc.read_model("quadrotor"), qc.read_world("empty")
+    arguments = [[model] * 3, world, "eigen", None, [{}] * 3, np.zeros((3, 6)), seeds, 1]
+    for place, wrong in ((4, [{}]), (5, np.zeros((3, 5))), (5, np.zeros((2, 6))), (6, seeds[:2])):
+        with pytest.raises(InputError, match="Give"):
+            qc._core.Batch(*arguments[:place], wrong, *arguments[place + 1 :])
+
+
+def test_numbers_that_lie_across_the_bounds_of_doubles_are_read_but_not_written():
+    def unaligned(rows):
+        memory = np.zeros(rows.nbytes + 1, np.uint8)[1:]
+        view = memory.view(float).reshape(rows.shape)
+        view[...] = rows
+        return view
+
+    batch, other = BatchSimulation(n=3), BatchSimulation(n=3)
+    batch.step(unaligned(COMMANDS[:3]), 5)
+    other.step(COMMANDS[:3], 5)
+    np.testing.assert_array_equal(batch.read_state(), other.read_state())
+    rows = other.read_state()
+    other.set_state(rows)
+    batch.set_state(unaligned(rows))
+    np.testing.assert_array_equal(batch.read_state(), other.read_state())
+    with pytest.raises(InputError, match="contiguous array"):
+        batch.read_state(unaligned(np.zeros((3, 21))))
 
 
 def test_a_long_step_can_be_interrupted(alarm):

@@ -180,3 +180,30 @@ def test_a_view_read_beside_a_step_is_not_a_copy():
         assert state.position[2] == pytest.approx(10 - 4.9 * state.time**2, rel=1e-9)
     ending.set()
     thread.join()
+
+
+def test_a_law_reads_odometry_and_no_other_topic():
+    simulation = quadrotor("eigen")
+    law = qc._core.Controller("geometric", simulation, simulation, {}, [])
+    hover = qc._core.ReferenceShape("hover", {})
+    assert len(law.command_at(0.002, simulation, "odom", hover)) == 4
+    with pytest.raises(qc.InputError, match=r"^topic 'vel_cmd' holds no odometry\. Name"):
+        law.command_at(0.002, simulation, "vel_cmd", hover)
+
+
+@pytest.mark.parametrize("member", ["rotor_velocity", "rotor_angle"])
+def test_a_motion_made_in_python_has_the_vehicles_rotors(member):
+    simulation = quadrotor("eigen")
+    moved = simulation.state.copy()
+    setattr(moved, member, np.zeros(3))
+    simulation._move_by(lambda *_: moved)
+    with pytest.raises(qc.FlightError, match="another number of rotors"):
+        simulation.step()
+
+
+@pytest.mark.parametrize("shape", ["waypoints", "series"])
+def test_a_path_has_a_place_at_a_time_that_is_no_number(shape):
+    rows = [[0, 0, 0, 1], [1, 1, 0, 1], [2, 1, 1, 1], [3, 0, 1, 1], [4, 0, 0, 1], [5, 1, 0, 1]]
+    path = qc._core.ReferenceShape(shape, {}, rows)
+    for t in (float("nan"), float("inf"), -float("inf")):
+        assert np.isfinite(path.at(t).position).all()

@@ -176,7 +176,7 @@ void SepticPath::connect() {
 Reference SepticPath::at(double t) const {
   Reference wanted;
   Eigen::Matrix<double, 5, 4> derivatives = Eigen::Matrix<double, 5, 4>::Zero();
-  if (t < begin() || t >= end()) {
+  if (!(t >= begin() && t < end())) {  // nor is NaN within
     derivatives.row(0) = (t < begin() ? knots_.front() : knots_.back()).row(0);
   } else {
     const auto next = std::upper_bound(times_.begin(), times_.end(), t) - times_.begin();
