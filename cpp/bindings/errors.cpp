@@ -19,6 +19,13 @@ PyObject* new_type(py::module_& m, const char* name, PyObject* base, const char*
   return type;
 }
 
+/// What an error says, as one line also where Python code has made it of what somebody gave.
+py::str shown(const py::object& error) {
+  const py::str text = py::handle(PyExc_RuntimeError).attr("__str__")(error);
+  const py::bytes bytes = text.attr("encode")("utf-8", "replace");
+  return one_line(std::string(bytes));
+}
+
 void translate(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
@@ -39,6 +46,8 @@ void bind_errors(py::module_& m) {
   error_type = new_type(m, "QuadcoreError", PyExc_RuntimeError,
                         "Base of every error that quadcore raises; str() is one line that carries "
                         "``FILE:LINE`` where input is at fault.");
+  m.attr("QuadcoreError").attr("__str__") =
+      py::cpp_function(&shown, py::name("__str__"), py::is_method(m.attr("QuadcoreError")));
   input_error_type = new_type(m, "InputError", error_type,
                               "The input is at fault; the refused call changed nothing.");
   flight_error_type = new_type(m, "FlightError", error_type,

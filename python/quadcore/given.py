@@ -59,7 +59,12 @@ def text_of(value: Value) -> str:
         return "true" if value else "false"
     if isinstance(value, (list, tuple, np.ndarray)):
         return " ".join(text_of(part) for part in value)
-    return str(value)
+    text = str(value)
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        raise _core.InputError(f"{brief(value)} is not text in UTF-8. Give another value.") from None
+    return text
 
 
 def pose(spawn: Sequence[Number]) -> Tuple[float, ...]:

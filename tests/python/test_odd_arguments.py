@@ -182,6 +182,14 @@ def test_a_view_read_beside_a_step_is_not_a_copy():
     thread.join()
 
 
+@pytest.mark.parametrize("name", ["motorpid_plugin.kp", "propeller1.izz", "drone_plugin.dragModel"])
+def test_an_error_about_a_text_by_others_is_one_line_without_control_characters(name):
+    for text in ("\x1b[2J", "a\nb", "\udc80", "x" * 5000):
+        with pytest.raises(qc.InputError) as refusal:
+            quadrotor("eigen", parameters={name: text})
+        assert str(refusal.value).isprintable() and 0 < len(str(refusal.value)) < 1000
+
+
 def test_a_law_reads_odometry_and_no_other_topic():
     simulation = quadrotor("eigen")
     law = qc._core.Controller("geometric", simulation, simulation, {}, [])
