@@ -1,10 +1,9 @@
 #include "hostile_text.hpp"
 
-#include <algorithm>
 #include <cctype>
-#include <ctime>
 #include <stdexcept>
 
+#include "expectations.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/model.hpp"
 #include "quadcore/simulation.hpp"
@@ -15,7 +14,6 @@ namespace {
 using namespace quadcore;
 
 constexpr const char* file = "hostile.xml";
-constexpr std::size_t longest_message = 1000;
 /// The time of a step grows with the cube of the rotors; many of them are slow, not hostile.
 constexpr std::size_t most_rotors = 12;
 
@@ -31,11 +29,7 @@ constexpr const char* toy = R"(<robot name="toy">
 </robot>)";
 
 void check_message(const std::string& message, bool with_place) {
-  const bool one_line = std::none_of(message.begin(), message.end(),
-                                     [](unsigned char c) { return c < 0x20 || c == 0x7f; });
-  if (message.empty() || !one_line || message.size() > longest_message) {
-    throw std::logic_error("not a message of one line: " + message);
-  }
+  check_one_line(message);
   const std::string place = std::string(file) + ":";
   if (with_place && (message.rfind(place, 0) != 0 || !std::isdigit(message[place.size()]))) {
     throw std::logic_error("no FILE:LINE before " + message);
@@ -77,7 +71,7 @@ void check(Read read, const Document& document, Use use) {
 }  // namespace
 
 void check_hostile_text(const std::string& text) {
-  const std::clock_t begin = std::clock();
+  const TimeLimit limit;
   const Document document{file, text};
   World ground;
   ground.ground_plane = true;
@@ -88,5 +82,5 @@ void check_hostile_text(const std::string& text) {
         });
   check([](const Document& d) { return read_world(d); }, document,
         [](const World& world) { fly(read_model({"toy", toy}), world); });
-  if (std::clock() - begin > CLOCKS_PER_SEC) throw std::logic_error("took longer than 1 s");
+  limit.check();
 }
