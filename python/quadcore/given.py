@@ -63,7 +63,7 @@ def text_of(value: Value) -> str:
     try:
         text.encode()
     except UnicodeEncodeError:
-        raise _core.InputError(f"{brief(value)} is not text in UTF-8. Give another value.") from None
+        raise _core.InputError(f"{brief(value)} is not text in UTF-8. Give another.") from None
     return text
 
 
