@@ -51,6 +51,8 @@ TEST_CASE("tables that are none are refused") {
   };
   CHECK(contains(refused(table(), 3), "write rows of time and 3 rotor speeds"));
   CHECK(contains(refused(Commands::Table(0, 3), 2), "0 rows"));
+  CHECK(contains(Commands::fault(Commands::Table(3, 0))->what, "there is no time"));
+  CHECK(!Commands::fault(Commands::Table(0, 0)));
   Commands::Table rows = table();
   rows(1, 0) = 0;
   CHECK(contains(refused(rows, 2), "row 1: t = 0 does not come after 0"));

@@ -49,6 +49,7 @@ Commands::Commands(Table table, std::size_t width) : table_(std::move(table)) {
 }
 
 std::optional<Commands::Fault> Commands::fault(const Table& table) {
+  if (table.rows() > 0 && table.cols() == 0) return Fault{0, "there is no time. Write t first."};
   for (Eigen::Index row = 0; row < table.rows(); ++row) {
     for (Eigen::Index column = 0; column < table.cols(); ++column) {
       if (std::isfinite(table(row, column))) continue;

@@ -128,7 +128,8 @@ LAYOUTS: Sequence[Callable[[random.Random, np.ndarray], Any]] = (
     lambda _, rows: np.asfortranarray(rows),
     lambda _, rows: rows.tolist(),
     lambda _, rows: np.ma.array(rows, mask=rows > 0),
-    lambda _, rows: memoryview(rows),
+    # Python itself goes through no others.
+    lambda _, rows: memoryview(rows) if rows.ndim == 1 else rows,
     lambda _, rows: np.broadcast_to(rows, (2, *rows.shape)),
 )
 
