@@ -99,6 +99,12 @@ Services::Services(const ros::NodeHandle& nh, const Simulation& simulation, Flig
         [&flight, own_clock] { flight.reset(own_clock ? reset_simulation : reset_world); });
   offer("gazebo/reset_world", [&flight] { flight.reset(reset_world); });
 
+  const auto of_topics = offer_topics(nh_, simulation.topics(),
+                                      {Simulation::command_topic, GazeboWrenches::topic}, flight);
+  servers_.insert(servers_.end(), of_topics.begin(), of_topics.end());
+  gazebo_.emplace(nh_, model, flight, wrenches, neighbours);
+  servers_.insert(servers_.end(), gazebo_->servers().begin(), gazebo_->servers().end());
+  // Last: whoever has waited for one of quadcore's own finds every other service there.
   servers_.push_back(nh_.advertiseService<Step::Request, Step::Response>(
       "quadcore/step", [&flight](Step::Request& request, Step::Response& response) {
         answer(response, [&] { flight.step(request.n); });
@@ -112,11 +118,6 @@ Services::Services(const ros::NodeHandle& nh, const Simulation& simulation, Flig
         });
         return true;
       }));
-  const auto of_topics = offer_topics(nh_, simulation.topics(),
-                                      {Simulation::command_topic, GazeboWrenches::topic}, flight);
-  servers_.insert(servers_.end(), of_topics.begin(), of_topics.end());
-  gazebo_.emplace(nh_, model, flight, wrenches, neighbours);
-  servers_.insert(servers_.end(), gazebo_->servers().begin(), gazebo_->servers().end());
   spinner_.start();
 }
 
