@@ -13,9 +13,11 @@ namespace quadcore QUADCORE_EXPORT {
 struct Quiet {
   double fastest = std::numeric_limits<double>::infinity();  ///< every joint is slower [rad/s]
   bool no_tilt = false;  ///< no rotor's normal points below the horizon
-  /// Numbers that are not zero once the plugin has said all that it has to say of a motion beyond
-  /// that bound, which then holds no longer; null for a bound that always holds.
-  const double *has_said_fast = nullptr, *has_said_tilt = nullptr;
+  /// A number that is not zero once the plugin has warned of a joint beyond `fastest`, which then
+  /// no longer holds; null if it always holds.
+  const double* has_said_fast = nullptr;
+  /// The same for `no_tilt`.
+  const double* has_said_tilt = nullptr;
 };
 
 /// Laws that plugins hand out beside their forces(), for engines that evaluate them themselves.
