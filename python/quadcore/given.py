@@ -34,7 +34,7 @@ def whole(seed: object, name: str = "seed", bits: int = 64) -> int:
 def engine_and_step(engine: object, dt: object) -> Tuple[str, Optional[float]]:
     """Check an engine's name, known or not, and the length of a step or None."""
     known = ", ".join(name for name, _ in _core.engines())
-    if not isinstance(engine, str):
+    if not (isinstance(engine, str) and engine.isprintable()):
         raise _core.InputError(f"engine is {brief(engine)}; give one of {known}")
     if engine == LAGRANGE:
         raise _core.InputError(

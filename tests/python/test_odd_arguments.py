@@ -36,6 +36,7 @@ def test_commands_that_are_no_real_numbers_are_refused():
 def test_an_engine_and_a_step_that_are_none_are_refused_in_one_line(make):
     for given, told in (
         ({"engine": None}, "engine is None; give one of gazebo11, ode, eigen"),
+        ({"engine": "\udc80"}, "engine is '\\udc80'; give one of gazebo11, ode, eigen"),
         ({"engine": 3}, "engine is 3; give one of gazebo11, ode, eigen"),
         ({"dt": "a"}, "dt is 'a'; give the length of a step in s"),
         ({"dt": [1, 2]}, "dt is [1, 2]; give the length of a step in s"),

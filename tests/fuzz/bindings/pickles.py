@@ -85,9 +85,9 @@ def damaged(chance: random.Random, state: Any) -> Any:
 
 def _changed(chance: random.Random, held: Any) -> Any:
     """Give a copy in which one thing differs; what is not on the way to it is shared."""
-    if isinstance(held, np.ndarray) and held.size and chance.randrange(8):
+    if isinstance(held, np.ndarray) and held.dtype == float and held.size and chance.randrange(8):
         other = held.copy()
-        other.flat[chance.randrange(other.size)] = odd.number(chance)
+        other.flat[chance.randrange(other.size)] = float(odd.number(chance))
         return other
     if isinstance(held, dict) and held:
         return _with_changed_item(chance, held)
