@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import queue
-from contextlib import suppress
+import threading
 from typing import (
     TYPE_CHECKING,
     Any,
@@ -44,6 +45,8 @@ _WORKERS = 16
 
 _SHARES = 4
 """Tasks at least for each process, if there are rows enough: one may be slower than another."""
+
+_PIECE = 2**16  # bytes; what a pipe holds
 
 _LOOK = 1.0  # s; between two looks at whether an executor still lives
 
@@ -172,8 +175,8 @@ def fly_over(
 def _shut_down_broken(executor: concurrent.futures.Executor, error: Exception) -> None:
     """Shut a broken pool down without waiting for it, as its own ``with`` would.
 
-    It may never end by itself: its thread may be stuck in a full pipe that no process reads any
-    more (CPython issue 94777). Without a reader the thread goes on, and ends.
+    It may never end by itself: one of its threads may be stuck in a full pipe that no process reads
+    any more (CPython issue 94777).
     """
     from concurrent.futures import BrokenExecutor
 
@@ -181,9 +184,31 @@ def _shut_down_broken(executor: concurrent.futures.Executor, error: Exception) -
         return
     calls = getattr(executor, "_call_queue", None)
     if calls is not None:
-        with suppress(OSError):
-            calls._reader.close()
+        _drain(calls)
     executor.shutdown(wait=False)
+
+
+def _drain(calls: Any) -> None:
+    """Read what is left in the pipe of a queue, beside its threads, up to its end."""
+    try:
+        # Not the queue's own descriptor: its thread closes that one when it is done.
+        pipe = os.dup(calls._reader.fileno())
+    except OSError:  # it is done
+        return
+    try:
+        is_pipe = os.path.samestat(os.fstat(pipe), os.fstat(calls._writer.fileno()))
+    except OSError:
+        is_pipe = False
+    if not is_pipe:  # closed in between, and the number is another file's by now
+        os.close(pipe)
+        return
+
+    def read_all() -> None:
+        with open(pipe, "rb", buffering=0) as stream:
+            while stream.read(_PIECE):
+                pass
+
+    threading.Thread(target=read_all, daemon=True).start()
 
 
 def fly_all(specs: Sequence[Union[Spec, Row]], apart: bool) -> List[Row]:
