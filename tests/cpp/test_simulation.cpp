@@ -8,9 +8,9 @@ using namespace quadcore::test;
 namespace {
 
 /// A hexarotor that nothing pushes, in steps so short that it keeps the motion it is given.
-Simulation still(const std::string& engine, double dt = 1e-9) {
+Simulation still(const std::string& engine, double dt = 1e-9, bool has_plugins = false) {
   Model model = hexarotor();
-  model.plugins.clear();
+  if (!has_plugins) model.plugins.clear();
   World world;
   world.gravity_W.setZero();
   SimulationOptions options;
@@ -60,12 +60,10 @@ TEST_CASE("another world is taken on purpose, another model never") {
 }
 
 TEST_CASE("a flight ends where a speed, a rate or a distance is beyond all that is meant") {
-  // Each number of a state, set to `value` in one engine.
+  // Each number of a state, which a step in one engine takes to `value`.
   const auto outcome = [](const std::string& engine, auto member, double value) -> std::string {
-    Simulation flown = still(engine);
-    VehicleState state = flown.state();
-    member(state) = value;
-    flown.set_state(state);
+    Simulation flown = still(engine, 1e-9, true);  // motors take the command of a motion
+    flown.move_by([&](double, const VectorXd&, VehicleState& state) { member(state) = value; });
     try {
       flown.step();
     } catch (const FlightError& error) {
@@ -77,6 +75,13 @@ TEST_CASE("a flight ends where a speed, a rate or a distance is beyond all that 
     for (const double sign : {1.0, -1.0}) {
       CHECK(outcome(engine, member, sign * 0.9 * bound) == "");
       CHECK(contains(outcome(engine, member, sign * 1.1 * bound), "the motion diverged"));
+      Simulation set = still(engine);
+      VehicleState state = set.state();
+      member(state) = sign * 0.9 * bound;
+      set.set_state(state);
+      set.step();
+      member(state) = sign * 1.1 * bound;
+      CHECK(contains(refusal([&] { set.set_state(state); }), "a flight counts as diverged from"));
     }
   };
   for (const EngineInfo& info : engines()) {
