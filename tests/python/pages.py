@@ -42,7 +42,7 @@ BLOCK = re.compile(
     re.DOTALL | re.MULTILINE,
 )
 NOT_RUN = re.compile(r"text|math|\{")
-ELSEWHERE = "roslaunch rosrun rostopic rosservice rosparam rosbag rospack catkin_make "
+ELSEWHERE = "roslaunch rosrun rostopic rosservice rosparam rosbag rospack catkin_make git "
 ELSEWHERE += "sudo pip jupytext jupyter"
 PIECE = """<robot name="piece" xmlns:xacro="http://www.ros.org/wiki/xacro">
 <xacro:include filename="$(find quadcore)/urdf/quadrotor.urdf.xacro"/>

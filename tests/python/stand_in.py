@@ -47,6 +47,12 @@ def pip(words):
             assert set(extra.split(",")) <= set(metadata("quadcore").get_all("Provides-Extra"))
 
 
+def git(words):
+    """Make the folder of a clone."""
+    assert words[0] == "clone"
+    Path(words[-1]).mkdir(parents=True)
+
+
 def catkin_make(words):
     Path("devel").mkdir(exist_ok=True)
     Path("devel/setup.bash").touch()

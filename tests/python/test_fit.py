@@ -289,6 +289,8 @@ def test_states_of_a_batch_may_be_set():
     rows[4, 3:7] = 0
     with pytest.raises(qc.InputError, match="vehicle 4: state: the orientation is no quaternion"):
         batch.set_state(rows)
-    with pytest.raises(qc.InputError, match=r"states are an array of shape \(3,\); give \(9, 21\)"):
+    with pytest.raises(qc.InputError, match="states is not a 2-dimensional array of numbers"):
         batch.set_state([1, 2, 3])
+    with pytest.raises(qc.InputError, match=r"states has the shape \(1, 3\). .* shape \(9, 21\)"):
+        batch.set_state([[1, 2, 3]])
     assert np.array_equal(batch.read_state(), before)
