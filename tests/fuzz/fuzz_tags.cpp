@@ -19,7 +19,8 @@ struct Tagged {
   std::vector<std::string> names;
 
   explicit Tagged(const FuzzVehicle& of) : vehicle(of) {
-    for (const LoadedPlugin& plugin : vehicle.simulate()->plugins()) {
+    const auto simulation = vehicle.simulate();
+    for (const LoadedPlugin& plugin : simulation->plugins()) {
       for (const Parameter& parameter : plugin.parameters.all()) {
         names.push_back(plugin.name + "." + parameter.spec.name);
       }
