@@ -17,7 +17,11 @@ CLASSES = [
     for kind in [*vars(_core).values(), qc.Simulation, qc.BatchSimulation]
     if isinstance(kind, type) and not issubclass(kind, Exception)
 ]
-_REFUSALS = (qc.QuadcoreError, TypeError, AttributeError, ValueError, pickle.PicklingError)
+NAMES = {kind: sorted({*dir(kind)} - {"__class__", "__init__"}) for kind in CLASSES}
+_REFUSALS = (
+    *(qc.QuadcoreError, pickle.PicklingError),
+    *(TypeError, AttributeError, ValueError, OverflowError),  # Python's own
+)
 
 
 def target() -> Callable[[random.Random], None]:
@@ -32,19 +36,18 @@ def target() -> Callable[[random.Random], None]:
 
     def run(chance: random.Random) -> None:
         if chance.randrange(2):
-            kind = chance.choice(CLASSES)
-            _use(chance, kind.__new__(kind))
+            _use(chance, chance.choice(CLASSES))
         else:
             _reduce(chance, chance.choice(built))
 
     return run
 
 
-def _use(chance: random.Random, empty: Any) -> None:
+def _use(chance: random.Random, kind: type) -> None:
     """Read or call something of an object that holds nothing."""
-    name = chance.choice([name for name in dir(empty) if name not in ("__class__", "__init__")])
+    empty = kind.__new__(kind)
     try:
-        held = getattr(empty, name)
+        held = getattr(empty, chance.choice(NAMES[kind]))
         if callable(held):
             held(*[odd.value(chance) for _ in range(chance.randrange(4))])
         repr(empty)
