@@ -5,12 +5,13 @@ sanitizers=address,undefined,float-cast-overflow
 export LSAN_OPTIONS="suppressions=$PWD/scripts/leaks.supp:print_suppressions=0"
 export UBSAN_OPTIONS=print_stacktrace=1
 
-# build_sanitized FOLDER OPTION...: configures with the options and builds everything.
+# build_sanitized FOLDER LEVEL OPTION...: configures with a level of optimisation and the options, and
+# builds everything.
 build_sanitized() {
-  local folder=$1
-  shift
+  local folder=$1 level=$2
+  shift 2
   cmake -B "$folder" -G Ninja -DQUADCORE_WITH_ROS=OFF -DCMAKE_BUILD_TYPE=Debug \
-    -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g -D_GLIBCXX_ASSERTIONS" "$@" >/dev/null
+    -DCMAKE_CXX_FLAGS_DEBUG="$level -g -D_GLIBCXX_ASSERTIONS" "$@" >/dev/null
   cmake --build "$folder"
 }
 
