@@ -13,8 +13,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// More is no question of thrust, and the sums below stay finite.
-constexpr double largest_square = 1e12;
+/// Keeps the sums below finite.
+constexpr double largest_square = unattainable_speed * unattainable_speed;
 
 /// What is orthogonal to three vectors of four numbers.
 Eigen::Vector4d orthogonal(const Eigen::Matrix<double, 4, 3>& vectors) {

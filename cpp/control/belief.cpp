@@ -137,8 +137,9 @@ Belief Belief::of(const VehicleDescription& vehicle, std::vector<double> spins,
     const double ratio = told.rate_per_command;
     const double fastest =
         doubts.fastest > 0 ? std::min(doubts.fastest, told.fastest) : told.fastest;
-    if (!(doubts.slowest < fastest)) {
-      throw InputError("'slowest' is not below the fastest speed of rotor '" + told.joint + "'");
+    if (!(doubts.slowest < std::min(fastest, unattainable_speed))) {
+      throw InputError("'slowest' is not below the fastest speed of rotor '" + told.joint +
+                       "', at most 1e6 rad/s. Give a lower one.");
     }
     const double of_command = std::copysign(spins[i], spins[i] * ratio);
     belief.rotors.push_back({told.axis_F, of_command, told.moment * ratio, doubts.lag * told.lag,

@@ -12,7 +12,7 @@ import threading
 import time
 import unittest
 import xmlrpc.client
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Callable
 
@@ -152,8 +152,12 @@ class Recording:
         return self
 
     def wait_for_connection(self, publishers: int = 1) -> Recording:
-        """Return once so many publishers are known on this side."""
+        """Return once so many publishers are known here and send here.
+
+        A node of roscpp greets a subscriber a moment before it sends to it.
+        """
         wait_until(lambda: self._subscriber.get_num_connections() >= publishers)
+        wait_until(lambda: count_senders(self._subscriber.resolved_name) >= publishers)
         return self
 
 
@@ -239,6 +243,18 @@ def outcome(*arguments, **environment):
     """Exit status and standard error of a node that refuses to start."""
     with Process("quadcore_node", *arguments, **environment) as node:
         return node.result()
+
+
+def count_senders(topic: str) -> int:
+    """Return how many nodes send a topic to this one, as they report themselves."""
+    me = rospy.get_name()
+    master = rosgraph.Master(me)
+    count = 0
+    for node in dict(master.getSystemState()[0]).get(topic, []):
+        with suppress(OSError, rosgraph.MasterException):  # one that has gone
+            _, _, connections = xmlrpc.client.ServerProxy(master.lookupNode(node)).getBusInfo(me)
+            count += any(to[1] == me and to[2] == "o" and to[4] == topic for to in connections)
+    return count
 
 
 def wait_until(condition: Callable[[], bool], seconds: float = LONG) -> None:

@@ -8,6 +8,9 @@
 namespace quadcore QUADCORE_EXPORT {
 namespace control {
 
+/// No rotor is commanded to turn at this speed [rad/s]: a flight counts as diverged there.
+constexpr double unattainable_speed = 1e6;
+
 /// A rotor as a controller believes it to be. Speeds are those of commands: before any division by
 /// sim_slow, positive as `spin` says.
 struct BelievedRotor {
