@@ -8,8 +8,8 @@ from statistics import median
 from time import thread_time_ns
 
 import quadcore as qc
-from quadcore import resources
-from quadcore.description import load_description
+from quadcore.model import resources
+from quadcore.model.description import load_description
 
 STEPS = 20_000
 BARS = {

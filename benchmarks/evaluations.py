@@ -14,9 +14,9 @@ import numpy as np
 import yaml
 
 import quadcore as qc
-from quadcore.evaluation.evaluate import conduct
-from quadcore.evaluation.output import write
-from quadcore.evaluation.plan import Plan
+from quadcore.studies.evaluate.evaluate import conduct
+from quadcore.studies.evaluate.output import write
+from quadcore.studies.evaluate.plan import Plan
 
 SPIRAL = yaml.safe_load((Path(__file__).parents[1] / "config" / "spiral.yaml").read_text())
 LONGEST = 45.0  # s, on two cores

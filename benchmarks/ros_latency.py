@@ -16,7 +16,7 @@ from statistics import median
 
 import roslib.packages
 
-from quadcore.description import load_description
+from quadcore.model.description import load_description
 
 SECONDS = float(sys.argv[1]) if len(sys.argv) > 1 else 60
 SAMPLES = int(sys.argv[2]) if len(sys.argv) > 2 else 1000

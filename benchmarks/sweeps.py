@@ -13,11 +13,11 @@ from pathlib import Path
 import numpy as np
 
 import quadcore as qc
-from quadcore.sweeps.batches import fly_together
-from quadcore.sweeps.design import Design
-from quadcore.sweeps.plan import Plan
-from quadcore.sweeps.spec import done
-from quadcore.sweeps.sweep import conduct
+from quadcore.studies.sweep.batches import fly_together
+from quadcore.studies.sweep.design import Design
+from quadcore.studies.sweep.plan import Plan
+from quadcore.studies.sweep.spec import done
+from quadcore.studies.sweep.sweep import conduct
 
 ROWS, ROUNDS = 200, 5
 AXES = {"frame.mass": "uniform:0.9:1.1", "drone_plugin.rotorThrustCoeff": "uniform:1.1e-5:1.2e-5"}

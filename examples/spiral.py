@@ -14,8 +14,8 @@ import yaml
 from matplotlib.figure import Figure
 
 import quadcore as qc
-from quadcore.colours import PALETTE
-from quadcore.plots import dress, png
+from quadcore.report.colours import PALETTE
+from quadcore.report.plots import dress, png
 
 SETTINGS = yaml.safe_load((Path(__file__).parents[1] / "config" / "spiral.yaml").read_text())
 LOST = 5.0  # m

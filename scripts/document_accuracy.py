@@ -15,8 +15,8 @@ import numpy as np
 from measured import figures, put
 
 import quadcore as qc
-from quadcore.validation import Experiment
-from quadcore.validation.damping import measure
+from quadcore.thesis.validation import Experiment
+from quadcore.thesis.validation.damping import measure
 
 DATA = Path(__file__).resolve().parents[1] / "tests" / "data"
 CASES = DATA / "gazebo11" / "cases"

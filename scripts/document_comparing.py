@@ -10,9 +10,9 @@ from images import save
 from matplotlib.figure import Figure
 
 import quadcore as qc
-from quadcore.colours import PALETTE
-from quadcore.plots import dress, png
-from quadcore.study.metrics import differences
+from quadcore.report.colours import PALETTE
+from quadcore.report.plots import dress, png
+from quadcore.studies.metrics import differences
 
 ROOT = Path(__file__).resolve().parents[1]
 COMMANDS = ROOT / "tests" / "data" / "gazebo11" / "commands_S5.csv"

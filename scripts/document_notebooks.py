@@ -11,7 +11,7 @@ import matplotlib
 from images import save
 from measured import figures, put
 
-from quadcore.plots import png
+from quadcore.report.plots import png
 
 NOTEBOOKS = Path(__file__).resolve().parents[1] / "notebooks"
 

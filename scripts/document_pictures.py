@@ -18,8 +18,8 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import quadcore as qc
-from quadcore import vehicle_picture
-from quadcore.plots import dress, png
+from quadcore.report import vehicle_picture
+from quadcore.report.plots import dress, png
 
 ROOT = Path(__file__).resolve().parents[1]
 DATA = ROOT / "tests" / "data" / "gazebo11"

@@ -11,12 +11,12 @@ from pathlib import Path
 
 from images import save
 
-from quadcore.sweeps.design import Design
-from quadcore.sweeps.pictures import draw
-from quadcore.sweeps.plan import Plan
-from quadcore.sweeps.sensitivity import sensitivities
-from quadcore.sweeps.sweep import conduct
-from quadcore.sweeps.table import table
+from quadcore.studies.sweep.design import Design
+from quadcore.studies.sweep.pictures import draw
+from quadcore.studies.sweep.plan import Plan
+from quadcore.studies.sweep.sensitivity import sensitivities
+from quadcore.studies.sweep.sweep import conduct
+from quadcore.studies.sweep.table import table
 
 # Those of the tutorial: what the law believes over what is so.
 AXES = {

@@ -16,7 +16,7 @@ from world_elements import world_section
 
 import quadcore as qc
 from quadcore import _core
-from quadcore.description import load_description
+from quadcore.model.description import load_description
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "tags.md"

@@ -12,13 +12,13 @@ import numpy as np
 from images import save
 from measured import DOCS, figures, put
 
-from quadcore.colours import PALETTE
-from quadcore.plots import dress, png, titled
-from quadcore.validation import Case, Experiment, Study, conduct
-from quadcore.validation.experiment import NO_LAG
-from quadcore.validation.figures import pictures
-from quadcore.validation.output import size
-from quadcore.validation.thesis import KINDS, thesis_figures
+from quadcore.report.colours import PALETTE
+from quadcore.report.plots import dress, png, titled
+from quadcore.thesis.validation import Case, Experiment, Study, conduct
+from quadcore.thesis.validation.experiment import NO_LAG
+from quadcore.thesis.validation.figures import pictures
+from quadcore.thesis.validation.output import size
+from quadcore.thesis.validation.thesis import KINDS, thesis_figures
 
 FROM_THE_COMMAND = {"position": "position_all", "error": "error_all", "chain": "chain_all"}
 

@@ -16,9 +16,9 @@ import numpy as np
 from noise import NOISY, THESIS
 
 import quadcore as qc
-from quadcore import laws, references
-from quadcore.study.executor import each
-from quadcore.warning import unheard
+from quadcore.control import laws, references
+from quadcore.studies.executor import each
+from quadcore.support.warning import unheard
 
 WAYPOINTS = Path(__file__).resolve().parents[1] / "config" / "waypoints.yaml"
 LOST = 5.0  # m

@@ -9,7 +9,8 @@ from typing import Iterator
 from markdown_table import table
 
 import quadcore as qc
-from quadcore import _core, resources
+from quadcore import _core
+from quadcore.model import resources
 
 SHIPPED = {
     "empty": "Gazebo's defaults without ground; what there is unless another is named",

@@ -13,8 +13,9 @@ Gazebo 11 model to the last digit, faults included, two others fly the same file
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, List
 
-from . import core as core  # before all that needs it
-from . import laws, references
+from .support import core_library  # noqa: F401, for it explains which library is missing
+
+# isort: split
 from ._core import (
     FlightError,
     InputError,
@@ -27,26 +28,27 @@ from ._core import (
     load_plugin_path,
     plugin_folders,
 )
-from .batch import BatchSimulation, BatchState
-from .controller import Controller, Odometry
-from .description import read_model, read_world
-from .forks import LOCK
-from .inner_loop import AttitudeThrust, InnerLoop, RatesThrust
-from .log import Log
-from .resources import cmake_prefix
-from .simulation import Simulation
-from .state import State
-from .warning import QuadcoreWarning
+from .control import gains, laws, references
+from .control.inner_loop import AttitudeThrust, InnerLoop, RatesThrust
+from .model.description import read_model, read_world
+from .model.resources import cmake_prefix
+from .simulation.batch import BatchSimulation, BatchState
+from .simulation.controller import Controller, Odometry
+from .simulation.log import Log
+from .simulation.simulation import Simulation
+from .simulation.state import State
+from .support.import_lock import LOCK
+from .support.warning import QuadcoreWarning
 
 if TYPE_CHECKING:
-    from .comparison.compare import compare
-    from .comparison.result import Comparison
-    from .evaluation.evaluate import Evaluation, evaluate
-    from .fitting.fit import Fit, fit
-    from .flight_plan import FlightPlan
     from .fmu.export import export_fmu
-    from .sweeps.sweep import Sweep, sweep
-    from .tuning.tune import tune
+    from .simulation.flight_plan import FlightPlan
+    from .studies.compare.compare import compare
+    from .studies.compare.result import Comparison
+    from .studies.evaluate.evaluate import Evaluation, evaluate
+    from .studies.fit.fit import Fit, fit
+    from .studies.sweep.sweep import Sweep, sweep
+    from .studies.tune.tune import tune
 
 __version__ = "0.1.0"
 
@@ -74,12 +76,14 @@ __all__ = [
     "State",
     "Sweep",
     "World",
+    "__version__",
     "cmake_prefix",
     "compare",
     "engines",
     "evaluate",
     "export_fmu",
     "fit",
+    "gains",
     "laws",
     "load_plugin_path",
     "plugin_folders",
@@ -90,30 +94,30 @@ __all__ = [
     "tune",
 ]
 
-_STUDIES = {
-    "Comparison": "comparison.result",
-    "Evaluation": "evaluation.evaluate",
-    "Fit": "fitting.fit",
-    "FlightPlan": "flight_plan",
-    "Sweep": "sweeps.sweep",
-    "compare": "comparison.compare",
-    "evaluate": "evaluation.evaluate",
+_LATE = {
+    "Comparison": "studies.compare.result",
+    "Evaluation": "studies.evaluate.evaluate",
+    "Fit": "studies.fit.fit",
+    "FlightPlan": "simulation.flight_plan",
+    "Sweep": "studies.sweep.sweep",
+    "compare": "studies.compare.compare",
+    "evaluate": "studies.evaluate.evaluate",
     "export_fmu": "fmu.export",
-    "fit": "fitting.fit",
-    "sweep": "sweeps.sweep",
-    "tune": "tuning.tune",
+    "fit": "studies.fit.fit",
+    "sweep": "studies.sweep.sweep",
+    "tune": "studies.tune.tune",
 }
-"""Where names lie that are brought in when they are first asked for: flying once needs none."""
+"""Where to find the names that are imported at their first use: a single flight needs none."""
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _STUDIES:
+    if name not in _LATE:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     with LOCK:
-        value = getattr(import_module(f"{__name__}.{_STUDIES[name]}"), name)
+        value = getattr(import_module(f"{__name__}.{_LATE[name]}"), name)
     globals()[name] = value
     return value
 
 
 def __dir__() -> List[str]:
-    return sorted({*globals(), *__all__})
+    return sorted(__all__)

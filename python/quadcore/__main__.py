@@ -8,7 +8,7 @@ import sys
 from typing import NoReturn
 
 from .cli import main
-from .interrupts import ENDED
+from .support.interrupts import ENDED
 
 
 def run() -> NoReturn:

@@ -29,7 +29,7 @@ def expand(path, arguments):
     """Text of the URDF."""
     try:
         from quadcore import QuadcoreError
-        from quadcore.description import load_description
+        from quadcore.model.description import load_description
     except ImportError:
         pass
     else:

@@ -18,7 +18,7 @@ from std_msgs.msg import Float64MultiArray
 from tf2_msgs.msg import TFMessage
 
 import quadcore as qc
-from quadcore.description import load_description
+from quadcore.model.description import load_description
 
 rospy.init_node("quadcore", disable_rostime=True)  # this node makes the time, it follows none
 # For who asks what flies: a controller, rviz.

@@ -20,7 +20,7 @@ from std_msgs.msg import Float64MultiArray
 
 from quadcore import InputError
 from quadcore._core import log_columns
-from quadcore.log import check_log_path, log_file
+from quadcore.simulation.log import check_log_path, log_file
 
 
 class Player:

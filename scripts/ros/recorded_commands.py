@@ -11,10 +11,10 @@ def read_table(path, rotors):
     Raises `ValueError`, or quadcore's `InputError`, with one line.
     """
     if not str(path).endswith(".bag"):
-        from quadcore.commands import read_commands as read_file
+        from quadcore.simulation.commands import read_commands as read_file
 
         return read_file(path, rotors)
-    from quadcore.commands import as_commands
+    from quadcore.simulation.commands import as_commands
 
     _, times, commands = _recorded(path, "")
     rows = dict(zip(times, commands))  # of those of one time the last counts

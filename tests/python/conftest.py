@@ -69,7 +69,7 @@ def fitted(tmp_path):
 def thesis():
     """The thesis' quadrotor as its mathematical model needs it."""
     import quadcore as qc
-    from quadcore.chapter2 import Vehicle
+    from quadcore.thesis.chapter2 import Vehicle
 
     return Vehicle.of(qc.Simulation("quadrotor", engine="eigen", xacro_args={"sim_slow": 1}))
 
@@ -79,7 +79,7 @@ def study():
     """The flights of the validation, slowed down by 1 and 8, without drag and with all."""
     from flights import ENGINES
 
-    from quadcore.validation import Experiment, conduct
+    from quadcore.thesis.validation import Experiment, conduct
 
     return conduct(Experiment.of(), ENGINES, [1, 8], ["none", "all"])
 

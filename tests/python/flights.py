@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 import quadcore as qc
+from quadcore.model import resources
 
 ENGINES = [name for name, _ in qc.engines()]
 HOVER = np.array([471, -471, 471, -471])
@@ -90,8 +91,8 @@ def digest(data):
 def with_pilot(folder):
     """Copy the quadrotor with a PID, whose gains lie in a file beside it."""
     folder.mkdir()
-    shutil.copy(qc.resources.root() / "config/gains/quadrotor/pid.yaml", folder / "gains.yaml")
-    text = (qc.resources.root() / "urdf/quadrotor.urdf.xacro").read_text()
+    shutil.copy(resources.root() / "config/gains/quadrotor/pid.yaml", folder / "gains.yaml")
+    text = (resources.root() / "urdf/quadrotor.urdf.xacro").read_text()
     pilot = (
         '<gazebo><plugin name="pilot" filename="libcontroller_plugin.so"><law>pid</law>'
         "<gains>gains.yaml</gains></plugin></gazebo></robot>"

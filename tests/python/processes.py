@@ -5,7 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 
-from quadcore.study import executor
+from quadcore.studies import executor
 
 QUADCORE = [sys.executable, "-m", "quadcore"]
 FALL = ["run", "quadrotor", "--engine", "eigen", "--duration", "0.05"]

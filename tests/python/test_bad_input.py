@@ -189,7 +189,11 @@ def test_parameters_that_are_wrong(parameters, says):
         ("spawn", (0, 0, math.nan), "write x,y,z[,roll,pitch,yaw]"),
         ("spawn", (0, 0, 1e12), "spawn: the distance from the origin is 1e+12 m, but a flight"),
         ("engine", "gazebo", "engine 'gazebo' is not there (did you mean 'gazebo11'?)"),
-        ("engine", "lagrange", "engine 'lagrange' is flown by quadcore.chapter2.plant.Plant"),
+        (
+            "engine",
+            "lagrange",
+            "engine 'lagrange' is flown by quadcore.thesis.chapter2.plant.Plant",
+        ),
         ("seed", -1, "seed is -1; give a whole number from 0"),
         ("seed", 1.5, "seed is 1.5; give a whole number from 0"),
         ("seed", 2**64, "give a whole number from 0 to 2^64 - 1"),

@@ -9,8 +9,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 from vehicles import AIR, COM, DRAG, FLAPPING, GRAVITY, MOTOR, ODD, SKEW, WIND, Hangar, vehicle
 
-from quadcore.chapter2 import MathematicalModel, Vehicle, matrices
-from quadcore.chapter2.kinematics import (
+from quadcore.thesis.chapter2 import MathematicalModel, Vehicle, matrices
+from quadcore.thesis.chapter2.kinematics import (
     euler_rates_to_body,
     generalise,
     gradient_of_W,

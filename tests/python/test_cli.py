@@ -14,9 +14,9 @@ import pytest
 import scipy.io
 
 import quadcore as qc
-from quadcore import resources
 from quadcore.cli import info, main, terminal
 from quadcore.formats import mat
+from quadcore.model import resources
 
 FALL = ["run", "quadrotor", "--duration", "0.05"]
 

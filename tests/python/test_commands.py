@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from quadcore import InputError
-from quadcore.commands import as_commands, read_commands
+from quadcore.simulation.commands import as_commands, read_commands
 
 TABLE = np.array([[0.0, 1.0, -2.0], [0.5, 3.0, -4.0]])
 

@@ -16,9 +16,10 @@ from processes import outcomes
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.comparison import Comparison
-from quadcore.rotation import roll_pitch_yaw
-from quadcore.study import metrics
+from quadcore.model import resources
+from quadcore.studies import metrics
+from quadcore.studies.compare import Comparison
+from quadcore.support.rotation import roll_pitch_yaw
 
 pytestmark = pytest.mark.usefixtures("toy")
 
@@ -101,7 +102,7 @@ def test_lines_of_a_xacro_are_those_of_its_file(capsys):
 
 
 def test_numbers_written_otherwise_and_order_are_no_difference_but_that_of_joints_is():
-    model = str(qc.resources.root() / "urdf" / "quadrotor.urdf.xacro")
+    model = str(resources.root() / "urdf" / "quadrotor.urdf.xacro")
     text = Path(model).read_text()
     assert "0.000011487" in text
     Path("same.xacro").write_text(text.replace("0.000011487", "1.1487e-5"))

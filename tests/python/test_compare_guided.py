@@ -10,8 +10,8 @@ import pytest
 from compared import rows
 
 import quadcore as qc
-from quadcore import laws, references
 from quadcore.cli import main
+from quadcore.control import laws, references
 
 FLY = ["--xacro", "sim_slow:=1", "--duration", "0.5", "--quiet"]
 SPIRAL = ["--controller", "geometric:kp_xy=5", "--reference", "spiral:radius=1.5"]

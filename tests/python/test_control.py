@@ -11,7 +11,7 @@ from flights import ENGINES, NOISE, quadrotor
 from twin_law import Twin
 
 import quadcore as qc
-from quadcore import laws, references
+from quadcore.control import laws, references
 
 ROOT = Path(__file__).resolve().parents[2]
 FLYING = [name for name in laws.NAMES if name != "pid_thesis"]

@@ -9,7 +9,7 @@ from hooked import G, with_plugins
 from vehicles import CROSS, DRAG, LIFT, MOTOR, plugin, vehicle
 
 import quadcore as qc
-from quadcore import laws, references
+from quadcore.control import laws, references
 
 NOISY = {
     "positionNoise": 1e-3,

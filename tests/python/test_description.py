@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 
 import quadcore as qc
-from quadcore import _core, resources
-from quadcore.description import load_description, load_world
-from quadcore.xacro_expansion import expand
+from quadcore import _core
+from quadcore.model import resources
+from quadcore.model.description import load_description, load_world
+from quadcore.model.xacro_expansion import expand
 
 XMLNS = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 

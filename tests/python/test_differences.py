@@ -8,9 +8,9 @@ from scipy.spatial.transform import Rotation
 
 from quadcore import Log
 from quadcore._core import Document
-from quadcore.comparison.difference import ABSENT, Difference, Fact, differences, facts
-from quadcore.rotation import continuous, roll_pitch_yaw
-from quadcore.study import metrics
+from quadcore.studies import metrics
+from quadcore.studies.compare.difference import ABSENT, Difference, Fact, differences, facts
+from quadcore.support.rotation import continuous, roll_pitch_yaw
 
 BEFORE = """<robot name="r">
   <link name="a">

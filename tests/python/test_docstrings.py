@@ -9,7 +9,8 @@ import re
 import pytest
 
 import quadcore as qc
-from quadcore import _core, chapter2
+from quadcore import _core
+from quadcore.thesis import chapter2
 
 PUBLIC = {
     f"{module.__name__}.{name}": getattr(module, name)

@@ -8,7 +8,7 @@ from evaluations import evaluate
 from flights import NOISE
 
 import quadcore as qc
-from quadcore import laws, references
+from quadcore.control import laws, references
 
 
 def test_a_row_is_what_the_flight_by_itself_is():

@@ -15,8 +15,8 @@ from test_own_controllers import here as here
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.evaluation.evaluate import conduct
-from quadcore.evaluation.plan import Plan
+from quadcore.studies.evaluate.evaluate import conduct
+from quadcore.studies.evaluate.plan import Plan
 
 
 def test_everything_is_written_and_reproducible():

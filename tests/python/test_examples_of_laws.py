@@ -103,7 +103,7 @@ def test_the_main_job_flies_what_its_settings_say(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(str(EXAMPLES))
     import spiral
 
-    from quadcore.plots import png
+    from quadcore.report.plots import png
 
     monkeypatch.setitem(spiral.SETTINGS, "duration", 1.0)
     logs = spiral.fly()

@@ -10,8 +10,8 @@ from flights import NOISE
 from processes import ran, refused
 
 import quadcore as qc
-from quadcore.fitting.document import with_values, written
-from quadcore.fitting.record import read
+from quadcore.studies.fit.document import with_values, written
+from quadcore.studies.fit.record import read
 
 DATA = Path(__file__).resolve().parents[1] / "data" / "gazebo11"
 

@@ -7,6 +7,7 @@ from flights import HOVER, with_pilot
 from imported import Imported
 
 import quadcore as qc
+from quadcore.model import resources
 
 pytest.importorskip("fmpy")
 
@@ -20,7 +21,7 @@ LAB = {
 
 def with_all_that_listens(folder):
     """Copy the quadrotor with every kind of plugin that its caller tells something."""
-    text = (qc.resources.root() / "urdf/quadrotor.urdf.xacro").read_text()
+    text = (resources.root() / "urdf/quadrotor.urdf.xacro").read_text()
     parts = "".join(
         f'<gazebo><plugin name="{name}" filename="lib'
         f'{"payload" if name == "later" else name}_plugin.so">{tags}</plugin></gazebo>'

@@ -11,7 +11,7 @@ from hooked import G
 from test_controller_plugin import guided
 
 import quadcore as qc
-from quadcore import gains, laws, references
+from quadcore.control import gains, laws, references
 
 SHIPPED = sorted((Path(__file__).resolve().parents[2] / "config" / "gains").glob("*/*.yaml"))
 

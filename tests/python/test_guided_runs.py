@@ -12,8 +12,8 @@ import scipy.io
 from flights import quadrotor
 
 import quadcore as qc
-from quadcore import laws, references
 from quadcore.cli import main
+from quadcore.control import laws, references
 
 FLY = ["run", "quadrotor", "--engine", "eigen", "--xacro", "sim_slow:=1"]
 

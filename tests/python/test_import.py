@@ -8,6 +8,7 @@ from pathlib import Path
 from processes import script
 
 import quadcore as qc
+from quadcore.support import core_library
 
 # Each takes longer to import than quadcore itself, or brings in what does.
 SLOW = [
@@ -44,9 +45,9 @@ def test_every_name_is_there_when_it_is_asked_for():
 def test_a_library_that_is_missing_is_named_with_its_package(tmp_path):
     """As the loader says it, in a package that has nothing but the beginning."""
     package = tmp_path / "quadcore"
-    package.mkdir()
-    (package / "__init__.py").write_text("from . import core")
-    shutil.copy(qc.core.__file__, str(package / "core.py"))
+    (package / "support").mkdir(parents=True)
+    (package / "__init__.py").write_text("from .support import core_library")
+    shutil.copy(core_library.__file__, str(package / "support" / "core_library.py"))
     loading = "cannot open shared object file: No such file or directory"
     packages = {"libode.so.8": "libode8", "libtinyxml2.so.9": "libtinyxml2-9"}
     packages["libyaml-cpp.so.0.7"] = "libyaml-cpp0.7"

@@ -10,7 +10,7 @@ import pytest
 from flights import ENGINES, quadrotor
 
 import quadcore as qc
-from quadcore import laws, references
+from quadcore.control import laws, references
 
 WEIGHT = 1.04 * 9.8  # N
 SLOW = {"drone_plugin.sim_slow": 1, "motorpid_plugin.sim_slow": 1}

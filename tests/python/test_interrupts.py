@@ -17,8 +17,8 @@ import pytest
 from processes import outcomes, script
 
 import quadcore as qc
-from quadcore import interrupts
-from quadcore.study.executor import contained, each
+from quadcore.studies.executor import contained, each
+from quadcore.support import interrupts
 
 TRIALS = int(os.environ.get("QUADCORE_TRIALS", "4"))  # moments, of each signal and command
 SIGNALS = list(interrupts.SIGNALS)

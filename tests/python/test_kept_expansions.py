@@ -7,7 +7,7 @@ import pytest
 import xacro
 
 import quadcore as qc
-from quadcore.xacro_expansion import expand
+from quadcore.model.xacro_expansion import expand
 
 MODEL = """<robot name="kept" xmlns:xacro="http://www.ros.org/wiki/xacro">
 <xacro:arg name="k" default="1"/>

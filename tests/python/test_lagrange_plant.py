@@ -24,11 +24,11 @@ from vehicles import (
 )
 
 import quadcore as qc
-from quadcore import laws, references
-from quadcore.chapter2 import GYROSTAT, Terms
-from quadcore.chapter2.plant import Plant, check
 from quadcore.cli import main
-from quadcore.plants import build
+from quadcore.control import laws, references
+from quadcore.simulation.engines import build
+from quadcore.thesis.chapter2 import GYROSTAT, Terms
+from quadcore.thesis.chapter2.plant import Plant, check
 
 CHAPTER_2 = {
     "parameters": {"drone_plugin.dragModel": "chapter2", **NOISE},

@@ -8,7 +8,7 @@ from hooked import G, with_plugins
 from vehicles import CROSS, DRAG, LIFT, MOTOR, SKEW, Rotor, plugin, vehicle
 
 import quadcore as qc
-from quadcore import laws, references
+from quadcore.control import laws, references
 
 OFF = (0.05, -0.02, 0.01)
 # As the motors are told: neither the file's order nor the one around the vehicle.

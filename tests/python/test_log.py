@@ -15,8 +15,8 @@ from hypothesis.extra import numpy as hnp
 from scipy.spatial.transform import Rotation
 
 from quadcore import InputError, Log
-from quadcore.log import check_log_path
-from quadcore.rotation import roll_pitch_yaw
+from quadcore.simulation.log import check_log_path
+from quadcore.support.rotation import roll_pitch_yaw
 
 COLUMNS = "t,x,y,z,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz,j1,j2,j3,j4"
 WRENCH = ("fx", "fy", "fz", "tx", "ty", "tz")

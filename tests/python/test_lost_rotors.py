@@ -13,7 +13,7 @@ from vehicles import plugin
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.rotation import roll_pitch_yaw
+from quadcore.support.rotation import roll_pitch_yaw
 
 ALTERNATING = (1, -1, 1, -1, 1, -1)
 PAIRED = (1, 1, -1, -1, 1, -1)  # two neighbours of one sense, twice

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from quadcore import references
+from quadcore.control import references
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -10,15 +10,15 @@ import pytest
 from evaluations import evaluate
 
 import quadcore as qc
-from quadcore import laws
 from quadcore._core import rates_per_command
 from quadcore.cli import main
-from quadcore.evaluation import trial
-from quadcore.evaluation.flights import NAN, Outcome
-from quadcore.evaluation.plan import Plan
-from quadcore.evaluation.robustness import ENDS, Searches, margin_text
-from quadcore.evaluation.trial import Trial, lacking
-from quadcore.vehicle_tags import SAID
+from quadcore.control import laws
+from quadcore.simulation.vehicle_tags import SAID
+from quadcore.studies.evaluate import trial
+from quadcore.studies.evaluate.flights import NAN, Outcome
+from quadcore.studies.evaluate.plan import Plan
+from quadcore.studies.evaluate.robustness import ENDS, Searches, margin_text
+from quadcore.studies.evaluate.trial import Trial, lacking
 
 
 def test_margins_are_found(capsys):

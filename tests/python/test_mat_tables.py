@@ -8,9 +8,9 @@ import pytest
 import scipy.io
 
 import quadcore as qc
-from quadcore import references
-from quadcore.commands import read_commands
+from quadcore.control import references
 from quadcore.formats.mat import LAYOUTS
+from quadcore.simulation.commands import read_commands
 
 TABLE = np.array([[0.0, 480, -470], [0.25, 490, -480], [1.0, 470, -490.5]])
 T, W1, W2 = (TABLE[:, [i]] for i in range(3))

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from quadcore.evaluation import measures
-from quadcore.evaluation.flights import NAN, Outcome
-from quadcore.evaluation.intervals import cvar, interval
-from quadcore.evaluation.step_response import step_response
-from quadcore.evaluation.sums import over_seeds
-from quadcore.log import Log
-from quadcore.study.table import NOT_FLOWN, flown_and_failed
+from quadcore.simulation.log import Log
+from quadcore.studies.evaluate import measures
+from quadcore.studies.evaluate.flights import NAN, Outcome
+from quadcore.studies.evaluate.intervals import cvar, interval
+from quadcore.studies.evaluate.step_response import step_response
+from quadcore.studies.evaluate.sums import over_seeds
+from quadcore.studies.table import NOT_FLOWN, flown_and_failed
 
 
 def log_of(time, wanted, position, rotors=None):

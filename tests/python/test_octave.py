@@ -10,11 +10,11 @@ import pytest
 import scipy.io
 
 import quadcore as qc
-from quadcore.chapter2.model import MathematicalModel
-from quadcore.chapter2.vehicle import Vehicle
 from quadcore.cli import main
-from quadcore.evaluation.measures import measure
 from quadcore.serve import Server
+from quadcore.studies.evaluate.measures import measure
+from quadcore.thesis.chapter2.model import MathematicalModel
+from quadcore.thesis.chapter2.vehicle import Vehicle
 
 MATLAB = Path(__file__).resolve().parents[2] / "matlab"
 SPAWN = (2, 0, 10)

@@ -15,7 +15,7 @@ from processes import FALL, LONG, ran, refused
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.commands import read_commands
+from quadcore.simulation.commands import read_commands
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 
@@ -150,7 +150,7 @@ def test_tables_are_written_before_pictures(toy, monkeypatch):
     def fail(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("quadcore.plots.png", fail)
+    monkeypatch.setattr("quadcore.report.plots.png", fail)
     vary = ["--vary", "motor.kp=1e-4,2e-4", "--duration", "0.01", "--out", "out"]
     assert main(["compare", "toy.urdf", *vary]) == 130
     assert Path("out/table.csv").exists() and Path("out/comparison.json").exists()

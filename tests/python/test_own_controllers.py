@@ -11,8 +11,8 @@ from evaluations import FLY, evaluate, rows
 from test_guided_runs import OWN
 
 import quadcore as qc
-from quadcore import references
 from quadcore.cli import main
+from quadcore.control import references
 
 OWN_MORE = """
 class Never(Hover):

@@ -7,7 +7,7 @@ import pytest
 import scipy.io
 
 import quadcore as qc
-from quadcore import references
+from quadcore.control import references
 
 ROWS = np.array([[0, 0, 0, 10, 0.3], [2, 1, -0.5, 11, 0.1], [4, 2, 0, 10.5, -0.2]])
 VECTORS = dict(zip(("t", "x", "y", "z", "yaw"), ROWS.T))

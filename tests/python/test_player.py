@@ -14,7 +14,7 @@ from browser import told
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.player import PlayerFlight, fragment, page
+from quadcore.report.player import PlayerFlight, fragment, page
 
 ROTORS = np.array([[0.3, 0, 0.1], [0, 0.2, 0.1], [-0.25, -0.1, 0.12]])
 

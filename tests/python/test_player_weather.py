@@ -9,7 +9,7 @@ from test_player import LOOK, ROTORS, content_of, flown, numbers
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.player import PlayerFlight, page, topics_to_watch
+from quadcore.report.player import PlayerFlight, page, topics_to_watch
 
 SCENARIO = (
     "plugins:\n"

@@ -11,9 +11,9 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import quadcore as qc
-from quadcore import log_pictures, plots
 from quadcore.cli import main
-from quadcore.comparison import pictures as overlaid
+from quadcore.report import log_pictures, plots
+from quadcore.studies.compare import pictures as overlaid
 
 ONE = {f"{name}.png" for name in ("position", "attitude", "rates", "rotors", "path")}
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import quadcore as qc
-from quadcore import laws
-from quadcore.evaluation.poles import gains_of, has_poles, poles, text
-from quadcore.plants import build
+from quadcore.control import laws
+from quadcore.simulation.engines import build
+from quadcore.studies.evaluate.poles import gains_of, has_poles, poles, text
 
 
 def by_axis(law, engine="eigen", slow=1, **parameters):

@@ -16,7 +16,7 @@ from processes import FALL, LONG, QUADCORE, ran, refused, script
 
 import quadcore as qc
 from quadcore import _core
-from quadcore.recording import Thinned
+from quadcore.simulation.recording import Thinned
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import quadcore as qc
-from quadcore import references
 from quadcore.cli import main
+from quadcore.control import references
 
 # Firefly, iris and ardrone have an inertia that no body can have.
 pytestmark = pytest.mark.filterwarnings("ignore::quadcore.QuadcoreWarning")

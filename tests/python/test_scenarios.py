@@ -10,10 +10,10 @@ import pytest
 from evaluations import rows
 
 import quadcore as qc
-from quadcore import resources
 from quadcore.cli import main
-from quadcore.scenario_events import KINDS
-from quadcore.scenarios import Scenario
+from quadcore.model import resources
+from quadcore.simulation.scenario_events import KINDS
+from quadcore.simulation.scenarios import Scenario
 
 SHIPPED = sorted(resources.shipped("config/scenarios"))
 GUIDED = ["--controller", "geometric", "--xacro", "sim_slow:=1"]
@@ -262,7 +262,7 @@ def test_an_evaluation_has_scenarios_for_an_axis_and_tells_each_laws_loss():
 def test_pictures_over_time_have_a_mark_where_something_happens():
     import matplotlib.pyplot as plt
 
-    from quadcore.evaluation.event_marks import mark
+    from quadcore.studies.evaluate.event_marks import mark
 
     events = Scenario(
         written("events: [{at: 0.2, cut: 1}, {at: 0.2, weaken: 2, to: 0.5}, {at: 3, cut: 3}]")

@@ -8,9 +8,9 @@ from importlib.machinery import ExtensionFileLoader
 
 import pytest
 
-from quadcore import interrupts
 from quadcore.cli import main
-from quadcore.files import atomic_write
+from quadcore.support import interrupts
+from quadcore.support.files import atomic_write
 
 SIGNALS = list(interrupts.SIGNALS)
 

@@ -19,7 +19,7 @@ from processes import LONG, script
 from sweeps import lines, sweep
 
 import quadcore as qc
-from quadcore.sweeps.spec import Flight
+from quadcore.studies.sweep.spec import Flight
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 
@@ -141,8 +141,8 @@ def test_models_travel_as_documents():
     (here / "mine.urdf").write_text(qc.read_model("crazyflie").document.text)
     shutil.copy(shipped / "worlds/empty.world", here / "mine.world")
     (here / "gains.yaml").write_text("law: pd\n")
-    from quadcore.sweeps.design import Design
-    from quadcore.sweeps.plan import Plan
+    from quadcore.studies.sweep.design import Design
+    from quadcore.studies.sweep.plan import Plan
 
     plan = Plan(
         Design({"world": [str(here / "mine.world")]}),
@@ -238,7 +238,7 @@ def test_a_cluster_may_lose_workers_gain_some_and_be_lost_itself():
 
 def test_no_scheduler_is_one_line(monkeypatch):
     pytest.importorskip("distributed")
-    monkeypatch.setattr("quadcore.sweeps.dask._PATIENCE", 0.5)
+    monkeypatch.setattr("quadcore.studies.sweep.dask._PATIENCE", 0.5)
     levels = logging.getLogger("distributed").level
     with pytest.raises(qc.QuadcoreError, match=r"tcp://127.0.0.1:1: no scheduler answers"):
         sweep(dask="tcp://127.0.0.1:1")

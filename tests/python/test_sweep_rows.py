@@ -20,7 +20,7 @@ from sweeps import lines, rows, sweep
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.study.folder import output_folder
+from quadcore.studies.folder import output_folder
 
 FLY = ["sweep", "--controller=geometric", "--reference=circle", "--xacro=sim_slow:=1", "--quiet"]
 SMALL = [*FLY, "--vary=frame.mass=uniform:0.9:1.1", "--samples=40", "--duration=1", "--no-plots"]
@@ -194,7 +194,7 @@ def test_a_flight_that_never_ends_is_one_row():
 HOLDER = """
 import sys
 from pathlib import Path
-from quadcore.study.folder import output_folder
+from quadcore.studies.folder import output_folder
 
 with output_folder(Path("out")):
     print("held", flush=True)
@@ -211,7 +211,7 @@ with output_folder(Path("out")):
     ],
 )
 def test_two_studies_do_not_write_into_one_folder(command, monkeypatch, capsys):
-    monkeypatch.setattr("quadcore.study.folder._PATIENCE", 0.0)
+    monkeypatch.setattr("quadcore.studies.folder._PATIENCE", 0.0)
     words = [*command, "--duration=0.05", "--no-plots", "--quiet", "--out=out"]
     with subprocess.Popen(
         [sys.executable, "-c", HOLDER], stdin=subprocess.PIPE, stdout=subprocess.PIPE

@@ -15,7 +15,7 @@ from sweeps import MASS, ishigami, rows, sweep
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.sweeps.design import Design
+from quadcore.studies.sweep.design import Design
 
 FLY = ["--controller", "geometric", "--reference", "circle", "--xacro", "sim_slow:=1"]
 SHORT = [*FLY, "--duration", "0.5", "--no-plots", "--quiet"]
@@ -91,7 +91,7 @@ def test_rows_that_fly_together_are_what_they_are_alone(tmp_path, monkeypatch):
         )
 
     together = fly()
-    monkeypatch.setattr("quadcore.sweeps.places.fly_together", lambda specs: None)
+    monkeypatch.setattr("quadcore.studies.sweep.places.fly_together", lambda specs: None)
     alone = fly()
     for name, column in together.columns.items():
         np.testing.assert_array_equal(column, alone.columns[name])

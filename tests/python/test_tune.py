@@ -11,8 +11,8 @@ import pytest
 import yaml
 
 import quadcore as qc
-from quadcore import gains
 from quadcore.cli import main, terminal
+from quadcore.control import gains
 
 pytest.importorskip("cma")
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import quadcore as qc
-from quadcore.chapter2 import Vehicle
-from quadcore.validation import Experiment
-from quadcore.validation.damping import measure
-from quadcore.validation.output import size
+from quadcore.thesis.chapter2 import Vehicle
+from quadcore.thesis.validation import Experiment
+from quadcore.thesis.validation.damping import measure
+from quadcore.thesis.validation.output import size
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -16,11 +16,11 @@ from test_docs import COMMANDS
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.validation import Experiment, causes, conduct
-from quadcore.validation import figures as pictures_of_study
-from quadcore.validation.figures import pictures
-from quadcore.validation.output import size
-from quadcore.validation.thesis import KINDS, SIM_SLOW, thesis_figures
+from quadcore.thesis.validation import Experiment, causes, conduct
+from quadcore.thesis.validation import figures as pictures_of_study
+from quadcore.thesis.validation.figures import pictures
+from quadcore.thesis.validation.output import size
+from quadcore.thesis.validation.thesis import KINDS, SIM_SLOW, thesis_figures
 
 ROOT = Path(__file__).resolve().parents[2]
 HEXAROTOR = ROOT / "tests/data/gazebo11/cases/B1_hexa_hover/model.urdf"

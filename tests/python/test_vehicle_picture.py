@@ -7,8 +7,8 @@ import pytest
 from vehicles import AIR, COM, MOTOR, ODD, SKEW, vehicle
 
 import quadcore as qc
-from quadcore import vehicle_picture
 from quadcore.cli import main
+from quadcore.report import vehicle_picture
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ from flights import ENGINES, HOVER
 from scipy.spatial.transform import Rotation
 
 import quadcore as qc
-from quadcore import references
+from quadcore.control import references
 
 ROOT = Path(__file__).resolve().parents[2]
 SIZES = {"quadrotor": 1.0, "hexarotor": 1.0, "crazyflie": 0.25}

@@ -8,8 +8,9 @@ import pytest
 from faults import refusal
 
 import quadcore as qc
+from quadcore.model import resources
 
-SHIPPED = Path(qc.resources.shipped("urdf")["quadrotor"]).name
+SHIPPED = Path(resources.shipped("urdf")["quadrotor"]).name
 
 
 def told(**arguments):

@@ -26,7 +26,7 @@ from quadcore.srv import Step
 from std_msgs.msg import Float64MultiArray
 from std_srvs.srv import Empty
 
-from quadcore.description import load_description
+from quadcore.model.description import load_description
 
 # s; a ceiling for whatever is waited for, on machines that are busy with other things
 LONG = 180.0

@@ -12,7 +12,7 @@ from mav_msgs.msg import Actuators
 from rotors_comm.msg import WindSpeed
 from sensor_msgs.msg import NavSatFix
 
-from quadcore.description import load_description
+from quadcore.model.description import load_description
 
 # Those of the original packages.
 CHECKSUMS = {

@@ -6,10 +6,11 @@ import argparse
 import sys
 from typing import Any, NoReturn, Sequence
 
-from .. import __version__, interrupts
+from .. import __version__
 from .._core import FlightError, InputError, QuadcoreError
-from ..files import shown
-from ..parameters import did_you_mean
+from ..support import interrupts
+from ..support.files import shown
+from ..support.parameters import did_you_mean
 from . import (
     compare,
     convert,

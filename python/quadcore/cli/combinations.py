@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import argparse
 
-from .. import laws, references, resources
-from ..scenarios import NONE
+from ..control import laws, references
+from ..model import resources
+from ..simulation.scenarios import NONE
 from . import options, values
 
 

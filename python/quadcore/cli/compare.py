@@ -8,23 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from .._core import InputError, QuadcoreError
-from ..comparison.compare import fly
-from ..comparison.output import (
-    FILES,
-    drawn,
-    listed,
-    log_name,
-    remove_logs,
-    summary,
-    write,
-)
-from ..comparison.plan import Plan
-from ..comparison.result import Comparison
-from ..files import make_folder
-from ..log import Log
-from ..study.folder import output_folder
-from ..study.sampling import thinned
-from ..study.table import number_text, shown_in
+from ..simulation.log import Log
+from ..studies.compare.compare import fly
+from ..studies.compare.output import FILES, drawn, listed, log_name, remove_logs, summary, write
+from ..studies.compare.plan import Plan
+from ..studies.compare.result import Comparison
+from ..studies.folder import output_folder
+from ..studies.sampling import thinned
+from ..studies.table import number_text, shown_in
+from ..support.files import make_folder
 from . import options, terminal, values
 from .failures import failure
 from .kept import kept

@@ -6,8 +6,8 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from ..files import remove_left
-from ..log import Log, check_log_path
+from ..simulation.log import Log, check_log_path
+from ..support.files import remove_left
 from . import options
 
 

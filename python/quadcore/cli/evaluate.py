@@ -7,16 +7,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._core import InputError
-from ..plants import STUDIED, plants
-from ..study.folder import output_folder
+from ..simulation.engines import STUDIED, plants
+from ..studies.folder import output_folder
 from . import combinations, options, terminal, values
 from .failures import failure
 from .kept import kept
 from .options_file import OptionsFile
 
 if TYPE_CHECKING:
-    from ..evaluation.evaluate import Evaluation
-    from ..evaluation.plan import Plan
+    from ..studies.evaluate.evaluate import Evaluation
+    from ..studies.evaluate.plan import Plan
 
 _ROWS = 40  # on the terminal
 
@@ -57,7 +57,7 @@ def register(commands: Any) -> None:
 
 def evaluate(arguments: argparse.Namespace) -> None:
     """Fly everything, print how well, and write it."""
-    from ..evaluation.output import FILES
+    from ..studies.evaluate.output import FILES
 
     if arguments.file is None:
         plan = _plan(arguments)
@@ -71,8 +71,8 @@ def evaluate(arguments: argparse.Namespace) -> None:
 
 
 def _evaluate(arguments: argparse.Namespace, plan: Plan) -> None:
-    from ..evaluation.evaluate import conduct
-    from ..evaluation.output import write
+    from ..studies.evaluate.evaluate import conduct
+    from ..studies.evaluate.output import write
 
     out = arguments.out
 
@@ -90,7 +90,7 @@ def _evaluate(arguments: argparse.Namespace, plan: Plan) -> None:
 
 
 def _plan(arguments: argparse.Namespace) -> Plan:
-    from ..evaluation.plan import Plan
+    from ..studies.evaluate.plan import Plan
 
     for name in ("controller", "reference"):
         if getattr(arguments, name) is None:
@@ -124,7 +124,7 @@ def _varied(arguments: argparse.Namespace) -> dict[str, Any]:
 
 
 def _show(evaluation: Evaluation, files: list[Path]) -> None:
-    from ..evaluation.output import causes, columns_to_read, rows_to_read, summary
+    from ..studies.evaluate.output import causes, columns_to_read, rows_to_read, summary
 
     console = terminal.console()
     lines = rows_to_read(evaluation)
@@ -145,7 +145,7 @@ def _show(evaluation: Evaluation, files: list[Path]) -> None:
 
 
 def _margins(evaluation: Evaluation) -> Any:
-    from ..evaluation.output import margins_to_read
+    from ..studies.evaluate.output import margins_to_read
 
     table = terminal.table("controller", "gain", "delay (s)", "box, median / worst (m)")
     for row in margins_to_read(evaluation):

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from .._core import InputError
-from ..flight_plan import FlightPlan
+from ..simulation.flight_plan import FlightPlan
 from . import options
 from .unmeant import refuse_log_every
 

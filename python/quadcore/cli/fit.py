@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._core import InputError, engines, parse_number
-from ..files import atomic_write, check_writable, text_bytes
-from ..fitting.record import CHANNELS
-from ..plants import STUDIED
+from ..simulation.engines import STUDIED
+from ..studies.fit.record import CHANNELS
+from ..support.files import atomic_write, check_writable, text_bytes
 from . import options, terminal, values
 from .kept import kept
 
 if TYPE_CHECKING:
-    from ..fitting.fit import Fit
+    from ..studies.fit.fit import Fit
 
 
 def register(commands: Any) -> None:
@@ -77,7 +77,7 @@ def register(commands: Any) -> None:
 
 def fit(arguments: argparse.Namespace) -> None:
     """Fit, print what the flight tells, and write the model."""
-    from ..fitting import fit as search
+    from ..studies.fit import fit as search
 
     out = arguments.out
     if out.suffix.lower() != ".urdf":

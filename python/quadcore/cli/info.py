@@ -10,11 +10,11 @@ from typing import Any
 
 from rich.table import Table
 
-from .. import resources
 from .._core import InputError, parse_number
-from ..chapter2.vehicle import Vehicle
-from ..files import atomic_write
-from ..simulation import Simulation
+from ..model import resources
+from ..simulation.simulation import Simulation
+from ..support.files import atomic_write
+from ..thesis.chapter2.vehicle import Vehicle
 from . import options, terminal
 
 _LONGEST = 100  # columns of a line that is read
@@ -74,8 +74,8 @@ def info(arguments: argparse.Namespace) -> None:
 
 def _draw(simulation: Simulation, file: Path) -> None:
     """Draw the vehicle; raise `InputError` if the file cannot be written."""
-    from ..plots import png  # matplotlib is slow to import
-    from ..vehicle_picture import draw
+    from ..report.plots import png  # matplotlib is slow to import
+    from ..report.vehicle_picture import draw
 
     if file.suffix.lower() != ".png":
         raise InputError(f"--picture {file}: name a file that ends in .png, which it would hold")

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Callable, Iterator
 
-from .. import interrupts
+from ..support import interrupts
 from . import terminal
 
 

@@ -6,14 +6,15 @@ import argparse
 import re
 from typing import Any, Callable, Sequence
 
-from .. import laws, references, resources
 from .._core import InputError, engines
-from ..flight_plan import FlightPlan
-from ..given import SPAWN
-from ..plants import ENGINE
-from ..scenarios import NONE
-from ..study.axes import parse_axis
-from ..study.guidance import Guidance
+from ..control import laws, references
+from ..model import resources
+from ..simulation.engines import ENGINE
+from ..simulation.flight_plan import FlightPlan
+from ..simulation.scenarios import NONE
+from ..studies.axes import parse_axis
+from ..studies.guidance import Guidance
+from ..support.values import SPAWN
 from . import values
 
 SPAWNED = "{:g},{:g},{:g}".format(*SPAWN)

@@ -11,7 +11,7 @@ from typing import Iterator
 import yaml
 
 from .._core import InputError
-from ..yaml_nodes import line_of, pairs, root, scalar
+from ..support.yaml_nodes import line_of, pairs, root, scalar
 
 _SIGNS = {"set": "=", "vary": "=", "xacro": ":="}
 """Options that give values to keys, with the sign between."""

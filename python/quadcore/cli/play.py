@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any, List, Sequence, Tuple
 
 from .._core import InputError
-from ..description import read_model
-from ..files import atomic_write, check_writable, text_bytes
-from ..log import Log
+from ..model.description import read_model
+from ..simulation.log import Log
+from ..support.files import atomic_write, check_writable, text_bytes
 from . import options, terminal, values
 
 
@@ -41,7 +41,7 @@ def add_names(parser: argparse.ArgumentParser) -> None:
 
 def play(arguments: argparse.Namespace) -> None:
     """Read the logs and write the page."""
-    from ..player import PlayerFlight, page  # not every command should pay for jinja2
+    from ..report.player import PlayerFlight, page  # not every command should pay for jinja2
 
     if arguments.out.suffix.lower() not in (".html", ".htm"):
         raise InputError(f"{arguments.out}: name a file that ends in .html, which it would hold")

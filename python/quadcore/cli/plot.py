@@ -6,10 +6,10 @@ import argparse
 from pathlib import Path
 from typing import Any, List, Sequence
 
-from ..files import make_folder
-from ..log import Log
-from ..study.sampling import thinned
-from ..study.table import save
+from ..simulation.log import Log
+from ..studies.sampling import thinned
+from ..studies.table import save
+from ..support.files import make_folder
 from . import options, terminal
 from .play import add_names, names_of
 
@@ -49,8 +49,8 @@ def plot(arguments: argparse.Namespace) -> None:
 
 
 def _over_each_other(names: Sequence[str], logs: Sequence[Log], folder: Path) -> List[Path]:
-    from ..comparison.pictures import Curve, draw  # matplotlib is slow to import
-    from ..plots import png
+    from ..report.plots import png
+    from ..studies.compare.pictures import Curve, draw  # matplotlib is slow to import
 
     curves = [Curve(name, thinned(log, _ROWS)) for name, log in zip(names, logs)]
     figures = draw(curves, curves[0].log, names[0])

@@ -10,19 +10,19 @@ from typing import Any
 
 import numpy as np
 
-from .. import interrupts
 from .._core import InputError, QuadcoreError
-from ..controller import Guided, faults_told
-from ..files import make_folder
-from ..flight import columns_of, fly, steps_within
-from ..flight_plan import FlightPlan
 from ..formats.rows import Recorder
-from ..log import check_log_path, log_file
-from ..plants import check_wrenches, plants
-from ..recording import TAIL, Errors, Fastest, Recording, Thinned
-from ..rotation import roll_pitch_yaw
-from ..simulation import Simulation
-from ..trajectory import is_slow, per_command
+from ..simulation.controller import Guided, faults_told
+from ..simulation.engines import check_wrenches, plants
+from ..simulation.flight import columns_of, fly, steps_within
+from ..simulation.flight_plan import FlightPlan
+from ..simulation.log import check_log_path, log_file
+from ..simulation.recording import TAIL, Errors, Fastest, Recording, Thinned
+from ..simulation.simulation import Simulation
+from ..simulation.trajectory import is_slow, per_command
+from ..support import interrupts
+from ..support.files import make_folder
+from ..support.rotation import roll_pitch_yaw
 from . import options, terminal
 from .unmeant import warn_of_commands
 

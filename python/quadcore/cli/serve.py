@@ -8,12 +8,12 @@ import os
 from pathlib import Path
 from typing import Any, Sequence
 
-from ..flight import columns_of
-from ..flight_plan import FlightPlan
 from ..formats.rows import LogFile
-from ..log import check_log_path, log_file
 from ..serve import Server
 from ..serve.server import TIMEOUT
+from ..simulation.flight import columns_of
+from ..simulation.flight_plan import FlightPlan
+from ..simulation.log import check_log_path, log_file
 from . import options, terminal, values
 
 

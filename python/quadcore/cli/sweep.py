@@ -6,17 +6,17 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..evaluation import measures as of_guided
-from ..plants import STUDIED, plants
-from ..study.folder import output_folder
-from ..sweeps import motion
-from ..sweeps.distributions import DESIGNS, forms
+from ..simulation.engines import STUDIED, plants
+from ..studies.evaluate import measures as of_guided
+from ..studies.folder import output_folder
+from ..studies.sweep import motion
+from ..studies.sweep.distributions import DESIGNS, forms
 from . import combinations, options, terminal, values
 from .failures import failure
 from .options_file import OptionsFile
 
 if TYPE_CHECKING:
-    from ..sweeps.plan import Plan
+    from ..studies.sweep.plan import Plan
 
 
 _OUT = Path("out/sweep")
@@ -93,7 +93,7 @@ def register(commands: Any) -> None:
 
 def sweep(arguments: argparse.Namespace) -> None:
     """Fly what is missing, and tell what came of it."""
-    from ..sweeps.output import FILES, main_measure
+    from ..studies.sweep.output import FILES, main_measure
 
     if arguments.file is None:
         plan = _plan(arguments)
@@ -108,9 +108,9 @@ def sweep(arguments: argparse.Namespace) -> None:
 
 
 def _sweep(arguments: argparse.Namespace, plan: Plan, measure: str) -> None:
-    from ..sweeps.output import write
-    from ..sweeps.sweep import TABLE, conduct
-    from ..sweeps.table import table
+    from ..studies.sweep.output import write
+    from ..studies.sweep.sweep import TABLE, conduct
+    from ..studies.sweep.table import table
 
     out = arguments.out
     try:
@@ -135,8 +135,8 @@ def _sweep(arguments: argparse.Namespace, plan: Plan, measure: str) -> None:
 
 
 def _plan(arguments: argparse.Namespace) -> Plan:
-    from ..sweeps.design import Design
-    from ..sweeps.plan import Plan
+    from ..studies.sweep.design import Design
+    from ..studies.sweep.plan import Plan
 
     shared = {**options.model_arguments(arguments), **options.flight_arguments(arguments)}
     for name in ("model", "engine", "spawn"):  # of which there are several, or none
@@ -164,9 +164,9 @@ def _plan(arguments: argparse.Namespace) -> Plan:
 
 
 def _show(plan: Plan, columns: Any, measure: str, files: list[Path]) -> None:
-    from ..study.table import number_text
-    from ..sweeps.output import summaries, told
-    from ..sweeps.sensitivity import sensitivities
+    from ..studies.sweep.output import summaries, told
+    from ..studies.sweep.sensitivity import sensitivities
+    from ..studies.table import number_text
 
     console = terminal.console()
     lines = [row for row in summaries(plan, columns) if row["measure"] == measure]
@@ -192,7 +192,7 @@ def _cell(value: Any, number_text: Any) -> str:
 
 
 def _report_failures(columns: Any) -> None:
-    from ..sweeps.spec import REFUSED
+    from ..studies.sweep.spec import REFUSED
 
     failed = [i for i, failure in enumerate(columns["failure"]) if failure]
     if failed:

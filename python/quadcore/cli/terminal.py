@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TimeRemainingColumn
 from rich.table import Table
 
-from ..warning import QuadcoreWarning
+from ..support.warning import QuadcoreWarning
 
 _LONG = 1.0  # s; a run that is over sooner needs no progress bar
 

@@ -6,10 +6,10 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from .. import gains
 from .._core import InputError
-from ..files import check_writable
-from ..plants import STUDIED, plants
+from ..control import gains
+from ..simulation.engines import STUDIED, plants
+from ..support.files import check_writable
 from . import options, terminal, values
 from .kept import kept
 from .unmeant import refuse_log_every
@@ -72,7 +72,7 @@ def register(commands: Any) -> None:
 
 def tune(arguments: argparse.Namespace) -> None:
     """Search, print what was found, and write it."""
-    from ..tuning import tune as search
+    from ..studies.tune import tune as search
 
     out = arguments.out
     if out.suffix.lower() not in (".yaml", ".yml"):

@@ -7,9 +7,9 @@ import argparse
 import numpy as np
 
 from .._core import InputError
-from ..flight_plan import FlightPlan
-from ..simulation import Simulation
-from ..warning import warn
+from ..simulation.flight_plan import FlightPlan
+from ..simulation.simulation import Simulation
+from ..support.warning import warn
 
 
 def warn_of_commands(simulation: Simulation, plan: FlightPlan) -> None:

@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Any, Dict, List, Union
 
 from rich.table import Table
 
-from .. import interrupts
 from .._core import FlightError, InputError, QuadcoreError, engines
-from ..files import atomic_write, prepare_folder
-from ..flight_plan import FlightPlan
-from ..given import SPAWN
-from ..study.executor import conducted
+from ..simulation.flight_plan import FlightPlan
+from ..studies.executor import conducted
+from ..support import interrupts
+from ..support.files import atomic_write, prepare_folder
+from ..support.values import SPAWN
 from . import options, terminal, values
 from .kept import kept
 
 if TYPE_CHECKING:
-    from ..validation import Chain, Experiment, Study
+    from ..thesis.validation import Chain, Experiment, Study
 
 
 _OF_FLIGHTS = ("duration", "spawn", "seed", "log_every", "motors", "jobs")
@@ -72,7 +72,7 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.plant is not None:
         return judge(arguments)
     # scipy and jinja2 are slow to import.
-    from ..validation import Case, Experiment
+    from ..thesis.validation import Case, Experiment
 
     experiment = Experiment.of(
         **options.model_arguments(arguments),
@@ -105,8 +105,8 @@ def run(arguments: argparse.Namespace) -> None:
 
 def judge(arguments: argparse.Namespace) -> None:
     """Print how far a recording is from the model and the engines, and write it."""
-    from ..validation import plant
-    from ..validation.output import size
+    from ..thesis.validation import plant
+    from ..thesis.validation.output import size
 
     for option in ("sim_slow", "drag"):
         if getattr(arguments, option) is not None:
@@ -147,7 +147,7 @@ _JUDGED = ("position", "attitude", "velocity", "rates")
 
 def _conduct(experiment: Experiment, arguments: argparse.Namespace) -> Study:
     """Fly; what was flown before an interrupt is written."""
-    from ..validation import conduct
+    from ..thesis.validation import conduct
 
     def put(study: Study) -> None:
         _write(study, arguments.out)
@@ -165,7 +165,7 @@ def _conduct(experiment: Experiment, arguments: argparse.Namespace) -> Study:
 
 def _write(study: Study, out: Path) -> List[Path]:
     """Write page and tables, before any picture is drawn: flights are not flown twice."""
-    from ..validation.output import write_report, write_tables
+    from ..thesis.validation.output import write_report, write_tables
 
     with interrupts.held():
         tables = write_tables(study, out)
@@ -174,8 +174,8 @@ def _write(study: Study, out: Path) -> List[Path]:
 
 def _draw(study: Study, arguments: argparse.Namespace, failures: List[str]) -> Dict[str, bytes]:
     """Write each picture as soon as it is drawn, and then the page with all of them."""
-    from ..validation.figures import pictures
-    from ..validation.output import write_picture, write_report
+    from ..thesis.validation.figures import pictures
+    from ..thesis.validation.output import write_picture, write_report
 
     wanted = pictures(study)
     names = list(wanted)
@@ -229,8 +229,8 @@ def _show(study: Study) -> None:
 
 
 def _distances(study: Study) -> Table:
-    from ..validation import Case
-    from ..validation.output import size
+    from ..thesis.validation import Case
+    from ..thesis.validation.output import size
 
     table = terminal.table("engine", "sim_slow", *study.drags, numbers=True)
     rows = {row.case: row.difference for row in study.rows}
@@ -243,7 +243,7 @@ def _distances(study: Study) -> Table:
 
 
 def _chain(study: Study, chain: Chain) -> Table:
-    from ..validation.output import size
+    from ..thesis.validation.output import size
 
     start = f"{study.engines[0]}, sim_slow {chain.sim_slow:g}, drag {chain.drag}: because of"
     table = terminal.table(start, "share (m)", "largest (m)", numbers=True)

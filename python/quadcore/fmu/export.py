@@ -14,10 +14,10 @@ import yaml
 
 from .. import __version__, _core
 from .._core import Document, InputError
-from ..files import atomic_write
-from ..flight_plan import FlightPlan
-from ..reading import read_bytes
-from ..simulation import Simulation
+from ..simulation.flight_plan import FlightPlan
+from ..simulation.simulation import Simulation
+from ..support.files import atomic_write
+from ..support.reading import read_bytes
 from .description import description
 from .libraries import Libraries
 from .variables import Variable, spawn_and_seed, variables_of

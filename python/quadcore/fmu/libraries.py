@@ -10,7 +10,7 @@ from typing import Dict, List, Set
 
 from .. import _core
 from .._core import InputError
-from ..simulation import Simulation
+from ..simulation.simulation import Simulation
 
 # The loader takes a library for one that it has loaded under the same name, so an FMU's would fly
 # by another's core, or by this one's, whose folders may be gone.

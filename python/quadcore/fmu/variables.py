@@ -6,7 +6,7 @@ from typing import Dict, Iterator, List, NamedTuple, Optional, Sequence
 
 from .. import _core
 from .._core import InputError
-from ..simulation import Simulation
+from ..simulation.simulation import Simulation
 
 _WRENCH = (("fx", "N"), ("fy", "N"), ("fz", "N"), ("tx", "N.m"), ("ty", "N.m"), ("tz", "N.m"))
 _SPAWN = ("x", "y", "z", "roll", "pitch", "yaw")

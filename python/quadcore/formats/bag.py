@@ -9,12 +9,12 @@ from typing import Any, Dict, Iterator, List, Mapping, Sequence, Tuple
 
 import numpy as np
 
-from .. import interrupts
 from .._core import InputError, QuadcoreError, log_columns
-from ..extras import needed
-from ..files import atomic_write, beside, unwritable
-from ..reading import check_regular
-from ..rotation import roll_pitch_yaw
+from ..support import interrupts
+from ..support.extras import needed
+from ..support.files import atomic_write, beside, unwritable
+from ..support.reading import check_regular
+from ..support.rotation import roll_pitch_yaw
 from .at_the_end import AtTheEnd
 from .bag_messages import ARRAY, Messages
 from .rows import (

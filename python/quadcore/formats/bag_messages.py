@@ -7,7 +7,7 @@ from typing import Any, Dict, Iterator, List, NamedTuple, Sequence, Tuple
 import numpy as np
 
 from .._core import log_columns
-from ..extras import needed
+from ..support.extras import needed
 
 ARRAY = "std_msgs/msg/Float64MultiArray"
 _CLOCK = "rosgraph_msgs/msg/Clock"

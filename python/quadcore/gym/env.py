@@ -9,8 +9,8 @@ import gymnasium
 import numpy as np
 
 from .._core import FlightError, InputError, Model
-from ..batch import BatchState
-from ..simulation import Simulation
+from ..simulation.batch import BatchState
+from ..simulation.simulation import Simulation
 from .episodes import Episodes
 from .task import Task, split
 

@@ -7,8 +7,8 @@ from typing import List, NamedTuple, Sequence
 import numpy as np
 from gymnasium.utils import seeding
 
-from ..batch import BatchState
-from ..rotation import matrix
+from ..simulation.batch import BatchState
+from ..support.rotation import matrix
 from .situation import Situation
 from .task import Task
 

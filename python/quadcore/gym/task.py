@@ -10,10 +10,10 @@ from typing import Any, Mapping, NamedTuple, Sequence, Tuple
 import numpy as np
 from gymnasium import spaces
 
-from .. import references
 from .._core import InputError
-from ..inner_loop import AttitudeThrust, InnerLoop
-from ..simulation import Simulation
+from ..control import references
+from ..control.inner_loop import AttitudeThrust, InnerLoop
+from ..simulation.simulation import Simulation
 from .observations import OBSERVATIONS
 from .rewards import REWARDS
 from .situation import Situation

@@ -11,9 +11,9 @@ from gymnasium.vector import VectorEnv as _VectorEnv
 from gymnasium.vector.utils import batch_space
 
 from .._core import InputError, Model
-from ..batch import BatchSimulation, BatchState
-from ..simulation import Simulation
-from ..warning import unheard
+from ..simulation.batch import BatchSimulation, BatchState
+from ..simulation.simulation import Simulation
+from ..support.warning import unheard
 from .env import check_no_options
 from .episodes import Episodes
 from .task import Task, split

@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import _core
 from ..formats.rows import Recorder
-from ..simulation import Simulation
+from ..simulation.simulation import Simulation
 
 _PIECE = 1000  # steps whose rows are held at once
 _MOST_STEPS = 1_000_000_000

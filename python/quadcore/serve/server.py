@@ -10,9 +10,9 @@ from contextlib import suppress
 from typing import Callable, List, Optional, Sequence, Tuple, Union
 
 from .. import _core
-from ..flight import columns_of
 from ..formats.rows import Recorder
-from ..simulation import Simulation
+from ..simulation.flight import columns_of
+from ..simulation.simulation import Simulation
 from . import protocol
 from .connection import Connection
 from .protocol import ProtocolError, Reply, Request

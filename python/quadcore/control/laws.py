@@ -1,0 +1,100 @@
+"""Control laws, as `Simulation.run` flies them.
+
+Each function makes one, e.g. ``quadcore.laws.geometric(kp_xy=4)``; its docstring lists the
+parameters. ``NAMES`` holds them all. `of_file` makes one of a gains file.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Callable, List, Optional, Sequence
+
+from .. import _core
+from ..support.parameters import did_you_mean, docstring, read_values
+from ..support.user_code import imported
+from ..support.warning import warn
+from . import gains
+from .gains import law_for, of_file
+from .law import Law
+from .timing import DELAY, RATE
+
+
+def parse(text: str, vehicle: str = "") -> Any:
+    """Make the controller that a command line names.
+
+    Parameters
+    ----------
+    text
+        ``LAW[:KEY=VALUE,...]``, keys being those of the law's parameters, ``rate`` and ``delay``;
+        a file of gains (.yaml); or ``MODULE:CLASS`` of your own.
+    vehicle
+        Name of the robot that is to fly: the parameters of a law that are not given are those that
+        are shipped for it, if there are any.
+
+    Raises
+    ------
+    InputError
+        No such law, parameter, file, module or class, or one that cannot be called as a controller.
+
+    Warns
+    -----
+    QuadcoreWarning
+        Gains of a file that are for another vehicle.
+    """
+    if text.lower().endswith((".yaml", ".yml")):
+        read = gains.read(text)
+        if vehicle and read.vehicle not in ("", vehicle):
+            warn(
+                f"{text}: these gains are for '{read.vehicle}', but '{vehicle}' flies with them; "
+                "tune some for it (quadcore tune)"
+            )
+        return read.make()
+    name, _, rest = text.partition(":")
+    if name in NAMES:
+        law = law_for(name, vehicle)
+        given = read_values(f"law '{text}'", rest)
+        law.rate, law.delay = given.pop("rate", law.rate), given.pop("delay", law.delay)
+        law.parameters.update(given)
+        return law
+    if ":" in text:
+        return imported(text)
+    raise _core.InputError(
+        f"there is no law '{text}'{did_you_mean(text, NAMES)}; write one of {', '.join(NAMES)}, "
+        "a file of gains that ends in .yaml, or MODULE:CLASS"
+    )
+
+
+_COMMON = """\
+rate, delay : float
+    Calls per simulated second; s after which a command reaches the motors.
+spins : sequence of float
+    1 or -1 for each rotor; without, neighbours around the vehicle turn against each other.
+belief : Simulation, optional
+    A vehicle to take for the one that is flown."""
+
+
+def _function(name: str, summary: str, table: List[_core.ParameterSpec]) -> Callable[..., Law]:
+    def make(
+        *,
+        rate: float = RATE,
+        delay: float = DELAY,
+        spins: Sequence[float] = (),
+        belief: Optional[_core.Simulation] = None,
+        **parameters: float,
+    ) -> Law:
+        return Law(name, rate, delay, spins, belief, **parameters)
+
+    make.__name__ = make.__qualname__ = name
+    make.__doc__ = docstring(summary, table, _COMMON)
+    return make
+
+
+_MAKERS = {entry[0]: _function(*entry) for entry in _core.laws()}
+NAMES = tuple(_MAKERS)
+__all__ = ["NAMES", "Law", "of_file", "parse", *NAMES]
+
+
+def __getattr__(name: str) -> Callable[..., Law]:
+    try:
+        return _MAKERS[name]
+    except KeyError:
+        raise AttributeError(f"there is no law '{name}'; there are {', '.join(NAMES)}") from None

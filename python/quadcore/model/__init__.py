@@ -1,0 +1,1 @@
+"""Vehicles and worlds: files, xacro, XML, values that a user overrides, shipped resources."""

@@ -1,0 +1,78 @@
+"""What xacro files expanded to, kept as long as they would expand to the same."""
+
+from __future__ import annotations
+
+import os
+from collections import OrderedDict
+from pathlib import Path
+from typing import Any, Callable, Generic, List, NamedTuple, Optional, Tuple, TypeVar
+
+from .._core import InputError
+from ..support.reading import LARGEST, read_bytes
+
+Expansion = TypeVar("Expansion")
+Answer = TypeVar("Answer")
+
+_MOST = 256  # a study of an argument of xacro asks for each of its values again and again
+
+
+class Outside:
+    """What one expansion asked of the world outside its text, and what it was answered."""
+
+    def __init__(self) -> None:
+        self.may_be_kept = True
+        self._answers: List[Tuple[Callable[[str], Any], str, Any]] = []
+
+    def ask(self, question: Callable[[str], Answer], subject: str) -> Answer:
+        """Give question(subject), which is to be asked again before the expansion is used."""
+        answer = question(subject)
+        self._answers.append((question, subject, answer))
+        return answer
+
+    def is_the_same(self) -> bool:
+        """Whether everything would be answered alike now."""
+        try:
+            return all(question(subject) == answer for question, subject, answer in self._answers)
+        except Exception:  # the expansion will say what
+            return False
+
+
+def content(path: str) -> Optional[bytes]:
+    """Give what a regular file holds; None if there is none to be read."""
+    try:
+        return read_bytes(Path(path), LARGEST)
+    except InputError:
+        return None
+
+
+def _working_folder() -> str:
+    try:
+        return os.getcwd()
+    except OSError:  # it was removed
+        return ""
+
+
+class _Entry(NamedTuple):
+    outside: Outside
+    expansion: Any
+
+
+class Kept(Generic[Expansion]):
+    """Expansions by what they were made of: the file, its arguments and the working folder."""
+
+    def __init__(self) -> None:
+        self._entries: OrderedDict[Any, _Entry] = OrderedDict()
+
+    def get(self, key: Any, expand: Callable[[Outside], Expansion]) -> Expansion:
+        """Give what is kept, if all that it asked outside is as it was; else expand(outside)."""
+        key = (_working_folder(), key)
+        entry = self._entries.pop(key, None)
+        if entry is None or not entry.outside.is_the_same():
+            outside = Outside()
+            entry = _Entry(outside, expand(outside))
+        if entry.outside.may_be_kept:
+            self._entries[key] = entry
+            while len(self._entries) > _MOST:
+                self._entries.popitem(last=False)
+        expansion: Expansion = entry.expansion
+        return expansion

@@ -1,0 +1,246 @@
+"""Expansion of xacro files in which every line of the result knows where it comes from.
+
+xacro itself forgets lines. Its parser is replaced for the time of one expansion by one whose
+elements remember them, which serves the result and the error messages alike.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import difflib
+import glob
+import io
+import os
+import traceback
+from pathlib import Path
+from types import FrameType, SimpleNamespace
+from typing import Any, Dict, Iterable, Iterator, List, Mapping, NamedTuple, Set, Tuple
+
+import rospkg
+import xacro
+
+from .._core import InputError, QuadcoreError
+from ..support.import_lock import LOCK
+from ..support.reading import read_text
+from ..support.warning import unheard, warn
+from . import resources, xml_origins, xml_source
+from .expansion_cache import Kept, Outside, content
+from .xacro_faults import reason
+
+_MOST_ELEMENTS = 20000  # a few lines of macros can ask for billions
+
+
+_Lines = List[Tuple[str, xml_source.Origin]]
+
+
+class _Expansion(NamedTuple):
+    lines: _Lines
+    arguments: Dict[str, str]
+    """What each argument of the file was taken to be."""
+    asked: Set[str]
+
+
+_KEPT: Kept[_Expansion] = Kept()
+
+
+def expand(path: str, arguments: Mapping[str, str]) -> _Lines:
+    """Expand a xacro file, unless that was done and nothing has changed since.
+
+    Parameters
+    ----------
+    path
+        The file.
+    arguments
+        Values of ``<xacro:arg>``, by name.
+
+    Returns
+    -------
+    list of (str, Origin)
+        Lines of the expanded document and where each comes from.
+
+    Raises
+    ------
+    InputError
+        Whatever is wrong in the file or one it includes.
+
+    Warns
+    -----
+    QuadcoreWarning
+        What xacro itself warns of, and an argument that the file does not know.
+    """
+    expansion = _kept(path, arguments)
+    for name in arguments:
+        if name not in expansion.asked:
+            what = f"there is no xacro argument {_named(name, expansion.asked)}: it has no effect"
+            warn(f"{path}: {what}")
+    return expansion.lines
+
+
+def arguments_of(path: str, given: Mapping[str, str]) -> Dict[str, str]:
+    """Tell what each argument of a xacro file is: as given, or its default.
+
+    Raises
+    ------
+    InputError
+        As of `expand`.
+    """
+    expansion = _kept(path, given)
+    return {name: text for name, text in expansion.arguments.items() if name in expansion.asked}
+
+
+def _kept(path: str, arguments: Mapping[str, str]) -> _Expansion:
+    key = (path, tuple(sorted(arguments.items())))
+    with LOCK:
+        return _KEPT.get(key, lambda outside: _expanded(path, arguments, outside))
+
+
+def _expanded(path: str, arguments: Mapping[str, str], outside: Outside) -> _Expansion:
+    table = _Arguments(arguments)
+    try:
+        with _replaced_hooks(table, outside):
+            document = xacro.process_file(path, mappings=table)
+    except QuadcoreError:
+        raise
+    except Exception as error:  # xacro has no common base class for what it raises
+        frames = [frame for frame, _ in traceback.walk_tb(error.__traceback__)]
+        place = _place(reversed(frames)) or path
+        raise InputError(f"{place}: {_blamed(path, arguments, reason(error))}") from error
+    return _Expansion(xml_origins.write(document), dict(table), table.asked)
+
+
+def _blamed(path: str, arguments: Mapping[str, str], what: str) -> str:
+    """Name the argument without which the file would expand, if there is one."""
+    for name, value in arguments.items():
+        table = _Arguments({other: text for other, text in arguments.items() if other != name})
+        try:
+            with _replaced_hooks(table, Outside()), unheard():
+                xacro.process_file(path, mappings=table)
+            default = table[name]
+        except Exception:  # it is not this one, or not it alone
+            continue
+        given = " ".join(value.split())
+        return f"xacro argument '{name}' is '{given}': {what}; its default is '{default}'"
+    return what
+
+
+class _Arguments(Dict[str, str]):
+    """xacro's argument table; remembers the names that were asked for."""
+
+    def __init__(self, given: Mapping[str, str]) -> None:
+        super().__init__(given)
+        self.asked: set[str] = set()
+
+    def __contains__(self, name: object) -> bool:
+        self.asked.add(str(name))
+        return super().__contains__(name)
+
+    def __getitem__(self, name: str) -> str:
+        self.asked.add(name)
+        return super().__getitem__(name)
+
+
+@contextlib.contextmanager
+def _replaced_hooks(arguments: _Arguments, outside: Outside) -> Iterator[None]:
+    old_parse, old_extension = xacro.parse, xacro.eval_extension
+    old_all, old_text = xacro.eval_all, xacro.eval_text
+
+    def parse(source: Any, filename: str | None = None) -> Any:
+        if filename is not None:
+            outside.ask(content, filename)
+        if filename is None or not Path(filename).exists():
+            return old_parse(source, filename)  # it raises what <xacro:include optional=""> expects
+        if not Path(filename).is_file():
+            raise xacro.XacroException(f"{filename}: is no regular file; include a xacro file")
+        return xml_origins.parse(filename, xml_source.read(Path(filename)))
+
+    elements = 0
+
+    def eval_all(node: Any, macros: Any, symbols: Any) -> None:
+        nonlocal elements
+        elements += 1
+        if elements > _MOST_ELEMENTS:
+            raise xacro.XacroException(
+                f"expands to more than {_MOST_ELEMENTS} elements, the most that are read"
+            )
+        old_all(node, macros, symbols)
+
+    def eval_text(text: str, symbols: Any) -> Any:
+        result = old_text(text, symbols)
+        if isinstance(result, str) and len(result) > xml_source.LARGEST:
+            most = f"{xml_source.LARGEST / 1e6:g} MB, the most that is read"
+            raise xacro.XacroException(f"expands to a text of more than {most}")
+        return result
+
+    def eval_extension(text: str) -> str:
+        command, *words = text[len("$(") : -len(")")].split() or [""]
+        if command == "find" and len(words) == 1:
+            return outside.ask(_package_folder, words[0])
+        if command in ("env", "optenv") and words:
+            outside.ask(os.environ.get, words[0])
+        elif command not in ("arg", "cwd", "dirname"):  # eval; anon, which is another each time
+            outside.may_be_kept = False
+        if command == "arg" and len(words) == 1 and words[0] not in arguments:
+            raise xacro.XacroException(
+                f"undefined xacro argument '{words[0]}'; declare it: "
+                f'<xacro:arg name="{words[0]}" default="..."/>'
+            )
+        return str(old_extension(text))
+
+    def opened(filename: str) -> io.StringIO:  # for load_yaml
+        outside.ask(content, filename)
+        try:
+            return io.StringIO(read_text(Path(filename)))
+        except InputError as error:  # xacro expects what open raises: an include may be optional
+            if isinstance(error.__cause__, OSError):
+                raise error.__cause__ from None
+            raise
+
+    def warning(message: str) -> None:
+        outside.may_be_kept = False  # it would not be told again
+        place = _place(frame for frame, _ in traceback.walk_stack(None))
+        warn(f"{place}: {message}" if place else message)
+
+    new = {
+        "parse": parse,
+        "eval_all": eval_all,
+        "eval_text": eval_text,
+        "eval_extension": eval_extension,
+        "warning": warning,
+        "print_location": lambda *_: None,
+        "glob": SimpleNamespace(glob=lambda pattern: outside.ask(glob.glob, pattern)),
+        "open": opened,
+    }
+    old = {name: value for name, value in vars(xacro).items() if name in new}
+    vars(xacro).update(new)
+    try:
+        yield
+    finally:
+        for name in new:
+            del vars(xacro)[name]
+        vars(xacro).update(old)
+
+
+def _package_folder(name: str) -> str:
+    if name == "quadcore":  # installed by pip, it is in no ROS workspace
+        return str(resources.root())
+    try:
+        return str(rospkg.RosPack().get_path(name))
+    except rospkg.ResourceNotFound:
+        raise xacro.XacroException(
+            f"package '{name}' not found; add the folder that holds it to ROS_PACKAGE_PATH"
+        ) from None
+
+
+def _place(frames: Iterable[FrameType]) -> xml_source.Origin | None:
+    """Origin of the element that xacro works at, from the first of `frames` that has one."""
+    for frame in frames:
+        for name in ("node", "elt", "tag"):  # what xacro calls it
+            found = xml_origins.origin(frame.f_locals.get(name))
+            if found is not None:
+                return found
+    return None
+
+
+def _named(name: str, known: set[str]) -> str:
+    nearest = difflib.get_close_matches(name, known, n=1, cutoff=0.0)
+    return f"'{name}'; the nearest is '{nearest[0]}'" if nearest else f"'{name}', nor any other"

@@ -1,0 +1,74 @@
+"""XML texts read and checked, as all of them are before anything else looks at them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple, Sized
+from xml.parsers import expat
+
+from .._core import Document, InputError
+from ..support.reading import read_text
+
+# The core's limits.
+LARGEST = Document.largest
+DEEPEST = Document.most_levels
+MOST_ATTRIBUTES = Document.most_attributes
+
+
+class Origin(NamedTuple):
+    """Place of an element in the text it was read from."""
+
+    file: str
+    line: int
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}"
+
+
+def read(path: Path) -> str:
+    """Text of an XML file; raises `InputError` where `read_text` does or the file is too large."""
+    return read_text(path, LARGEST)
+
+
+def check(file: str, text: str) -> None:
+    """Raise `InputError` unless `text` is well-formed XML without a DOCTYPE, within the limits.
+
+    A DOCTYPE can define entities, and these can expand without bound or name other files.
+    Namespace prefixes need no declaration: world files use some without.
+    """
+    parser = expat.ParserCreate()
+    level = 0
+
+    def refuse(what: str) -> None:
+        raise InputError(f"{Origin(file, parser.CurrentLineNumber)}: {what}")
+
+    def doctype(*_: object) -> None:
+        refuse("DOCTYPE and entity declarations are not read; remove them and write the values out")
+
+    def start(_: object, attributes: Sized) -> None:
+        nonlocal level
+        level += 1
+        if len(attributes) > MOST_ATTRIBUTES:
+            refuse(
+                f"an element with more than {MOST_ATTRIBUTES} attributes; no model or world has one"
+            )
+        if level > DEEPEST:
+            refuse(f"elements are nested deeper than {DEEPEST} levels; no model or world is")
+
+    def end(_: object) -> None:
+        nonlocal level
+        level -= 1
+
+    parser.StartDoctypeDeclHandler = doctype
+    parser.StartElementHandler, parser.EndElementHandler = start, end
+    try:
+        parser.Parse(text, True)
+    except expat.ExpatError as error:
+        raise malformed(file, error) from error
+
+
+def malformed(file: str, error: expat.ExpatError) -> InputError:
+    """Make the error that says why a text is no XML."""
+    what = expat.ErrorString(error.code)
+    hint = ' (declare it: xmlns:xacro="http://www.ros.org/wiki/xacro")' if "prefix" in what else ""
+    return InputError(f"{Origin(file, error.lineno)}: malformed XML: {what}{hint}")

@@ -1,0 +1,1 @@
+"""Plots and pages: colours, axes, the player, templates."""

@@ -1,0 +1,53 @@
+"""Reports as one HTML file that needs no other."""
+
+from __future__ import annotations
+
+import base64
+from pathlib import Path
+
+import jinja2
+
+from ..support.files import atomic_write, text_bytes
+
+
+def write_page(path: Path, template: str, **values: object) -> None:
+    """Fill in a template and write the page; see `rendered`.
+
+    Raises
+    ------
+    InputError
+        The file cannot be written.
+    """
+    page = rendered(template, **values)
+    with atomic_write(path) as stream:
+        stream.write(text_bytes(page))
+
+
+def rendered(template: str, **values: object) -> str:
+    """Fill in a template.
+
+    Parameters
+    ----------
+    template
+        Name of a file in ``templates/``; a page extends ``page.html``. The filter ``picture`` shows
+        bytes of a PNG: ``{{ bytes | picture("what it shows") }}``.
+    values
+        What the template uses; texts are escaped.
+    """
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(str(Path(__file__).parent / "templates")),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["picture"] = picture
+    return environment.get_template(template).render(values)
+
+
+def picture(data: bytes, meaning: str) -> str:
+    """Make an image of the bytes of a PNG that stands in the page itself."""
+    from markupsafe import Markup
+
+    source = f"data:image/png;base64,{base64.b64encode(data).decode()}"
+    return Markup('<img src="{}" alt="{}">').format(source, meaning)

@@ -1,0 +1,162 @@
+"""What all pictures are made of: figures, panels, and how they look."""
+
+from __future__ import annotations
+
+import io
+import os
+import sys
+from typing import Any, Sequence, Tuple
+
+import numpy as np
+
+from .._core import InputError
+
+
+def _describe_mix() -> str:
+    """Name both installations of matplotlib that meet here, and the command that repairs it."""
+    import matplotlib
+
+    folder = os.path.dirname(matplotlib.__path__[0])
+    others = ", ".join(sys.modules["mpl_toolkits"].__path__)
+    return (
+        f"matplotlib {matplotlib.__version__} in {folder} finds the mpl_toolkits of another "
+        f"matplotlib in {others}. Run '{sys.executable} -m pip uninstall matplotlib' to use the "
+        "other, or install quadcore in a virtual environment without system packages."
+    )
+
+
+# Files need no window, and a wrong name of a toolkit for windows must not end a flight.
+_toolkit = os.environ.pop("MPLBACKEND", None)
+try:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    from matplotlib.ticker import ScalarFormatter
+    from mpl_toolkits.mplot3d import Axes3D  # noqa: F401  (matplotlib < 3.2 needs it for "3d")
+except ImportError as error:
+    if "mpl_toolkits" not in sys.modules:
+        raise
+    raise InputError(_describe_mix()) from error
+finally:
+    if _toolkit is not None:
+        os.environ["MPLBACKEND"] = _toolkit
+
+# x, y, z keep theirs throughout.
+AXES = ("#d55e00", "#009e73", "#0072b2")
+WHOLE = (0.0, 0.02, 0.94, 0.94)  # of a figure that axes in space fill
+NOTHING = 1e-6  # m, m/s, rad/s, deg: a range below which there is rounding to be seen
+
+
+def png(figure: Figure) -> bytes:
+    """Picture of a figure; the same flight gives the same bytes."""
+    FigureCanvasAgg(figure)
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", metadata={"Software": "quadcore"})  # and no version
+    return stream.getvalue()
+
+
+def as_commanded(axes: Any, per_command: float) -> None:
+    """Tell speeds of joints as commanded, too, on the right."""
+    to_command = (lambda rate: rate / per_command, lambda told: told * per_command)
+    axes.secondary_yaxis("right", functions=to_command).set_ylabel("commanded (rad/s)")
+
+
+def space(figure: Figure, place: Any, paths: Sequence[np.ndarray]) -> Tuple[Any, np.ndarray]:
+    """Put axes in space into a figure, with room for paths, each (rows, 3).
+
+    Returns the axes and their low corner.
+    """
+    axes = figure.add_axes(place, projection="3d")
+    # The same scale along all three axes, with room for flights that hardly move.
+    low = np.min([path.min(axis=0) for path in paths], axis=0)
+    high = np.max([path.max(axis=0) for path in paths], axis=0)
+    reach = max((high - low).max() / 2, 0.1)
+    corner = (low + high) / 2 - reach
+    for name, start in zip("xyz", corner):
+        getattr(axes, f"set_{name}lim")(start, start + 2 * reach)
+        getattr(axes, f"set_{name}label")(f"{name} (m)")
+    axes.locator_params(nbins=5, prune="both")  # neighbours do not touch
+    return axes, corner
+
+
+def panels(
+    title: str,
+    rows: int,
+    columns: int = 1,
+    height: float = 1.6,
+    above: float = 0.5,
+    right: float = 0.1,
+) -> tuple[Figure, Any]:
+    """Make a figure of panels over time, `height` inches each, with room for title and legend."""
+    width, below = (8.0 if columns > 1 else 7.0), 0.5  # inch
+    total = above + height * rows + below
+    figure = titled(title, width, total)
+    # Fixed margins: matplotlib's automatic layouts differ from version to version.
+    margins = {
+        "left": 1.1 / width,
+        "right": 1 - right / width,
+        "top": 1 - above / total,
+        "bottom": below / total,
+        "wspace": 0.38,
+        "hspace": 0.18,
+    }
+    grid = subplots(figure, rows, columns, margins, sharex=True)
+    for axes in grid[-1]:
+        axes.set_xlabel("time (s)")
+    return figure, grid
+
+
+def subplots(figure: Figure, rows: int, columns: int, margins: Any, **shared: Any) -> Any:
+    """Put dressed panels into a figure, whose numbers have nine signs at most."""
+    grid = figure.subplots(rows, columns, squeeze=False, gridspec_kw=margins, **shared)
+    for axes in grid.flat:
+        dress(axes)
+        axes.yaxis.set_major_formatter(_Numbers())
+        axes.ticklabel_format(axis="y", scilimits=(-3, 4))
+    figure.align_ylabels(grid)
+    return grid
+
+
+class _Numbers(ScalarFormatter):
+    """Has a number of its own for what all share only where that saves so many digits.
+
+    Matplotlib has but a setting of the whole process for it, which other threads would feel.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._offset_threshold = 7
+
+
+def dress(axes: Any) -> None:
+    """Give a panel the style of all."""
+    axes.grid(color="0.9", linewidth=0.6)
+    axes.set_axisbelow(True)
+    axes.margins(x=0.01)
+    axes.spines["top"].set_visible(False)
+    axes.spines["right"].set_visible(False)
+
+
+def widen(axes: Any, least: float) -> None:
+    """Show a range of at least that much, so that rounding is a flat line."""
+    low, high = axes.get_ylim()
+    if high - low < least:
+        middle = (low + high) / 2
+        axes.set_ylim(middle - least / 2, middle + least / 2)
+
+
+def flatten(axes: Any, least: float) -> None:
+    """Show what moves less than that much as a flat line on a scale of one unit."""
+    low, high = axes.dataLim.intervaly
+    if high - low < least:
+        middle = round((low + high) / 2, 3) + 0.0
+        axes.set_ylim(middle - 1, middle + 1)
+        axes.set_yticks([middle])
+
+
+def titled(title: str, width: float, height: float, dpi: int = 150) -> Figure:
+    """Make an empty figure, its size in inches."""
+    figure = Figure(figsize=(width, height), dpi=dpi)
+    figure.suptitle(
+        title, x=0.1 / width, y=1 - 0.1 / height, ha="left", va="top", fontsize="medium"
+    )
+    return figure

@@ -1,0 +1,1 @@
+"""Simulations of one vehicle or a batch: commands, flights, logs, scenarios."""

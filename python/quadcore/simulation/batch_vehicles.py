@@ -1,0 +1,129 @@
+"""What each vehicle of a batch is made of."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from .._core import InputError, Model, World
+from ..model.description import read_both
+from ..model.overrides import XACRO, check_names, with_links, without_xacro
+from ..support.values import text_of, whole
+
+
+class Vehicles(NamedTuple):
+    """Of each vehicle its model and the tags of plugins that are set, and the world of all."""
+
+    models: List[Model]
+    tags: List[Dict[str, str]]
+    world: World
+
+
+MOST = 1_000_000
+"""Vehicles of a batch, at most. Each takes some kilobytes."""
+
+
+def vehicle_count(n: object) -> int:
+    """Check the number of vehicles."""
+    count = whole(n, "n")
+    if not 1 <= count <= MOST:
+        raise InputError(f"n is {count}. Give a number of vehicles from 1 to {MOST}.")
+    return count
+
+
+def vehicles(
+    n: int,
+    model: Union[str, Path, Model],
+    world: Union[str, Path, World, None],
+    parameters: Optional[Mapping[str, Any]],
+    xacro_args: Optional[Mapping[str, Any]],
+    ignore: Sequence[str],
+) -> Vehicles:
+    """Read n vehicles, each kind of them once.
+
+    Raises
+    ------
+    InputError
+        The model, the world, or what is set is at fault, or is not there for each vehicle.
+    """
+    arguments, others = without_xacro(parameters, xacro_args)
+    of_xacro = _of_each(n, {f"{XACRO}.{name}": value for name, value in arguments.items()})
+    read: Dict[Tuple[Tuple[str, str], ...], Model] = {}
+    built: List[Tuple[Model, Dict[str, str]]] = []
+    before: Any = None
+    for given, values in zip(of_xacro, _of_each(n, others)):
+        now = tuple((name[len(XACRO) + 1 :], _argument(value)) for name, value in given.items())
+        if now not in read:
+            read[now], world = read_both(model, world, dict(now), ignore)
+            check_names(read[now], parameters or {})
+            _check_rotors(read[now], built, arguments)
+        texts = {key: text_of(value) for key, value in values.items()}
+        if (now, texts) != before:
+            before = now, texts
+            built.append(with_links(read[now], texts))
+        else:
+            built.append(built[-1])
+    assert isinstance(world, World)
+    return Vehicles([each for each, _ in built], [tags for _, tags in built], world)
+
+
+def _argument(value: Any) -> str:
+    return text_of(value) if isinstance(value, np.ndarray) and value.ndim else str(value)
+
+
+def refusal(error: InputError, given: Sequence[Any], n: int) -> InputError:
+    """Say how each vehicle has a value of its own, if a row of them was taken for one value.
+
+    Parameters
+    ----------
+    error
+        Which tells the value.
+    given
+        Mappings of names to values.
+    n
+        How many vehicles there are.
+    """
+    for values in given:
+        for value in values.values() if isinstance(values, Mapping) else ():
+            is_table = isinstance(value, np.ndarray) and value.ndim > 1
+            if not is_table and not isinstance(value, (list, tuple)):
+                continue
+            rows = value if is_table else [value]
+            if any(text in str(error) for row in rows for text in (text_of(row), _argument(row))):
+                return InputError(f"{error}; a value for each vehicle is an array of shape ({n},)")
+    return error
+
+
+def _check_rotors(
+    model: Model, built: Sequence[Tuple[Model, object]], arguments: Mapping[str, Any]
+) -> None:
+    if built and len(model.joints) != len(built[0][0].joints):
+        own = [f"{XACRO}.{name}" for name, value in arguments.items() if np.ndim(value)]
+        raise InputError(
+            f"set {', '.join(own)}: vehicle {len(built)} has {len(model.joints)} rotors, vehicle 0 "
+            f"has {len(built[0][0].joints)}; make a batch of each kind"
+        )
+
+
+def _of_each(n: int, parameters: Mapping[str, Any]) -> List[Dict[str, Any]]:
+    """Give the values of each vehicle, by name."""
+    for key, value in parameters.items():
+        shape: Tuple[int, ...] = value.shape if isinstance(value, np.ndarray) else ()
+        if len(shape) == 1 and len(value) != n:
+            raise InputError(
+                f"set {key}: {len(value)} values for {n} vehicles; give one for each, or one number"
+            )
+        if len(shape) > 1 and (len(shape) > 2 or len(value) != n or shape[1] == 1):
+            raise InputError(
+                f"set {key}: an array of shape {shape} for {n} vehicles; give one of ({n},), or of "
+                f"({n}, k) where a value is a row of k numbers"
+            )
+    return [
+        {
+            key: value[i] if isinstance(value, np.ndarray) and value.ndim else value
+            for key, value in parameters.items()
+        }
+        for i in range(n)
+    ]

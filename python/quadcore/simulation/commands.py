@@ -1,0 +1,96 @@
+"""Open-loop rotor speed commands, from a file or an array."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Callable, List, Union
+
+import numpy as np
+
+from .._core import InputError, fault_of_commands
+from ..formats import format_of
+
+CommandsLike = Union[str, "os.PathLike[str]", np.ndarray]
+
+
+def as_commands(commands: CommandsLike, rotor_count: int) -> np.ndarray:
+    """Check a table of commands, or read it from a file.
+
+    Parameters
+    ----------
+    commands
+        Path of a file for `read_commands`, or an array of shape (rows, 1 + n): time in s, strictly
+        increasing, and the signed speed of each rotor in rad/s (before the division by sim_slow).
+    rotor_count
+        n, the number of rotors.
+
+    Returns
+    -------
+    ndarray, shape (rows, 1 + n)
+        C-contiguous float64.
+
+    Raises
+    ------
+    InputError
+        A wrong shape, a value that is no finite number, or times that do not increase.
+    """
+    if isinstance(commands, (str, os.PathLike)):
+        return read_commands(commands, rotor_count)
+    try:
+        given = np.asarray(commands)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"commands: not a table of numbers: {error}") from error
+    if given.dtype.kind not in "iuf" or isinstance(commands, np.ma.MaskedArray):
+        kind = "masked" if isinstance(commands, np.ma.MaskedArray) else given.dtype
+        raise InputError(f"commands: not a table of real numbers: {kind}; give floats, all of them")
+    table = np.ascontiguousarray(given, dtype=float)
+    if table.ndim != 2 or table.shape[1] != 1 + rotor_count:
+        raise InputError(
+            f"commands: an array of shape {table.shape}; this model with {rotor_count} rotors "
+            f"takes (rows, {1 + rotor_count}): {','.join(_columns(rotor_count))}"
+        )
+    counted = " (rows count from 0, as numpy's do)"
+    _check(table, lambda row: f"commands: row {row}", "commands", counted)
+    return table
+
+
+def read_commands(path: Union[str, os.PathLike[str]], rotor_count: int) -> np.ndarray:
+    """Read a table of commands.
+
+    Parameters
+    ----------
+    path
+        A ``.csv`` file with the header ``t,w1,...,wn``, or a ``.mat`` file with vectors of these
+        names. Times in s, strictly increasing; signed rotor speeds in rad/s.
+    rotor_count
+        n, the number of rotors.
+
+    Returns
+    -------
+    ndarray, shape (rows, 1 + n)
+
+    Raises
+    ------
+    InputError
+        A missing file, other columns, a value that is no finite number, or times that do not
+        increase; the message begins with ``FILE:LINE:`` where a line is at fault.
+    """
+    path = Path(path)
+    file = format_of(path, "commands are read from")
+    table, place, counted = file.read_commands(path, _columns(rotor_count))
+    _check(table, place, str(path), counted)
+    return table
+
+
+def _check(table: np.ndarray, place: Callable[[int], str], whole: str, counted: str) -> None:
+    if len(table) == 0:
+        raise InputError(f"{whole}: holds no commands")
+    fault = fault_of_commands(table)
+    if fault is not None:
+        row, what = fault
+        raise InputError(f"{place(row)}: {what}{counted}")
+
+
+def _columns(rotor_count: int) -> List[str]:
+    return ["t", *(f"w{i}" for i in range(1, 1 + rotor_count))]

@@ -1,0 +1,167 @@
+"""Events of scenarios: what happens at a time, as a list in the tag of a plugin."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+
+import yaml
+
+from .._core import InputError, parse_number
+from ..support.yaml_nodes import line_of, pairs, scalar
+
+
+class Kind(NamedTuple):
+    """One kind of event, named by the key that says what happens."""
+
+    library: str
+    """Of the plugin that lets it happen; its name, too, unless the event says another."""
+    tag: str
+    numbers: int
+    """Behind the key; 0: the name of the plugin."""
+    others: Mapping[str, Tuple[int, str]]
+    """Further keys, how many numbers each takes and what holds without it; "": it must be there."""
+    row: str
+    """Of the tag's list, made of the keys."""
+    told: str
+    """In a picture."""
+
+
+KINDS: Dict[str, Kind] = {
+    "gust": Kind("wind", "gusts", 3, {"lasts": (1, "")}, "{gust} {at} {lasts}", "gust"),
+    "push": Kind(
+        "push",
+        "pushes",
+        3,
+        {"torque": (3, "0 0 0"), "lasts": (1, "")},
+        "{at} {lasts} {push} {torque}",
+        "push",
+    ),
+    "release": Kind("payload", "release", 0, {}, "{at}", "{release} released"),
+    "pick_up": Kind("payload", "pickUp", 0, {}, "{at}", "{pick_up} picked up"),
+    "weaken": Kind(
+        "fault", "losses", 1, {"to": (1, "")}, "{at} {weaken} {to}", "rotor {weaken} to {to}"
+    ),
+    "cut": Kind("fault", "cuts", 1, {}, "{at} {cut}", "rotor {cut} cut"),
+}
+"""Kinds of events, by key."""
+
+
+class Event(NamedTuple):
+    """What happens at a time."""
+
+    time: float
+    """s"""
+    text: str
+    """For people."""
+    plugin: str
+    library: str
+    tag: str
+    row: str
+    """What the event adds to the tag."""
+    may_repeat: bool
+    thing: str
+    """That it befalls."""
+    rotor: Optional[float]
+    """That it befalls, from 1."""
+    line: int
+
+    def check(self, file: str, rotors: int) -> None:
+        """Raise `InputError` if the vehicle has no such rotor."""
+        if self.rotor is not None and self.rotor not in range(1, rotors + 1):
+            raise InputError(
+                f"{file}:{self.line}: there is no rotor {self.rotor:g}; they count from 1 to "
+                f"{rotors}"
+            )
+
+
+def events_of(file: str, node: yaml.Node) -> Sequence[Event]:
+    """Read the events of a scenario, by time.
+
+    Parameters
+    ----------
+    file
+        Of the scenario, as it is told.
+    node
+        Its list.
+
+    Raises
+    ------
+    InputError
+        With file and line.
+    """
+    what = "events as a list of {at: TIME, KIND: ...}"
+    if not isinstance(node, yaml.SequenceNode):
+        raise InputError(f"{file}:{line_of(node)}: write {what}")
+    events: List[Event] = []
+    for item in node.value:
+        event = _event(file, item, what)
+        for other in events:
+            if (other.time, other.thing) == (event.time, event.thing):
+                raise InputError(
+                    f"{file}:{event.line}: a second event on {event.thing} at {event.time:g} s, "
+                    f"the first in line {other.line}; keep one"
+                )
+        events.append(event)
+    return sorted(events, key=lambda event: event.time)
+
+
+def _event(file: str, node: yaml.Node, what: str) -> Event:
+    given = {key.value: (key, value) for key, value in pairs(file, node, what)}
+    where = f"{file}:{line_of(node)}"
+    named = [name for name in given if name in KINDS]
+    if len(named) != 1:
+        several = " and ".join(named) or _unknown(given)
+        raise InputError(f"{where}: an event is {several}; write one of {', '.join(KINDS)}")
+    (name,) = named
+    kind = KINDS[name]
+    wanted = {name: (kind.numbers, ""), "at": (1, ""), **kind.others}
+    if kind.numbers:
+        wanted["plugin"] = (0, kind.library)
+    values = {}
+    for key, (node_of_key, _) in given.items():
+        if key not in wanted:
+            nearest = difflib.get_close_matches(key, wanted, 1, 0.0)[0]
+            raise InputError(
+                f"{file}:{line_of(node_of_key)}: {name} has no '{key}'; the nearest is '{nearest}'"
+            )
+    for key, (count, default) in wanted.items():
+        if key in given:
+            values[key] = _numbers(file, key, given[key][1], count)
+        elif default:
+            values[key] = default
+        else:
+            raise InputError(f"{where}: {name} lacks '{key}'; write it")
+    time = parse_number(values["at"])
+    assert time is not None  # it was read as one
+    if time < 0:
+        at = line_of(given["at"][0])
+        raise InputError(f"{file}:{at}: an event at {time:g} s is before the start; write at: >= 0")
+    plugin = values["plugin"] if kind.numbers else values[name]
+    rotor = parse_number(values[name]) if kind.numbers == 1 else None
+    thing = f"rotor {values[name]}" if kind.numbers == 1 else f"'{plugin}'"
+    row = kind.row.format(**values)
+    may_repeat = kind.numbers > 0
+    text = kind.told.format(**values)
+    return Event(
+        time, text, plugin, kind.library, kind.tag, row, may_repeat, thing, rotor, line_of(node)
+    )
+
+
+def _unknown(given: Mapping[str, object]) -> str:
+    others = [name for name in given if name != "at"]
+    return f"'{others[0]}'" if others else "nothing"
+
+
+def _numbers(file: str, key: str, node: yaml.Node, count: int) -> str:
+    """Read so many numbers as a tag has them; with 0, a text."""
+    items = node.value if isinstance(node, yaml.SequenceNode) else [node]
+    texts = [scalar(file, key, item) for item in items]
+    if count == 0 and len(texts) == 1:
+        return texts[0]
+    values = [parse_number(text) for text in texts]
+    if len(values) != count or any(v is None or not math.isfinite(v) for v in values):
+        form = {0: "a name", 1: "a number"}.get(count, f"a list of {count} numbers")
+        raise InputError(f"{file}:{line_of(node)}: {key} is {' '.join(texts)}; write {form}")
+    return " ".join(texts)

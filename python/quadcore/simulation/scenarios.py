@@ -1,0 +1,267 @@
+"""Scenarios: what befalls a vehicle, written in YAML.
+
+A mapping in YAML with ``plugins``, by name those that are added to the model, or are its own, with
+their tags; and ``events`` in time, see `KINDS`. Those that quadcore has lie in
+``config/scenarios/NAME.yaml``.
+"""
+
+from __future__ import annotations
+
+import re
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+from xml.parsers import expat
+from xml.sax.saxutils import escape, quoteattr
+
+import yaml
+
+from .._core import Document, InputError, Model, read_model
+from ..model import resources
+from ..support.files import shown
+from ..support.parameters import did_you_mean
+from ..support.reading import check_regular, is_file
+from ..support.yaml_nodes import line_of, pairs, root, scalar
+from .scenario_events import Event, events_of
+
+NONE = "none"
+"""Name of the scenario in which nothing befalls."""
+
+_LIBRARY = "library"
+_WRITE = "plugins: and events:"
+
+
+class Tag(NamedTuple):
+    """A tag of a plugin, as a scenario gives it."""
+
+    name: str
+    value: str
+    line: int
+
+
+class Addition(NamedTuple):
+    """A plugin that a scenario speaks of."""
+
+    name: str
+    library: str
+    line: int
+    tags: List[Tag]
+
+
+class Scenario:
+    """What a file says.
+
+    Parameters
+    ----------
+    path : str or path
+        Of the file, or the name of a shipped scenario.
+
+    Attributes
+    ----------
+    name : str
+        Of the file without its suffix.
+    events : sequence of Event
+        By time.
+
+    Raises
+    ------
+    InputError
+        A missing file, or one that is wrong: one line with file and line.
+    """
+
+    def __init__(self, path: Union[str, Path]) -> None:
+        file = _find(str(path))
+        self.name = file.name.split(".")[0]
+        self._file = shown(file)
+        nodes = _sections(self._file, root(file))
+        additions = {}
+        if "plugins" in nodes:
+            what = "plugins as NAME: {TAG: VALUE, ...}"
+            for key, node in pairs(self._file, nodes["plugins"], what):
+                additions[key.value] = _addition(self._file, key, node)
+        self.events: Sequence[Event] = ()
+        if "events" in nodes:
+            self.events = events_of(self._file, nodes["events"])
+        for event in self.events:
+            library = f"lib{event.library}_plugin.so"
+            addition = additions.setdefault(
+                event.plugin, Addition(event.plugin, library, event.line, [])
+            )
+            _put(self._file, addition, event)
+        self._additions = list(additions.values())
+
+    def onto(self, model: Model) -> Tuple[Model, Dict[str, str]]:
+        """Let it befall a vehicle.
+
+        Returns
+        -------
+        tuple
+            The model with the plugins that it did not have, and values by ``PLUGIN.TAG`` for those
+            that it has.
+
+        Raises
+        ------
+        InputError
+            With file and line: no such plugin, tag, value or rotor.
+        """
+        for event in self.events:
+            event.check(self._file, len(model.joints))
+        own, end = _plugins_and_end(model.document.text)
+        parameters = {
+            f"{addition.name}.{tag.name}": tag.value
+            for addition in self._additions
+            if addition.name in own
+            for tag in addition.tags
+        }
+        added = [addition for addition in self._additions if addition.name not in own]
+        if not added:
+            return model, parameters
+        document = _with_plugins(model.document, end, added, self._file)
+        return read_model(document, list(model.passed_over.ignored)), parameters
+
+    def unseen(self, end: float) -> str:
+        """Tell which events come when a flight has ended, in one line; "" if none does.
+
+        Parameters
+        ----------
+        end
+            Of the flight, s.
+        """
+        late = [event for event in self.events if event.time >= end]
+        if not late:
+            return ""
+        told = ", ".join(f"{event.text} at {event.time:g} s" for event in late)
+        return f"{self._file}:{late[0].line}: the flight ends at {end:g} s, before {told}"
+
+    @contextmanager
+    def blamed(self) -> Iterator[None]:
+        """Name file and line in an error of the block about a tag that it gives."""
+        try:
+            yield
+        except InputError as error:
+            for addition in self._additions:
+                for tag in addition.tags:
+                    where = f"{self._file}:{tag.line}"
+                    given = re.escape(f"{addition.name}.{tag.name}")
+                    if re.match(rf"set {given}(?![\w.])", str(error)):
+                        raise InputError(f"{where}: {str(error)[4:]}") from error
+                    # Of two plugins that must agree it is told where the model has the one.
+                    if re.search(rf"<{tag.name}> is .* in '{addition.name}' \(set\)", str(error)):
+                        raise InputError(f"{where}: {error}") from error
+            raise
+
+
+def read(scenario: Union[str, Path, Scenario, None]) -> Optional[Scenario]:
+    """Read a scenario, unless it is read already; None for `NONE`."""
+    if scenario is None or isinstance(scenario, Scenario):
+        return scenario
+    return None if str(scenario) == NONE else Scenario(scenario)
+
+
+def _find(name: str) -> Path:
+    if is_file(Path(name)):
+        return Path(name)
+    known = resources.shipped("config/scenarios")
+    if name in known:
+        return known[name]
+    if Path(name).exists():
+        check_regular(Path(name))
+    names = [NONE, *known]
+    near = did_you_mean(name, names)
+    raise InputError(
+        f"{name}: no such file, and no shipped scenario of that name ({', '.join(names)}){near}"
+    )
+
+
+def _sections(file: str, node: yaml.Node) -> Dict[str, yaml.Node]:
+    found = {}
+    for key, value in pairs(file, node, _WRITE):
+        if key.value not in ("plugins", "events"):
+            raise InputError(
+                f"{file}:{line_of(key)}: a scenario has no '{key.value}'; write {_WRITE}"
+            )
+        found[key.value] = value
+    return found
+
+
+def _addition(file: str, key: yaml.ScalarNode, node: yaml.Node) -> Addition:
+    tags = [
+        Tag(tag.value, _value(file, tag, value), line_of(tag))
+        for tag, value in pairs(file, node, "{TAG: VALUE, ...}, or {}")
+    ]
+    library = key.value
+    for tag in tags:
+        if not re.fullmatch(r"[A-Za-z_][\w.-]*", tag.name):
+            raise InputError(f"{file}:{tag.line}: '{tag.name}' is no name of a tag; write one")
+        if tag.name == _LIBRARY:
+            library = tag.value
+    if not library.endswith(".so"):
+        library = f"lib{library}_plugin.so"
+    others = [tag for tag in tags if tag.name != _LIBRARY]
+    return Addition(key.value, library, line_of(key), others)
+
+
+def _value(file: str, tag: yaml.ScalarNode, node: yaml.Node) -> str:
+    if isinstance(node, yaml.SequenceNode):
+        return " ".join(scalar(file, tag.value, item) for item in node.value)
+    return scalar(file, tag.value, node)
+
+
+def _put(file: str, addition: Addition, event: Event) -> None:
+    """Add an event to the list that is its plugin's tag."""
+    for i, tag in enumerate(addition.tags):
+        if tag.name != event.tag:
+            continue
+        if not event.may_repeat:
+            raise InputError(
+                f"{file}:{event.line}: <{tag.name}> of '{addition.name}' is given twice, first in "
+                f"line {tag.line}; keep one"
+            )
+        addition.tags[i] = tag._replace(value=f"{tag.value} {event.row}")
+        return
+    addition.tags.append(Tag(event.tag, event.row, event.line))
+
+
+def _plugins_and_end(text: str) -> Tuple[List[str], int]:
+    """Find the names of a model's plugins, and where its root element ends, in characters."""
+    parser = expat.ParserCreate()
+    names: List[str] = []
+    end = depth = 0
+
+    def start(element: str, attributes: Mapping[str, str]) -> None:
+        nonlocal depth
+        depth += 1
+        if element == "plugin":
+            names.append(attributes.get("name", ""))
+
+    def stop(_: str) -> None:
+        nonlocal depth, end
+        depth -= 1
+        if depth == 0:
+            end = parser.CurrentByteIndex
+
+    parser.StartElementHandler, parser.EndElementHandler = start, stop
+    encoded = text.encode()
+    parser.Parse(encoded, True)
+    return names, len(encoded[:end].decode())
+
+
+def _with_plugins(document: Document, end: int, added: Sequence[Addition], file: str) -> Document:
+    """Write plugins into a model; each of their lines is known to be the scenario's."""
+    before, after = document.text[:end], document.text[end:]
+    count = document.text.count("\n") + 1
+    lines: List[Any] = document.lines or [(document.name, i + 1) for i in range(count)]
+    last = before.count("\n") + 1  # the line in which the root element ends
+    written, places = [], []
+    for addition in added:
+        head = f"name={quoteattr(addition.name)} filename={quoteattr(addition.library)}"
+        written.append(f"<gazebo><plugin {head}>")
+        places.append((file, addition.line))
+        for tag in addition.tags:
+            value = escape(" ".join(tag.value.split()))
+            written.append(f"<{tag.name}>{value}</{tag.name}>")
+            places.append((file, tag.line))
+        written.append("</plugin></gazebo>")
+        places.append((file, addition.line))
+    text = "\n".join([before, *written, after])
+    return Document(document.name, text, [*lines[:last], *places, *lines[last - 1 :]])

@@ -1,0 +1,124 @@
+"""The state of a vehicle, live and as a free copy."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from .. import _core
+
+_VECTORS = (
+    "position",
+    "orientation",
+    "linear_velocity",
+    "angular_velocity",
+    "rotor_velocity",
+    "rotor_angle",
+)
+
+
+class State:
+    """A free copy of a state; every member can be assigned.
+
+    Attributes
+    ----------
+    time : float
+        s
+    position : ndarray (3,)
+        Frame origin in the world, m.
+    orientation : ndarray (4,)
+        Of the frame in the world, unit quaternion x, y, z, w.
+    linear_velocity : ndarray (3,)
+        Of the frame origin, world axes, m/s.
+    angular_velocity : ndarray (3,)
+        Of the frame, body axes, rad/s.
+    rotor_velocity : ndarray (n,)
+        Joint velocities as the engine has them, rad/s.
+    rotor_angle : ndarray (n,)
+        Joint angles in (-pi, pi], rad.
+    """
+
+    __slots__ = ("time", *_VECTORS)
+
+    time: float
+    position: np.ndarray
+    orientation: np.ndarray
+    linear_velocity: np.ndarray
+    angular_velocity: np.ndarray
+    rotor_velocity: np.ndarray
+    rotor_angle: np.ndarray
+
+    def copy(self) -> State:
+        """Make a free copy of this state."""
+        other = State()
+        other.time = self.time
+        for name in _VECTORS:
+            setattr(other, name, np.array(getattr(self, name), dtype=float))
+        return other
+
+    def __repr__(self) -> str:
+        members: List[str] = [f"time={self.time!r}"]
+        members += [f"{name}={getattr(self, name)!r}" for name in _VECTORS]
+        return f"{type(self).__name__}({', '.join(members)})"
+
+
+class LiveState:
+    """The state of a simulation now: read-only views that change with every step.
+
+    Members as in `State`; `copy()` makes a free copy, all of one moment, which is also what
+    `copy.copy`, `pickle` and `multiprocessing` make of it. A view that is read while another thread
+    steps may be torn, half old and half new: `copy()` refuses then.
+    """
+
+    __slots__ = ("_clock", "_copy", *_VECTORS)
+
+    _clock: np.ndarray
+    _copy: Callable[[], Dict[str, Any]]
+    position: np.ndarray
+    orientation: np.ndarray
+    linear_velocity: np.ndarray
+    angular_velocity: np.ndarray
+    rotor_velocity: np.ndarray
+    rotor_angle: np.ndarray
+
+    def __init__(self, simulation: _core.Simulation) -> None:
+        views = simulation._views()
+        object.__setattr__(self, "_clock", views["time"])
+        object.__setattr__(self, "_copy", views["copy"])
+        for name in _VECTORS:
+            object.__setattr__(self, name, views[name])
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(
+            f"state.{name} is read-only; change a state.copy() and give it to set_state()"
+        )
+
+    @property
+    def time(self) -> float:
+        """Simulation time, s."""
+        return float(self._clock[0])
+
+    def copy(self) -> State:
+        """Make a free copy of this state.
+
+        Raises
+        ------
+        InputError
+            Another thread is stepping the simulation.
+        """
+        return state_of(self._copy())
+
+    def __reduce__(self) -> Any:
+        return state_of, (self._copy(),)
+
+    __repr__ = State.__repr__
+
+
+def state_of(members: Mapping[str, Any]) -> State:
+    """Make a state of its members by name."""
+    state = State()
+    for name, value in members.items():
+        setattr(state, name, value)
+    return state

@@ -1,0 +1,138 @@
+"""How a flight went, as rows of numbers."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, Mapping, Optional, Sequence
+
+import numpy as np
+
+from .._core import InputError, Simulation, log_columns, rates_per_command
+from ..support.arguments import brief
+from ..support.rotation import roll_pitch_yaw
+
+_STATE_SIZE = len(log_columns(0))
+
+
+def per_command(simulation: Simulation) -> float:
+    """Size of the rotor joints' velocity per commanded speed; 1 if there are several."""
+    sizes = set(np.abs(rates_per_command(simulation)).tolist())
+    return sizes.pop() if len(sizes) == 1 else 1.0
+
+
+def is_slow(size: float) -> bool:
+    """Tell whether joints of this size per commanded speed are known to turn otherwise."""
+    return size not in (0.0, 1.0)
+
+
+def _states(table: Any) -> np.ndarray:
+    if isinstance(table, np.ndarray) and table.ndim == 2 and table.shape[1] >= _STATE_SIZE:
+        return table
+    given = f"an array {table.shape}" if isinstance(table, np.ndarray) else brief(table)
+    raise InputError(
+        f"table: give an array (rows, {_STATE_SIZE} + rotors), not {given}; "
+        "files are read by Log.of_file"
+    )
+
+
+class Wrenches(Dict[str, np.ndarray]):
+    """Of each term, by name."""
+
+    def __missing__(self, name: str) -> np.ndarray:
+        if self:
+            raise InputError(f"log.wrenches: '{name}' is none of {', '.join(self)}; name one")
+        raise InputError("log.wrenches: the log holds none; ask for them: wrenches=True")
+
+
+class Trajectory:
+    """States of a flight, one row per logged step, and perhaps the wrenches from each on.
+
+    Parameters
+    ----------
+    table : ndarray, shape (rows, 14 + n)
+        Columns as `columns` names them.
+    wrenches : mapping of str to ndarray, shape (rows, 6)
+        Force (N), then torque (N m), frame axes, about the vehicle's centre of mass; none unless
+        they were asked for.
+    title : str
+        What flew, for the plots.
+    ignored : sequence of str
+        What was left out of model and world at the user's wish.
+    topics : mapping of str to mapping of str to ndarray, shape (rows,)
+        Of each topic that was logged, by field, the message that is the last at that time, and its
+        ``stamp`` (s); NaN before the first.
+
+    Raises
+    ------
+    InputError
+        The table is none of states.
+
+    Attributes
+    ----------
+    per_command : float
+        Size of the rotor joints' velocity per commanded speed, 0.1 at a sim_slow of 10; 1 if it is
+        not known. Pictures show both.
+    """
+
+    per_command = 1.0
+
+    def __init__(
+        self,
+        table: np.ndarray,
+        wrenches: Optional[Mapping[str, np.ndarray]] = None,
+        title: str = "",
+        ignored: Sequence[str] = (),
+        topics: Optional[Mapping[str, Mapping[str, np.ndarray]]] = None,
+    ) -> None:
+        self.table = _states(table)
+        self.wrenches = Wrenches(wrenches or {})
+        self.title = title
+        self.ignored = list(ignored)
+        self.topics = {name: dict(fields) for name, fields in (topics or {}).items()}
+
+    def __len__(self) -> int:
+        return len(self.table)
+
+    @property
+    def is_slow(self) -> bool:
+        """Whether the joints are known to turn otherwise than commanded."""
+        return is_slow(self.per_command)
+
+    @property
+    def columns(self) -> list[str]:
+        """Names of the table's columns, as they head the CSV file."""
+        return log_columns(self.table.shape[1] - _STATE_SIZE)
+
+    @property
+    def time(self) -> np.ndarray:
+        """Time since the start, s; shape (rows,)."""
+        return self.table[:, 0]
+
+    @property
+    def position(self) -> np.ndarray:
+        """Origin of the frame link in the world, m; shape (rows, 3)."""
+        return self.table[:, 1:4]
+
+    @property
+    def orientation(self) -> np.ndarray:
+        """Orientation of the frame link in the world, unit quaternion x, y, z, w; (rows, 4)."""
+        return self.table[:, 4:8]
+
+    @property
+    def rpy(self) -> np.ndarray:
+        """Roll, pitch, yaw of the frame link, R = Rz(yaw) Ry(pitch) Rx(roll), rad; (rows, 3)."""
+        return roll_pitch_yaw(self.orientation)
+
+    @property
+    def linear_velocity(self) -> np.ndarray:
+        """Velocity of the frame link's origin, world axes, m/s; shape (rows, 3)."""
+        return self.table[:, 8:11]
+
+    @property
+    def angular_velocity(self) -> np.ndarray:
+        """Angular velocity of the frame link, body axes, rad/s; shape (rows, 3)."""
+        return self.table[:, 11:14]
+
+    @property
+    def rotor_velocity(self) -> np.ndarray:
+        """Velocity of the rotor joints, rad/s; shape (rows, n)."""
+        return self.table[:, _STATE_SIZE:]

@@ -1,0 +1,132 @@
+"""What is varied: axes, each with its values, which span a grid."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import re
+from pathlib import Path
+from typing import Any, Iterator, List, Mapping, NamedTuple, Sequence, Tuple, Union
+
+import numpy as np
+
+from .._core import InputError, parse_number
+from ..support.values import Value, text_of
+
+WHOLE = ("engine", "world", "scenario")
+"""What is varied by name, as a whole."""
+
+LARGEST = 100_000
+"""Variants of one comparison."""
+
+Values = Union[Sequence[Value], Sequence[Path], np.ndarray]
+
+
+class Axis(NamedTuple):
+    """One thing that is varied."""
+
+    name: str
+    """``PLUGIN.TAG``, ``LINK.mass`` or the like, ``xacro.ARG``, several of them joined by commas,
+    or one of `WHOLE`."""
+    values: Sequence[str]
+
+    @property
+    def tags(self) -> List[str]:
+        """The plugin tags that take the value; none for `WHOLE`."""
+        return [] if self.name in WHOLE else self.name.split(",")
+
+
+class Range(Sequence[str]):
+    """Numbers as texts, evenly spaced or in a geometric progression, none of them stored."""
+
+    def __init__(self, first: float, last: float, count: int, geometric: bool) -> None:
+        self._first, self._last, self._size, self._geometric = first, last, count, geometric
+
+    def __len__(self) -> int:
+        return self._size
+
+    def __getitem__(self, i: Any) -> Any:
+        if not 0 <= i < self._size:
+            raise IndexError(i)
+        part = i / max(1, self._size - 1)
+        if self._geometric:
+            value = self._first * (self._last / self._first) ** part
+        else:
+            value = self._first + part * (self._last - self._first)
+        return f"{value:.12g}"  # what a person would write into the URDF: 0.3
+
+
+def parse_axis(name: str, text: str) -> Axis:
+    """Read the values of ``--vary NAME=TEXT``: ``a,b,c``, ``a:b:n`` or ``log:a:b:n``.
+
+    Raises
+    ------
+    InputError
+        No values, or a range that is none.
+    """
+    if ":" in text and name not in ("world", "scenario"):
+        return Axis(name, _range(name, text))
+    return Axis(name, [part.strip() for part in text.split(",") if part.strip()])
+
+
+def axes_of(vary: Mapping[str, Values]) -> List[Axis]:
+    """Make axes of names and values; numbers become the texts that a URDF would hold.
+
+    Raises
+    ------
+    InputError
+        No values, or a tag on two axes.
+    """
+    axes = []
+    taken: List[str] = []
+    for key, values in vary.items():
+        name = ",".join(part.strip() for part in key.split(","))
+        if isinstance(values, str) or len(values) == 0:
+            raise InputError(f"vary {name}: holds no values; give at least one")
+        if set(WHOLE) & set(name.split(",")) and "," in name:
+            own = f"{', '.join(WHOLE[:-1])} and {WHOLE[-1]}"
+            raise InputError(f"vary {name}: {own} take values of their own; vary each")
+        axis = Axis(name, values if isinstance(values, Range) else [text_of(v) for v in values])
+        for part in axis.tags or [name]:
+            if part in taken:
+                raise InputError(f"vary {name}: {part} is varied twice; keep one")
+            taken.append(part)
+        axes.append(axis)
+    return axes
+
+
+def check_size(models: int, axes: Sequence[Axis]) -> int:
+    """Count the variants; raise `InputError` if they are too many."""
+    sizes = [models, *(len(axis.values) for axis in axes)]
+    count = math.prod(sizes)
+    if count > LARGEST:
+        product = " x ".join(str(size) for size in sizes if size > 1)
+        raise InputError(
+            f"vary: {product} makes {count} flights; at most {LARGEST} are compared at once"
+        )
+    return count
+
+
+def variants(models: int, axes: Sequence[Axis]) -> Iterator[Tuple[int, Tuple[str, ...]]]:
+    """Model and values of each variant; the last axis runs fastest."""
+    for model in range(models):
+        for values in itertools.product(*(axis.values for axis in axes)):
+            yield model, values
+
+
+def _range(name: str, text: str) -> Range:
+    number = r"([-+0-9.eE]+)"
+    match = re.fullmatch(rf"(log:)?{number}:{number}:([0-9]{{1,18}})", text)
+    first, last = (parse_number(match[2]), parse_number(match[3])) if match else (None, None)
+    if match is None or first is None or last is None or not math.isfinite(first - last):
+        raise InputError(
+            f"vary {name}: '{text}' is no range; write FIRST:LAST:COUNT or log:FIRST:LAST:COUNT"
+        )
+    count = int(match[4])
+    if count == 0:
+        raise InputError(f"vary {name}: the range '{text}' is empty; write a count of at least 1")
+    if match[1] and not first * last > 0:
+        raise InputError(
+            f"vary {name}: '{text}' is no geometric range; write ends of one sign, none of them 0"
+        )
+    return Range(first, last, count, bool(match[1]))

@@ -1,0 +1,181 @@
+"""What a comparison leaves behind: table, pictures, report."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
+
+from ..folder import remove_listed
+from ..sampling import evenly
+from ..table import csv_bytes, flown_and_failed, json_bytes, number_text, save, shown_in
+from .plan import Plan
+from .result import Comparison
+
+_ROWS_OF_PAGE = 200
+_DRAWN = 40  # flights in one picture
+
+
+def drawn(count: int) -> List[int]:
+    """Which of so many flights to draw: all, or evenly many with the first and the last."""
+    return evenly(count, _DRAWN)
+
+
+FILES = ("table.csv", "comparison.json", "report.html")
+
+
+def log_name(row: int, count: int) -> str:
+    """Name the log of one of so many flights, within the folder."""
+    return f"logs/{row + 1:0{len(str(count))}}.csv"
+
+
+def remove_logs(folder: Path) -> None:
+    """Remove the logs of an earlier comparison, and no others."""
+    remove_listed(folder, "comparison.json", "logs", re.compile(r"logs/[0-9]+\.csv").fullmatch)
+
+
+def write(
+    comparison: Comparison,
+    plan: Plan,
+    flight: Mapping[str, str],
+    folder: Path,
+    plots: bool,
+    has_logs: bool,
+) -> List[Path]:
+    """Write ``table.csv``, ``comparison.json``, ``report.html`` and, if asked, pictures.
+
+    Parameters
+    ----------
+    comparison
+        Its `logs` hold, `thinned`, the flights to draw.
+    plan
+        What was flown.
+    flight
+        What all flights share, for the report.
+    folder
+        Where to.
+    plots
+        Whether to draw.
+    has_logs
+        Whether the logs of the flights were written.
+    """
+    from ...report.page import write_page  # not every command should pay for jinja2
+
+    # What was flown comes first: pictures can fail, and take their time.
+    tables = {
+        "table.csv": csv_bytes(_rows(comparison)),
+        "comparison.json": json_bytes(_content(comparison, flight, has_logs)),
+    }
+    written = save(folder, tables)
+    images = _images(comparison, plan) if plots else {}
+    written += save(folder, {f"{name}.png": data for name, data in images.items()})
+    page = folder / "report.html"
+    write_page(page, "compare.html", **_page(comparison, plan, flight, images))
+    return [*written, page]
+
+
+def summary(comparison: Comparison) -> str:
+    """How many flew, in one line."""
+    return flown_and_failed(comparison.table["failure"].tolist())
+
+
+def _images(comparison: Comparison, plan: Plan) -> Dict[str, bytes]:
+    # matplotlib is slow to import.
+    from ...report.plots import png
+    from . import pictures
+
+    curves, against = [], None
+    for row, (log, variant) in enumerate(zip(comparison.logs, plan)):
+        if log is not None:
+            curves.append(pictures.Curve(plan.label(variant), log))
+            against = curves[-1] if row == comparison.against else against
+    if against is None:
+        return {}
+    figures = pictures.draw(curves, against.log, against.label)
+    return {name: png(figure) for name, figure in figures.items()}
+
+
+def _rows(comparison: Comparison) -> Iterable[Sequence[Any]]:
+    yield ["number", *(comparison.table.dtype.names or ())]
+    for number, row in enumerate(comparison.table.tolist(), start=1):
+        yield [number, *row]
+
+
+def _content(comparison: Comparison, flight: Mapping[str, str], has_logs: bool) -> Dict[str, Any]:
+    names = comparison.table.dtype.names or ()
+    flown = [row for row, reason in enumerate(comparison.table["failure"]) if not reason]
+    return {
+        "logs": [log_name(row, len(comparison.table)) for row in flown if has_logs],
+        "flight": dict(flight),
+        "differences": {
+            model: [difference._asdict() for difference in found]
+            for model, found in comparison.differences.items()
+        },
+        "units": comparison.states,
+        "against": _number(comparison),
+        "rows": [
+            {"number": number, **dict(zip(names, row))}
+            for number, row in enumerate(comparison.table.tolist(), start=1)
+        ],
+    }
+
+
+def _number(comparison: Comparison) -> Optional[int]:
+    return None if comparison.against is None else comparison.against + 1
+
+
+def _page(
+    comparison: Comparison, plan: Plan, flight: Mapping[str, str], images: Mapping[str, bytes]
+) -> Dict[str, Any]:
+    units = {state: shown_in(unit) for state, unit in comparison.states.items()}
+    rows = []
+    guided = plan.guidance.is_given
+    for number, (row, variant) in enumerate(zip(comparison.table, plan), start=1):
+        if number > _ROWS_OF_PAGE:
+            break
+        errors = [number_text(row[f"{kind}_error"]) for kind in ("largest", "rms") if guided]
+        cells = {
+            kind: {
+                state: number_text(row[f"{kind}_{state}"] * factor)
+                for state, (_, factor) in units.items()
+            }
+            for kind in ("final", "largest")
+        }
+        label = plan.label(variant)
+        told = {"number": number, "label": label, "failure": row["failure"], "errors": errors}
+        rows.append({**told, **cells})
+    shown = len(drawn(plan.count))
+    return {
+        "title": "Comparison of flights",
+        "summary": summary(comparison),
+        "flight": flight,
+        "differences": comparison.differences,
+        "first": plan.names[0],
+        "guided": guided,
+        "axes": [
+            {"name": axis.name, "listed": listed(axis.values), "written": plan.as_written(axis)}
+            for axis in plan.axes
+        ],
+        "pictures": [{"name": name, "data": data} for name, data in images.items()],
+        "thinned": f"{shown} of {plan.count} are drawn." if shown < plan.count else "",
+        "against": comparison.against is not None and f"no. {_number(comparison)}",
+        "units": {state: unit for state, (unit, _) in units.items()},
+        "groups": _groups(list(comparison.states)),
+        "rows": rows,
+        "more": max(0, plan.count - _ROWS_OF_PAGE),
+    }
+
+
+def _groups(states: Sequence[str]) -> List[Tuple[str, Sequence[str]]]:
+    """Split the states into tables that a page has room for: the lengths, then the parts."""
+    parts = [states[4:7], states[7:10], states[10:13], states[13:16], states[16:]]
+    return [("", states[:4]), *zip((*states[:4], "rotors"), parts)]
+
+
+def listed(values: Any) -> str:
+    """Values of an axis, the middle of many left out."""
+    if len(values) <= 12:
+        return ", ".join(values)
+    return ", ".join([*(values[i] for i in range(3)), "...", values[len(values) - 1]]) + (
+        f" ({len(values)})"
+    )

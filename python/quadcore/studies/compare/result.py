@@ -1,0 +1,155 @@
+"""What is known of the flights of a comparison, while they fly and afterwards."""
+
+from __future__ import annotations
+
+from typing import (
+    Any,
+    Callable,
+    Dict,
+    List,
+    Mapping,
+    NamedTuple,
+    Optional,
+    Sequence,
+    Tuple,
+    Union,
+)
+
+import numpy as np
+
+from ..._core import InputError, QuadcoreError
+from ...simulation.log import Log
+from ..evaluate.measures import distance, rms_and_largest
+from ..metrics import metrics, states
+from ..table import NOT_FLOWN, flown_and_failed
+from .difference import Difference
+from .plan import Plan
+
+Progress = Callable[[int, int], None]
+Keep = Callable[[int, Log], Any]
+Measured = Tuple[Sequence[float], np.ndarray]
+"""Root of the mean square and largest of the distance to the reference; and `metrics`."""
+Outcome = Tuple[Measured, Any]
+
+
+class Comparison(NamedTuple):
+    """What became of the flights.
+
+    Attributes
+    ----------
+    table : ndarray
+        Structured, a row per variant: ``model``, each axis, ``failure`` ("" if it flew), of guided
+        flights ``rms_error`` and ``largest_error``, the distance to the reference [m], and
+        ``final_STATE`` and ``largest_STATE`` for each of `states`, NaN where it did not fly.
+    logs : list
+        `Log` of each variant, None where it did not fly; empty if logs were not asked for.
+    states : dict of str to str
+        Unit of each state that is compared, by name. ``position``, ``velocity`` and ``rates`` are
+        lengths of difference vectors, ``attitude`` is the angle between both.
+    against : int or None
+        Row that all others are compared with: the one asked for, or the first that flew.
+    differences : dict of str to list of Difference
+        What each further model's file differs in from the first's.
+    refused : int
+        How many of those that failed were bad input, and never flew.
+    """
+
+    table: np.ndarray
+    logs: List[Any]
+    states: Dict[str, str]
+    against: Optional[int]
+    differences: Dict[str, List[Difference]]
+    refused: int
+
+    def __repr__(self) -> str:
+        return f"<Comparison, {flown_and_failed(self.table['failure'].tolist())}>"
+
+    def _repr_html_(self) -> str:
+        from ...report.notebook import comparison_html
+
+        return comparison_html(self)
+
+
+def measured(plan: Plan, against: Log, log: Log) -> Measured:
+    """Measure a flight by its reference, and by the flight that all are compared with."""
+    away = distance(log) if plan.guidance.is_given else np.array([np.nan])
+    return rms_and_largest(away), metrics(against, log)
+
+
+class Tally:
+    """What is known of the flights so far."""
+
+    def __init__(self, plan: Plan, keep: Optional[Keep], progress: Optional[Progress]) -> None:
+        self.keep = keep
+        self.done = 0
+        self.against: Optional[int] = None
+        self._plan, self._progress = plan, progress
+        self._refused = 0
+        self._errors = np.full((plan.count, 2), np.nan)
+        self._make_room(plan.rotor_count)
+        self._failures = [NOT_FLOWN] * plan.count
+        self._kept: List[Any] = [] if keep is None else [None] * plan.count
+
+    def compare_with(self, row: int, log: Log) -> None:
+        """Take the flight that the others are compared with."""
+        self.against = row
+        self._make_room(log.rotor_velocity.shape[1])
+
+    def note(self, row: int, outcome: Union[Outcome, QuadcoreError]) -> None:
+        """Take what became of a flight."""
+        if isinstance(outcome, QuadcoreError):
+            self._failures[row] = str(outcome)
+            self._refused += isinstance(outcome, InputError)
+        else:
+            self._errors[row], self._metrics[row] = outcome[0]
+            if self._kept:
+                self._kept[row] = outcome[1]
+            self._failures[row] = ""
+        self.done += 1
+        if self._progress is not None:
+            self._progress(self.done, self._plan.count)
+
+    def result(self) -> Comparison:
+        """Tell it all."""
+        plan = self._plan
+        axes = list(zip(*(values for _, values in plan)))
+        columns: Dict[str, Any] = {
+            "model": [plan.names[model] for model, _ in plan],
+            **{axis.name: _numbers(values) for axis, values in zip(plan.axes, axes)},
+            "failure": self._failures,
+        }
+        if plan.guidance.is_given:
+            columns["rms_error"], columns["largest_error"] = self._errors.T
+        for i, kind in enumerate(("final", "largest")):
+            for j, state in enumerate(self._states):
+                columns[f"{kind}_{state}"] = self._metrics[:, i, j]
+        return Comparison(
+            _structured(columns),
+            self._kept,
+            self._states,
+            self.against,
+            plan.differences(),
+            self._refused,
+        )
+
+    def _make_room(self, rotor_count: int) -> None:
+        self._states = states(rotor_count)
+        self._metrics = np.full((self._plan.count, 2, len(self._states)), np.nan)
+
+
+def _numbers(values: Sequence[str]) -> np.ndarray:
+    """Numbers if all are, else texts."""
+    try:
+        return np.array([float(value) for value in values])
+    except ValueError:
+        return np.array(values)
+
+
+def _structured(columns: Mapping[str, Sequence[Any]]) -> np.ndarray:
+    arrays = {name: np.asarray(values) for name, values in columns.items()}
+    table = np.empty(
+        len(arrays["model"]), dtype=[(name, array.dtype) for name, array in arrays.items()]
+    )
+    for name, array in arrays.items():
+        table[name] = array
+    return table

@@ -1,0 +1,61 @@
+"""How long a controller takes by itself."""
+
+from __future__ import annotations
+
+from time import perf_counter
+from typing import Any, List, Tuple
+
+import numpy as np
+
+from ...control import laws
+from ...simulation.controller import Guided, check_callable
+
+
+class Clocked:
+    """A controller of one's own, with the seconds that each call took; the rest is its own."""
+
+    def __init__(self, controller: Any) -> None:
+        check_callable(controller)
+        self.seconds: List[float] = []
+        self._controller = controller
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._controller, name)
+
+    def __call__(self, t: float, state: Any, reference: Any) -> Any:
+        """Ask the controller."""
+        started = perf_counter()
+        answer = self._controller(t, state, reference)
+        self.seconds.append(perf_counter() - started)
+        return answer
+
+
+class ClockedPilot:
+    """A pilot of a law of quadcore, with the same; it reads odometry and reference on the way."""
+
+    def __init__(self, pilot: Guided) -> None:
+        self.seconds: List[float] = []
+        self._pilot = pilot
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._pilot, name)
+
+    def speeds(self, simulation: Any) -> Any:
+        """Ask the law."""
+        started = perf_counter()
+        answer = self._pilot.speeds(simulation)
+        self.seconds.append(perf_counter() - started)
+        return answer
+
+
+def clocked(controller: Any) -> Any:
+    """Make a controller that is timed; a law of quadcore is by its pilot."""
+    return controller if isinstance(controller, laws.Law) else Clocked(controller)
+
+
+def typical_and_slow(seconds: List[float]) -> Tuple[float, float]:
+    """Median, and what one call of a hundred exceeds, s; NaN without any."""
+    if not seconds:
+        return float("nan"), float("nan")
+    middle, slow = np.quantile(seconds, [0.5, 0.99])
+    return float(middle), float(slow)

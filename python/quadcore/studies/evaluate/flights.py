@@ -1,0 +1,145 @@
+"""Flying what is to be evaluated, each flight in a process that measures it."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence
+
+import numpy as np
+
+from ..._core import FlightError
+from ...simulation.controller import faults_told
+from ...simulation.flight import Rows, columns_of, fly
+from ...simulation.flight_plan import FlightPlan
+from ...simulation.log import Log
+from ...simulation.simulation import Simulation
+from ...support.warning import unheard
+from ..sampling import thinned
+from ..table import NOT_FLOWN
+from ..time_limit import time_limit
+from .clock import Clocked, ClockedPilot, clocked, typical_and_slow
+from .measures import UNITS, drag_power, loss, measure, slow_down
+from .step_response import step_response
+
+NAN = dict.fromkeys(UNITS, float("nan"))
+
+
+class Outcome(NamedTuple):
+    """What is known of a flight."""
+
+    failure: str = NOT_FLOWN
+    """Why it counts as failed: lost, diverged, no command; "" if it flew."""
+    measures: Dict[str, float] = NAN
+    """Of `UNITS`; NaN where it failed."""
+    seconds: float = float("nan")
+    """Of the wall clock."""
+    updates: int = 0
+    """Of the controller."""
+    call: float = float("nan")
+    """Median of what an update took, s."""
+    slow_call: float = float("nan")
+    """What one update of a hundred exceeded, s."""
+    rate: float = float("nan")
+    """Of the controller, 1/s."""
+    delay: float = float("nan")
+    """From the controller to the motors, s."""
+    warnings: Sequence[str] = ()
+    """What was perhaps not meant, as `Simulation.warnings`."""
+    log: Optional[Log] = None
+    """Thinned, if it was asked for."""
+    response: Optional[np.ndarray] = None
+    """As `step_response` estimates it, if it was asked for."""
+    limit: float = float("inf")
+    """Of the rotors, as the log has them, rad/s."""
+    rotors: Optional[np.ndarray] = None
+    """Where they are in the frame, if it was asked for, m; (n, 3)."""
+    refused: bool = False
+    """Whether it never flew, being bad input."""
+
+    @property
+    def flew(self) -> bool:
+        """Whether there is something measured."""
+        return not self.failure
+
+    @property
+    def was_flown(self) -> bool:
+        """Whether it took place, be it that it failed."""
+        return self.failure != NOT_FLOWN
+
+
+def flown(
+    described: Callable[[], FlightPlan], most: float, keep: bool = False, timed: bool = True
+) -> Outcome:
+    """Fly and measure.
+
+    Parameters
+    ----------
+    described
+        Gives the flight, guided; that a controller is brought in and made is part of the time.
+    most
+        Of the wall clock, s.
+    keep
+        Whether to keep enough of the log to draw it.
+    timed
+        Whether to clock each update of the controller, which takes a while itself.
+
+    Raises
+    ------
+    QuadcoreError
+        Nothing was flown, or not to its end for want of time.
+    """
+    started = time.perf_counter()
+    failure = ""
+    with time_limit(most), unheard():
+        flight = described()
+        if timed:
+            flight = replace(flight, controller=clocked(flight.controller))
+        simulation = flight.simulation()
+        pilot: Any = flight.pilot(simulation)
+        clock = flight.controller
+        if timed and not isinstance(clock, Clocked):
+            clock = pilot = ClockedPilot(pilot)
+        topics = _watched(simulation) if keep else []
+        rows = Rows(simulation, columns_of(simulation, topics, pilot))
+        try:
+            with faults_told(simulation):
+                fly(
+                    simulation,
+                    flight.duration,
+                    None,
+                    flight.log_every,
+                    rows.receive,
+                    pilot=pilot,
+                    topics=topics,
+                )
+        except FlightError as error:
+            failure = str(error)
+    log = rows.log()
+    failure = loss(log) or failure
+    measures = NAN
+    if not failure:
+        share = pilot.saturated / max(1, pilot.updates)
+        measures = measure(log, share, drag_power(simulation), slow_down(simulation))
+    outcome = Outcome(
+        failure,
+        measures,
+        time.perf_counter() - started,
+        pilot.updates,
+        *typical_and_slow(clock.seconds if timed else []),
+        pilot.rate,
+        pilot.delay,
+        list(simulation.warnings),
+    )
+    if not keep:
+        return outcome
+    response = None if failure else step_response(log)
+    limit = pilot.limit / slow_down(simulation)
+    rotors = simulation.model.joint_places
+    return outcome._replace(log=thinned(log), response=response, limit=limit, rotors=rotors)
+
+
+def _watched(simulation: Simulation) -> List[str]:
+    from ...report.player import topics_to_watch  # not every flight should pay for jinja2
+
+    return topics_to_watch(simulation)

@@ -1,0 +1,169 @@
+"""What is measured of one guided flight."""
+
+from __future__ import annotations
+
+import math
+from typing import Dict, Optional, Tuple
+
+import numpy as np
+
+from ...simulation.log import Log
+from ...simulation.recording import TAIL
+from ...simulation.simulation import Simulation
+from ...support.rotation import roll_pitch_yaw
+
+LOST = 5.0
+"""A vehicle that is farther from its reference is lost, m."""
+
+UNITS = {
+    "rms_position": "m",
+    "largest_position": "m",
+    "tail_position": "m",
+    "steady_position": "m",
+    "iae_position": "m s",
+    "itae_position": "m s^2",
+    "largest_yaw": "rad",
+    "rise_time": "s",
+    "overshoot": "",
+    "settling_time": "s",
+    "effort": "rad/s^2",
+    "saturated": "",
+    "energy": "J",
+}
+"""Of each measure, by name."""
+
+MEANINGS = {
+    "rms_position": "root of the mean square of the distance to the reference",
+    "largest_position": "largest distance to the reference",
+    "tail_position": f"the same of the last {TAIL:g} s",
+    "steady_position": f"length of the mean error of the last {TAIL:g} s, at most the second half",
+    "iae_position": "integral of the distance",
+    "itae_position": "integral of time x distance",
+    "largest_yaw": "largest error of the yaw",
+    "rise_time": "from a tenth to nine tenths of a step",
+    "overshoot": "beyond a step, as part of it",
+    "settling_time": "from a step until the distance stays below 2 % of it",
+    "effort": "mean rate at which a rotor's speed changes",
+    "saturated": "share of the controller's updates that the rotors could not follow",
+    "energy": "of the air's torque on the rotors along their way",
+}
+
+_SETTLED = 0.02  # of a step
+_JUMP = 1e-3  # m; a reference that moves more between two rows, and suddenly, has a step
+
+
+def lost(log: Log) -> Optional[float]:
+    """Time from which a vehicle is lost, s, or None."""
+    away = np.flatnonzero(~(distance(log) <= LOST))
+    return float(log.time[away[0]]) if len(away) else None
+
+
+def loss(log: Log) -> str:
+    """Tell when and where a vehicle is lost; "" if it is not."""
+    time = lost(log)
+    if time is None:
+        return ""
+    x, y, z = log.position[np.flatnonzero(log.time == time)[0]]
+    return f"lost at t = {time:.6g} s, x = {x:.4g} m, y = {y:.4g} m, z = {z:.4g} m"
+
+
+def distance(log: Log) -> np.ndarray:
+    """Distance to the reference, m; shape (rows,)."""
+    error = log.topics["error"]
+    length: np.ndarray = np.sqrt(error["x"] ** 2 + error["y"] ** 2 + error["z"] ** 2)
+    return length
+
+
+def rms_and_largest(away: np.ndarray) -> Tuple[float, float]:
+    """Root of the mean square of a distance, and the largest."""
+    return float(np.sqrt(np.mean(away**2))), float(away.max())
+
+
+def measure(
+    log: Log, saturated: float, drag_power: np.ndarray, slow: float = 1.0
+) -> Dict[str, float]:
+    """Measure a flight.
+
+    Parameters
+    ----------
+    log
+        Of a guided flight, evenly spaced.
+    saturated
+        Share of the saturated updates.
+    drag_power
+        Of each rotor, the power of the air's torque on it per cubed speed, W s^3/rad^3;
+        shape (n,).
+    slow
+        How much slower than that speed the joints of the log turn.
+
+    Returns
+    -------
+    dict
+        A number for each of `UNITS`; NaN for what the flight does not have, such as a step.
+    """
+    time, away = log.time - log.time[0], distance(log)
+    tail = time > time[-1] - TAIL
+    late = time > time[-1] - min(TAIL, time[-1] / 2)
+    errors = np.column_stack([log.topics["error"][axis] for axis in "xyz"])
+    yaw = roll_pitch_yaw(log.orientation)[:, 2] - log.topics["reference"]["yaw"]
+    speeds = slow * np.abs(log.rotor_velocity)
+    span = max(time[-1], np.finfo(float).tiny)
+    rise, overshoot, settling = _step(log, away)
+    rms, largest = rms_and_largest(away)
+    return {
+        "rms_position": rms,
+        "largest_position": largest,
+        "tail_position": float(away[tail].max()),
+        "steady_position": float(np.linalg.norm(errors[late].mean(axis=0))),
+        "iae_position": _integral(away, time),
+        "itae_position": _integral(away * time, time),
+        "largest_yaw": float(np.abs(np.remainder(yaw + np.pi, 2 * np.pi) - np.pi).max()),
+        "rise_time": rise,
+        "overshoot": overshoot,
+        "settling_time": settling,
+        "effort": float(np.abs(np.diff(speeds, axis=0)).sum() / span / max(1, speeds.shape[1])),
+        "saturated": saturated,
+        "energy": _integral(speeds**3 @ drag_power, time),
+    }
+
+
+def drag_power(simulation: Simulation) -> np.ndarray:
+    """Give what `measure` is told of the rotors; NaN where no tag says it."""
+    power = math.nan
+    for plugin in simulation.plugins:
+        tags = {tag.name: tag.value for tag in plugin.parameters}
+        if "rotorTorqueCoeff" in tags:
+            power = abs(float(tags["rotorTorqueCoeff"]))
+    return np.full(simulation.rotor_count, power)
+
+
+def slow_down(simulation: Simulation) -> float:
+    """How much slower the rotors turn than their forces assume; 1 where no tag says it."""
+    tags = [tag for plugin in simulation.plugins for tag in plugin.parameters]
+    return max((float(tag.value) for tag in tags if tag.name == "sim_slow"), default=1.0)
+
+
+def _integral(values: np.ndarray, time: np.ndarray) -> float:
+    return float(np.sum((values[1:] + values[:-1]) / 2 * np.diff(time)))
+
+
+def _step(log: Log, away: np.ndarray) -> Tuple[float, float, float]:
+    """Rise, overshoot and settling if the reference has one step, else NaN."""
+    none = math.nan, math.nan, math.nan
+    wanted = np.column_stack([log.topics["reference"][axis] for axis in "xyz"])
+    moved = np.linalg.norm(np.diff(wanted, axis=0), axis=1)
+    if len(moved) < 2:
+        return none
+    at = int(moved.argmax())
+    if moved[at] < _JUMP or moved[at] < 10 * np.delete(moved, at).max():
+        return none
+    size = moved[at]
+    along = (wanted[at + 1] - wanted[at]) / size
+    time = log.time[at + 1 :] - log.time[at + 1]
+    part = (log.position[at + 1 :] - wanted[at]) @ along / size
+    begun, risen = np.flatnonzero(part >= 0.1), np.flatnonzero(part >= 0.9)
+    rise = float(time[risen[0]] - time[begun[0]]) if len(risen) else math.nan
+    outside = np.flatnonzero(away[at + 1 :] > _SETTLED * size)
+    settles = len(outside) == 0 or outside[-1] + 1 < len(time)
+    settling = (float(time[outside[-1] + 1]) if len(outside) else 0.0) if settles else math.nan
+    return rise, float(max(0.0, part.max() - 1)), settling

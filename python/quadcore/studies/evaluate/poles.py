@@ -1,0 +1,136 @@
+"""Poles of the cascaded laws on a vehicle in hover, from the description of both.
+
+Around hover the axes are apart. The rotors follow commands as 1/(tau s + 1), tau = I_R/k_p. An
+angle follows what the outer loop asks for by its PID, whose derivative acts on the measured rate,
+
+    phi/phi_d = (k_p s + k_i) / (s^3 (tau s + 1) + k_d s^2 + k_p s + k_i),
+
+and tilts the thrust, which moves the vehicle by the PID of the position. In yaw the air's torque
+b w^2 on the rotors acts at once, and the reaction I_R dw/dt to their spin-up besides, which chapter
+2 leaves out: together (1 - s/z), z = 2 b w_0 sim_slow / I_R. With the air's torque along the spin
+(b > 0) the zero lies on the right: the vehicle first yaws the wrong way.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Dict, List
+
+import numpy as np
+
+from ... import _core
+from ...control.law import Law
+from ...simulation.engines import LAGRANGE
+from ...simulation.simulation import Simulation
+
+Polynomial = np.ndarray
+
+
+def gains_of(law: Law) -> Dict[str, float]:
+    """Read the parameters with which a law flies: its own, or else its defaults."""
+    table = next(entry[2] for entry in _core.laws() if entry[0] == law.name)
+    flags = {"true": 1.0, "false": 0.0}
+    defaults = {
+        spec.name: flags.get(spec.default, _core.parse_number(spec.default)) for spec in table
+    }
+    return {**{n: v for n, v in defaults.items() if v is not None}, **law.parameters}
+
+
+def has_poles(law: Any) -> bool:
+    """Whether a law is a cascade of PIDs with an inner loop that waits for the motors."""
+    return isinstance(law, Law) and {"kp_xy", "ki_rp", "kd_yaw"} <= set(gains_of(law))
+
+
+def poles(law: Law, simulation: Simulation) -> List[Dict[str, Any]]:
+    """Find the poles of each axis.
+
+    Parameters
+    ----------
+    law
+        For which `has_poles` is true.
+    simulation
+        What it flies, the mathematical model included.
+
+    Returns
+    -------
+    list of dict
+        For each axis: ``axis``, ``poles`` (complex, 1/s), ``zero`` (1/s, infinite without one),
+        ``stable``, and ``because``, the cause of what is not.
+
+    Raises
+    ------
+    InputError
+        A vehicle whose description chapter 2 cannot read.
+    """
+    from ...thesis.chapter2 import Vehicle  # scipy is slow to import
+
+    gains, vehicle = gains_of(law), Vehicle.of(simulation)
+    inertia = float(np.mean(vehicle.rotor_inertia))
+    lag = np.array([inertia / vehicle.motor_gain, 1.0])
+    zero = math.inf
+    if simulation.engine != LAGRANGE:
+        weight = vehicle.mass * float(np.linalg.norm(vehicle.gravity))
+        hover = math.sqrt(weight / (len(vehicle.arms) * vehicle.k))
+        zero = 2 * vehicle.b * hover * vehicle.slow / inertia
+    roll = _pid(gains, "rp")
+    tilt = np.polyadd(np.polymul([1, 0, 0, 0], lag), roll)  # of phi/phi_d above, and its numerator
+    answer = roll[1:]
+    side = np.polyadd(np.polymul([1, 0, 0, 0], tilt), np.polymul(_pid(gains, "xy"), answer))
+    height = np.polyadd(np.polymul([1, 0, 0, 0], lag), _pid(gains, "z"))
+    turned = np.polymul([-1 / zero, 1.0], _pid(gains, "yaw"))
+    yaw = np.polyadd(np.polymul([1, 0, 0, 0], lag), turned)
+    without = np.polyadd(np.polymul([1, 0, 0, 0], lag), _pid(gains, "yaw"))
+    return [
+        _row("x, y", side, math.inf, _too_much_integral(gains)),
+        _row("z", height, math.inf, ""),
+        _row("roll, pitch", tilt, math.inf, ""),
+        _row("yaw", yaw, zero, _wrong_way(zero, _roots(without))),
+    ]
+
+
+def _too_much_integral(gains: Dict[str, float]) -> str:
+    d, p, i = _pid(gains, "xy")
+    if d * p > i:
+        return "the inner loop is too slow for the outer one"
+    return (
+        f"Kd Kp = {d * p:.3g} is not above Ki = {i:.3g}: by Routh and Hurwitz unstable however "
+        "fast the inner loop is"
+    )
+
+
+def _wrong_way(zero: float, without: np.ndarray) -> str:
+    if math.isinf(zero) or zero < 0 or np.any(without.real >= 0):
+        return ""
+    return (
+        f"the zero at 2 b w0 sim_slow / I_R = +{zero:.3g} 1/s: spinning up, the rotors first turn "
+        "the vehicle the wrong way, and the loop is faster than that; without the zero it is stable"
+    )
+
+
+def _pid(gains: Dict[str, float], axis: str) -> Polynomial:
+    """Give k_d s^2 + k_p s + k_i."""
+    return gains["scale"] * np.array([gains[f"k{part}_{axis}"] for part in "dpi"])
+
+
+def _row(axis: str, polynomial: Polynomial, zero: float, cause: str) -> Dict[str, Any]:
+    roots = _roots(polynomial)
+    stable = bool(np.all(roots.real < 0))
+    return {
+        "axis": axis,
+        "poles": [complex(root) for root in roots[np.lexsort((roots.imag, -roots.real))]],
+        "zero": zero,
+        "stable": stable,
+        "because": "" if stable else cause,
+    }
+
+
+def _roots(polynomial: Polynomial) -> np.ndarray:
+    # A gain that is 0 leaves a pole at 0 that nothing excites.
+    roots: np.ndarray = np.roots(np.trim_zeros(polynomial))
+    return roots
+
+
+def text(row: Dict[str, Any], count: int = 3) -> str:
+    """Write the poles farthest to the right, of pairs one."""
+    shown = [pole for pole in row["poles"] if pole.imag >= 0][:count]
+    return ", ".join(f"{p.real:.3g}" + (f" +- {p.imag:.3g}i" if p.imag else "") for p in shown)

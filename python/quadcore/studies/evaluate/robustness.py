@@ -1,0 +1,205 @@
+"""How much a controller forgives: margins by search, a sweep of its rate, a box of wrong beliefs.
+
+A controller believes in the vehicle as it is described, and flies one whose rotors push harder,
+whose air resists more, or whose motors lag longer: a law of quadcore has the described one as its
+belief, one of one's own is told of it by its reset(). So what is forgiven means the same for all.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import (
+    AbstractSet,
+    Any,
+    Callable,
+    Collection,
+    Dict,
+    Generator,
+    Iterator,
+    List,
+    Mapping,
+    NamedTuple,
+    Sequence,
+    Tuple,
+)
+
+import numpy as np
+
+from ..table import NOT_FLOWN
+from .flights import Outcome
+from .trial import Trial
+
+LARGEST_GAIN = 10.0
+LARGEST_DELAY = 0.5  # s
+ENDS = {"gain_low": 1 / LARGEST_GAIN, "gain_high": LARGEST_GAIN, "delay_margin": LARGEST_DELAY}
+"""Where a search ends: a margin of this value is at least so large."""
+RATES = (1000.0, 500.0, 250.0, 125.0, 100.0, 50.0, 25.0)  # 1/s
+BOX = {"thrust": 0.1, "drag": 0.5, "lag": 0.3}
+"""By how much beliefs may be wrong, as part of the right value; the corners are flown, too."""
+
+NAMES = (*ENDS, *(f"rms_at_{rate:g}_Hz" for rate in RATES), "box_median", "box_worst")
+
+_STEPS = 7  # of each bisection: 2 % of a gain, 1 % of the range of the delay
+_SAMPLES = 16  # in the box
+_FIRST_DELAY = 0.004  # s
+_TRIALS = 60  # of a controller, about
+_FLOWN = "rms_position"
+
+Found = Dict[str, float]
+Search = Generator[List[Trial], List[Outcome], Found]
+Fly = Callable[[List[Trial]], List[Outcome]]
+
+
+class Searches:
+    """What is to be found out about controllers: on the first of everything else.
+
+    Parameters
+    ----------
+    controllers
+        Names.
+    lacking
+        What no tag of the vehicle says, see `trial.lacking`: it cannot be varied.
+    """
+
+    def __init__(self, controllers: Sequence[str], lacking: Collection[str]) -> None:
+        self._rows: List[Dict[str, Any]] = [
+            {"controller": name, "failure": NOT_FLOWN, **dict.fromkeys(NAMES, math.nan)}
+            for name in controllers
+        ]
+        self._kinds = [kind.search for kind in _KINDS if not kind.varies & set(lacking)]
+        self._done: Dict[Trial, Outcome] = {}
+
+    @property
+    def expected(self) -> int:
+        """About how many flights that will be."""
+        return _TRIALS * len(self._rows)
+
+    def run(self, fly: Fly) -> None:
+        """Make all searches side by side; `fly` flies what they ask for next."""
+        running: List[Tuple[int, Search]] = []
+        as_it_is = self._flown(fly, [Trial(row) for row in range(len(self._rows))])
+        for trial, outcome in as_it_is.items():
+            if outcome.flew:
+                running += [(trial.controller, kind(trial)) for kind in self._kinds]
+            else:
+                self._rows[trial.controller]["failure"] = outcome.failure
+        asked = [(row, search, next(search)) for row, search in running]
+        while asked:
+            self._flown(fly, [trial for *_, trials in asked for trial in trials])
+            asked = list(self._answered(asked))
+        for row, _ in running:
+            self._rows[row]["failure"] = ""
+
+    def rows(self) -> List[Dict[str, Any]]:
+        """Give a row per controller: `NAMES`, and the reason where nothing could be found."""
+        return [dict(row) for row in self._rows]
+
+    def _flown(self, fly: Fly, trials: Sequence[Trial]) -> Mapping[Trial, Outcome]:
+        new = [trial for trial in dict.fromkeys(trials) if trial not in self._done]
+        self._done.update(zip(new, fly(new)))
+        return self._done
+
+    def _answered(self, asked: Sequence[Tuple[int, Search, List[Trial]]]) -> Iterator[Any]:
+        for row, search, trials in asked:
+            try:
+                yield row, search, search.send([self._done[trial] for trial in trials])
+            except StopIteration as stop:
+                self._rows[row].update(stop.value)
+
+
+def _gain(own: Trial) -> Search:
+    """Find the factors on thrust and torque of all rotors between which it is not lost."""
+
+    def at(logarithm: float) -> Trial:
+        return own._replace(thrust=math.exp(logarithm))
+
+    found = {}
+    for name in ("gain_low", "gain_high"):
+        end = math.log(ENDS[name])
+        if (yield from _flies(at(end))):
+            found[name] = ENDS[name]
+        else:
+            found[name] = math.exp((yield from _between(at, 0.0, end)))
+    return found
+
+
+def _between(at: Callable[[float], Trial], good: float, bad: float) -> Generator[Any, Any, float]:
+    for _ in range(_STEPS):
+        middle = (good + bad) / 2
+        good, bad = (middle, bad) if (yield from _flies(at(middle))) else (good, middle)
+    return good
+
+
+def _delay(own: Trial) -> Search:
+    """Find the largest delay besides the controller's own with which the vehicle is not lost, s."""
+
+    def at(delay: float) -> Trial:
+        return own._replace(delay=delay)
+
+    good, bad = 0.0, _FIRST_DELAY
+    while (yield from _flies(at(bad))):
+        if bad == LARGEST_DELAY:
+            return {"delay_margin": bad}
+        good, bad = bad, min(2 * bad, LARGEST_DELAY)
+    return {"delay_margin": (yield from _between(at, good, bad))}
+
+
+def _rates(own: Trial) -> Search:
+    """Error at each rate; NaN where the vehicle is lost."""
+    outcomes = yield [own._replace(rate=rate) for rate in RATES]
+    return {f"rms_at_{r:g}_Hz": o.measures[_FLOWN] for r, o in zip(RATES, outcomes)}
+
+
+def _box(own: Trial) -> Search:
+    """Worst and median error over wrong beliefs; the worst is infinite if a vehicle is lost."""
+    corners = list(itertools.product(*((1 - part, 1 + part) for part in BOX.values())))
+    inside = np.random.default_rng(0).uniform(-1, 1, (_SAMPLES, len(BOX)))
+    points = [*corners, *(1 + inside * np.array(list(BOX.values()))).tolist()]
+    outcomes = yield [
+        own._replace(**{name: 1 / believed for name, believed in zip(BOX, point)})
+        for point in points
+    ]
+    errors = [o.measures[_FLOWN] if o.flew else math.inf for o in outcomes]
+    return {"box_median": float(np.median(errors)), "box_worst": max(errors)}
+
+
+class _Kind(NamedTuple):
+    """What is searched for, how, and what of the vehicle that varies."""
+
+    name: str
+    search: Callable[[Trial], Search]
+    varies: AbstractSet[str] = frozenset()
+
+
+_KINDS = (
+    _Kind("gain", _gain, {"thrust"}),
+    _Kind("delay", _delay),
+    _Kind("rates", _rates),
+    _Kind("box", _box, set(BOX)),
+)
+
+
+def unsearched(model: str, lacking: Collection[str]) -> str:
+    """Tell in one line what cannot be searched for a vehicle, and why; "" if everything can."""
+    left_out = [kind.name for kind in _KINDS if kind.varies & set(lacking)]
+    if not left_out:
+        return ""
+    verb = "is" if len(left_out) == 1 else "are"
+    return (
+        f"margins: no tag of '{model}' says its {' and its '.join(lacking)}; "
+        f"{' and '.join(left_out)} {verb} not searched"
+    )
+
+
+def _flies(trial: Trial) -> Generator[List[Trial], List[Outcome], bool]:
+    (outcome,) = yield [trial]
+    return outcome.flew
+
+
+def margin_text(row: Mapping[str, Any], name: str, number: Callable[[float], str]) -> str:
+    """Write what was found; a margin at the end of its search is larger, or smaller, than that."""
+    value = row.get(name, math.nan)
+    if value == ENDS.get(name):
+        return f"{'<' if name == 'gain_low' else '>'} {number(value)}"
+    return number(value)

@@ -1,0 +1,104 @@
+"""One flight of a controller on a vehicle that is not quite as it was told."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Collection, Dict, Iterator, List, NamedTuple, Optional, Tuple
+
+from ..._core import parse_number
+from ...control import laws
+from ...control.inner_loop import InnerLoop
+from ...simulation.controller import check_callable, give
+from ...simulation.flight_plan import FlightPlan
+from ...simulation.simulation import Simulation
+from ...simulation.vehicle_tags import SAID
+
+if TYPE_CHECKING:
+    from .plan import Plan
+
+
+class Trial(NamedTuple):
+    """A controller on the first of everything else, and in what flight and vehicle differ."""
+
+    controller: int
+    """By its position in the plan."""
+    delay: float = 0.0
+    """Besides its own, s."""
+    rate: Optional[float] = None
+    """Instead of its own, 1/s."""
+    thrust: float = 1.0
+    """Factor on thrust and torque of the rotors."""
+    drag: float = 1.0
+    lag: float = 1.0
+    """Factor on the time constant of the motors."""
+
+    def flight(self, plan: Plan) -> FlightPlan:
+        """Describe the flight; raises what making the controller raises."""
+        flight = plan.first_of(self.controller)
+        controller = flight.controller
+        if self.rate is not None:
+            give(controller, "rate", self.rate)
+        if self.delay:
+            give(controller, "delay", float(getattr(controller, "delay", 0.0)) + self.delay)
+        if self.thrust == self.drag == self.lag == 1:
+            return flight
+        described = replace(flight, on_reference=False).simulation()
+        if isinstance(controller, laws.Law):
+            if controller.belief is None:
+                controller.belief = described
+        else:
+            controller = _Told(controller, described)
+        changed = {**flight.parameters, **self._changes(described)}
+        return replace(flight, controller=controller, parameters=changed)
+
+    def _changes(self, simulation: Simulation) -> Dict[str, str]:
+        """Give the tags of the vehicle as it flies."""
+        return {
+            key: repr(_number(tag) * getattr(self, name) ** powers[tag.name])
+            for name, powers in SAID.items()
+            for key, tag in _found(simulation, powers)
+        }
+
+
+def lacking(simulation: Simulation) -> List[str]:
+    """Name what no tag of a vehicle says: of thrust, drag and lag."""
+    return [name for name, powers in SAID.items() if not list(_found(simulation, powers))]
+
+
+def _found(simulation: Simulation, names: Collection[str]) -> Iterator[Tuple[str, Any]]:
+    for plugin in simulation.plugins:
+        for tag in plugin.parameters:
+            if tag.name in names:
+                yield f"{plugin.name}.{tag.name}", tag
+
+
+def _number(tag: Any) -> float:
+    number = parse_number(tag.value)
+    assert number is not None  # of a plugin that was built
+    return number
+
+
+class _Told:
+    """A controller of one's own that is told of another vehicle than flies; the rest is its own."""
+
+    def __init__(self, controller: Any, vehicle: Simulation) -> None:
+        check_callable(controller)
+        self._controller, self._vehicle = controller, vehicle
+        own = getattr(controller, "inner_loop", None)
+        if own is None:
+            self.inner_loop = InnerLoop(belief=vehicle)
+        elif isinstance(own, InnerLoop) and own.belief is None:
+            self.inner_loop = InnerLoop(own.spins, vehicle, **own.parameters)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._controller, name)
+
+    def reset(self, _: Simulation) -> None:
+        """Let the controller begin anew."""
+        reset = getattr(self._controller, "reset", None)
+        if reset is not None:
+            reset(self._vehicle)
+
+    def __call__(self, t: float, state: Any, reference: Any) -> Any:
+        """Ask the controller."""
+        return self._controller(t, state, reference)

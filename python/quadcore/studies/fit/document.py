@@ -1,0 +1,100 @@
+"""Values written into the text of a model."""
+
+from __future__ import annotations
+
+from typing import Collection, Dict, List, Mapping, Optional, Tuple
+from xml.parsers import expat
+from xml.sax.saxutils import escape
+
+from ... import _core
+from ..._core import Document, Model
+from ...model.overrides import link_values, with_links
+from ...support.values import Value, text_of
+
+
+def written(document: Document) -> Dict[str, str]:
+    """Give LINK.mass and the like of a document, as they are written."""
+    found: Dict[str, str] = {}
+    places = link_values(document)
+    parser = expat.ParserCreate()
+    path: List[str] = []
+    link = ""
+
+    def start(tag: str, attributes: Mapping[str, str]) -> None:
+        nonlocal link
+        path.append(tag)
+        if path[1:] == ["link"]:
+            link = attributes.get("name", "")
+        if path[1:-1] == ["link", "inertial"]:
+            for name, value in attributes.items():
+                key = f"{link}.{'mass' if tag == 'mass' else name}"
+                if key in places:
+                    found[key] = value
+
+    parser.StartElementHandler = start
+    parser.EndElementHandler = lambda _: path.pop()
+    parser.Parse(document.text, True)
+    return found
+
+
+def with_values(
+    model: Model, values: Mapping[str, Value], aliases: Optional[Mapping[str, str]] = None
+) -> Model:
+    """Write values of plugins' tags and links into a model's text, and read it.
+
+    Parameters
+    ----------
+    model
+        Which has the text.
+    values
+        By ``PLUGIN.TAG``, ``LINK.mass`` and the like.
+    aliases
+        Of names in `values`, under which the text may have them.
+
+    Raises
+    ------
+    InputError
+        The model cannot have them.
+    """
+    changed, tags = with_links(model, {name: text_of(value) for name, value in values.items()})
+    text = changed.document.text.encode()
+    names = {key: {key, (aliases or {}).get(key, key)} for key in tags}
+    edits = [(*_place(text, names[key]), key, escape(value)) for key, value in tags.items()]
+    for begin, end, key, value in sorted(edits, reverse=True):
+        tag = key.rpartition(".")[2]
+        new = value if begin < end else f"<{tag}>{value}</{tag}>"
+        text = text[:begin] + new.encode() + text[end:]
+    document = Document(changed.document.name, text.decode(), changed.document.lines)
+    return _core.read_model(document, list(model.passed_over.ignored))
+
+
+def _place(text: bytes, keys: Collection[str]) -> Tuple[int, int]:
+    """Find the value of a plugin's tag, or where the tag may be put: begin and end in bytes."""
+    plugin = next(iter(keys)).rpartition(".")[0]
+    tags = [[key.rpartition(".")[2]] for key in keys]
+    parser = expat.ParserCreate()
+    found: Dict[str, int] = {}
+    inside: List[str] = []
+
+    def start(element: str, attributes: Mapping[str, str]) -> None:
+        if inside:
+            inside.append(element)
+            if inside[1:] in tags:
+                found["begin"] = text.index(b">", parser.CurrentByteIndex) + 1
+        elif element == "plugin" and attributes.get("name") == plugin:
+            inside.append(element)
+
+    def end(element: str) -> None:
+        if not inside:
+            return
+        if inside[1:] in tags:
+            found["end"] = parser.CurrentByteIndex
+        inside.pop()
+        if not inside:
+            found["last"] = parser.CurrentByteIndex
+
+    parser.StartElementHandler, parser.EndElementHandler = start, end
+    parser.Parse(text, True)
+    if "begin" in found:
+        return found["begin"], found["end"]
+    return found["last"], found["last"]

@@ -1,0 +1,287 @@
+"""Fitting parameters of a model to a flight."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from ..._core import FlightError, InputError, Model
+from ...simulation.engines import STUDIED
+from ...simulation.log import Log
+from ...simulation.simulation import Simulation
+from ...support import arguments
+from ...support.warning import unheard
+from . import record as records
+from .horizons import Horizons
+from .identify import Combination, Identified, identify
+from .problem import Problem, free_parameter, names_of
+from .search import search
+from .subject import Subject
+
+Progress = Callable[[int, int], None]
+
+_KINDS = {
+    "log": ((lambda log: isinstance(log, (Log, str, Path))), "a log, or its file"),
+    "free": arguments.NAMES,
+    "engine": arguments.NAME,
+    "horizon": arguments.POSITIVE,
+    "channels": arguments.or_none(arguments.NAMES),
+    "sensed": arguments.or_none(arguments.NAME),
+    "bounds": arguments.or_none(arguments.BOUNDS),
+    "shift": arguments.LAG,
+    "progress": arguments.or_none(arguments.PROGRESS),
+}
+
+_HELD_OUT = 4  # each so many horizons one is not fitted to
+
+
+class Fit(NamedTuple):
+    """What a flight tells of a model.
+
+    Attributes
+    ----------
+    values : dict of str to float
+        Of each free parameter; where the flight does not tell one, near where it began.
+    start, units : dict
+        Where each began, and its unit.
+    identified : Identified
+        Deviations, covariance, and which combinations alone are told.
+    shift : float
+        By which what was measured lags behind the commands, s.
+    train : dict of str to pair of float
+        By channel, root of the mean square that is left over with the start's values, and with
+        those that were found; each in the channel's unit, starts of horizons fitted.
+    held_out : dict of str to pair of float
+        The same of horizons that were not fitted to.
+    model : Model
+        With the values.
+    """
+
+    values: Dict[str, float]
+    start: Dict[str, float]
+    units: Dict[str, str]
+    identified: Identified
+    shift: float
+    train: Dict[str, Tuple[float, float]]
+    held_out: Dict[str, Tuple[float, float]]
+    model: Model
+
+    @property
+    def combinations(self) -> List[Combination]:
+        """Sums of parameters of which each alone is not told."""
+        return self.identified.combinations
+
+    def __repr__(self) -> str:
+        deviations = self.identified.deviations
+        found = (f"{name} = {v:.6g} +- {deviations[name]:.2g}" for name, v in self.values.items())
+        return f"<Fit: {', '.join(found)}>"
+
+    def told(self) -> List[str]:
+        """Say what the flight does not tell, and how well what it tells is apart, in lines."""
+        lines = [
+            f"not told one by one, only {each} = {each.value:.6g} +- {each.deviation:.2g}"
+            for each in self.combinations
+        ]
+        lines += [f"without effect on this flight: {n}" for n in self.identified.without_effect]
+        if self.shift:
+            lines.append(f"what was measured lags behind the commands by {self.shift:g} s")
+        values = ", ".join(f"{value:.2g}" for value in self.identified.singular_values)
+        return [*lines, f"singular values of the unit derivatives: {values}"]
+
+    def left_over(self) -> List[Tuple[str, str, List[float]]]:
+        """Name each channel with its unit, and what is left over.
+
+        At the start, with what was found, and of that where it was held out.
+        """
+        nan = float("nan")
+        return [
+            (name, records.UNITS[name], [*train, self.held_out.get(name, (nan, nan))[1]])
+            for name, train in self.train.items()
+        ]
+
+
+def fit(
+    model: Union[str, Path, Model],
+    log: Union[Log, str, Path],
+    free: Sequence[str],
+    commands: Union[np.ndarray, str, Path, None] = None,
+    engine: str = STUDIED,
+    horizon: float = 1.0,
+    channels: Optional[Sequence[str]] = None,
+    sensed: Optional[str] = None,
+    bounds: Optional[Mapping[str, Tuple[float, float]]] = None,
+    shift: float = 0.0,
+    parameters: Optional[Mapping[str, Any]] = None,
+    world: Any = None,
+    dt: Optional[float] = None,
+    xacro_args: Optional[Mapping[str, object]] = None,
+    ignore: Sequence[str] = (),
+    progress: Optional[Progress] = None,
+) -> Fit:
+    """Find parameters with which a model flies as a log says.
+
+    The log is cut into horizons, each flown from its first row on a `BatchSimulation`; scipy's
+    least_squares makes what flights leave over small, in the noise that it has itself.
+
+    Parameters
+    ----------
+    model, engine, world, dt, xacro_args, ignore
+        As for `Simulation`.
+    log
+        A log, or its file: pose and velocities; rotor speeds.
+    free
+        Names, ``PLUGIN.TAG``, ``LINK.mass``, ``LINK.ixx``, ``xacro.ARG``.
+    commands
+        As for `Simulation.run`. None: what the log has as topic ``vel_cmd``; without that, what the
+        measured rotor speeds must have been commanded by.
+    horizon
+        Length, s.
+    channels
+        What is compared: some of "position", "attitude", "velocity", "rates", "rotors"; None: all
+        but velocity.
+    sensed
+        Topic of the log to take pose and velocities from.
+    bounds
+        Lowest and highest value by name; None: what is not negative stays so.
+    shift
+        The most by which what was measured may lag behind the commands, s; found then.
+    parameters
+        As for `Simulation`: the values of others, and where the search begins.
+    progress
+        Called as progress(done, at most).
+
+    Returns
+    -------
+    Fit
+        The values, how well the flight tells them, and the model that has them.
+
+    Raises
+    ------
+    InputError
+        Something is at fault; nothing was fitted.
+    FlightError
+        Flights from measured states fail.
+    KeyboardInterrupt
+        Its attribute `model` has the values of the last round.
+    """
+    told = dict(locals())
+    options = ("parameters", "world", "dt", "xacro_args", "ignore")
+    arguments.check({name: told[name] for name in (*_KINDS, *options)}, _KINDS)
+    named = names_of(free)
+    subject = Subject(named, model, engine, world, dt, parameters, xacro_args, ignore)
+    simulation = subject.simulation
+    known = dict(bounds or {})
+    for name in known:
+        if name not in named:
+            raise InputError(f"bound {name}: it is not free; free it, or leave the bound out")
+    wanted = [free_parameter(name, subject, known.get(name)) for name in named]
+    flown = records.read(log, simulation.rotor_count, commands, sensed)
+    names = records.channels(channels, flown)
+    lag, slow = _motors(simulation)
+
+    def problem(is_held_out: bool) -> Problem:
+        pieces = Horizons(
+            flown, subject.make, subject.fixed, simulation.dt, horizon, names, lag, slow,
+            lambda i: (i % _HELD_OUT == _HELD_OUT - 1) == is_held_out,
+        )  # fmt: skip
+        return Problem(pieces, wanted)
+
+    with unheard():
+        train = problem(False)
+        train.horizons.shift = _best_shift(train, round(shift / simulation.dt))
+        try:
+            found = search(train, progress=progress)
+        except KeyboardInterrupt as stop:
+            best = dict(zip([p.name for p in wanted], stop.values.tolist()))  # type: ignore[attr-defined]
+            stop.model = subject.with_values(best)  # type: ignore[attr-defined]
+            raise
+        return _told(train, problem, found, subject)
+
+
+def _told(
+    train: Problem, problem: Callable[[bool], Problem], found: np.ndarray, subject: Subject
+) -> Fit:
+    wanted = train.parameters
+    names = [p.name for p in wanted]
+    train.look(found)
+    left = train.left(found)
+    freedom = len(left) - train.starts.size - len(found)
+    identified = identify(
+        names, found, np.array([p.size for p in wanted]), train.derivative(found), left, freedom
+    )
+    start = np.array([p.start for p in wanted])
+    residuals: List[Dict[str, Tuple[float, float]]] = []
+    for is_held_out in (False, True):
+        try:
+            judged = problem(is_held_out)
+        except InputError:  # too few
+            residuals.append({})
+            continue
+        judged.horizons.shift = train.horizons.shift
+        each = []
+        for tried in (start, found):
+            judged.starts[:] = 0
+            judged.noise = train.noise.copy()
+            each.append(_left_over(judged, tried))
+        residuals.append({name: (each[0][name], each[1][name]) for name in each[0]})
+    values = dict(zip(names, found.tolist()))
+    return Fit(
+        values,
+        dict(zip(names, start.tolist())),
+        {p.name: p.unit for p in wanted},
+        identified,
+        train.horizons.shift * subject.simulation.dt,
+        residuals[0],
+        residuals[1],
+        subject.with_values(values),
+    )
+
+
+def _left_over(problem: Problem, values: np.ndarray) -> Dict[str, float]:
+    """Tell what is left over by channel when starts are fitted; infinite where a flight fails."""
+    try:
+        problem.look(values)
+        problem.correct(values)
+        problem.look(values)
+    except FlightError:
+        return dict.fromkeys(problem.horizons.channels, np.inf)
+    return problem.rms(values)
+
+
+def _best_shift(problem: Problem, most: int) -> int:
+    """Find the lag in steps, from coarse to fine, with a short search for each."""
+    costs: Dict[int, float] = {}
+
+    def cost(steps: int) -> float:
+        if steps not in costs:
+            problem.horizons.shift = steps
+            problem.starts[:] = 0
+            problem.noise[:] = 1
+            values = search(problem, rounds=2)
+            problem.look(values)
+            costs[steps] = float(np.sum(np.log(problem.noise)))
+        return costs[steps]
+
+    if most <= 0:
+        return 0
+    best, reach = 0, 1 << (most.bit_length() - 1)
+    while reach:
+        near = [steps for steps in (best - reach, best, best + reach) if abs(steps) <= most]
+        best = min(near, key=cost)
+        reach //= 2
+    problem.starts[:] = 0
+    problem.noise[:] = 1
+    return best
+
+
+def _motors(simulation: Simulation) -> Tuple[float, float]:
+    """Give moment over gain of the motors, s, and sim_slow; a motor that nobody drives has none."""
+    tags = {tag.name: tag.value for plugin in simulation.plugins for tag in plugin.parameters}
+    gain, slow = float(tags.get("kp", "nan")), float(tags.get("sim_slow", "1"))
+    joints, (_, *links) = simulation.model.joints, simulation.model.links
+    if not joints or not gain > 0:
+        return 0.0, slow
+    axis = np.asarray(joints[0].axis)
+    return float(axis @ np.asarray(links[0].inertia) @ axis) / gain, slow

@@ -1,0 +1,208 @@
+"""What is free in a fit, and what a flight with it leaves over."""
+
+from __future__ import annotations
+
+from typing import Dict, List, Mapping, Optional, Sequence, Tuple
+
+import numpy as np
+
+from ..._core import FlightError, InputError, parse_number
+from ...support import arguments
+from ...support.parameters import did_you_mean
+from .document import written
+from .horizons import Horizons
+from .subject import Subject
+
+_STEP = 1e-4  # of a parameter, for its derivative
+_START_STEPS = (1e-5, 1e-5, 1e-5, 1e-4, 1e-2)
+"""Of a start, for derivatives: position (m), turn (rad), velocity (m/s), rates, rotors (rad/s)."""
+
+_FINEST = {"position": 1e-6, "attitude": 1e-6, "velocity": 1e-6, "rates": 1e-6, "rotors": 1e-4}
+"""What is measured better counts as measured so, in m, rad, s: derivatives are differences."""
+
+_FAR = 1e6
+"""Stands for what a flight that failed leaves over."""
+
+Bounds = Mapping[str, Tuple[float, float]]
+
+
+class Parameter:
+    """One number that is free.
+
+    Parameters
+    ----------
+    name
+        ``PLUGIN.TAG``, ``LINK.mass``, ``LINK.ixx`` or the like, ``xacro.ARG``.
+    subject
+        With the value from which the search begins.
+    bounds
+        Between which it must stay.
+
+    Raises
+    ------
+    InputError
+        The model has no such number, or bounds that do not hold its value.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        subject: Subject,
+        bounds: Tuple[float, float] = (-np.inf, np.inf),
+    ) -> None:
+        plugins, model = subject.simulation.plugins, subject.model
+        tags = {f"{p.name}.{tag.name}": tag for p in plugins for tag in p.parameters}
+        links = written(model.document)
+        if name in subject.arguments:
+            text, self.unit = subject.arguments[name], ""
+        elif name in tags:
+            text, self.unit = tags[name].value, tags[name].unit
+        elif name in links:
+            text, self.unit = links[name], "kg" if name.endswith(".mass") else "kg m^2"
+        else:
+            known = [*tags, *links, *subject.arguments]
+            raise InputError(f"free {name}: model {model.name} has none{did_you_mean(name, known)}")
+        value = parse_number(text)
+        if value is None:
+            raise InputError(f"free {name}: '{text}' is no number; only numbers are fitted")
+        low, high = bounds
+        if not low <= value <= high or low == high:
+            raise InputError(f"bound {name}: begins at {value:g}, not within {low:g} and {high:g}")
+        self.name, self.start, self.bounds = name, value, (low, high)
+        self.size = abs(value) or 1e-2
+
+
+def names_of(free: Sequence[str]) -> List[str]:
+    """List what is free; raises `InputError` for what cannot be."""
+    names = [str(name) for name in arguments.several(free)]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"free {name}: it is named twice; keep one")
+    if not names:
+        raise InputError("nothing is free; name what to fit")
+    return names
+
+
+def free_parameter(name: str, subject: Subject, bounds: Optional[Tuple[float, float]]) -> Parameter:
+    """Make one; without bounds what is not negative stays so."""
+    if bounds is not None:
+        return Parameter(name, subject, bounds)
+    made = Parameter(name, subject)
+    if made.start >= 0 and not name.endswith((".ixy", ".ixz", ".iyz")):
+        made.bounds = (0.0, np.inf)
+    return made
+
+
+class Problem:
+    """Horizons and what is free in them.
+
+    The start of each horizon is free, too, and eliminated: from what a flight leaves over, that
+    part is taken away which another start would have taken away (variable projection, Golub and
+    Pereyra, SIAM J. Numer. Anal. 10, 1973).
+    """
+
+    def __init__(self, horizons: Horizons, parameters: Sequence[Parameter]) -> None:
+        self.horizons, self.parameters = horizons, list(parameters)
+        self.starts = np.zeros((horizons.count, horizons.corrections))
+        sizes = (3, 3, 3, 3, horizons.rotors)
+        self._start_steps = np.repeat(_START_STEPS, sizes)
+        self.noise = np.ones(len(horizons.channels))
+        """Standard deviation of each channel, as far as it is known."""
+        self._of_each = horizons.channel_of_each()
+        self._along = np.zeros((horizons.count, horizons.width, 0))
+        self._by_starts = np.zeros((horizons.count, horizons.width, horizons.corrections))
+
+    def look(self, values: np.ndarray) -> None:
+        """Find what other starts would do near these parameters; they are eliminated from now on.
+
+        Raises
+        ------
+        FlightError
+            A flight fails.
+        """
+        steps = np.diag(self._start_steps)
+        starts = np.stack([self.starts, *(self.starts + step for step in steps)])
+        flown = self.horizons.apart([self._named(values)] * len(starts), starts)
+        if not np.isfinite(flown).all():
+            raise FlightError(
+                "flights from measured states fail; shorten the horizon, or begin with other values"
+            )
+        change = (flown[1:] - flown[0]) / self._start_steps[:, None, None]
+        self._by_starts = np.moveaxis(change, 0, 2)  # (count, width, corrections)
+        self._orient()
+
+    def _orient(self) -> None:
+        weighted = self._by_starts / self._weights[None, :, None]
+        size = np.linalg.norm(weighted, axis=1, keepdims=True)
+        unit = weighted / np.where(size > 0, size, 1)
+        self._along = np.stack([np.linalg.qr(each)[0] for each in unit])
+
+    @property
+    def _weights(self) -> np.ndarray:
+        weights: np.ndarray = self.noise[self._of_each]
+        return weights
+
+    def left(self, values: np.ndarray) -> np.ndarray:
+        """Give what flights leave over that no other starts would take away, in its noise.
+
+        Returns
+        -------
+        ndarray, shape (count * width,)
+        """
+        flown = self.horizons.apart([self._named(values)], self.starts[None])[0]
+        return self._projected(np.nan_to_num(flown, nan=_FAR)).ravel()
+
+    def derivative(self, values: np.ndarray) -> np.ndarray:
+        """Give the derivative of `left` by each parameter, shape (count * width, parameters)."""
+        steps = np.array([_STEP * max(abs(v), p.size) for v, p in zip(values, self.parameters)])
+        inward = np.array([v + h > p.bounds[1] for v, h, p in zip(values, steps, self.parameters)])
+        steps = np.where(inward, -steps, steps)
+        sets = [values, *(values + step for step in np.diag(steps))]
+        starts = np.broadcast_to(self.starts, (len(sets), *self.starts.shape))
+        flown = self.horizons.apart([self._named(each) for each in sets], starts)
+        flown = np.nan_to_num(flown, nan=_FAR)
+        changes = (flown[1:] - flown[0]) / steps[:, None, None]
+        return np.stack([self._projected(change).ravel() for change in changes], axis=1)
+
+    def correct(self, values: np.ndarray) -> None:
+        """Move the starts to where least is left over, and take the noise from what is."""
+        flown = self.horizons.apart([self._named(values)], self.starts[None])[0]
+        for i, (by_start, left) in enumerate(zip(self._by_starts, flown)):
+            weighted = by_start / self._weights[:, None]
+            size = np.linalg.norm(weighted, axis=0)
+            size = np.where(size > 0, size, 1)
+            step = np.linalg.lstsq(weighted / size, left / self._weights, rcond=1e-10)[0] / size
+            self.starts[i] -= step
+
+    def learn_noise(self, values: np.ndarray) -> None:
+        """Take each channel's noise from what is left over."""
+        left = self.left(values).reshape(self.horizons.count, -1) * self._weights
+        free = 1 - self._along.shape[2] / self.horizons.width
+        for channel in range(len(self.noise)):
+            part = left[:, self._of_each == channel]
+            least = _FINEST[self.horizons.channels[channel]]
+            self.noise[channel] = max(np.sqrt(np.mean(part**2) / max(free, 0.1)), least)
+        if self._along.shape[2]:
+            self._orient()
+
+    def rms(self, values: np.ndarray) -> Dict[str, float]:
+        """Tell what is left over by channel, root of the mean square in its unit."""
+        left = self.left(values).reshape(self.horizons.count, -1) * self._weights
+        return {
+            name: float(np.sqrt(np.mean(left[:, self._of_each == i] ** 2)))
+            for i, name in enumerate(self.horizons.channels)
+        }
+
+    def _projected(self, flown: np.ndarray) -> np.ndarray:
+        weighted = (flown / self._weights)[:, :, None]
+        taken = self._along @ (np.swapaxes(self._along, 1, 2) @ weighted)
+        rest: np.ndarray = (weighted - taken)[:, :, 0]
+        return rest
+
+    def _named(self, values: np.ndarray) -> Dict[str, float]:
+        return {p.name: float(v) for p, v in zip(self.parameters, values)}
+
+
+def bounds_of(parameters: Sequence[Parameter]) -> Tuple[List[float], List[float]]:
+    """Give lower and upper bounds."""
+    return [p.bounds[0] for p in parameters], [p.bounds[1] for p in parameters]

@@ -1,0 +1,139 @@
+"""What was commanded and what was measured of one flight."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from ..._core import InputError
+from ...simulation.commands import as_commands
+from ...simulation.log import Log
+from ...support import arguments
+
+CHANNELS: Dict[str, int] = {"position": 3, "attitude": 3, "velocity": 3, "rates": 3, "rotors": 0}
+"""What can be measured, with the numbers of each; `rotors` has one for each rotor."""
+
+UNITS = {"position": "m", "attitude": "rad", "velocity": "m/s", "rates": "rad/s", "rotors": "rad/s"}
+
+_COMMANDS = "vel_cmd"
+
+
+class Record(NamedTuple):
+    """One flight.
+
+    Attributes
+    ----------
+    time : ndarray (rows,)
+        s
+    position, velocity, rates : ndarray (rows, 3)
+        As `Log` has them, m, m/s, rad/s.
+    orientation : ndarray (rows, 4)
+        Unit quaternions x, y, z, w.
+    rotors : ndarray (rows, n)
+        Joint velocities, rad/s.
+    commands : ndarray (m, 1 + n), optional
+        t, w1..wn; each row holds until the next. None: nobody wrote them down.
+    """
+
+    time: np.ndarray
+    position: np.ndarray
+    orientation: np.ndarray
+    velocity: np.ndarray
+    rates: np.ndarray
+    rotors: np.ndarray
+    commands: Optional[np.ndarray]
+
+
+def read(
+    log: Union[Log, str, Path],
+    rotors: int,
+    commands: Union[np.ndarray, str, Path, None] = None,
+    sensed: Optional[str] = None,
+) -> Record:
+    """Read a flight.
+
+    Parameters
+    ----------
+    log
+        A log, or its file.
+    rotors
+        Of the vehicle.
+    commands
+        A table or a file; None takes what the log has as topic ``vel_cmd``, if it has.
+    sensed
+        Topic of the log that has pose and velocities as they were measured, ``odom``; None takes
+        the state.
+
+    Raises
+    ------
+    InputError
+        Fewer than two rows, another number of rotors, no such topic, or commands that are none.
+    """
+    where = "log" if isinstance(log, Log) else str(log)
+    flown = log if isinstance(log, Log) else Log.of_file(log)
+    if len(flown.time) < 2:
+        raise InputError(f"{where}: has {len(flown.time)} rows; a flight has at least 2")
+    if flown.rotor_velocity.shape[1] != rotors:
+        raise InputError(
+            f"{where}: has {flown.rotor_velocity.shape[1]} rotors, the model has {rotors}"
+        )
+    if commands is not None:
+        table: Optional[np.ndarray] = as_commands(commands, rotors)
+    elif _COMMANDS in flown.topics:
+        table = _commands_of(flown)
+    else:
+        table = None
+    if sensed is None:
+        parts: Tuple[np.ndarray, ...] = (
+            flown.position,
+            flown.orientation,
+            flown.linear_velocity,
+            flown.angular_velocity,
+        )
+    else:
+        parts = _sensed(flown, where, sensed)
+    position, orientation, velocity, rates = parts
+    return Record(
+        flown.time.copy(), position, orientation, velocity, rates, flown.rotor_velocity, table
+    )
+
+
+def channels(given: Optional[Sequence[str]], flown: Record) -> List[str]:
+    """Choose what is compared; raises `InputError` for what there is not."""
+    if given is None:
+        return ["position", "attitude", "rates"] + ["rotors"] * (flown.commands is not None)
+    given = arguments.several(given)
+    if not given:
+        raise InputError(f"channels is {given}; give some of {', '.join(CHANNELS)}")
+    for name in given:
+        if name not in CHANNELS:
+            known = ", ".join(CHANNELS)
+            raise InputError(f"there is no channel '{name}'; give some of {known}")
+    return [name for name in CHANNELS if name in given]
+
+
+def _sensed(log: Log, where: str, topic: str) -> Tuple[np.ndarray, ...]:
+    fields = log.topics.get(topic, {})
+    names = ("x y z", "qx qy qz qw", "vx vy vz", "wx wy wz")
+    if not set(" ".join(names).split()) <= set(fields):
+        known = ", ".join(log.topics) or "none"
+        raise InputError(
+            f"{where}: no topic '{topic}' with a pose and velocities; its topics: {known}; fly "
+            "with --log-topics odom"
+        )
+    parts = [np.column_stack([fields[name] for name in each.split()]) for each in names]
+    parts[1] /= np.linalg.norm(parts[1], axis=1, keepdims=True)
+    return tuple(parts)
+
+
+def _commands_of(log: Log) -> Optional[np.ndarray]:
+    """Give each command once, with the time at which it came; None before the first."""
+    fields = log.topics[_COMMANDS]
+    table = np.column_stack(
+        [fields["stamp"], *(fields[name] for name in fields if name != "stamp")]
+    )
+    table = table[np.isfinite(table).all(axis=1)]
+    new = np.diff(table[:, 0], prepend=-np.inf) > 0
+    return table[new] if new.any() else None

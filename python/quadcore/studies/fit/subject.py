@@ -1,0 +1,98 @@
+"""The model that is fitted, which is expanded anew for each value of an argument of xacro."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Dict, Mapping, Optional, Sequence, Union
+
+from ..._core import InputError, Model, World
+from ...model.description import read_both, xacro_arguments
+from ...model.overrides import XACRO, check_names, with_links, without_xacro
+from ...simulation.simulation import Simulation
+from ...support.values import text_of
+from .document import with_values
+
+_PREFIX = f"{XACRO}."
+
+
+class Subject:
+    """A model, what is set of it, and what is free.
+
+    Parameters
+    ----------
+    free
+        Names of what is free.
+    model, engine, world, dt, parameters, xacro_args, ignore
+        As for `fit`.
+
+    Attributes
+    ----------
+    model : Model
+        With the values from which the search begins.
+    simulation : Simulation
+        Of that.
+    arguments : dict of str to str
+        What each ``xacro.ARG`` is then; empty unless one is free.
+    make : dict
+        Keywords of `BatchSimulation` but for n, dt and parameters.
+    fixed : dict of str to str
+        Parameters of it that are set and not free.
+
+    Raises
+    ------
+    InputError
+        Something is at fault, or the model is read already and an argument of it is free.
+    """
+
+    def __init__(
+        self,
+        free: Sequence[str],
+        model: Union[str, Path, Model],
+        engine: str,
+        world: Union[str, Path, World, None],
+        dt: Optional[float],
+        parameters: Optional[Mapping[str, Any]],
+        xacro_args: Optional[Mapping[str, object]],
+        ignore: Sequence[str],
+    ) -> None:
+        of_xacro, others = without_xacro(parameters, xacro_args)
+        read, world = read_both(model, world, of_xacro, ignore)
+        check_names(read, [*(parameters or {}), *free])
+        given = {name: text_of(value) for name, value in others.items()}
+        self.model, tags = with_links(read, given)
+        self.simulation = Simulation(self.model, engine=engine, world=world, dt=dt, parameters=tags)
+        self.arguments: Dict[str, str] = {}
+        begin: Union[str, Path, Model] = self.model
+        found = [name for name in free if name.startswith(_PREFIX)]
+        if found:
+            if isinstance(model, Model):
+                raise InputError(f"free {found[0]}: the model is read already; give its file")
+            known = xacro_arguments(model, of_xacro)
+            self.arguments = {_PREFIX + name: text for name, text in known.items()}
+            of_xacro = {n: value for n, value in of_xacro.items() if _PREFIX + n not in free}
+            begin, tags = model, given
+        else:
+            of_xacro = {}
+        self.fixed = {name: value for name, value in tags.items() if name not in free}
+        self.make: Dict[str, Any] = {
+            "model": begin,
+            "engine": engine,
+            "world": world,
+            "xacro_args": of_xacro,
+            "ignore": ignore,
+        }
+
+    def with_values(self, values: Mapping[str, float]) -> Model:
+        """Read the model that has values of what is free, and what was set besides."""
+        make = self.make
+        of_xacro, others = without_xacro(values, make["xacro_args"])
+        read, _ = read_both(make["model"], make["world"], of_xacro, make["ignore"])
+        aliases = {
+            f"{plugin.name}.{tag.name}": f"{plugin.name}.{tag.alias}"
+            for plugin in self.simulation.plugins
+            for tag in plugin.parameters
+            if tag.alias
+        }
+        names = {alias: name for name, alias in aliases.items()}
+        fixed = {names.get(name, name): value for name, value in self.fixed.items()}
+        return with_values(read, {**fixed, **others}, aliases)

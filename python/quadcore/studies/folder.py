@@ -1,0 +1,128 @@
+"""The folder that a study writes into: one study at a time, and only its own files replaced."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import json
+import os
+import threading
+import time
+from pathlib import Path
+from typing import Any, Callable, Iterable, Iterator, List, Mapping, Optional, Set
+
+from .._core import InputError
+from ..support import interrupts
+from ..support.files import prepare_folder, unwritable
+from ..support.reading import read_bytes
+from .table import json_bytes, save
+
+_LOCK = ".quadcore.lock"
+_PATIENCE = 10.0  # s; for one that was killed a moment ago and has not let go yet
+_LARGEST = 10**9  # bytes of a document
+
+_held: Set[str] = set()  # by threads of this process, which file locks do not keep apart
+_held_lock = threading.Lock()
+
+
+@contextlib.contextmanager
+def output_folder(folder: Optional[Path], names: Iterable[str] = ()) -> Iterator[None]:
+    """Make a folder for files of these names, and keep other studies from it until the end.
+
+    Parameters
+    ----------
+    folder
+        None keeps nothing.
+    names
+        Files that must be writable.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be made, a file cannot be written, or another study writes there.
+    """
+    if folder is None:
+        yield
+        return
+    prepare_folder(folder, names)
+    real = os.path.realpath(folder)
+    with _held_lock:
+        if real in _held:
+            raise _taken(folder)
+        _held.add(real)
+    try:
+        number = _locked(folder)
+        try:
+            yield
+        finally:
+            with interrupts.held():
+                with contextlib.suppress(OSError):
+                    os.unlink(folder / _LOCK)
+                os.close(number)
+    finally:
+        _held.discard(real)
+
+
+def _locked(folder: Path) -> int:
+    """Lock the folder's file; forked processes do not inherit such a lock."""
+    path = folder / _LOCK
+    end = time.monotonic() + _PATIENCE
+    while True:
+        try:
+            number = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o666)
+        except OSError as error:
+            raise unwritable(path, error) from error
+        with contextlib.suppress(OSError):
+            fcntl.lockf(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if os.path.samestat(os.fstat(number), os.stat(path)):  # else its holder removed it
+                return number
+        os.close(number)
+        if time.monotonic() > end:
+            raise _taken(folder)
+        time.sleep(0.1)
+
+
+def _taken(folder: Path) -> InputError:
+    return InputError(f"{folder}: another study is writing there; wait, or name another folder")
+
+
+def remove_listed(folder: Path, document: str, key: str, is_ours: Callable[[str], Any]) -> None:
+    """Remove files that an earlier study lists in its document, and no others.
+
+    Parameters
+    ----------
+    folder
+        Where the files and the document are.
+    document
+        Name of a JSON file; a missing or damaged one lists nothing.
+    key
+        Of the list of file names.
+    is_ours
+        Whether a study can have written a file of a name.
+    """
+    try:
+        listed = json.loads(read_bytes(folder / document, _LARGEST)).get(key, [])
+    except (InputError, ValueError, AttributeError, RecursionError):
+        return
+    for name in listed if isinstance(listed, list) else []:
+        if isinstance(name, str) and is_ours(name):
+            with contextlib.suppress(OSError):
+                (folder / name).unlink()
+
+
+def remove_pictures(folder: Path, document: str, is_picture: Callable[[str], bool]) -> None:
+    """Remove the pictures of an earlier study; `is_picture` takes a name without its suffix."""
+
+    def is_ours(name: str) -> bool:
+        return name.endswith(".png") and is_picture(name[: -len(".png")])
+
+    remove_listed(folder, document, "pictures", is_ours)
+
+
+def save_pictures(
+    folder: Path, document: str, content: Mapping[str, Any], images: Mapping[str, bytes]
+) -> List[Path]:
+    """Write pictures, by name without suffix, and list them in the document of this content."""
+    pictures = {f"{name}.png": data for name, data in images.items()}
+    save(folder, {document: json_bytes({**content, "pictures": list(pictures)})})
+    return save(folder, pictures)

@@ -1,0 +1,88 @@
+"""How far one flight is from another."""
+
+from __future__ import annotations
+
+from typing import Dict, NamedTuple, Sequence
+
+import numpy as np
+
+from ..simulation.log import Log
+from ..support.rotation import angles_between
+
+# Lengths of the difference vectors, and the angle between the attitudes.
+_WHOLE = {"position": "m", "attitude": "rad", "velocity": "m/s", "rates": "rad/s"}
+_PARTS = {
+    **dict.fromkeys(("x", "y", "z"), "m"),
+    **dict.fromkeys(("roll", "pitch", "yaw"), "rad"),
+    **dict.fromkeys(("vx", "vy", "vz"), "m/s"),
+    **dict.fromkeys(("wx", "wy", "wz"), "rad/s"),
+}
+
+
+def states(rotor_count: int) -> Dict[str, str]:
+    """Names and units of the columns of `differences`."""
+    return {**_WHOLE, **_PARTS, **{f"j{i}": "rad/s" for i in range(1, 1 + rotor_count)}}
+
+
+def differences(against: Log, log: Log) -> np.ndarray:
+    """Differences of each state from that of another flight, over the time that both cover.
+
+    Where the flights were logged at different times, the other one is interpolated.
+
+    Returns
+    -------
+    ndarray, shape (rows, 16 + n)
+        Columns as `states` names them for the other's n rotors; angles within [-pi, pi], of the
+        two triples that an attitude has the nearer. A flight with another number of rotors has NaN
+        for them.
+    """
+    log = Log(log.table[log.time <= against.time[-1] + 1e-9], {})
+    against = _at(log.time, against)
+    position = log.position - against.position
+    angles = angles_between(log.rpy, against.rpy)
+    # |q - p| and |q + p| are 2 sin and 2 cos of a quarter of the angle: exact for small angles too,
+    # and blind to the sign of a quaternion.
+    apart = np.linalg.norm(log.orientation - against.orientation, axis=1)
+    together = np.linalg.norm(log.orientation + against.orientation, axis=1)
+    attitude = 4 * np.arctan2(np.minimum(apart, together), np.maximum(apart, together))
+    velocity = log.linear_velocity - against.linear_velocity
+    rates = log.angular_velocity - against.angular_velocity
+    if log.rotor_velocity.shape == against.rotor_velocity.shape:
+        rotors = log.rotor_velocity - against.rotor_velocity
+    else:
+        rotors = np.full_like(against.rotor_velocity, np.nan)
+    lengths = [np.linalg.norm(vector, axis=1) for vector in (position, velocity, rates)]
+    whole = np.stack([lengths[0], attitude, *lengths[1:]], axis=1)
+    return np.hstack([whole, position, angles, velocity, rates, rotors])
+
+
+class Sizes(NamedTuple):
+    """Sizes of the difference of two flights over their time, by state."""
+
+    final: Dict[str, float]
+    """With its sign."""
+    largest: Dict[str, float]
+    """Of magnitudes."""
+    rms: Dict[str, float]
+
+
+def sizes(rows: np.ndarray, names: Sequence[str]) -> Sizes:
+    """Measure differences of the states of these names; rows of shape (rows, states)."""
+    magnitudes = np.abs(rows)
+    found = (rows[-1], magnitudes.max(axis=0), np.sqrt((magnitudes**2).mean(axis=0)))
+    return Sizes(*(dict(zip(names, values.tolist())) for values in found))
+
+
+def metrics(against: Log, log: Log) -> np.ndarray:
+    """Find the final and the largest difference of each state; shape (2, 16 + n)."""
+    names = states(against.rotor_velocity.shape[1])
+    found = sizes(differences(against, log), list(names))
+    return np.array([list(found.final.values()), list(found.largest.values())])
+
+
+def _at(time: np.ndarray, log: Log) -> Log:
+    if np.array_equal(time, log.time[: len(time)]):
+        return Log(log.table[: len(time)], {})
+    table = np.stack([np.interp(time, log.time, column) for column in log.table.T], axis=1)
+    table[:, 4:8] /= np.linalg.norm(table[:, 4:8], axis=1, keepdims=True)
+    return Log(table, {})

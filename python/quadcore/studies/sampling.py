@@ -1,0 +1,28 @@
+"""Which of many flights, and which rows of a log, are kept to be drawn."""
+
+from __future__ import annotations
+
+from typing import List
+
+import numpy as np
+
+from ..simulation.log import Log
+
+_POINTS = 600  # per flight: finer than a picture shows
+
+
+def evenly(count: int, most: int) -> List[int]:
+    """All of so many, or evenly many with the first and the last."""
+    return [round(i) for i in np.linspace(0, count - 1, min(count, most))]
+
+
+def thinned(log: Log, most: int = _POINTS) -> Log:
+    """Rows enough to draw."""
+    picked = evenly(len(log), most)
+    topics = {
+        name: {field: column[picked] for field, column in fields.items()}
+        for name, fields in log.topics.items()
+    }
+    kept = Log(log.table[picked], {}, topics=topics)
+    kept.per_command = log.per_command
+    return kept

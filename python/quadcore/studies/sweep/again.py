@@ -1,0 +1,67 @@
+"""The command line that flies a row again."""
+
+from __future__ import annotations
+
+import shlex
+from typing import Any, Dict, List, Mapping, Optional
+
+from ...control import laws
+from ..variation import OF_CONTROLLER
+from .plan import AnyPlan, Plan
+
+
+def command(plan: AnyPlan, row: int) -> Optional[str]:
+    """Write the command line of a row; None if it was an object of one's own that flew."""
+    if not isinstance(plan, Plan):
+        return None
+    controller, reference, engine, model, at, seed = plan.place(row)
+    told, point = plan.told(), plan.design[at]
+    flags: Dict[str, Any] = {"engine": plan.engines[engine], "world": told["world"]}
+    if plan.is_guided:
+        flown = plan.thing(controller)
+        if not isinstance(flown, str):
+            return None
+        flags["controller"] = _with_values(plan, row, flown, point)
+        flags["reference"] = plan.references[reference]
+        flags["controller-rate"], flags["delay"] = told["controller_rate"], told["delay"]
+        for name in ("rate", "delay"):
+            given = point.get(f"{OF_CONTROLLER}{name}")
+            if given is not None:
+                flags["controller-rate" if name == "rate" else name] = given
+    else:
+        flags["commands"] = told["commands"]
+    for name in ("world", "scenario"):
+        flags[name] = point.get(name, flags.get(name))
+    flags.update(seed=plan.first_seed + seed, duration=told["duration"], dt=plan.dt)
+    if told["spawn"] is not None:
+        flags["spawn"] = ",".join(map(repr, told["spawn"]))
+    words = ["quadcore", "run", plan.models[model]]
+    words += [f"--{name}={_text(value)}" for name, value in flags.items() if value is not None]
+    words += [f"--xacro={name}:={value}" for name, value in told["xacro"].items()]
+    words += [f"--set={name}={value}" for name, value in _set(told["set"], point).items()]
+    words += [f"--ignore={name}" for name in told["ignore"]]
+    words.append(f"--log-every={told['log_every']}")
+    return " ".join(map(shlex.quote, words))
+
+
+def _set(common: Mapping[str, str], point: Mapping[str, str]) -> Dict[str, str]:
+    values = dict(common)
+    for names, value in point.items():
+        if names not in ("world", "scenario") and not names.startswith(OF_CONTROLLER):
+            values.update(dict.fromkeys(names.split(","), value))
+    return values
+
+
+def _with_values(plan: Plan, row: int, text: str, point: Mapping[str, str]) -> str:
+    """Name a law with what the point gives it."""
+    keys = [name[len(OF_CONTROLLER) :] for name in point if name.startswith(OF_CONTROLLER)]
+    if not set(keys) - {"rate", "delay"}:
+        return text
+    law: Any = plan.spec(row).plan.controller
+    assert isinstance(law, laws.Law)  # else it was refused
+    values: List[str] = [f"{name}={value!r}" for name, value in law.parameters.items()]
+    return f"{law.name}:{','.join(values)}"
+
+
+def _text(value: Any) -> str:
+    return f"{value:.17g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,102 @@
+"""Rows that are flown together: open loop, on one batch."""
+
+from __future__ import annotations
+
+from typing import List, Optional, Sequence
+
+import numpy as np
+
+from ... import _core
+from ..._core import QuadcoreError
+from ...simulation.flight import steps_within
+from ...simulation.flight_plan import FlightPlan
+from ...simulation.log import Log
+from ...support.warning import unheard
+from ..time_limit import time_limit
+from . import motion
+from .spec import Flight, Row, Spec
+
+ENGINE = "eigen"
+"""In which several vehicles share each instruction."""
+
+_SLIP = 1e-9  # s; by which a command may come late, as in a flight by itself
+
+
+def fly_together(specs: Sequence[Spec]) -> Optional[List[Row]]:
+    """Fly rows on one batch, each to the same bytes as by itself; None if they cannot be.
+
+    Parameters
+    ----------
+    specs
+        Of the rows.
+    """
+    flights = [spec for spec in specs if isinstance(spec, Flight)]
+    if len(flights) < max(2, len(specs)) or not _are_alike([spec.plan for spec in flights]):
+        return None
+    try:
+        with time_limit(len(flights) * flights[0].limit), unheard():
+            return _fly(flights)
+    except QuadcoreError:  # each by itself says whose fault it is
+        return None
+
+
+def _are_alike(plans: Sequence[FlightPlan]) -> bool:
+    """Whether plans differ in nothing but the vehicle, its pose and the seed."""
+    first = plans[0]
+    return (
+        first.engine == ENGINE
+        and first.commands is not None
+        and first.rotor_velocity is None
+        and all(
+            plan.controller is None
+            and plan.world is first.world
+            and plan.commands is first.commands
+            and (plan.engine, plan.dt, plan.duration, plan.log_every)
+            == (first.engine, first.dt, first.duration, first.log_every)
+            for plan in plans
+        )
+    )
+
+
+def _fly(flights: Sequence[Flight]) -> List[Row]:
+    plans = [spec.plan for spec in flights]
+    first = plans[0]
+    assert first.commands is not None
+    batch = _core.Batch(
+        [plan.model for plan in plans],
+        first.world,
+        first.engine,
+        first.dt,
+        [dict(plan.parameters) for plan in plans],
+        np.array([plan.spawn for plan in plans]),
+        np.array([plan.seed for plan in plans], np.uint64),
+        1,
+    )
+    steps = steps_within(first.duration, batch.dt)
+    logged = range(0, steps + 1, first.log_every)
+    rotors = (batch.state_width - 13) // 2
+    tables = np.empty((len(plans), len(logged), 14 + rotors))
+    state = np.empty((len(plans), batch.state_width))
+    # The first step that each row of the commands is there for.
+    begins = np.ceil((first.commands[:, 0] - _SLIP) / batch.dt).astype(int)
+    stops = sorted({*logged, *begins[(begins > 0) & (begins < steps)].tolist()})
+    flown = row = 0
+    for stop in stops:
+        if stop > flown:
+            batch.step(None, stop - flown)
+            flown = stop
+        if stop % first.log_every == 0:
+            batch._write_state(state)
+            tables[:, row, 0] = stop * batch.dt
+            tables[:, row, 1:] = state[:, : 13 + rotors]
+            row += 1
+        now = int(np.searchsorted(begins, stop, "right")) - 1
+        if now >= 0 and (begins[now] == stop or stop == 0):
+            held = np.broadcast_to(first.commands[now, 1:], (len(plans), batch.command_width))
+            batch.step(np.ascontiguousarray(held), 0)
+    return [
+        Row(spec.row, failure, None if failure else motion.measure(Log(table, {})), print_)
+        for spec, failure, table, print_ in zip(
+            flights, batch.failures, tables, [spec.fingerprint() for spec in flights]
+        )
+    ]

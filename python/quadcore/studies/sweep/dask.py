@@ -1,0 +1,75 @@
+"""Rows flown by a Dask cluster."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from typing import Any, Callable, Iterator, Tuple
+
+from ..._core import QuadcoreError
+from ...support.extras import needed
+
+_PATIENCE = 30.0  # s; for a scheduler to answer
+
+
+@contextmanager
+def cluster(address: str) -> Iterator[Tuple[Any, Callable[[], None]]]:
+    """Be a client of a scheduler.
+
+    Parameters
+    ----------
+    address
+        Of it, ``tcp://HOST:PORT``.
+
+    Returns
+    -------
+    tuple
+        An executor, and what raises `QuadcoreError` when the scheduler is gone.
+
+    Raises
+    ------
+    QuadcoreError
+        No scheduler answers.
+    """
+    with needed("--dask", "distributed", "dask"):
+        from distributed import Client
+
+    with _quiet():
+        yield from _of(Client, address)
+
+
+def _of(make: Any, address: str) -> Iterator[Tuple[Any, Callable[[], None]]]:
+    try:
+        client = make(address, timeout=_PATIENCE, set_as_default=False)
+    except (OSError, ValueError) as error:
+        reason = " ".join(str(error).split())
+        raise QuadcoreError(f"{address}: no scheduler answers: {reason[:200]}") from error
+
+    def check() -> None:
+        if client.status != "running":
+            raise QuadcoreError(
+                f"{address}: the scheduler is gone; the rows so far are kept, --resume flies the "
+                "rest"
+            )
+
+    try:
+        yield client.get_executor(pure=False), check
+    finally:
+        client.close(timeout=1)
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Let what the client says of a lost scheduler be told once, by us."""
+    import logging
+
+    known = logging.root.manager.loggerDict
+    names = [name for name in known if name.partition(".")[0] in ("distributed", "tornado")]
+    loggers = [logging.getLogger(name) for name in names]
+    before = [logger.level for logger in loggers]
+    try:
+        for logger in loggers:
+            logger.setLevel(logging.CRITICAL)
+        yield
+    finally:
+        for logger, level in zip(loggers, before):
+            logger.setLevel(level)

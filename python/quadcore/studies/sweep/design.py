@@ -1,0 +1,181 @@
+"""Which points of the axes are flown."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+
+from ..._core import InputError
+from ...support.reading import read_text
+from ..axes import Axis, axes_of, parse_axis
+from . import distributions
+
+LARGEST = 1_000_000
+"""Rows of one sweep."""
+
+_LARGEST = 10**8  # bytes of a table of points
+
+Point = Dict[str, str]
+
+
+class Block(NamedTuple):
+    """Axes that vary together, with a row of values for each of their points."""
+
+    names: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    is_drawn: bool = False
+
+
+class Design(Sequence[Point]):
+    """All combinations of the points of several blocks; the last block runs fastest.
+
+    Parameters
+    ----------
+    vary
+        By name of an axis its values: a list, a text as of ``--vary``, or a distribution, that is
+        what has a method ppf. An axis may be several, joined by commas.
+    points
+        A CSV file, whose rows are points of the axes that its header names.
+    design, samples, seed
+        See `distributions.drawn`.
+
+    Raises
+    ------
+    InputError
+        No values, or a name on two axes.
+    """
+
+    def __init__(
+        self,
+        vary: Mapping[str, Any],
+        points: Optional[Union[str, Path]] = None,
+        design: str = "latin",
+        samples: Optional[int] = None,
+        seed: int = 0,
+    ) -> None:
+        listed: Dict[str, Any] = {}
+        self.drawn: Dict[str, Any] = {}
+        """Distributions by axis."""
+        for name, given in vary.items():
+            made = distributions.parse(name, given) if isinstance(given, str) else given
+            if hasattr(made, "ppf"):
+                self.drawn[name] = made
+            else:
+                listed[name] = parse_axis(name, given).values if isinstance(given, str) else given
+        self.kind, self.samples = design, samples
+        blocks = [Block([axis.name], _Column(axis)) for axis in axes_of(listed)]
+        if points is not None:
+            blocks.append(_table(Path(points)))
+        if self.drawn:
+            names = list(self.drawn)
+            if samples is None:
+                raise InputError(f"vary {names[0]}: is drawn; say how many --samples")
+            if samples > LARGEST:
+                raise InputError(f"samples is {samples}; at most {LARGEST} rows are swept")
+            values = list(self.drawn.values())
+            rows = distributions.drawn(names, values, design, samples, seed)
+            blocks.append(Block(names, rows, is_drawn=True))
+        elif samples is not None:
+            raise InputError(
+                f"samples is {samples} but no axis is drawn; vary one as {', '.join(forms())}"
+            )
+        self.blocks = blocks
+        self._sizes = [len(block.rows) for block in blocks]
+        self._check_names()
+
+    @property
+    def names(self) -> List[str]:
+        """Of all axes, in the order of the blocks."""
+        return [name for block in self.blocks for name in block.names]
+
+    def __len__(self) -> int:
+        return math.prod(self._sizes)
+
+    def __getitem__(self, i: Any) -> Any:
+        if not 0 <= i < len(self):
+            raise IndexError(i)
+        where = []
+        for size in reversed(self._sizes):
+            i, at = divmod(i, size)
+            where.append(at)
+        return {
+            name: value
+            for block, at in zip(self.blocks, reversed(where))
+            for name, value in zip(block.names, block.rows[at])
+        }
+
+    def values(self, name: str) -> Iterator[str]:
+        """All values of an axis, the same perhaps often; none if there is no such axis."""
+        for block in self.blocks:
+            if name in block.names:
+                column = list(block.names).index(name)
+                yield from (row[column] for row in block.rows)
+
+    def to_try(self) -> List[Point]:
+        """Choose points in which each axis once has each value, or its ends if there are many."""
+        if not len(self):
+            return []
+        first: Point = self[0]
+        chosen = [first]
+        for block in self.blocks:
+            for at in _ends(block) if len(block.rows) > _FEW else range(len(block.rows)):
+                chosen.append({**first, **dict(zip(block.names, block.rows[at]))})
+        return list({tuple(point.items()): point for point in chosen}.values())
+
+    def _check_names(self) -> None:
+        taken: List[str] = []
+        for name in self.names:
+            for part in name.split(","):
+                if part in taken:
+                    raise InputError(f"vary {part}: it is varied twice; keep one")
+                taken.append(part)
+
+
+_FEW = 16  # values of an axis that are all tried before anything flies
+
+
+class _Column(Sequence[Tuple[str]]):
+    """The values of one axis as rows."""
+
+    def __init__(self, axis: Axis) -> None:
+        self._values = axis.values
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __getitem__(self, i: Any) -> Any:
+        return (self._values[i],)
+
+
+def forms() -> List[str]:
+    """Write how a distribution is asked for."""
+    return distributions.forms()
+
+
+def _ends(block: Block) -> List[int]:
+    """Rows with the least and the largest value of each column that holds numbers."""
+    found = [0, len(block.rows) - 1]
+    for column in range(len(block.names)):
+        try:
+            numbers = [float(row[column]) for row in block.rows]
+        except ValueError:
+            continue
+        found += [numbers.index(min(numbers)), numbers.index(max(numbers))]
+    return sorted(set(found))
+
+
+def _table(path: Path) -> Block:
+    header, *lines = read_text(path, _LARGEST).rstrip().splitlines() or [""]
+    names = [name.strip() for name in header.split(",")]
+    if not all(names):
+        raise InputError(f"{path}:1: the header is '{header[:80]}'; name an axis in each column")
+    rows = []
+    for number, line in enumerate(lines, start=2):
+        cells = [cell.strip() for cell in line.split(",")]
+        if len(cells) != len(names) or not all(cells):
+            raise InputError(f"{path}:{number}: write {len(names)} values, one for each column")
+        rows.append(cells)
+    if not rows:
+        raise InputError(f"{path}: holds no points; write a row for each")
+    return Block(names, rows)

@@ -1,0 +1,295 @@
+"""Where rows are flown: processes of this machine, or whatever executes futures."""
+
+from __future__ import annotations
+
+import os
+import queue
+import threading
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Callable,
+    Dict,
+    Iterable,
+    Iterator,
+    List,
+    Optional,
+    Sequence,
+    Union,
+)
+
+from ..._core import QuadcoreError
+from ...support import interrupts
+from ..executor import Died, each, usable_cores
+from .batches import fly_together
+from .plan import AnyPlan
+from .rows import fingerprint
+from .spec import Row, Spec, digest, done, failure_of
+
+if TYPE_CHECKING:
+    import concurrent.futures
+
+Take = Callable[[Row], None]
+
+_ATTEMPTS = 3
+"""Of a row whose process was killed: by the system, perhaps, for want of memory."""
+
+_AHEAD = 1024
+"""Tasks that a cluster is given at a time: enough for many workers, and few to hold, 25 kB each."""
+
+_AHEAD_OF_EACH = 2
+"""Tasks that a pool is given for each worker: one to fly and one to go on with."""
+
+_WORKERS = 16
+"""That an executor, which does not say, may be thought to have."""
+
+_SHARES = 4
+"""Tasks at least for each process, if there are rows enough: one may be slower than another."""
+
+_PIECE = 2**16  # bytes; what a pipe holds
+
+_LOOK = 1.0  # s; between two looks at whether an executor still lives
+
+
+def fly_here(plan: AnyPlan, rows: Iterable[int], take: Take, processes: Optional[int]) -> None:
+    """Fly rows in processes of this machine.
+
+    Parameters
+    ----------
+    plan, rows
+        What to fly.
+    take
+        Called with each row as it ends.
+    processes
+        How many; None takes one per core.
+    """
+    for attempt in range(1, 1 + _ATTEMPTS):
+        crew = _Attempt(plan, take, attempt)
+        crew.fly(rows, processes)
+        if not crew.again:
+            return
+        rows = sorted(crew.again)
+
+
+class _Attempt:
+    """Rows that fly, and those that are to fly once more."""
+
+    def __init__(self, plan: AnyPlan, take: Take, number: int) -> None:
+        self.again: List[int] = []
+        self._plan, self._take, self._number = plan, take, number
+        self._under_way: Dict[int, Sequence[int]] = {}
+
+    def fly(self, rows: Iterable[int], processes: Optional[int]) -> None:
+        if self._number == 1:
+            tasks = _tasks(self._plan, rows, processes or usable_cores())
+        else:  # what was killed for want of memory has all of it when it flies alone
+            tasks, processes = _several(rows, 1), 1
+        each(self._flown, self._noted(tasks), self._took, processes, apart=self._plan.apart)
+
+    def _flown(self, numbers: Sequence[int]) -> List[Row]:
+        return _all_done([_spec(self._plan, number) for number in numbers])
+
+    def _noted(self, tasks: Iterable[Sequence[int]]) -> Iterator[Sequence[int]]:
+        for index, numbers in enumerate(tasks):
+            self._under_way[index] = numbers
+            yield numbers
+
+    def _took(self, index: int, outcome: Union[List[Row], QuadcoreError]) -> None:
+        numbers = self._under_way.pop(index)
+        if not isinstance(outcome, QuadcoreError):
+            for row in outcome:
+                self._take(row)
+        elif len(numbers) > 1 or (_may_be_chance(outcome) and self._number < _ATTEMPTS):
+            self.again.extend(numbers)
+        else:
+            told = f"{outcome}, {self._number} times" if self._number > 1 else str(outcome)
+            self._take(Row(numbers[0], told, None, fingerprint(self._plan, numbers[0])))
+
+
+def fly_over(
+    executor: concurrent.futures.Executor,
+    plan: AnyPlan,
+    rows: Iterable[int],
+    take: Take,
+    check: Callable[[], None] = lambda: None,
+) -> None:
+    """Fly rows by an executor of futures.
+
+    Parameters
+    ----------
+    executor
+        Whatever its processes are, they have quadcore.
+    plan, rows, take
+        As for `fly_here`.
+    check
+        Called every now and then; raises if the executor is gone.
+
+    Raises
+    ------
+    QuadcoreError
+        The executor failed; the rows that it gave were taken.
+    """
+    waiting = _tasks(plan, rows, _WORKERS)
+    at_most = _AHEAD_OF_EACH * getattr(executor, "_max_workers", _AHEAD // _AHEAD_OF_EACH)
+    under_way: Dict[Any, Sequence[int]] = {}
+    ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
+
+    def hand_out(numbers: Sequence[int]) -> None:
+        specs = [_spec(plan, number) for number in numbers]
+        future = executor.submit(fly_all, specs, plan.apart)
+        under_way[future] = numbers
+        future.add_done_callback(ended.put)
+
+    try:
+        for numbers in waiting:
+            hand_out(numbers)
+            if len(under_way) >= at_most:
+                break
+        while under_way:
+            try:
+                future = ended.get(timeout=_LOOK)
+            except queue.Empty:
+                check()
+                continue
+            numbers = under_way.pop(future)
+            with interrupts.held():
+                for row in _outcome(plan, future, numbers):
+                    if isinstance(row, Row):
+                        take(row)
+                    else:
+                        hand_out([row])
+            for following in waiting:
+                hand_out(following)
+                break
+    except (QuadcoreError, KeyboardInterrupt, MemoryError):
+        raise
+    except Exception as error:
+        _shut_down_broken(executor, error)
+        check()
+        raise QuadcoreError(_gone(error)) from error
+    finally:
+        for future in under_way:
+            future.cancel()
+
+
+def _shut_down_broken(executor: concurrent.futures.Executor, error: Exception) -> None:
+    """Shut a broken pool down without waiting for it, as its own ``with`` would.
+
+    It may never end by itself: one of its threads may be stuck in a full pipe that no process reads
+    any more (CPython issue 94777).
+    """
+    from concurrent.futures import BrokenExecutor
+
+    if not isinstance(error, BrokenExecutor):
+        return
+    calls = getattr(executor, "_call_queue", None)
+    if calls is not None:
+        _drain(calls)
+    executor.shutdown(wait=False)
+
+
+def _drain(calls: Any) -> None:
+    """Read what is left in the pipe of a queue, beside its threads, up to its end."""
+    try:
+        # Not the queue's own descriptor: its thread closes that one when it is done.
+        pipe = os.dup(calls._reader.fileno())
+    except OSError:  # it is done
+        return
+    try:
+        is_pipe = os.path.samestat(os.fstat(pipe), os.fstat(calls._writer.fileno()))
+    except OSError:
+        is_pipe = False
+    if not is_pipe:  # closed in between, and the number is another file's by now
+        os.close(pipe)
+        return
+
+    def read_all() -> None:
+        with open(pipe, "rb", buffering=0) as stream:
+            while stream.read(_PIECE):
+                pass
+
+    threading.Thread(target=read_all, daemon=True).start()
+
+
+def fly_all(specs: Sequence[Union[Spec, Row]], apart: bool) -> List[Row]:
+    """Fly several rows where they were sent to."""
+    flown: List[Row] = []
+    if apart:  # what one's own controller remembers of a flight, no other knows
+
+        def took(index: int, outcome: Union[Row, QuadcoreError]) -> None:
+            if isinstance(outcome, QuadcoreError):
+                spec = specs[index]
+                outcome = Row(spec.row, str(outcome), None, _fingerprint(spec))
+            flown.append(outcome)
+
+        each(_done, specs, took, 1, apart=True)
+        return flown
+    return _all_done(specs)
+
+
+def _all_done(specs: Sequence[Union[Spec, Row]]) -> List[Row]:
+    """Fly rows together if they can be, or else one by one."""
+    if len(specs) > 1:
+        together = fly_together([spec for spec in specs if not isinstance(spec, Row)])
+        if together is not None and len(together) == len(specs):
+            return together
+    return [_done(spec) for spec in specs]
+
+
+def _done(spec: Union[Spec, Row]) -> Row:
+    return spec if isinstance(spec, Row) else done(spec)
+
+
+def _fingerprint(spec: Union[Spec, Row]) -> str:
+    return spec.fingerprint if isinstance(spec, Row) else spec.fingerprint()
+
+
+def _spec(plan: AnyPlan, number: int) -> Union[Spec, Row]:
+    """Describe a row, or say why it cannot be flown."""
+    try:
+        return plan.spec(number)
+    except QuadcoreError as error:
+        return Row(number, failure_of(error), None, digest(str(error).encode()))
+
+
+def _tasks(plan: AnyPlan, rows: Iterable[int], processes: int) -> Iterator[Sequence[int]]:
+    """Share rows out, so many to a task as its process flies at its best."""
+    return _several(rows, max(1, min(plan.at_once, len(plan) // (_SHARES * processes))))
+
+
+def _several(rows: Iterable[int], count: int) -> Iterator[Sequence[int]]:
+    piece: List[int] = []
+    for row in rows:
+        piece.append(row)
+        if len(piece) == count:
+            yield piece
+            piece = []
+    if piece:
+        yield piece
+
+
+def _may_be_chance(outcome: QuadcoreError) -> bool:
+    return isinstance(outcome, Died) and outcome.was_killed
+
+
+def _outcome(plan: AnyPlan, future: Any, numbers: Sequence[int]) -> Iterator[Union[Row, int]]:
+    """Give the rows of a task; of one that took its worker with it the numbers, each alone."""
+    try:
+        yield from future.result()
+        return
+    except Exception as error:
+        # Dask's, when a task has ended several workers: it is the task then.
+        if type(error).__name__ != "KilledWorker":
+            raise
+    if len(numbers) > 1:
+        yield from numbers
+    else:
+        told = "its worker died, several times"
+        yield Row(numbers[0], told, None, fingerprint(plan, numbers[0]))
+
+
+def _gone(error: Exception) -> str:
+    reason = " ".join(f"{type(error).__name__}: {error}".split())
+    return (
+        f"the executor failed ({reason[:200]}); the rows so far are kept, --resume flies the rest"
+    )

@@ -1,0 +1,216 @@
+"""The file that a sweep's rows are kept in, whole at any time."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import re
+from pathlib import Path
+from typing import Any, Dict, Iterator, List, Sequence, Tuple
+
+import numpy as np
+
+from ..._core import InputError, QuadcoreError, parse_number
+from ...support.files import Appended, atomic_write, cell, check_writable, text_bytes
+from .plan import AnyPlan
+from .spec import Row, digest
+
+
+class Rows:
+    """A CSV file with a row for each flight, in the order in which they end.
+
+    The columns are ``row``, what flies, ``failure``, the measures and ``fingerprint``. Once all are
+    there the file is put in order.
+
+    Parameters
+    ----------
+    path
+        Of the file.
+    plan
+        What is flown.
+    resume
+        Whether rows that are there already stay; they must be the plan's.
+
+    Raises
+    ------
+    InputError
+        There are rows and `resume` does not ask for them; or they were flown with other inputs, or
+        are damaged.
+    """
+
+    def __init__(self, path: Path, plan: AnyPlan, resume: bool) -> None:
+        self.path, self._plan = path, plan
+        self.columns = ["row", *plan.names, "failure", *plan.measures, "fingerprint"]
+        for name in self.columns:
+            if self.columns.count(name) > 1:
+                raise InputError(
+                    f"the table would have two columns '{name}'; give an axis or a measure another "
+                    "name"
+                )
+        self._where = np.full((len(plan), 2), -1, dtype=np.int64)  # begin and length of each
+        self.whole = ("row", *plan.whole)
+        self._head = _line(self.columns)
+        check_writable(path)
+        if path.exists() and path.stat().st_size > 0 and not resume:
+            raise self._taken()
+        self._file = Appended(path, older=True)
+        try:
+            self.is_resumed = os.fstat(self._file.fileno()).st_size > 0
+            if self.is_resumed and not resume:
+                raise self._taken()
+            self._end = self._note() if self.is_resumed else 0
+        except InputError:
+            self._file.close()
+            raise
+        self._file.keep(self._end)
+        if not self._end:
+            self._append(self._head)
+
+    @property
+    def missing(self) -> Iterator[int]:
+        """Rows that are not there."""
+        return (int(row) for row in np.flatnonzero(self._where[:, 0] < 0))
+
+    @property
+    def count(self) -> int:
+        """Rows that are there."""
+        return int((self._where[:, 0] >= 0).sum())
+
+    def take(self, row: Row) -> None:
+        """Append a row; raises `InputError` if it does not fit, the others being whole."""
+        line = _line(self._cells(row))
+        begin = self._end
+        self._append(line)
+        self._where[row.row] = begin, len(line)
+
+    def close(self) -> None:
+        """Put the rows in order if they are all there, and close the file."""
+        if self.count == len(self._plan) and (np.diff(self._where[:, 0]) < 0).any():
+            with atomic_write(self.path) as ordered:
+                ordered.write(self._head)
+                for line in self._file.parts(self._places()):
+                    ordered.write(line)
+            lengths = self._where[:, 1]
+            self._where[:, 0] = len(self._head) + np.cumsum(lengths) - lengths
+        self._file.close()
+
+    def read(self) -> Iterator[Dict[str, str]]:
+        """Give the rows that are there, by number."""
+        file = Appended(self.path, older=True) if self._file.closed else self._file
+        try:
+            for line in file.parts(self._places()):
+                yield dict(zip(self.columns, _split(line)))
+        finally:
+            if file is not self._file:
+                file.close()
+
+    def _places(self) -> Iterator[Tuple[int, int]]:
+        """Begin and length of each row that is there."""
+        return ((begin, length) for begin, length in self._where.tolist() if begin >= 0)
+
+    def _taken(self) -> InputError:
+        return InputError(
+            f"{self.path}: holds rows already; go on with --resume, or name another folder"
+        )
+
+    def _cells(self, row: Row) -> List[Any]:
+        measured = row.measures or {}
+        return [
+            row.row,
+            *self._plan.cells(row.row).values(),
+            row.failure,
+            *(measured.get(name, np.nan) for name in self._plan.measures),
+            row.fingerprint,
+        ]
+
+    def _append(self, line: bytes) -> None:
+        self._file.write(line)
+        self._end += len(line)
+
+    def _note(self) -> int:
+        """Note where rows are, and give the bytes that stay: what a kill cut off does not."""
+        lines = self._file.lines()
+        head = next(lines, b"")
+        if head != self._head:
+            if not head.endswith(b"\n") and self._head.startswith(head):
+                return 0
+            raise InputError(
+                f"{self.path}:1: other columns than this sweep's; name another folder, or fly what "
+                "was flown"
+            )
+        end = len(head)
+        for number, line in enumerate(lines, start=2):
+            if not line.endswith(b"\n"):
+                break
+            row = self._checked(number, _split(line))
+            self._where[row] = end, len(line)
+            end += len(line)
+        return end
+
+    def _checked(self, number: int, cells: Sequence[str]) -> int:
+        """Give the number of a row; raise `InputError` unless it is the plan's."""
+        place = f"{self.path}:{number}"
+        if len(cells) != len(self.columns) or not re.fullmatch(r"[0-9]{1,18}", cells[0]):
+            raise InputError(f"{place}: is no row of a sweep; take the line out")
+        row = int(cells[0])
+        if row >= len(self._plan):
+            raise InputError(f"{place}: row {row} of a sweep that has {len(self._plan)}")
+        if self._where[row, 0] >= 0:
+            raise InputError(f"{place}: row {row} is there twice; take one out")
+        known, planned = dict(zip(self.columns, cells)), self._plan.cells(row)
+        for name in self._plan.measures:
+            if not _is_measure(known[name]):
+                raise InputError(
+                    f"{place}: column '{name}' holds '{known[name][:80]}', which is no number; "
+                    "take the line out"
+                )
+        for name, value in planned.items():
+            if known[name] != _split(_line([value]))[0]:
+                raise InputError(
+                    f"{place}: was flown with {name} {known[name]}, now it is {value}; name "
+                    "another folder, or fly what was flown"
+                )
+        if known["fingerprint"] != fingerprint(self._plan, row):
+            raise InputError(
+                f"{place}: was flown with other inputs than these: a model, a world, a file or an "
+                "option has changed; name another folder, or fly what was flown"
+            )
+        if not known["fingerprint"]:
+            raise InputError(f"{place}: nobody can tell whether this is what flies; see the docs")
+        return row
+
+
+def fingerprint(plan: AnyPlan, row: int) -> str:
+    """Digest of what a row depends on; "" if nobody can tell, and of why if it cannot be flown."""
+    try:
+        return plan.spec(row).fingerprint()
+    except QuadcoreError as error:
+        return digest(str(error).encode())
+
+
+def _line(cells: Sequence[Any]) -> bytes:
+    stream = io.StringIO()
+    csv.writer(stream, lineterminator="\n").writerow([_plain(value) for value in cells])
+    return text_bytes(stream.getvalue())
+
+
+def _is_measure(text: str) -> bool:
+    """Whether a cell is as `_line` writes the value of a measure."""
+    return text in ("", "inf", "-inf") or parse_number(text) is not None
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, str):
+        if parse_number(value) is not None:
+            return value
+        # A row is a line, by which it is found again.
+        return cell(value.replace("\n", "\\n").replace("\r", "\\r"))
+    return "" if value != value else value
+
+
+def _split(line: bytes) -> List[str]:
+    try:
+        return next(csv.reader([line.decode("utf-8", "replace")]), [])
+    except csv.Error:  # of a damaged file
+        return []

@@ -1,0 +1,130 @@
+"""What the measures of a sweep are sensitive to.
+
+Rank correlations (Spearman) tell of any design whether a measure grows with an axis. Sobol indices
+(Saltelli et al., Computer Physics Communications 181, 2010) tell of design "saltelli" which part of
+a measure's variance an axis brings about, alone (first) and with others (total).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Dict, Iterator, List, Mapping, Tuple
+
+import numpy as np
+
+from ...support.extras import needed
+from .distributions import unit_problem
+from .plan import AnyPlan
+
+Columns = Mapping[str, np.ndarray]
+
+FAILED = "failed"
+"""Name of the measure that is 1 where a row failed and 0 where it flew."""
+
+COMBINATION = ("controller", "reference", "engine", "model")
+
+_INDICES = ("first", "first_interval", "total", "total_interval")
+
+
+def sensitivities(plan: AnyPlan, columns: Columns) -> List[Dict[str, Any]]:
+    """Tell what each measure is sensitive to.
+
+    Parameters
+    ----------
+    plan
+        What was flown.
+    columns
+        What came of it, a row each, in their order.
+
+    Returns
+    -------
+    list of dict
+        For each combination of what flies, measure and axis of numbers: ``rank``, the rank
+        correlation; and ``first``, ``total`` and the half-widths of their intervals at 95 %, NaN
+        where there are none: other designs, axes that are not drawn, rows that failed.
+    """
+    found = []
+    for names, chosen in combinations(columns):
+        for measure, values in measured(plan, columns, chosen):
+            sobol = _sobol(plan, columns, chosen, values)
+            for axis in axes_of_numbers(plan, columns):
+                rank = _rank(columns[axis][chosen], values)
+                of_axis = sobol.get(axis, dict.fromkeys(_INDICES, math.nan))
+                if not (math.isnan(rank) and math.isnan(of_axis["total"])):
+                    row = {**names, "measure": measure, "axis": axis, "rank": rank}
+                    found.append({**row, **of_axis})
+    return found
+
+
+def combinations(columns: Columns) -> Iterator[Tuple[Dict[str, str], np.ndarray]]:
+    """Name each combination of what flies, and where its rows are."""
+    shared = [name for name in COMBINATION if name in columns]
+    count = len(columns["row"])
+    if not shared:
+        yield {}, np.arange(count)
+        return
+    keys = list(zip(*(columns[name].tolist() for name in shared)))
+    for key in dict.fromkeys(keys):
+        where = np.flatnonzero([other == key for other in keys])
+        yield dict(zip(shared, map(str, key))), where
+
+
+def measured(
+    plan: AnyPlan, columns: Columns, chosen: np.ndarray
+) -> Iterator[Tuple[str, np.ndarray]]:
+    """Give the measures that some rows have, and whether they failed if some did."""
+    failed = (columns["failure"][chosen] != "").astype(float)
+    for name in plan.measures:
+        values = columns[name][chosen].astype(float)
+        if np.isfinite(values).any():
+            yield name, values
+    if 0 < failed.sum() < len(failed):
+        yield FAILED, failed
+
+
+def axes_of_numbers(plan: AnyPlan, columns: Columns) -> List[str]:
+    """Name the axes whose values are numbers, and several."""
+    return [
+        name
+        for name in plan.design.names
+        if columns[name].dtype.kind == "f" and len(np.unique(columns[name])) > 1
+    ]
+
+
+def _rank(axis: np.ndarray, values: np.ndarray) -> float:
+    """Rank correlation of those that have a value; NaN without any."""
+    from scipy.stats import rankdata
+
+    known = np.isfinite(values)
+    if known.sum() < 3:
+        return math.nan
+    a, b = (rankdata(each[known]) for each in (axis, values))
+    a, b = a - a.mean(), b - b.mean()
+    size = math.sqrt(float((a @ a) * (b @ b)))
+    return float(a @ b) / size if size > 0 else math.nan
+
+
+def _sobol(
+    plan: AnyPlan, columns: Columns, chosen: np.ndarray, values: np.ndarray
+) -> Dict[str, Dict[str, float]]:
+    """Give the indices of each drawn axis; nothing if there are none."""
+    design = plan.design
+    if design.kind != "saltelli" or not design.drawn or not np.isfinite(values).all():
+        return {}
+    points = len(design.blocks[-1].rows)
+    seeds = len(np.unique(columns["seed"])) if "seed" in columns else 1
+    whole = len(values) == len(design) * seeds
+    if not whole or len(design) != points or np.ptp(values) == 0:
+        return {}
+    with needed("Sobol indices", "SALib", "sweep"):
+        from SALib.analyze import sobol
+
+    names = list(design.drawn)
+    told = sobol.analyze(
+        unit_problem(len(names)),
+        values.reshape(points, seeds).mean(axis=1),
+        calc_second_order=False,
+        seed=0,
+    )
+    parts = zip(*(told[key].tolist() for key in ("S1", "S1_conf", "ST", "ST_conf")))
+    return {name: dict(zip(_INDICES, part)) for name, part in zip(names, parts)}

@@ -1,0 +1,242 @@
+"""Flying a sweep, and going on with one."""
+
+from __future__ import annotations
+
+import tempfile
+from contextlib import ExitStack
+from pathlib import Path
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Callable,
+    Dict,
+    List,
+    Mapping,
+    NamedTuple,
+    Optional,
+    Sequence,
+    Union,
+)
+
+import numpy as np
+
+from ..._core import InputError
+from ...simulation.commands import CommandsLike
+from ...simulation.engines import STUDIED
+from ...support import arguments, interrupts
+from ...support.values import whole
+from ..folder import output_folder
+from ..table import flown_and_failed
+from .dask import cluster
+from .design import Design
+from .places import fly_here, fly_over
+from .plan import AnyPlan, Calls, Plan
+from .rows import Rows
+from .sensitivity import sensitivities
+from .spec import Row
+from .table import table, write_parquet
+
+if TYPE_CHECKING:
+    import concurrent.futures
+
+Progress = Callable[[int, int], None]
+
+TABLE = "table.csv"
+PARQUET = "table.parquet"
+
+_KINDS = {
+    "engines": arguments.NAMES,
+    "models": arguments.NAMES,
+    "vary": arguments.or_none(arguments.VALUES),
+    "points": arguments.or_none(arguments.NAME),
+    "design": arguments.NAME,
+    "measures": arguments.NAMES,
+    "out": arguments.or_none(arguments.NAME),
+    "executor": arguments.or_none((lambda value: hasattr(value, "submit"), "what has submit()")),
+    "dask": arguments.or_none((lambda value: isinstance(value, str), "tcp://HOST:PORT")),
+    "samples": arguments.or_none(arguments.COUNT),
+    "seeds": arguments.COUNT,
+    "duration": arguments.SECONDS,
+    "time_limit": arguments.LIMIT,
+    "processes": arguments.or_none(arguments.COUNT),
+    "progress": arguments.or_none(arguments.PROGRESS),
+    "resume": arguments.FLAG,
+    "parquet": arguments.FLAG,
+}
+
+
+class Sweep(NamedTuple):
+    """What became of the rows.
+
+    Attributes
+    ----------
+    columns : dict of str to ndarray
+        By name: ``row``, what flew, ``failure`` ("" if it flew), the measures, NaN where it failed,
+        and ``fingerprint``. pandas and polars make a DataFrame of it.
+    sensitivities : list of dict
+        What each measure is sensitive to, see `sensitivity`.
+    """
+
+    columns: Dict[str, np.ndarray]
+    sensitivities: List[Dict[str, Any]]
+
+    def __repr__(self) -> str:
+        return f"<Sweep, {flown_and_failed(self.columns['failure'].tolist())}>"
+
+
+def sweep(
+    controllers: Any = None,
+    references: Any = None,
+    vary: Optional[Mapping[str, Any]] = None,
+    *,
+    commands: Optional[CommandsLike] = None,
+    function: Optional[Callable[[Dict[str, Any]], Any]] = None,
+    measures: Union[str, Sequence[str]] = "value",
+    points: Optional[Union[str, Path]] = None,
+    design: str = "latin",
+    samples: Optional[int] = None,
+    engines: Union[str, Sequence[str]] = STUDIED,
+    models: Union[str, Path, Sequence[Union[str, Path]]] = "quadrotor",
+    seeds: int = 1,
+    duration: float = 10.0,
+    log_every: Optional[int] = None,
+    spawn: Optional[Sequence[float]] = None,
+    controller_rate: Optional[float] = None,
+    delay: Optional[float] = None,
+    time_limit: float = 300.0,
+    out: Optional[Union[str, Path]] = None,
+    parquet: bool = False,
+    resume: bool = False,
+    processes: Optional[int] = None,
+    executor: Optional[concurrent.futures.Executor] = None,
+    dask: Optional[str] = None,
+    progress: Optional[Progress] = None,
+    **options: Any,
+) -> Sweep:
+    """Fly thousands of flights, each described so that it can be flown anywhere.
+
+    Parameters
+    ----------
+    controllers, references
+        As for `evaluate`.
+    vary
+        By axis, as for `evaluate`, its values: a list; a text, ``"0.9:1.1:5"``, ``"log:1:100:9"``
+        or ``"normal:1:0.1"``; or a distribution, that is what has a method ppf, such as those of
+        scipy.stats.
+    commands
+        Flown open loop, in the place of controllers and references.
+    function, measures
+        In the place of flights: called with a dictionary of a point's values; returns a number, or
+        a mapping with these names.
+    points
+        A CSV file whose rows are points of the axes in its header.
+    design, samples
+        How axes with a distribution are drawn: "latin", "sobol", "random" or "saltelli"; and how
+        many points, from `seed` on.
+    engines, models, seeds, duration, log_every, spawn, controller_rate, delay, time_limit
+        As for `evaluate`.
+    out
+        A folder in which ``table.csv`` grows by whole rows, in order once all are there.
+    parquet
+        Whether to write ``table.parquet``, too, at the end.
+    resume
+        Whether to go on with what is there: nothing is flown twice.
+    processes
+        Of this machine; None takes one per core.
+    executor
+        Any of concurrent.futures' kind, in the place of `processes`.
+    dask
+        Address of a scheduler, in the place of `processes`.
+    progress
+        Called as progress(done, total).
+    **options
+        As for `Simulation`: world, dt, seed (the first), parameters, xacro_args, ignore.
+
+    Returns
+    -------
+    Sweep
+        The same whatever flew it, in whatever order.
+
+    Raises
+    ------
+    InputError
+        Nothing was flown; or the disk is full, what was written being kept.
+    QuadcoreError
+        What should fly is gone; what was written is kept.
+    KeyboardInterrupt
+        What was written is kept.
+    """
+    given = dict(locals())
+    arguments.check({**{name: given[name] for name in _KINDS}, **options}, _KINDS)
+    made = Design(vary or {}, points, design, samples, whole(options.get("seed", 0)))
+    plan: AnyPlan
+    if function is not None:
+        if (controllers, references, commands) != (None, None, None):
+            raise InputError("a function is called in the place of flights; give it, or these")
+        plan = Calls(made, function, arguments.several(measures), time_limit)
+    else:
+        plan = Plan(
+            made,
+            controllers,
+            references,
+            commands,
+            [engines] if isinstance(engines, str) else engines,
+            [models] if isinstance(models, (str, Path)) else models,
+            seeds,
+            duration,
+            log_every,
+            spawn,
+            controller_rate,
+            delay,
+            time_limit,
+            options,
+        )
+    with ExitStack() as stack:
+        if out is None:
+            if resume or parquet:
+                raise InputError("resume and parquet need out; name a folder")
+            out = stack.enter_context(tempfile.TemporaryDirectory())
+        folder = Path(out)
+        stack.enter_context(output_folder(folder))
+        rows = conduct(plan, folder, resume, parquet, processes, executor, dask, progress)
+        columns = table(rows)
+    return Sweep(columns, sensitivities(plan, columns))
+
+
+def conduct(
+    plan: AnyPlan,
+    folder: Path,
+    resume: bool = False,
+    parquet: bool = False,
+    processes: Optional[int] = None,
+    executor: Optional[concurrent.futures.Executor] = None,
+    dask: Optional[str] = None,
+    progress: Optional[Progress] = None,
+) -> Rows:
+    """Fly what is missing of a plan; parameters as for `sweep`."""
+    if executor is not None and dask is not None:
+        raise InputError("executor and dask are given; keep one")
+    rows = Rows(folder / TABLE, plan, resume)
+    flown = rows.count
+
+    def take(row: Row) -> None:
+        nonlocal flown
+        rows.take(row)
+        flown += 1
+        if progress is not None:
+            progress(flown, len(plan))
+
+    try:
+        if dask is not None:
+            with cluster(dask) as (of_dask, check):
+                fly_over(of_dask, plan, rows.missing, take, check)
+        elif executor is not None:
+            fly_over(executor, plan, rows.missing, take)
+        else:
+            fly_here(plan, rows.missing, take, processes)
+    finally:
+        with interrupts.held():
+            rows.close()
+            if parquet:
+                write_parquet(rows, folder / PARQUET)
+    return rows

@@ -1,0 +1,75 @@
+"""What a study leaves behind as numbers: tables and files of them."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from pathlib import Path
+from typing import Any, Iterable, List, Mapping, Sequence, Tuple
+
+from ..support.files import atomic_write, cell, text_bytes
+
+
+def csv_bytes(rows: Iterable[Sequence[Any]]) -> bytes:
+    """Write rows as CSV; NaN is an empty cell."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    for row in rows:
+        writer.writerow(["" if value != value else cell(value) for value in row])
+    return text_bytes(stream.getvalue())
+
+
+def json_bytes(content: Any) -> bytes:
+    """Write lists and dictionaries as JSON; NaN is null."""
+    text = json.dumps(_plain(content), indent=1, ensure_ascii=False, allow_nan=False)
+    return text_bytes(text + "\n")
+
+
+def number_text(value: float) -> str:
+    """Four digits, for a table that is read."""
+    return "" if math.isnan(value) else f"{value:.4g}"
+
+
+def shown_in(unit: str) -> Tuple[str, float]:
+    """Name the unit in which people are shown a quantity, and give the factor to it.
+
+    Files hold radians.
+    """
+    return ("deg", 180 / math.pi) if unit == "rad" else (unit, 1.0)
+
+
+NOT_FLOWN = "not flown: interrupted"
+"""Stands for the reason of flights that an interrupt left out: they did not fail."""
+
+
+def flown_and_failed(failures: Sequence[str]) -> str:
+    """How many flew, in one line, of flights of which those that failed have a reason."""
+    left_out = sum(1 for failure in failures if failure == NOT_FLOWN)
+    failed = sum(1 for failure in failures if failure) - left_out
+    flown = len(failures) - failed - left_out
+    told = f"{len(failures)} flights: {flown} flown, {failed} failed"
+    return told + (f", {left_out} not flown" if left_out else "")
+
+
+def save(folder: Path, files: Mapping[str, bytes]) -> List[Path]:
+    """Write files into a folder, each whole or not at all, and name them.
+
+    Raises
+    ------
+    InputError
+        One cannot be written.
+    """
+    for name, data in files.items():
+        with atomic_write(folder / name) as stream:
+            stream.write(data)
+    return [folder / name for name in files]
+
+
+def _plain(content: Any) -> Any:
+    if isinstance(content, Mapping):
+        return {key: _plain(value) for key, value in content.items()}
+    if isinstance(content, (list, tuple)):
+        return [_plain(value) for value in content]
+    return None if content != content else content

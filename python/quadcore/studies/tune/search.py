@@ -1,0 +1,183 @@
+"""The search for gains."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from ..._core import InputError, QuadcoreError
+from ...control.gains import Gains
+from ...support.warning import unheard
+from ..evaluate.measures import LOST
+from ..executor import conducted
+from .problem import Case, Flown, Problem
+
+OBJECTIVE = (
+    "mean over the cases, from the start of the reference and from beside it, of the root mean "
+    "square of the distance, m"
+)
+
+_SPREAD = 0.8  # of the logarithm of a gain at first: most lie within a factor of 2.2
+
+Progress = Callable[[int, int], None]
+
+
+class Tuning(NamedTuple):
+    """Gains that were found, and how."""
+
+    gains: Gains
+    """For `gains.write`, with the history; no held-out case was lost with them."""
+    error: float
+    """`OBJECTIVE` of these gains."""
+    start: float
+    """The same of those that the search began with."""
+    evaluations: List[float]
+    """The same by evaluation, that of the start first."""
+    held_out: Dict[str, float]
+    """Root mean square of the distance, m, in each held-out case."""
+    refused: int
+    """How many gains were better on what they were tuned on, but lost a held-out case."""
+
+
+class Search:
+    """What was tried so far."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        budget: int,
+        seed: int,
+        processes: Optional[int],
+        progress: Optional[Progress],
+    ) -> None:
+        if budget < 1:
+            raise InputError(f"budget is {budget}; give at least 1")
+        self.evaluations: List[float] = []
+        self.refused = 0
+        self.refusal = ""
+        self._problem = problem
+        self._budget = budget
+        self._seed = seed
+        self._processes = processes
+        self._progress = progress
+        self._best: Optional[Tuple[float, Dict[str, float], Dict[str, float]]] = None
+        """Objective, gains, and error by held-out case."""
+        self._least = math.inf
+
+    def run(self, cma: Any) -> None:
+        """Search until the budget is spent."""
+        start = self._problem.start
+        for case in self._problem.training:  # what is wrong with law or vehicle is told at once
+            self._problem.fly(case, start)
+        self._try([start])
+        # Of its own generator: the one that numpy shares belongs to the caller.
+        drawn = np.random.default_rng(self._seed)
+        strategy = cma.CMAEvolutionStrategy(
+            np.zeros(len(start)),
+            _SPREAD,
+            {
+                "verbose": -9,
+                "seed": np.nan,
+                "randn": lambda *shape: drawn.standard_normal(shape),
+                "maxiter": np.inf,
+            },
+        )
+        while len(self.evaluations) < self._budget:
+            points = strategy.ask()
+            strategy.tell(points, self._try([self._gains(point) for point in points]))
+
+    def result(self, cma: Any, ended: str) -> Optional[Tuning]:
+        """Give the best so far."""
+        from ... import __version__  # which is there once the package is
+
+        if self._best is None:
+            return None
+        error, gains, held_out = self._best
+        law = self._problem.with_gains(gains)
+        history = {
+            "start": dict(self._problem.start),
+            "objective": OBJECTIVE,
+            "models": self._problem.models,
+            "tuned_on": [case.label for case in self._problem.training if not case.beside],
+            "held_out": {label: float(value) for label, value in held_out.items()},
+            **self._problem.setting(),
+            "quadcore": __version__,
+            "optimiser": f"cma {cma.__version__}",
+            "seed": self._seed,
+            "budget": self._budget,
+            "refused": self.refused,
+            "best": error,
+            "evaluations": list(self.evaluations),
+        }
+        if ended:
+            history["ended"] = ended
+        found = Gains(law.name, self._problem.vehicle, law.rate, law.delay, law.parameters, history)
+        start = self.evaluations[0]
+        return Tuning(found, error, start, list(self.evaluations), held_out, self.refused)
+
+    def _gains(self, point: np.ndarray) -> Dict[str, float]:
+        start = self._problem.start
+        return {name: value * math.exp(x) for (name, value), x in zip(start.items(), point)}
+
+    def _try(self, candidates: Sequence[Mapping[str, float]]) -> List[float]:
+        """Fly gains, and judge the best of them if none before was better."""
+        training = self._problem.training
+        flights = self._fly([(case, gains) for gains in candidates for case in training])
+        count = len(training)
+        errors = [
+            float(np.mean([flown.error for flown in flights[i : i + count]]))
+            for i in range(0, len(flights), count)
+        ]
+        self.evaluations += errors
+        best = int(np.argmin(errors))
+        if errors[best] < self._least:
+            self._judge(errors[best], dict(candidates[best]))
+        if self._progress is not None:
+            self._progress(min(len(self.evaluations), self._budget), self._budget)
+        return errors
+
+    def _judge(self, error: float, gains: Dict[str, float]) -> None:
+        problem = self._problem
+        flights = self._fly([(case, gains) for case in problem.held_out])
+        held_out = {}
+        for case, flown in zip(problem.held_out, flights):
+            if flown.failure:
+                return self._refuse(f"lose {case.label}: {flown.failure}")
+            held_out[case.label] = flown.error
+        left: List[str] = [""] * len(problem.to_come_back_to)
+
+        def take(index: int, outcome: Union[str, QuadcoreError]) -> None:
+            left[index] = str(outcome)
+
+        def fly(index: int) -> str:
+            with unheard():
+                return problem.comes_back(problem.to_come_back_to[index], gains)
+
+        conducted(fly, range(len(left)), take, self._processes)
+        for case, failure in zip(problem.to_come_back_to, left):
+            if failure:
+                return self._refuse(f"do not come back to {case.label} from beside it: {failure}")
+        self._least = error
+        self._best = error, gains, held_out
+
+    def _refuse(self, reason: str) -> None:
+        self.refused += 1
+        self.refusal = f"those that fly best {reason}"
+
+    def _fly(self, flights: Sequence[Tuple[Case, Mapping[str, float]]]) -> List[Flown]:
+        outcomes: List[Optional[Flown]] = [None] * len(flights)
+
+        def take(index: int, outcome: Union[Flown, QuadcoreError]) -> None:
+            # Gains that the law itself refuses are as bad as can be.
+            failed = isinstance(outcome, QuadcoreError)
+            outcomes[index] = Flown(LOST, str(outcome)) if failed else outcome  # type: ignore
+
+        def fly(index: int) -> Flown:
+            with unheard():
+                return self._problem.fly(*flights[index])
+
+        # By their numbers: a reference may be a function, which no process can send to another.
+        conducted(fly, range(len(flights)), take, self._processes)
+        return outcomes  # type: ignore[return-value]

@@ -1,0 +1,1 @@
+"""What every layer needs: checks of arguments, files, interrupts, warnings, rotations."""

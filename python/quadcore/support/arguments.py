@@ -1,0 +1,156 @@
+"""What kind of value each argument takes, told before anything flies or is read."""
+
+from __future__ import annotations
+
+import math
+import os
+import reprlib
+from numbers import Integral, Real
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Tuple
+
+import numpy as np
+
+from .._core import InputError
+from .parameters import did_you_mean
+
+Kind = Tuple[Callable[[Any], bool], str]
+"""Whether a value is of it, and what to give."""
+
+_LONGEST = 1e9  # s, of the wall clock
+
+
+def check(arguments: Mapping[str, Any], kinds: Mapping[str, Kind]) -> None:
+    """Raise `InputError` for an argument of another kind than its own.
+
+    Parameters
+    ----------
+    arguments
+        Values by name.
+    kinds
+        Of each name; those of other names are `OPTIONS`.
+    """
+    for name, value in arguments.items():
+        kind = kinds.get(name) or OPTIONS.get(name)
+        if kind is None:
+            near = did_you_mean(name, [*kinds, *OPTIONS])
+            raise InputError(
+                f"there is no option '{name}'{near}; besides those of help() there are "
+                f"{', '.join(OPTIONS)}"
+            )
+        if not kind[0](value):
+            raise InputError(f"{name} is {brief(value)}; give {kind[1]}")
+
+
+def or_none(kind: Kind) -> Kind:
+    """Make a kind that None is of, too."""
+    return (lambda value: value is None or kind[0](value)), kind[1]
+
+
+def several(value: Any) -> List[Any]:
+    """Make a list of one or several names or functions."""
+    return [value] if _is_text(value) or callable(value) else list(value)
+
+
+def read_once(value: Any) -> Any:
+    """Make a list of what comes one by one, so that it can be checked and is there afterwards."""
+    return list(value) if isinstance(value, Iterator) else value
+
+
+def brief(value: Any) -> str:
+    """Write a value in one line, shortened if it is long."""
+    return " ".join(reprlib.repr(value).split())
+
+
+def _is_text(value: Any) -> bool:
+    return isinstance(value, (str, os.PathLike))
+
+
+def _are_names(value: Any) -> bool:
+    return _is_text(value) or _is_list(value)
+
+
+def _is_list(value: Any) -> bool:
+    return _is_lasting(value) and not _is_text(value) and all(map(_is_text, value))
+
+
+def _is_lasting(value: Any) -> bool:
+    """Whether it can be gone through, and not just once."""
+    return isinstance(value, Iterable) and not isinstance(value, Iterator)
+
+
+def _are_guides(value: Any) -> bool:
+    several = value if isinstance(value, (list, tuple)) else [value]
+    return all(isinstance(one, str) or callable(one) for one in several)
+
+
+def _are_named(value: Any) -> bool:
+    return isinstance(value, Mapping) and all(isinstance(name, str) for name in value)
+
+
+def _are_axes(value: Any) -> bool:
+    return _are_named(value) and all(
+        _is_lasting(one) and not isinstance(one, (str, bytes)) for one in value.values()
+    )
+
+
+def _are_values(value: Any) -> bool:
+    return _are_named(value) and all(
+        _is_lasting(one) or hasattr(one, "ppf") for one in value.values()
+    )
+
+
+def _are_pairs(value: Any) -> bool:
+    return _are_named(value) and all(
+        isinstance(pair, (list, tuple))
+        and len(pair) == 2
+        and all(isinstance(x, Real) for x in pair)
+        for pair in value.values()
+    )
+
+
+def _is_whole(value: Any) -> bool:
+    return isinstance(value, Integral) and not isinstance(value, bool)
+
+
+def _is_count(value: Any) -> bool:
+    return _is_whole(value) and int(value) >= 1
+
+
+def _is_limit(value: Any) -> bool:
+    return isinstance(value, Real) and 0 < float(value) <= _LONGEST
+
+
+NAME: Kind = (_is_text, "a name or a path")
+NAMES: Kind = (_are_names, "a name, or several")
+SOME: Kind = (lambda value: _are_names(value) and len(several(value)) > 0, NAMES[1])
+LIST: Kind = (_is_list, "a list of names")
+GUIDES: Kind = (_are_guides, "names, or functions that are called as reference(t)")
+NAMED: Kind = (_are_named, "a mapping of names to values")
+AXES: Kind = (_are_axes, "a mapping of names to lists of values")
+VALUES: Kind = (_are_values, "a mapping of names to lists of values, texts, or distributions")
+BOUNDS: Kind = (_are_pairs, "a mapping of names to (lowest, highest)")
+SECONDS: Kind = (lambda value: isinstance(value, Real) and math.isfinite(value), "seconds")
+POSITIVE: Kind = (
+    lambda value: isinstance(value, Real) and 0 < float(value) < math.inf,
+    "seconds, more than 0",
+)
+LAG: Kind = (
+    lambda value: isinstance(value, Real) and 0 <= float(value) <= 10,
+    "seconds, from 0 to 10",
+)
+LIMIT: Kind = (_is_limit, f"seconds, more than 0 and at most {_LONGEST:g}")
+WHOLE: Kind = (_is_whole, "a whole number")
+COUNT: Kind = (_is_count, "a whole number from 1 on")
+FLAG: Kind = (lambda value: isinstance(value, (bool, np.bool_)), "True or False")
+ANY: Kind = (lambda value: True, "")  # told where it is read
+PROGRESS: Kind = (callable, "a function that is called as progress(done, total)")
+
+OPTIONS: Dict[str, Kind] = {
+    "world": or_none(NAME),
+    "dt": or_none((lambda value: isinstance(value, Real), "a step in s")),
+    "seed": ANY,
+    "parameters": or_none(NAMED),
+    "xacro_args": or_none(NAMED),
+    "ignore": LIST,
+}
+"""What every study passes on to its simulations."""

@@ -1,0 +1,63 @@
+"""Parameters of laws and references, as their tables in the core have them."""
+
+from __future__ import annotations
+
+import difflib
+from numbers import Real
+from typing import Any, Dict, Iterable, Mapping, Sequence
+
+from .. import _core
+
+
+def values(who: str, given: Mapping[str, Any]) -> Dict[str, float]:
+    """Make numbers of parameters; the core checks their names and ranges."""
+    for name, value in given.items():
+        if not isinstance(value, (bool, Real)):
+            raise _core.InputError(f"{who}: '{name}' is {value!r}; give a number or a flag")
+    return {name: float(value) for name, value in given.items()}
+
+
+_FLAGS = {"true": 1.0, "false": 0.0}
+
+
+def read_values(who: str, text: str) -> Dict[str, float]:
+    """Read ``KEY=VALUE,...``, values being numbers or true and false.
+
+    Raises
+    ------
+    InputError
+        Something else, or a key that comes twice.
+    """
+    read: Dict[str, float] = {}
+    for part in filter(None, text.split(",")):
+        key, _, value = part.partition("=")
+        number = _FLAGS.get(value, _core.parse_number(value))
+        if key in read:
+            raise _core.InputError(f"{who}: '{key}' is given twice; keep one")
+        if number is None or not key:
+            raise _core.InputError(
+                f"{who}: '{part}' is not one KEY=NUMBER; write NAME:KEY=NUMBER,..."
+            )
+        read[key] = number
+    return read
+
+
+def docstring(summary: str, table: Iterable[_core.ParameterSpec], more: str = "") -> str:
+    """Write what a function with these parameters does."""
+    lines = [summary[0].upper() + summary[1:] + ".", "", "Parameters", "----------"]
+    lines += [more] if more else []
+    for spec in table:
+        kind = "bool" if spec.is_flag else "float"
+        unit = f" [{spec.unit}]" if spec.unit else ""
+        source = f"; {spec.equation}" if spec.equation else ""
+        lines += [
+            f"{spec.name} : {kind}, default {spec.default}",
+            f"    {spec.meaning}{unit}{source}.",
+        ]
+    return "\n".join(lines)
+
+
+def did_you_mean(name: str, known: Sequence[str]) -> str:
+    """Name the nearest of those that there are, if one is near."""
+    near = difflib.get_close_matches(name, known, 1)
+    return f" (did you mean '{near[0]}')" if near else ""

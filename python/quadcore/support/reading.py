@@ -1,0 +1,111 @@
+"""Files that a user names, read with one clear line when that fails."""
+
+from __future__ import annotations
+
+import os
+import stat
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO, Iterator
+
+from .._core import InputError
+
+LARGEST = 10**7
+"""Bytes of a text that people write, at most; far beyond any."""
+
+
+@contextmanager
+def open_file(path: Path) -> Iterator[IO[bytes]]:
+    """Open a regular file, and nothing that could be waited for without end.
+
+    Raises
+    ------
+    InputError
+        The file is missing, unreadable, a folder, a pipe, a socket or a device.
+    """
+    try:
+        check_regular(path)
+        # Something else may have the name by now: opening a pipe waits for a writer.
+        with open(os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC), "rb") as stream:
+            _check(path, os.fstat(stream.fileno()).st_mode)
+            yield stream
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
+
+
+def check_regular(path: Path) -> None:
+    """Raise `InputError` unless this is a regular file, for libraries that take only names."""
+    try:
+        _check(path, path.stat().st_mode)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+    except ValueError as error:  # a zero byte in the name
+        raise InputError(f"{path}: cannot be read: {error}") from error
+
+
+def _check(path: Path, mode: int) -> None:
+    if stat.S_ISDIR(mode):
+        raise InputError(f"{path}: cannot be read: Is a directory")
+    if not stat.S_ISREG(mode):
+        raise InputError(f"{path}: is no regular file; save what it gives in one")
+
+
+def read_bytes(path: Path, largest: int) -> bytes:
+    """Read a whole file.
+
+    Parameters
+    ----------
+    path
+        The file.
+    largest
+        Bytes that it may have.
+
+    Raises
+    ------
+    InputError
+        It is larger, or cannot be read; see `open_file`.
+    """
+    with open_file(path) as stream:
+        return read_whole(path, stream, largest)
+
+
+def read_whole(path: Path, stream: IO[bytes], largest: int) -> bytes:
+    """Read the rest of an open file of this name; parameters and errors as of `read_bytes`."""
+    data = stream.read(largest + 1)
+    if len(data) > largest:
+        raise InputError(f"{path}: is larger than {largest / 1e6:g} MB, the most that is read")
+    return data
+
+
+def read_text(path: Path, largest: int = LARGEST) -> str:
+    """Read a UTF-8 file, without its byte-order mark.
+
+    Raises
+    ------
+    InputError
+        It is no text, or `read_bytes` refuses it.
+    """
+    data = read_bytes(path, largest)
+    try:
+        if b"\0" in data:
+            raise InputError(f"{path}: a binary file where text is expected")
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise InputError(f"{path}:{line}: not UTF-8 text; save the file as UTF-8") from error
+
+
+def is_file(path: Path) -> bool:
+    """Whether `path` is a regular file.
+
+    Raises
+    ------
+    InputError
+        A folder above may not be entered, or the name is too long.
+    """
+    try:
+        return stat.S_ISREG(path.stat().st_mode)
+    except (FileNotFoundError, NotADirectoryError, ValueError):
+        return False
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error

@@ -1,0 +1,121 @@
+"""Numbers and texts that callers give, checked and written as a URDF would."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from .. import _core
+from ..simulation.engines import LAGRANGE
+from .arguments import brief
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+Number = Union[float, str]
+Value = Union[float, str, bool, Path, Sequence[str], Sequence[float], np.ndarray]
+
+SPAWN = (0.0, 0.0, 10.0)
+"""Where a flight begins unless told, m in the world."""
+
+
+def whole(seed: object, name: str = "seed", bits: int = 64) -> int:
+    """Check a seed, or what else is such a number of so many bits."""
+    is_whole = isinstance(seed, (int, np.integer)) and not isinstance(seed, bool)
+    if not is_whole or not 0 <= seed < 2**bits:  # type: ignore[operator]
+        raise _core.InputError(
+            f"{name} is {brief(seed)}; give a whole number from 0 to 2^{bits} - 1"
+        )
+    return int(seed)  # type: ignore[call-overload,no-any-return]
+
+
+def engine_and_step(engine: object, dt: object) -> Tuple[str, Optional[float]]:
+    """Check an engine's name, known or not, and the length of a step or None."""
+    known = ", ".join(name for name, _ in _core.engines())
+    if not (isinstance(engine, str) and engine.isprintable()):
+        raise _core.InputError(f"engine is {brief(engine)}; give one of {known}")
+    if engine == LAGRANGE:
+        raise _core.InputError(
+            f"engine '{engine}' is flown by quadcore.thesis.chapter2.plant.Plant, "
+            f"quadcore.FlightPlan and the commands that offer it; here choose one of {known}"
+        )
+    if dt is None:
+        return engine, None
+    try:
+        if not isinstance(dt, (str, bytes)):
+            return engine, float(dt)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        pass
+    raise _core.InputError(f"dt is {brief(dt)}; give the length of a step in s")
+
+
+def text_of(value: Value) -> str:
+    """Write a parameter's value as a URDF would."""
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value.item()
+    if isinstance(value, (bool, np.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return " ".join(text_of(part) for part in value)
+    text = str(value)
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        raise _core.InputError(f"{brief(value)} is not text in UTF-8. Give another.") from None
+    return text
+
+
+def pose(spawn: Sequence[Number]) -> Tuple[float, ...]:
+    """Check a start pose: x, y, z, roll, pitch, yaw."""
+    try:
+        given = [_number(value) for value in spawn]
+    except (TypeError, ValueError):
+        given = []
+    if len(given) not in (3, 6):
+        raise _core.InputError(
+            f"spawn is {brief(spawn)}; give x, y, z[, roll, pitch, yaw] in m and rad"
+        )
+    return (*given, *[0.0] * (6 - len(given)))
+
+
+def _number(value: Number) -> float:
+    if not isinstance(value, str):
+        return float(value)
+    number = _core.parse_number(value)
+    if number is None:
+        raise ValueError(value)
+    return number
+
+
+def poses(spawn: npt.ArrayLike, n: int) -> np.ndarray:
+    """Check the start poses of n vehicles, one for each or one for all: shape (n, 6)."""
+    try:
+        given = np.atleast_2d(np.asarray(spawn, dtype=float))
+    except (TypeError, ValueError):
+        given = np.empty((0, 0))
+    if given.shape not in {(rows, width) for rows in (1, n) for width in (3, 6)}:
+        raise _core.InputError(
+            f"spawn holds no poses of {n} vehicles; give x, y, z[, roll, pitch, yaw] in m "
+            "and rad, for each or once for all"
+        )
+    padded = np.zeros((n, 6))
+    padded[:, : given.shape[1]] = given
+    return padded
+
+
+def seeds(seed: Union[int, npt.ArrayLike], n: int) -> np.ndarray:
+    """Check the seeds of n vehicles; one is that of the first, the next has the next."""
+    if isinstance(seed, (int, np.integer)):
+        first = whole(seed)
+        return np.array([(first + i) % 2**64 for i in range(n)], np.uint64)
+    try:
+        given = np.asarray(seed)
+    except ValueError:  # rows of several lengths
+        given = np.empty((0, 0))
+    if given.shape != (n,):
+        raise _core.InputError(f"seed holds no {n} whole numbers; give one for each, or one")
+    if given.dtype == np.uint64:
+        return given
+    return np.array([whole(number) for number in given], np.uint64)

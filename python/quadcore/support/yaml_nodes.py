@@ -1,0 +1,61 @@
+"""YAML files read node by node, so that what is wrong can be told with its line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Iterator, Tuple, Union
+
+import yaml
+
+from .._core import InputError
+from .reading import read_text
+
+_SCALAR = "tag:yaml.org,2002:"
+
+
+def root(path: Path) -> yaml.Node:
+    """Read a file; raises `InputError` if it is missing or no YAML."""
+    try:
+        return yaml.compose(read_text(path), yaml.SafeLoader)
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        at = mark.line + 1 if mark else 1
+        problem = getattr(error, "problem", None) or "not YAML"
+        raise InputError(f"{path}:{at}: {problem}") from None
+    except RecursionError:
+        raise InputError(f"{path}:1: nested too deeply") from None
+
+
+def pairs(
+    path: Union[str, Path], node: Any, what: str
+) -> Iterator[Tuple[yaml.ScalarNode, yaml.Node]]:
+    """Give keys and values of a mapping; raises `InputError` if it is none, with what to write."""
+    if not isinstance(node, yaml.MappingNode):
+        raise InputError(f"{path}:{line_of(node) if node else 1}: write {what}")
+    names = set()
+    for key, value in node.value:
+        if not isinstance(key, yaml.ScalarNode):
+            raise InputError(f"{path}:{line_of(key)}: a key is no text; write {what}")
+        if key.value in names:
+            raise InputError(f"{path}:{line_of(key)}: {key.value} is given twice; keep one")
+        names.add(key.value)
+        yield key, value
+
+
+def scalar(path: Union[str, Path], name: str, node: yaml.Node) -> str:
+    """Read a value as it is written; raises `InputError` if it is none."""
+    where = f"{path}:{line_of(node)}"
+    if not isinstance(node, yaml.ScalarNode):
+        kind = "a list" if isinstance(node, yaml.SequenceNode) else "a mapping"
+        raise InputError(f"{where}: {name} is {kind} here; write a value, or a list of values")
+    if node.tag == f"{_SCALAR}null":
+        raise InputError(f"{where}: {name} is empty; write a value, or leave the line out")
+    if node.tag == f"{_SCALAR}bool":  # yes and on are others
+        return "true" if yaml.SafeLoader.bool_values[node.value.lower()] else "false"
+    return str(node.value)
+
+
+def line_of(node: yaml.Node) -> int:
+    """Where a node begins, from 1."""
+    at: int = node.start_mark.line + 1
+    return at

@@ -1,0 +1,101 @@
+"""The mathematical model in the place of an engine: what a controller can fly."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, List, Mapping
+
+import numpy as np
+
+from ..._core import InputError
+from ...simulation.engines import LAGRANGE
+from ...simulation.simulation import Simulation
+from ...simulation.state import State, state_of
+from ...support import interrupts
+from .model import THESIS, MathematicalModel, Terms
+from .vehicle import Vehicle, air_of, command_order
+
+_UNFELT = ("libwind_plugin.so", "libpayload_plugin.so", "libfault_plugin.so")
+"""What changes the forces of others, not of the mathematical model."""
+
+
+class Plant(Simulation):
+    """A `Simulation` that moves by the equations of chapter 2.
+
+    Plugins hear commands and sense as in any engine, at their rates and with their noise, but none
+    of their forces acts: those of the model do, with the numbers that the plugins' tags say.
+
+    Parameters
+    ----------
+    terms : Terms
+        What to put back of what the thesis leaves out.
+    **options
+        As for `Simulation`, without `engine`.
+
+    Raises
+    ------
+    InputError
+        A vehicle or a world that chapter 2 has no equation for.
+    """
+
+    def __init__(self, terms: Terms = THESIS, **options: Any) -> None:
+        super().__init__(**options, engine="eigen")
+        check(self)
+        self._move_by(_Motion(MathematicalModel(Vehicle.of(self), terms), command_order(self)))
+
+    @property
+    def engine(self) -> str:
+        """Its name."""
+        return LAGRANGE
+
+    @property
+    def wrench_terms(self) -> List[str]:
+        """None: the model's forces are those of its equation alone."""
+        return []
+
+    @property
+    def method(self) -> str:
+        """How it takes its steps."""
+        return "Euler-Lagrange equation (2.38), classical Runge-Kutta of fourth order"
+
+
+class _Motion:
+    """One step of the model, between states of the frame link."""
+
+    def __init__(self, model: MathematicalModel, order: Any) -> None:
+        self._model, self._order = model, order
+        self._fastest = model.vehicle.fastest
+
+    def __call__(self, dt: float, command: np.ndarray, members: Mapping[str, Any]) -> State:
+        with interrupts.held():  # the engine would take one for a fault of the model
+            state = state_of(members)
+            joints = state.rotor_velocity.copy()
+            state.rotor_velocity = joints[self._order]
+            speeds = np.clip(command, -self._fastest, self._fastest)
+            after = self._model.step(dt, speeds, state)
+            joints[self._order] = after.rotor_velocity
+            turned = state.rotor_angle + dt * joints
+            after.rotor_velocity = joints
+            after.rotor_angle = np.remainder(turned + np.pi, 2 * np.pi) - np.pi
+            return after
+
+
+def check(simulation: Simulation) -> None:
+    """Raise `InputError` if something acts on the vehicle that chapter 2 does not know."""
+    if simulation.world.ground_plane:
+        raise InputError(
+            f"engine {LAGRANGE}: the mathematical model has no contact, and the world a ground "
+            "plane; fly in a world without, such as empty"
+        )
+    air = air_of(simulation)
+    for plugin in simulation.plugins:
+        if plugin.wrenches and plugin.name != air.name:
+            raise InputError(
+                f"engine {LAGRANGE}: plugin '{plugin.name}' exerts {', '.join(plugin.wrenches)}, "
+                "which the mathematical model does not know; remove it, or fly another engine"
+            )
+        if Path(plugin.filename).name in _UNFELT:
+            raise InputError(
+                f"engine {LAGRANGE}: plugin '{plugin.name}' ({plugin.filename}) would not be felt "
+                "by the mathematical model; remove it, or fly another engine"
+            )

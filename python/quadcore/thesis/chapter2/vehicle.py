@@ -1,0 +1,207 @@
+"""What chapter 2 knows of a vehicle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from functools import cached_property
+from pathlib import Path
+from typing import Dict, List, Sequence
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from ..._core import InputError, PluginInfo
+from ...formats.mat import write_variables
+from ...simulation.simulation import Simulation
+from .kinematics import skew
+
+
+@dataclass(frozen=True)
+class Vehicle:
+    """Parameters of the mathematical model, body axes, for n rotors in the order of a command.
+
+    The thesis writes its equations for four rotors along the body's z; here each has its own arm
+    and axis, so that the same equations serve any vehicle.
+    """
+
+    mass: float
+    """m, of the whole vehicle, kg."""
+    inertia: np.ndarray
+    """I_B (2.1), of the whole vehicle with its rotors, about its centre of mass, kg m^2; (3, 3)."""
+    center_of_mass: np.ndarray
+    """(2.2), from the origin of the frame link, m; (3,)."""
+    arms: np.ndarray
+    """d e_1 + h e_3 and so on of (2.33): rotors from the centre of mass, m; (n, 3)."""
+    axes: np.ndarray
+    """e_3 of (2.22): unit vectors along the rotors' joints; (n, 3)."""
+    rotor_inertia: np.ndarray
+    """I_R of a rotor about its axis, kg m^2; (n,)."""
+    gravity: np.ndarray
+    """World, m/s^2; (3,). The thesis' is [0, 0, -g_z]."""
+    wind: np.ndarray
+    """Velocity of the air in the world, m/s; (3,). The thesis has still air."""
+    k: float
+    """Thrust per squared speed (2.10), N s^2/rad^2."""
+    b: float
+    """Reaction torque per squared speed (2.11), N m s^2/rad^2; negative if it opposes the spin."""
+    K_I: float
+    """Induced drag (2.28), N s/m."""
+    K_T: float
+    """Translational drag, K_T1 of (2.29), N s/m."""
+    K_P: float
+    """Profile drag (2.30), N s/m."""
+    K_par: float
+    """Parasitic drag (2.31), N s^2/m^2."""
+    A_1c: float
+    """Blade flapping (2.26), rad."""
+    A_1s: float
+    """Blade flapping (2.26), rad."""
+    B_1: float
+    """Blade flapping (2.27), s/rad."""
+    B_2: float
+    """Blade flapping (2.27), s/rad."""
+    r: float
+    """Rotor radius (2.26), m."""
+    motor_gain: float
+    """Torque of a motor per lack of speed (the engines' proportional law, A.4), N m s/rad."""
+    joint_damping: np.ndarray
+    """Friction of the rotors' joints, N m s/rad; (n,)."""
+    fastest: float
+    """Speed at which a command saturates, rad/s."""
+    slow: float
+    """sim_slow: the rotors turn this much slower than their forces assume (chapter 4)."""
+
+    @classmethod
+    def of(cls, simulation: Simulation) -> Vehicle:
+        """Read a vehicle off a simulation: its model, world and plugins.
+
+        Raises
+        ------
+        InputError
+            A vehicle that chapter 2 has no equation for.
+        """
+        air, motor = parameters_of(air_of(simulation)), parameters_of(motor_of(simulation))
+        integral = float(motor["ki"]) * (float(motor["iMax"]) - float(motor["iMin"]))
+        if integral != 0 or float(motor["kd"]) != 0:
+            raise InputError("the mathematical model has proportional motors; set <ki>, <kd> to 0")
+        if motor["commandTimeout"] != "off":
+            raise InputError("the mathematical model knows no <commandTimeout>; remove it")
+        for plugin in (air, motor):
+            if sorted(plugin["rotorJoints"].split()) != sorted(simulation.rotor_names):
+                raise InputError("the mathematical model needs every rotor in each <rotorJoints>")
+        order = command_order(simulation)
+        joints = [simulation.model.joints[i] for i in order]
+        links = [simulation.model.links[1 + i] for i in order]  # the first is the frame
+        turns = [Rotation.from_euler("xyz", joint.rpy) for joint in joints]
+        parts = list(zip(joints, links, turns))
+        places = [joint.xyz + turn.apply(link.center_of_mass) for joint, link, turn in parts]
+        return cls(
+            mass=simulation.mass,
+            inertia=simulation.inertia,
+            center_of_mass=simulation.center_of_mass,
+            arms=np.array(places) - simulation.center_of_mass,
+            axes=np.array([turn.apply(joint.axis) for joint, _, turn in parts]),
+            rotor_inertia=np.array([j.axis @ link.inertia @ j.axis for j, link, _ in parts]),
+            gravity=simulation.world.gravity,
+            wind=simulation.world.wind,
+            k=float(air["rotorThrustCoeff"]),
+            b=float(air["rotorTorqueCoeff"]) * (1 if air["reactionTorque"] == "thesis" else -1),
+            K_I=float(air["inducedDragCoeff"]),
+            K_T=float(air["translationalDragCoeff"]),
+            K_P=float(air["profileDragCoeff"]),
+            K_par=float(air["parasiticDragCoeff"]),
+            A_1c=float(air["flappingA1c"]),
+            A_1s=float(air["flappingA1s"]),
+            B_1=float(air["flappingB1"]),
+            B_2=float(air["flappingB2"]),
+            r=float(air["rotorRadius"]),
+            motor_gain=float(motor["kp"]),
+            joint_damping=np.array([joint.damping for joint in joints]),
+            fastest=np.inf if motor["maxVelocity"] == "none" else float(motor["maxVelocity"]),
+            slow=float(motor["sim_slow"]),
+        )
+
+    def to_mat(self, path: Path) -> None:
+        """Write a MATLAB file of each number under its name: what `matlab/` takes for a vehicle."""
+        write_variables(path, {field.name: getattr(self, field.name) for field in fields(self)})
+
+    @cached_property
+    def levers(self) -> np.ndarray:
+        """[1; S(r_i)], (n, 6, 3): what a force at rotor i is about the centre of mass (2.33).
+
+        Print has D x r where the torque is r x D.
+        """
+        return np.array([np.vstack([np.eye(3), skew(arm)]) for arm in self.arms])
+
+    @cached_property
+    def thrust_wrenches(self) -> np.ndarray:
+        """What the thrust of a unit of squared speed of each rotor is in the body; (6, n)."""
+        wrenches: np.ndarray = self.k * np.einsum("iaj,ij->ai", self.levers, self.axes)
+        return wrenches
+
+    @cached_property
+    def discs(self) -> np.ndarray:
+        """1 - a a^T, (n, 3, 3): what a vector is in the plane of rotor i."""
+        return np.array([np.eye(3) - np.outer(axis, axis) for axis in self.axes])
+
+    @cached_property
+    def disc_drag(self) -> np.ndarray:
+        """Body wrench per body twist of D_i = -V_pi on each rotor, with the sign turned; (6, 6).
+
+        V_pi = disc_i (V_B + nu x r_i) is a rotor's velocity in its own plane (2.28)-(2.30), of
+        which print lacks the minus sign.
+        """
+        drag: np.ndarray = np.einsum("iaj,ijk,ibk->ab", self.levers, self.discs, self.levers)
+        return drag
+
+    @property
+    def flaps(self) -> bool:
+        """Whether any coefficient of blade flapping is set."""
+        return any((self.A_1c, self.A_1s, self.B_1, self.B_2))
+
+
+def air_of(simulation: Simulation) -> PluginInfo:
+    """Find the one plugin whose force laws those of chapter 2 are: it reports the thrust."""
+    found = [plugin for plugin in simulation.plugins if "thrust" in plugin.wrenches]
+    return _the_one(found, "libaerodynamic_plugin.so")
+
+
+def motor_of(simulation: Simulation) -> PluginInfo:
+    """Find the one plugin that turns the rotors: it takes the commands."""
+    commands = simulation.topics.get(simulation.command_topic)
+    readers = commands.readers if commands else []
+    found = [plugin for plugin in simulation.plugins if plugin.name in readers]
+    return _the_one(found, "libmotorpid_plugin.so")
+
+
+def _the_one(found: Sequence[PluginInfo], such_as: str) -> PluginInfo:
+    if len(found) == 1:
+        return found[0]
+    others = sorted({plugin.filename for plugin in found} - {such_as})
+    got = f"{len(found)}" if not others else f"{', '.join(others)}; take another engine"
+    raise InputError(f"the mathematical model needs one plugin {such_as}; got {got}")
+
+
+def parameters_of(plugin: PluginInfo) -> Dict[str, str]:
+    """Read the effective parameters of a plugin, by name."""
+    return _Tags(plugin)
+
+
+class _Tags(Dict[str, str]):
+    """What the tags of a plugin say; one that it does not have is told."""
+
+    def __init__(self, plugin: PluginInfo) -> None:
+        super().__init__((entry.name, entry.value) for entry in plugin.parameters)
+        self._plugin = plugin.name
+
+    def __missing__(self, tag: str) -> str:
+        raise InputError(
+            f"plugin '{self._plugin}' has no tag <{tag}>, which the mathematical model needs; fly "
+            "the shipped plugins"
+        )
+
+
+def command_order(simulation: Simulation) -> List[int]:
+    """Joints in the order of a command's numbers: `rotor_velocity[command_order(s)]`."""
+    driven = parameters_of(motor_of(simulation))["rotorJoints"].split()
+    return [simulation.rotor_names.index(name) for name in driven]

@@ -1,0 +1,26 @@
+"""The thesis' chapter 6.1 as one call: plant against mathematical model, and why they differ."""
+
+from ...simulation.vehicle_tags import DRAGS
+from .chain import Chain, Link
+from .damping import Damping
+from .experiment import MODEL, TERMS, Case, Experiment, Flight
+from .states import STATES, compare, states
+from .study import Row, Study, conduct
+
+__all__ = [
+    "DRAGS",
+    "MODEL",
+    "STATES",
+    "TERMS",
+    "Case",
+    "Chain",
+    "Damping",
+    "Experiment",
+    "Flight",
+    "Link",
+    "Row",
+    "Study",
+    "compare",
+    "conduct",
+    "states",
+]

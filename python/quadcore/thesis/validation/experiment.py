@@ -1,0 +1,201 @@
+"""One flight of the experiment of the thesis' chapter 6.1, by an engine or by the model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+
+import numpy as np
+
+from ..._core import InputError, QuadcoreError
+from ...simulation.commands import CommandsLike, as_commands
+from ...simulation.flight import check_logged
+from ...simulation.flight_plan import FlightPlan
+from ...simulation.log import Log
+from ...simulation.simulation import Simulation
+from ...simulation.state import State
+from ...simulation.vehicle_tags import DRAGS
+from ...support.values import SPAWN, Value, text_of
+from ..chapter2 import GYROSTAT, MathematicalModel, Terms, Vehicle
+from ..chapter2.vehicle import air_of, command_order, motor_of, parameters_of
+from .ascent import ascent
+from .given_speeds import fly_given_speeds, stiff_gain
+
+MODEL = "model"
+LAG, NO_LAG = "motors that lag", "motors without lag"
+# What the model may be asked for besides what chapter 2 says.
+TERMS: Mapping[str, Terms] = {
+    LAG: Terms(),
+    NO_LAG: Terms(motor_lag=False),
+    "the torque of rotors that spin up": Terms(spin_up=True),
+    "rotors that a turning frame leaves behind": Terms(dragged_rotors=True),
+    "both: a gyrostat": GYROSTAT,
+}
+
+
+class Case(NamedTuple):
+    """One flight."""
+
+    plant: str
+    """An engine, or MODEL."""
+    sim_slow: float = 1.0
+    drag: str = "all"
+    """Of DRAGS the one that acts, or "all" or "none"."""
+    variant: str = ""
+    """Of an engine "chapter2" (that drag model) or "given speeds" (that, and the rotors' speeds
+    are given instead of driven); of the model a key of TERMS, or none for chapter 2."""
+
+
+class Flight(NamedTuple):
+    """What became of a case."""
+
+    case: Case
+    log: Optional[Log]
+    failure: str
+    """Why there is no log."""
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """What all flights share; made by `Experiment.of`."""
+
+    asked: Dict[str, Any]
+    """Names and numbers as they were given: model, world, parameters, xacro_args, ignore, spawn."""
+    plan: FlightPlan
+    """The plant as it is, its commands at steps."""
+    motor_lag: bool
+    air: str
+    """Name of the aerodynamic plugin."""
+    motor: str
+    rotors: Tuple[int, ...]
+    """Of each number of a command the rotor."""
+
+    @classmethod
+    def of(
+        cls,
+        model: str = "quadrotor",
+        world: Optional[str] = None,
+        parameters: Optional[Mapping[str, Value]] = None,
+        xacro_args: Optional[Mapping[str, str]] = None,
+        ignore: Sequence[str] = (),
+        dt: Optional[float] = None,
+        duration: float = 10.0,
+        spawn: Sequence[float] = SPAWN,
+        commands: Optional[CommandsLike] = None,
+        motor_lag: bool = True,
+        log_every: int = 10,
+    ) -> Experiment:
+        """Check what is asked for; without commands the flight is `ascent`.
+
+        Raises
+        ------
+        InputError
+            An argument is at fault, or the mathematical model has no equation for the vehicle.
+        """
+        asked: Dict[str, Any] = {
+            "model": model,
+            "world": world,
+            "parameters": dict(parameters or {}),
+            "xacro_args": dict(xacro_args or {}),
+            "ignore": tuple(ignore),
+            "spawn": tuple(spawn),
+        }
+        for key in asked["parameters"]:
+            if key.endswith(".sim_slow"):
+                raise InputError(f"{key}: every flight has its own; give a list of sim_slow")
+        plan = FlightPlan.of(**asked, engine="eigen", dt=dt, duration=duration, log_every=log_every)
+        simulation = plan.simulation()
+        check_logged(duration, simulation.dt, log_every)
+        vehicle = Vehicle.of(simulation)
+        rotors = len(vehicle.arms)
+        table = ascent(vehicle) if commands is None else as_commands(commands, rotors)
+        if table[0, 0] > 0:
+            raise InputError(f"commands: the first row is for t = {table[0, 0]:g}; begin at t = 0")
+        air, motor = air_of(simulation).name, motor_of(simulation).name
+        table = at_steps(table, simulation.dt)
+        plan = replace(plan, dt=simulation.dt, commands=table)
+        return cls(asked, plan, motor_lag, air, motor, tuple(command_order(simulation)))
+
+    @property
+    def commands(self) -> np.ndarray:
+        """What is flown, (rows, 1 + n)."""
+        assert self.plan.commands is not None
+        return self.plan.commands
+
+    def flight(self, case: Case, more: Optional[Mapping[str, Value]] = None) -> FlightPlan:
+        """Describe the flight of a case, from rest with the rotors as first commanded.
+
+        Parameters
+        ----------
+        more
+            PLUGIN.TAG -> value, to change on top.
+        """
+        parameters: Dict[str, Value] = dict(self.plan.parameters)
+        for plugin in (self.air, self.motor):
+            parameters[f"{plugin}.sim_slow"] = case.sim_slow
+        for drag, tags in DRAGS.items():
+            if case.drag not in ("all", drag):
+                parameters.update((f"{self.air}.{tag}", 0) for tag in tags)
+        if case.variant in ("chapter2", "given speeds"):
+            parameters[f"{self.air}.dragModel"] = "chapter2"
+        parameters.update(more or {})
+        speeds = np.zeros(len(self.plan.model.joints))
+        speeds[list(self.rotors)] = self.commands[0, 1:] / case.sim_slow
+        return replace(
+            self.plan,
+            engine="eigen" if case.plant == MODEL else case.plant,
+            parameters={key: text_of(value) for key, value in parameters.items()},
+            rotor_velocity=tuple(speeds.tolist()),
+        )
+
+    def fly(self, case: Case) -> Flight:
+        """Fly a case; what ends its flight is told, not raised."""
+        try:
+            return Flight(case, self._fly(case), "")
+        except QuadcoreError as error:
+            return Flight(case, None, str(error))
+
+    def _fly(self, case: Case) -> Log:
+        flight = self.flight(case)
+        if case.plant == MODEL:
+            terms = TERMS.get(case.variant, Terms(motor_lag=self.motor_lag))
+            simulation = flight.simulation()
+            model = MathematicalModel(Vehicle.of(simulation), terms)
+            step = flight.log_every * simulation.dt
+            return model.fly(flight.duration, self.commands, _in_order(simulation), step)
+        if case.variant == "given speeds":
+            plain = flight.simulation()
+            vehicle = Vehicle.of(plain)
+            gain = {f"{self.motor}.kp": stiff_gain(vehicle, plain.dt)}
+            stiff = self.flight(case, {**gain, f"{self.motor}.maxVelocity": 1e9})
+            return fly_given_speeds(
+                stiff.simulation(),
+                vehicle,
+                self.commands,
+                flight.duration,
+                flight.log_every,
+                self.motor_lag,
+            )
+        return flight.fly()
+
+    def drags(self) -> List[str]:
+        """Cases of drag that differ for this vehicle: none, each that acts alone, all."""
+        values = parameters_of(air_of(self.flight(Case("eigen")).simulation()))
+        acting = [d for d, tags in DRAGS.items() if any(float(values[tag]) for tag in tags)]
+        return ["none", *acting, "all"]
+
+
+def at_steps(commands: np.ndarray, dt: float) -> np.ndarray:
+    """Move each row to the step that would be the first to feel it; of several, the last counts."""
+    steps = np.ceil((commands[:, 0] - 1e-9) / dt)
+    steps[steps < 0] = 0
+    last = np.append(np.diff(steps) > 0, True)
+    table: np.ndarray = np.column_stack([steps * dt, commands[:, 1:]])[last]
+    return table
+
+
+def _in_order(simulation: Simulation) -> State:
+    """Present state, rotors in the order of a command."""
+    state = simulation.state.copy()
+    state.rotor_velocity = state.rotor_velocity[command_order(simulation)]
+    return state

@@ -1,0 +1,161 @@
+"""A study as tables, figures and one page."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any, Dict, Iterable, List, Mapping, Sequence
+
+import numpy as np
+
+from ..._core import InputError
+from ...report.page import write_page
+from ...studies.table import csv_bytes, json_bytes, save
+from .chain import Chain
+from .experiment import Case
+from .states import STATES
+from .study import Row, Study
+from .thesis import KINDS, thesis_figures
+
+PICTURE = re.compile(rf"(commands|damping|(chain|{'|'.join(KINDS)})_[a-z]+)\.png")
+_SIZES = (*STATES, "distance")
+_TOLD = ("largest", "rms")
+
+
+def write_tables(study: Study, directory: Path) -> List[Path]:
+    """Write all numbers into a folder that is there; the same study gives the same bytes.
+
+    Pictures of another study that lie there are removed.
+
+    Raises
+    ------
+    InputError
+        A file cannot be written.
+    """
+    files = {
+        "commands.csv": csv_bytes(_commands(study)),
+        "errors.csv": csv_bytes(_errors(study.rows)),
+        "chains.csv": csv_bytes(_chains(study.chains)),
+        "validation.json": json_bytes(as_json(study)),
+    }
+    for old in directory.glob("*.png"):
+        if PICTURE.fullmatch(old.name):
+            try:
+                old.unlink()
+            except OSError as error:
+                raise InputError(f"{old}: cannot be removed: {error.strerror}") from error
+    return save(directory, files)
+
+
+def write_picture(name: str, picture: bytes, directory: Path) -> None:
+    """Write one of `figures.pictures`.
+
+    Raises
+    ------
+    InputError
+        It cannot be written.
+    """
+    save(directory, {f"{name}.png": picture})
+
+
+def write_report(study: Study, pictures: Mapping[str, bytes], directory: Path) -> Path:
+    """Write everything on one page.
+
+    Parameters
+    ----------
+    pictures
+        PNG files by name, as `figures.pictures` names them; there may be none.
+
+    Raises
+    ------
+    InputError
+        It cannot be written.
+    """
+    page = directory / "report.html"
+    write_page(
+        page,
+        "validation.html",
+        title=f"{study.experiment.asked['model']}: plant against mathematical model",
+        study=study,
+        rows={row.case: row for row in study.rows},
+        Case=Case,
+        pictures=pictures,
+        kinds=KINDS,
+        thesis_figures=thesis_figures,
+        size=size,
+        degrees=np.degrees,
+    )
+    return page
+
+
+def as_json(study: Study) -> Dict[str, Any]:
+    """All numbers of a study as plain lists and dictionaries; angles in rad."""
+    experiment = study.experiment
+    asked = dict(experiment.asked)
+    spawn = asked.pop("spawn")
+    shared = {
+        **asked,
+        "dt": experiment.plan.dt,
+        "duration": experiment.plan.duration,
+        "spawn": spawn,
+        "motor_lag": experiment.motor_lag,
+    }
+    return {
+        "experiment": shared,
+        "commands": experiment.commands.tolist(),
+        "errors": [_row(row) for row in study.rows],
+        "chains": [
+            {**chain._asdict(), "links": [_link(link) for link in chain.links]}
+            for chain in study.chains
+        ],
+        "left_out": [_row(row) for row in study.left_out],
+        "slowed": [_row(row) for row in study.slowed],
+        "damping": [entry._asdict() for entry in study.damping],
+        "thesis_figures": {
+            f"{kind}_{drag}": thesis_figures(drag, kind, study.sim_slow)
+            for drag in study.drags
+            for kind in KINDS
+        },
+    }
+
+
+def size(value: float) -> str:
+    """Write a length with three digits, fewer if it is tiny."""
+    if value == 0:
+        return "0"
+    return f"{value:#.3g}".rstrip(".") if abs(value) >= 1e-3 else f"{value:.0e}"
+
+
+def _row(row: Row) -> Dict[str, Any]:
+    result = {**row.case._asdict(), "steepest": row.steepest, "failure": row.failure}
+    if row.difference is not None:
+        result.update({kind: getattr(row.difference, kind) for kind in _TOLD})
+    return result
+
+
+def _link(link: Any) -> Dict[str, Any]:
+    return {**link._asdict(), "begin": link.begin._asdict(), "end": link.end._asdict()}
+
+
+def _commands(study: Study) -> Iterable[Sequence[Any]]:
+    rows = study.experiment.commands.tolist()
+    return [["t", *(f"w{i}" for i in range(1, len(rows[0])))], *rows]
+
+
+def _errors(rows: Sequence[Row]) -> Iterable[Sequence[Any]]:
+    kinds = [f"{kind}_{name}" for kind in ("max", "rms") for name in _SIZES]
+    yield ["engine", "sim_slow", "drag", "steepest", *kinds, "failure"]
+    for row in rows:
+        sizes: Sequence[Any] = [""] * len(kinds)
+        if row.difference is not None:
+            told = (getattr(row.difference, kind) for kind in _TOLD)
+            sizes = [part[name] for part in told for name in _SIZES]
+        yield [*row.case[:3], row.steepest, *sizes, row.failure]
+
+
+def _chains(chains: Sequence[Chain]) -> Iterable[Sequence[Any]]:
+    yield ["drag", "sim_slow", "change", "share", "largest", "rms", "failure"]
+    for chain in chains:
+        for link in chain.links:
+            yield [*chain[:2], link.change, link.share, link.largest, link.rms, ""]
+        yield [*chain[:2], "sum", chain.distance, "", "", chain.failure]

@@ -1,0 +1,137 @@
+"""A recording of anybody's plant, judged against the mathematical model and the engines."""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Callable, Iterator, NamedTuple, Optional, Sequence, Union
+
+import numpy as np
+
+from ..._core import FlightError, InputError
+from ...simulation.commands import as_commands
+from ...simulation.flight_plan import FlightPlan
+from ...simulation.log import Log
+from ...simulation.state import State
+from ...studies.fit.record import read
+from ...studies.metrics import Sizes, differences, sizes, states
+from ...support.files import text_bytes
+from ..chapter2 import GYROSTAT, MathematicalModel, Terms, Vehicle
+from ..chapter2.vehicle import command_order
+
+MODELS = {"chapter 2": Terms(), "chapter 2, as a gyrostat": GYROSTAT}
+
+
+class Judged(NamedTuple):
+    """How far a recording is from one flight that begins as it does and is commanded alike."""
+
+    plant: str
+    """One of `MODELS`, or an engine."""
+    difference: Optional[Sizes]
+    """The recording less the flight, by `states`."""
+    failure: str
+    """Why there is none."""
+
+
+def judge(
+    plan: FlightPlan,
+    recording: Union[str, Path],
+    commands: Union[str, Path, np.ndarray, None],
+    engines: Sequence[str],
+) -> Iterator[Judged]:
+    """Fly what was recorded once more, by the mathematical model and by engines.
+
+    Parameters
+    ----------
+    plan
+        The vehicle and its world; where it begins is the recording's.
+    recording
+        A log: .csv, .mat or .bag.
+    commands
+        A table or a file of them; None takes what the recording has on topic vel_cmd.
+    engines
+        Their names.
+
+    Raises
+    ------
+    InputError
+        The recording or the commands are at fault, or do not fit the vehicle.
+    """
+    log = Log.of_file(recording)
+    vehicle = replace(plan, engine="eigen").simulation()
+    if len(log) < 2:
+        raise InputError(f"{recording}: has one row; record a flight")
+    table = _commands(recording, commands, vehicle.rotor_count)
+    if table[0, 0] > log.time[0] + 1e-9:
+        raise InputError(
+            f"{recording}: begins at t = {log.time[0]:g}, the commands at {table[0, 0]:g}; give "
+            "those from its begin on"
+        )
+    duration = float(log.time[-1] - log.time[0])
+    start = _state(log, vehicle.state.copy())
+    order = command_order(vehicle)
+    in_order = start.copy()
+    in_order.rotor_velocity = start.rotor_velocity[order]
+    due = table[np.searchsorted(table[:, 0], log.time[0] + 1e-9, side="right") - 1 :]
+    for name, terms in MODELS.items():
+        model = MathematicalModel(Vehicle.of(vehicle), terms)
+        yield _judged(name, log, partial(model.fly, duration, due, in_order, vehicle.dt))
+    for engine in engines:
+        simulation = replace(plan, engine=engine).simulation()
+        simulation.set_state(start)
+        yield _judged(engine, log, partial(simulation.run, duration, table))
+
+
+def _commands(
+    recording: Union[str, Path], commands: Union[str, Path, np.ndarray, None], rotors: int
+) -> np.ndarray:
+    if commands is None:
+        commands = read(recording, rotors).commands
+    if commands is None:
+        if Path(recording).suffix.lower() != ".bag":
+            raise InputError(f"{recording}: has no topic vel_cmd; give the --commands that flew")
+        commands = recording
+    return as_commands(commands, rotors)
+
+
+def _state(log: Log, state: State) -> State:
+    """Give the first of a recording; angles of the rotors are not recorded, and act on nothing."""
+    rotors = log.rotor_velocity.shape[1]
+    if rotors != len(state.rotor_velocity):
+        raise InputError(
+            f"the recording has {rotors} rotors, the model {len(state.rotor_velocity)}"
+        )
+    state.time = float(log.time[0])
+    state.position = log.position[0]
+    state.orientation = log.orientation[0] / np.linalg.norm(log.orientation[0])
+    state.linear_velocity = log.linear_velocity[0]
+    state.angular_velocity = log.angular_velocity[0]
+    state.rotor_velocity = log.rotor_velocity[0]
+    return state
+
+
+def _judged(name: str, log: Log, fly: Callable[[], Log]) -> Judged:
+    try:
+        flown = fly()
+    except FlightError as error:
+        return Judged(name, None, str(error))
+    apart = differences(flown, log)
+    return Judged(name, sizes(apart, list(states(log.rotor_velocity.shape[1]))), "")
+
+
+def table_of(rows: Sequence[Judged], rotors: int) -> bytes:
+    """Write all differences as CSV: plant, state, unit, largest, rms, final, failure."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(["plant", "state", "unit", "largest", "rms", "final", "failure"])
+    for row in rows:
+        if row.difference is None:
+            writer.writerow([row.plant, "", "", "", "", "", row.failure])
+            continue
+        for state, unit in states(rotors).items():
+            parts = (row.difference.largest, row.difference.rms, row.difference.final)
+            writer.writerow([row.plant, state, unit, *(repr(part[state]) for part in parts), ""])
+    return text_bytes(stream.getvalue())

@@ -1,0 +1,140 @@
+"""All flights of the experiment, in parallel, and what they say."""
+
+from __future__ import annotations
+
+from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Union
+
+from ..._core import InputError, QuadcoreError
+from ...studies.executor import conducted
+from ...studies.metrics import Sizes
+from ...studies.table import NOT_FLOWN
+from .chain import ORDER, Chain, forge, stages
+from .damping import Damping, measure
+from .experiment import LAG, MODEL, NO_LAG, TERMS, Case, Experiment, Flight
+from .states import compare, steepest
+from .thesis import SIM_SLOW
+
+
+class Row(NamedTuple):
+    """One flight against another."""
+
+    case: Case
+    difference: Optional[Sizes]
+    steepest: float
+    """Largest roll or pitch, rad."""
+    failure: str
+    """Why there is no difference."""
+
+
+class Study(NamedTuple):
+    """What `conduct` found."""
+
+    experiment: Experiment
+    engines: List[str]
+    sim_slow: List[float]
+    drags: List[str]
+    flights: Dict[Case, Flight]
+    rows: List[Row]
+    """Each engine, sim_slow and drag against the mathematical model."""
+    chains: List[Chain]
+    left_out: List[Row]
+    """The model with other terms against the model, with the last of the drags."""
+    slowed: List[Row]
+    """Engine eigen against itself at full speed."""
+    damping: List[Damping]
+
+
+def conduct(
+    experiment: Experiment,
+    engines: Sequence[str] = ORDER,
+    sim_slow: Optional[Sequence[float]] = None,
+    drags: Optional[Sequence[str]] = None,
+    processes: Optional[int] = None,
+    progress: Optional[Callable[[int, int], None]] = None,
+) -> Study:
+    """Fly every engine at every sim_slow with every drag, and compare with the model.
+
+    Parameters
+    ----------
+    sim_slow
+        None takes `SIM_SLOW`.
+    drags
+        None takes all that act on the vehicle, alone and together, and none.
+    processes
+        None takes one per core.
+    progress
+        Called as progress(flights_done, flights_total).
+
+    Raises
+    ------
+    InputError
+        A drag that does not act on the vehicle.
+    KeyboardInterrupt
+        With the attribute `study`, in which flights that are missing say so.
+    """
+    acting = experiment.drags()
+    for drag in drags or ():
+        if drag not in acting:
+            raise InputError(f"drag '{drag}' does not act on this vehicle ({', '.join(acting)})")
+    drags = list(dict.fromkeys(drags or acting))
+    engines = [engine for engine in ORDER if engine in engines]
+    sim_slow = list(dict.fromkeys(float(n) for n in sim_slow or SIM_SLOW))
+    asked = [Case(e, n, drag) for e in engines for n in sim_slow for drag in drags]
+    own = LAG if experiment.motor_lag else NO_LAG
+    terms = [Case(MODEL, 1.0, drags[-1], name) for name in TERMS if name != own]
+    chains = [stages(drag, n, engines[0]) for drag in drags for n in sim_slow]
+    cases = dict.fromkeys([*(case for chain in chains for case in chain), *asked, *terms])
+    flights = {case: Flight(case, None, NOT_FLOWN) for case in cases}
+    damping: List[Damping] = []
+
+    def study() -> Study:
+        return Study(
+            experiment,
+            engines,
+            sim_slow,
+            drags,
+            flights,
+            [_row(flights[case], flights[Case(MODEL, 1.0, case.drag)]) for case in asked],
+            [forge(drag, n, engines[0], flights) for drag in drags for n in sim_slow],
+            [_row(flights[case], flights[Case(MODEL, 1.0, drags[-1])]) for case in terms],
+            [
+                _row(flights[Case("eigen", n, drag)], flights[Case("eigen", 1.0, drag)])
+                for n in sim_slow
+                for drag in drags
+                if n != 1
+            ],
+            damping,
+        )
+
+    try:
+        _fly(experiment, flights, processes, progress)
+        damping.extend(measure(experiment, engines, n) for n in sim_slow)
+    except KeyboardInterrupt as stop:
+        stop.study = study()  # type: ignore[attr-defined]
+        raise
+    return study()
+
+
+def _fly(
+    experiment: Experiment,
+    flights: Dict[Case, Flight],
+    processes: Optional[int],
+    progress: Optional[Callable[[int, int], None]],
+) -> None:
+    # The model is slow: it goes first, so that no core waits for it at the end.
+    cases = sorted(flights, key=lambda case: case.plant != MODEL)
+
+    def take(index: int, flight: Union[Flight, QuadcoreError]) -> None:
+        case = cases[index]
+        if isinstance(flight, QuadcoreError):  # its process died
+            flight = Flight(case, None, str(flight))
+        flights[case] = flight
+
+    conducted(experiment.fly, cases, take, processes, progress=progress)
+
+
+def _row(flight: Flight, reference: Flight) -> Row:
+    if flight.log is None or reference.log is None:
+        failure = flight.failure or f"{reference.case.plant}: {reference.failure}"
+        return Row(flight.case, None, 0.0, failure)
+    return Row(flight.case, compare(flight.log, reference.log), steepest(flight.log), "")
