@@ -80,7 +80,7 @@ void raising_warnings(const Guarded& guarded, const Call& call) {
   const auto raise = [&] {
     for (std::size_t i = before; i < simulation.warnings().size(); ++i) {
       // Raises where the user has made an error of it.
-      py::module_::import("quadcore.warning").attr("warn")(simulation.warnings()[i]);
+      py::module_::import("quadcore.support.warning").attr("warn")(simulation.warnings()[i]);
     }
   };
   try {

@@ -72,7 +72,7 @@ def test_a_folder_that_may_not_be_entered_is_one_line(tmp_path_factory):
 import os, sys
 from pathlib import Path
 from quadcore.cli import main
-import quadcore, quadcore.plots
+import quadcore, quadcore.report.plots
 os.setuid(65534)
 for arguments in (["info", {path!r}], ["run", "quadrotor", "--world", {path!r}],
                   ["run", "quadrotor", "--log", {path!r}[:-5] + ".csv"],

@@ -238,7 +238,7 @@ def test_a_foreign_exception_in_a_case_is_that_case_alone():
 
 FEW_FILES = """
 import os, resource
-from quadcore.study import executor
+from quadcore.studies import executor
 
 found = {}
 most = 16 + max(int(name) for name in os.listdir("/proc/self/fd"))
