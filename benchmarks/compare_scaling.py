@@ -13,10 +13,10 @@ from pathlib import Path
 
 import numpy as np
 
+from quadcore.report.thinning import thinned
 from quadcore.studies.axes import parse_axis
 from quadcore.studies.compare.compare import fly
 from quadcore.studies.compare.plan import Plan
-from quadcore.studies.sampling import thinned
 
 COMMANDS = Path(__file__).resolve().parents[1] / "tests/data/gazebo11/commands_S5.csv"
 LONGEST = 20.0  # s, on two cores

@@ -29,16 +29,18 @@ from ._core import (
     plugin_folders,
 )
 from .control import gains, laws, references
+from .control.controller import Controller, Odometry
 from .control.inner_loop import AttitudeThrust, InnerLoop, RatesThrust
 from .model.description import read_model, read_world
 from .model.resources import cmake_prefix
 from .simulation.batch import BatchSimulation, BatchState
-from .simulation.controller import Controller, Odometry
+from .simulation.engines import AddedEngine, add_engine
 from .simulation.log import Log
 from .simulation.simulation import Simulation
 from .simulation.state import State
 from .support.import_lock import LOCK
 from .support.warning import QuadcoreWarning
+from .thesis import LAGRANGE, LAGRANGE_SUMMARY
 
 if TYPE_CHECKING:
     from .fmu.export import export_fmu
@@ -108,6 +110,16 @@ _LATE = {
     "tune": "studies.tune.tune",
 }
 """Where to find the names that are imported at their first use: a single flight needs none."""
+
+
+def _make_plant(**options: Any) -> Simulation:
+    with LOCK:
+        from .thesis.chapter2.plant import Plant  # scipy is slow to import
+
+    return Plant(**options)
+
+
+add_engine(LAGRANGE, AddedEngine(LAGRANGE_SUMMARY, _make_plant))
 
 
 def __getattr__(name: str) -> Any:

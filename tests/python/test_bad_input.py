@@ -192,7 +192,7 @@ def test_parameters_that_are_wrong(parameters, says):
         (
             "engine",
             "lagrange",
-            "engine 'lagrange' is flown by quadcore.thesis.chapter2.plant.Plant",
+            "Engine 'lagrange' is available in quadcore.FlightPlan",
         ),
         ("seed", -1, "seed is -1; give a whole number from 0"),
         ("seed", 1.5, "seed is 1.5; give a whole number from 0"),

@@ -26,7 +26,7 @@ from vehicles import (
 import quadcore as qc
 from quadcore.cli import main
 from quadcore.control import laws, references
-from quadcore.simulation.engines import build
+from quadcore.simulation.simulation import make_simulation
 from quadcore.thesis.chapter2 import GYROSTAT, Terms
 from quadcore.thesis.chapter2.plant import Plant, check
 
@@ -84,7 +84,7 @@ def test_what_the_thesis_leaves_out_sets_it_apart():
 
 
 def test_it_goes_on_from_a_snapshot_and_a_state():
-    plant = build("lagrange", dt=4e-3, **CHAPTER_2)
+    plant = make_simulation("lagrange", dt=4e-3, **CHAPTER_2)
     plant.command([480, -475, 485, -470])
     plant.step(20)
     snapshot, state = plant.snapshot(), plant.state.copy()
@@ -103,7 +103,7 @@ def test_it_goes_on_from_a_snapshot_and_a_state():
 def test_it_takes_commands_over_time_and_logs_no_wrenches():
     table = [[0, 480, -480, 480, -480], [0.1, 300, -300, 300, -300]]
     logs = [
-        build(engine, dt=4e-3, **CHAPTER_2).run(0.2, commands=table)
+        make_simulation(engine, dt=4e-3, **CHAPTER_2).run(0.2, commands=table)
         for engine in ("lagrange", "eigen")
     ]
     assert logs[0].wrenches == {}
@@ -112,14 +112,14 @@ def test_it_takes_commands_over_time_and_logs_no_wrenches():
 
 
 def test_angles_of_the_rotors_turn_with_them():
-    plant = build("lagrange", dt=4e-3, **CHAPTER_2)
+    plant = make_simulation("lagrange", dt=4e-3, **CHAPTER_2)
     plant.command([480, -480, 480, -480])
     plant.step()
     assert (np.sign(plant.state.rotor_angle) == [1, -1, 1, -1]).all()
 
 
 def test_a_pitch_of_90_degrees_ends_the_flight():
-    plant = build("lagrange", dt=4e-3, spawn=(0, 0, 10, 0, np.pi / 2, 0), **CHAPTER_2)
+    plant = make_simulation("lagrange", dt=4e-3, spawn=(0, 0, 10, 0, np.pi / 2, 0), **CHAPTER_2)
     with pytest.raises(qc.FlightError, match=r"t = 0.000000 s: .*pitch reaches 90 degrees"):
         plant.step()
 
@@ -129,7 +129,7 @@ def test_a_pitch_of_90_degrees_ends_the_flight():
     [
         ("--set motorpid_plugin.ki=1 --set motorpid_plugin.iMax=1", "proportional motors"),
         ("--world default", "ground"),
-        ("--wrenches --out out", "leave wrenches out, or fly another engine"),
+        ("--wrenches --out out", "Leave wrenches out, or use another engine"),
     ],
 )
 def test_what_it_cannot_represent_is_refused_in_one_line(capsys, in_empty_folder, arguments, says):
@@ -142,8 +142,8 @@ def test_what_it_cannot_represent_is_refused_in_one_line(capsys, in_empty_folder
 
 
 def test_wrenches_that_it_has_not_are_refused_in_python_too():
-    plant = build("lagrange", dt=4e-3, **CHAPTER_2)
-    with pytest.raises(qc.InputError, match="engine lagrange: wrenches are told of plugins"):
+    plant = make_simulation("lagrange", dt=4e-3, **CHAPTER_2)
+    with pytest.raises(qc.InputError, match="Engine lagrange applies no forces of plugins"):
         plant.run(0.1, wrenches=True)
     assert plant.time == 0
 

@@ -7,12 +7,12 @@ import pytest
 
 import quadcore as qc
 from quadcore.control import laws
-from quadcore.simulation.engines import build
+from quadcore.simulation.simulation import make_simulation
 from quadcore.studies.evaluate.poles import gains_of, has_poles, poles, text
 
 
 def by_axis(law, engine="eigen", slow=1, **parameters):
-    simulation = build(engine, xacro_args={"sim_slow": slow}, parameters=parameters)
+    simulation = make_simulation(engine, xacro_args={"sim_slow": slow}, parameters=parameters)
     return {row["axis"]: row for row in poles(law, simulation)}
 
 

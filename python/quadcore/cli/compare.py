@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from .._core import InputError, QuadcoreError
+from ..report.thinning import thinned
 from ..simulation.log import Log
 from ..studies.compare.compare import fly
 from ..studies.compare.output import FILES, drawn, listed, log_name, remove_logs, summary, write
 from ..studies.compare.plan import Plan
 from ..studies.compare.result import Comparison
 from ..studies.folder import output_folder
-from ..studies.sampling import thinned
 from ..studies.table import number_text, shown_in
 from ..support.files import make_folder
 from . import options, terminal, values

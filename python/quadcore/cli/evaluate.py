@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._core import InputError
-from ..simulation.engines import STUDIED, plants
+from ..simulation.engines import STUDIED, list_engines
 from ..studies.folder import output_folder
 from . import combinations, options, terminal, values
 from .failures import failure
@@ -32,7 +32,7 @@ def register(commands: Any) -> None:
         parser,
         [STUDIED],
         log_every=None,
-        flown=plants(),
+        flown=list_engines(),
         seconds=30.0,
         begins="on the reference",
     )

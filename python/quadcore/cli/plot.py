@@ -6,8 +6,8 @@ import argparse
 from pathlib import Path
 from typing import Any, List, Sequence
 
+from ..report.thinning import thinned
 from ..simulation.log import Log
-from ..studies.sampling import thinned
 from ..studies.table import save
 from ..support.files import make_folder
 from . import options, terminal

@@ -12,8 +12,8 @@ import numpy as np
 
 from .._core import InputError, QuadcoreError
 from ..formats.rows import Recorder
-from ..simulation.controller import Guided, faults_told
-from ..simulation.engines import check_wrenches, plants
+from ..simulation.controller_pilot import Guided, faults_told
+from ..simulation.engines import check_wrenches, list_engines
 from ..simulation.flight import columns_of, fly, steps_within
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.log import check_log_path, log_file
@@ -31,7 +31,7 @@ def register(commands: Any) -> None:
     """Add the command to the command line."""
     parser = options.subparser(commands, "run", "Fly once.", run)
     options.add_model(parser)
-    options.add_flight(parser, flown=plants())
+    options.add_flight(parser, flown=list_engines())
     options.add_commands(parser)
     options.add_controller(parser)
     options.add_scenario(parser)

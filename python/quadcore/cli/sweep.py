@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..simulation.engines import STUDIED, plants
+from ..simulation.engines import STUDIED, list_engines
 from ..studies.evaluate import measures as of_guided
 from ..studies.folder import output_folder
 from ..studies.sweep import motion
@@ -53,7 +53,7 @@ def register(commands: Any) -> None:
         parser,
         [STUDIED],
         log_every=None,
-        flown=plants(),
+        flown=list_engines(),
         begins=f"on the reference; with --commands {options.SPAWNED}",
     )
     options.add_timing(parser)

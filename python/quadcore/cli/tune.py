@@ -8,7 +8,7 @@ from typing import Any
 
 from .._core import InputError
 from ..control import gains
-from ..simulation.engines import STUDIED, plants
+from ..simulation.engines import STUDIED, list_engines
 from ..support.files import check_writable
 from . import options, terminal, values
 from .kept import kept
@@ -66,7 +66,9 @@ def register(commands: Any) -> None:
         help="gains to try, at least (300)",
     )
     options.add_changes(parser)
-    options.add_flight(parser, STUDIED, log_every=None, flown=plants(), begins="on the reference")
+    options.add_flight(
+        parser, STUDIED, log_every=None, flown=list_engines(), begins="on the reference"
+    )
     options.add_jobs(parser)
 
 

@@ -14,12 +14,13 @@ import numpy as np
 from .. import _core
 from ..formats import bag, mat
 from ..model import resources
-from ..simulation.state import State
 from ..support.arguments import brief
 from ..support.parameters import did_you_mean, docstring, read_values, values
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+
+    from ..simulation.state import State
 
 Reference = _core.Reference
 

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence
 import numpy as np
 
 from .._core import InputError
-from ..simulation.trajectory import Trajectory
-from ..studies.sampling import evenly
 from .colours import PALETTE
 from .page import rendered
+from .thinning import evenly
 
 if TYPE_CHECKING:
     from ..simulation.simulation import Simulation
+    from ..simulation.trajectory import Trajectory
 
 _POINTS = 1500  # per flight: 50 in a second of half a minute, between which the page interpolates
 _COLOURS = PALETTE[:6]  # legible on light and on dark

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from itertools import groupby
-from typing import Any, List, NamedTuple, Tuple
+from typing import TYPE_CHECKING, Any, List, NamedTuple, Tuple
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -12,10 +12,11 @@ from matplotlib.patches import Circle, FancyArrowPatch
 
 from .. import _core
 from .._core import InputError
-from ..control import references
-from ..simulation.simulation import Simulation
 from .colours import PALETTE
 from .plots import AXES, space, titled
+
+if TYPE_CHECKING:
+    from ..simulation.simulation import Simulation
 
 _FRAME, _AHEAD, _BACK, _STILL = "0.35", PALETTE[0], PALETTE[1], "0.6"
 _TRIAD, _ABOVE = 0.6, 0.68  # radii: axes of a rotor's link, and its number beyond them
@@ -71,7 +72,8 @@ def draw(simulation: Simulation) -> Figure:
 def _rotors(simulation: Simulation) -> List[_Rotor]:
     model = simulation.model
     try:
-        rates = _core.start_on(simulation, references.hover()(0.0), [])["rotor_velocity"]
+        hover = _core.ReferenceShape("hover", {}).at(0.0)
+        rates = _core.start_on(simulation, hover, [])["rotor_velocity"]
     except InputError:  # nothing drives them, or they cannot hold it
         rates = np.full(simulation.rotor_count, np.nan)
     commands = rates / _core.rates_per_command(simulation)

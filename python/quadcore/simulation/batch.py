@@ -18,10 +18,11 @@ import numpy as np
 from .. import _core
 from .._core import InputError
 from ..support.arguments import brief
-from ..support.values import SPAWN, Value, engine_and_step, poses, seeds, whole
+from ..support.values import SPAWN, Value, poses, seeds, whole
 from ..support.warning import warn
 from .batch_state import BatchState as BatchState
 from .batch_vehicles import refusal, vehicle_count, vehicles
+from .engines import check_engine_and_step
 from .flight import check_logged, steps_within
 from .log import Log
 
@@ -91,7 +92,7 @@ class BatchSimulation(_core.Batch):
         ignore: Sequence[str] = (),
     ) -> None:
         n = vehicle_count(n)
-        engine, dt = engine_and_step(engine, dt)
+        engine, dt = check_engine_and_step(engine, dt)
         try:
             models, tags, self.world = vehicles(n, model, world, parameters, xacro_args, ignore)
             super().__init__(

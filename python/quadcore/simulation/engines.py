@@ -1,57 +1,88 @@
-"""Everything that can be flown: the engines, and the mathematical model in the place of one."""
+"""The engines that a flight can name: those of the core, and those that are added to them."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, List, Tuple
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Callable, Dict, List, Optional, Tuple
 
 from .._core import InputError, engines
+from ..support.arguments import brief
 
 if TYPE_CHECKING:
     from .simulation import Simulation
 
 ENGINE = engines()[0][0]
-"""What flies unless told."""
+"""The default of a single flight."""
 
 STUDIED = "eigen"
-"""What flies where many flights are asked for, unless told."""
-
-LAGRANGE = "lagrange"
+"""The default of a study, which has many flights."""
 
 
-def plants() -> List[Tuple[str, str]]:
-    """Name each, with a summary."""
-    summary = "the mathematical model of chapter 2: no contact, no forces of plugins"
-    return [*engines(), (LAGRANGE, summary)]
+@dataclass(frozen=True)
+class AddedEngine:
+    """A model that moves the vehicle in the place of one of the core's engines.
+
+    No force of a plugin acts on it, so that there are no wrenches.
+
+    Attributes
+    ----------
+    summary : str
+        A noun phrase for lists of engines.
+    make : callable
+        Takes the arguments of `Simulation` except `engine`, and returns a `Simulation`.
+    """
+
+    summary: str
+    make: Callable[..., Simulation]
+
+
+_ADDED: Dict[str, AddedEngine] = {}
+
+
+def add_engine(name: str, engine: AddedEngine) -> None:
+    """Make an engine known to flight plans, studies and commands."""
+    _ADDED[name] = engine
+
+
+def added_engine(name: str) -> Optional[AddedEngine]:
+    """Find an engine that was added; None if it is one of the core's, or unknown."""
+    return _ADDED.get(name)
+
+
+def list_engines() -> List[Tuple[str, str]]:
+    """Name each engine, with a summary."""
+    return [*engines(), *((name, engine.summary) for name, engine in _ADDED.items())]
+
+
+def exerts_wrenches(engine: str) -> bool:
+    """Whether forces of plugins act in an engine."""
+    return engine not in _ADDED
 
 
 def check_wrenches(engine: str) -> None:
-    """Raise `InputError` if wrenches are asked of what has none to tell."""
-    if engine == LAGRANGE:
+    """Raise `InputError` if wrenches are to be logged in an engine that has none."""
+    if not exerts_wrenches(engine):
         raise InputError(
-            f"engine {LAGRANGE}: wrenches are told of plugins, none of whose forces acts on the "
-            "mathematical model; leave wrenches out, or fly another engine"
+            f"Engine {engine} applies no forces of plugins, so that it has no wrenches. "
+            "Leave wrenches out, or use another engine."
         )
 
 
-def build(engine: str, **options: Any) -> Simulation:
-    """Make what is to be flown.
-
-    Parameters
-    ----------
-    engine : str
-        One of `plants`.
-    **options
-        As for `Simulation`.
-
-    Raises
-    ------
-    InputError
-        As from `Simulation`; or a vehicle that the mathematical model has no equation for.
-    """
-    if engine != LAGRANGE:
-        from .simulation import Simulation  # which checks what it is given by what is known here
-
-        return Simulation(engine=engine, **options)
-    from ..thesis.chapter2.plant import Plant  # scipy is slow to import
-
-    return Plant(**options)
+def check_engine_and_step(engine: object, dt: object) -> Tuple[str, Optional[float]]:
+    """Check the name of an engine, known or not, and the length of a step or None."""
+    known = ", ".join(name for name, _ in engines())
+    if not (isinstance(engine, str) and engine.isprintable()):
+        raise InputError(f"engine is {brief(engine)}; give one of {known}")
+    if engine in _ADDED:
+        raise InputError(
+            f"Engine '{engine}' is available in quadcore.FlightPlan, in evaluate, and in the "
+            f"commands that list it. Use one of {known} here."
+        )
+    if dt is None:
+        return engine, None
+    try:
+        if not isinstance(dt, (str, bytes)):
+            return engine, float(dt)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        pass
+    raise InputError(f"dt is {brief(dt)}; give the length of a step in s")

@@ -19,13 +19,13 @@ from ..model.overrides import check_names, with_links, without_xacro
 from ..support.values import SPAWN, Number, Value, pose, text_of, whole
 from ..support.warning import unheard, warn
 from .commands import CommandsLike, as_commands
-from .controller import Guided
-from .engines import ENGINE, build
+from .controller_pilot import Guided
+from .engines import ENGINE
 from .flight import Progress
 from .log import Log
 from .scenarios import Scenario
 from .scenarios import read as read_scenario
-from .simulation import Simulation
+from .simulation import Simulation, make_simulation
 
 _VERSION = 1  # of what a fingerprint stands for
 
@@ -174,7 +174,7 @@ class FlightPlan:
         model, tags = read.onto(self.model)
         plan = replace(self, model=model, parameters={**tags, **self.parameters})
         with read.blamed(), unheard():  # what else is wrong is told as the vehicle is made
-            build(**plan._vehicle())
+            make_simulation(**plan._vehicle())
         unseen = read.unseen(self.duration)
         if unseen:
             warn(unseen)
@@ -193,12 +193,12 @@ class FlightPlan:
         InputError
             The commands, or what else makes a simulation, are at fault.
         """
-        vehicle = build(**self._vehicle())
+        vehicle = make_simulation(**self._vehicle())
         return replace(self, commands=as_commands(commands, vehicle.command_width))
 
     def simulation(self) -> Simulation:
         """Make the vehicle as it takes off; raises and warns as `Simulation` does."""
-        simulation = build(**self._vehicle())
+        simulation = make_simulation(**self._vehicle())
         if self.rotor_velocity is not None:
             state = simulation.state.copy()
             state.rotor_velocity = np.array(self.rotor_velocity, dtype=float)

@@ -120,9 +120,16 @@ class Log(Trajectory):
         return f"<Log{flown}: {len(self)} rows{span}{more}>"
 
     def _repr_html_(self) -> str:
-        from ..report.notebook import log_html  # pictures need matplotlib
+        from ..report.html_table import html_title  # these are slow to import
 
-        return log_html(self)
+        if len(self) == 0:
+            return html_title(self)
+        with LOCK:
+            from ..report.log_pictures import glance
+            from ..report.page import picture
+            from ..report.plots import png
+
+        return html_title(self) + str(picture(png(glance(self)), "position and attitude over time"))
 
     def to_csv(self, path: PathLike) -> None:
         """Write `table` as text with the fewest digits that restore every bit.

@@ -10,15 +10,17 @@ import numpy as np
 
 from .. import _core
 from ..control import references
+from ..control.controller import Controller
 from ..control.law import Law
 from ..control.references import ReferenceLike
 from ..model.description import list_of_names, read_both
 from ..model.overrides import check_names, with_links, without_xacro
 from ..support.arguments import PROGRESS, check, or_none
-from ..support.values import SPAWN, Number, Value, engine_and_step, pose, text_of, whole
+from ..support.rotation import roll_pitch_yaw
+from ..support.values import SPAWN, Number, Value, pose, text_of, whole
 from ..support.warning import warn
-from .controller import Controller, Guided
-from .engines import ENGINE
+from .controller_pilot import Guided
+from .engines import ENGINE, added_engine, check_engine_and_step
 from .flight import Progress, Rows, columns_of, fly
 from .log import Log
 from .state import LiveState
@@ -84,7 +86,7 @@ class Simulation(_core.Simulation):
         spawn: Sequence[Number] = SPAWN,
         ignore: Sequence[str] = (),
     ) -> None:
-        engine, dt = engine_and_step(engine, dt)
+        engine, dt = check_engine_and_step(engine, dt)
         arguments, others = without_xacro(parameters, xacro_args)
         model, self.world = read_both(model, world, arguments, ignore)
         check_names(model, parameters or {})
@@ -253,9 +255,22 @@ class Simulation(_core.Simulation):
         )
 
     def _repr_html_(self) -> str:
-        from ..report.notebook import simulation_html
+        from html import escape  # these are slow to import
 
-        return simulation_html(self)
+        from ..report.html_table import html_table
+
+        state = self.state
+        rows = [
+            ("vehicle", f"{self.mass:.6g} kg, {self.rotor_count} rotors"),
+            ("engine", f"{self.engine}, steps of {self.dt:g} s"),
+            ("plugins", ", ".join(plugin.name for plugin in self.plugins)),
+            ("time", f"{self.time:g} s"),
+            ("position", f"{_in_words(state.position)} m"),
+            ("roll, pitch, yaw", f"{_in_words(np.degrees(roll_pitch_yaw(state.orientation)))} deg"),
+            ("velocity", f"{_in_words(state.linear_velocity)} m/s"),
+            ("rotors", f"{_in_words(state.rotor_velocity)} rad/s"),
+        ]
+        return f"<b>{escape(self.model.name)}</b>" + html_table((), rows)
 
     def _put_on(self, controller: Any, reference: Any) -> Any:
         """Put the vehicle onto a reference, and give that."""
@@ -268,6 +283,16 @@ class Simulation(_core.Simulation):
             start = references.start(self, reference, spins)
         self.set_state(start)
         return reference
+
+
+def make_simulation(engine: str, **options: Any) -> Simulation:
+    """Make a simulation in any engine of `list_engines`; `options` are those of `Simulation`."""
+    added = added_engine(engine)
+    return Simulation(engine=engine, **options) if added is None else added.make(**options)
+
+
+def _in_words(values: np.ndarray) -> str:
+    return ", ".join(f"{round(float(value), 4) + 0.0:g}" for value in values)
 
 
 def _in_order(topic: str, values: Mapping[str, float], fields: Sequence[str]) -> list[float]:

@@ -8,7 +8,8 @@ from typing import Any, Callable, Iterable, Optional, Sequence
 
 from .._core import InputError
 from ..control import laws, references
-from ..simulation.controller import Guided, check_callable
+from ..control.controller import check_callable
+from ..simulation.controller_pilot import Guided
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.simulation import Simulation
 from ..support.arguments import brief

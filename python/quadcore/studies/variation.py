@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any, Dict, Iterable, Mapping, Optional, Sequence, Tuple, Union
 
 from .._core import InputError, Model, World, parse_number
+from ..control.controller import give
 from ..model.description import read_model, read_world
 from ..model.overrides import check_names, without_xacro
-from ..simulation.controller import give
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.scenarios import Scenario
 from ..simulation.scenarios import read as read_scenario

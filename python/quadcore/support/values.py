@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Sequence, Tuple, Union
 
 import numpy as np
 
 from .. import _core
-from ..simulation.engines import LAGRANGE
 from .arguments import brief
 
 if TYPE_CHECKING:
@@ -29,26 +28,6 @@ def whole(seed: object, name: str = "seed", bits: int = 64) -> int:
             f"{name} is {brief(seed)}; give a whole number from 0 to 2^{bits} - 1"
         )
     return int(seed)  # type: ignore[call-overload,no-any-return]
-
-
-def engine_and_step(engine: object, dt: object) -> Tuple[str, Optional[float]]:
-    """Check an engine's name, known or not, and the length of a step or None."""
-    known = ", ".join(name for name, _ in _core.engines())
-    if not (isinstance(engine, str) and engine.isprintable()):
-        raise _core.InputError(f"engine is {brief(engine)}; give one of {known}")
-    if engine == LAGRANGE:
-        raise _core.InputError(
-            f"engine '{engine}' is flown by quadcore.thesis.chapter2.plant.Plant, "
-            f"quadcore.FlightPlan and the commands that offer it; here choose one of {known}"
-        )
-    if dt is None:
-        return engine, None
-    try:
-        if not isinstance(dt, (str, bytes)):
-            return engine, float(dt)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        pass
-    raise _core.InputError(f"dt is {brief(dt)}; give the length of a step in s")
 
 
 def text_of(value: Value) -> str:

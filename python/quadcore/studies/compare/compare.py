@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any, Callable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 from ..._core import FlightError, InputError, QuadcoreError
+from ...control.controller import Controller
 from ...control.references import ReferenceLike
 from ...simulation.commands import CommandsLike
-from ...simulation.controller import Controller
 from ...simulation.log import Log
 from ...support import arguments, interrupts
 from ..axes import Values

@@ -6,8 +6,8 @@ import re
 from pathlib import Path
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
+from ...report.thinning import evenly
 from ..folder import remove_listed
-from ..sampling import evenly
 from ..table import csv_bytes, flown_and_failed, json_bytes, number_text, save, shown_in
 from .plan import Plan
 from .result import Comparison

@@ -12,7 +12,7 @@ from ..._core import InputError, QuadcoreError, World, check_ignored, engines
 from ...model.description import list_of_names, read_model, read_world
 from ...model.overrides import XACRO, check_names, link_values, without_xacro
 from ...simulation.commands import CommandsLike, as_commands
-from ...simulation.controller import faults_told
+from ...simulation.controller_pilot import faults_told
 from ...simulation.flight import check_logged
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log

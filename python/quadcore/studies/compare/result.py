@@ -18,10 +18,11 @@ from typing import (
 import numpy as np
 
 from ..._core import InputError, QuadcoreError
+from ...report.html_table import SHOWN_ROWS, html_table, html_title
 from ...simulation.log import Log
 from ..evaluate.measures import distance, rms_and_largest
 from ..metrics import metrics, states
-from ..table import NOT_FLOWN, flown_and_failed
+from ..table import NOT_FLOWN, flown_and_failed, number_text, shown_in
 from .difference import Difference
 from .plan import Plan
 
@@ -65,9 +66,18 @@ class Comparison(NamedTuple):
         return f"<Comparison, {flown_and_failed(self.table['failure'].tolist())}>"
 
     def _repr_html_(self) -> str:
-        from ...report.notebook import comparison_html
-
-        return comparison_html(self)
+        names = self.table.dtype.names or ()
+        varied = names[: names.index("failure")]
+        axes = [name for name in varied if len(set(self.table[name])) > 1]
+        states = list(self.states)[:4]
+        units = {name: shown_in(self.states[name]) for name in states}
+        heads = [*axes, *(f"largest {name} ({unit})" for name, (unit, _) in units.items())]
+        rows = []
+        for row in self.table[:SHOWN_ROWS]:
+            cells = [number_text(row[f"largest_{name}"] * units[name][1]) for name in states]
+            cells = [row["failure"]] if row["failure"] else cells
+            rows.append([*(str(row[axis]) for axis in axes), *cells])
+        return html_title(self) + html_table(heads, rows, len(self.table))
 
 
 def measured(plan: Plan, against: Log, log: Log) -> Measured:

@@ -8,7 +8,8 @@ from typing import Any, List, Tuple
 import numpy as np
 
 from ...control import laws
-from ...simulation.controller import Guided, check_callable
+from ...control.controller import check_callable
+from ...simulation.controller_pilot import Guided
 
 
 class Clocked:

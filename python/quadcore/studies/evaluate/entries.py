@@ -8,7 +8,7 @@ from typing import Any, Dict, Iterable, Iterator, List, Mapping, Sequence, Tuple
 
 from ..._core import InputError
 from ...control import laws, references
-from ...simulation.engines import plants
+from ...simulation.engines import list_engines
 from ...support.arguments import brief
 from ..axes import Values, axes_of
 from ..variation import OF_CONTROLLER
@@ -73,7 +73,7 @@ def blaming(scenario: Mapping[str, str]) -> Iterator[None]:
 
 def check_engines(engines: Iterable[str]) -> None:
     """Raise `InputError` if there is no such plant."""
-    known = [name for name, _ in plants()]
+    known = [name for name, _ in list_engines()]
     for engine in engines:
         if engine not in known:
             raise InputError(f"there is no engine '{engine}'; give some of {', '.join(known)}")

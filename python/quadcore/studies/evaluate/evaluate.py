@@ -18,13 +18,14 @@ from typing import (
 )
 
 from ..._core import InputError, QuadcoreError
+from ...report.html_table import SHOWN_ROWS, html_table, html_title
+from ...report.thinning import evenly
 from ...simulation.engines import STUDIED
 from ...simulation.flight_plan import FlightPlan
 from ...support import arguments
 from ...support.warning import warn
 from ..axes import Values
 from ..executor import conducted
-from ..sampling import evenly
 from ..table import flown_and_failed
 from .entries import Named
 from .flights import Outcome, flown
@@ -86,9 +87,12 @@ class Evaluation(NamedTuple):
         return f"<Evaluation, {flown_and_failed([row['failure'] for row in self.table])}>"
 
     def _repr_html_(self) -> str:
-        from ...report.notebook import evaluation_html
+        from .output import columns_to_read, rows_to_read
 
-        return evaluation_html(self)
+        lines = rows_to_read(self)
+        shown = {**columns_to_read(lines), "best": ""}
+        rows = [[line[name] for name in shown] for line in lines[:SHOWN_ROWS]]
+        return html_title(self) + html_table(list(shown.values()), rows, len(lines))
 
 
 def evaluate(

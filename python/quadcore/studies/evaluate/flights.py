@@ -9,13 +9,13 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence
 import numpy as np
 
 from ..._core import FlightError
-from ...simulation.controller import faults_told
+from ...report.thinning import thinned
+from ...simulation.controller_pilot import faults_told
 from ...simulation.flight import Rows, columns_of, fly
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
 from ...simulation.simulation import Simulation
 from ...support.warning import unheard
-from ..sampling import thinned
 from ..table import NOT_FLOWN
 from ..time_limit import time_limit
 from .clock import Clocked, ClockedPilot, clocked, typical_and_slow

@@ -9,8 +9,8 @@ from typing import Any, Dict, List, Mapping, Sequence
 import numpy as np
 
 from ... import __version__
+from ...report.thinning import evenly
 from ..folder import remove_pictures, save_pictures
-from ..sampling import evenly
 from ..table import NOT_FLOWN, csv_bytes, flown_and_failed, json_bytes, number_text, save
 from .evaluate import Evaluation
 from .intervals import CONFIDENCE

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...report.colours import PALETTE
 from ...report.plots import dress, panels, png, titled
-from ..sampling import evenly
+from ...report.thinning import evenly
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

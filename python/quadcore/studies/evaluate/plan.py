@@ -11,8 +11,8 @@ from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Seq
 from ..._core import InputError, check_ignored
 from ...control import laws, references
 from ...model.description import list_of_names, read_world
-from ...simulation.controller import Guided
-from ...simulation.engines import LAGRANGE
+from ...simulation.controller_pilot import Guided
+from ...simulation.engines import exerts_wrenches
 from ...simulation.flight import check_logged
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.scenario_events import Event
@@ -189,8 +189,8 @@ class Plan:
 
         Engines that fly the same plugins are one.
         """
-        of_plugins = [name for name in self.engines if name != LAGRANGE]
-        several = [of_plugins, [LAGRANGE] if LAGRANGE in self.engines else []]
+        of_plugins = [name for name in self.engines if exerts_wrenches(name)]
+        several = [of_plugins, *([name] for name in self.engines if name not in of_plugins)]
         for row, label in enumerate(self.controllers):
             for model, vehicle in enumerate(self.models):
                 for flown in several:

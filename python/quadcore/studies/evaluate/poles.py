@@ -20,7 +20,7 @@ import numpy as np
 
 from ... import _core
 from ...control.law import Law
-from ...simulation.engines import LAGRANGE
+from ...simulation.engines import exerts_wrenches
 from ...simulation.simulation import Simulation
 
 Polynomial = np.ndarray
@@ -68,7 +68,7 @@ def poles(law: Law, simulation: Simulation) -> List[Dict[str, Any]]:
     inertia = float(np.mean(vehicle.rotor_inertia))
     lag = np.array([inertia / vehicle.motor_gain, 1.0])
     zero = math.inf
-    if simulation.engine != LAGRANGE:
+    if exerts_wrenches(simulation.engine):
         weight = vehicle.mass * float(np.linalg.norm(vehicle.gravity))
         hover = math.sqrt(weight / (len(vehicle.arms) * vehicle.k))
         zero = 2 * vehicle.b * hover * vehicle.slow / inertia

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Collection, Dict, Iterator, List, NamedTu
 
 from ..._core import parse_number
 from ...control import laws
+from ...control.controller import check_callable, give
 from ...control.inner_loop import InnerLoop
-from ...simulation.controller import check_callable, give
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.simulation import Simulation
 from ...simulation.vehicle_tags import SAID

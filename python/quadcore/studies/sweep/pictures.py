@@ -8,7 +8,7 @@ import numpy as np
 
 from ...report.colours import PALETTE
 from ...report.plots import dress, panels, png, titled
-from ..sampling import evenly
+from ...report.thinning import evenly
 from .plan import AnyPlan
 from .sensitivity import COMBINATION, axes_of_numbers, combinations
 

@@ -12,7 +12,7 @@ from ..._core import InputError, check_ignored
 from ...control import laws, references
 from ...model.description import list_of_names, read_world
 from ...simulation.commands import CommandsLike
-from ...simulation.controller import Guided
+from ...simulation.controller_pilot import Guided
 from ...simulation.engines import STUDIED
 from ...simulation.flight import check_logged
 from ...simulation.flight_plan import FlightPlan

@@ -8,10 +8,10 @@ from typing import Any, List, Mapping
 import numpy as np
 
 from ..._core import InputError
-from ...simulation.engines import LAGRANGE
 from ...simulation.simulation import Simulation
 from ...simulation.state import State, state_of
 from ...support import interrupts
+from .. import LAGRANGE
 from .model import THESIS, MathematicalModel, Terms
 from .vehicle import Vehicle, air_of, command_order
 

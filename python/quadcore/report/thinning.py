@@ -1,12 +1,15 @@
-"""Which of many flights, and which rows of a log, are kept to be drawn."""
+"""Which of many flights, and which rows of a log, are drawn."""
 
 from __future__ import annotations
 
-from typing import List
+from typing import TYPE_CHECKING, List, TypeVar
 
 import numpy as np
 
-from ..simulation.log import Log
+if TYPE_CHECKING:
+    from ..simulation.trajectory import Trajectory
+
+    Flown = TypeVar("Flown", bound=Trajectory)
 
 _POINTS = 600  # per flight: finer than a picture shows
 
@@ -16,13 +19,13 @@ def evenly(count: int, most: int) -> List[int]:
     return [round(i) for i in np.linspace(0, count - 1, min(count, most))]
 
 
-def thinned(log: Log, most: int = _POINTS) -> Log:
+def thinned(log: Flown, most: int = _POINTS) -> Flown:
     """Rows enough to draw."""
     picked = evenly(len(log), most)
     topics = {
         name: {field: column[picked] for field, column in fields.items()}
         for name, fields in log.topics.items()
     }
-    kept = Log(log.table[picked], {}, topics=topics)
+    kept = type(log)(log.table[picked], {}, topics=topics)
     kept.per_command = log.per_command
     return kept
