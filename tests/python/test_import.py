@@ -1,5 +1,6 @@
 """What `import quadcore` brings in, and what it leaves until somebody asks."""
 
+import ast
 import os
 import shutil
 import subprocess
@@ -16,6 +17,14 @@ SLOW = [
     *["yaml", "cma", "gymnasium"],
     *["xml.dom", "xml.sax", "urllib.request", "http", "email", "ssl", "multiprocessing", "json"],
 ]
+
+PACKAGE = Path(qc.__file__).parent
+PACKAGES = {
+    "gym": {"Env", "NAME", "OBSERVATIONS", "REWARDS", "VectorEnv"},
+    "serve": {"Client", "Server", "ServerError"},
+    "fmu": {"export_fmu"},
+    "thesis.chapter2": {"GYROSTAT", "THESIS", "MathematicalModel", "Terms", "Vehicle"},
+}
 
 
 def test_importing_quadcore_brings_in_numpy_and_nothing_slow():
@@ -40,6 +49,34 @@ def test_every_name_is_there_when_it_is_asked_for():
     text = "import quadcore; print(*(name for name in dir(quadcore) if hasattr(quadcore, name)))"
     assert set(qc.__all__) <= set(script(text).stdout.split())
     assert "has no attribute 'evaluat'" in script("import quadcore; quadcore.evaluat").stderr
+
+
+def test_the_packages_show_exactly_their_public_names():
+    """Names of modules that are imported on the way are not public."""
+    assert dir(qc) == sorted(qc.__all__)
+    for name, public in PACKAGES.items():
+        found = script(f"from quadcore.{name} import *; print(*dir())").stdout.split()
+        assert {each for each in found if not each.startswith("__")} == public, name
+
+
+def imports_of(file):
+    """Names that a module imports from the face of the package, of which all others stand above."""
+    depth = len(file.relative_to(PACKAGE).parts)
+    for node in ast.walk(ast.parse(file.read_text())):
+        if isinstance(node, ast.ImportFrom) and node.level == depth and node.module is None:
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, (ast.Import, ast.ImportFrom)):
+            names = [getattr(node, "module", None) or "", *(alias.name for alias in node.names)]
+            assert "quadcore" not in names, file
+
+
+def test_modules_import_nothing_but_the_core_from_the_face():
+    """import-linter takes these imports for imports of the face, and does not check them."""
+    packages = {path.name for path in PACKAGE.iterdir() if path.is_dir()}
+    files = [file for file in PACKAGE.rglob("*.py") if file != PACKAGE / "__init__.py"]
+    assert len(files) > 100
+    names = {name for file in files for name in imports_of(file)}
+    assert names - packages == {"_core", "__version__"}
 
 
 def test_a_library_that_is_missing_is_named_with_its_package(tmp_path):

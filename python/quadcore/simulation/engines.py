@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Callable, Dict, List, Optional, Tuple
+from typing import TYPE_CHECKING, Callable, Dict, List, NamedTuple, Optional, Tuple
 
 from .._core import InputError, engines
 from ..support.arguments import brief
@@ -18,8 +17,7 @@ STUDIED = "eigen"
 """The default of a study, which has many flights."""
 
 
-@dataclass(frozen=True)
-class AddedEngine:
+class AddedEngine(NamedTuple):
     """A model that moves the vehicle in the place of one of the core's engines.
 
     No force of a plugin acts on it, so that there are no wrenches.
