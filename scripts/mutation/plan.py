@@ -40,7 +40,7 @@ PARTS = [
             "shown_motion.hpp",
             "rotor_forces_lanes.cpp",
         ],
-        ["test_forces.py", "test_warnings.py", "test_simulation.py", "test_bad_models.py"],
+        ["test_forces.py", "test_warnings.py", "test_simulation.py", "test_bad_documents.py"],
         laws=(
             "laws/drag",
             "laws/flapping",
@@ -53,13 +53,13 @@ PARTS = [
     _plugin(
         "motorpid",
         ["motorpid_plugin.cpp", "motor_torques.hpp", "motor_torques_lanes.cpp"],
-        ["test_motors.py", "test_warnings.py", "test_bad_models.py", "test_determinism.py"],
+        ["test_motors.py", "test_warnings.py", "test_bad_documents.py", "test_determinism.py"],
         laws=("laws/motor_torque",),
     ),
     _plugin(
         "odometry",
         ["odometry_plugin.cpp"],
-        ["test_odometry.py", "test_bad_models.py", "test_determinism.py"],
+        ["test_odometry.py", "test_bad_documents.py", "test_determinism.py"],
     ),
     _core(
         "eigen",
@@ -83,7 +83,7 @@ PARTS = [
             "test_ground_contact.py",
             "test_gyroscopics.py",
             "test_simulation.py",
-            "test_bad_models.py",
+            "test_bad_documents.py",
         ],
     ),
     _core(
@@ -127,7 +127,7 @@ PARTS = [
         ]
         + [f"cpp/engines/ode/sdf_{n}.cpp" for n in ("conversion", "lumping", "numbers")],
         [
-            "test_bad_models.py",
+            "test_bad_documents.py",
             "test_random_recordings.py",
             "test_models_for_gazebo.py",
             "test_forces.py",
