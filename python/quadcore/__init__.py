@@ -10,6 +10,7 @@ Gazebo 11 model to the last digit, faults included, two others fly the same file
 10.0 m
 """
 
+import sys
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, List
 
@@ -110,6 +111,10 @@ _LATE = {
     "tune": "studies.tune.tune",
 }
 """Where to find the names that are imported at their first use: a single flight needs none."""
+
+for _module in (gains, laws, references):
+    # So that `from quadcore.laws import geometric` works, too.
+    sys.modules[f"{__name__}.{_module.__name__.rpartition('.')[2]}"] = _module
 
 
 def _make_plant(**options: Any) -> Simulation:

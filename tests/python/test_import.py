@@ -59,6 +59,11 @@ def test_the_packages_show_exactly_their_public_names():
         assert {each for each in found if not each.startswith("__")} == public, name
 
 
+def test_public_modules_are_imported_by_their_public_names():
+    text = "from quadcore.laws import pd; import quadcore.references, quadcore.gains; print(pd())"
+    assert script(text).stdout.startswith("quadcore.laws.pd(")
+
+
 def imports_of(file):
     """Names that a module imports from the face of the package, of which all others stand above."""
     depth = len(file.relative_to(PACKAGE).parts)
