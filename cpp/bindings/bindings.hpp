@@ -22,7 +22,10 @@ void bind_control(py::module_& m);
 void guard_classes(py::module_& m);
 
 struct Guarded;
-/// Adds to the class of simulations.
+/// \name Add to the class of simulations
+/// @{
+void bind_rotors(py::module_& m, py::class_<Guarded, std::shared_ptr<Guarded>>& simulation);
 void bind_topics(py::module_& m, py::class_<Guarded, std::shared_ptr<Guarded>>& simulation);
+/// @}
 
 }  // namespace quadcore::bindings

@@ -198,17 +198,6 @@ void bind_control(py::module_& m) {
       },
       py::arg("simulation"), py::arg("spins"),
       "Speeds with which the vehicle hovers level, signed, rad/s; shape (n,).");
-  m.def(
-      "rates_per_command",
-      [](const Self& self) {
-        std::vector<double> rates;
-        for (const RotorDescription& rotor : describe(self).rotors) {
-          rates.push_back(rotor.rate_per_command);
-        }
-        return rates;
-      },
-      py::arg("simulation"),
-      "Of each joint, its velocity in the long run per commanded speed: 0.1 at a sim_slow of 10.");
   m.def("start_on", &start, py::arg("simulation"), py::arg("reference"), py::arg("spins"),
         "Members of the state of a vehicle that follows a reference exactly.");
   m.def("timing", &control::timing_table, "When a controller is called, and how late it acts.");

@@ -220,6 +220,7 @@ Snapshot
           "Names of the wrenches that a log can have, list of str.")
       .def("_views", &views)
       .def("_move_by", &move_by, py::arg("motion"));
+  bind_rotors(m, simulation);
   bind_topics(m, simulation);
 
   m.def(

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
 
-#include "quadcore/elementary.hpp"
+#include "quadcore/control/rotors.hpp"
 #include "quadcore/error.hpp"
 
 namespace quadcore::control {
@@ -43,55 +42,6 @@ const Settings<Doubts>& settings() {
   return all;
 }
 
-const Wrench& wrench_of(const RotorDescription& rotor, double spin) {
-  return spin > 0 ? rotor.forward : rotor.backward;
-}
-
-/// By turns, in the order in which the rotors stand around the vehicle: of the two ways that in
-/// which they yaw it more, and if both are equal that in which the first is positive.
-std::vector<double> alternating(const VehicleDescription& vehicle,
-                                const std::vector<std::size_t>& driven) {
-  const std::size_t n = driven.size();
-  if (n % 2 != 0) {
-    throw InputError("which way " + std::to_string(n) +
-                     " rotors turn cannot be told; give their spins, 1 or -1 each");
-  }
-  std::vector<double> angles;
-  for (const std::size_t joint : driven) {
-    const Vector3d p_F = vehicle.rotors[joint].p_FRcm_F - vehicle.body.p_FCcm;
-    angles.push_back(elementary::atan2(p_F.y(), p_F.x()));
-  }
-  std::vector<std::size_t> around(n);
-  std::iota(around.begin(), around.end(), 0);
-  std::stable_sort(around.begin(), around.end(),
-                   [&](std::size_t i, std::size_t j) { return angles[i] < angles[j]; });
-  std::vector<double> spins(n);
-  for (std::size_t k = 0; k < n; ++k) spins[around[k]] = k % 2 == 0 ? 1 : -1;
-  const auto turned = [&](double sense) {
-    double sum = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      sum += std::abs(wrench_of(vehicle.rotors[driven[i]], sense * spins[i]).torque_F.z());
-    }
-    return sum;
-  };
-  constexpr double equal = 1 + 1e-6;
-  const double first = spins[0];
-  const double sense = turned(-first) > equal * turned(first) ? -first : first;
-  for (double& spin : spins) spin *= sense;
-  return spins;
-}
-
-/// As those who drive the rotors say, or else by turns.
-std::vector<double> told_spins(const VehicleDescription& vehicle,
-                               const std::vector<std::size_t>& driven) {
-  std::vector<double> spins;
-  for (const std::size_t joint : driven) {
-    if (vehicle.rotors[joint].spin == 0) return alternating(vehicle, driven);
-    spins.push_back(vehicle.rotors[joint].spin);
-  }
-  return spins;
-}
-
 void check_spins(const std::vector<double>& spins, std::size_t rotors) {
   const bool are_signs =
       std::all_of(spins.begin(), spins.end(), [](double s) { return s == 1 || s == -1; });
@@ -116,7 +66,11 @@ Belief Belief::of(const VehicleDescription& vehicle, std::vector<double> spins,
     throw InputError("gravity is not along -z of the world, which these laws need");
   }
   const std::vector<std::size_t> driven = vehicle.driven();
-  if (spins.empty()) spins = told_spins(vehicle, driven);
+  if (spins.empty()) spins = find_spins(vehicle, driven);
+  if (spins.empty()) {
+    throw InputError("the senses in which " + std::to_string(driven.size()) +
+                     " rotors turn are unknown. Give their spins, 1 or -1 each.");
+  }
   check_spins(spins, driven.size());
 
   Belief belief;
@@ -142,8 +96,9 @@ Belief Belief::of(const VehicleDescription& vehicle, std::vector<double> spins,
                        "', at most 1e6 rad/s. Give a lower one.");
     }
     const double of_command = std::copysign(spins[i], spins[i] * ratio);
-    belief.rotors.push_back({told.axis_F, of_command, told.moment * ratio, doubts.lag * told.lag,
-                             doubts.slowest, fastest});
+    const double lag = std::isnan(told.lag) ? 0 : doubts.lag * told.lag;
+    belief.rotors.push_back(
+        {told.axis_F, of_command, told.moment * ratio, lag, doubts.slowest, fastest});
     const Wrench& wrench = wrench_of(told, spins[i]);
     belief.effectiveness.col(static_cast<Eigen::Index>(i))
         << doubts.thrust * ratio * ratio * wrench.force_F,

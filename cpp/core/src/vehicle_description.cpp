@@ -130,6 +130,10 @@ VehicleDescription Simulation::describe_vehicle() {
     vehicle.rotors.push_back(rotor);
   }
   for (const LoadedPlugin& p : plugins_) p.plugin->describe_rotors(vehicle.rotors);
+  for (RotorDescription& rotor : vehicle.rotors) {
+    const double slowed = std::abs(rotor.rate_per_command);
+    if (rotor.slowdown == 0) rotor.slowdown = slowed > 0 ? 1 / slowed : 1;
+  }
   vehicle.air = probe_air(vehicle);
   engine_->restore(as_it_is);
   return vehicle;

@@ -91,6 +91,10 @@ class AerodynamicPlugin final : public Plugin {
     return static_cast<std::size_t>(effectiveness_.size()) + kMemorySize;
   }
 
+  void describe_rotors(std::vector<RotorDescription>& rotors) const override {
+    for (const std::size_t i : config_.rotors) rotors[i].slowdown = config_.sim_slow;
+  }
+
   /// The thesis' plugin falls silent for a rotor that turns more than half a turn per step. Here
   /// such a speed ends the flight of an engine that turns rotors by hinges; others warn.
   void update(const Sample& sample, PluginState state) const override {

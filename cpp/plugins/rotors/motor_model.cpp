@@ -89,6 +89,7 @@ class MotorModel final : public Plugin {
     RotorDescription& rotor = rotors[joint_];
     rotor.otherwise = !turns();
     if (rotor.otherwise) return;
+    rotor.slowdown = slowdown_;
     rotor.rate_per_command = sense_ / slowdown_;
     rotor.lag = std::max(lag_.up, lag_.down);
     rotor.fastest = fastest_;

@@ -76,7 +76,7 @@ def _rotors(simulation: Simulation) -> List[_Rotor]:
         rates = _core.start_on(simulation, hover, [])["rotor_velocity"]
     except InputError:  # nothing drives them, or they cannot hold it
         rates = np.full(simulation.rotor_count, np.nan)
-    commands = rates / _core.rates_per_command(simulation)
+    commands = rates / [rotor.rate_per_command for rotor in simulation.rotors]
     parts = zip(model.joints, model.links[1:], model.link_poses[1:], rates, commands)
     return [
         _Rotor(i, joint.name, link.mass, pose[:3, 3], pose[:3, :3] @ joint.axis, rate, command)

@@ -6,7 +6,7 @@ from typing import Any, Dict, Mapping, Optional, Sequence
 
 import numpy as np
 
-from .._core import InputError, Simulation, log_columns, rates_per_command
+from .._core import InputError, Simulation, log_columns
 from ..support.arguments import brief
 from ..support.rotation import roll_pitch_yaw
 
@@ -15,7 +15,7 @@ _STATE_SIZE = len(log_columns(0))
 
 def per_command(simulation: Simulation) -> float:
     """Size of the rotor joints' velocity per commanded speed; 1 if there are several."""
-    sizes = set(np.abs(rates_per_command(simulation)).tolist())
+    sizes = {abs(rotor.rate_per_command) for rotor in simulation.rotors}
     return sizes.pop() if len(sizes) == 1 else 1.0
 
 

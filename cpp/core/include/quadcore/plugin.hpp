@@ -48,7 +48,8 @@ class Plugin {
 
   /// Numbers of state this plugin needs.
   virtual std::size_t state_size() const { return 0; }
-  /// For a plugin that drives rotors: says of them how they follow a command.
+  /// For a plugin that drives rotors: says how they follow a command. For one that exerts forces on
+  /// rotors that turn slower than the forces assume: says by which factor.
   virtual void describe_rotors(std::vector<RotorDescription>&) const {}
   /// Once, when all plugins are made: the last moment at which a plugin may change.
   virtual void prepare(const VehicleDescription&) {}

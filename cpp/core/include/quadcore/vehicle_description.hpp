@@ -22,10 +22,14 @@ struct RotorDescription {
   /// Force and torque about the vehicle's centre of mass per squared joint rate, turning with a
   /// positive rate [N s^2/rad^2, N m s^2/rad^2].
   Wrench forward, backward;  ///< the same with a negative rate
+  /// Speed of the rotor in its force laws over the joint's; 0 if no plugin says it. The description
+  /// of a vehicle then has 1/|rate_per_command|.
+  double slowdown = 0;
   /// \name As the plugin that drives it says, see Plugin::describe_rotors()
   /// @{
   double rate_per_command = 1;  ///< joint rate in the long run per commanded speed
-  double lag = 0;  ///< time constant with which the joint follows [s]; 0: at once, or not known
+  /// Time constant with which the joint follows [s]; NaN if unknown.
+  double lag = std::numeric_limits<double>::quiet_NaN();
   double fastest = std::numeric_limits<double>::infinity();  ///< command that is followed [rad/s]
   int place = not_driven;   ///< of its number in the command, from 0 on
   double spin = 0;          ///< sense about its axis in which alone it is driven, 1, -1; 0: either
