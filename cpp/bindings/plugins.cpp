@@ -36,6 +36,21 @@ const char* kind_of(const Parameter& parameter) {
   return "";
 }
 
+/// Name of what scales with a tag.
+const char* effect_of(const Parameter& parameter) {
+  switch (parameter.spec.effect) {
+    case Effect::none:
+      return "";
+    case Effect::thrust:
+      return "thrust";
+    case Effect::drag:
+      return "drag";
+    case Effect::lag:
+      return "lag";
+  }
+  return "";
+}
+
 }  // namespace
 
 void bind_plugins(py::module_& m) {
@@ -79,6 +94,12 @@ void bind_plugins(py::module_& m) {
       .def_property_readonly(
           "alias", [](const Parameter& p) { return text(p.spec.alias); },
           "Second name of the tag; \"\" without one.")
+      .def_property_readonly("effect", &effect_of,
+                             "Property of the vehicle that scales with the number: thrust, drag or "
+                             "lag; \"\" for none of these.")
+      .def_property_readonly(
+          "power", [](const Parameter& p) { return p.spec.power; },
+          "Exponent: multiplying `effect` by f takes f**power on the number.")
       .def_readonly("origin", &Parameter::origin,
                     "Where the value is from: FILE:LINE, \"default\", or \"set\" by the caller.");
 

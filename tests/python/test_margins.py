@@ -8,13 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from evaluations import evaluate
+from hooked import with_plugins
+from vehicles import plugin, vehicle
 
 import quadcore as qc
-from quadcore._core import rates_per_command
 from quadcore.cli import main
 from quadcore.control import laws
-from quadcore.simulation.vehicle_tags import SAID
-from quadcore.studies.evaluate import trial
 from quadcore.studies.evaluate.flights import NAN, Outcome
 from quadcore.studies.evaluate.plan import Plan
 from quadcore.studies.evaluate.robustness import ENDS, Searches, margin_text
@@ -105,7 +104,7 @@ def test_the_vehicle_of_a_trial_pushes_resists_and_lags_by_the_factors_asked_for
 
 def in_hover(simulation):
     """Rates of the joints, rad/s."""
-    return simulation.hover_speed * rates_per_command(simulation)
+    return simulation.hover_speed * [rotor.rate_per_command for rotor in simulation.rotors]
 
 
 def resistance(simulation):
@@ -142,33 +141,22 @@ def test_a_margin_at_the_end_of_its_search_is_told_as_larger():
     assert row["box_worst"] == pytest.approx(0.1 / 0.9)
 
 
-def modules():
-    """Simulations that fly every module between them that says how a vehicle moves."""
-    yield qc.Simulation("quadrotor", engine="eigen")
-    yield qc.Simulation("firefly", engine="eigen")
-    yield qc.Simulation("hexarotor", engine="eigen", xacro_args={"motor": "first_order"})
-
-
-def test_every_tag_that_says_thrust_drag_or_lag_is_one_of_a_plugin():
-    known = {tag.name for s in modules() for plugin in s.plugins for tag in plugin.parameters}
-    assert {tag for said in SAID.values() for tag in said} <= known
-
-
-def test_what_no_tag_says_is_told_on_the_terminal_and_on_the_page(monkeypatch, tmp_path, capsys):
-    """As of a vehicle whose motors and air are plugins of one's own."""
-    known = {"thrust": {"ownThrust": 1}, "drag": SAID["drag"], "lag": {"ownLag": 1}}
-    monkeypatch.setattr(trial, "SAID", known)
-    told = (
-        "margins: no tag of 'quadrotor' says its thrust and its lag; gain and box are not searched"
-    )
+def test_effects_that_no_tag_scales_are_named_on_the_terminal_and_on_the_page(
+    hook_plugins, tmp_path, capsys
+):
+    """As of a vehicle with the motors of a third party, whose tags scale the thrust alone."""
+    model = tmp_path / "own.urdf"
+    model.write_text(with_plugins(vehicle(mass=1), plugin("own_motor", {}), plugin("odometry", {})))
+    told = f"margins: no tag of '{model}' says its drag and its lag; box is not searched"
     out = tmp_path / "out"
-    command = "evaluate --controller geometric --reference hover --duration 0.1 --margins --out"
-    assert main([*command.split(), str(out)]) == 0
+    command = "evaluate --controller geometric --reference hover --duration 0.1 --margins"
+    assert main([*command.split(), "--model", str(model), "--out", str(out)]) == 0
     assert f"warning: {told}\n" in capsys.readouterr().err
     assert told in (out / "report.html").read_text().replace("&#39;", "'")
     content = json.loads((out / "evaluation.json").read_text())
     assert content["unsearched"] == told
-    assert content["margins"][0]["gain_high"] is None
+    assert content["margins"][0]["gain_high"] > 1
+    assert content["margins"][0]["box_worst"] is None
     assert content["margins"][0]["delay_margin"] > 0
 
 

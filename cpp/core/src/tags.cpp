@@ -104,6 +104,12 @@ TagSpec TagSpec::or_absent(std::string what) const {
   spec.absent = std::move(what);
   return spec;
 }
+TagSpec TagSpec::scaling(Effect what, int with_power) const {
+  TagSpec spec = *this;
+  spec.effect = what;
+  spec.power = with_power;
+  return spec;
+}
 
 std::string TagSpec::interval() const {
   std::ostringstream text;

@@ -228,12 +228,14 @@ PluginDescriptor describe() {
           T::number("rotorThrustCoeff", "N s^2/rad^2", "", "thrust of a rotor per squared speed, k")
               .must()
               .at_least(0)
-              .from("(2.10)"),
+              .from("(2.10)")
+              .scaling(Effect::thrust),
           T::number("rotorTorqueCoeff", "N m s^2/rad^2", "",
                     "reaction torque of a rotor per squared speed, b")
               .must()
               .at_least(0)
-              .from("(2.11)"),
+              .from("(2.11)")
+              .scaling(Effect::thrust),
           T::number("sim_slow", "", "1",
                     "rotors turn this much slower in the engine than the forces assume")
               .above(0)
@@ -246,16 +248,20 @@ PluginDescriptor describe() {
               .from("A.5, (2.28)-(2.31)"),
           T::number("inducedDragCoeff", "N s/m", "0", "induced drag of a rotor, K_I")
               .at_least(0)
-              .from("(2.28)"),
+              .from("(2.28)")
+              .scaling(Effect::drag),
           T::number("translationalDragCoeff", "N s/m", "0", "translational drag of a rotor, K_T1")
               .at_least(0)
-              .from("(2.29)"),
+              .from("(2.29)")
+              .scaling(Effect::drag),
           T::number("profileDragCoeff", "N s/m", "0", "profile drag of a rotor, K_P")
               .at_least(0)
-              .from("(2.30)"),
+              .from("(2.30)")
+              .scaling(Effect::drag),
           T::number("parasiticDragCoeff", "N s^2/m^2", "0", "parasitic drag of the airframe, K_par")
               .at_least(0)
-              .from("(2.31)"),
+              .from("(2.31)")
+              .scaling(Effect::drag),
           T::number("airDensity", "kg/m^3", "",
                     "density of the air for which the thrust, torque and drag coefficients are: "
                     "they become those of the world's <atmosphere> at z = 0")
@@ -263,13 +269,18 @@ PluginDescriptor describe() {
               .or_absent("they hold as they are"),
           T::number("flappingA1c", "rad", "0",
                     "blade flapping, longitudinal; positive opposes motion")
-              .from("(2.26)"),
-          T::number("flappingA1s", "rad", "0", "blade flapping, lateral").from("(2.26)"),
+              .from("(2.26)")
+              .scaling(Effect::drag),
+          T::number("flappingA1s", "rad", "0", "blade flapping, lateral")
+              .from("(2.26)")
+              .scaling(Effect::drag),
           T::number("flappingB1", "s/rad", "0", "blade flapping with the frame's rates, cross term")
-              .from("(2.27)"),
+              .from("(2.27)")
+              .scaling(Effect::drag),
           T::number("flappingB2", "s/rad", "0",
                     "blade flapping with the frame's rates, direct term")
-              .from("(2.27)"),
+              .from("(2.27)")
+              .scaling(Effect::drag),
           T::number("rotorRadius", "m", "0.075", "radius of a rotor, for flapping")
               .above(0)
               .from("(2.26)"),

@@ -118,10 +118,12 @@ PluginDescriptor describe() {
       {
           T::number("timeConstantUp", "s", "0.0125", "time constant of a rotor that speeds up")
               .above(0)
-              .from(rotors),
+              .from(rotors)
+              .scaling(Effect::lag),
           T::number("timeConstantDown", "s", "0.025", "time constant of a rotor that slows down")
               .above(0)
-              .from(rotors),
+              .from(rotors)
+              .scaling(Effect::lag),
           T::number("delay", "s", "0",
                     "time that a command takes to the motors, a whole number of steps")
               .at_least(0),

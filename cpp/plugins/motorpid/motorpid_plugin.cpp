@@ -157,7 +157,8 @@ PluginDescriptor describe() {
           T::number("kp", "N m s/rad", "", "proportional gain on the slowed joint velocity")
               .must()
               .at_least(0)
-              .from("A.4"),
+              .from("A.4")
+              .scaling(Effect::lag, -1),
           T::number("ki", "N m/rad", "0", "integral gain; needs iMax, iMin")
               .at_least(0)
               .from("A.4"),

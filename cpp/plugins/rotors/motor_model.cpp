@@ -233,18 +233,25 @@ PluginDescriptor describe() {
       T::number("motorConstant", "N s^2/rad^2", "8.54858e-06",
                 "thrust is this times the square of "
                 "the speed")
-          .at_least(0),
+          .at_least(0)
+          .scaling(Effect::thrust),
       T::number("momentConstant", "m", "0.016", "reaction torque by thrust"),
       T::number(
           "rotorDragCoefficient", "N s^2/(rad m)", "1e-4",
           "drag is this times the speed and the velocity of the link's origin across the axis")
-          .at_least(0),
+          .at_least(0)
+          .scaling(Effect::drag),
       T::number("rollingMomentCoefficient", "N s^2/rad", "1e-6",
                 "the like torque on the frame, along that velocity")
-          .at_least(0),
+          .at_least(0)
+          .scaling(Effect::drag),
       T::number("maxRotVelocity", "rad/s", "838", "fastest command that is followed").above(0),
-      T::number("timeConstantUp", "s", "0.0125", "of the lag while the speed rises").above(0),
-      T::number("timeConstantDown", "s", "0.025", "of the lag while it falls").above(0),
+      T::number("timeConstantUp", "s", "0.0125", "of the lag while the speed rises")
+          .above(0)
+          .scaling(Effect::lag),
+      T::number("timeConstantDown", "s", "0.025", "of the lag while it falls")
+          .above(0)
+          .scaling(Effect::lag),
       T::number("rotorVelocitySlowdownSim", "", "10", "the joint turns slower by this factor")
           .above(0),
       T::flag("reactionTorque", "false",

@@ -23,6 +23,14 @@ enum class TagKind {
   joints,   ///< names of continuous joints, separated by blanks; empty = all, in file order
 };
 
+/// A property of the vehicle that grows with a tag's number. Studies vary it by scaling these tags.
+enum class Effect {
+  none,    ///< none of these
+  thrust,  ///< thrust and reaction torque of the rotors
+  drag,    ///< resistance of the air
+  lag,     ///< time constant of the motors
+};
+
 /// Of a row of numbers: at least one.
 constexpr std::size_t any_count = 0;
 
@@ -43,6 +51,8 @@ struct TagSpec {
   std::string alias;     ///< another accepted name, "" = none
   bool shared = false;   ///< must have the same value in every plugin of the model that has it
   std::string absent;    ///< of an optional tag without default: what its absence means ("off")
+  Effect effect = Effect::none;  ///< property of the vehicle that scales with the number
+  int power = 0;                 ///< of the factor on the property that multiplies the number
 
   /// The range as a person reads it: ">= 0", "true | false", ...
   std::string range() const;
@@ -70,15 +80,16 @@ struct TagSpec {
   static TagSpec link(std::string name, std::string meaning);
   /// Continuous joints of the model; all if absent.
   static TagSpec joints(std::string name, std::string meaning);
-  TagSpec must() const;                          ///< required
-  TagSpec of(std::size_t numbers) const;         ///< count
-  TagSpec at_least(double value) const;          ///< min
-  TagSpec above(double value) const;             ///< exclusive min
-  TagSpec at_most(double value) const;           ///< max
-  TagSpec from(std::string equation) const;      ///< equation
-  TagSpec also_called(std::string alias) const;  ///< alias
-  TagSpec agreed() const;                        ///< shared
-  TagSpec or_absent(std::string meaning) const;  ///< no default: absent means this
+  TagSpec must() const;                                 ///< required
+  TagSpec of(std::size_t numbers) const;                ///< count
+  TagSpec at_least(double value) const;                 ///< min
+  TagSpec above(double value) const;                    ///< exclusive min
+  TagSpec at_most(double value) const;                  ///< max
+  TagSpec from(std::string equation) const;             ///< equation
+  TagSpec also_called(std::string alias) const;         ///< alias
+  TagSpec agreed() const;                               ///< shared
+  TagSpec or_absent(std::string meaning) const;         ///< no default: absent means this
+  TagSpec scaling(Effect effect, int power = 1) const;  ///< effect and power
   /// @}
 };
 

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Collection, Dict, Iterator, List, NamedTuple, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
-from ..._core import parse_number
+from ..._core import ParameterInfo, parse_number
 from ...control import laws
 from ...control.controller import check_callable, give
 from ...control.inner_loop import InnerLoop
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.simulation import Simulation
-from ...simulation.vehicle_tags import SAID
 
 if TYPE_CHECKING:
     from .plan import Plan
+
+
+EFFECTS = ("thrust", "drag", "lag")
+"""Properties of a vehicle that margins vary, as the tables of the plugins' tags name them."""
 
 
 class Trial(NamedTuple):
@@ -52,30 +55,26 @@ class Trial(NamedTuple):
         return replace(flight, controller=controller, parameters=changed)
 
     def _changes(self, simulation: Simulation) -> Dict[str, str]:
-        """Give the tags of the vehicle as it flies."""
+        """Return the tags of the vehicle that flies."""
         return {
-            key: repr(_number(tag) * getattr(self, name) ** powers[tag.name])
-            for name, powers in SAID.items()
-            for key, tag in _found(simulation, powers)
+            key: repr(number * getattr(self, tag.effect) ** tag.power)
+            for key, tag, number in _scaling_tags(simulation)
         }
 
 
 def lacking(simulation: Simulation) -> List[str]:
-    """Name what no tag of a vehicle says: of thrust, drag and lag."""
-    return [name for name, powers in SAID.items() if not list(_found(simulation, powers))]
+    """Name the effects that no tag of a vehicle scales."""
+    found = {tag.effect for _, tag, _ in _scaling_tags(simulation)}
+    return [name for name in EFFECTS if name not in found]
 
 
-def _found(simulation: Simulation, names: Collection[str]) -> Iterator[Tuple[str, Any]]:
+def _scaling_tags(simulation: Simulation) -> Iterator[Tuple[str, ParameterInfo, float]]:
+    """Find the tags that scale an effect: PLUGIN.TAG, tag, number."""
     for plugin in simulation.plugins:
         for tag in plugin.parameters:
-            if tag.name in names:
-                yield f"{plugin.name}.{tag.name}", tag
-
-
-def _number(tag: Any) -> float:
-    number = parse_number(tag.value)
-    assert number is not None  # of a plugin that was built
-    return number
+            number = parse_number(tag.value)
+            if tag.effect in EFFECTS and number is not None:
+                yield f"{plugin.name}.{tag.name}", tag, number
 
 
 class _Told:

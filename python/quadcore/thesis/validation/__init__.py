@@ -1,8 +1,8 @@
 """The thesis' chapter 6.1 as one call: plant against mathematical model, and why they differ."""
 
-from ...simulation.vehicle_tags import DRAGS
 from .chain import Chain, Link
 from .damping import Damping
+from .drags import DRAGS
 from .experiment import MODEL, TERMS, Case, Experiment, Flight
 from .states import STATES, compare, states
 from .study import Row, Study, conduct

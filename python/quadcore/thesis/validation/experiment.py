@@ -14,11 +14,11 @@ from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
 from ...simulation.simulation import Simulation
 from ...simulation.state import State
-from ...simulation.vehicle_tags import DRAGS
 from ...support.values import SPAWN, Value, text_of
 from ..chapter2 import GYROSTAT, MathematicalModel, Terms, Vehicle
 from ..chapter2.vehicle import air_of, command_order, motor_of, parameters_of
 from .ascent import ascent
+from .drags import DRAGS
 from .given_speeds import fly_given_speeds, stiff_gain
 
 MODEL = "model"

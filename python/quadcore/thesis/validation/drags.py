@@ -1,0 +1,14 @@
+"""The drags of the thesis by the tags of libaerodynamic_plugin that set them."""
+
+from __future__ import annotations
+
+from typing import Mapping, Tuple
+
+DRAGS: Mapping[str, Tuple[str, ...]] = {
+    "profile": ("profileDragCoeff",),
+    "parasitic": ("parasiticDragCoeff",),
+    "translational": ("translationalDragCoeff",),
+    "induced": ("inducedDragCoeff",),
+    "flapping": ("flappingA1c", "flappingA1s", "flappingB1", "flappingB2"),
+}
+"""Tags of each drag, in the order of chapter 6."""
