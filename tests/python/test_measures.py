@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -28,12 +30,16 @@ def log_of(time, wanted, position, rotors=None):
     return Log(table, {}, topics=topics)
 
 
+def rotors_of(*torques, slowdown=1.0):
+    return [SimpleNamespace(torque_coefficient=c, slowdown=slowdown) for c in torques]
+
+
 def test_measures_are_those_of_a_motion_in_closed_form():
     time = np.linspace(0, 20, 2001)
     error = 0.3 * np.exp(-time / 4)
     rotors = np.column_stack([100 + 10 * time, np.full(2001, -50.0)])
     log = log_of(time, np.sin(time), np.sin(time) + error, rotors)
-    found = measures.measure(log, 0.25, np.array([2e-6, 3e-6]))
+    found = measures.measure(log, 0.25, rotors_of(2e-6, 3e-6))
     assert found["largest_position"] == pytest.approx(0.3)
     assert found["rms_position"] == pytest.approx(
         np.sqrt(0.09 * 2 * (1 - np.exp(-10)) / 20), rel=2e-3
@@ -57,7 +63,7 @@ def test_rise_overshoot_and_settling_are_those_of_a_second_order_system():
         np.cos(root * w * since) + d / root * np.sin(root * w * since)
     )
     wanted = np.where(time >= 2.0005, 5.0, 3.0)
-    found = measures.measure(log_of(time, wanted, 3 + 2 * answer), 0, np.zeros(2))
+    found = measures.measure(log_of(time, wanted, 3 + 2 * answer), 0, rotors_of(0, 0))
     assert found["overshoot"] == pytest.approx(np.exp(-np.pi * d / root), rel=1e-3)
     t = np.arange(0, 20, 1e-4)
     exact = 1 - np.exp(-d * w * t) * (np.cos(root * w * t) + d / root * np.sin(root * w * t))
@@ -72,7 +78,7 @@ def test_effort_and_energy_are_those_of_the_speeds_whatever_the_joints_are_slowe
     rotors = np.column_stack([100 + 10 * time, np.full(2001, -50.0)])
     given = time, 0 * time, 0 * time
     whole, slowed = (
-        measures.measure(log_of(*given, rotors / slow), 0, np.array([2e-6, 3e-6]), slow)
+        measures.measure(log_of(*given, rotors / slow), 0, rotors_of(2e-6, 3e-6, slowdown=slow))
         for slow in (1, 10)
     )
     for name in ("effort", "energy"):
@@ -81,7 +87,9 @@ def test_effort_and_energy_are_those_of_the_speeds_whatever_the_joints_are_slowe
 
 def test_the_steady_error_of_a_short_flight_is_that_of_its_second_half():
     time = np.linspace(0, 4, 401)
-    found = measures.measure(log_of(time, 0 * time, np.where(time <= 2, 1, 0.25)), 0, np.zeros(2))
+    found = measures.measure(
+        log_of(time, 0 * time, np.where(time <= 2, 1, 0.25)), 0, rotors_of(0, 0)
+    )
     assert found["steady_position"] == pytest.approx(0.25)
 
 

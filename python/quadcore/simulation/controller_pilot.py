@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from contextlib import contextmanager, suppress
 from typing import Any, Callable, Iterator, Union
 
@@ -30,9 +29,7 @@ class Guided(Pilot):
         How often the controller was asked.
     saturated : int
         How often the rotors could not do what it wanted: a law of quadcore knows; of another it is
-        counted when a speed reaches the motors' limit.
-    limit : float
-        Of the motors' commands, rad/s; infinite without one.
+        counted when a speed reaches its motor's limit.
 
     Raises
     ------
@@ -70,7 +67,9 @@ class Guided(Pilot):
         self.updates = self.saturated = 0
         self._controller: Any = controller
         self._reference = reference
-        self.limit = _fastest(simulation)
+        driven = [rotor for rotor in simulation.rotors if rotor.command_index is not None]
+        self._places = np.array([rotor.command_index for rotor in driven], dtype=int)
+        self._limits = np.array([rotor.max_speed for rotor in driven])
         sensed = simulation.topics.get(SENSED)
         if sensed is None or sensed.kind != "odometry":
             raise InputError(
@@ -103,9 +102,9 @@ class Guided(Pilot):
             speeds = self._inner_loop.speeds(simulation, period, state, speeds)
         else:
             self._inner_loop.leave()
-        if self.limit < math.inf:
-            with suppress(TypeError, ValueError):  # what is no command is told when it is given
-                self.saturated += bool(np.any(np.abs(np.asarray(speeds, float)) >= self.limit))
+        with suppress(TypeError, ValueError, IndexError):  # a bad command is refused when given
+            sizes = np.abs(np.asarray(speeds, float))[self._places]
+            self.saturated += bool(np.any(sizes >= self._limits))
         return speeds
 
     def beside(self, table: np.ndarray) -> np.ndarray:
@@ -153,14 +152,3 @@ def _failure(simulation: _core.Simulation, reason: str) -> FlightError:
     failure = FlightError(f"the flight failed at t = {simulation.time:f} s: {reason}")
     failure.time = simulation.time
     return failure
-
-
-def _fastest(simulation: _core.Simulation) -> float:
-    """Speed at which the motors' commands saturate, rad/s; infinite without a limit."""
-    limits = [
-        float(tag.value)
-        for plugin in simulation.plugins
-        for tag in plugin.parameters
-        if tag.name == "maxVelocity" and tag.value != "none"
-    ]
-    return min(limits, default=math.inf)

@@ -19,7 +19,7 @@ from ...support.warning import unheard
 from ..table import NOT_FLOWN
 from ..time_limit import time_limit
 from .clock import Clocked, ClockedPilot, clocked, typical_and_slow
-from .measures import UNITS, drag_power, loss, measure, slow_down
+from .measures import UNITS, loss, measure
 from .step_response import step_response
 
 NAN = dict.fromkeys(UNITS, float("nan"))
@@ -96,6 +96,7 @@ def flown(
         if timed:
             flight = replace(flight, controller=clocked(flight.controller))
         simulation = flight.simulation()
+        rotors = simulation.rotors
         pilot: Any = flight.pilot(simulation)
         clock = flight.controller
         if timed and not isinstance(clock, Clocked):
@@ -120,7 +121,7 @@ def flown(
     measures = NAN
     if not failure:
         share = pilot.saturated / max(1, pilot.updates)
-        measures = measure(log, share, drag_power(simulation), slow_down(simulation))
+        measures = measure(log, share, rotors)
     outcome = Outcome(
         failure,
         measures,
@@ -134,9 +135,9 @@ def flown(
     if not keep:
         return outcome
     response = None if failure else step_response(log)
-    limit = pilot.limit / slow_down(simulation)
-    rotors = simulation.model.joint_places
-    return outcome._replace(log=thinned(log), response=response, limit=limit, rotors=rotors)
+    limit = min((rotor.max_speed / rotor.slowdown for rotor in rotors), default=np.inf)
+    places = np.array([rotor.position for rotor in rotors])
+    return outcome._replace(log=thinned(log), response=response, limit=limit, rotors=places)
 
 
 def _watched(simulation: Simulation) -> List[str]:

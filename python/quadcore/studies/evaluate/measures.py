@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Dict, Optional, Tuple
+from typing import Dict, Optional, Sequence, Tuple
 
 import numpy as np
 
+from ..._core import Rotor
 from ...simulation.log import Log
 from ...simulation.recording import TAIL
-from ...simulation.simulation import Simulation
 from ...support.rotation import roll_pitch_yaw
 
 LOST = 5.0
@@ -79,9 +79,7 @@ def rms_and_largest(away: np.ndarray) -> Tuple[float, float]:
     return float(np.sqrt(np.mean(away**2))), float(away.max())
 
 
-def measure(
-    log: Log, saturated: float, drag_power: np.ndarray, slow: float = 1.0
-) -> Dict[str, float]:
+def measure(log: Log, saturated: float, rotors: Sequence[Rotor]) -> Dict[str, float]:
     """Measure a flight.
 
     Parameters
@@ -90,11 +88,8 @@ def measure(
         Of a guided flight, evenly spaced.
     saturated
         Share of the saturated updates.
-    drag_power
-        Of each rotor, the power of the air's torque on it per cubed speed, W s^3/rad^3;
-        shape (n,).
-    slow
-        How much slower than that speed the joints of the log turn.
+    rotors
+        Of the vehicle, as `Simulation.rotors` describes them.
 
     Returns
     -------
@@ -106,7 +101,7 @@ def measure(
     late = time > time[-1] - min(TAIL, time[-1] / 2)
     errors = np.column_stack([log.topics["error"][axis] for axis in "xyz"])
     yaw = roll_pitch_yaw(log.orientation)[:, 2] - log.topics["reference"]["yaw"]
-    speeds = slow * np.abs(log.rotor_velocity)
+    speeds = np.abs(log.rotor_velocity) * [rotor.slowdown for rotor in rotors]
     span = max(time[-1], np.finfo(float).tiny)
     rise, overshoot, settling = _step(log, away)
     rms, largest = rms_and_largest(away)
@@ -123,24 +118,8 @@ def measure(
         "settling_time": settling,
         "effort": float(np.abs(np.diff(speeds, axis=0)).sum() / span / max(1, speeds.shape[1])),
         "saturated": saturated,
-        "energy": _integral(speeds**3 @ drag_power, time),
+        "energy": _integral(speeds**3 @ [rotor.torque_coefficient for rotor in rotors], time),
     }
-
-
-def drag_power(simulation: Simulation) -> np.ndarray:
-    """Give what `measure` is told of the rotors; NaN where no tag says it."""
-    power = math.nan
-    for plugin in simulation.plugins:
-        tags = {tag.name: tag.value for tag in plugin.parameters}
-        if "rotorTorqueCoeff" in tags:
-            power = abs(float(tags["rotorTorqueCoeff"]))
-    return np.full(simulation.rotor_count, power)
-
-
-def slow_down(simulation: Simulation) -> float:
-    """How much slower the rotors turn than their forces assume; 1 where no tag says it."""
-    tags = [tag for plugin in simulation.plugins for tag in plugin.parameters]
-    return max((float(tag.value) for tag in tags if tag.name == "sim_slow"), default=1.0)
 
 
 def _integral(values: np.ndarray, time: np.ndarray) -> float:

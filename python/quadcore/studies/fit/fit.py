@@ -10,7 +10,6 @@ import numpy as np
 from ..._core import FlightError, InputError, Model
 from ...simulation.engines import STUDIED
 from ...simulation.log import Log
-from ...simulation.simulation import Simulation
 from ...support import arguments
 from ...support.warning import unheard
 from . import record as records
@@ -179,11 +178,11 @@ def fit(
     wanted = [free_parameter(name, subject, known.get(name)) for name in named]
     flown = records.read(log, simulation.rotor_count, commands, sensed)
     names = records.channels(channels, flown)
-    lag, slow = _motors(simulation)
+    rotors = simulation.rotors
 
     def problem(is_held_out: bool) -> Problem:
         pieces = Horizons(
-            flown, subject.make, subject.fixed, simulation.dt, horizon, names, lag, slow,
+            flown, subject.make, subject.fixed, simulation.dt, horizon, names, rotors,
             lambda i: (i % _HELD_OUT == _HELD_OUT - 1) == is_held_out,
         )  # fmt: skip
         return Problem(pieces, wanted)
@@ -274,14 +273,3 @@ def _best_shift(problem: Problem, most: int) -> int:
     problem.starts[:] = 0
     problem.noise[:] = 1
     return best
-
-
-def _motors(simulation: Simulation) -> Tuple[float, float]:
-    """Give moment over gain of the motors, s, and sim_slow; a motor that nobody drives has none."""
-    tags = {tag.name: tag.value for plugin in simulation.plugins for tag in plugin.parameters}
-    gain, slow = float(tags.get("kp", "nan")), float(tags.get("sim_slow", "1"))
-    joints, (_, *links) = simulation.model.joints, simulation.model.links
-    if not joints or not gain > 0:
-        return 0.0, slow
-    axis = np.asarray(joints[0].axis)
-    return float(axis @ np.asarray(links[0].inertia) @ axis) / gain, slow

@@ -6,7 +6,7 @@ from typing import Any, Callable, Dict, List, Mapping, Sequence
 
 import numpy as np
 
-from ..._core import InputError
+from ..._core import InputError, Rotor
 from ...simulation.batch import BatchSimulation, BatchState
 from .record import CHANNELS, Record
 
@@ -32,9 +32,8 @@ class Horizons:
         Of a piece, s.
     channels
         Names of `CHANNELS` that are compared.
-    lag, sim_slow
-        Of the motors, with which commands are made of measured speeds where nobody wrote commands
-        down: moment over gain, s; and by which commands are divided. See `_commands`.
+    rotors
+        Of the vehicle. Without recorded commands, `_commands` computes them from measured speeds.
     part
         Called with the number of a piece: whether it is one of these.
 
@@ -57,8 +56,7 @@ class Horizons:
         dt: float,
         length: float,
         channels: Sequence[str],
-        lag: float,
-        sim_slow: float,
+        rotors: Sequence[Rotor],
         part: Callable[[int], bool],
     ) -> None:
         self._make, self._fixed, self._dt = make, fixed, dt
@@ -87,7 +85,7 @@ class Horizons:
         self._offsets = np.array([steps[r] - steps[a] for r, a in zip(self._rows, first)])
         self._begin = steps[self._first]
         self._record = record
-        self._commands, self._command_steps = _commands(record, dt, lag, sim_slow)
+        self._commands, self._command_steps = _commands(record, dt, rotors)
         self._angles = _angles(record)
         self.corrections = 12 + self.rotors
         sizes = {**CHANNELS, "rotors": self.rotors}
@@ -209,11 +207,11 @@ def _evenly(record: Record, dt: float) -> Record:
     return Record(**parts, commands=record.commands)
 
 
-def _commands(record: Record, dt: float, lag: float, sim_slow: float) -> Any:
-    """Give commands, and the steps with which they begin.
+def _commands(record: Record, dt: float, rotors: Sequence[Rotor]) -> Any:
+    """Return commands and the steps with which they begin.
 
-    Without commands they are what makes a motor follow the measured speeds: from J dw/dt = kp (c -
-    w), c = w + J/kp dw/dt.
+    Without recorded commands, they are those with which the motors follow the measured speeds w:
+    from tau dw/dt = r c - w, c = (w + tau dw/dt) / r, r being the `Rotor.rate_per_command`.
     """
     start = record.time[0]
     if record.commands is not None:
@@ -221,8 +219,12 @@ def _commands(record: Record, dt: float, lag: float, sim_slow: float) -> Any:
         steps = np.ceil((table[:, 0] - start) / dt - 1e-6).astype(int)
         return np.ascontiguousarray(table[:, 1:]), steps
     speeds = record.rotors
-    lead = sim_slow * (speeds + lag * np.gradient(speeds, record.time, axis=0))
-    middle = (lead[1:] + lead[:-1]) / 2
+    lags = np.nan_to_num([rotor.time_constant for rotor in rotors])
+    per_rate = [1 / (rotor.rate_per_command or 1.0) for rotor in rotors]
+    lead = per_rate * (speeds + lags * np.gradient(speeds, record.time, axis=0))
+    column = {rotor.command_index: i for i, rotor in enumerate(rotors)}
+    order = [column[k] for k in sorted(k for k in column if k is not None)] or slice(None)
+    middle = ((lead[1:] + lead[:-1]) / 2)[:, order]
     return np.ascontiguousarray(middle), np.rint((record.time[:-1] - start) / dt).astype(int)
 
 
