@@ -49,6 +49,16 @@ def test_current_and_voltage_are_those_of_the_circuit(sim_slow, efficiency, hang
         assert shares[f"s{j}"] == pytest.approx((U / 12.6) ** 2, rel=1e-15)
 
 
+def test_rotors_of_rotors_motors_draw_the_same_power_whichever_way_they_turn(tmp_path):
+    urdf = tmp_path / "firefly.urdf"
+    battery = plugin("battery", {**LIPO, "resistance": 0})
+    urdf.write_text(with_plugins(qc.read_model("firefly").document.text, battery))
+    simulation = qc.Simulation(urdf, engine="eigen")
+    start(simulation, rotor_velocity=[50, -50, 50, 50, -50, -50]).step()
+    torque = 8.54858e-06 * 0.016 * 500**2  # at the speed before the slowdown, 10 x 50 rad/s
+    assert simulation.topic("battery")["current"] == pytest.approx(6 * torque * 500 / 12.6)
+
+
 def test_what_falls_with_the_voltage_is_thrust_and_reaction(hangar):
     urdf = with_plugins(vehicle(ODD, air=CHAPTER2), plugin("battery", LIPO))
     bare = hangar(vehicle(ODD, air=CHAPTER2), engine="eigen")

@@ -43,7 +43,7 @@ class BatteryPlugin final : public Plugin {
     for (const std::size_t i : rotors_) {
       const RotorDescription& rotor = vehicle.rotors[i];
       const Vector3d p_CR_F = rotor.p_FRcm_F - vehicle.body.p_FCcm;
-      const double slowed = rotor.rate_per_command > 0 ? rotor.rate_per_command : 1;
+      const double slowed = 1 / rotor.slowdown;
       const auto coefficient = [&](const Wrench& wrench) {
         const Vector3d torque_F = wrench.torque_F - p_CR_F.cross(wrench.force_F);
         return std::abs(rotor.axis_F.dot(torque_F)) / slowed;
