@@ -54,6 +54,17 @@ VehicleDescription describe(const Self& self) {
   return self->describe_vehicle();
 }
 
+/// Throws InputError if the odometry's velocity is along the axes of the frame: plugins that have
+/// this tag agree on it.
+void refuse_velocity_in_body(const std::string& who, const Self& flown) {
+  for (const LoadedPlugin& plugin : flown->plugins()) {
+    for (const Parameter& parameter : plugin.parameters.all()) {
+      if (parameter.spec.name != "twistFrame" || parameter.text != "body") continue;
+      throw InputError(who + " needs velocities in the world; set <twistFrame> to world");
+    }
+  }
+}
+
 /// A vehicle, driven as the one that flies, which it may be itself.
 VehicleDescription describe_as(const Self& believed, const Self& flown) {
   if (&*believed == &*flown) return describe(flown);
@@ -130,6 +141,7 @@ void bind_control(py::module_& m) {
       .def(
           py::init([](const std::string& law, const Self& believed, const Self& flown,
                       const Values& values, const std::vector<double>& spins) {
+            refuse_velocity_in_body("law '" + law + "'", flown);
             Controller made(law, describe_as(believed, flown), values, spins);
             const std::size_t size = Controller::state_size(law, made.rotors());
             return std::make_unique<FlownLaw>(FlownLaw{{std::move(made), std::vector<double>(size)},
@@ -162,6 +174,7 @@ void bind_control(py::module_& m) {
   py::class_<FlownInnerLoop>(m, "InnerLoop", "An inner loop that flies one vehicle.")
       .def(py::init([](const Self& believed, const Self& flown, const Values& values,
                        const std::vector<double>& spins) {
+             refuse_velocity_in_body("inner loop", flown);
              control::InnerLoop made(describe_as(believed, flown), values, spins);
              const std::size_t size = control::InnerLoop::state_size(made.rotors());
              return std::make_unique<FlownInnerLoop>(

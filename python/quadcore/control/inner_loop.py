@@ -11,7 +11,6 @@ import numpy as np
 from .. import _core
 from ..support.arguments import brief
 from ..support.parameters import docstring, values
-from .belief import believed
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -101,7 +100,7 @@ class InnerLoop:
         """
         target, thrust = _checked(wanted)
         if self._loop is None:
-            vehicle = believed("inner loop", self.belief, simulation)
+            vehicle = simulation if self.belief is None else self.belief
             self._loop = _core.InnerLoop(vehicle, simulation, self.parameters, self.spins)
         if isinstance(wanted, AttitudeThrust):
             return self._loop.attitude(period, state, target, thrust)

@@ -9,7 +9,6 @@ import numpy as np
 
 from .. import _core
 from ..support.parameters import values
-from .belief import believed
 from .timing import DELAY, RATE, checked
 
 
@@ -64,7 +63,7 @@ class Law:
         InputError
             A vehicle that the law cannot fly, or a rate that is none.
         """
-        vehicle = believed(f"law '{self.name}'", self.belief, simulation)
+        vehicle = simulation if self.belief is None else self.belief
         self._controller = _core.Controller(
             self.name, vehicle, simulation, self.parameters, self.spins
         )
