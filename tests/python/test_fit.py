@@ -11,6 +11,7 @@ from processes import ran, refused
 
 import quadcore as qc
 from quadcore.studies.fit.document import with_values, written
+from quadcore.studies.fit.horizons import _commands as commands_from_speeds
 from quadcore.studies.fit.record import read
 
 DATA = Path(__file__).resolve().parents[1] / "data" / "gazebo11"
@@ -139,6 +140,19 @@ def test_measured_speeds_of_rotors_serve_in_place_of_commands(flown):
     found = fit(bare, names, parameters=begin, horizon=0.5)
     for name in names:
         assert found.values[name] == pytest.approx(TRUE[name], rel=0.05), name
+
+
+@pytest.mark.parametrize("model", ["firefly", "hexarotor"])
+def test_commands_are_found_from_measured_speeds(model):
+    """RotorS' joints turn ten times slower than commanded, every other one backwards."""
+    simulation = qc.Simulation(model, engine="eigen", spawn=(0, 0, 10))
+    time, hover = np.arange(0, 1, simulation.dt), simulation.hover_speed
+    wanted = hover * (1 + 0.02 * np.sin(6 * time[:, None] + np.arange(6)))
+    log = simulation.run(1, commands=np.column_stack([time, wanted]))
+    record = read(log, simulation.rotor_count)
+    found, steps = commands_from_speeds(record, simulation.dt, simulation.rotors)
+    late = steps > 0.5 / simulation.dt
+    np.testing.assert_allclose(found[late], wanted[steps[late]], rtol=0.003)
 
 
 def test_a_lag_between_commands_and_measurements_is_found(flown):

@@ -10,6 +10,8 @@ from flights import BUSY, HOVER, quadrotor
 from scipy.spatial.transform import Rotation
 from sensed import mounted
 
+import quadcore as qc
+
 POSE = ("x", "y", "z", "qx", "qy", "qz", "qw")
 LINEAR = ("vx", "vy", "vz")
 ANGULAR = ("wx", "wy", "wz")
@@ -91,6 +93,19 @@ def test_the_twist_may_be_given_in_body_axes():
     assert np.allclose(part(message, LINEAR), turned, rtol=0, atol=1e-14)
     assert not np.allclose(part(message, LINEAR), part(world.topic("odom"), LINEAR), atol=0.1)
     assert np.array_equal(part(message, ANGULAR), part(world.topic("odom"), ANGULAR))
+
+
+@pytest.mark.parametrize(
+    ("controller", "who"),
+    [
+        ("geometric", "law 'geometric'"),
+        (lambda t, state, reference: qc.AttitudeThrust((0, 0, 0, 1), 10.0), "inner loop"),
+    ],
+)
+def test_who_needs_velocities_in_the_world_refuses_those_in_body_axes(controller, who):
+    simulation = tumbling(**{"odometry.twistFrame": "body"})
+    with pytest.raises(qc.QuadcoreError, match=f"{who} needs velocities in the world"):
+        simulation.run(0.1, controller=controller, reference="hover")
 
 
 @pytest.mark.parametrize("tag", ["rate", "updateRate"])
