@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 
 import quadcore as qc
+from quadcore.studies.design import Design
 from quadcore.studies.sweep.batches import fly_together
-from quadcore.studies.sweep.design import Design
 from quadcore.studies.sweep.plan import Plan
 from quadcore.studies.sweep.spec import done
 from quadcore.studies.sweep.sweep import conduct

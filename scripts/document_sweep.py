@@ -11,7 +11,7 @@ from pathlib import Path
 
 from images import save
 
-from quadcore.studies.sweep.design import Design
+from quadcore.studies.design import Design
 from quadcore.studies.sweep.pictures import draw
 from quadcore.studies.sweep.plan import Plan
 from quadcore.studies.sweep.sensitivity import sensitivities

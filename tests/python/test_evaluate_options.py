@@ -11,7 +11,7 @@ from evaluations import FLY, rows
 import quadcore as qc
 from quadcore.cli import _parser, main
 from quadcore.cli.options_file import OptionsFile
-from quadcore.cli.values import several_calls
+from quadcore.support.option_values import several_calls
 
 
 @pytest.fixture(autouse=True)

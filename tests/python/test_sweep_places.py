@@ -141,7 +141,7 @@ def test_models_travel_as_documents():
     (here / "mine.urdf").write_text(qc.read_model("crazyflie").document.text)
     shutil.copy(shipped / "worlds/empty.world", here / "mine.world")
     (here / "gains.yaml").write_text("law: pd\n")
-    from quadcore.studies.sweep.design import Design
+    from quadcore.studies.design import Design
     from quadcore.studies.sweep.plan import Plan
 
     plan = Plan(

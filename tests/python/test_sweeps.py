@@ -15,7 +15,7 @@ from sweeps import MASS, ishigami, rows, sweep
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.studies.sweep.design import Design
+from quadcore.studies.design import Design
 
 FLY = ["--controller", "geometric", "--reference", "circle", "--xacro", "sim_slow:=1"]
 SHORT = [*FLY, "--duration", "0.5", "--no-plots", "--quiet"]

@@ -16,8 +16,9 @@ from ..studies.compare.plan import Plan
 from ..studies.compare.result import Comparison
 from ..studies.folder import output_folder
 from ..studies.table import number_text, shown_in
+from ..support import option_values
 from ..support.files import make_folder
-from . import options, terminal, values
+from . import options, terminal
 from .failures import failure
 from .kept import kept
 from .unmeant import warn_of_commands
@@ -41,7 +42,7 @@ def register(commands: Any) -> None:
     parser.add_argument(
         "--against",
         metavar="N",
-        type=values.integer(1),
+        type=option_values.integer(1),
         help="number of the flight that the others are compared with (the first that flies)",
     )
     parser.add_argument(

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 from .._core import InputError
 from ..simulation.engines import STUDIED, list_engines
 from ..studies.folder import output_folder
-from . import combinations, options, terminal, values
+from ..support import option_values
+from . import combinations, options, terminal
 from .failures import failure
 from .kept import kept
 from .options_file import OptionsFile
@@ -43,7 +44,7 @@ def register(commands: Any) -> None:
     parser.add_argument(
         "--time-limit",
         metavar="S",
-        type=values.positive,
+        type=option_values.positive,
         default=300.0,
         help="of the wall clock for one flight, s (300)",
     )

@@ -14,8 +14,8 @@ from ..simulation.flight_plan import FlightPlan
 from ..simulation.scenarios import NONE
 from ..studies.axes import parse_axis
 from ..studies.guidance import Guidance
+from ..support import option_values
 from ..support.values import SPAWN
-from . import values
 
 SPAWNED = "{:g},{:g},{:g}".format(*SPAWN)
 """Where a flight begins unless told, as --spawn takes it."""
@@ -50,7 +50,7 @@ def add_changes(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--set",
         metavar="PLUGIN.TAG=VALUE",
-        type=values.assignment(r"([^=]+\.[^.=]+)=(.+)", "PLUGIN.TAG=VALUE"),
+        type=option_values.assignment(r"([^=]+\.[^.=]+)=(.+)", "PLUGIN.TAG=VALUE"),
         action="append",
         default=[],
         help="give a plugin's tag another value, or LINK.mass, LINK.ixx ... LINK.izz, xacro.ARG; "
@@ -59,7 +59,7 @@ def add_changes(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--xacro",
         metavar="ARG:=VALUE",
-        type=values.assignment(r"([^:=]+):=(.*)", "ARG:=VALUE"),
+        type=option_values.assignment(r"([^:=]+):=(.*)", "ARG:=VALUE"),
         action="append",
         default=[],
         help="value of an argument of the xacro file; repeatable",
@@ -93,7 +93,7 @@ def add_flight(
         parser.add_argument(
             "--engine",
             metavar="LIST",
-            type=values.several(names),
+            type=option_values.several(names),
             default=engine,
             help=f"{summaries} ({','.join(engine)})",
         )
@@ -102,32 +102,34 @@ def add_flight(
             "--engine", choices=names, default=engine, help=f"{summaries} ({engine})"
         )
     add_world(parser)
-    parser.add_argument("--dt", metavar="S", type=values.positive, help="step in s (the world's)")
+    parser.add_argument(
+        "--dt", metavar="S", type=option_values.positive, help="step in s (the world's)"
+    )
     if seconds is not None:
         parser.add_argument(
             "--duration",
             metavar="S",
-            type=values.positive,
+            type=option_values.positive,
             default=seconds,
             help=f"time to fly in s ({seconds:g})",
         )
     parser.add_argument(
         "--seed",
         metavar="N",
-        type=values.integer(0, 2**64 - 1),
+        type=option_values.integer(0, 2**64 - 1),
         default=0,
         help="seed of all noise (0)",
     )
     parser.add_argument(
         "--spawn",
         metavar="X,Y,Z[,ROLL,PITCH,YAW]",
-        type=values.pose,
+        type=option_values.pose,
         help=f"start pose of the frame in m and rad ({begins})",
     )
     parser.add_argument(
         "--log-every",
         metavar="N",
-        type=values.integer(1),
+        type=option_values.integer(1),
         default=log_every,
         help=f"log each N-th step ({log_every or 'each hundredth of a second'})",
     )
@@ -156,7 +158,7 @@ def add_vary(parser: argparse.ArgumentParser, more: str = "") -> None:
     parser.add_argument(
         "--vary",
         metavar="PLUGIN.TAG=VALUES",
-        type=values.assignment(r"([^=]+)=(.*)", "PLUGIN.TAG=VALUES"),
+        type=option_values.assignment(r"([^=]+)=(.*)", "PLUGIN.TAG=VALUES"),
         action="append",
         default=[],
         help="a,b,c or FIRST:LAST:COUNT or log:FIRST:LAST:COUNT; PLUGIN.TAG,PLUGIN.TAG=... gives "
@@ -187,13 +189,13 @@ def add_timing(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--controller-rate",
         metavar="HZ",
-        type=values.positive,
+        type=option_values.positive,
         help="calls per second (the law's, 500)",
     )
     parser.add_argument(
         "--delay",
         metavar="S",
-        type=values.not_negative,
+        type=option_values.not_negative,
         help="from a call to the motors, s (the law's, 0)",
     )
 
@@ -220,7 +222,7 @@ def add_log_topics(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--log-topics",
         metavar="NAME,NAME",
-        type=values.names,
+        type=option_values.names,
         default=[],
         help="topics of plugins to log, too: columns NAME.FIELD",
     )
@@ -229,7 +231,7 @@ def add_log_topics(parser: argparse.ArgumentParser) -> None:
 def add_jobs(parser: argparse.ArgumentParser) -> None:
     """Add the option that limits the processes."""
     parser.add_argument(
-        "--jobs", metavar="N", type=values.integer(1), help="processes (one per core)"
+        "--jobs", metavar="N", type=option_values.integer(1), help="processes (one per core)"
     )
 
 

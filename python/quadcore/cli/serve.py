@@ -14,7 +14,8 @@ from ..serve.server import TIMEOUT
 from ..simulation.flight import columns_of
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.log import check_log_path, log_file
-from . import options, terminal, values
+from ..support import option_values
+from . import options, terminal
 
 
 def register(commands: Any) -> None:
@@ -29,7 +30,7 @@ def register(commands: Any) -> None:
     where.add_argument(
         "--port",
         metavar="N",
-        type=values.integer(0, 65535),
+        type=option_values.integer(0, 65535),
         default=0,
         help="port of 127.0.0.1 (any that is free)",
     )
@@ -44,7 +45,7 @@ def register(commands: Any) -> None:
     parser.add_argument(
         "--timeout",
         metavar="S",
-        type=values.positive,
+        type=option_values.positive,
         default=TIMEOUT,
         help=f"drop a client that is silent for S seconds before its first request, within a "
         f"message, or while another one waits ({TIMEOUT:g})",

@@ -7,11 +7,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..simulation.engines import STUDIED, list_engines
+from ..studies.distributions import DESIGNS, forms
 from ..studies.evaluate import measures as of_guided
 from ..studies.folder import output_folder
 from ..studies.sweep import motion
-from ..studies.sweep.distributions import DESIGNS, forms
-from . import combinations, options, terminal, values
+from ..support import option_values
+from . import combinations, options, terminal
 from .failures import failure
 from .options_file import OptionsFile
 
@@ -39,7 +40,10 @@ def register(commands: Any) -> None:
         "--points", metavar="FILE.csv", help="rows are points of the axes that its header names"
     )
     parser.add_argument(
-        "--samples", metavar="N", type=values.integer(1), help="points of the axes that are drawn"
+        "--samples",
+        metavar="N",
+        type=option_values.integer(1),
+        help="points of the axes that are drawn",
     )
     default = next(iter(DESIGNS))
     parser.add_argument(
@@ -60,7 +64,7 @@ def register(commands: Any) -> None:
     parser.add_argument(
         "--time-limit",
         metavar="S",
-        type=values.positive,
+        type=option_values.positive,
         default=300.0,
         help="of the wall clock for one flight, s (300)",
     )
@@ -135,7 +139,7 @@ def _sweep(arguments: argparse.Namespace, plan: Plan, measure: str) -> None:
 
 
 def _plan(arguments: argparse.Namespace) -> Plan:
-    from ..studies.sweep.design import Design
+    from ..studies.design import Design
     from ..studies.sweep.plan import Plan
 
     shared = {**options.model_arguments(arguments), **options.flight_arguments(arguments)}

@@ -9,8 +9,9 @@ from typing import Any
 from .._core import InputError
 from ..control import gains
 from ..simulation.engines import STUDIED, list_engines
+from ..support import option_values
 from ..support.files import check_writable
-from . import options, terminal, values
+from . import options, terminal
 from .kept import kept
 from .unmeant import refuse_log_every
 
@@ -34,34 +35,34 @@ def register(commands: Any) -> None:
     parser.add_argument(
         "--reference",
         metavar="A,B",
-        type=values.several_calls,
+        type=option_values.several_calls,
         default=["spiral", "step"],
         help="what is flown to tune, NAME, NAME:KEY=VALUE,... or files (spiral,step)",
     )
     parser.add_argument(
         "--hold-out",
         metavar="A,B",
-        type=values.several_calls,
+        type=option_values.several_calls,
         default=["circle", "eight"],
         help="what is flown to judge (circle,eight)",
     )
     parser.add_argument(
         "--hold-out-model",
         metavar="A,B",
-        type=values.names,
+        type=option_values.names,
         default=[],
         help="models that fly everything to judge, too (none)",
     )
     parser.add_argument(
         "--only",
         metavar="NAME,NAME",
-        type=values.names,
+        type=option_values.names,
         help="parameters to tune (all gains that are not zero)",
     )
     parser.add_argument(
         "--budget",
         metavar="N",
-        type=values.integer(1),
+        type=option_values.integer(1),
         default=300,
         help="gains to try, at least (300)",
     )

@@ -11,10 +11,10 @@ from rich.table import Table
 from .._core import FlightError, InputError, QuadcoreError, engines
 from ..simulation.flight_plan import FlightPlan
 from ..studies.executor import conducted
-from ..support import interrupts
+from ..support import interrupts, option_values
 from ..support.files import atomic_write, prepare_folder
 from ..support.values import SPAWN
-from . import options, terminal, values
+from . import options, terminal
 from .kept import kept
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def register(commands: Any) -> None:
     parser.add_argument(
         "--sim-slow",
         metavar="LIST",
-        type=values.positive_numbers,
+        type=option_values.positive_numbers,
         help="slow-downs of the rotors (those of the thesis: 1,8,10,18)",
     )
     parser.add_argument(

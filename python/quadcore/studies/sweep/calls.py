@@ -8,8 +8,8 @@ from typing import Any, Callable, Dict, List, Mapping, Sequence
 
 from ..._core import InputError, QuadcoreError
 from ...support.arguments import brief
+from ..design import LARGEST, Design
 from ..time_limit import time_limit
-from .design import LARGEST, Design
 from .spec import Measures, digest, source_of
 
 

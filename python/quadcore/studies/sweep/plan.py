@@ -20,6 +20,7 @@ from ...support.files import shown
 from ...support.values import whole
 from ...support.warning import unheard
 from .. import guidance
+from ..design import LARGEST, Design, Point
 from ..evaluate import entries
 from ..evaluate import measures as of_guided
 from ..evaluate.plan import LOG_RATE
@@ -27,7 +28,6 @@ from ..variation import Variation, give_all, is_of_controller, of_controller
 from . import motion
 from .batches import ENGINE
 from .calls import Calls as Calls
-from .design import LARGEST, Design, Point
 from .spec import Flight, Own, columns
 
 _NAMED = ("world", "scenario")

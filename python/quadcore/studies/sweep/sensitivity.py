@@ -13,7 +13,7 @@ from typing import Any, Dict, Iterator, List, Mapping, Tuple
 import numpy as np
 
 from ...support.extras import needed
-from .distributions import unit_problem
+from ..distributions import unit_problem
 from .plan import AnyPlan
 
 Columns = Mapping[str, np.ndarray]

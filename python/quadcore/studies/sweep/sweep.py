@@ -25,10 +25,10 @@ from ...simulation.commands import CommandsLike
 from ...simulation.engines import STUDIED
 from ...support import arguments, interrupts
 from ...support.values import whole
+from ..design import Design
 from ..folder import output_folder
 from ..table import flown_and_failed
 from .dask import cluster
-from .design import Design
 from .places import fly_here, fly_over
 from .plan import AnyPlan, Calls, Plan
 from .rows import Rows

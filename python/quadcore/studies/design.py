@@ -6,10 +6,10 @@ import math
 from pathlib import Path
 from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
-from ..._core import InputError
-from ...support.reading import read_text
-from ..axes import Axis, axes_of, parse_axis
+from .._core import InputError
+from ..support.reading import read_text
 from . import distributions
+from .axes import Axis, axes_of, parse_axis
 
 LARGEST = 1_000_000
 """Rows of one sweep."""

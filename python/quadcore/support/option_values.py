@@ -1,4 +1,4 @@
-"""Types of options: what reads their values, and says what is wrong with one."""
+"""Read the values of command-line options from text."""
 
 from __future__ import annotations
 

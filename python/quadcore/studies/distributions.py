@@ -8,8 +8,8 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tu
 
 import numpy as np
 
-from ..._core import InputError, parse_number
-from ...support.extras import needed
+from .._core import InputError, parse_number
+from ..support.extras import needed
 
 DIGITS = 12
 """Of what is drawn, as text: fewer than a double has, so that every machine writes the same."""
