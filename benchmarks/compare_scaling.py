@@ -17,16 +17,18 @@ from quadcore.report.thinning import thinned
 from quadcore.studies.axes import parse_axis
 from quadcore.studies.compare.compare import fly
 from quadcore.studies.compare.plan import Plan
+from quadcore.studies.guidance import Guidance
+from quadcore.studies.options import CompareOptions
 
 COMMANDS = Path(__file__).resolve().parents[1] / "tests/data/gazebo11/commands_S5.csv"
 LONGEST = 20.0  # s, on two cores
 LEAST_SPEEDUP = 1.8
 
 
-def plan(duration, *axes):
+def plan(duration, *axes, processes=None):
     vary = {name: parse_axis(name, values).values for name, values in axes}
-    options = {"engine": "eigen", "xacro_args": {"sim_slow": 1}}
-    return Plan(["quadrotor"], vary, COMMANDS, duration, 1, options)
+    options = CompareOptions(duration=duration, xacro_args={"sim_slow": 1}, processes=processes)
+    return Plan(["quadrotor"], vary, "eigen", Guidance(), options, COMMANDS)
 
 
 def seconds(processes):
@@ -35,14 +37,15 @@ def seconds(processes):
         10.0,
         ("drone_plugin.inducedDragCoeff", "0:0.02:20"),
         ("motorpid_plugin.kp", "log:1e-4:1e-2:10"),
+        processes=processes,
     )
     start, used = time.perf_counter(), os.times()
-    fly(grid, lambda row, log: thinned(log) if row % 5 == 0 else None, processes)
+    fly(grid, lambda row, log: thinned(log) if row % 5 == 0 else None)
     wall, now = time.perf_counter() - start, os.times()
     parent, flights = (sum(now[i : i + 2]) - sum(used[i : i + 2]) for i in (0, 2))
     # The first flight, and what the parent does, are done by one process.
-    alone = parent + flights / grid.count
-    undisturbed = alone + flights * (1 - 1 / grid.count) / processes
+    alone = parent + flights / len(grid)
+    undisturbed = alone + flights * (1 - 1 / len(grid)) / processes
     print(f"by {processes}: {wall:6.2f} s, undisturbed {undisturbed:6.2f} s")
     return wall, undisturbed
 

@@ -17,6 +17,7 @@ import quadcore as qc
 from quadcore.studies.evaluate.evaluate import conduct
 from quadcore.studies.evaluate.output import write
 from quadcore.studies.evaluate.plan import Plan
+from quadcore.studies.options import EvaluateOptions
 
 SPIRAL = yaml.safe_load((Path(__file__).parents[1] / "config" / "spiral.yaml").read_text())
 LONGEST = 45.0  # s, on two cores
@@ -25,12 +26,12 @@ PROCESSES = 2
 
 
 def seconds_of_evaluation():
-    options = {"xacro_args": SPIRAL["xacro"]}
+    options = EvaluateOptions(xacro_args=SPIRAL["xacro"], seeds=20, processes=PROCESSES)
     laws = ["pd", "pd_compensated", "geometric", "indi"]
     shapes = ["spiral", "circle", "eight", "waypoints"]
     start, used = time.perf_counter(), os.times()
-    plan = Plan(laws, shapes, ["eigen"], ["quadrotor"], 20, {}, 30.0, *[None] * 4, options)
-    evaluation = conduct(plan, 300.0, PROCESSES)
+    plan = Plan(laws, shapes, ["eigen"], ["quadrotor"], {}, options)
+    evaluation = conduct(plan)
     with tempfile.TemporaryDirectory() as folder:
         write(evaluation, plan, Path(folder), plots=True)
     wall, now = time.perf_counter() - start, os.times()

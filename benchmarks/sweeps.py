@@ -14,6 +14,7 @@ import numpy as np
 
 import quadcore as qc
 from quadcore.studies.design import Design
+from quadcore.studies.options import SweepOptions
 from quadcore.studies.sweep.batches import fly_together
 from quadcore.studies.sweep.plan import Plan
 from quadcore.studies.sweep.spec import done
@@ -21,11 +22,14 @@ from quadcore.studies.sweep.sweep import conduct
 
 ROWS, ROUNDS = 200, 5
 AXES = {"frame.mass": "uniform:0.9:1.1", "drone_plugin.rotorThrustCoeff": "uniform:1.1e-5:1.2e-5"}
-GIVEN = {"options": {"xacro_args": {"sim_slow": 1}}}
 
 
-def plan(rows: int, *what: object, **options: object) -> Plan:
-    return Plan(Design(AXES, samples=rows), *what, **GIVEN, **options)
+def plan(
+    rows: int, controller: object, reference: object, commands: object = None, **given: object
+) -> Plan:
+    options = SweepOptions(xacro_args={"sim_slow": 1}, **given)
+    design, sides = Design(AXES, samples=rows), (["eigen"], ["quadrotor"])
+    return Plan(design, controller, reference, *sides, options, commands)
 
 
 def taken(action: object, clock: object = time.perf_counter) -> float:
@@ -72,7 +76,7 @@ def together_against_alone() -> None:
     rng = np.random.default_rng(0)
     speeds = np.array([480, -480, 480, -480]) + rng.normal(0, 3, (200, 4))
     commands = np.column_stack([0.05 * np.arange(200), speeds])
-    swept = plan(32, commands=commands)
+    swept = plan(32, None, None, commands)
     specs = [swept.spec(row) for row in range(32)]
     ratios = [
         taken(lambda: [done(spec) for spec in specs]) / taken(lambda: fly_together(specs))

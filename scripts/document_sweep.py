@@ -12,6 +12,7 @@ from pathlib import Path
 from images import save
 
 from quadcore.studies.design import Design
+from quadcore.studies.options import SweepOptions
 from quadcore.studies.sweep.pictures import draw
 from quadcore.studies.sweep.plan import Plan
 from quadcore.studies.sweep.sensitivity import sensitivities
@@ -28,8 +29,8 @@ AXES = {
 def main() -> None:
     """Fly a law that is wrong about its vehicle, and draw what that costs."""
     design = Design(AXES, None, "latin", 500)
-    options = {"xacro_args": {"sim_slow": 1}}
-    plan = Plan(design, "geometric", "circle", duration=5.0, options=options)
+    options = SweepOptions(duration=5.0, xacro_args={"sim_slow": 1})
+    plan = Plan(design, "geometric", "circle", ["eigen"], ["quadrotor"], options)
     with tempfile.TemporaryDirectory() as folder:
         columns = table(conduct(plan, Path(folder)))
     pictures = draw(plan, columns, sensitivities(plan, columns), "rms_position")

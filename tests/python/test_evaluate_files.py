@@ -17,6 +17,7 @@ import quadcore as qc
 from quadcore.cli import main
 from quadcore.studies.evaluate.evaluate import conduct
 from quadcore.studies.evaluate.plan import Plan
+from quadcore.studies.options import EvaluateOptions
 
 
 def test_everything_is_written_and_reproducible():
@@ -137,7 +138,8 @@ def test_an_interrupt_carries_the_evaluation():
     def progress(done, total):
         raise KeyboardInterrupt
 
-    plan = Plan("pd", "hover", ["eigen"], ["quadrotor"], 3, {}, 0.2, None, None, None, None, {})
+    options = EvaluateOptions(seeds=3, duration=0.2, processes=1)
+    plan = Plan("pd", "hover", ["eigen"], ["quadrotor"], {}, options)
     with pytest.raises(KeyboardInterrupt) as raised:
-        conduct(plan, 60, 1, progress)
+        conduct(plan, progress)
     assert raised.value.evaluation.table[0]["failure"] == ""

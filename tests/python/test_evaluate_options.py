@@ -11,7 +11,7 @@ from evaluations import FLY, rows
 import quadcore as qc
 from quadcore.cli import _parser, main
 from quadcore.cli.options_file import OptionsFile
-from quadcore.support.option_values import several_calls
+from quadcore.support.parse import several_calls
 
 
 @pytest.fixture(autouse=True)
@@ -174,7 +174,10 @@ def test_names_with_commas_and_parameters_are_told_apart():
         ({"parameters": 5}, "parameters is 5; give a mapping of names to values"),
         ({"xacro_args": {5: 5}}, r"xacro_args is \{5: 5\}; give a mapping"),
         ({"ignore": 5}, "ignore is 5; give a list of names"),
-        ({"controller": "pd"}, "there is no option 'controller'; besides those of help"),
+        (
+            {"controller": "pd"},
+            r"no option 'controller' \(did you mean 'controllers'\); besides those",
+        ),
         ({"commands": [[0, 1, 1, 1, 1]]}, "there is no option 'commands'; .* there are world, dt"),
         ({"seeds": "3"}, "seeds is '3'; give a whole number"),
         ({"seed": 0.5}, "seed is 0.5; give a whole number"),

@@ -18,6 +18,7 @@ from quadcore.studies.evaluate.flights import NAN, Outcome
 from quadcore.studies.evaluate.plan import Plan
 from quadcore.studies.evaluate.robustness import ENDS, Searches, margin_text
 from quadcore.studies.evaluate.trial import Trial, lacking
+from quadcore.studies.options import EvaluateOptions
 
 
 def test_margins_are_found(capsys):
@@ -64,7 +65,7 @@ def thrust_of(simulation):
 def test_the_inner_loop_of_an_own_law_believes_in_the_vehicle_as_it_is_described():
     laws_ = {"none": Own(), "its own": Own()}
     laws_["its own"].inner_loop = qc.InnerLoop(spins=[1, -1, 1, -1])
-    plan = Plan(laws_, "hover", ["eigen"], ["quadrotor"], 1, {}, 1.0, *[None] * 4, {})
+    plan = Plan(laws_, "hover", ["eigen"], ["quadrotor"], {}, EvaluateOptions(duration=1.0))
     for row in range(2):
         flight = Trial(row, thrust=2.0).flight(plan)
         told = flight.controller.inner_loop.belief
@@ -88,7 +89,8 @@ def test_the_motors_of_either_kind_say_how_they_lag(motor):
 
 @pytest.mark.parametrize("model", ["quadrotor", "hexarotor", "firefly"])
 def test_the_vehicle_of_a_trial_pushes_resists_and_lags_by_the_factors_asked_for(model):
-    plan = Plan({"own": Own()}, "hover", ["eigen"], [model], 1, {}, 1.0, *[None] * 4, {"dt": 1e-4})
+    options = EvaluateOptions(duration=1.0, dt=1e-4)
+    plan = Plan({"own": Own()}, "hover", ["eigen"], [model], {}, options)
 
     def flown(**factors):
         return Trial(0, **factors).flight(plan).simulation()

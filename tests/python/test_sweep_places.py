@@ -142,14 +142,16 @@ def test_models_travel_as_documents():
     shutil.copy(shipped / "worlds/empty.world", here / "mine.world")
     (here / "gains.yaml").write_text("law: pd\n")
     from quadcore.studies.design import Design
+    from quadcore.studies.options import SweepOptions
     from quadcore.studies.sweep.plan import Plan
 
     plan = Plan(
         Design({"world": [str(here / "mine.world")]}),
         [str(here / "gains.yaml")],
         "hover",
-        models=[str(here / "mine.urdf")],
-        duration=0.1,
+        ["eigen"],
+        [str(here / "mine.urdf")],
+        SweepOptions(duration=0.1),
     )
     spec = plan.spec(0)
     assert isinstance(spec, Flight)

@@ -293,9 +293,9 @@ def test_the_parent_needs_no_more_memory_for_more_rows():
         """
 import resource
 import quadcore as qc
-from quadcore.sweeps.design import Design
-from quadcore.sweeps.plan import Calls
-from quadcore.sweeps.sweep import conduct
+from quadcore.studies.design import Design
+from quadcore.studies.sweep.plan import Calls
+from quadcore.studies.sweep.sweep import conduct
 from pathlib import Path
 
 def most(count, folder):

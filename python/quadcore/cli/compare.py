@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 import argparse
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from .._core import InputError, QuadcoreError
 from ..report.thinning import thinned
+from ..simulation.engines import ENGINE
 from ..simulation.log import Log
 from ..studies.compare.compare import fly
 from ..studies.compare.output import FILES, drawn, listed, log_name, remove_logs, summary, write
 from ..studies.compare.plan import Plan
 from ..studies.compare.result import Comparison
 from ..studies.folder import output_folder
+from ..studies.options import CompareOptions
 from ..studies.table import number_text, shown_in
-from ..support import option_values
+from ..support import parse
 from ..support.files import make_folder
+from ..support.values import SPAWN
 from . import options, terminal
-from .failures import failure
+from .failures import report_failures
 from .kept import kept
+from .options_file import planned
 from .unmeant import warn_of_commands
 
 _ROWS = 40  # on the terminal
@@ -32,17 +35,15 @@ def register(commands: Any) -> None:
     parser = options.subparser(
         commands, "compare", "Fly the same with several models or parameters.", compare
     )
-    options.add_model(parser, nargs="+")
-    options.add_vary(parser, " and engine")
-    options.add_flight(parser)
+    options.add_model(parser, nargs="+", changes=False)
+    options.add_vary(parser, f", engine{options.CONTROLLER_KEYS}")
+    options.add_study(parser, CompareOptions, ENGINE)
     options.add_commands(parser)
     options.add_controller(parser)
-    options.add_scenario(parser)
-    options.add_jobs(parser)
     parser.add_argument(
         "--against",
         metavar="N",
-        type=option_values.integer(1),
+        type=parse.integer(1),
         help="number of the flight that the others are compared with (the first that flies)",
     )
     parser.add_argument(
@@ -58,9 +59,9 @@ def register(commands: Any) -> None:
 
 def compare(arguments: argparse.Namespace) -> None:
     """Print how the models differ, fly them, and print how the flights differ."""
-    plan = _plan(arguments)
-    if arguments.against is not None and arguments.against > plan.count:
-        raise InputError(f"--against {arguments.against}: there are {plan.count} flights")
+    arguments, plan = planned(arguments, _plan)
+    if arguments.against is not None and arguments.against > len(plan):
+        raise InputError(f"--against {arguments.against}: there are {len(plan)} flights")
     with output_folder(arguments.out, FILES):  # after the flights would be too late
         _compare(arguments, plan)
 
@@ -81,52 +82,48 @@ def _compare(arguments: argparse.Namespace, plan: Plan) -> None:
         comparison = fly(
             plan,
             _keeper(arguments, plan),
-            arguments.jobs,
             progress,
             None if arguments.against is None else arguments.against - 1,
         )
     files = put(comparison, not arguments.no_plots)
     if not arguments.quiet:
         _show_flights(plan, comparison, files)
-    _report_failures(plan, comparison)
+    report_failures(
+        comparison.table["failure"].tolist(),
+        comparison.refused,
+        lambda i: f"no. {i + 1} ({plan.label(plan[i])})",
+    )
 
 
 def _plan(arguments: argparse.Namespace) -> Plan:
-    axes = options.varied(arguments)
     if arguments.reference is not None and arguments.reference.isdigit():
         number = arguments.reference
         raise InputError(
             f"--reference {number}: names where to fly; the number of the flight that the others "
             f"are compared with is --against {number}"
         )
-    if len(arguments.model) == 1 and not axes:
-        raise InputError("one model and nothing varied; name another model, or use --vary")
     if arguments.logs and arguments.out is None:
         raise InputError("--logs needs --out")
     if arguments.wrenches and arguments.out is None:
         raise InputError("--wrenches needs --out, where the logs are")
-    model = options.model_arguments(arguments)
-    return Plan(
-        model.pop("model"),
-        axes,
+    plan = Plan(
+        arguments.model,
+        options.varied(arguments),
+        arguments.engine,
+        options.guidance_of(arguments),
+        options.read(arguments, CompareOptions),
         arguments.commands,
-        arguments.duration,
-        arguments.log_every,
-        {
-            **model,
-            **options.flight_arguments(arguments),
-            "spawn": arguments.spawn,
-            "scenario": arguments.scenario,
-            "wrenches": arguments.wrenches,
-        },
-        options.guidance_arguments(arguments),
+        arguments.wrenches,
     )
+    if len(plan) == 1 and not plan.axes:
+        raise InputError("one model and nothing varied; name another model, or use --vary")
+    return plan
 
 
 def _warn_of_commands(plan: Plan) -> None:
     if plan.guidance.is_given:
         return
-    first = plan.flight(next(iter(plan)))
+    first = plan.flight(plan[0])
     try:
         simulation = first.simulation()
     except QuadcoreError:  # a row of the table, with its reason
@@ -135,7 +132,7 @@ def _warn_of_commands(plan: Plan) -> None:
 
 
 def _has_logs(arguments: argparse.Namespace, plan: Plan) -> bool:
-    return arguments.logs or plan.count <= _FEW
+    return arguments.logs or len(plan) <= _FEW
 
 
 def _keeper(arguments: argparse.Namespace, plan: Plan) -> Any:
@@ -143,7 +140,7 @@ def _keeper(arguments: argparse.Namespace, plan: Plan) -> Any:
     out = arguments.out
     if out is None:
         return None
-    to_draw = set() if arguments.no_plots else set(drawn(plan.count))
+    to_draw = set() if arguments.no_plots else set(drawn(len(plan)))
     has_logs = _has_logs(arguments, plan)
     remove_logs(out)
     if has_logs:
@@ -151,7 +148,7 @@ def _keeper(arguments: argparse.Namespace, plan: Plan) -> Any:
 
     def keep(row: int, log: Log) -> Log | None:
         if has_logs:
-            log.to_csv(out / log_name(row, plan.count))
+            log.to_csv(out / log_name(row, len(plan)))
         return thinned(log) if row in to_draw else None
 
     return keep
@@ -160,24 +157,30 @@ def _keeper(arguments: argparse.Namespace, plan: Plan) -> Any:
 def _flight(arguments: argparse.Namespace, plan: Plan) -> dict[str, str]:
     """Describe what all flights share."""
     guided = plan.guidance.is_given
-    given = options.flight_arguments(arguments)
-    begins = ", ".join(f"{part:g}" for part in given.pop("spawn"))
-    if guided and arguments.spawn is None and arguments.reference is not None:
-        begins = "on the reference"
-    shared = {
+    shared = plan.options
+    begins = "on the reference"
+    if not plan.guidance.on_reference:
+        begins = ", ".join(f"{part:g}" for part in shared.spawn or SPAWN)
+    told = {
         "commands": None if guided else arguments.commands or "none",
-        **options.guidance_arguments(arguments),
-        "scenario": arguments.scenario,
-        "duration": f"{arguments.duration:g} s",
-        **given,
+        "controller": arguments.controller,
+        "reference": arguments.reference,
+        "controller_rate": shared.controller_rate,
+        "delay": shared.delay,
+        "scenario": shared.scenario,
+        "duration": f"{shared.duration:g} s",
+        "engine": arguments.engine,
+        "world": shared.world,
+        "dt": shared.dt,
+        "seed": shared.seed,
+        "seeds": shared.seeds if shared.seeds > 1 else None,
         "spawn": begins,
     }
-    varied = [axis.name for axis in plan.axes]
     return {
         **{
             name: str(value)
-            for name, value in shared.items()
-            if value not in (None, 0) and name not in varied
+            for name, value in told.items()
+            if value not in (None, 0) and name not in plan.design.names
         },
         **options.changes_told(arguments),
     }
@@ -186,7 +189,7 @@ def _flight(arguments: argparse.Namespace, plan: Plan) -> dict[str, str]:
 def _show_models(plan: Plan) -> None:
     console = terminal.console()
     for model, found in plan.differences().items():
-        console.print(f"{model} differs from {plan.names[0]} in")
+        console.print(f"{model} differs from {plan.models[0]} in")
         table = terminal.table("  what", "from", "to", "at", "and at")
         for d in found:
             table.add_row(f"  {d.what}", d.before, d.after, d.before_at or "-", d.after_at or "-")
@@ -210,7 +213,7 @@ def _show_flights(plan: Plan, comparison: Comparison, files: list[Path]) -> None
     table, failures = terminal.table("no.", "variant", *headings), []
     for number, (row, variant) in enumerate(zip(comparison.table, plan), start=1):
         if number > _ROWS:
-            table.add_row("...", f"{plan.count - _ROWS} more")
+            table.add_row("...", f"{len(plan) - _ROWS} more")
             break
         cells = [
             " / ".join(number_text(row[f"{k}_{state}"] * factor) for k in ("final", "largest"))
@@ -226,12 +229,3 @@ def _show_flights(plan: Plan, comparison: Comparison, files: list[Path]) -> None
     console.print(table, "", *failures, summary(comparison), sep="\n")
     for file in files:
         console.print(f"written {file}")
-
-
-def _report_failures(plan: Plan, comparison: Comparison) -> None:
-    failed = [row for row, failure in enumerate(comparison.table["failure"]) if failure]
-    if failed:
-        first = failed[0]
-        label = plan.label(next(islice(plan, first, None)))
-        told = f"no. {first + 1} ({label}): {comparison.table['failure'][first]}"
-        raise failure(len(failed), plan.count, comparison.refused, told)

@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._core import InputError
-from ..simulation.engines import STUDIED, list_engines
+from ..simulation.engines import STUDIED
 from ..studies.folder import output_folder
-from ..support import option_values
-from . import combinations, options, terminal
-from .failures import failure
+from ..studies.options import EvaluateOptions
+from . import options, terminal
+from .failures import report_failures
 from .kept import kept
-from .options_file import OptionsFile
+from .options_file import planned
 
 if TYPE_CHECKING:
     from ..studies.evaluate.evaluate import Evaluation
@@ -27,46 +27,23 @@ def register(commands: Any) -> None:
     parser = options.subparser(
         commands, "evaluate", "Fly controllers along references, and measure them.", evaluate
     )
-    combinations.add(parser)
-    options.add_vary(parser, " and controller.KEY, its rate, delay or a parameter of the laws")
-    options.add_flight(
-        parser,
-        [STUDIED],
-        log_every=None,
-        flown=list_engines(),
-        seconds=30.0,
-        begins="on the reference",
-    )
-    options.add_timing(parser)
+    options.add_combined(parser)
+    options.add_vary(parser, options.CONTROLLER_KEYS)
+    options.add_study(parser, EvaluateOptions, [STUDIED])
     parser.add_argument(
         "--margins", action="store_true", help="search for gain and delay margins, too"
     )
     parser.add_argument(
-        "--time-limit",
-        metavar="S",
-        type=option_values.positive,
-        default=300.0,
-        help="of the wall clock for one flight, s (300)",
-    )
-    options.add_jobs(parser)
-    parser.add_argument(
         "--out", metavar="DIR", type=Path, help="write tables, pictures and a page here"
     )
     parser.add_argument("--no-plots", action="store_true", help="no pictures in --out")
-    parser.set_defaults(parser=parser)
 
 
 def evaluate(arguments: argparse.Namespace) -> None:
     """Fly everything, print how well, and write it."""
     from ..studies.evaluate.output import FILES
 
-    if arguments.file is None:
-        plan = _plan(arguments)
-    else:
-        file = OptionsFile(Path(arguments.file), arguments.parser)
-        arguments = file.beneath(arguments)
-        with file.blamed():
-            plan = _plan(arguments)
+    arguments, plan = planned(arguments, _plan)
     with output_folder(arguments.out, FILES):  # after the flights would be too late
         _evaluate(arguments, plan)
 
@@ -81,13 +58,15 @@ def _evaluate(arguments: argparse.Namespace, plan: Plan) -> None:
         return write(flown, plan, out, plots) if out is not None else []
 
     with kept("evaluation", out, put), terminal.progress(arguments.quiet) as progress:
-        evaluation = conduct(
-            plan, arguments.time_limit, arguments.jobs, progress, arguments.margins
-        )
+        evaluation = conduct(plan, progress, arguments.margins)
     files = put(evaluation, not arguments.no_plots)
     if not arguments.quiet:
         _show(evaluation, files)
-    _report_failures(evaluation)
+    report_failures(
+        [row["failure"] for row in evaluation.table],
+        sum(outcome.refused for outcome in evaluation.outcomes),
+        lambda i: _name(evaluation.table[i]),
+    )
 
 
 def _plan(arguments: argparse.Namespace) -> Plan:
@@ -96,32 +75,14 @@ def _plan(arguments: argparse.Namespace) -> Plan:
     for name in ("controller", "reference"):
         if getattr(arguments, name) is None:
             raise InputError(f"nothing to fly: name --{name}")
-    shared = {**options.model_arguments(arguments), **options.flight_arguments(arguments)}
-    for name in ("model", "engine", "spawn"):  # of which there are several, or none
-        shared.pop(name)
     return Plan(
         arguments.controller,
         arguments.reference,
         arguments.engine,
         arguments.model,
-        arguments.seeds,
-        _varied(arguments),
-        arguments.duration,
-        arguments.log_every,
-        arguments.spawn,
-        arguments.controller_rate,
-        arguments.delay,
-        shared,
+        options.varied(arguments),
+        options.read(arguments, EvaluateOptions),
     )
-
-
-def _varied(arguments: argparse.Namespace) -> dict[str, Any]:
-    varied = options.varied(arguments)
-    if arguments.scenario is None:
-        return varied
-    if "scenario" in varied:
-        raise InputError("vary scenario: it is given by --scenario, too; keep one")
-    return {"scenario": arguments.scenario, **varied}
 
 
 def _show(evaluation: Evaluation, files: list[Path]) -> None:
@@ -161,13 +122,5 @@ def _margins(evaluation: Evaluation) -> Any:
     return table
 
 
-def _report_failures(evaluation: Evaluation) -> None:
-    failed = [row for row in evaluation.table if row["failure"]]
-    if failed:
-        first = failed[0]
-        refused = sum(outcome.refused for outcome in evaluation.outcomes)
-        told = (
-            f"{first['controller']} on {first['reference']} in {first['engine']}, seed "
-            f"{first['seed']}: {first['failure']}"
-        )
-        raise failure(len(failed), len(evaluation.table), refused, told)
+def _name(row: dict[str, Any]) -> str:
+    return f"{row['controller']} on {row['reference']} in {row['engine']}, seed {row['seed']}"

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import math
 from pathlib import Path
 from typing import Any
 
 from .._core import InputError
-from ..simulation.flight_plan import FlightPlan
 from . import options
 from .unmeant import refuse_log_every
 
@@ -19,8 +17,8 @@ def register(commands: Any) -> None:
         commands, "export-fmu", "Write a vehicle as an FMU for co-simulation (FMI 2.0).", export
     )
     options.add_model(parser)
-    options.add_flight(parser, log_every=None, seconds=None)
-    options.add_scenario(parser)
+    options.add_flight(parser, log_every=None, has_end=False)
+    options.add(parser, "scenario")
     parser.add_argument(
         "-o", "--output", metavar="FILE.fmu", type=Path, required=True, help="file to write"
     )
@@ -33,12 +31,7 @@ def export(arguments: argparse.Namespace) -> None:
     if arguments.output.suffix.lower() != ".fmu":
         raise InputError(f"-o {arguments.output}: name a file that ends in .fmu")
     refuse_log_every(arguments, "an FMU")
-    plan = FlightPlan.of(
-        **options.model_arguments(arguments),
-        **options.flight_arguments(arguments),
-        scenario=arguments.scenario,
-        duration=math.inf,
-    )
+    plan = options.flight_plan(arguments)
     write_fmu(arguments.output, plan)
     if not arguments.quiet:
         print(f"written {arguments.output}")

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
-from .._core import FlightError, InputError, QuadcoreError
+from typing import Callable, Sequence
+
+from .._core import FlightError, InputError
 
 
-def failure(failed: int, count: int, refused: int, first: str) -> QuadcoreError:
-    """Make the error to end with: bad input if that is why none of the flights began.
+def report_failures(failures: Sequence[str], refused: int, name: Callable[[int], str]) -> None:
+    """Raise the error to end with if flights failed: bad input if none of them began.
 
     Parameters
     ----------
-    failed, count
-        How many, of how many.
+    failures
+        Reason of each flight, "" if it flew.
     refused
-        How many of those were bad input.
-    first
-        Which failed first, and why.
+        How many of them were bad input.
+    name
+        Names a flight, by its position.
     """
+    failed = [i for i, failure in enumerate(failures) if failure]
+    if not failed:
+        return
+    count, first = len(failures), f"{name(failed[0])}: {failures[failed[0]]}"
     if refused == count:
-        return InputError(f"{count} of {count} flights were refused; the first, {first}")
-    return FlightError(f"{failed} of {count} flights failed; the first, {first}")
+        raise InputError(f"{count} of {count} flights were refused; the first, {first}")
+    raise FlightError(f"{len(failed)} of {count} flights failed; the first, {first}")

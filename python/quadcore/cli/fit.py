@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from .._core import InputError, engines, parse_number
 from ..simulation.engines import STUDIED
 from ..studies.fit.record import CHANNELS
-from ..support import option_values
+from ..support import parse
 from ..support.files import atomic_write, check_writable, text_bytes
 from . import options, terminal
 from .kept import kept
@@ -31,7 +31,7 @@ def register(commands: Any) -> None:
     parser.add_argument(
         "--free",
         metavar="NAME,NAME",
-        type=option_values.names,
+        type=parse.names,
         required=True,
         help="what to find: PLUGIN.TAG, LINK.mass, LINK.ixx ... LINK.izz, xacro.ARG; --set and "
         "--xacro say from where",
@@ -39,7 +39,7 @@ def register(commands: Any) -> None:
     parser.add_argument(
         "--bound",
         metavar="NAME=LOW:HIGH",
-        type=option_values.assignment(r"([^=]+)=(.+)", "NAME=LOW:HIGH"),
+        type=parse.assignment(r"([^=]+)=(.+)", "NAME=LOW:HIGH"),
         action="append",
         default=[],
         help="between which a free number must stay (what is not negative stays so); repeatable",
@@ -53,33 +53,30 @@ def register(commands: Any) -> None:
     parser.add_argument(
         "--channels",
         metavar="A,B",
-        type=option_values.several(list(CHANNELS)),
+        type=parse.several(list(CHANNELS)),
         help=f"what is compared, of {', '.join(CHANNELS)} (all but velocity)",
     )
     parser.add_argument(
         "--horizon",
         metavar="S",
-        type=option_values.positive,
+        type=parse.positive,
         default=1.0,
         help="length of a piece, s (1)",
     )
     parser.add_argument(
         "--shift",
         metavar="S",
-        type=option_values.not_negative,
+        type=parse.not_negative,
         default=0.0,
         help="find by how much, at most, what was measured lags behind the commands, s (0)",
     )
     names = [name for name, _ in engines()]
     parser.add_argument("--engine", choices=names, default=STUDIED, help=f"what flies ({STUDIED})")
-    options.add_world(parser)
-    parser.add_argument(
-        "--dt", metavar="S", type=option_values.positive, help="step in s (the world's)"
-    )
+    options.add(parser, "world", "dt")
     parser.add_argument(
         "-o", "--out", metavar="FITTED.urdf", type=Path, required=True, help="the file to write"
     )
-    parser.add_argument("--quiet", action="store_true", help="print warnings and errors only")
+    options.add_quiet(parser)
 
 
 def fit(arguments: argparse.Namespace) -> None:

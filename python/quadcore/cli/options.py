@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import argparse
+import math
 import re
-from typing import Any, Callable, Sequence
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any, Callable, Optional, Sequence, Type, TypeVar
 
 from .._core import InputError, engines
 from ..control import laws, references
 from ..model import resources
-from ..simulation.engines import ENGINE
+from ..simulation.engines import ENGINE, list_engines
 from ..simulation.flight_plan import FlightPlan
-from ..simulation.scenarios import NONE
 from ..studies.axes import parse_axis
 from ..studies.guidance import Guidance
-from ..support import option_values
-from ..support.values import SPAWN
+from ..studies.options import SPAWNED, About, Names, Options, changed, described, explained
+from ..support import parse
+from ..support.values import SPAWN, Number
 
-SPAWNED = "{:g},{:g},{:g}".format(*SPAWN)
-"""Where a flight begins unless told, as --spawn takes it."""
+SHIPPED = "URDF or xacro file, or a shipped model: " + ", ".join(resources.shipped("urdf"))
+Kind = TypeVar("Kind", bound=Options)
 
 
 def subparser(commands: Any, name: str, summary: str, action: Callable[..., None]) -> Any:
@@ -30,48 +33,90 @@ def subparser(commands: Any, name: str, summary: str, action: Callable[..., None
     return parser
 
 
-def add_model(
-    parser: argparse.ArgumentParser, nargs: str | None = None, default: str | None = None
+@dataclass(frozen=True)
+class FlightOptions(Options):
+    """Options of a single flight."""
+
+    scenario: Optional[Names] = field(
+        default=None, metadata=changed("scenario", metavar="FILE", read=str)
+    )
+    seed: int = field(default=0, metadata=changed("seed", meaning="seed of all noise"))
+    log_every: Optional[int] = field(default=1, metadata=changed("log_every", without=""))
+    spawn: Optional[Sequence[Number]] = field(
+        default=None, metadata=changed("spawn", without=SPAWNED)
+    )
+
+
+CHANGES = ("parameters", "xacro_args", "ignore")
+"""Options that change a model."""
+
+CONTROLLER_KEYS = " and controller.KEY, its rate, delay or a parameter"
+
+
+def add(
+    parser: argparse.ArgumentParser,
+    *names: str,
+    kind: Type[Options] = FlightOptions,
+    **defaults: Any,
 ) -> None:
-    """Add MODEL and the options that change it; `nargs` and `default` as argparse has them."""
-    shipped = "URDF or xacro file, or a shipped model: " + ", ".join(resources.shipped("urdf"))
+    """Add options by their names in Python, or all; some with other defaults."""
+    for each in fields(kind):
+        about: About = each.metadata["about"]
+        if not about.flag or (names and each.name not in names):
+            continue
+        default = defaults.get(each.name, each.default)
+        more = {"action": "append", "default": []} if about.repeats else {"default": default}
+        parser.add_argument(
+            f"--{about.flag}",
+            metavar=about.metavar,
+            type=about.read,
+            help=explained(about, default) + ("; repeatable" if about.repeats else ""),
+            **more,  # type: ignore[arg-type]
+        )
+
+
+def read(arguments: argparse.Namespace, kind: Type[Kind]) -> Kind:
+    """Make the options that `add` asked for."""
+    given: dict[str, Any] = {}
+    for name, about in described(kind).items():
+        value = getattr(arguments, about.flag.replace("-", "_"), None)
+        if about.flag and value is not None:
+            is_mapping = about.repeats and about.read is not str
+            given[name] = unique(f"--{about.flag}", value) if is_mapping else value
+    return kind(**given)
+
+
+def add_model(
+    parser: argparse.ArgumentParser,
+    nargs: str | None = None,
+    default: str | None = None,
+    changes: bool = True,
+) -> None:
+    """Add MODEL, perhaps with the options that change it; the others as argparse has them."""
     parser.add_argument(
         "model",
         metavar="MODEL",
         nargs=nargs,
         default=default,
-        help=shipped if default is None else f"{shipped} ({default})",
+        help=SHIPPED if default is None else f"{SHIPPED} ({default})",
     )
-    add_changes(parser)
+    if changes:
+        add(parser, *CHANGES)
 
 
-def add_changes(parser: argparse.ArgumentParser) -> None:
-    """Add the options that change a model."""
-    parser.add_argument(
-        "--set",
-        metavar="PLUGIN.TAG=VALUE",
-        type=option_values.assignment(r"([^=]+\.[^.=]+)=(.+)", "PLUGIN.TAG=VALUE"),
-        action="append",
-        default=[],
-        help="give a plugin's tag another value, or LINK.mass, LINK.ixx ... LINK.izz, xacro.ARG; "
-        "repeatable",
-    )
-    parser.add_argument(
-        "--xacro",
-        metavar="ARG:=VALUE",
-        type=option_values.assignment(r"([^:=]+):=(.*)", "ARG:=VALUE"),
-        action="append",
-        default=[],
-        help="value of an argument of the xacro file; repeatable",
-    )
-    parser.add_argument(
-        "--ignore",
-        metavar="NAME",
-        action="append",
-        default=[],
-        help="leave out a foreign plugin (its name or file name), element, or model of the world; "
-        "repeatable",
-    )
+def add_engine(
+    parser: argparse.ArgumentParser,
+    default: str | list[str],
+    flown: Sequence[tuple[str, str]] = tuple(engines()),
+) -> None:
+    """Add the option that names the engine, or several where the default is a list."""
+    names = [name for name, _ in flown]
+    summaries = "; ".join(f"{name}: {summary}" for name, summary in flown)
+    kind: dict[str, Any] = {"choices": names}
+    if isinstance(default, list):
+        kind = {"metavar": "LIST", "type": parse.several(names)}
+    written = ",".join(default) if isinstance(default, list) else default
+    parser.add_argument("--engine", default=default, help=f"{summaries} ({written})", **kind)
 
 
 def add_flight(
@@ -79,69 +124,62 @@ def add_flight(
     engine: str | list[str] = ENGINE,
     log_every: int | None = 1,
     flown: Sequence[tuple[str, str]] = tuple(engines()),
-    seconds: float | None = 10.0,
-    begins: str = SPAWNED,
+    has_end: bool = True,
 ) -> None:
-    """Add the options of everything that flies; some differ between commands.
+    """Add the options of everything that flies once; some differ between commands."""
+    add_engine(parser, engine, flown)
+    timed = ("duration",) if has_end else ()
+    add(parser, "world", "dt", *timed, "seed", "spawn", "log_every", log_every=log_every)
+    add_quiet(parser)
 
-    `engine` is the default; where it is a list, several may be given. Without `seconds` there is no
-    --duration. `begins` says where flights begin without --spawn.
-    """
-    names = [name for name, _ in flown]
-    summaries = "; ".join(f"{name}: {summary}" for name, summary in flown)
-    if isinstance(engine, list):
-        parser.add_argument(
-            "--engine",
-            metavar="LIST",
-            type=option_values.several(names),
-            default=engine,
-            help=f"{summaries} ({','.join(engine)})",
-        )
-    else:
-        parser.add_argument(
-            "--engine", choices=names, default=engine, help=f"{summaries} ({engine})"
-        )
-    add_world(parser)
+
+def add_study(
+    parser: argparse.ArgumentParser, kind: Type[Options], engine: str | list[str]
+) -> None:
+    """Add the options that all studies share."""
+    add(parser, *CHANGES, kind=kind)
+    add_engine(parser, engine, list_engines())
+    add(parser, *(name for name in described(kind) if name not in CHANGES), kind=kind)
     parser.add_argument(
-        "--dt", metavar="S", type=option_values.positive, help="step in s (the world's)"
+        "--options",
+        metavar="FILE.yaml",
+        type=Path,
+        help="file of options by name; those on the command line win",
     )
-    if seconds is not None:
-        parser.add_argument(
-            "--duration",
-            metavar="S",
-            type=option_values.positive,
-            default=seconds,
-            help=f"time to fly in s ({seconds:g})",
-        )
+    add_quiet(parser)
+    parser.set_defaults(parser=parser)
+
+
+def add_combined(parser: argparse.ArgumentParser) -> None:
+    """Add what `evaluate` and `sweep` combine: controllers, references, models."""
     parser.add_argument(
-        "--seed",
-        metavar="N",
-        type=option_values.integer(0, 2**64 - 1),
-        default=0,
-        help="seed of all noise (0)",
+        "file", metavar="FILE.yaml", nargs="?", type=Path, help="the same as --options FILE.yaml"
     )
     parser.add_argument(
-        "--spawn",
-        metavar="X,Y,Z[,ROLL,PITCH,YAW]",
-        type=option_values.pose,
-        help=f"start pose of the frame in m and rad ({begins})",
+        "--controller",
+        metavar="A,B",
+        type=parse.several_calls,
+        help=f"{', '.join(laws.NAMES)}, perhaps with parameters, LAW:KEY=VALUE,...; files of "
+        "gains; MODULE:CLASS",
     )
     parser.add_argument(
-        "--log-every",
-        metavar="N",
-        type=option_values.integer(1),
-        default=log_every,
-        help=f"log each N-th step ({log_every or 'each hundredth of a second'})",
+        "--reference",
+        metavar="A,B",
+        type=parse.several_calls,
+        help=f"{', '.join(references.NAMES)}, NAME:KEY=VALUE,..., or files",
     )
+    parser.add_argument(
+        "--model",
+        metavar="A,B",
+        type=parse.names,
+        default=["quadrotor"],
+        help="vehicles, files or shipped (quadrotor)",
+    )
+
+
+def add_quiet(parser: argparse.ArgumentParser) -> None:
+    """Add the option that leaves only warnings and errors on the terminal."""
     parser.add_argument("--quiet", action="store_true", help="print warnings and errors only")
-
-
-def add_world(parser: argparse.ArgumentParser) -> None:
-    """Add the option that names a world."""
-    known = ", ".join(resources.shipped("worlds"))
-    parser.add_argument(
-        "--world", metavar="FILE", help=f"world file, or a shipped world: {known} (empty)"
-    )
 
 
 def add_commands(parser: argparse.ArgumentParser, default: str = "") -> None:
@@ -158,7 +196,7 @@ def add_vary(parser: argparse.ArgumentParser, more: str = "") -> None:
     parser.add_argument(
         "--vary",
         metavar="PLUGIN.TAG=VALUES",
-        type=option_values.assignment(r"([^=]+)=(.*)", "PLUGIN.TAG=VALUES"),
+        type=parse.assignment(r"([^=]+)=(.*)", "PLUGIN.TAG=VALUES"),
         action="append",
         default=[],
         help="a,b,c or FIRST:LAST:COUNT or log:FIRST:LAST:COUNT; PLUGIN.TAG,PLUGIN.TAG=... gives "
@@ -181,33 +219,6 @@ def add_controller(parser: argparse.ArgumentParser) -> None:
         help=f"where to: one of {', '.join(references.NAMES)}, or a file with columns t,x,y,z "
         "(hover at the spawn); without --spawn a flight begins in its full state",
     )
-    add_timing(parser)
-
-
-def add_timing(parser: argparse.ArgumentParser) -> None:
-    """Add the options that say when a controller is asked, and heard."""
-    parser.add_argument(
-        "--controller-rate",
-        metavar="HZ",
-        type=option_values.positive,
-        help="calls per second (the law's, 500)",
-    )
-    parser.add_argument(
-        "--delay",
-        metavar="S",
-        type=option_values.not_negative,
-        help="from a call to the motors, s (the law's, 0)",
-    )
-
-
-def add_scenario(parser: argparse.ArgumentParser) -> None:
-    """Add the option that says what befalls the vehicle."""
-    parser.add_argument(
-        "--scenario",
-        metavar="FILE",
-        help="what befalls the vehicle: a file, or a shipped scenario: "
-        + f"{', '.join([NONE, *resources.shipped('config/scenarios')])} ({NONE})",
-    )
 
 
 def add_wrenches(parser: argparse.ArgumentParser) -> None:
@@ -222,16 +233,9 @@ def add_log_topics(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--log-topics",
         metavar="NAME,NAME",
-        type=option_values.names,
+        type=parse.names,
         default=[],
         help="topics of plugins to log, too: columns NAME.FIELD",
-    )
-
-
-def add_jobs(parser: argparse.ArgumentParser) -> None:
-    """Add the option that limits the processes."""
-    parser.add_argument(
-        "--jobs", metavar="N", type=option_values.integer(1), help="processes (one per core)"
     )
 
 
@@ -245,31 +249,24 @@ def model_arguments(arguments: argparse.Namespace) -> dict[str, Any]:
     }
 
 
-def flight_arguments(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Arguments of `Simulation` that `add_flight` asked for."""
-    given = {name: getattr(arguments, name) for name in ("engine", "world", "dt", "seed", "spawn")}
-    return {**given, "spawn": arguments.spawn or SPAWN}
-
-
 def flight_plan(arguments: argparse.Namespace) -> FlightPlan:
-    """Describe the flight that the options asked for."""
+    """Describe the flight that the options asked for; without --duration it has no end."""
+    given = vars(arguments)
     plan = FlightPlan.of(
         **model_arguments(arguments),
-        **flight_arguments(arguments),
-        duration=arguments.duration,
-        commands=arguments.commands,
-        scenario=arguments.scenario,
-        log_every=arguments.log_every,
-        topics=tuple(arguments.log_topics),
+        **{name: given[name] for name in ("engine", "world", "dt", "seed", "scenario")},
+        spawn=arguments.spawn or SPAWN,
+        duration=given.get("duration", math.inf),
+        commands=given.get("commands"),
+        log_every=arguments.log_every or 1,
+        topics=tuple(given.get("log_topics", ())),
     )
-    guidance = Guidance(
-        spawn=arguments.spawn, vehicles=[plan.model.name], **guidance_arguments(arguments)
-    )
-    return guidance.onto(plan)
+    guidance = guidance_of(arguments) if "controller" in given else Guidance()
+    return guidance.guide(plan) if guidance.is_given else plan
 
 
-def guidance_arguments(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Arguments of `Guidance` that `add_controller` asked for."""
+def guidance_of(arguments: argparse.Namespace) -> Guidance:
+    """Make the guidance that `add_controller` asked for."""
     names = ("controller", "reference", "controller_rate", "delay")
     given = {name: getattr(arguments, name) for name in names}
     if arguments.controller is None:
@@ -278,7 +275,7 @@ def guidance_arguments(arguments: argparse.Namespace) -> dict[str, Any]:
                 raise InputError(f"--{name.replace('_', '-')} needs a --controller; name one")
     elif arguments.commands is not None:
         raise InputError("a flight takes --commands or a --controller; give one of them")
-    return given
+    return Guidance.single(**given, spawn=arguments.spawn)
 
 
 def varied(arguments: argparse.Namespace) -> dict[str, Any]:

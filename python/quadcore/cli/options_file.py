@@ -6,7 +6,7 @@ import argparse
 import re
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Iterator
+from typing import Callable, Iterator, TypeVar
 
 import yaml
 
@@ -18,9 +18,24 @@ _SIGNS = {"set": "=", "vary": "=", "xacro": ":="}
 
 _PAIRS = "options as KEY: VALUE"
 
+Plan = TypeVar("Plan")
+
+
+def planned(
+    arguments: argparse.Namespace, plan: Callable[[argparse.Namespace], Plan]
+) -> tuple[argparse.Namespace, Plan]:
+    """Make a plan of arguments, with those of a file of options beneath them if they name one."""
+    path = getattr(arguments, "file", None) or arguments.options
+    if path is None:
+        return arguments, plan(arguments)
+    file = OptionsFile(path, arguments.parser)
+    arguments = file.beneath(arguments)
+    with file.blamed():
+        return arguments, plan(arguments)
+
 
 class OptionsFile:
-    """What a file says.
+    """The options in a file.
 
     Parameters
     ----------
@@ -43,12 +58,12 @@ class OptionsFile:
         for key, node in pairs(path, root(path), _PAIRS):
             name = key.value
             action = parser._option_string_actions.get(f"--{name}")
-            if action is None or name == "help":
+            if action is None or name in ("help", "options"):
                 raise InputError(
                     f"{path}:{line_of(key)}: there is no option '{name}'; see {parser.prog} -h"
                 )
-            for word, line in self._words(name, action, node):
-                self._take(action, word, line)
+            for text, line in self._texts(name, action, node):
+                self._take(action, text, line)
 
     def beneath(self, arguments: argparse.Namespace) -> argparse.Namespace:
         """Put the file's options beneath those of the command line, which win.
@@ -81,32 +96,33 @@ class OptionsFile:
             line = self._lines[max(named, key=len)]
             raise InputError(f"{self._path}:{line}: {text}") from error
 
-    def _take(self, action: argparse.Action, word: str, line: int) -> None:
+    def _take(self, action: argparse.Action, text: str, line: int) -> None:
         try:
-            read = getattr(self._parser.parse_args([word]), action.dest)
-        except InputError as error:
-            raise InputError(f"{self._path}:{line}: {error}") from None
+            read = True if action.nargs == 0 else self._parser._get_values(action, [text])
+        except argparse.ArgumentError as error:
+            where = f"{self._path}:{line}"
+            raise InputError(f"{where}: {error}; see {self._parser.prog} --help") from None
         before = getattr(self._read, action.dest, [])
-        setattr(self._read, action.dest, [*before, *read] if _repeats(action) else read)
+        setattr(self._read, action.dest, [*before, read] if _repeats(action) else read)
 
-    def _words(
+    def _texts(
         self, name: str, action: argparse.Action, node: yaml.Node
     ) -> Iterator[tuple[str, int]]:
-        """Write an option as a command line does, with the line that it stands on."""
+        """Write each value of an option as a command line does, with the line that it stands on."""
         if action.nargs == 0:
             if self._text(name, node) not in ("true", "false"):
                 raise InputError(f"{self._path}:{line_of(node)}: {name}: write true or false")
             if self._text(name, node) == "true":
-                yield f"--{name}", line_of(node)
+                yield "", line_of(node)
         elif name in _SIGNS and isinstance(node, yaml.MappingNode):
             for key, value in pairs(self._path, node, _PAIRS):
                 self._lines[key.value] = line_of(key)
-                yield f"--{name}={key.value}{_SIGNS[name]}{self._list(name, value)}", line_of(key)
+                yield f"{key.value}{_SIGNS[name]}{self._list(name, value)}", line_of(key)
         elif _repeats(action):
             for item in node.value if isinstance(node, yaml.SequenceNode) else [node]:
-                yield f"--{name}={self._text(name, item)}", line_of(item)
+                yield self._text(name, item), line_of(item)
         else:
-            yield f"--{name}={self._list(name, node)}", line_of(node)
+            yield self._list(name, node), line_of(node)
 
     def _list(self, name: str, node: yaml.Node) -> str:
         if isinstance(node, yaml.SequenceNode):

@@ -9,7 +9,7 @@ from typing import Any, List, Sequence, Tuple
 from .._core import InputError
 from ..model.description import read_model
 from ..simulation.log import Log
-from ..support import option_values
+from ..support import parse
 from ..support.files import atomic_write, check_writable, text_bytes
 from . import options, terminal
 
@@ -35,7 +35,7 @@ def add_names(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--names",
         metavar="NAME,NAME",
-        type=option_values.names,
+        type=parse.names,
         help="what the flights are called (what their paths differ by)",
     )
 

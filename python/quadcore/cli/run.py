@@ -34,7 +34,7 @@ def register(commands: Any) -> None:
     options.add_flight(parser, flown=list_engines())
     options.add_commands(parser)
     options.add_controller(parser)
-    options.add_scenario(parser)
+    options.add(parser, "controller_rate", "delay", "scenario")
     parser.add_argument(
         "--out", metavar="DIR", type=Path, help="write log.csv and plots here; made if missing"
     )

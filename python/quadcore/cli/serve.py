@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
 import os
 from pathlib import Path
 from typing import Any, Sequence
@@ -12,9 +11,8 @@ from ..formats.rows import LogFile
 from ..serve import Server
 from ..serve.server import TIMEOUT
 from ..simulation.flight import columns_of
-from ..simulation.flight_plan import FlightPlan
 from ..simulation.log import check_log_path, log_file
-from ..support import option_values
+from ..support import parse
 from . import options, terminal
 
 
@@ -24,13 +22,13 @@ def register(commands: Any) -> None:
         commands, "serve", "Let a program drive a flight over a local socket, in lockstep.", serve
     )
     options.add_model(parser)
-    options.add_flight(parser, seconds=None)
-    options.add_scenario(parser)
+    options.add_flight(parser, has_end=False)
+    options.add(parser, "scenario")
     where = parser.add_mutually_exclusive_group()
     where.add_argument(
         "--port",
         metavar="N",
-        type=option_values.integer(0, 65535),
+        type=parse.integer(0, 65535),
         default=0,
         help="port of 127.0.0.1 (any that is free)",
     )
@@ -45,7 +43,7 @@ def register(commands: Any) -> None:
     parser.add_argument(
         "--timeout",
         metavar="S",
-        type=option_values.positive,
+        type=parse.positive,
         default=TIMEOUT,
         help=f"drop a client that is silent for S seconds before its first request, within a "
         f"message, or while another one waits ({TIMEOUT:g})",
@@ -54,12 +52,7 @@ def register(commands: Any) -> None:
 
 def serve(arguments: argparse.Namespace) -> None:
     """Serve clients until a signal comes."""
-    plan = FlightPlan.of(
-        **options.model_arguments(arguments),
-        **options.flight_arguments(arguments),
-        scenario=arguments.scenario,
-        duration=math.inf,
-    )
+    plan = options.flight_plan(arguments)
     simulation = plan.simulation()
     address = arguments.port if arguments.socket is None else arguments.socket
     topics = arguments.log_topics

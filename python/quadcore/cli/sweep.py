@@ -6,15 +6,16 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..simulation.engines import STUDIED, list_engines
+from ..simulation.engines import STUDIED
 from ..studies.distributions import DESIGNS, forms
 from ..studies.evaluate import measures as of_guided
 from ..studies.folder import output_folder
+from ..studies.options import SweepOptions
 from ..studies.sweep import motion
-from ..support import option_values
-from . import combinations, options, terminal
-from .failures import failure
-from .options_file import OptionsFile
+from ..support import parse
+from . import options, terminal
+from .failures import report_failures
+from .options_file import planned
 
 if TYPE_CHECKING:
     from ..studies.sweep.plan import Plan
@@ -29,20 +30,16 @@ def register(commands: Any) -> None:
     parser = options.subparser(
         commands, "sweep", "Fly thousands of flights, and tell what they depend on.", sweep
     )
-    combinations.add(parser)
+    options.add_combined(parser)
     options.add_commands(parser)
-    options.add_vary(
-        parser,
-        " and controller.KEY, its rate, delay or a parameter of the laws; or drawn from "
-        + ", ".join(forms()),
-    )
+    options.add_vary(parser, f"{options.CONTROLLER_KEYS}; or drawn from {', '.join(forms())}")
     parser.add_argument(
         "--points", metavar="FILE.csv", help="rows are points of the axes that its header names"
     )
     parser.add_argument(
         "--samples",
         metavar="N",
-        type=option_values.integer(1),
+        type=parse.integer(1),
         help="points of the axes that are drawn",
     )
     default = next(iter(DESIGNS))
@@ -53,22 +50,7 @@ def register(commands: Any) -> None:
         help="; ".join(f"{name}: {meaning}" for name, (meaning, _) in DESIGNS.items())
         + f" ({default})",
     )
-    options.add_flight(
-        parser,
-        [STUDIED],
-        log_every=None,
-        flown=list_engines(),
-        begins=f"on the reference; with --commands {options.SPAWNED}",
-    )
-    options.add_timing(parser)
-    parser.add_argument(
-        "--time-limit",
-        metavar="S",
-        type=option_values.positive,
-        default=300.0,
-        help="of the wall clock for one flight, s (300)",
-    )
-    options.add_jobs(parser)
+    options.add_study(parser, SweepOptions, [STUDIED])
     parser.add_argument(
         "--dask", metavar="ADDRESS", help="fly on the cluster of this scheduler, tcp://HOST:PORT"
     )
@@ -92,20 +74,13 @@ def register(commands: Any) -> None:
         f"({next(iter(of_guided.UNITS))}; with --commands {next(iter(motion.UNITS))})",
     )
     parser.add_argument("--no-plots", action="store_true", help="no pictures in --out")
-    parser.set_defaults(parser=parser)
 
 
 def sweep(arguments: argparse.Namespace) -> None:
     """Fly what is missing, and tell what came of it."""
     from ..studies.sweep.output import FILES, main_measure
 
-    if arguments.file is None:
-        plan = _plan(arguments)
-    else:
-        file = OptionsFile(Path(arguments.file), arguments.parser)
-        arguments = file.beneath(arguments)
-        with file.blamed():
-            plan = _plan(arguments)
+    arguments, plan = planned(arguments, _plan)
     measure = main_measure(plan, arguments.measure)
     with output_folder(arguments.out, FILES):  # after the flights would be too late
         _sweep(arguments, plan, measure)
@@ -135,35 +110,27 @@ def _sweep(arguments: argparse.Namespace, plan: Plan, measure: str) -> None:
     files = write(plan, columns, out, measure, not arguments.no_plots)
     if not arguments.quiet:
         _show(plan, columns, measure, files)
-    _report_failures(columns)
+    _report(columns)
 
 
 def _plan(arguments: argparse.Namespace) -> Plan:
-    from ..studies.design import Design
-    from ..studies.sweep.plan import Plan
+    from ..studies.sweep.plan import Plan, designed
 
-    shared = {**options.model_arguments(arguments), **options.flight_arguments(arguments)}
-    for name in ("model", "engine", "spawn"):  # of which there are several, or none
-        shared.pop(name)
-    vary: dict[str, Any] = dict(options.unique("--vary", arguments.vary))
-    if arguments.scenario is not None:
-        vary = {"scenario": arguments.scenario, **vary}
-    design = Design(vary, arguments.points, arguments.design, arguments.samples, arguments.seed)
+    design, shared = designed(
+        options.unique("--vary", arguments.vary),
+        options.read(arguments, SweepOptions),
+        arguments.points,
+        arguments.design,
+        arguments.samples,
+    )
     return Plan(
         design,
         arguments.controller,
         arguments.reference,
-        arguments.commands,
         arguments.engine,
         arguments.model,
-        arguments.seeds,
-        arguments.duration,
-        arguments.log_every,
-        arguments.spawn,
-        arguments.controller_rate,
-        arguments.delay,
-        arguments.time_limit,
         shared,
+        arguments.commands,
     )
 
 
@@ -195,13 +162,10 @@ def _cell(value: Any, number_text: Any) -> str:
     return number_text(value) if isinstance(value, float) else str(value)
 
 
-def _report_failures(columns: Any) -> None:
+def _report(columns: Any) -> None:
     from ..studies.sweep.spec import REFUSED
 
-    failed = [i for i, failure in enumerate(columns["failure"]) if failure]
-    if failed:
-        reasons = [str(columns["failure"][i]) for i in failed]
-        refused = [reason.startswith(REFUSED) for reason in reasons]
-        first = reasons[0][len(REFUSED) if refused[0] else 0 :]
-        told = f"row {int(columns['row'][failed[0]])}: {first}"
-        raise failure(len(failed), len(columns["row"]), sum(refused), told)
+    reasons = columns["failure"].tolist()
+    refused = sum(reason.startswith(REFUSED) for reason in reasons)
+    plain = [reason[len(REFUSED) :] if reason.startswith(REFUSED) else reason for reason in reasons]
+    report_failures(plain, refused, lambda i: f"row {int(columns['row'][i])}")

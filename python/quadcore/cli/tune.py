@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .._core import InputError
 from ..control import gains
-from ..simulation.engines import STUDIED, list_engines
-from ..support import option_values
+from ..simulation.engines import STUDIED
+from ..studies.options import Options
+from ..support import parse
 from ..support.files import check_writable
 from . import options, terminal
 from .kept import kept
+from .options_file import planned
 from .unmeant import refuse_log_every
+
+if TYPE_CHECKING:
+    from ..studies.tune.problem import Problem
 
 
 def register(commands: Any) -> None:
@@ -35,55 +40,47 @@ def register(commands: Any) -> None:
     parser.add_argument(
         "--reference",
         metavar="A,B",
-        type=option_values.several_calls,
+        type=parse.several_calls,
         default=["spiral", "step"],
         help="what is flown to tune, NAME, NAME:KEY=VALUE,... or files (spiral,step)",
     )
     parser.add_argument(
         "--hold-out",
         metavar="A,B",
-        type=option_values.several_calls,
+        type=parse.several_calls,
         default=["circle", "eight"],
         help="what is flown to judge (circle,eight)",
     )
     parser.add_argument(
         "--hold-out-model",
         metavar="A,B",
-        type=option_values.names,
+        type=parse.names,
         default=[],
         help="models that fly everything to judge, too (none)",
     )
     parser.add_argument(
         "--only",
         metavar="NAME,NAME",
-        type=option_values.names,
+        type=parse.names,
         help="parameters to tune (all gains that are not zero)",
     )
     parser.add_argument(
         "--budget",
         metavar="N",
-        type=option_values.integer(1),
+        type=parse.integer(1),
         default=300,
         help="gains to try, at least (300)",
     )
-    options.add_changes(parser)
-    options.add_flight(
-        parser, STUDIED, log_every=None, flown=list_engines(), begins="on the reference"
-    )
-    options.add_jobs(parser)
+    options.add_vary(parser, options.CONTROLLER_KEYS)
+    options.add_study(parser, Options, STUDIED)
 
 
 def tune(arguments: argparse.Namespace) -> None:
     """Search, print what was found, and write it."""
-    from ..studies.tune import tune as search
+    from ..studies.tune.tune import conduct
 
+    arguments, problem = planned(arguments, _problem)
     out = arguments.out
-    if out.suffix.lower() not in (".yaml", ".yml"):
-        raise InputError(f"{out}: name a file that ends in .yaml, which it would hold")
-    refuse_log_every(arguments, "tuning")
-    check_writable(out)
-    shared = {**options.model_arguments(arguments), **options.flight_arguments(arguments)}
-    shared.update(model=arguments.model, spawn=arguments.spawn)
 
     def put(found: Any) -> None:
         gains.write(found.gains, out)
@@ -91,21 +88,31 @@ def tune(arguments: argparse.Namespace) -> None:
     with kept("tuning", out, put, "the best so far"), terminal.progress(
         arguments.quiet, "tuning"
     ) as progress:
-        found = search(
-            arguments.law,
-            references=arguments.reference,
-            held_out=arguments.hold_out,
-            held_out_models=arguments.hold_out_model,
-            only=arguments.only,
-            duration=arguments.duration,
-            budget=arguments.budget,
-            processes=arguments.jobs,
-            progress=progress,
-            **shared,
-        )
+        found = conduct(problem, arguments.budget, progress)
     put(found)
     if not arguments.quiet:
         _show(found, out)
+
+
+def _problem(arguments: argparse.Namespace) -> Problem:
+    from ..studies.tune.problem import Problem
+
+    out = arguments.out
+    if out.suffix.lower() not in (".yaml", ".yml"):
+        raise InputError(f"{out}: name a file that ends in .yaml, which it would hold")
+    refuse_log_every(arguments, "tuning")
+    check_writable(out)
+    return Problem(
+        arguments.law,
+        arguments.model,
+        arguments.reference,
+        arguments.hold_out,
+        arguments.hold_out_model,
+        arguments.only,
+        arguments.engine,
+        options.varied(arguments),
+        options.read(arguments, Options),
+    )
 
 
 def _show(found: Any, out: Path) -> None:

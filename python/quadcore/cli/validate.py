@@ -11,7 +11,7 @@ from rich.table import Table
 from .._core import FlightError, InputError, QuadcoreError, engines
 from ..simulation.flight_plan import FlightPlan
 from ..studies.executor import conducted
-from ..support import interrupts, option_values
+from ..support import interrupts, parse
 from ..support.files import atomic_write, prepare_folder
 from ..support.values import SPAWN
 from . import options, terminal
@@ -36,7 +36,7 @@ def register(commands: Any) -> None:
     parser.add_argument(
         "--sim-slow",
         metavar="LIST",
-        type=option_values.positive_numbers,
+        type=parse.positive_numbers,
         help="slow-downs of the rotors (those of the thesis: 1,8,10,18)",
     )
     parser.add_argument(
@@ -58,7 +58,7 @@ def register(commands: Any) -> None:
         help="judge this recording instead: a log of any Gazebo, .csv, .mat or .bag; without "
         "--commands its topic vel_cmd",
     )
-    options.add_jobs(parser)
+    options.add(parser, "processes")
     parser.add_argument(
         "--out", metavar="DIR", type=Path, help="write page, tables and figures here"
     )

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 import re
 from pathlib import Path
-from typing import Any, Iterator, List, Mapping, NamedTuple, Sequence, Tuple, Union
+from typing import Any, List, Mapping, NamedTuple, Sequence, Union
 
 import numpy as np
 
@@ -16,8 +15,8 @@ from ..support.values import Value, text_of
 WHOLE = ("engine", "world", "scenario")
 """What is varied by name, as a whole."""
 
-LARGEST = 100_000
-"""Variants of one comparison."""
+OF_CONTROLLER = "controller."
+"""Begins the names of axes that vary a controller: its rate, delay or a parameter."""
 
 Values = Union[Sequence[Value], Sequence[Path], np.ndarray]
 
@@ -75,10 +74,9 @@ def axes_of(vary: Mapping[str, Values]) -> List[Axis]:
     Raises
     ------
     InputError
-        No values, or a tag on two axes.
+        No values.
     """
     axes = []
-    taken: List[str] = []
     for key, values in vary.items():
         name = ",".join(part.strip() for part in key.split(","))
         if isinstance(values, str) or len(values) == 0:
@@ -86,32 +84,12 @@ def axes_of(vary: Mapping[str, Values]) -> List[Axis]:
         if set(WHOLE) & set(name.split(",")) and "," in name:
             own = f"{', '.join(WHOLE[:-1])} and {WHOLE[-1]}"
             raise InputError(f"vary {name}: {own} take values of their own; vary each")
-        axis = Axis(name, values if isinstance(values, Range) else [text_of(v) for v in values])
-        for part in axis.tags or [name]:
-            if part in taken:
-                raise InputError(f"vary {name}: {part} is varied twice; keep one")
-            taken.append(part)
-        axes.append(axis)
-    return axes
-
-
-def check_size(models: int, axes: Sequence[Axis]) -> int:
-    """Count the variants; raise `InputError` if they are too many."""
-    sizes = [models, *(len(axis.values) for axis in axes)]
-    count = math.prod(sizes)
-    if count > LARGEST:
-        product = " x ".join(str(size) for size in sizes if size > 1)
-        raise InputError(
-            f"vary: {product} makes {count} flights; at most {LARGEST} are compared at once"
+        if OF_CONTROLLER in name and "," in name:
+            raise InputError(f"vary {name}: vary what is the controller's alone")
+        axes.append(
+            Axis(name, values if isinstance(values, Range) else [text_of(v) for v in values])
         )
-    return count
-
-
-def variants(models: int, axes: Sequence[Axis]) -> Iterator[Tuple[int, Tuple[str, ...]]]:
-    """Model and values of each variant; the last axis runs fastest."""
-    for model in range(models):
-        for values in itertools.product(*(axis.values for axis in axes)):
-            yield model, values
+    return axes
 
 
 def _range(name: str, text: str) -> Range:

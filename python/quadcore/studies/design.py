@@ -64,7 +64,9 @@ class Design(Sequence[Point]):
             else:
                 listed[name] = parse_axis(name, given).values if isinstance(given, str) else given
         self.kind, self.samples = design, samples
-        blocks = [Block([axis.name], _Column(axis)) for axis in axes_of(listed)]
+        self.listed = axes_of(listed)
+        """Axes whose values are listed."""
+        blocks = [Block([axis.name], _Column(axis)) for axis in self.listed]
         if points is not None:
             blocks.append(_table(Path(points)))
         if self.drawn:
@@ -89,11 +91,16 @@ class Design(Sequence[Point]):
         """Of all axes, in the order of the blocks."""
         return [name for block in self.blocks for name in block.names]
 
-    def __len__(self) -> int:
+    @property
+    def size(self) -> int:
+        """Number of points, which may exceed what `len` can give."""
         return math.prod(self._sizes)
 
+    def __len__(self) -> int:
+        return self.size
+
     def __getitem__(self, i: Any) -> Any:
-        if not 0 <= i < len(self):
+        if not 0 <= i < self.size:
             raise IndexError(i)
         where = []
         for size in reversed(self._sizes):
@@ -123,12 +130,20 @@ class Design(Sequence[Point]):
                 chosen.append({**first, **dict(zip(block.names, block.rows[at]))})
         return list({tuple(point.items()): point for point in chosen}.values())
 
+    def told(self) -> Dict[str, Any]:
+        """Give the number of values of each axis and how points are drawn, in plain values."""
+        return {
+            "axes": {name: len(set(self.values(name))) for name in self.names},
+            "design": self.kind if self.drawn else None,
+            "samples": self.samples,
+        }
+
     def _check_names(self) -> None:
         taken: List[str] = []
         for name in self.names:
             for part in name.split(","):
                 if part in taken:
-                    raise InputError(f"vary {part}: it is varied twice; keep one")
+                    raise InputError(f"vary {name}: {part} is varied twice; keep one")
                 taken.append(part)
 
 

@@ -1,118 +1,129 @@
-"""Controllers and references, as studies take them and hand them to each of their flights."""
+"""The controllers and references of a study."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from functools import lru_cache
-from typing import Any, Callable, Iterable, Optional, Sequence
+from typing import Any, Callable, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
 from .._core import InputError
 from ..control import laws, references
-from ..control.controller import check_callable
-from ..simulation.controller_pilot import Guided
+from ..control.controller import check_callable, give
 from ..simulation.flight_plan import FlightPlan
-from ..simulation.simulation import Simulation
 from ..support.arguments import brief
 from ..support.values import SPAWN, pose
-from .variation import give_all
+
+Named = Union[str, Any, Mapping[str, Any], Sequence[Any]]
+"""A name, an object, several of these, or a mapping of labels to them."""
 
 
 class Guidance:
-    """What flies the flights of one study, and where to.
+    """Controllers and references, each with a label; or none, for flights open loop.
 
     Parameters
     ----------
-    controller
-        As the command line names it, or as `Simulation.run` takes it; None: nothing does.
-    reference
-        The same; None: hover at `spawn`.
-    spawn
-        Where flights begin; None: on the reference, if one is given.
+    controllers, references_
+        Labels, and texts as on the command line or objects as `Simulation.run` takes them.
     controller_rate, delay
-        Of the controller; None leaves it its own.
-    vehicles
-        Names of the robots that fly.
+        Of each controller; None leaves it its own.
+    on_reference
+        Whether flights begin on the reference.
 
     Raises
     ------
     InputError
-        What is known to be wrong before anything flies; a controller of the user's own by its name
-        is brought in by each flight.
+        If a reference is wrong.
     """
 
     def __init__(
         self,
+        controllers: Sequence[Tuple[str, Any]] = (),
+        references_: Sequence[Tuple[str, Any]] = (),
+        controller_rate: Optional[float] = None,
+        delay: Optional[float] = None,
+        on_reference: bool = False,
+    ) -> None:
+        self.controllers = [label for label, _ in controllers]
+        self.references = [label for label, _ in references_]
+        self.things = [thing for _, thing in controllers]
+        """The controllers as they were given."""
+        self.shapes = [shape(thing) for _, thing in references_]
+        self.timing = {"rate": controller_rate, "delay": delay}
+        self.on_reference = on_reference
+        self._maker = lru_cache(maxsize=None)(lambda i, vehicle: _maker(self.things[i], vehicle))
+
+    @classmethod
+    def single(
+        cls,
         controller: Any,
         reference: Any,
         spawn: Optional[Sequence[Any]],
         controller_rate: Optional[float],
         delay: Optional[float],
-        vehicles: Sequence[str],
-    ) -> None:
-        self.is_given = controller is not None
-        self._is_own = self.is_given and is_own(controller)
-        self._values = {"rate": controller_rate, "delay": delay}
-        self._on_reference = reference is not None and spawn is None
-        if not self.is_given:
+    ) -> Guidance:
+        """Take one controller and one reference, or neither.
+
+        Without a reference the vehicle hovers at the spawn.
+        """
+        if controller is None:
             given = {"reference": reference, "controller_rate": controller_rate, "delay": delay}
             for name, value in given.items():
                 if value is not None:
                     raise InputError(f"{name} needs a controller; give one")
-            return
-        self._maker = lru_cache(maxsize=None)(lambda vehicle: maker(controller, vehicle))
-        for name in vehicles:
-            self._maker(name)
+            return cls()
+        on_reference = reference is not None and spawn is None
         if reference is None:
-            self._reference = references.hover_at(pose(SPAWN if spawn is None else spawn))
-        else:
-            self._reference = shape(reference)
+            reference = references.hover_at(pose(SPAWN if spawn is None else spawn))
+        return cls([("", controller)], [("", reference)], controller_rate, delay, on_reference)
 
     @property
-    def apart(self) -> bool:
-        """Whether flights call what others wrote, which may remember one when it flies another."""
-        return self.is_given and (self._is_own or not isinstance(self._reference, references.Shape))
+    def is_given(self) -> bool:
+        """Whether the flights are closed loop."""
+        return bool(self.things)
 
-    def onto(self, plan: FlightPlan) -> FlightPlan:
-        """Make the same flight guided, its controller made anew; raises what making it raises."""
-        if not self.is_given:
-            return plan
-        return replace(
-            plan,
-            controller=self._controller(plan.model.name),
-            reference=self._reference,
-            on_reference=self._on_reference,
+    @property
+    def runs_user_code(self) -> bool:
+        """Whether flights call code of the user's, which may keep a state from flight to flight."""
+        return any(map(_is_own, self.things)) or not all(
+            isinstance(one, references.Shape) for one in self.shapes
         )
 
-    def check(self, vehicles: Iterable[Simulation]) -> None:
-        """Raise `InputError` if a law of quadcore can begin on none of some vehicles."""
-        if not self.is_given or self._is_own:
-            return
-        refused = None
+    def is_own(self, controller: int) -> bool:
+        """Whether a controller is the user's."""
+        return _is_own(self.things[controller])
+
+    def make(self, controller: int, vehicle: str, values: Mapping[str, float]) -> Any:
+        """Make a controller for one flight of a vehicle, which gives it some values."""
+        made = self._maker(controller, vehicle)()
+        return give_all(made, {**self.timing, **values})
+
+    def guide(self, plan: FlightPlan) -> FlightPlan:
+        """Make a flight guided by the only controller and reference."""
+        return replace(
+            plan,
+            controller=self.make(0, plan.model.name, {}),
+            reference=self.shapes[0],
+            on_reference=self.on_reference,
+        )
+
+    def check(self, vehicles: Iterable[str]) -> None:
+        """Raise `InputError` if a shipped controller cannot be made for one of some vehicles."""
         for vehicle in vehicles:
-            try:
-                law = self._controller(vehicle.model.name)
-                Guided(law, vehicle, self._reference).reset(vehicle)
-                return
-            except InputError as error:
-                refused = refused or error
-        if refused is not None:
-            raise refused
-
-    def _controller(self, vehicle: str) -> Any:
-        return give_all(self._maker(vehicle)(), self._values.items())
+            for controller in range(len(self.things)):
+                self._maker(controller, vehicle)
 
 
-def maker(thing: Any, vehicle: str) -> Callable[[], Any]:
-    """Make what makes a controller for a flight; one of the user's own is brought in then.
-
-    An object is given as it is: flights of what others wrote have processes of their own.
-    """
-    if names_own(thing):
-        return lambda: laws.parse(thing, vehicle)
-    if isinstance(thing, str):
-        thing = laws.parse(thing, vehicle)
-    check_callable(thing)
-    return thing.copy if isinstance(thing, laws.Law) else lambda: thing
+def labelled(kind: str, things: Named, one: type) -> List[Tuple[str, Any]]:
+    """Give each thing a label."""
+    if isinstance(things, Mapping):
+        return [(str(label), thing) for label, thing in things.items()]
+    if isinstance(things, (str, one)) or callable(things):
+        things = [things]
+    if not isinstance(things, Iterable):
+        raise InputError(
+            f"{kind} is {brief(things)}; give a name, what is called, or several of these"
+        )
+    return [(_label(thing), thing) for thing in things]
 
 
 def shape(thing: Any) -> Any:
@@ -132,6 +143,35 @@ def names_own(thing: Any) -> bool:
     return isinstance(thing, str) and ":" in thing and thing.partition(":")[0] not in laws.NAMES
 
 
-def is_own(thing: Any) -> bool:
-    """Whether a controller is none of quadcore's laws."""
+def _is_own(thing: Any) -> bool:
     return names_own(thing) if isinstance(thing, str) else not isinstance(thing, laws.Law)
+
+
+def give_all(controller: Any, values: Mapping[str, Any]) -> Any:
+    """Give a controller its rate, delay and parameters, as far as they are not None."""
+    for name, value in values.items():
+        if value is not None:
+            give(controller, name, value)
+    return controller
+
+
+def _maker(thing: Any, vehicle: str) -> Callable[[], Any]:
+    """Make what makes a controller for a flight; a module of the user's is imported then.
+
+    An object is given as it is: flights that run user code have processes of their own.
+    """
+    if names_own(thing):
+        return lambda: laws.parse(thing, vehicle)
+    if isinstance(thing, str):
+        thing = laws.parse(thing, vehicle)
+    check_callable(thing)
+    return thing.copy if isinstance(thing, laws.Law) else lambda: thing
+
+
+def _label(thing: Any) -> str:
+    if isinstance(thing, str):
+        return thing
+    if isinstance(thing, (laws.Law, references.Shape)):
+        values = ",".join(f"{name}={value:g}" for name, value in thing.parameters.items())
+        return f"{thing.name}:{values}" if values else thing.name
+    return getattr(thing, "__name__", type(thing).__name__)

@@ -1,22 +1,21 @@
-"""What a point of the axes changes in a flight: model, tags, world, scenario, controller."""
+"""What a point of the axes changes in a flight: model, tags, world, engine, scenario."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Dict, Iterable, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Union
 
 from .._core import InputError, Model, World, parse_number
-from ..control.controller import give
 from ..model.description import read_model, read_world
-from ..model.overrides import check_names, without_xacro
+from ..model.overrides import XACRO, check_names, without_xacro
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.scenarios import Scenario
 from ..simulation.scenarios import read as read_scenario
 from ..support.values import text_of
-
-OF_CONTROLLER = "controller."
+from .axes import OF_CONTROLLER, WHOLE
+from .design import Design
 
 _READ = 16  # models that are kept as they were read
 
@@ -28,45 +27,53 @@ class Variation:
     ----------
     models
         Files or names of shipped models.
+    design
+        The points, whose worlds and scenarios are read.
     parameters, xacro_args, ignore
         As for `Simulation`.
+    scenario
+        Of all flights whose point names none.
     """
 
     def __init__(
         self,
         models: Sequence[Union[str, Path]],
-        parameters: Optional[Mapping[str, Any]] = None,
-        xacro_args: Optional[Mapping[str, object]] = None,
-        ignore: Sequence[str] = (),
+        design: Design,
+        parameters: Optional[Mapping[str, Any]],
+        xacro_args: Optional[Mapping[str, object]],
+        ignore: Sequence[str],
+        scenario: Union[str, Path, Scenario, None],
     ) -> None:
         arguments, given = without_xacro(parameters, xacro_args)
-        self.arguments, self.ignore = arguments, ignore
+        self.arguments = arguments
         self.set = {key: text_of(value) for key, value in given.items()}
         """Values that all flights have, by ``PLUGIN.TAG``, ``LINK.mass`` or the like."""
         self._read = lru_cache(_READ)(
             lambda i, varied: read_model(models[i], {**arguments, **dict(varied)}, ignore)
         )
-        self.worlds: Dict[str, World] = {}
-        self.scenarios: Dict[Optional[str], Optional[Scenario]] = {None: None}
+        self.models: List[Model] = [self._read(i, ()) for i in range(len(models))]
+        self.worlds: Dict[str, World] = {
+            name: read_world(name, ignore) for name in dict.fromkeys(design.values("world"))
+        }
+        self.scenarios: Dict[Optional[str], Optional[Scenario]] = {None: read_scenario(scenario)}
+        names = dict.fromkeys(design.values("scenario"))
+        self.scenarios.update((name, read_scenario(name)) for name in names)
 
-    def read(self, model: int) -> Model:
-        """Read a model as nothing changes it."""
-        found: Model = self._read(model, ())
-        return found
+    @property
+    def taken(self) -> List[str]:
+        """Names of all values that every flight is given."""
+        return [*self.set, *(f"{XACRO}.{name}" for name in self.arguments)]
 
-    def provide(self, worlds: Iterable[str], scenarios: Iterable[str]) -> None:
-        """Read what points will name."""
-        self.worlds.update((name, read_world(name, self.ignore)) for name in dict.fromkeys(worlds))
-        self.scenarios.update((name, read_scenario(name)) for name in dict.fromkeys(scenarios))
-
-    def applied(self, plan: FlightPlan, model: int, point: Mapping[str, str]) -> FlightPlan:
+    def apply(self, plan: FlightPlan, model: int, point: Mapping[str, str]) -> FlightPlan:
         """Make a flight of a model as a point has it; its controller is left as it is."""
         changed: Dict[str, Any] = {}
         parameters = dict(self.set)
         for name, value in point.items():
             if name == "world":
                 changed["world"] = self.worlds[value]
-            elif name != "scenario" and not name.startswith(OF_CONTROLLER):
+            elif name == "engine":
+                changed["engine"] = value
+            elif name not in WHOLE and not name.startswith(OF_CONTROLLER):
                 parameters.update(dict.fromkeys(name.split(","), value))
         varied, tags = without_xacro(parameters, None)
         read = self._read(model, tuple(varied.items()))
@@ -75,21 +82,8 @@ class Variation:
         return plan.befallen(self.scenarios[point.get("scenario")])
 
 
-def give_all(controller: Any, values: Iterable[Tuple[str, Any]]) -> Any:
-    """Give a controller its rate, delay and parameters, as far as they are told."""
-    for name, value in values:
-        if value is not None:
-            give(controller, name, value)
-    return controller
-
-
-def is_of_controller(name: str) -> bool:
-    """Tell whether an axis, perhaps of several names, varies a controller."""
-    return any(part.startswith(OF_CONTROLLER) for part in name.split(","))
-
-
 def of_controller(point: Mapping[str, str]) -> Dict[str, float]:
-    """Tell what a point changes in a controller.
+    """Give what a point changes in a controller.
 
     Raises
     ------

@@ -144,25 +144,25 @@ def _page(
         label = plan.label(variant)
         told = {"number": number, "label": label, "failure": row["failure"], "errors": errors}
         rows.append({**told, **cells})
-    shown = len(drawn(plan.count))
+    shown = len(drawn(len(plan)))
     return {
         "title": "Comparison of flights",
         "summary": summary(comparison),
         "flight": flight,
         "differences": comparison.differences,
-        "first": plan.names[0],
+        "first": plan.models[0],
         "guided": guided,
         "axes": [
             {"name": axis.name, "listed": listed(axis.values), "written": plan.as_written(axis)}
             for axis in plan.axes
         ],
         "pictures": [{"name": name, "data": data} for name, data in images.items()],
-        "thinned": f"{shown} of {plan.count} are drawn." if shown < plan.count else "",
+        "thinned": f"{shown} of {len(plan)} are drawn." if shown < len(plan) else "",
         "against": comparison.against is not None and f"no. {_number(comparison)}",
         "units": {state: unit for state, (unit, _) in units.items()},
         "groups": _groups(list(comparison.states)),
         "rows": rows,
-        "more": max(0, plan.count - _ROWS_OF_PAGE),
+        "more": max(0, len(plan) - _ROWS_OF_PAGE),
     }
 
 

@@ -95,10 +95,10 @@ class Tally:
         self.against: Optional[int] = None
         self._plan, self._progress = plan, progress
         self._refused = 0
-        self._errors = np.full((plan.count, 2), np.nan)
+        self._errors = np.full((len(plan), 2), np.nan)
         self._make_room(plan.rotor_count)
-        self._failures = [NOT_FLOWN] * plan.count
-        self._kept: List[Any] = [] if keep is None else [None] * plan.count
+        self._failures = [NOT_FLOWN] * len(plan)
+        self._kept: List[Any] = [] if keep is None else [None] * len(plan)
 
     def compare_with(self, row: int, log: Log) -> None:
         """Take the flight that the others are compared with."""
@@ -117,17 +117,19 @@ class Tally:
             self._failures[row] = ""
         self.done += 1
         if self._progress is not None:
-            self._progress(self.done, self._plan.count)
+            self._progress(self.done, len(self._plan))
 
     def result(self) -> Comparison:
         """Tell it all."""
         plan = self._plan
-        axes = list(zip(*(values for _, values in plan)))
+        points = [plan.design[case.point] for case in plan]
         columns: Dict[str, Any] = {
-            "model": [plan.names[model] for model, _ in plan],
-            **{axis.name: _numbers(values) for axis, values in zip(plan.axes, axes)},
-            "failure": self._failures,
+            "model": [plan.models[case.model] for case in plan],
+            **{name: _numbers([point[name] for point in points]) for name in plan.design.names},
         }
+        if len(plan.seeds) > 1:
+            columns["seed"] = [plan.seeds[case.seed] for case in plan]
+        columns["failure"] = self._failures
         if plan.guidance.is_given:
             columns["rms_error"], columns["largest_error"] = self._errors.T
         for i, kind in enumerate(("final", "largest")):
@@ -144,7 +146,7 @@ class Tally:
 
     def _make_room(self, rotor_count: int) -> None:
         self._states = states(rotor_count)
-        self._metrics = np.full((self._plan.count, 2, len(self._states)), np.nan)
+        self._metrics = np.full((len(self._plan), 2, len(self._states)), np.nan)
 
 
 def _numbers(values: Sequence[str]) -> np.ndarray:

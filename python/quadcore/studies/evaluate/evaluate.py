@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import replace
-from pathlib import Path
+from functools import partial
 from typing import (
+    TYPE_CHECKING,
     Any,
     Callable,
+    Collection,
     Dict,
     List,
     Mapping,
     NamedTuple,
     Optional,
     Sequence,
+    Set,
     Union,
 )
 
@@ -26,28 +29,20 @@ from ...support import arguments
 from ...support.warning import warn
 from ..axes import Values
 from ..executor import conducted
+from ..guidance import Named
+from ..options import EvaluateOptions, Keywords, Names, Progress, takes
 from ..table import flown_and_failed
-from .entries import Named
 from .flights import Outcome, flown
-from .plan import Case, Plan
+from .plan import Plan
 from .poles import has_poles, poles
 from .robustness import Searches
 from .sums import JUDGED as JUDGED
 from .sums import over_seeds
 from .trial import Trial
 
-Progress = Callable[[int, int], None]
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
-_KINDS = {
-    "engines": arguments.SOME,
-    "models": arguments.SOME,
-    "vary": arguments.or_none(arguments.AXES),
-    "duration": arguments.SECONDS,
-    "margins": arguments.FLAG,
-    "time_limit": arguments.LIMIT,
-    "processes": arguments.or_none(arguments.COUNT),
-    "progress": arguments.or_none(arguments.PROGRESS),
-}
 _DRAWN = 60  # flights of which enough is kept to draw them
 
 
@@ -95,23 +90,22 @@ class Evaluation(NamedTuple):
         return html_title(self) + html_table(list(shown.values()), rows, len(lines))
 
 
+@takes(
+    EvaluateOptions,
+    engines=arguments.SOME,
+    models=arguments.SOME,
+    vary=arguments.or_none(arguments.AXES),
+    margins=arguments.FLAG,
+)
 def evaluate(
     controllers: Named,
     references: Named,
     engines: Union[str, Sequence[str]] = STUDIED,
-    models: Union[str, Path, Sequence[Union[str, Path]]] = "quadrotor",
-    seeds: int = 1,
+    models: Names = "quadrotor",
+    *,
     vary: Optional[Mapping[str, Values]] = None,
-    duration: float = 30.0,
-    log_every: Optional[int] = None,
-    spawn: Optional[Sequence[float]] = None,
-    controller_rate: Optional[float] = None,
-    delay: Optional[float] = None,
     margins: bool = False,
-    time_limit: float = 300.0,
-    processes: Optional[int] = None,
-    progress: Optional[Progress] = None,
-    **options: Any,
+    **options: Unpack[Keywords],
 ) -> Evaluation:
     """Fly controllers along references, and measure how well they do.
 
@@ -124,27 +118,12 @@ def evaluate(
         Names as on the command line, or of `quadcore.references`; or a mapping of labels.
     engines, models
         Names of one or several.
-    seeds
-        How many, from `seed` on, each with noise of its own.
     vary
         Values by ``"PLUGIN.TAG"``, ``"world"``, ``"scenario"`` or ``"controller.KEY"``, KEY being
         ``rate``, ``delay`` or a parameter of a law: conditions, of which all combinations fly.
-    duration
-        s
-    log_every
-        Steps between measured rows; None: a hundredth of a second.
-    spawn
-        Where flights begin; None: in the full flat state of the reference.
-    controller_rate, delay
-        Of every controller; None leaves each its own.
     margins
         Whether to search for gain and delay margins, see `robustness`.
-    time_limit
-        Of the wall clock for one flight, s.
-    processes, progress
-        As for `compare`.
     **options
-        As for `Simulation`: world, dt, seed (the first), parameters, xacro_args, ignore.
 
     Returns
     -------
@@ -160,78 +139,88 @@ def evaluate(
     KeyboardInterrupt
         With the attribute `evaluation`, whose missing rows say so.
     """
-    given = dict(locals())
-    arguments.check({**{name: given[name] for name in _KINDS}, **options}, _KINDS)
-    plan = Plan(
-        controllers,
-        references,
-        [engines] if isinstance(engines, str) else engines,
-        [models] if isinstance(models, (str, Path)) else models,
-        seeds,
-        vary or {},
-        duration,
-        log_every,
-        spawn,
-        controller_rate,
-        delay,
-        options,
-    )
-    return conduct(plan, time_limit, processes, progress, margins)
+    shared = EvaluateOptions(**options)
+    names = arguments.several(engines), arguments.several(models)
+    plan = Plan(controllers, references, *names, vary or {}, shared)
+    return conduct(plan, shared.progress, margins)
 
 
-def conduct(
-    plan: Plan,
-    time_limit: float,
-    processes: Optional[int] = None,
-    progress: Optional[Progress] = None,
-    margins: bool = False,
-) -> Evaluation:
+def conduct(plan: Plan, progress: Optional[Progress] = None, margins: bool = False) -> Evaluation:
     """Fly a plan; parameters as for `evaluate`."""
-    arguments.check({"time_limit": time_limit}, _KINDS)
-    cases = plan.cases()
-    kept = set(_to_draw(plan, cases))
-    outcomes = [Outcome()] * len(cases)
-    searches = Searches(plan.controllers, plan.lacking) if margins else None
-    if margins and plan.unsearched:
-        warn(plan.unsearched)
-    in_hover = _poles(plan)
-    done = 0
+    flights = _Flights(plan, progress, margins)
+    try:
+        flights.fly()
+    except KeyboardInterrupt as stop:
+        stop.evaluation = flights.evaluation()  # type: ignore[attr-defined]
+        raise
+    return flights.evaluation()
 
-    def summed() -> Evaluation:
-        found = searches.rows() if searches else []
-        return _summed(plan, cases, outcomes, found, in_hover)
 
-    def conduct_each(
-        described: Callable[[int], Callable[[], FlightPlan]], into: List[Outcome]
+class _Flights:
+    """The flights of an evaluation, and what is known of them so far."""
+
+    def __init__(self, plan: Plan, progress: Optional[Progress], margins: bool) -> None:
+        self._plan, self._progress = plan, progress
+        self._outcomes = [Outcome()] * len(plan)
+        self._done = 0
+        self._searches: Optional[Searches] = None
+        if margins:
+            self._searches = Searches(plan.guidance.controllers, plan.lacking)
+            if plan.unsearched:
+                warn(plan.unsearched)
+        self._poles = _poles(plan)
+
+    def fly(self) -> None:
+        """Fly all cases, then what the searches ask for."""
+        plan = self._plan
+        self._conduct([partial(plan.flight, case) for case in plan], self._outcomes, _drawn(plan))
+        if self._searches is not None:
+            self._searches.run(self._fly_trials)
+
+    def evaluation(self) -> Evaluation:
+        """Sum up the flights so far."""
+        plan, outcomes = self._plan, self._outcomes
+        names = [plan.names(case) for case in plan]
+        return Evaluation(
+            [
+                {**name, "failure": outcome.failure, **outcome.measures}
+                for name, outcome in zip(names, outcomes)
+            ],
+            over_seeds([case[:-1] for case in plan], names, outcomes),
+            [] if self._searches is None else self._searches.rows(),
+            self._poles,
+            outcomes,
+        )
+
+    def _fly_trials(self, trials: Sequence[Trial]) -> List[Outcome]:
+        outcomes = [Outcome()] * len(trials)
+        self._conduct([partial(trial.flight, self._plan) for trial in trials], outcomes)
+        return outcomes
+
+    def _conduct(
+        self,
+        flights: Sequence[Callable[[], FlightPlan]],
+        outcomes: List[Outcome],
+        drawn: Collection[int] = (),
     ) -> None:
+        """Fly what some functions describe; of the flights that are `drawn` the log is kept."""
+        options = self._plan.options
+        expected = len(self._plan) + (self._searches.expected if self._searches else 0)
+        total = max(self._done + len(flights), expected)
+
         def fly(i: int) -> Outcome:
-            return flown(described(i), time_limit, into is outcomes and i in kept)
+            return flown(flights[i], options.time_limit, i in drawn)
 
         def take(i: int, outcome: Union[Outcome, QuadcoreError]) -> None:
-            nonlocal done
             if isinstance(outcome, QuadcoreError):
                 outcome = Outcome(str(outcome), refused=isinstance(outcome, InputError))
-            into[i] = outcome
-            done += 1
-            if progress is not None:
-                progress(done, total)
+            outcomes[i] = outcome
+            self._done += 1
+            if self._progress is not None:
+                self._progress(self._done, total)
 
-        total = max(done + len(into), len(cases) + (searches.expected if searches else 0))
-        conducted(fly, range(len(into)), take, processes, apart=plan.apart)
-
-    def fly_trials(trials: Sequence[Trial]) -> List[Outcome]:
-        found = [Outcome()] * len(trials)
-        conduct_each(lambda i: lambda: trials[i].flight(plan), found)
-        return found
-
-    try:
-        conduct_each(lambda row: lambda: plan.flight(cases[row]), outcomes)
-        if searches is not None:
-            searches.run(fly_trials)
-    except KeyboardInterrupt as stop:
-        stop.evaluation = summed()  # type: ignore[attr-defined]
-        raise
-    return summed()
+        apart = self._plan.guidance.runs_user_code
+        conducted(fly, range(len(flights)), take, options.processes, apart=apart)
 
 
 def _poles(plan: Plan) -> List[Dict[str, Any]]:
@@ -245,27 +234,7 @@ def _poles(plan: Plan) -> List[Dict[str, Any]]:
     return rows
 
 
-def _to_draw(plan: Plan, cases: Sequence[Case]) -> List[int]:
-    """Rows of first seeds: all, or evenly many."""
-    firsts = list(range(0, len(cases), len(plan.seeds)))
-    return [firsts[i] for i in evenly(len(firsts), _DRAWN)]
-
-
-def _summed(
-    plan: Plan,
-    cases: Sequence[Case],
-    outcomes: Sequence[Outcome],
-    margins: List[Dict[str, Any]],
-    found_poles: List[Dict[str, Any]],
-) -> Evaluation:
-    names = [plan.names(case) for case in cases]
-    return Evaluation(
-        [
-            {**name, "failure": outcome.failure, **outcome.measures}
-            for name, outcome in zip(names, outcomes)
-        ],
-        over_seeds([case.group for case in cases], names, outcomes),
-        margins,
-        found_poles,
-        outcomes,
-    )
+def _drawn(plan: Plan) -> Set[int]:
+    """Choose the rows to draw: of first seeds, all or evenly many."""
+    firsts = range(0, len(plan), len(plan.seeds))
+    return {firsts[i] for i in evenly(len(firsts), _DRAWN)}

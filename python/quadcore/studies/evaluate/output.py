@@ -179,7 +179,7 @@ def _timing(evaluation: Evaluation, plan: Plan) -> List[List[Any]]:
     rows: List[List[Any]] = [[*_NAMES, "seed", *measured]]
     for row, outcome in zip(evaluation.table, evaluation.outcomes):
         names = [row[name] for name in (*_NAMES, "seed")]
-        factor = plan.duration / outcome.seconds
+        factor = plan.options.duration / outcome.seconds
         calls = outcome.updates, outcome.call, outcome.slow_call
         rows.append([*names, outcome.seconds, factor, *calls])
     return rows

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
+from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 from ..._core import ParameterInfo, parse_number
 from ...control import laws
@@ -11,10 +11,7 @@ from ...control.controller import check_callable, give
 from ...control.inner_loop import InnerLoop
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.simulation import Simulation
-
-if TYPE_CHECKING:
-    from .plan import Plan
-
+from ..cases import Case, Cases
 
 EFFECTS = ("thrust", "drag", "lag")
 """Properties of a vehicle that margins vary, as the tables of the plugins' tags name them."""
@@ -35,9 +32,9 @@ class Trial(NamedTuple):
     lag: float = 1.0
     """Factor on the time constant of the motors."""
 
-    def flight(self, plan: Plan) -> FlightPlan:
+    def flight(self, plan: Cases) -> FlightPlan:
         """Describe the flight; raises what making the controller raises."""
-        flight = plan.first_of(self.controller)
+        flight = plan.flight(Case(self.controller))
         controller = flight.controller
         if self.rate is not None:
             give(controller, "rate", self.rate)

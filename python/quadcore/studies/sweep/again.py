@@ -6,7 +6,7 @@ import shlex
 from typing import Any, Dict, List, Mapping, Optional
 
 from ...control import laws
-from ..variation import OF_CONTROLLER
+from ..axes import OF_CONTROLLER
 from .plan import AnyPlan, Plan
 
 
@@ -14,15 +14,15 @@ def command(plan: AnyPlan, row: int) -> Optional[str]:
     """Write the command line of a row; None if it was an object of one's own that flew."""
     if not isinstance(plan, Plan):
         return None
-    controller, reference, engine, model, at, seed = plan.place(row)
-    told, point = plan.told(), plan.design[at]
-    flags: Dict[str, Any] = {"engine": plan.engines[engine], "world": told["world"]}
-    if plan.is_guided:
-        flown = plan.thing(controller)
+    case = plan[row]
+    told, point = plan.told(), plan.design[case.point]
+    flags: Dict[str, Any] = {"engine": plan.engines[case.engine], "world": told["world"]}
+    if plan.guidance.is_given:
+        flown = plan.guidance.things[case.controller]
         if not isinstance(flown, str):
             return None
         flags["controller"] = _with_values(plan, row, flown, point)
-        flags["reference"] = plan.references[reference]
+        flags["reference"] = plan.guidance.references[case.reference]
         flags["controller-rate"], flags["delay"] = told["controller_rate"], told["delay"]
         for name in ("rate", "delay"):
             given = point.get(f"{OF_CONTROLLER}{name}")
@@ -32,10 +32,10 @@ def command(plan: AnyPlan, row: int) -> Optional[str]:
         flags["commands"] = told["commands"]
     for name in ("world", "scenario"):
         flags[name] = point.get(name, flags.get(name))
-    flags.update(seed=plan.first_seed + seed, duration=told["duration"], dt=plan.dt)
+    flags.update(seed=plan.seeds[case.seed], duration=told["duration"], dt=plan.options.dt)
     if told["spawn"] is not None:
         flags["spawn"] = ",".join(map(repr, told["spawn"]))
-    words = ["quadcore", "run", plan.models[model]]
+    words = ["quadcore", "run", plan.models[case.model]]
     words += [f"--{name}={_text(value)}" for name, value in flags.items() if value is not None]
     words += [f"--xacro={name}:={value}" for name, value in told["xacro"].items()]
     words += [f"--set={name}={value}" for name, value in _set(told["set"], point).items()]

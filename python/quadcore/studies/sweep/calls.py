@@ -73,9 +73,7 @@ class Calls:
         """Say what is called."""
         return {
             "function": getattr(self._function, "__qualname__", repr(self._function)),
-            "axes": {name: len(set(self.design.values(name))) for name in self.names},
-            "design": self.design.kind if self.design.drawn else None,
-            "samples": self.design.samples,
+            **self.design.told(),
         }
 
 

@@ -7,17 +7,16 @@ import importlib.util
 import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Mapping, NamedTuple, Optional, Protocol, Sequence, Tuple
+from typing import Any, Mapping, NamedTuple, Optional, Protocol, Tuple
 
 from ..._core import FlightError, InputError, QuadcoreError
 from ...control import laws
 from ...simulation.flight_plan import FlightPlan
 from ...support.user_code import told
 from ...support.warning import unheard
-from ..evaluate import measures as of_guided
 from ..evaluate.flights import flown
+from ..guidance import give_all
 from ..time_limit import time_limit
-from ..variation import give_all
 from . import motion
 
 Measures = Mapping[str, float]
@@ -45,7 +44,7 @@ class Own:
 
     def make(self, vehicle: str) -> Any:
         """Bring it in; raises `InputError`."""
-        return give_all(laws.parse(self.text, vehicle), self.values)
+        return give_all(laws.parse(self.text, vehicle), dict(self.values))
 
 
 @dataclass(frozen=True)
@@ -89,11 +88,6 @@ class Flight:
         if self.own is None:
             return self.plan
         return replace(self.plan, controller=self.own.make(self.plan.model.name))
-
-
-def columns(is_guided: bool) -> Sequence[str]:
-    """Name the measures of a flight."""
-    return list(of_guided.UNITS if is_guided else motion.UNITS)
 
 
 class Spec(Protocol):

@@ -24,13 +24,12 @@ from ..._core import InputError
 from ...simulation.commands import CommandsLike
 from ...simulation.engines import STUDIED
 from ...support import arguments, interrupts
-from ...support.values import whole
-from ..design import Design
 from ..folder import output_folder
+from ..options import Keywords, Names, Progress, SweepOptions, takes
 from ..table import flown_and_failed
 from .dask import cluster
 from .places import fly_here, fly_over
-from .plan import AnyPlan, Calls, Plan
+from .plan import AnyPlan, Calls, Plan, designed
 from .rows import Rows
 from .sensitivity import sensitivities
 from .spec import Row
@@ -39,30 +38,10 @@ from .table import table, write_parquet
 if TYPE_CHECKING:
     import concurrent.futures
 
-Progress = Callable[[int, int], None]
+    from typing_extensions import Unpack
 
 TABLE = "table.csv"
 PARQUET = "table.parquet"
-
-_KINDS = {
-    "engines": arguments.NAMES,
-    "models": arguments.NAMES,
-    "vary": arguments.or_none(arguments.VALUES),
-    "points": arguments.or_none(arguments.NAME),
-    "design": arguments.NAME,
-    "measures": arguments.NAMES,
-    "out": arguments.or_none(arguments.NAME),
-    "executor": arguments.or_none((lambda value: hasattr(value, "submit"), "what has submit()")),
-    "dask": arguments.or_none((lambda value: isinstance(value, str), "tcp://HOST:PORT")),
-    "samples": arguments.or_none(arguments.COUNT),
-    "seeds": arguments.COUNT,
-    "duration": arguments.SECONDS,
-    "time_limit": arguments.LIMIT,
-    "processes": arguments.or_none(arguments.COUNT),
-    "progress": arguments.or_none(arguments.PROGRESS),
-    "resume": arguments.FLAG,
-    "parquet": arguments.FLAG,
-}
 
 
 class Sweep(NamedTuple):
@@ -84,6 +63,21 @@ class Sweep(NamedTuple):
         return f"<Sweep, {flown_and_failed(self.columns['failure'].tolist())}>"
 
 
+@takes(
+    SweepOptions,
+    engines=arguments.NAMES,
+    models=arguments.NAMES,
+    vary=arguments.or_none(arguments.VALUES),
+    points=arguments.or_none(arguments.NAME),
+    design=arguments.NAME,
+    measures=arguments.NAMES,
+    out=arguments.or_none(arguments.NAME),
+    executor=arguments.or_none((lambda value: hasattr(value, "submit"), "what has submit()")),
+    dask=arguments.or_none((lambda value: isinstance(value, str), "tcp://HOST:PORT")),
+    samples=arguments.or_none(arguments.COUNT),
+    resume=arguments.FLAG,
+    parquet=arguments.FLAG,
+)
 def sweep(
     controllers: Any = None,
     references: Any = None,
@@ -96,22 +90,13 @@ def sweep(
     design: str = "latin",
     samples: Optional[int] = None,
     engines: Union[str, Sequence[str]] = STUDIED,
-    models: Union[str, Path, Sequence[Union[str, Path]]] = "quadrotor",
-    seeds: int = 1,
-    duration: float = 10.0,
-    log_every: Optional[int] = None,
-    spawn: Optional[Sequence[float]] = None,
-    controller_rate: Optional[float] = None,
-    delay: Optional[float] = None,
-    time_limit: float = 300.0,
+    models: Names = "quadrotor",
     out: Optional[Union[str, Path]] = None,
     parquet: bool = False,
     resume: bool = False,
-    processes: Optional[int] = None,
     executor: Optional[concurrent.futures.Executor] = None,
     dask: Optional[str] = None,
-    progress: Optional[Progress] = None,
-    **options: Any,
+    **options: Unpack[Keywords],
 ) -> Sweep:
     """Fly thousands of flights, each described so that it can be flown anywhere.
 
@@ -133,7 +118,7 @@ def sweep(
     design, samples
         How axes with a distribution are drawn: "latin", "sobol", "random" or "saltelli"; and how
         many points, from `seed` on.
-    engines, models, seeds, duration, log_every, spawn, controller_rate, delay, time_limit
+    engines, models
         As for `evaluate`.
     out
         A folder in which ``table.csv`` grows by whole rows, in order once all are there.
@@ -141,16 +126,11 @@ def sweep(
         Whether to write ``table.parquet``, too, at the end.
     resume
         Whether to go on with what is there: nothing is flown twice.
-    processes
-        Of this machine; None takes one per core.
     executor
         Any of concurrent.futures' kind, in the place of `processes`.
     dask
         Address of a scheduler, in the place of `processes`.
-    progress
-        Called as progress(done, total).
     **options
-        As for `Simulation`: world, dt, seed (the first), parameters, xacro_args, ignore.
 
     Returns
     -------
@@ -166,31 +146,16 @@ def sweep(
     KeyboardInterrupt
         What was written is kept.
     """
-    given = dict(locals())
-    arguments.check({**{name: given[name] for name in _KINDS}, **options}, _KINDS)
-    made = Design(vary or {}, points, design, samples, whole(options.get("seed", 0)))
+    shared = SweepOptions(**options)
+    made, shared = designed(vary or {}, shared, points, design, samples)
     plan: AnyPlan
     if function is not None:
         if (controllers, references, commands) != (None, None, None):
             raise InputError("a function is called in the place of flights; give it, or these")
-        plan = Calls(made, function, arguments.several(measures), time_limit)
+        plan = Calls(made, function, arguments.several(measures), shared.time_limit)
     else:
-        plan = Plan(
-            made,
-            controllers,
-            references,
-            commands,
-            [engines] if isinstance(engines, str) else engines,
-            [models] if isinstance(models, (str, Path)) else models,
-            seeds,
-            duration,
-            log_every,
-            spawn,
-            controller_rate,
-            delay,
-            time_limit,
-            options,
-        )
+        names = arguments.several(engines), arguments.several(models)
+        plan = Plan(made, controllers, references, *names, shared, commands)
     with ExitStack() as stack:
         if out is None:
             if resume or parquet:
@@ -198,7 +163,9 @@ def sweep(
             out = stack.enter_context(tempfile.TemporaryDirectory())
         folder = Path(out)
         stack.enter_context(output_folder(folder))
-        rows = conduct(plan, folder, resume, parquet, processes, executor, dask, progress)
+        rows = conduct(
+            plan, folder, resume, parquet, shared.processes, executor, dask, shared.progress
+        )
         columns = table(rows)
     return Sweep(columns, sensitivities(plan, columns))
 

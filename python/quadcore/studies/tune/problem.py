@@ -3,41 +3,47 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 
 from ... import _core
 from ..._core import FlightError, InputError
 from ...control import laws, references
-from ...simulation.flight import check_logged
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
 from ...support import rotation
-from ...support.files import shown
+from ..axes import Values
+from ..cases import Case, Cases, check_sides, label_of, spread
+from ..design import Design
 from ..evaluate.measures import LOST, distance, loss, lost
+from ..guidance import Guidance, give_all, labelled, names_own
+from ..options import Options
+from ..variation import of_controller
 
 _GAIN = re.compile(r"(k[pidrw]|[qr])_\w+")
-_LOG_RATE = 100.0  # 1/s
 
 BESIDE, ASKEW = (0.3, -0.2, 0.25), (0.1, -0.1, 0.2)
 """Where flights begin that tell whether gains hold a vehicle at all, from the reference's start:
 how far off in the world (m), and turned how far about an axis of the frame (rad)."""
 _BACK = 10.0  # s, in which it is to be back
-_TOLD = ("engine", "duration", "dt", "seed")  # by themselves
 _LATE = 2.0  # s, the last of them
 _LEFT = 0.5  # of the distance at the start, at most, by then: z of `pd` has a pole at -0.22 1/s
+_APART = ("duration", "dt", "seed", "scenario", "processes", "progress")
+"""Options that the history does not list, or lists apart."""
 
 
-class Case(NamedTuple):
+class Trial(NamedTuple):
     """One flight that gains are tried in."""
 
     label: str
-    """Reference and, if there are several, model."""
+    """Reference and, if there are several, model, point and seed."""
     plan: FlightPlan
     """Without a controller."""
+    values: Mapping[str, float]
+    """What the point changes in the controller."""
     beside: bool = False
     """Whether it begins `BESIDE` the reference."""
 
@@ -57,18 +63,8 @@ class Problem:
 
     Parameters
     ----------
-    law
-        As `laws.parse` takes it, or a `laws.Law`.
-    models, held_out_models
-        Of the second, and of `held_out`, only the judgement is told.
-    references_, held_out
-        As `references.parse` takes them, or functions.
-    only
-        Parameters to tune; None: the gains that are not zero.
-    spawn
-        Where flights begin; None is on the reference.
-    options
-        As for `FlightPlan.of`.
+    law, models, references_, held_out, held_out_models, only, engine, vary, options
+        As for `tune`.
 
     Raises
     ------
@@ -80,41 +76,49 @@ class Problem:
         self,
         law: Union[str, laws.Law],
         models: Sequence[Union[str, Path]],
-        held_out_models: Sequence[Union[str, Path]],
         references_: Sequence[Any],
         held_out: Sequence[Any],
+        held_out_models: Sequence[Union[str, Path]],
         only: Optional[Sequence[str]],
-        spawn: Optional[Sequence[float]],
-        options: Mapping[str, Any],
+        engine: str,
+        vary: Mapping[str, Values],
+        options: Options,
     ) -> None:
         if not models or not references_ or not held_out:
             raise InputError("tuning needs a model, a reference, and a reference that is held out")
-        where = {"on_reference": True} if spawn is None else {"spawn": spawn}
-        self._plans = {
-            shown(model): FlightPlan.of(model, **options, **where)
-            for model in [*models, *held_out_models]
-        }
-        self.vehicle = next(iter(self._plans.values())).model.name
-        self.law = laws.parse(law, self.vehicle) if isinstance(law, str) else law
-        if not isinstance(self.law, laws.Law):
+        if names_own(law) or not isinstance(law, (str, laws.Law)):
             raise InputError(f"{law}: no law of quadcore: only their gains can be tuned")
-        trained = _named(references_)
-        judged = _named(held_out)
-        for label in judged:
-            if label in trained:
+        trained, judged = (
+            labelled("reference", some, references.Shape) for some in (references_, held_out)
+        )
+        for label, _ in judged:
+            if label in dict(trained):
                 raise InputError(f"reference '{label}' is tuned on and held out; choose one")
-        self.models = [shown(model) for model in models]
-        own, others = ([shown(model) for model in some] for some in (models, held_out_models))
-        on_the_way = self._cases(own, trained)
-        self.training = on_the_way + [
-            Case(f"{label}, from beside it", plan, True)
-            for label, plan, _ in on_the_way
-            if plan.on_reference
+        if options.log_every is not None:
+            raise InputError("tuning writes no log; leave log_every out")
+        self.options = options
+        vary, options = spread(vary, options)
+        design = Design(vary)
+        everything = [*models, *held_out_models]
+        check_sides(everything, design)
+        timing = options.controller_rate, options.delay
+        guidance = Guidance([("", law)], [*trained, *judged], *timing, options.spawn is None)
+        self._cases = Cases(design, guidance, everything, [engine], options)
+        self._cases.check()
+        self.models = self._cases.models[: len(models)]
+        self.vehicle = self._cases.vehicles[0]
+        self.law: laws.Law = guidance.make(0, self.vehicle, {})
+        self.training: List[Trial] = []
+        self.held_out: List[Trial] = []
+        for case in sorted(self._cases, key=lambda case: (case.model, case[1:])):
+            is_trained = case.model < len(models) and case.reference < len(trained)
+            (self.training if is_trained else self.held_out).append(self._trial(case))
+        self.training += [
+            trial._replace(label=f"{trial.label}, from beside it", beside=True)
+            for trial in self.training
+            if trial.plan.on_reference
         ]
-        self.held_out = self._cases(own, judged) + self._cases(others, {**trained, **judged})
-        told = {name: value for name, value in options.items() if name not in _TOLD}
-        self._options = {**told, "spawn": spawn}
-        self.to_come_back_to = [case for case in self.held_out if case.plan.on_reference]
+        self.to_come_back_to = [trial for trial in self.held_out if trial.plan.on_reference]
         self.start = self._start(only)
 
     def with_gains(self, gains: Mapping[str, float]) -> laws.Law:
@@ -123,11 +127,11 @@ class Problem:
         law.parameters.update(gains)
         return law
 
-    def fly(self, case: Case, gains: Mapping[str, float]) -> Flown:
-        """Fly a case and measure it; raises `InputError` if the law refuses gains or vehicle."""
+    def fly(self, trial: Trial, gains: Mapping[str, float]) -> Flown:
+        """Fly a trial and measure it; raises `InputError` if the law refuses gains or vehicle."""
         failure = ""
         try:
-            log = self._log(case, gains)
+            log = self._log(trial, gains)
         except FlightError as error:
             log, failure = error.log, str(error)  # type: ignore[attr-defined]
         away = np.minimum(np.nan_to_num(distance(log), nan=LOST), LOST)
@@ -136,17 +140,17 @@ class Problem:
             failure = loss(log)
             away[log.time >= late] = LOST
         # What a flight that failed has not flown, it was lost in.
-        rest = max(0.0, 1 - (log.time[-1] - log.time[0]) / case.plan.duration) if failure else 0.0
+        rest = max(0.0, 1 - (log.time[-1] - log.time[0]) / trial.plan.duration) if failure else 0.0
         square = (1 - rest) * np.mean(away**2) + rest * LOST**2
         return Flown(float(np.sqrt(square)), failure)
 
-    def comes_back(self, case: Case, gains: Mapping[str, float]) -> str:
-        """Fly a case from its start and from beside it; "" if both are one flight in the end.
+    def comes_back(self, trial: Trial, gains: Mapping[str, float]) -> str:
+        """Fly a trial from its start and from beside it; "" if both are one flight in the end.
 
         On the reference a law that knows all hardly needs its gains, and whatever error is left
         there is no fault of theirs: what they are for is that a vehicle beside it comes back.
         """
-        longer = case._replace(plan=replace(case.plan, duration=_BACK))
+        longer = trial._replace(plan=replace(trial.plan, duration=_BACK))
         try:
             logs = [self._log(longer._replace(beside=beside), gains) for beside in (False, True)]
         except FlightError as error:
@@ -157,10 +161,10 @@ class Problem:
             return ""
         return f"after {_BACK:g} s it is {left:.3g} m from where it should be, of {apart[0]:.3g} m"
 
-    def _log(self, case: Case, gains: Mapping[str, float]) -> Log:
-        plan = replace(case.plan, controller=self.with_gains(gains))
+    def _log(self, trial: Trial, gains: Mapping[str, float]) -> Log:
+        plan = replace(trial.plan, controller=give_all(self.with_gains(gains), trial.values))
         simulation = plan.simulation()
-        if case.beside:
+        if trial.beside:
             state = simulation.state.copy()
             state.position = state.position + BESIDE
             state.orientation = rotation.turned(state.orientation, np.array(ASKEW))
@@ -175,25 +179,31 @@ class Problem:
     def setting(self) -> Dict[str, Any]:
         """Say how everything flies, in plain values."""
         plan = self.training[0].plan
-        given = {name: value for name, value in self._options.items() if value}
+        told = {each.name: getattr(self.options, each.name) for each in fields(Options)}
+        axes = {axis.name: list(axis.values) for axis in self._cases.design.listed}
+        defaults = vars(Options())
         return {
             "engine": plan.engine,
             "duration": plan.duration,
             "dt": plan.step,
-            **{name: _plain(value) for name, value in given.items()},
+            **{
+                name: _plain(value)
+                for name, value in told.items()
+                if value and value != defaults[name] and name not in _APART
+            },
+            **({"vary": axes} if axes else {}),
         }
 
-    def _cases(self, models: Sequence[str], shapes: Mapping[str, Any]) -> List[Case]:
-        several = len(self._plans) > 1
-        cases = []
-        for model in models:
-            plan = self._plans[model]
-            every = max(1, round(1 / (_LOG_RATE * plan.step)))
-            check_logged(plan.duration, plan.step, every)
-            for label, shape in shapes.items():
-                name = f"{label}, {model}" if several else label
-                cases.append(Case(name, replace(plan, reference=shape, log_every=every)))
-        return cases
+    def _trial(self, case: Case) -> Trial:
+        cases, parts = self._cases, [self._cases.guidance.references[case.reference]]
+        if len(cases.models) > 1:
+            parts.append(cases.models[case.model])
+        if len(cases.design) > 1:
+            parts.append(label_of(cases.design[case.point]))
+        if len(cases.seeds) > 1:
+            parts.append(f"seed {cases.seeds[case.seed]}")
+        values = of_controller(cases.design[case.point])
+        return Trial(", ".join(parts), cases.unguided(case), values)
 
     def _start(self, only: Optional[Sequence[str]]) -> Dict[str, float]:
         table = next(specs for name, _, specs in _core.laws() if name == self.law.name)
@@ -223,20 +233,3 @@ def _plain(value: Any) -> Any:
     if isinstance(value, (list, tuple, np.ndarray)):
         return [_plain(one) for one in value]
     return value if isinstance(value, (bool, int, float)) else str(value)
-
-
-def _named(shapes: Sequence[Any]) -> Dict[str, Any]:
-    """Make references of what names them, by label."""
-    named: Dict[str, Any] = {}
-    for shape in shapes:
-        label, made = _one(shape)
-        if label in named:
-            raise InputError(f"reference '{label}' is named twice; keep one")
-        named[label] = made
-    return named
-
-
-def _one(shape: Any) -> Tuple[str, Any]:
-    if isinstance(shape, str):
-        return shape, references.parse(shape)
-    return getattr(shape, "__name__", repr(shape)), shape

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -12,7 +12,9 @@ from ...control.gains import Gains
 from ...support.warning import unheard
 from ..evaluate.measures import LOST
 from ..executor import conducted
-from .problem import Case, Flown, Problem
+from ..options import Progress
+from ..time_limit import time_limit
+from .problem import Flown, Problem, Trial
 
 OBJECTIVE = (
     "mean over the cases, from the start of the reference and from beside it, of the root mean "
@@ -20,8 +22,6 @@ OBJECTIVE = (
 )
 
 _SPREAD = 0.8  # of the logarithm of a gain at first: most lie within a factor of 2.2
-
-Progress = Callable[[int, int], None]
 
 
 class Tuning(NamedTuple):
@@ -48,8 +48,6 @@ class Search:
         self,
         problem: Problem,
         budget: int,
-        seed: int,
-        processes: Optional[int],
         progress: Optional[Progress],
     ) -> None:
         if budget < 1:
@@ -59,8 +57,9 @@ class Search:
         self.refusal = ""
         self._problem = problem
         self._budget = budget
-        self._seed = seed
-        self._processes = processes
+        options = problem.options
+        self._seed = options.seed
+        self._limit, self._processes = options.time_limit, options.processes
         self._progress = progress
         self._best: Optional[Tuple[float, Dict[str, float], Dict[str, float]]] = None
         """Objective, gains, and error by held-out case."""
@@ -152,7 +151,7 @@ class Search:
             left[index] = str(outcome)
 
         def fly(index: int) -> str:
-            with unheard():
+            with unheard(), time_limit(self._limit):
                 return problem.comes_back(problem.to_come_back_to[index], gains)
 
         conducted(fly, range(len(left)), take, self._processes)
@@ -166,7 +165,7 @@ class Search:
         self.refused += 1
         self.refusal = f"those that fly best {reason}"
 
-    def _fly(self, flights: Sequence[Tuple[Case, Mapping[str, float]]]) -> List[Flown]:
+    def _fly(self, flights: Sequence[Tuple[Trial, Mapping[str, float]]]) -> List[Flown]:
         outcomes: List[Optional[Flown]] = [None] * len(flights)
 
         def take(index: int, outcome: Union[Flown, QuadcoreError]) -> None:
@@ -175,7 +174,7 @@ class Search:
             outcomes[index] = Flown(LOST, str(outcome)) if failed else outcome  # type: ignore
 
         def fly(index: int) -> Flown:
-            with unheard():
+            with unheard(), time_limit(self._limit):
                 return self._problem.fly(*flights[index])
 
         # By their numbers: a reference may be a function, which no process can send to another.

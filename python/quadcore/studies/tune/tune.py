@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Any, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Union
 
 from ..._core import FlightError
 from ...control import laws
@@ -11,39 +10,40 @@ from ...simulation.engines import STUDIED
 from ...support import arguments
 from ...support.arguments import several
 from ...support.extras import needed
+from ..axes import Values
+from ..options import Keywords, Names, Options, Progress, takes
 from .problem import Problem
-from .search import Progress, Search, Tuning
+from .search import Search, Tuning
 
-_KINDS = {
-    "model": arguments.NAMES,
-    "references": arguments.GUIDES,
-    "held_out": arguments.GUIDES,
-    "held_out_models": arguments.NAMES,
-    "only": arguments.or_none(arguments.NAMES),
-    "engine": arguments.NAME,
-    "duration": arguments.SECONDS,
-    "budget": arguments.WHOLE,
-    "processes": arguments.or_none(arguments.COUNT),
-    "progress": arguments.or_none(arguments.PROGRESS),
-}
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
 _INTERRUPTED = "interrupted"
 
 
+@takes(
+    Options,
+    model=arguments.NAMES,
+    references=arguments.GUIDES,
+    held_out=arguments.GUIDES,
+    held_out_models=arguments.NAMES,
+    only=arguments.or_none(arguments.NAMES),
+    engine=arguments.NAME,
+    vary=arguments.or_none(arguments.AXES),
+    budget=arguments.WHOLE,
+)
 def tune(
     law: Union[str, laws.Law],
-    model: Union[str, Path, Sequence[Union[str, Path]]] = "quadrotor",
+    model: Names = "quadrotor",
     references: Sequence[Any] = ("spiral", "step"),
     held_out: Sequence[Any] = ("circle", "eight"),
-    held_out_models: Sequence[Union[str, Path]] = (),
+    held_out_models: Names = (),
     only: Optional[Sequence[str]] = None,
+    *,
     engine: str = STUDIED,
-    duration: float = 10.0,
+    vary: Optional[Mapping[str, Values]] = None,
     budget: int = 300,
-    seed: int = 0,
-    spawn: Optional[Sequence[float]] = None,
-    processes: Optional[int] = None,
-    progress: Optional[Progress] = None,
-    **options: Any,
+    **options: Unpack[Keywords],
 ) -> Tuning:
     """Search for gains of a law.
 
@@ -68,20 +68,13 @@ def tune(
     only
         Parameters to tune; without, all gains that are not zero at the start: those named k._...,
         ``q_...`` and ``r_...``.
-    engine, duration
-        Of each flight; s.
+    engine
+        Of each flight.
+    vary
+        Conditions by axis, as for `evaluate`: gains are tuned, and judged, in all combinations.
     budget
         Gains to try, at least.
-    seed
-        Of the search and of all noise.
-    spawn
-        Where flights begin; without, in the full flat state of the reference.
-    processes
-        How many; None takes one per core.
-    progress
-        Called as progress(evaluations, budget).
     **options
-        As for `Simulation`: world, dt, parameters, xacro_args, ignore.
 
     Returns
     -------
@@ -96,21 +89,18 @@ def tune(
     KeyboardInterrupt
         Its attribute `tuning` has the best so far, or None if all were refused.
     """
-    given = dict(locals())
-    arguments.check({**{name: given[name] for name in _KINDS}, **options}, _KINDS)
-    options.update(engine=engine, duration=duration, seed=seed)
-    problem = Problem(
-        law,
-        several(model),
-        several(held_out_models),
-        several(references),
-        several(held_out),
-        None if only is None else several(only),
-        spawn,
-        options,
-    )
+    shared = Options(**options)
+    flown = several(model), several(references)
+    judged = several(held_out), several(held_out_models)
+    chosen = None if only is None else several(only)
+    problem = Problem(law, *flown, *judged, chosen, engine, vary or {}, shared)
+    return conduct(problem, budget, shared.progress)
+
+
+def conduct(problem: Problem, budget: int, progress: Optional[Progress] = None) -> Tuning:
+    """Search for the gains of a problem; raises as `tune`."""
     cma = _cma()
-    search = Search(problem, budget, seed, processes, progress)
+    search = Search(problem, budget, progress)
     try:
         search.run(cma)
     except KeyboardInterrupt as stop:

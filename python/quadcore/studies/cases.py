@@ -1,0 +1,308 @@
+"""The flights of a study: everything that is combined, read and checked before the first flies."""
+
+from __future__ import annotations
+
+import math
+from contextlib import contextmanager, nullcontext
+from dataclasses import replace
+from pathlib import Path
+from typing import (
+    Any,
+    Dict,
+    Iterator,
+    List,
+    Mapping,
+    NamedTuple,
+    Optional,
+    Sequence,
+    Tuple,
+    TypeVar,
+    Union,
+)
+
+from .._core import InputError, World, check_ignored
+from ..model.description import list_of_names, read_world
+from ..simulation.commands import CommandsLike, as_commands
+from ..simulation.controller_pilot import Guided
+from ..simulation.engines import list_engines
+from ..simulation.flight import check_logged
+from ..simulation.flight_plan import FlightPlan
+from ..simulation.scenarios import Scenario
+from ..simulation.simulation import Simulation
+from ..support.files import shown
+from ..support.values import whole
+from ..support.warning import unheard
+from .axes import OF_CONTROLLER
+from .design import Design, Point
+from .guidance import Guidance
+from .options import Options
+from .variation import Variation, of_controller
+
+T = TypeVar("T", bound=Options)
+
+LOG_RATE = 100.0
+"""Rows per second that a flight is measured by."""
+
+
+class Case(NamedTuple):
+    """One flight, by the positions of what it is made of."""
+
+    controller: int = 0
+    reference: int = 0
+    engine: int = 0
+    model: int = 0
+    point: int = 0
+    seed: int = 0
+
+
+class Cases(Sequence[Case]):
+    """Controllers x references x engines x models x points x seeds; the last run fastest.
+
+    Parameters
+    ----------
+    design
+        Points of the axes: what each flight changes.
+    guidance
+        Controllers and references.
+    models, engines
+        Files or names.
+    options
+        What all flights share.
+    wrenches
+        Whether their logs hold wrenches.
+    largest
+        Number of flights that the study may have.
+
+    Raises
+    ------
+    InputError
+        If something cannot be read, or there are too many flights.
+    """
+
+    def __init__(
+        self,
+        design: Design,
+        guidance: Guidance,
+        models: Sequence[Union[str, Path]],
+        engines: Sequence[str],
+        options: Options,
+        wrenches: bool = False,
+        largest: int = 100_000,
+    ) -> None:
+        self.design, self.guidance, self.options = design, guidance, options
+        self.models, self.engines = [shown(model) for model in models], list(engines)
+        first = whole(options.seed)
+        self.seeds = range(first, first + options.seeds)
+        self._sizes = self._check_sizes(largest)
+        scenario: Any = options.scenario
+        world: Any = options.world
+        self.variation = Variation(
+            models,
+            design,
+            options.parameters,
+            options.xacro_args,
+            options.ignore,
+            scenario,
+        )
+        if not isinstance(world, World):
+            world = read_world(world, options.ignore)
+        everything = [*self.variation.models, world, *self.variation.worlds.values()]
+        ignored = list_of_names("ignore", options.ignore)
+        check_ignored(ignored, [each.passed_over for each in everything])
+        where = {} if options.spawn is None else {"spawn": options.spawn}
+        common: Dict[str, Any] = {"dt": options.dt, "duration": options.duration, **where}
+        self._plans = [
+            FlightPlan.of(
+                model, world, on_reference=guidance.on_reference, wrenches=wrenches, **common
+            )
+            for model in self.variation.models
+        ]
+        guidance.check(self.vehicles)
+
+    def __len__(self) -> int:
+        return math.prod(self._sizes)
+
+    def __getitem__(self, row: Any) -> Any:
+        if not 0 <= row < len(self):
+            raise IndexError(row)
+        where = []
+        for size in reversed(self._sizes):
+            row, at = divmod(row, size)
+            where.append(at)
+        return Case._make(reversed(where))
+
+    @property
+    def vehicles(self) -> List[str]:
+        """Names of the models' robots."""
+        return [model.name for model in self.variation.models]
+
+    def unguided(self, case: Case) -> FlightPlan:
+        """Describe a flight but for its controller."""
+        plan = replace(
+            self._plans[case.model],
+            engine=self.engines[case.engine],
+            seed=self.seeds[case.seed],
+            reference=self.guidance.shapes[case.reference] if self.guidance.is_given else None,
+        )
+        plan = self.variation.apply(plan, case.model, self.design[case.point])
+        return replace(plan, log_every=self.rows_every(plan.step))
+
+    def flight(self, case: Case) -> FlightPlan:
+        """Describe a flight with a controller of its own; raises what making that raises."""
+        plan = self.unguided(case)
+        if not self.guidance.is_given:
+            return plan
+        return replace(plan, controller=self.controller(case))
+
+    def controller(self, case: Case) -> Any:
+        """Make the controller of a flight, with what its point changes in it."""
+        values = of_controller(self.design[case.point])
+        return self.guidance.make(case.controller, self.vehicles[case.model], values)
+
+    def vehicle(self, model: int, point: Point) -> Simulation:
+        """Make a model as a point changes it."""
+        plan = replace(self._plans[model], engine=self.engines[0], on_reference=False)
+        return self.variation.apply(plan, model, point).simulation()
+
+    def check(self, commands: Optional[CommandsLike] = None) -> List[Simulation]:
+        """Make each model, and start each shipped controller on it, at some of the points.
+
+        Parameters
+        ----------
+        commands
+            Flown open loop, as `Simulation.run` takes them.
+
+        Returns
+        -------
+        list of Simulation
+            Each model at the first point.
+
+        Raises
+        ------
+        InputError
+            If anything is wrong that shows before a flight; the user's controllers are not started.
+        """
+        made = []
+        for model in range(len(self.models)):
+            for i, point in enumerate(self.design.to_try()):
+                with unheard() if i else nullcontext():  # the first says what is doubtful
+                    vehicle = self.vehicle(model, point)
+                    self.start(model, point, vehicle)
+                if not i:
+                    made.append(vehicle)
+        for plan in self._plans:
+            for world in [plan.world, *self.variation.worlds.values()]:
+                step = replace(plan, world=world).step
+                check_logged(self.options.duration, step, self.rows_every(step))
+        if commands is not None:
+            self.command(commands, [vehicle.command_width for vehicle in made])
+        return made
+
+    def command(self, commands: CommandsLike, widths: Sequence[int]) -> None:
+        """Let all flights follow commands, for models of so many rotors."""
+        self._plans = [
+            replace(plan, commands=as_commands(commands, width))
+            for plan, width in zip(self._plans, widths)
+        ]
+
+    def rows_every(self, dt: float) -> int:
+        """Count the steps from one logged row to the next."""
+        if self.options.log_every is None:
+            return max(1, round(1 / (LOG_RATE * dt)))
+        return self.options.log_every
+
+    def setting(self) -> Dict[str, Any]:
+        """Give what all flights share, in plain values."""
+        options, step = self.options, self._plans[0].step
+        spawn = options.spawn
+        return {
+            "seeds": list(self.seeds),
+            "duration": float(options.duration),
+            "world": None if options.world is None else str(options.world),
+            "dt": step,
+            "log_every": self.rows_every(step),
+            "spawn": None if spawn is None else [float(value) for value in spawn],
+            "controller_rate": options.controller_rate,
+            "delay": options.delay,
+            "set": dict(self.variation.set),
+            "xacro": {name: str(value) for name, value in self.variation.arguments.items()},
+            "ignore": list(options.ignore),
+        }
+
+    def _check_sizes(self, largest: int) -> Tuple[int, ...]:
+        guides = self.guidance.controllers, self.guidance.references
+        if self.guidance.is_given:
+            check_labels("controller", guides[0])
+            check_labels("reference", guides[1])
+        check_labels("engine", self.engines)
+        known = [name for name, _ in list_engines()]
+        for engine in self.engines:
+            if engine not in known:
+                raise InputError(f"there is no engine '{engine}'; give some of {', '.join(known)}")
+        if not self.guidance.is_given:
+            for name in self.design.names:
+                if name.startswith(OF_CONTROLLER):
+                    raise InputError(f"vary {name}: there is no controller; name a --controller")
+        sides = self.engines, self.models
+        sizes = [*(len(side) or 1 for side in guides), *map(len, sides)]
+        sizes += [self.design.size, len(self.seeds)]
+        if math.prod(sizes) > largest:
+            raise InputError(f"these are {math.prod(sizes)} flights; at most {largest} are flown")
+        return tuple(sizes)
+
+    def start(self, model: int, point: Point, vehicle: Simulation) -> None:
+        """Start each shipped controller on a model as a point changes it."""
+        with _blaming(point):
+            for i in range(len(self.guidance.things)):
+                if not self.guidance.is_own(i):
+                    values = of_controller(point)
+                    controller = self.guidance.make(i, self.vehicles[model], values)
+                    Guided(controller, vehicle).reset(vehicle)
+
+
+def check_sides(models: Sequence[Union[str, Path]], design: Design) -> None:
+    """Raise `InputError` if a model is named twice, or an axis varies the engines."""
+    check_labels("model", [shown(model) for model in models])
+    if "engine" in design.names:
+        raise InputError("vary engine: name the engines by themselves")
+
+
+def spread(vary: Mapping[str, Any], options: T, least: int = 1) -> Tuple[Mapping[str, Any], T]:
+    """Make an axis of the scenarios that the options name, if there are so many."""
+    scenario: Any = options.scenario
+    names = list(scenario) if isinstance(scenario, (list, tuple)) else [scenario]
+    if scenario is None or not names:
+        return vary, options
+    if "scenario" in vary:
+        raise InputError("vary scenario: it is given as well; keep one")
+    if len(names) < least or isinstance(names[0], Scenario):
+        return vary, replace(options, scenario=names[0])
+    return {"scenario": names, **vary}, replace(options, scenario=None)
+
+
+def check_labels(kind: str, names: Sequence[str]) -> None:
+    """Raise `InputError` if nothing of a kind is named, or something twice."""
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"{kind} '{name}' is named twice; keep one, or label them")
+    if not names:
+        raise InputError(f"no {kind} is named; name at least one")
+
+
+def label_of(point: Mapping[str, str]) -> str:
+    """Name a point."""
+    return " ".join(
+        value if name == "scenario" else f"{name}={value}" for name, value in point.items()
+    )
+
+
+@contextmanager
+def _blaming(point: Mapping[str, str]) -> Iterator[None]:
+    """Name what a point gives to controllers in an error of the block."""
+    try:
+        yield
+    except InputError as error:
+        given = {name: text for name, text in point.items() if name.startswith(OF_CONTROLLER)}
+        if not given or str(error).startswith("vary "):
+            raise
+        raise InputError(f"vary {label_of(given)}: {error}") from error
