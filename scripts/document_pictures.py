@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import quadcore as qc
-from quadcore.report import vehicle_picture
+from quadcore.report import vehicle_plot
 from quadcore.report.plots import dress, png
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -162,7 +162,7 @@ def draw_rotors() -> None:
 
 def draw_vehicle() -> None:
     """Draw the shipped quadrotor as ``quadcore info --picture`` does."""
-    figure = vehicle_picture.draw(qc.Simulation("quadrotor", xacro_args={"sim_slow": 1}))
+    figure = vehicle_plot.draw(qc.Simulation("quadrotor", xacro_args={"sim_slow": 1}))
     save_in_few_colours("vehicle", Image.open(io.BytesIO(png(figure))))
 
 

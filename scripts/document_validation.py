@@ -18,7 +18,7 @@ from quadcore.thesis.validation import Case, Experiment, Study, conduct
 from quadcore.thesis.validation.experiment import NO_LAG
 from quadcore.thesis.validation.figures import pictures
 from quadcore.thesis.validation.output import size
-from quadcore.thesis.validation.thesis import KINDS, thesis_figures
+from quadcore.thesis.validation.thesis_figures import KINDS, thesis_figures
 
 FROM_THE_COMMAND = {"position": "position_all", "error": "error_all", "chain": "chain_all"}
 

@@ -24,7 +24,7 @@ from vehicles import (
 
 import quadcore as qc
 from quadcore.thesis.chapter2 import GYROSTAT, THESIS, MathematicalModel, Terms, Vehicle
-from quadcore.thesis.validation.given_speeds import STIFFNESS, fly_given_speeds
+from quadcore.thesis.validation.prescribed_speeds import STIFFNESS, fly_given_speeds
 
 HOVER = np.sqrt(1.04 * 9.8 / 4 / 1.1487e-5)
 BALANCED = HOVER * np.array([1, -1, 1, -1])

@@ -13,7 +13,7 @@ from processes import FALL, ran, refused, script
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.support.files import atomic_write
+from quadcore.support.output_files import atomic_write
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 

@@ -12,7 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.report import log_pictures, plots
+from quadcore.report import log_plots, plots
 from quadcore.studies.compare import pictures as overlaid
 
 ONE = {f"{name}.png" for name in ("position", "attitude", "rates", "rotors", "path")}
@@ -72,7 +72,7 @@ def test_rounding_is_drawn_as_a_flat_line():
     table = np.zeros((3, 18))
     table[:, 0], table[:, 7] = range(3), 1
     table[:, 1], table[:, 3] = [0, 1e-14, -1e-14], [10, 9, 7]
-    x, _, z = log_pictures._position(qc.Log(table, {})).axes
+    x, _, z = log_plots._position(qc.Log(table, {})).axes
     assert x.get_ylim() == (-1, 1) and list(x.get_yticks()) == [0]
     assert z.get_ylim()[1] - z.get_ylim()[0] < 4
 
@@ -99,10 +99,10 @@ def test_no_label_is_cut_off_or_lies_on_its_neighbour(size, from_):
     table[:, 1:4] = table[:, 8:14] = from_ - size * np.linspace(0, 1, 9)[:, None]
     log = qc.Log(table, {}, topics={"error": dict(zip("xyz", table[:, 1:4].T))})
     for draw in (
-        log_pictures._position,
-        log_pictures._error,
-        log_pictures._rates,
-        log_pictures.glance,
+        log_plots._position,
+        log_plots._error,
+        log_plots._rates,
+        log_plots.glance,
     ):
         figure = draw(log)
         renderer = FigureCanvasAgg(figure).get_renderer()
@@ -119,7 +119,7 @@ def test_no_label_is_cut_off_or_lies_on_its_neighbour(size, from_):
 def test_speeds_of_slow_rotors_are_drawn_as_commanded_too():
     log = qc.Log.of_file("climb.csv")
     log.per_command = 0.1
-    (beside,) = log_pictures._rotors(log).axes[1].child_axes
+    (beside,) = log_plots._rotors(log).axes[1].child_axes
     assert np.allclose(beside._functions[0](np.array([47.1])), 471)
     assert beside.get_ylabel() == "commanded (rad/s)"
 

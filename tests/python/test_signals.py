@@ -10,7 +10,7 @@ import pytest
 
 from quadcore.cli import main
 from quadcore.support import interrupts
-from quadcore.support.files import atomic_write
+from quadcore.support.output_files import atomic_write
 
 SIGNALS = list(interrupts.SIGNALS)
 

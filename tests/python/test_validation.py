@@ -14,7 +14,7 @@ from quadcore.thesis.chapter2 import Vehicle
 from quadcore.thesis.validation import MODEL, Case, Experiment, compare, states
 from quadcore.thesis.validation.ascent import ascent
 from quadcore.thesis.validation.experiment import at_steps
-from quadcore.thesis.validation.given_speeds import speeds
+from quadcore.thesis.validation.prescribed_speeds import speeds
 
 ROOT = Path(__file__).resolve().parents[2]
 HEXAROTOR = ROOT / "tests/data/gazebo11/cases/B1_hexa_hover/model.urdf"

@@ -16,11 +16,11 @@ from test_docs import COMMANDS
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.thesis.validation import Experiment, causes, conduct
+from quadcore.thesis.validation import Experiment, cause_plots, conduct
 from quadcore.thesis.validation import figures as pictures_of_study
 from quadcore.thesis.validation.figures import pictures
 from quadcore.thesis.validation.output import size
-from quadcore.thesis.validation.thesis import KINDS, SIM_SLOW, thesis_figures
+from quadcore.thesis.validation.thesis_figures import KINDS, SIM_SLOW, thesis_figures
 
 ROOT = Path(__file__).resolve().parents[2]
 HEXAROTOR = ROOT / "tests/data/gazebo11/cases/B1_hexa_hover/model.urdf"
@@ -110,7 +110,7 @@ def short():
 
 def test_no_text_of_a_picture_is_cut_off(short, study, monkeypatch):
     figures = []
-    for module in (pictures_of_study, causes):
+    for module in (pictures_of_study, cause_plots):
         monkeypatch.setattr(module, "png", figures.append)
     for draw, what in [*pictures(short).values(), *pictures(study).values()]:
         draw(*what)
@@ -124,9 +124,9 @@ def test_no_text_of_a_picture_is_cut_off(short, study, monkeypatch):
 
 def test_bars_are_labelled_as_the_tables_have_it_and_rounding_is_no_bar(short, monkeypatch):
     figures = []
-    monkeypatch.setattr(causes, "png", figures.append)
+    monkeypatch.setattr(cause_plots, "png", figures.append)
     chains = [chain for chain in short.chains if chain.drag == "none"]
-    causes.draw_chains(chains)
+    cause_plots.draw_chains(chains)
     (axes,) = figures[0].axes
     links = {(link.begin, link.end): link.largest for chain in chains for link in chain.links}
     assert sorted(text.get_text() for text in axes.texts) == sorted(

@@ -8,7 +8,7 @@ from vehicles import AIR, COM, MOTOR, ODD, SKEW, vehicle
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.report import vehicle_picture
+from quadcore.report import vehicle_plot
 
 
 @pytest.fixture
@@ -18,7 +18,7 @@ def odd(hangar):
 
 def test_a_box_has_the_mass_the_place_and_the_inertia_of_its_link(odd):
     for link, pose in zip(odd.model.links, odd.model.link_poses):
-        corners = vehicle_picture._box(link, pose)
+        corners = vehicle_plot._box(link, pose)
         assert np.allclose(corners.mean(axis=0), pose[:3, :3] @ link.center_of_mass + pose[:3, 3])
         # Of a solid box the second moments are a third of those of masses at its corners.
         arms = corners - corners.mean(axis=0)
@@ -29,8 +29,8 @@ def test_a_box_has_the_mass_the_place_and_the_inertia_of_its_link(odd):
 
 def spins(simulation):
     """Of each rotor, whether it turns counter-clockwise seen from above."""
-    rotors = vehicle_picture._rotors(simulation)
-    return [rotor.colour == vehicle_picture._AHEAD for rotor in rotors]
+    rotors = vehicle_plot._rotors(simulation)
+    return [rotor.colour == vehicle_plot._AHEAD for rotor in rotors]
 
 
 def test_rotors_turn_as_in_hover_whatever_sign_their_commands_have():
@@ -43,10 +43,8 @@ def test_rotors_turn_as_in_hover_whatever_sign_their_commands_have():
 
 def test_a_vehicle_that_nothing_drives_is_drawn_with_rotors_at_rest(hangar):
     still = hangar(vehicle(ODD))
-    assert [rotor.colour for rotor in vehicle_picture._rotors(still)] == [
-        vehicle_picture._STILL
-    ] * 4
-    vehicle_picture.draw(still)
+    assert [rotor.colour for rotor in vehicle_plot._rotors(still)] == [vehicle_plot._STILL] * 4
+    vehicle_plot.draw(still)
 
 
 def test_info_writes_the_picture_and_refuses_other_files(tmp_path, capsys):

@@ -9,7 +9,7 @@ from typing import Any, NoReturn, Sequence
 from .. import __version__
 from .._core import FlightError, InputError, QuadcoreError
 from ..support import interrupts
-from ..support.files import shown
+from ..support.output_files import shown
 from ..support.parameters import did_you_mean
 from . import (
     compare,

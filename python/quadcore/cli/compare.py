@@ -18,13 +18,12 @@ from ..studies.folder import output_folder
 from ..studies.options import CompareOptions
 from ..studies.table import number_text, shown_in
 from ..support import parse
-from ..support.files import make_folder
+from ..support.output_files import make_folder
 from ..support.values import SPAWN
 from . import options, terminal
-from .failures import report_failures
-from .kept import kept
+from .failed_flights import report_failures
+from .interrupted_output import kept
 from .options_file import planned
-from .unmeant import warn_of_commands
 
 _ROWS = 40  # on the terminal
 _FEW = 20  # logs that --out writes unasked

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ..simulation.log import Log, check_log_path
-from ..support.files import remove_left
+from ..support.output_files import remove_left
 from . import options
 
 

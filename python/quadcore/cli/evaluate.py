@@ -11,8 +11,8 @@ from ..simulation.engines import STUDIED
 from ..studies.folder import output_folder
 from ..studies.options import EvaluateOptions
 from . import options, terminal
-from .failures import report_failures
-from .kept import kept
+from .failed_flights import report_failures
+from .interrupted_output import kept
 from .options_file import planned
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import Any
 
 from .._core import InputError
 from . import options
-from .unmeant import refuse_log_every
+from .command_checks import refuse_log_every
 
 
 def register(commands: Any) -> None:

@@ -11,9 +11,9 @@ from .._core import InputError, engines, parse_number
 from ..simulation.engines import STUDIED
 from ..studies.fit.record import CHANNELS
 from ..support import parse
-from ..support.files import atomic_write, check_writable, text_bytes
+from ..support.output_files import atomic_write, check_writable, text_bytes
 from . import options, terminal
-from .kept import kept
+from .interrupted_output import kept
 
 if TYPE_CHECKING:
     from ..studies.fit.fit import Fit

@@ -13,7 +13,7 @@ from rich.table import Table
 from .._core import InputError, parse_number
 from ..model import resources
 from ..simulation.simulation import Simulation
-from ..support.files import atomic_write
+from ..support.output_files import atomic_write
 from ..thesis.chapter2.vehicle import Vehicle
 from . import options, terminal
 
@@ -75,7 +75,7 @@ def info(arguments: argparse.Namespace) -> None:
 def _draw(simulation: Simulation, file: Path) -> None:
     """Draw the vehicle; raise `InputError` if the file cannot be written."""
     from ..report.plots import png  # matplotlib is slow to import
-    from ..report.vehicle_picture import draw
+    from ..report.vehicle_plot import draw
 
     if file.suffix.lower() != ".png":
         raise InputError(f"--picture {file}: name a file that ends in .png, which it would hold")

@@ -10,7 +10,7 @@ from .._core import InputError
 from ..model.description import read_model
 from ..simulation.log import Log
 from ..support import parse
-from ..support.files import atomic_write, check_writable, text_bytes
+from ..support.output_files import atomic_write, check_writable, text_bytes
 from . import options, terminal
 
 

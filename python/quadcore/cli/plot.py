@@ -9,7 +9,7 @@ from typing import Any, List, Sequence
 from ..report.thinning import thinned
 from ..simulation.log import Log
 from ..studies.table import save
-from ..support.files import make_folder
+from ..support.output_files import make_folder
 from . import options, terminal
 from .play import add_names, names_of
 

@@ -21,10 +21,10 @@ from ..simulation.recording import TAIL, Errors, Fastest, Recording, Thinned
 from ..simulation.simulation import Simulation
 from ..simulation.trajectory import is_slow, per_command
 from ..support import interrupts
-from ..support.files import make_folder
+from ..support.output_files import make_folder
 from ..support.rotation import roll_pitch_yaw
 from . import options, terminal
-from .unmeant import warn_of_commands
+from .command_checks import warn_of_commands
 
 
 def register(commands: Any) -> None:

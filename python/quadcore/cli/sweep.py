@@ -14,7 +14,7 @@ from ..studies.options import SweepOptions
 from ..studies.sweep import motion
 from ..support import parse
 from . import options, terminal
-from .failures import report_failures
+from .failed_flights import report_failures
 from .options_file import planned
 
 if TYPE_CHECKING:

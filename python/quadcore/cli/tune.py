@@ -11,11 +11,11 @@ from ..control import gains
 from ..simulation.engines import STUDIED
 from ..studies.options import Options
 from ..support import parse
-from ..support.files import check_writable
+from ..support.output_files import check_writable
 from . import options, terminal
-from .kept import kept
+from .command_checks import refuse_log_every
+from .interrupted_output import kept
 from .options_file import planned
-from .unmeant import refuse_log_every
 
 if TYPE_CHECKING:
     from ..studies.tune.problem import Problem

@@ -12,10 +12,10 @@ from .._core import FlightError, InputError, QuadcoreError, engines
 from ..simulation.flight_plan import FlightPlan
 from ..studies.executor import conducted
 from ..support import interrupts, parse
-from ..support.files import atomic_write, prepare_folder
+from ..support.output_files import atomic_write, prepare_folder
 from ..support.values import SPAWN
 from . import options, terminal
-from .kept import kept
+from .interrupted_output import kept
 
 if TYPE_CHECKING:
     from ..thesis.validation import Chain, Experiment, Study
@@ -105,7 +105,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 def judge(arguments: argparse.Namespace) -> None:
     """Print how far a recording is from the model and the engines, and write it."""
-    from ..thesis.validation import plant
+    from ..thesis.validation import recorded_plant
     from ..thesis.validation.output import size
 
     for option in ("sim_slow", "drag"):
@@ -122,10 +122,10 @@ def judge(arguments: argparse.Namespace) -> None:
     )
     if arguments.out is not None:
         prepare_folder(arguments.out, ["plant.csv"])
-    rows = list(plant.judge(plan, arguments.plant, arguments.commands, arguments.engine))
+    rows = list(recorded_plant.judge(plan, arguments.plant, arguments.commands, arguments.engine))
     if arguments.out is not None:
         with atomic_write(arguments.out / "plant.csv") as stream:
-            stream.write(plant.table_of(rows, len(plan.model.joints)))
+            stream.write(recorded_plant.table_of(rows, len(plan.model.joints)))
     if not arguments.quiet:
         console = terminal.console()
         console.print(f"{arguments.plant}: largest difference from")

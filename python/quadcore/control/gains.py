@@ -13,11 +13,11 @@ from typing import Any, Dict, Mapping, Optional, Union
 
 from .. import _core
 from ..model import resources
-from ..support.files import atomic_write, text_bytes
 from ..support.import_lock import LOCK
-from ..support.reading import is_file
+from ..support.input_files import is_file
+from ..support.output_files import atomic_write, text_bytes
 from .law import Law
-from .timing import DELAY, RATE, checked
+from .rate_and_delay import DELAY, RATE, checked
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import _core
 from ..support.parameters import values
-from .timing import DELAY, RATE, checked
+from .rate_and_delay import DELAY, RATE, checked
 
 
 class Law:

@@ -15,7 +15,7 @@ from ..support.warning import warn
 from . import gains
 from .gains import law_for, of_file
 from .law import Law
-from .timing import DELAY, RATE
+from .rate_and_delay import DELAY, RATE
 
 
 def parse(text: str, vehicle: str = "") -> Any:

@@ -16,8 +16,8 @@ from .. import __version__, _core
 from .._core import Document, InputError
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.simulation import Simulation
-from ..support.files import atomic_write
-from ..support.reading import read_bytes
+from ..support.input_files import read_bytes
+from ..support.output_files import atomic_write
 from .description import description
 from .libraries import Libraries
 from .variables import Variable, spawn_and_seed, variables_of

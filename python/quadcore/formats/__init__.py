@@ -10,8 +10,8 @@ import numpy as np
 
 from .._core import InputError
 from . import bag, csv, mat
-from .at_the_end import AtTheEnd
 from .rows import LogFile, LogRows, Table
+from .whole_log import AtTheEnd
 
 _Wrenches = Mapping[str, np.ndarray]
 

@@ -11,11 +11,10 @@ import numpy as np
 
 from .._core import InputError, QuadcoreError, log_columns
 from ..support import interrupts
-from ..support.extras import needed
-from ..support.files import atomic_write, beside, unwritable
-from ..support.reading import check_regular
+from ..support.input_files import check_regular
+from ..support.optional_packages import needed
+from ..support.output_files import atomic_write, beside, unwritable
 from ..support.rotation import roll_pitch_yaw
-from .at_the_end import AtTheEnd
 from .bag_messages import ARRAY, Messages
 from .rows import (
     LogRows,
@@ -25,6 +24,7 @@ from .rows import (
     wrench_columns,
     wrenches_at_the_end,
 )
+from .whole_log import AtTheEnd
 
 LOG = "/quadcore/log"
 """Whole rows; the label of the first dimension names the columns, further ones what was ignored."""

@@ -7,7 +7,7 @@ from typing import Any, Dict, Iterator, List, NamedTuple, Sequence, Tuple
 import numpy as np
 
 from .._core import log_columns
-from ..support.extras import needed
+from ..support.optional_packages import needed
 
 ARRAY = "std_msgs/msg/Float64MultiArray"
 _CLOCK = "rosgraph_msgs/msg/Clock"

@@ -9,8 +9,8 @@ from typing import Mapping, Optional, Sequence
 import numpy as np
 
 from .._core import InputError, csv_rows, log_remark
-from ..support.files import Appended, atomic_write
-from ..support.reading import read_text
+from ..support.input_files import read_text
+from ..support.output_files import Appended, atomic_write
 from .rows import (
     LogRows,
     Table,

@@ -8,8 +8,8 @@ from typing import Any, Dict, Iterator, List, Mapping, Sequence, Tuple
 import numpy as np
 
 from .._core import InputError, log_columns
-from ..support.files import atomic_write
 from ..support.import_lock import LOCK
+from ..support.output_files import atomic_write
 from .mat_tables import listed, read_table, together
 from .mat_types import Value
 from .mat_variables import load

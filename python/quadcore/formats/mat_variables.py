@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import IO, Dict, Mapping, Sequence
 
 from .._core import InputError, QuadcoreError
-from ..support.extras import needed
-from ..support.reading import open_file, read_whole
+from ..support.input_files import open_file, read_whole
+from ..support.optional_packages import needed
 from .mat_4 import load_4
 from .mat_5 import is_5, load_5
 from .mat_types import Choose, Held, Value

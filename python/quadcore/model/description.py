@@ -8,10 +8,10 @@ from typing import Dict, Mapping, Optional, Sequence, Tuple, Union
 from .. import _core
 from .._core import Document, InputError, Model, World
 from ..support.arguments import LIST, NAME, OPTIONS, check, read_once
-from ..support.files import shown
 from ..support.import_lock import LOCK
+from ..support.input_files import check_regular, is_file
+from ..support.output_files import shown
 from ..support.parameters import did_you_mean
-from ..support.reading import check_regular, is_file
 from . import resources, xml_source
 
 _XACRO = (".xacro", ".gazebo")

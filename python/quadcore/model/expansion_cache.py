@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Callable, Generic, List, NamedTuple, Optional, Tuple, TypeVar
 
 from .._core import InputError
-from ..support.reading import LARGEST, read_bytes
+from ..support.input_files import LARGEST, read_bytes
 
 Expansion = TypeVar("Expansion")
 Answer = TypeVar("Answer")

@@ -21,7 +21,7 @@ import xacro
 
 from .._core import InputError, QuadcoreError
 from ..support.import_lock import LOCK
-from ..support.reading import read_text
+from ..support.input_files import read_text
 from ..support.warning import unheard, warn
 from . import resources, xml_origins, xml_source
 from .expansion_cache import Kept, Outside, content

@@ -7,7 +7,7 @@ from typing import NamedTuple, Sized
 from xml.parsers import expat
 
 from .._core import Document, InputError
-from ..support.reading import read_text
+from ..support.input_files import read_text
 
 # The core's limits.
 LARGEST = Document.largest

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import jinja2
 
-from ..support.files import atomic_write, text_bytes
+from ..support.output_files import atomic_write, text_bytes
 
 
 def write_page(path: Path, template: str, **values: object) -> None:

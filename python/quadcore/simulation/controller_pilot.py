@@ -12,7 +12,7 @@ from .._core import FlightError, InputError, QuadcoreError
 from ..control import laws, references
 from ..control.controller import SENSED, Controller, Odometry, check_callable
 from ..control.inner_loop import AttitudeThrust, InnerLoop, RatesThrust
-from ..control.timing import DELAY, RATE, checked
+from ..control.rate_and_delay import DELAY, RATE, checked
 from ..support.arguments import brief
 from ..support.user_code import told
 from .flight import Pilot

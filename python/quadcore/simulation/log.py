@@ -12,9 +12,9 @@ from .._core import InputError
 from ..formats import format_of, mat
 from ..formats.rows import LogFile, split_columns, wrench_columns
 from ..support.arguments import NAME, check
-from ..support.extras import needed
-from ..support.files import check_writable
 from ..support.import_lock import LOCK
+from ..support.optional_packages import needed
+from ..support.output_files import check_writable
 from ..support.parameters import did_you_mean
 from .trajectory import Trajectory
 
@@ -125,7 +125,7 @@ class Log(Trajectory):
         if len(self) == 0:
             return html_title(self)
         with LOCK:
-            from ..report.log_pictures import glance
+            from ..report.log_plots import glance
             from ..report.page import picture
             from ..report.plots import png
 
@@ -218,7 +218,7 @@ class Log(Trajectory):
         """
         folder = _named(directory, "directory")
         with LOCK:
-            from ..report.log_pictures import draw  # matplotlib is slow to import
+            from ..report.log_plots import draw  # matplotlib is slow to import
 
         return draw(self, folder)
 

@@ -18,9 +18,9 @@ import yaml
 
 from .._core import Document, InputError, Model, read_model
 from ..model import resources
-from ..support.files import shown
+from ..support.input_files import check_regular, is_file
+from ..support.output_files import shown
 from ..support.parameters import did_you_mean
-from ..support.reading import check_regular, is_file
 from ..support.yaml_nodes import line_of, pairs, root, scalar
 from .scenario_events import Event, events_of
 

@@ -29,7 +29,7 @@ from ..simulation.flight import check_logged
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.scenarios import Scenario
 from ..simulation.simulation import Simulation
-from ..support.files import shown
+from ..support.output_files import shown
 from ..support.values import whole
 from ..support.warning import unheard
 from .axes import OF_CONTROLLER

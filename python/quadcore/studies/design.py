@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 from .._core import InputError
-from ..support.reading import read_text
+from ..support.input_files import read_text
 from . import distributions
 from .axes import Axis, axes_of, parse_axis
 

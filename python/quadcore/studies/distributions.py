@@ -9,7 +9,7 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tu
 import numpy as np
 
 from .._core import InputError, parse_number
-from ..support.extras import needed
+from ..support.optional_packages import needed
 
 DIGITS = 12
 """Of what is drawn, as text: fewer than a double has, so that every machine writes the same."""

@@ -13,8 +13,8 @@ from typing import Any, Callable, Iterable, Iterator, List, Mapping, Optional, S
 
 from .._core import InputError
 from ..support import interrupts
-from ..support.files import prepare_folder, unwritable
-from ..support.reading import read_bytes
+from ..support.input_files import read_bytes
+from ..support.output_files import prepare_folder, unwritable
 from .table import json_bytes, save
 
 _LOCK = ".quadcore.lock"

@@ -9,7 +9,7 @@ import math
 from pathlib import Path
 from typing import Any, Iterable, List, Mapping, Sequence, Tuple
 
-from ..support.files import atomic_write, cell, text_bytes
+from ..support.output_files import atomic_write, cell, text_bytes
 
 
 def csv_bytes(rows: Iterable[Sequence[Any]]) -> bytes:

@@ -8,7 +8,7 @@ from typing import Any, Iterator, Tuple, Union
 import yaml
 
 from .._core import InputError
-from .reading import read_text
+from .input_files import read_text
 
 _SCALAR = "tag:yaml.org,2002:"
 

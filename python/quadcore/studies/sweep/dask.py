@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from typing import Any, Callable, Iterator, Tuple
 
 from ..._core import QuadcoreError
-from ...support.extras import needed
+from ...support.optional_packages import needed
 
 _PATIENCE = 30.0  # s; for a scheduler to answer
 

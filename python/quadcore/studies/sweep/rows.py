@@ -12,7 +12,7 @@ from typing import Any, Dict, Iterator, List, Sequence, Tuple
 import numpy as np
 
 from ..._core import InputError, QuadcoreError, parse_number
-from ...support.files import Appended, atomic_write, cell, check_writable, text_bytes
+from ...support.output_files import Appended, atomic_write, cell, check_writable, text_bytes
 from .plan import AnyPlan
 from .spec import Row, digest
 

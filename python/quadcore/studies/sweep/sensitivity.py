@@ -12,7 +12,7 @@ from typing import Any, Dict, Iterator, List, Mapping, Tuple
 
 import numpy as np
 
-from ...support.extras import needed
+from ...support.optional_packages import needed
 from ..distributions import unit_problem
 from .plan import AnyPlan
 

@@ -10,7 +10,7 @@ from typing import Any, Dict, Iterator, List
 import numpy as np
 
 from ..._core import parse_number
-from ...support.files import atomic_write
+from ...support.output_files import atomic_write
 from .rows import Rows
 
 _TEXTS = ("failure", "fingerprint")
@@ -38,7 +38,7 @@ def write_parquet(rows: Rows, path: Path) -> None:
     InputError
         There is no pyarrow, or the file cannot be written.
     """
-    from ...support.extras import needed
+    from ...support.optional_packages import needed
 
     with needed("Parquet", "pyarrow", "sweep"):
         import pyarrow as arrow

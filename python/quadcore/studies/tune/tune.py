@@ -9,7 +9,7 @@ from ...control import laws
 from ...simulation.engines import STUDIED
 from ...support import arguments
 from ...support.arguments import several
-from ...support.extras import needed
+from ...support.optional_packages import needed
 from ..axes import Values
 from ..options import Keywords, Names, Options, Progress, takes
 from .problem import Problem

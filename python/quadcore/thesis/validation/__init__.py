@@ -1,8 +1,8 @@
 """The thesis' chapter 6.1 as one call: plant against mathematical model, and why they differ."""
 
-from .chain import Chain, Link
 from .damping import Damping
 from .drags import DRAGS
+from .error_budget import Chain, Link
 from .experiment import MODEL, TERMS, Case, Experiment, Flight
 from .states import STATES, compare, states
 from .study import Row, Study, conduct

@@ -19,7 +19,7 @@ from ..chapter2 import GYROSTAT, MathematicalModel, Terms, Vehicle
 from ..chapter2.vehicle import air_of, command_order, motor_of, parameters_of
 from .ascent import ascent
 from .drags import DRAGS
-from .given_speeds import fly_given_speeds, stiff_gain
+from .prescribed_speeds import fly_given_speeds, stiff_gain
 
 MODEL = "model"
 LAG, NO_LAG = "motors that lag", "motors without lag"

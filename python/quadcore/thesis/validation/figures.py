@@ -8,11 +8,11 @@ import numpy as np
 
 from ...report.colours import PALETTE
 from ...report.plots import png, subplots, titled, widen
-from .causes import draw_chains, draw_damping
+from .cause_plots import draw_chains, draw_damping
 from .experiment import MODEL, Case
 from .states import states
 from .study import Study
-from .thesis import KINDS, thesis_figures
+from .thesis_figures import KINDS, thesis_figures
 
 _MODEL = {"color": "black", "linestyle": (0, (4, 3)), "linewidth": 1.1, "label": "model"}
 _DPI = 100

@@ -11,11 +11,11 @@ import numpy as np
 from ..._core import InputError
 from ...report.page import write_page
 from ...studies.table import csv_bytes, json_bytes, save
-from .chain import Chain
+from .error_budget import Chain
 from .experiment import Case
 from .states import STATES
 from .study import Row, Study
-from .thesis import KINDS, thesis_figures
+from .thesis_figures import KINDS, thesis_figures
 
 PICTURE = re.compile(rf"(commands|damping|(chain|{'|'.join(KINDS)})_[a-z]+)\.png")
 _SIZES = (*STATES, "distance")

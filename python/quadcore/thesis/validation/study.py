@@ -8,11 +8,11 @@ from ..._core import InputError, QuadcoreError
 from ...studies.executor import conducted
 from ...studies.metrics import Sizes
 from ...studies.table import NOT_FLOWN
-from .chain import ORDER, Chain, forge, stages
 from .damping import Damping, measure
+from .error_budget import ORDER, Chain, forge, stages
 from .experiment import LAG, MODEL, NO_LAG, TERMS, Case, Experiment, Flight
 from .states import compare, steepest
-from .thesis import SIM_SLOW
+from .thesis_figures import SIM_SLOW
 
 
 class Row(NamedTuple):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Callable, Sequence
 
 import numpy as np
 
-from ..support.files import atomic_write, make_folder
+from ..support.output_files import atomic_write, make_folder
 from ..support.rotation import continuous
 from .colours import PALETTE
 from .plots import AXES, NOTHING, WHOLE, as_commanded, flatten, panels, png, space, titled

@@ -18,7 +18,7 @@ from ...simulation.log import Log
 from ...simulation.state import State
 from ...studies.fit.record import read
 from ...studies.metrics import Sizes, differences, sizes, states
-from ...support.files import text_bytes
+from ...support.output_files import text_bytes
 from ..chapter2 import GYROSTAT, MathematicalModel, Terms, Vehicle
 from ..chapter2.vehicle import command_order
 

@@ -8,7 +8,7 @@ from typing import Callable, Mapping, Sequence
 
 import numpy as np
 
-from ..support.files import unwritable
+from ..support.output_files import unwritable
 from .rows import with_wrenches
 
 Write = Callable[[Path, Sequence[str], np.ndarray, Mapping[str, np.ndarray], Sequence[str]], None]

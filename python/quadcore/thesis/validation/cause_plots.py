@@ -9,8 +9,8 @@ import numpy as np
 
 from ...report.colours import PALETTE
 from ...report.plots import dress, png, titled
-from .chain import Chain, Link
 from .damping import Damping
+from .error_budget import Chain, Link
 from .output import size
 
 _DPI = 100
