@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from quadcore.simulation.log import Log
-from quadcore.studies.evaluate import measures
-from quadcore.studies.evaluate.flights import NAN, Outcome
+from quadcore.studies import measures
 from quadcore.studies.evaluate.intervals import cvar, interval
-from quadcore.studies.evaluate.step_response import step_response
 from quadcore.studies.evaluate.sums import over_seeds
+from quadcore.studies.flights import NAN, Outcome
+from quadcore.studies.step_response import step_response
 from quadcore.studies.table import NOT_FLOWN, flown_and_failed
 
 

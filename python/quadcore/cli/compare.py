@@ -21,6 +21,7 @@ from ..support import parse
 from ..support.output_files import make_folder
 from ..support.values import SPAWN
 from . import options, terminal
+from .command_checks import warn_of_commands
 from .failed_flights import report_failures
 from .interrupted_output import kept
 from .options_file import planned

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..simulation.engines import STUDIED
+from ..studies import measures as of_guided
 from ..studies.distributions import DESIGNS, forms
-from ..studies.evaluate import measures as of_guided
 from ..studies.folder import output_folder
 from ..studies.options import SweepOptions
 from ..studies.sweep import motion

@@ -20,7 +20,7 @@ import numpy as np
 from ..._core import InputError, QuadcoreError
 from ...report.html_table import SHOWN_ROWS, html_table, html_title
 from ...simulation.log import Log
-from ..evaluate.measures import distance, rms_and_largest
+from ..measures import distance, rms_and_largest
 from ..metrics import metrics, states
 from ..table import NOT_FLOWN, flown_and_failed, number_text, shown_in
 from .difference import Difference

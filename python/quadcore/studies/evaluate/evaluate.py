@@ -29,10 +29,10 @@ from ...support import arguments
 from ...support.warning import warn
 from ..axes import Values
 from ..executor import conducted
+from ..flights import Outcome, flown
 from ..guidance import Named
 from ..options import EvaluateOptions, Keywords, Names, Progress, takes
 from ..table import flown_and_failed
-from .flights import Outcome, flown
 from .plan import Plan
 from .poles import has_poles, poles
 from .robustness import Searches

@@ -11,11 +11,11 @@ import numpy as np
 from ... import __version__
 from ...report.thinning import evenly
 from ..folder import remove_pictures, save_pictures
+from ..measures import MEANINGS, UNITS
 from ..table import NOT_FLOWN, csv_bytes, flown_and_failed, json_bytes, number_text, save
 from .evaluate import Evaluation
 from .intervals import CONFIDENCE
 from .losses import losses
-from .measures import MEANINGS, UNITS
 from .pictures import by_reference, draw, is_picture, label
 from .plan import Plan
 from .poles import gains_of

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 from ...simulation.scenario_events import Event
 from .evaluate import Evaluation
 from .event_marks import mark
-from .flights import Outcome
-from .measures import distance, lost
+from ..flights import Outcome
+from ..measures import distance, lost
 from .robustness import RATES
 
 _CURVES = 16  # in one panel; more cannot be told apart

@@ -26,8 +26,8 @@ from typing import (
 
 import numpy as np
 
+from ..flights import Outcome
 from ..table import NOT_FLOWN
-from .flights import Outcome
 from .trial import Trial
 
 LARGEST_GAIN = 10.0

@@ -7,9 +7,9 @@ from typing import Any, Dict, List, Mapping, Sequence, Tuple
 
 import numpy as np
 
-from .flights import Outcome
+from ..flights import Outcome
+from ..measures import UNITS
 from .intervals import cvar, interval
-from .measures import UNITS
 
 JUDGED = tuple(UNITS)
 """Measures that have a mean, an interval and a risk over the seeds."""

@@ -10,9 +10,9 @@ from ..._core import InputError
 from ...control import laws, references
 from ...simulation.commands import CommandsLike
 from ...support.values import whole
+from .. import measures as of_guided
 from ..cases import Cases, check_sides, spread
 from ..design import LARGEST, Design
-from ..evaluate import measures as of_guided
 from ..guidance import Guidance, labelled, names_own
 from ..options import SweepOptions
 from ..variation import of_controller

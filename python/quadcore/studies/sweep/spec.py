@@ -14,7 +14,7 @@ from ...control import laws
 from ...simulation.flight_plan import FlightPlan
 from ...support.user_code import told
 from ...support.warning import unheard
-from ..evaluate.flights import flown
+from ..flights import flown
 from ..guidance import give_all
 from ..time_limit import time_limit
 from . import motion

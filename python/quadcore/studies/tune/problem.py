@@ -18,8 +18,8 @@ from ...support import rotation
 from ..axes import Values
 from ..cases import Case, Cases, check_sides, label_of, spread
 from ..design import Design
-from ..evaluate.measures import LOST, distance, loss, lost
 from ..guidance import Guidance, give_all, labelled, names_own
+from ..measures import LOST, distance, loss, lost
 from ..options import Options
 from ..variation import of_controller
 

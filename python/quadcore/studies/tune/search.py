@@ -10,7 +10,6 @@ import numpy as np
 from ..._core import InputError, QuadcoreError
 from ...control.gains import Gains
 from ...support.warning import unheard
-from ..evaluate.measures import LOST
 from ..executor import conducted
 from ..options import Progress
 from ..time_limit import time_limit

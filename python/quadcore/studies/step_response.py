@@ -12,7 +12,7 @@ from typing import Optional
 
 import numpy as np
 
-from ...simulation.log import Log
+from ..simulation.log import Log
 
 SPAN = 4.0
 """Of the response, s."""

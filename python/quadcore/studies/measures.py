@@ -7,10 +7,10 @@ from typing import Dict, Optional, Sequence, Tuple
 
 import numpy as np
 
-from ..._core import Rotor
-from ...simulation.log import Log
-from ...simulation.recording import TAIL
-from ...support.rotation import roll_pitch_yaw
+from .._core import Rotor
+from ..simulation.log import Log
+from ..simulation.recording import TAIL
+from ..support.rotation import roll_pitch_yaw
 
 LOST = 5.0
 """A vehicle that is farther from its reference is lost, m."""

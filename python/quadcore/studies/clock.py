@@ -7,9 +7,9 @@ from typing import Any, List, Tuple
 
 import numpy as np
 
-from ...control import laws
-from ...control.controller import check_callable
-from ...simulation.controller_pilot import Guided
+from ..control import laws
+from ..control.controller import check_callable
+from ..simulation.controller_pilot import Guided
 
 
 class Clocked:

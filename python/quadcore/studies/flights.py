@@ -8,19 +8,19 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence
 
 import numpy as np
 
-from ..._core import FlightError
-from ...report.thinning import thinned
-from ...simulation.controller_pilot import faults_told
-from ...simulation.flight import Rows, columns_of, fly
-from ...simulation.flight_plan import FlightPlan
-from ...simulation.log import Log
-from ...simulation.simulation import Simulation
-from ...support.warning import unheard
-from ..table import NOT_FLOWN
-from ..time_limit import time_limit
+from .._core import FlightError
+from ..report.thinning import thinned
+from ..simulation.controller_pilot import faults_told
+from ..simulation.flight import Rows, columns_of, fly
+from ..simulation.flight_plan import FlightPlan
+from ..simulation.log import Log
+from ..simulation.simulation import Simulation
+from ..support.warning import unheard
 from .clock import Clocked, ClockedPilot, clocked, typical_and_slow
 from .measures import UNITS, loss, measure
 from .step_response import step_response
+from .table import NOT_FLOWN
+from .time_limit import time_limit
 
 NAN = dict.fromkeys(UNITS, float("nan"))
 
@@ -141,6 +141,6 @@ def flown(
 
 
 def _watched(simulation: Simulation) -> List[str]:
-    from ...report.player import topics_to_watch  # not every flight should pay for jinja2
+    from ..report.player import topics_to_watch  # not every flight should pay for jinja2
 
     return topics_to_watch(simulation)
