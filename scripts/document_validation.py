@@ -13,7 +13,7 @@ from images import save
 from measured import DOCS, figures, put
 
 from quadcore.report.colours import PALETTE
-from quadcore.report.plots import dress, png, titled
+from quadcore.report.plots import dress, make_figure, png
 from quadcore.thesis.validation import Case, Experiment, Study, conduct
 from quadcore.thesis.validation.experiment import NO_LAG
 from quadcore.thesis.validation.figures import pictures
@@ -25,7 +25,9 @@ FROM_THE_COMMAND = {"position": "position_all", "error": "error_all", "chain": "
 
 def draw_gains() -> bytes:
     """Draw how the outer loop of table 6.2 corrects an error on an ideal double integrator."""
-    figure = titled("Outer loop of table 6.2 in x and y, ideal plant: error from 2 m", 7, 2.8, 100)
+    figure = make_figure(
+        "Outer loop of table 6.2 in x and y, ideal plant: error from 2 m", 7, 2.8, 100
+    )
     axes = figure.add_axes((0.09, 0.17, 0.89, 0.68))
     dress(axes)
     time = np.linspace(0, 20, 500)

@@ -18,7 +18,7 @@ from noise import NOISY, THESIS
 import quadcore as qc
 from quadcore.control import laws, references
 from quadcore.studies.executor import each
-from quadcore.support.warning import unheard
+from quadcore.support.warning import suppress_warnings
 
 WAYPOINTS = Path(__file__).resolve().parents[1] / "config" / "waypoints.yaml"
 LOST = 5.0  # m
@@ -82,7 +82,7 @@ def fly(flight: Tuple[Case, int]) -> float:
     parameters = {**case.noise, "xacro.sim_slow": case.sim_slow}
     simulation = qc.Simulation(engine=case.engine, seed=seed, parameters=parameters)
     simulation.set_state(references.start(simulation, reference))
-    with unheard():
+    with suppress_warnings():
         try:
             log = simulation.run(
                 case.duration,

@@ -223,7 +223,7 @@ def test_an_interrupt_while_an_outcome_is_taken_loses_none_of_the_others(tmp_pat
             os.kill(os.getpid(), signal.SIGTERM)
         taken.append((index, outcome))
 
-    with pytest.raises(interrupts.Interrupted), interrupts.heard():
+    with pytest.raises(interrupts.Interrupted), interrupts.raise_on_signals():
         each(lambda number: number, range(1000), take, 2, written)
     assert sorted(str(number) for number, _ in taken) == files(tmp_path)
     assert all(outcome == index for index, outcome in taken) and 1 < len(taken) < 1000

@@ -14,7 +14,6 @@ from vehicles import plugin, vehicle
 import quadcore as qc
 from quadcore.cli import main
 from quadcore.control import laws
-from quadcore.studies.flights import NAN, Outcome
 from quadcore.studies.evaluate.plan import Plan
 from quadcore.studies.evaluate.robustness import ENDS, Searches, margin_text
 from quadcore.studies.evaluate.trial import Trial, lacking

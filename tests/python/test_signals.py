@@ -18,7 +18,7 @@ SIGNALS = list(interrupts.SIGNALS)
 @pytest.mark.parametrize("number", SIGNALS)
 def test_a_signal_that_is_sent_twice_is_heard_once(number):
     kept = []
-    with pytest.raises(interrupts.Interrupted) as stop, interrupts.heard():
+    with pytest.raises(interrupts.Interrupted) as stop, interrupts.raise_on_signals():
         try:
             signal.raise_signal(number)
         finally:
@@ -47,7 +47,7 @@ def test_an_interrupt_that_others_take_for_a_fault_is_an_interrupt(capsys, monke
 
 @pytest.mark.parametrize("number", SIGNALS)
 def test_an_interrupt_that_met_the_start_of_a_module_is_an_interrupt(number):
-    with pytest.raises(interrupts.Interrupted) as stop, interrupts.heard():
+    with pytest.raises(interrupts.Interrupted) as stop, interrupts.raise_on_signals():
         try:
             signal.raise_signal(number)
         except BaseException:
@@ -65,7 +65,7 @@ def test_an_interrupt_waits_for_the_start_of_a_module_in_c(number):
             signal.raise_signal(number)
             done.append("started")
 
-    with pytest.raises(interrupts.Interrupted) as stop, interrupts.heard():
+    with pytest.raises(interrupts.Interrupted) as stop, interrupts.raise_on_signals():
         Starting("module", "module.so").exec_module(None)
         give_up = time.monotonic() + 60
         while time.monotonic() < give_up:
@@ -75,7 +75,7 @@ def test_an_interrupt_waits_for_the_start_of_a_module_in_c(number):
 
 def test_handlers_are_as_before_afterwards():
     before = [signal.getsignal(number) for number in SIGNALS]
-    with interrupts.heard(), interrupts.held():
+    with interrupts.raise_on_signals(), interrupts.hold_signals():
         pass
     assert [signal.getsignal(number) for number in SIGNALS] == before
 
@@ -83,8 +83,8 @@ def test_handlers_are_as_before_afterwards():
 @pytest.mark.parametrize("number", SIGNALS)
 def test_what_is_held_is_done_before_the_interrupt(number):
     done = []
-    with pytest.raises(KeyboardInterrupt), interrupts.heard(), interrupts.held():
-        with interrupts.held():
+    with pytest.raises(KeyboardInterrupt), interrupts.raise_on_signals(), interrupts.hold_signals():
+        with interrupts.hold_signals():
             signal.raise_signal(number)
             done.append("inner")
         done.append("outer")
@@ -94,7 +94,9 @@ def test_what_is_held_is_done_before_the_interrupt(number):
 @pytest.mark.parametrize("number", SIGNALS)
 def test_an_interrupted_file_leaves_the_old_one_and_nothing_else(number, tmp_path):
     (tmp_path / "a").write_text("old")
-    with pytest.raises(KeyboardInterrupt), interrupts.heard(), atomic_write(tmp_path / "a") as file:
+    with pytest.raises(KeyboardInterrupt), interrupts.raise_on_signals(), atomic_write(
+        tmp_path / "a"
+    ) as file:
         file.write(b"new")
         signal.raise_signal(number)
     assert (tmp_path / "a").read_text() == "old"

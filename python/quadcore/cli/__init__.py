@@ -96,7 +96,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _act(argv: Sequence[str] | None) -> int:
     try:
-        with interrupts.heard(), terminal.warnings_as_lines():
+        with interrupts.raise_on_signals(), terminal.warnings_as_lines():
             words = list(sys.argv[1:] if argv is None else argv)
             parser = _parser()
             if not words:

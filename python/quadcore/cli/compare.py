@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from .._core import InputError, QuadcoreError
-from ..report.thinning import thinned
+from ..report.thinning import thin
 from ..simulation.engines import ENGINE
 from ..simulation.log import Log
 from ..studies.compare.compare import fly
@@ -23,7 +23,7 @@ from ..support.values import SPAWN
 from . import options, terminal
 from .command_checks import warn_of_commands
 from .failed_flights import report_failures
-from .interrupted_output import kept
+from .interrupted_output import keep_partial_output
 from .options_file import planned
 
 _ROWS = 40  # on the terminal
@@ -78,7 +78,9 @@ def _compare(arguments: argparse.Namespace, plan: Plan) -> None:
         flight = _flight(arguments, plan)
         return write(flown, plan, flight, out, plots, _has_logs(arguments, plan))
 
-    with kept("comparison", out, put), terminal.progress(arguments.quiet) as progress:
+    with keep_partial_output("comparison", out, put), terminal.progress(
+        arguments.quiet
+    ) as progress:
         comparison = fly(
             plan,
             _keeper(arguments, plan),
@@ -149,7 +151,7 @@ def _keeper(arguments: argparse.Namespace, plan: Plan) -> Any:
     def keep(row: int, log: Log) -> Log | None:
         if has_logs:
             log.to_csv(out / log_name(row, len(plan)))
-        return thinned(log) if row in to_draw else None
+        return thin(log) if row in to_draw else None
 
     return keep
 

@@ -12,7 +12,7 @@ from ..studies.folder import output_folder
 from ..studies.options import EvaluateOptions
 from . import options, terminal
 from .failed_flights import report_failures
-from .interrupted_output import kept
+from .interrupted_output import keep_partial_output
 from .options_file import planned
 
 if TYPE_CHECKING:
@@ -57,7 +57,9 @@ def _evaluate(arguments: argparse.Namespace, plan: Plan) -> None:
     def put(flown: Evaluation, plots: bool = False) -> list[Path]:
         return write(flown, plan, out, plots) if out is not None else []
 
-    with kept("evaluation", out, put), terminal.progress(arguments.quiet) as progress:
+    with keep_partial_output("evaluation", out, put), terminal.progress(
+        arguments.quiet
+    ) as progress:
         evaluation = conduct(plan, progress, arguments.margins)
     files = put(evaluation, not arguments.no_plots)
     if not arguments.quiet:

@@ -13,7 +13,7 @@ from ..studies.fit.record import CHANNELS
 from ..support import parse
 from ..support.output_files import atomic_write, check_writable, text_bytes
 from . import options, terminal
-from .interrupted_output import kept
+from .interrupted_output import keep_partial_output
 
 if TYPE_CHECKING:
     from ..studies.fit.fit import Fit
@@ -93,7 +93,7 @@ def fit(arguments: argparse.Namespace) -> None:
         with atomic_write(out) as stream:
             stream.write(text_bytes(model.document.text))
 
-    with kept("model", out, put, "the best so far"), terminal.progress(
+    with keep_partial_output("model", out, put, "the best so far"), terminal.progress(
         arguments.quiet, "fitting"
     ) as progress:
         found = search(

@@ -11,7 +11,7 @@ from . import terminal
 
 
 @contextmanager
-def kept(
+def keep_partial_output(
     what: str, out: Path | None, write: Callable[[Any], Any], told: str = "what was flown"
 ) -> Iterator[None]:
     """Write what an interrupt of the block carries, wholly, and say where it is.
@@ -32,7 +32,7 @@ def kept(
     except KeyboardInterrupt as stop:
         partial = getattr(stop, what, None)
         if out is not None and partial is not None:
-            with interrupts.held():
+            with interrupts.hold_signals():
                 write(partial)
             terminal.say(f"{told}: {out}")
         raise

@@ -12,7 +12,7 @@ import numpy as np
 
 from .._core import InputError, QuadcoreError
 from ..formats.rows import Recorder
-from ..simulation.controller_pilot import Guided, faults_told
+from ..simulation.controller_pilot import Guided, controller_errors_as_failures
 from ..simulation.engines import check_wrenches, list_engines
 from ..simulation.flight import columns_of, fly, steps_within
 from ..simulation.flight_plan import FlightPlan
@@ -74,7 +74,9 @@ def run(arguments: argparse.Namespace) -> None:
     recording = Recording(logs, others)
     started = time.perf_counter()
     try:
-        with terminal.progress(arguments.quiet) as progress, faults_told(simulation):
+        with terminal.progress(arguments.quiet) as progress, controller_errors_as_failures(
+            simulation
+        ):
             fly(
                 simulation,
                 plan.duration,
@@ -87,12 +89,12 @@ def run(arguments: argparse.Namespace) -> None:
                 plan.topics,
             )
     except (QuadcoreError, KeyboardInterrupt, MemoryError):
-        with interrupts.held():
+        with interrupts.hold_signals():
             for file in recording.close():
                 terminal.say(f"log until t = {fastest.time:.6g} s: {file}")
         raise
     elapsed = time.perf_counter() - started
-    with interrupts.held():
+    with interrupts.hold_signals():
         files = recording.close()
     size = per_command(simulation)
     if drawn is not None:

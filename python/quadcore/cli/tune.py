@@ -14,7 +14,7 @@ from ..support import parse
 from ..support.output_files import check_writable
 from . import options, terminal
 from .command_checks import refuse_log_every
-from .interrupted_output import kept
+from .interrupted_output import keep_partial_output
 from .options_file import planned
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ def tune(arguments: argparse.Namespace) -> None:
     def put(found: Any) -> None:
         gains.write(found.gains, out)
 
-    with kept("tuning", out, put, "the best so far"), terminal.progress(
+    with keep_partial_output("tuning", out, put, "the best so far"), terminal.progress(
         arguments.quiet, "tuning"
     ) as progress:
         found = conduct(problem, arguments.budget, progress)

@@ -15,7 +15,7 @@ from ..support import interrupts, parse
 from ..support.output_files import atomic_write, prepare_folder
 from ..support.values import SPAWN
 from . import options, terminal
-from .interrupted_output import kept
+from .interrupted_output import keep_partial_output
 
 if TYPE_CHECKING:
     from ..thesis.validation import Chain, Experiment, Study
@@ -152,7 +152,9 @@ def _conduct(experiment: Experiment, arguments: argparse.Namespace) -> Study:
     def put(study: Study) -> None:
         _write(study, arguments.out)
 
-    with kept("study", arguments.out, put), terminal.progress(arguments.quiet) as progress:
+    with keep_partial_output("study", arguments.out, put), terminal.progress(
+        arguments.quiet
+    ) as progress:
         return conduct(
             experiment,
             arguments.engine,
@@ -167,7 +169,7 @@ def _write(study: Study, out: Path) -> List[Path]:
     """Write page and tables, before any picture is drawn: flights are not flown twice."""
     from ..thesis.validation.output import write_report, write_tables
 
-    with interrupts.held():
+    with interrupts.hold_signals():
         tables = write_tables(study, out)
         return [write_report(study, {}, out), *tables]
 
@@ -200,7 +202,7 @@ def _draw(study: Study, arguments: argparse.Namespace, failures: List[str]) -> D
             conducted(draw, names, take, arguments.jobs, progress=progress)
     finally:
         in_order = {name: drawn[name] for name in names if name in drawn}
-        with interrupts.held():
+        with interrupts.hold_signals():
             write_report(study, in_order, arguments.out)
     if failed:
         failures.append(f"{len(failed)} of {len(names)} pictures failed; the first, {failed[0]}")

@@ -129,7 +129,7 @@ def check_callable(controller: Any) -> None:
         raise InputError(f"controller: cannot be called as {form}: {error}") from None
 
 
-def give(controller: Any, name: str, value: float) -> None:
+def set_parameter(controller: Any, name: str, value: float) -> None:
     """Give a controller another `rate` or `delay`, or a law of quadcore another parameter.
 
     Raises

@@ -17,7 +17,7 @@ from ..support.import_lock import LOCK
 from ..support.input_files import is_file
 from ..support.output_files import atomic_write, text_bytes
 from .law import Law
-from .rate_and_delay import DELAY, RATE, checked
+from .rate_and_delay import DELAY, RATE, check_rate_or_delay
 
 
 @dataclass(frozen=True)
@@ -73,8 +73,8 @@ def write(gains: Gains, path: Union[str, Path]) -> None:
     told: Dict[str, Any] = {"law": gains.law}
     if gains.vehicle:
         told["vehicle"] = gains.vehicle
-    told["rate"] = checked("gains", "rate", gains.rate)
-    told["delay"] = checked("gains", "delay", gains.delay)
+    told["rate"] = check_rate_or_delay("gains", "rate", gains.rate)
+    told["delay"] = check_rate_or_delay("gains", "delay", gains.delay)
     told["parameters"] = {name: float(value) for name, value in gains.parameters.items()}
     if gains.history is not None:
         told["history"] = gains.history

@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import _core
 from ..support.parameters import values
-from .rate_and_delay import DELAY, RATE, checked
+from .rate_and_delay import DELAY, RATE, check_rate_or_delay
 
 
 class Law:
@@ -67,7 +67,7 @@ class Law:
         self._controller = _core.Controller(
             self.name, vehicle, simulation, self.parameters, self.spins
         )
-        rate = checked(f"law '{self.name}'", "rate", self.rate)
+        rate = check_rate_or_delay(f"law '{self.name}'", "rate", self.rate)
         self._period = max(1 / rate, simulation.dt)  # called once a step at most
 
     def __call__(self, t: float, state: Any, reference: Any) -> np.ndarray:

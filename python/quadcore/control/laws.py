@@ -10,7 +10,7 @@ from typing import Any, Callable, List, Optional, Sequence
 
 from .. import _core
 from ..support.parameters import did_you_mean, docstring, read_values
-from ..support.user_code import imported
+from ..support.user_code import import_controller
 from ..support.warning import warn
 from . import gains
 from .gains import law_for, of_file
@@ -56,7 +56,7 @@ def parse(text: str, vehicle: str = "") -> Any:
         law.parameters.update(given)
         return law
     if ":" in text:
-        return imported(text)
+        return import_controller(text)
     raise _core.InputError(
         f"there is no law '{text}'{did_you_mean(text, NAMES)}; write one of {', '.join(NAMES)}, "
         "a file of gains that ends in .yaml, or MODULE:CLASS"

@@ -17,7 +17,7 @@ DELAY = float(_ROWS["delay"].default)
 """Time after which a command reaches the motors where none is told, s."""
 
 
-def checked(who: str, name: str, value: Any) -> float:
+def check_rate_or_delay(who: str, name: str, value: Any) -> float:
     """Give a `rate` or a `delay` as a number; raises `InputError` if it is out of range."""
     if isinstance(value, Real) and _core.is_timing(name, float(value)):
         return float(value)

@@ -12,7 +12,7 @@ import numpy as np
 from .._core import InputError, QuadcoreError, log_columns
 from ..support import interrupts
 from ..support.input_files import check_regular
-from ..support.optional_packages import needed
+from ..support.optional_packages import require_package
 from ..support.output_files import atomic_write, beside, unwritable
 from ..support.rotation import roll_pitch_yaw
 from .bag_messages import ARRAY, Messages
@@ -168,7 +168,7 @@ def _messages(bag: Any, found: Sequence[Any]) -> Iterator[Tuple[int, Any]]:
 
 @contextlib.contextmanager
 def _opened(path: Path) -> Iterator[Any]:
-    with needed("a bag", "rosbags", "bag"):
+    with require_package("a bag", "rosbags", "bag"):
         from rosbags.rosbag1 import Reader
     try:
         check_regular(path)
@@ -190,7 +190,7 @@ def write_log(
     ignored: Sequence[str],
 ) -> None:
     """Write what the node would have published, and each row of the log on `LOG`."""
-    with needed("a bag", "rosbags", "bag"):
+    with require_package("a bag", "rosbags", "bag"):
         from rosbags.rosbag1 import Writer
     messages = Messages()
     names = [*columns, *wrench_columns(list(wrenches))]
@@ -224,7 +224,7 @@ def _name_beside(path: Path) -> Iterator[Path]:
     except OSError as error:
         raise unwritable(path, error) from error
     finally:
-        with interrupts.held(), contextlib.suppress(OSError):
+        with interrupts.hold_signals(), contextlib.suppress(OSError):
             part.unlink()
 
 

@@ -7,7 +7,7 @@ from typing import Any, Dict, Iterator, List, NamedTuple, Sequence, Tuple
 import numpy as np
 
 from .._core import log_columns
-from ..support.optional_packages import needed
+from ..support.optional_packages import require_package
 
 ARRAY = "std_msgs/msg/Float64MultiArray"
 _CLOCK = "rosgraph_msgs/msg/Clock"
@@ -28,7 +28,7 @@ class Messages:
     """Maker of messages; raises `InputError` without the package rosbags."""
 
     def __init__(self) -> None:
-        with needed("a bag", "rosbags", "bag"):
+        with require_package("a bag", "rosbags", "bag"):
             from rosbags.typesys import Stores, get_types_from_msg, get_typestore
         self.store = get_typestore(Stores.ROS1_NOETIC)
         if _TF not in self.store.types:  # which is no type of common_msgs

@@ -8,7 +8,7 @@ from typing import IO, Dict, Mapping, Sequence
 
 from .._core import InputError, QuadcoreError
 from ..support.input_files import open_file, read_whole
-from ..support.optional_packages import needed
+from ..support.optional_packages import require_package
 from .mat_4 import load_4
 from .mat_5 import is_5, load_5
 from .mat_types import Choose, Held, Value
@@ -53,7 +53,7 @@ def _load(path: Path, stream: IO[bytes], choose: Choose) -> Dict[str, Value]:
         return _checked(path, choose(held), held)
 
     if _HDF5 in (head[:8], head[512:]):
-        with needed(
+        with require_package(
             f"{path}: a MATLAB 7.3 file (or save it with the option -v7)", "h5py", "matlab"
         ):
             from .mat_73 import load_73

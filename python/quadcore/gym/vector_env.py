@@ -13,7 +13,7 @@ from gymnasium.vector.utils import batch_space
 from .._core import InputError, Model
 from ..simulation.batch import BatchSimulation, BatchState
 from ..simulation.simulation import Simulation
-from ..support.warning import unheard
+from ..support.warning import suppress_warnings
 from .env import check_no_options
 from .episodes import Episodes
 from .task import Task, split
@@ -65,7 +65,7 @@ class VectorEnv(_VectorEnv):
     ) -> None:
         rules, others = split(options)
         self.batch = BatchSimulation(model, num_envs, engine, **others)
-        with unheard():  # it has been said of the batch
+        with suppress_warnings():  # it has been said of the batch
             self.task = Task(Simulation(model, engine, **_in_common(others)), rules)
         self.num_envs = self.batch.n
         self.single_observation_space = self.task.observation_space

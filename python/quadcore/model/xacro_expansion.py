@@ -22,7 +22,7 @@ import xacro
 from .._core import InputError, QuadcoreError
 from ..support.import_lock import LOCK
 from ..support.input_files import read_text
-from ..support.warning import unheard, warn
+from ..support.warning import suppress_warnings, warn
 from . import resources, xml_origins, xml_source
 from .expansion_cache import Kept, Outside, content
 from .xacro_faults import reason
@@ -113,7 +113,7 @@ def _blamed(path: str, arguments: Mapping[str, str], what: str) -> str:
     for name, value in arguments.items():
         table = _Arguments({other: text for other, text in arguments.items() if other != name})
         try:
-            with _replaced_hooks(table, Outside()), unheard():
+            with _replaced_hooks(table, Outside()), suppress_warnings():
                 xacro.process_file(path, mappings=table)
             default = table[name]
         except Exception:  # it is not this one, or not it alone

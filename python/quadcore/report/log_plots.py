@@ -10,7 +10,17 @@ import numpy as np
 from ..support.output_files import atomic_write, make_folder
 from ..support.rotation import continuous
 from .colours import PALETTE
-from .plots import AXES, NOTHING, WHOLE, as_commanded, flatten, panels, png, space, titled
+from .plots import (
+    AXES,
+    NOTHING,
+    WHOLE,
+    add_commanded_axis,
+    flatten,
+    make_figure,
+    panels,
+    png,
+    space,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -117,7 +127,7 @@ def _rotors(log: Trajectory) -> Figure:
         close[0].plot(log.time, np.abs(velocity), **style)
     whole[0].set_ylabel("signed (rad/s)")
     if log.is_slow:
-        as_commanded(close[0], log.per_command)
+        add_commanded_axis(close[0], log.per_command)
     close[0].set_ylabel("magnitude (rad/s)")
     close[0].set_title("without the lowest 5 %", loc="left", fontsize="medium")
     # Around hover the differences that steer are a hundredth of the speed: show them large.
@@ -148,7 +158,7 @@ def _wrenches(log: Trajectory) -> Figure:
 
 
 def _path(log: Trajectory) -> Figure:
-    figure = titled(_title(log, "Path of the frame"), 6, 6)
+    figure = make_figure(_title(log, "Path of the frame"), 6, 6)
     axes, corner = space(figure, WHOLE, [log.position])
     x, y, z = log.position.T
     axes.plot(x, y, np.full_like(z, corner[2]), color="0.7", linewidth=1, label="seen from above")

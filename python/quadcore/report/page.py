@@ -11,19 +11,19 @@ from ..support.output_files import atomic_write, text_bytes
 
 
 def write_page(path: Path, template: str, **values: object) -> None:
-    """Fill in a template and write the page; see `rendered`.
+    """Fill in a template and write the page; see `render`.
 
     Raises
     ------
     InputError
         The file cannot be written.
     """
-    page = rendered(template, **values)
+    page = render(template, **values)
     with atomic_write(path) as stream:
         stream.write(text_bytes(page))
 
 
-def rendered(template: str, **values: object) -> str:
+def render(template: str, **values: object) -> str:
     """Fill in a template.
 
     Parameters

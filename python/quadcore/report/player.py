@@ -10,8 +10,8 @@ import numpy as np
 
 from .._core import InputError
 from .colours import PALETTE
-from .page import rendered
-from .thinning import evenly
+from .page import render
+from .thinning import pick_evenly
 
 if TYPE_CHECKING:
     from ..simulation.simulation import Simulation
@@ -86,7 +86,7 @@ def page(flights: Sequence[PlayerFlight], title: str = "Flights") -> str:
     InputError
         No flight.
     """
-    return rendered("play.html", title=title, player=fragment(flights))
+    return render("play.html", title=title, player=fragment(flights))
 
 
 def fragment(flights: Sequence[PlayerFlight]) -> str:
@@ -102,12 +102,12 @@ def fragment(flights: Sequence[PlayerFlight]) -> str:
     if not flights:
         raise InputError("there is no flight to watch; give one")
     content = {"colours": _COLOURS, "flights": [_told(flight) for flight in flights]}
-    return Markup(rendered("player.html", content=content))
+    return Markup(render("player.html", content=content))
 
 
 def _told(flight: PlayerFlight) -> Dict[str, Any]:
     log = flight.log
-    rows = evenly(len(log), _POINTS)
+    rows = pick_evenly(len(log), _POINTS)
     reference = log.topics.get("reference", {})
     told = {
         "time": log.time,

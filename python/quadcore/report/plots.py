@@ -54,7 +54,7 @@ def png(figure: Figure) -> bytes:
     return stream.getvalue()
 
 
-def as_commanded(axes: Any, per_command: float) -> None:
+def add_commanded_axis(axes: Any, per_command: float) -> None:
     """Tell speeds of joints as commanded, too, on the right."""
     to_command = (lambda rate: rate / per_command, lambda told: told * per_command)
     axes.secondary_yaxis("right", functions=to_command).set_ylabel("commanded (rad/s)")
@@ -89,7 +89,7 @@ def panels(
     """Make a figure of panels over time, `height` inches each, with room for title and legend."""
     width, below = (8.0 if columns > 1 else 7.0), 0.5  # inch
     total = above + height * rows + below
-    figure = titled(title, width, total)
+    figure = make_figure(title, width, total)
     # Fixed margins: matplotlib's automatic layouts differ from version to version.
     margins = {
         "left": 1.1 / width,
@@ -153,7 +153,7 @@ def flatten(axes: Any, least: float) -> None:
         axes.set_yticks([middle])
 
 
-def titled(title: str, width: float, height: float, dpi: int = 150) -> Figure:
+def make_figure(title: str, width: float, height: float, dpi: int = 150) -> Figure:
     """Make an empty figure, its size in inches."""
     figure = Figure(figsize=(width, height), dpi=dpi)
     figure.suptitle(

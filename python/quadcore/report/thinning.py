@@ -14,14 +14,14 @@ if TYPE_CHECKING:
 _POINTS = 600  # per flight: finer than a picture shows
 
 
-def evenly(count: int, most: int) -> List[int]:
+def pick_evenly(count: int, most: int) -> List[int]:
     """All of so many, or evenly many with the first and the last."""
     return [round(i) for i in np.linspace(0, count - 1, min(count, most))]
 
 
-def thinned(log: Flown, most: int = _POINTS) -> Flown:
+def thin(log: Flown, most: int = _POINTS) -> Flown:
     """Rows enough to draw."""
-    picked = evenly(len(log), most)
+    picked = pick_evenly(len(log), most)
     topics = {
         name: {field: column[picked] for field, column in fields.items()}
         for name, fields in log.topics.items()

@@ -13,7 +13,7 @@ from matplotlib.patches import Circle, FancyArrowPatch
 from .. import _core
 from .._core import InputError
 from .colours import PALETTE
-from .plots import AXES, space, titled
+from .plots import AXES, make_figure, space
 
 if TYPE_CHECKING:
     from ..simulation.simulation import Simulation
@@ -48,7 +48,7 @@ def draw(simulation: Simulation) -> Figure:
     rotors, model = _rotors(simulation), simulation.model
     boxes = [_box(link, pose) for link, pose in zip(model.links, model.link_poses)]
     radius = model.drawn_disc_radius
-    figure = titled("", 11, 6.2)
+    figure = make_figure("", 11, 6.2)
     rims = [rotor.place + s * radius for rotor in rotors for s in (-1, 1)]
     title = f"{model.name}: {simulation.mass:.6g} kg, {len(rotors)} rotors"
     axes = space(figure, (-0.02, 0.14, 0.52, 0.82), [*boxes, np.array(rims).reshape(-1, 3)])[0]

@@ -12,9 +12,9 @@ from .._core import FlightError, InputError, QuadcoreError
 from ..control import laws, references
 from ..control.controller import SENSED, Controller, Odometry, check_callable
 from ..control.inner_loop import AttitudeThrust, InnerLoop, RatesThrust
-from ..control.rate_and_delay import DELAY, RATE, checked
+from ..control.rate_and_delay import DELAY, RATE, check_rate_or_delay
 from ..support.arguments import brief
-from ..support.user_code import told
+from ..support.user_code import describe_error
 from .flight import Pilot
 
 
@@ -55,8 +55,8 @@ class Guided(Pilot):
                 "that is called as reference(t)"
             )
         check_callable(controller)
-        self.rate = checked("controller", "rate", getattr(controller, "rate", RATE))
-        self.delay = checked("controller", "delay", getattr(controller, "delay", DELAY))
+        self.rate = check_rate_or_delay("controller", "rate", getattr(controller, "rate", RATE))
+        self.delay = check_rate_or_delay("controller", "delay", getattr(controller, "delay", DELAY))
         inner_loop = getattr(controller, "inner_loop", None)
         if not (inner_loop is None or isinstance(inner_loop, InnerLoop)):
             raise InputError(
@@ -125,7 +125,7 @@ _COLUMNS = (
 
 
 @contextmanager
-def faults_told(simulation: _core.Simulation) -> Iterator[None]:
+def controller_errors_as_failures(simulation: _core.Simulation) -> Iterator[None]:
     """Make of what a controller raises a flight that failed, told in one line.
 
     Raises
@@ -145,7 +145,7 @@ def faults_told(simulation: _core.Simulation) -> Iterator[None]:
     except (QuadcoreError, MemoryError, KeyboardInterrupt):
         raise
     except BaseException as error:  # SystemExit, too: a controller ends its flight, not the program
-        raise _failure(simulation, f"controller: {told(error)}") from error
+        raise _failure(simulation, f"controller: {describe_error(error)}") from error
 
 
 def _failure(simulation: _core.Simulation, reason: str) -> FlightError:

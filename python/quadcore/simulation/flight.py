@@ -120,7 +120,7 @@ def _advance(
     advance = flight.advance if pilot is None else _Piloted(simulation, flight, pilot).advance
 
     def hand_over() -> None:
-        with interrupts.held():
+        with interrupts.hold_signals():
             table, wrenches = flight.take()
             try:
                 whole = table if pilot is None else _called(simulation, pilot.beside, table)

@@ -17,7 +17,7 @@ from ..control.references import ReferenceLike
 from ..model.description import read_both
 from ..model.overrides import check_names, with_links, without_xacro
 from ..support.values import SPAWN, Number, Value, pose, text_of, whole
-from ..support.warning import unheard, warn
+from ..support.warning import suppress_warnings, warn
 from .commands import CommandsLike, as_commands
 from .controller_pilot import Guided
 from .engines import ENGINE
@@ -173,7 +173,8 @@ class FlightPlan:
             return self
         model, tags = read.onto(self.model)
         plan = replace(self, model=model, parameters={**tags, **self.parameters})
-        with read.blamed(), unheard():  # what else is wrong is told as the vehicle is made
+        # Other warnings follow when the vehicle is made.
+        with read.blamed(), suppress_warnings():
             make_simulation(**plan._vehicle())
         unseen = read.unseen(self.duration)
         if unseen:

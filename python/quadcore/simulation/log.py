@@ -13,7 +13,7 @@ from ..formats import format_of, mat
 from ..formats.rows import LogFile, split_columns, wrench_columns
 from ..support.arguments import NAME, check
 from ..support.import_lock import LOCK
-from ..support.optional_packages import needed
+from ..support.optional_packages import require_package
 from ..support.output_files import check_writable
 from ..support.parameters import did_you_mean
 from .trajectory import Trajectory
@@ -89,7 +89,7 @@ class Log(Trajectory):
         InputError
             pandas is not installed.
         """
-        with needed("log.to_dataframe()", "pandas", "pandas"):
+        with require_package("log.to_dataframe()", "pandas", "pandas"):
             import pandas
         return pandas.DataFrame(self.to_dict()).set_index("t")
 

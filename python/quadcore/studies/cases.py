@@ -31,7 +31,7 @@ from ..simulation.scenarios import Scenario
 from ..simulation.simulation import Simulation
 from ..support.output_files import shown
 from ..support.values import whole
-from ..support.warning import unheard
+from ..support.warning import suppress_warnings
 from .axes import OF_CONTROLLER
 from .design import Design, Point
 from .guidance import Guidance
@@ -185,7 +185,7 @@ class Cases(Sequence[Case]):
         made = []
         for model in range(len(self.models)):
             for i, point in enumerate(self.design.to_try()):
-                with unheard() if i else nullcontext():  # the first says what is doubtful
+                with suppress_warnings() if i else nullcontext():  # the first says what is doubtful
                     vehicle = self.vehicle(model, point)
                     self.start(model, point, vehicle)
                 if not i:

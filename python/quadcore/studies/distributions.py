@@ -9,7 +9,7 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tu
 import numpy as np
 
 from .._core import InputError, parse_number
-from ..support.optional_packages import needed
+from ..support.optional_packages import require_package
 
 DIGITS = 12
 """Of what is drawn, as text: fewer than a double has, so that every machine writes the same."""
@@ -114,7 +114,7 @@ def _saltelli(dimensions: int, count: int, seed: int) -> np.ndarray:
     _check_power("saltelli", count)
     if count < 2:
         raise InputError("samples is 1; design saltelli tells nothing of one; give at least 2")
-    with needed("design saltelli", "SALib", "sweep"):
+    with require_package("design saltelli", "SALib", "sweep"):
         from SALib.sample import sobol
     points: np.ndarray = sobol.sample(
         unit_problem(dimensions), count, calc_second_order=False, seed=seed
@@ -190,7 +190,7 @@ def _check_power(design: str, count: int) -> None:
 
 
 def _qmc() -> Any:
-    with needed("this design", "scipy, from 1.7 on,", "sweep"):
+    with require_package("this design", "scipy, from 1.7 on,", "sweep"):
         from scipy.stats import qmc
     return qmc
 

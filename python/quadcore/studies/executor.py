@@ -15,7 +15,7 @@ from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Tupl
 
 from .._core import InputError, QuadcoreError
 from ..support import interrupts
-from ..support.user_code import told
+from ..support.user_code import describe_error
 
 Case = TypeVar("Case")
 Result = TypeVar("Result")
@@ -82,10 +82,10 @@ def each(
         crew.hire(processes or usable_cores())
         while crew.busy:
             for connection in wait(list(crew.busy)):
-                with interrupts.held():
+                with interrupts.hold_signals():
                     take(*crew.take(connection))
     except KeyboardInterrupt:
-        with interrupts.held():
+        with interrupts.hold_signals():
             for outcome in crew.dismiss():
                 take(*outcome)
         raise
@@ -130,7 +130,7 @@ def contained(function: Callable[[Case], Result]) -> Callable[[Case], Result]:
         except (QuadcoreError, MemoryError, KeyboardInterrupt):
             raise
         except BaseException as error:  # SystemExit, too: it is not for code that flies to end all
-            raise QuadcoreError(told(error)) from error
+            raise QuadcoreError(describe_error(error)) from error
 
     return call
 
@@ -163,7 +163,7 @@ class _Crew:
     def hire(self, processes: int) -> None:
         """Start so many, or as many as the system gives, each with a case."""
         for _ in range(processes):
-            with interrupts.held():
+            with interrupts.hold_signals():
                 if not self._replace():
                     break
 
@@ -260,7 +260,7 @@ def _serve(
     with contextlib.suppress(EOFError, BrokenPipeError, ConnectionResetError):
         while True:
             result, fault = _outcome(function, pipe.recv())
-            with interrupts.held():
+            with interrupts.hold_signals():
                 if fault is None and not isinstance(result, QuadcoreError):
                     result, fault = _outcome(conclude, result)
                 pipe.send((result, fault))

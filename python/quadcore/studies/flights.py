@@ -9,13 +9,12 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence
 import numpy as np
 
 from .._core import FlightError
-from ..report.thinning import thinned
-from ..simulation.controller_pilot import faults_told
+from ..simulation.controller_pilot import controller_errors_as_failures
 from ..simulation.flight import Rows, columns_of, fly
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.log import Log
 from ..simulation.simulation import Simulation
-from ..support.warning import unheard
+from ..support.warning import suppress_warnings
 from .clock import Clocked, ClockedPilot, clocked, typical_and_slow
 from .measures import UNITS, loss, measure
 from .step_response import step_response
@@ -91,7 +90,7 @@ def flown(
     """
     started = time.perf_counter()
     failure = ""
-    with time_limit(most), unheard():
+    with time_limit(most), suppress_warnings():
         flight = described()
         if timed:
             flight = replace(flight, controller=clocked(flight.controller))
@@ -104,7 +103,7 @@ def flown(
         topics = _watched(simulation) if keep else []
         rows = Rows(simulation, columns_of(simulation, topics, pilot))
         try:
-            with faults_told(simulation):
+            with controller_errors_as_failures(simulation):
                 fly(
                     simulation,
                     flight.duration,

@@ -55,7 +55,7 @@ def output_folder(folder: Optional[Path], names: Iterable[str] = ()) -> Iterator
         try:
             yield
         finally:
-            with interrupts.held():
+            with interrupts.hold_signals():
                 with contextlib.suppress(OSError):
                     os.unlink(folder / _LOCK)
                 os.close(number)

@@ -8,7 +8,7 @@ from typing import Any, Callable, Iterable, List, Mapping, Optional, Sequence, T
 
 from .._core import InputError
 from ..control import laws, references
-from ..control.controller import check_callable, give
+from ..control.controller import check_callable, set_parameter
 from ..simulation.flight_plan import FlightPlan
 from ..support.arguments import brief
 from ..support.values import SPAWN, pose
@@ -151,7 +151,7 @@ def give_all(controller: Any, values: Mapping[str, Any]) -> Any:
     """Give a controller its rate, delay and parameters, as far as they are not None."""
     for name, value in values.items():
         if value is not None:
-            give(controller, name, value)
+            set_parameter(controller, name, value)
     return controller
 
 

@@ -45,7 +45,7 @@ def exit_status(stop: KeyboardInterrupt) -> int:
 
 
 @contextmanager
-def heard() -> Iterator[None]:
+def raise_on_signals() -> Iterator[None]:
     """Let each of `SIGNALS` raise `Interrupted` within the block; for the main thread.
 
     SIGTERM and SIGHUP stay ignored if they are (``nohup``); SIGINT is heard all the same, because
@@ -96,7 +96,7 @@ def _starts_module_in_c(frame: Optional[FrameType]) -> bool:
 
 
 @contextmanager
-def held() -> Iterator[None]:
+def hold_signals() -> Iterator[None]:
     """Let `SIGNALS` that Python handles wait until the block has ended; a second Ctrl-C does not.
 
     For what must be done wholly or not at all: a file put in its place, a result taken over. In

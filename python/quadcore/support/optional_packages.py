@@ -9,7 +9,7 @@ from .._core import InputError
 
 
 @contextmanager
-def needed(what: str, package: str, extra: str) -> Iterator[None]:
+def require_package(what: str, package: str, extra: str) -> Iterator[None]:
     """Say in an error of an import what to install.
 
     Parameters

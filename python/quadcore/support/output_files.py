@@ -47,7 +47,7 @@ def atomic_write(path: Path) -> Iterator[IO[bytes]]:
     except OSError as error:
         raise unwritable(path, error) from error
     finally:
-        with interrupts.held(), contextlib.suppress(OSError):
+        with interrupts.hold_signals(), contextlib.suppress(OSError):
             part.unlink()
 
 
@@ -176,7 +176,7 @@ def check_writable(path: Path) -> None:
         if target.exists() and not os.access(str(target), os.W_OK):
             raise InputError(f"{path}: cannot be written: it is read-only")
         probe = beside(target)
-        with interrupts.held():
+        with interrupts.hold_signals():
             probe.touch()
             probe.unlink()
     except OSError as error:

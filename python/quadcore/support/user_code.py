@@ -13,7 +13,7 @@ from typing import Any
 from .._core import InputError
 
 
-def imported(text: str) -> Any:
+def import_controller(text: str) -> Any:
     """Bring in a controller.
 
     Parameters
@@ -57,7 +57,7 @@ def imported(text: str) -> Any:
     return controller
 
 
-def told(error: BaseException) -> str:
+def describe_error(error: BaseException) -> str:
     """Say in one line what was raised, and where."""
     if isinstance(error, SyntaxError) and error.filename:
         kind, reason, file, line = type(error).__name__, error.msg, error.filename, error.lineno
@@ -68,4 +68,4 @@ def told(error: BaseException) -> str:
 
 
 def _failed(text: str, error: BaseException) -> InputError:
-    return InputError(f"controller '{text}': {told(error)}")
+    return InputError(f"controller '{text}': {describe_error(error)}")

@@ -25,7 +25,7 @@ def _is_ours(frame: FrameType) -> bool:
 
 
 @contextmanager
-def unheard() -> Iterator[None]:
+def suppress_warnings() -> Iterator[None]:
     """Let what is doubtful within the block be no news: simulations keep it."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", QuadcoreWarning)

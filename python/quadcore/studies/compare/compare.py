@@ -182,7 +182,7 @@ def _first_flown(
         log = outcomes.pop()
         if isinstance(log, Log):
             tally.compare_with(row, log)
-            with interrupts.held():
+            with interrupts.hold_signals():
                 tally.note(row, _kept(row, measured(plan, log, log), log, tally.keep))
             return log
         if wanted is not None:

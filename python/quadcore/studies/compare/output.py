@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
-from ...report.thinning import evenly
+from ...report.thinning import pick_evenly
 from ..folder import remove_listed
 from ..table import csv_bytes, flown_and_failed, json_bytes, number_text, save, shown_in
 from .plan import Plan
@@ -18,7 +18,7 @@ _DRAWN = 40  # flights in one picture
 
 def drawn(count: int) -> List[int]:
     """Which of so many flights to draw: all, or evenly many with the first and the last."""
-    return evenly(count, _DRAWN)
+    return pick_evenly(count, _DRAWN)
 
 
 FILES = ("table.csv", "comparison.json", "report.html")

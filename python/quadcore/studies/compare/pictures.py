@@ -9,7 +9,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 
 from ...report.colours import PALETTE
-from ...report.plots import NOTHING, WHOLE, as_commanded, flatten, panels, space, titled
+from ...report.plots import NOTHING, WHOLE, add_commanded_axis, flatten, make_figure, panels, space
 from ...simulation.log import Log
 from ...support.rotation import continuous
 from ..metrics import differences
@@ -69,7 +69,7 @@ def _styles(curves: Sequence[Curve]) -> List[Dict[str, Any]]:
 
 
 def _path(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure:
-    figure = titled("Paths of the frame", 6, 6)
+    figure = make_figure("Paths of the frame", 6, 6)
     axes, _ = space(figure, WHOLE, [curve.log.position for curve in curves])
     for curve, style in zip(curves, styles):
         axes.plot(*curve.log.position.T, **style)
@@ -108,7 +108,7 @@ def _rotors(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure
         title += ", and as commanded"
         figure = _figure(title, curves, styles, [(values, labels)], right=0.8)
         for axes in figure.axes:
-            as_commanded(axes, curves[0].log.per_command)
+            add_commanded_axis(axes, curves[0].log.per_command)
         return figure
     return _figure(title, curves, styles, [(values, labels)])
 

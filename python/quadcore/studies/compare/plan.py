@@ -11,7 +11,7 @@ from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Union
 from ..._core import InputError, QuadcoreError
 from ...model.overrides import XACRO, link_values
 from ...simulation.commands import CommandsLike
-from ...simulation.controller_pilot import faults_told
+from ...simulation.controller_pilot import controller_errors_as_failures
 from ...simulation.engines import list_engines
 from ...simulation.flight import check_logged
 from ...simulation.log import Log
@@ -84,7 +84,7 @@ class Plan(Cases):
         with time_limit(self.options.time_limit):
             flight = self.flight(case)
             simulation = flight.simulation()
-            with faults_told(simulation):
+            with controller_errors_as_failures(simulation):
                 return flight.flown_by(simulation)
 
     def label(self, case: Case) -> str:

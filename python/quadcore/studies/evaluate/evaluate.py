@@ -22,7 +22,7 @@ from typing import (
 
 from ..._core import InputError, QuadcoreError
 from ...report.html_table import SHOWN_ROWS, html_table, html_title
-from ...report.thinning import evenly
+from ...report.thinning import pick_evenly
 from ...simulation.engines import STUDIED
 from ...simulation.flight_plan import FlightPlan
 from ...support import arguments
@@ -237,4 +237,4 @@ def _poles(plan: Plan) -> List[Dict[str, Any]]:
 def _drawn(plan: Plan) -> Set[int]:
     """Choose the rows to draw: of first seeds, all or evenly many."""
     firsts = range(0, len(plan), len(plan.seeds))
-    return {firsts[i] for i in evenly(len(firsts), _DRAWN)}
+    return {firsts[i] for i in pick_evenly(len(firsts), _DRAWN)}

@@ -9,7 +9,7 @@ from typing import Any, Dict, List, Mapping, Sequence
 import numpy as np
 
 from ... import __version__
-from ...report.thinning import evenly
+from ...report.thinning import pick_evenly
 from ..folder import remove_pictures, save_pictures
 from ..measures import MEANINGS, UNITS
 from ..table import NOT_FLOWN, csv_bytes, flown_and_failed, json_bytes, number_text, save
@@ -72,7 +72,7 @@ def _players(evaluation: Evaluation) -> List[Dict[str, Any]]:
 
     players = []
     for reference, flights in list(by_reference(evaluation).items())[:_PLAYERS]:
-        picked = [flights[i] for i in evenly(len(flights), _PLAYED)]
+        picked = [flights[i] for i in pick_evenly(len(flights), _PLAYED)]
         shown = [
             PlayerFlight(named, outcome.log, outcome.rotors)
             for named, outcome in picked

@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, 
 import numpy as np
 
 from ...report.colours import PALETTE
-from ...report.plots import dress, panels, png, titled
-from ...report.thinning import evenly
+from ...report.plots import dress, make_figure, panels, png
+from ...report.thinning import pick_evenly
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 from ...simulation.scenario_events import Event
-from .evaluate import Evaluation
-from .event_marks import mark
 from ..flights import Outcome
 from ..measures import distance, lost
+from .evaluate import Evaluation
+from .event_marks import mark
 from .robustness import RATES
 
 _CURVES = 16  # in one panel; more cannot be told apart
@@ -101,7 +101,7 @@ def _look(i: int) -> Dict[str, Any]:
 def _tracks(reference: str, flights: Flights) -> Figure:
     room = _above(flights)
     height = 3.6 + room
-    figure = titled(f"Tracks: {reference}", 8, height)
+    figure = make_figure(f"Tracks: {reference}", 8, height)
     margins = dict(_MARGINS, top=1 - room / height, bottom=0.5 / height, wspace=0.25)
     above, side = figure.subplots(1, 2, gridspec_kw=margins)
     wanted = next(outcome.log.topics["reference"] for _, outcome in flights if outcome.log)
@@ -135,7 +135,7 @@ def _errors(reference: str, flights: Flights) -> Figure:
 
 
 def _rotors(reference: str, flights: Flights) -> Figure:
-    shown = [flights[i] for i in evenly(len(flights), _PANELS)]
+    shown = [flights[i] for i in pick_evenly(len(flights), _PANELS)]
     title = f"Speeds of the rotors and their limit: {reference}"
     figure, grid = panels(title, len(shown), height=1.3)
     for axes, (named, outcome) in zip(grid[:, 0], shown):
@@ -168,7 +168,7 @@ def _responses(reference: str, flights: Flights) -> Figure:
 def _boxes(evaluation: Evaluation) -> Figure:
     groups = [group for group in evaluation.groups if group["failure_rate"] < 1][:40]
     height = 1.2 + 0.3 * len(groups)
-    figure = titled("Largest error of the last 10 s over the seeds", 8, height)
+    figure = make_figure("Largest error of the last 10 s over the seeds", 8, height)
     axes = figure.add_axes((0.4, 0.6 / height, 0.57, 1 - 1.1 / height))
     dress(axes)
     values, names = [], []
@@ -198,7 +198,7 @@ def _boxes(evaluation: Evaluation) -> Figure:
 
 def _margins(rows: Any) -> Figure:
     height = 1.2 + 0.35 * len(rows)
-    figure = titled("What a controller forgives", 8, height)
+    figure = make_figure("What a controller forgives", 8, height)
     gain, delay = figure.subplots(
         1, 2, sharey=True, gridspec_kw=dict(_MARGINS, left=0.28, top=0.8, bottom=0.6 / height)
     )

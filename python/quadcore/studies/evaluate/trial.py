@@ -7,7 +7,7 @@ from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 from ..._core import ParameterInfo, parse_number
 from ...control import laws
-from ...control.controller import check_callable, give
+from ...control.controller import check_callable, set_parameter
 from ...control.inner_loop import InnerLoop
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.simulation import Simulation
@@ -37,9 +37,11 @@ class Trial(NamedTuple):
         flight = plan.flight(Case(self.controller))
         controller = flight.controller
         if self.rate is not None:
-            give(controller, "rate", self.rate)
+            set_parameter(controller, "rate", self.rate)
         if self.delay:
-            give(controller, "delay", float(getattr(controller, "delay", 0.0)) + self.delay)
+            set_parameter(
+                controller, "delay", float(getattr(controller, "delay", 0.0)) + self.delay
+            )
         if self.thrust == self.drag == self.lag == 1:
             return flight
         described = replace(flight, on_reference=False).simulation()

@@ -11,7 +11,7 @@ from ..._core import FlightError, InputError, Model
 from ...simulation.engines import STUDIED
 from ...simulation.log import Log
 from ...support import arguments
-from ...support.warning import unheard
+from ...support.warning import suppress_warnings
 from . import record as records
 from .horizons import Horizons
 from .identify import Combination, Identified, identify
@@ -187,7 +187,7 @@ def fit(
         )  # fmt: skip
         return Problem(pieces, wanted)
 
-    with unheard():
+    with suppress_warnings():
         train = problem(False)
         train.horizons.shift = _best_shift(train, round(shift / simulation.dt))
         try:

@@ -11,7 +11,7 @@ from ..._core import QuadcoreError
 from ...simulation.flight import steps_within
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
-from ...support.warning import unheard
+from ...support.warning import suppress_warnings
 from ..time_limit import time_limit
 from . import motion
 from .spec import Flight, Row, Spec
@@ -34,7 +34,7 @@ def fly_together(specs: Sequence[Spec]) -> Optional[List[Row]]:
     if len(flights) < max(2, len(specs)) or not _are_alike([spec.plan for spec in flights]):
         return None
     try:
-        with time_limit(len(flights) * flights[0].limit), unheard():
+        with time_limit(len(flights) * flights[0].limit), suppress_warnings():
             return _fly(flights)
     except QuadcoreError:  # each by itself says whose fault it is
         return None

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from typing import Any, Callable, Iterator, Tuple
 
 from ..._core import QuadcoreError
-from ...support.optional_packages import needed
+from ...support.optional_packages import require_package
 
 _PATIENCE = 30.0  # s; for a scheduler to answer
 
@@ -30,7 +30,7 @@ def cluster(address: str) -> Iterator[Tuple[Any, Callable[[], None]]]:
     QuadcoreError
         No scheduler answers.
     """
-    with needed("--dask", "distributed", "dask"):
+    with require_package("--dask", "distributed", "dask"):
         from distributed import Client
 
     with _quiet():

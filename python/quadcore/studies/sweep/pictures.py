@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, 
 import numpy as np
 
 from ...report.colours import PALETTE
-from ...report.plots import dress, panels, png, titled
-from ...report.thinning import evenly
+from ...report.plots import dress, make_figure, panels, png
+from ...report.thinning import pick_evenly
 from .plan import AnyPlan
 from .sensitivity import COMBINATION, axes_of_numbers, combinations
 
@@ -96,7 +96,7 @@ def _sensitivity(told: Sequence[Mapping[str, Any]], measure: str) -> Figure:
     is_sobol = any(np.isfinite(row["total"]) for row in told)
     what = "Sobol indices" if is_sobol else "Rank correlations"
     height = 1.1 + 0.3 * len(told)
-    figure = titled(f"{what} of {measure}", 8, height)
+    figure = make_figure(f"{what} of {measure}", 8, height)
     axes = figure.add_axes((0.45, 0.5 / height, 0.52, 1 - 1.0 / height))
     dress(axes)
     places = np.arange(len(told))[::-1]
@@ -132,7 +132,7 @@ def _surface(
     parts: Parts, columns: Columns, leading: Sequence[str], measure: str, label: str
 ) -> Figure:
     height = 3.2
-    figure = titled("Response surface: rows, and the quadratic through them", 8, height)
+    figure = make_figure("Response surface: rows, and the quadratic through them", 8, height)
     grid = figure.subplots(
         1,
         len(parts),
@@ -141,7 +141,7 @@ def _surface(
     )
     for axes, (named, chosen) in zip(grid[0], parts):
         dress(axes)
-        picked = chosen[evenly(len(chosen), 4 * _LINES)]
+        picked = chosen[pick_evenly(len(chosen), 4 * _LINES)]
         values = columns[measure]
         x = columns[leading[0]]
         axes.set_title(named, loc="left", fontsize="small")
@@ -197,12 +197,12 @@ def _parallel(
 
     names = [*axes_shown, measure]
     height = 3.0
-    figure = titled(f"Parallel coordinates, coloured by {measure}", 8, height)
+    figure = make_figure(f"Parallel coordinates, coloured by {measure}", 8, height)
     axes = figure.add_axes((0.07, 0.2, 0.84, 0.66))
     dress(axes)
     chosen = np.concatenate([rows for _, rows in parts])
     ends = {name: (columns[name][chosen].min(), columns[name][chosen].max()) for name in names}
-    picked = chosen[evenly(len(chosen), _LINES)]
+    picked = chosen[pick_evenly(len(chosen), _LINES)]
     picked = picked[np.argsort(columns[measure][picked])]  # the largest on top
     heights = np.stack([_unit(columns[name][picked], ends[name]) for name in names], axis=1)
     shades = _scaled(columns[measure][picked])

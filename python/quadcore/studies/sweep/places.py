@@ -152,7 +152,7 @@ def fly_over(
                 check()
                 continue
             numbers = under_way.pop(future)
-            with interrupts.held():
+            with interrupts.hold_signals():
                 for row in _outcome(plan, future, numbers):
                     if isinstance(row, Row):
                         take(row)

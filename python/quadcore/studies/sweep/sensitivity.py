@@ -12,7 +12,7 @@ from typing import Any, Dict, Iterator, List, Mapping, Tuple
 
 import numpy as np
 
-from ...support.optional_packages import needed
+from ...support.optional_packages import require_package
 from ..distributions import unit_problem
 from .plan import AnyPlan
 
@@ -116,7 +116,7 @@ def _sobol(
     whole = len(values) == len(design) * seeds
     if not whole or len(design) != points or np.ptp(values) == 0:
         return {}
-    with needed("Sobol indices", "SALib", "sweep"):
+    with require_package("Sobol indices", "SALib", "sweep"):
         from SALib.analyze import sobol
 
     names = list(design.drawn)

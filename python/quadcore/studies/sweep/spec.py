@@ -12,8 +12,8 @@ from typing import Any, Mapping, NamedTuple, Optional, Protocol, Tuple
 from ..._core import FlightError, InputError, QuadcoreError
 from ...control import laws
 from ...simulation.flight_plan import FlightPlan
-from ...support.user_code import told
-from ...support.warning import unheard
+from ...support.user_code import describe_error
+from ...support.warning import suppress_warnings
 from ..flights import flown
 from ..guidance import give_all
 from ..time_limit import time_limit
@@ -77,7 +77,7 @@ class Flight:
             It failed.
         """
         if self.own is None and self.plan.controller is None:
-            with time_limit(self.limit), unheard():
+            with time_limit(self.limit), suppress_warnings():
                 return motion.measure(self.plan.fly())
         outcome = flown(self._guided, self.limit, timed=False)
         if outcome.failure:
@@ -126,7 +126,7 @@ def done(spec: Spec) -> Row:
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # SystemExit, too: it is not for code that flies to end all
-        failure = told(error)
+        failure = describe_error(error)
     return Row(spec.row, " ".join(failure.split()), None, fingerprint)
 
 

@@ -202,7 +202,7 @@ def conduct(
         else:
             fly_here(plan, rows.missing, take, processes)
     finally:
-        with interrupts.held():
+        with interrupts.hold_signals():
             rows.close()
             if parquet:
                 write_parquet(rows, folder / PARQUET)

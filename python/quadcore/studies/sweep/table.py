@@ -38,9 +38,9 @@ def write_parquet(rows: Rows, path: Path) -> None:
     InputError
         There is no pyarrow, or the file cannot be written.
     """
-    from ...support.optional_packages import needed
+    from ...support.optional_packages import require_package
 
-    with needed("Parquet", "pyarrow", "sweep"):
+    with require_package("Parquet", "pyarrow", "sweep"):
         import pyarrow as arrow
         from pyarrow import parquet
 

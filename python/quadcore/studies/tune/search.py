@@ -9,7 +9,7 @@ import numpy as np
 
 from ..._core import InputError, QuadcoreError
 from ...control.gains import Gains
-from ...support.warning import unheard
+from ...support.warning import suppress_warnings
 from ..executor import conducted
 from ..options import Progress
 from ..time_limit import time_limit
@@ -150,7 +150,7 @@ class Search:
             left[index] = str(outcome)
 
         def fly(index: int) -> str:
-            with unheard(), time_limit(self._limit):
+            with suppress_warnings(), time_limit(self._limit):
                 return problem.comes_back(problem.to_come_back_to[index], gains)
 
         conducted(fly, range(len(left)), take, self._processes)
@@ -173,7 +173,7 @@ class Search:
             outcomes[index] = Flown(LOST, str(outcome)) if failed else outcome  # type: ignore
 
         def fly(index: int) -> Flown:
-            with unheard(), time_limit(self._limit):
+            with suppress_warnings(), time_limit(self._limit):
                 return self._problem.fly(*flights[index])
 
         # By their numbers: a reference may be a function, which no process can send to another.

@@ -9,7 +9,7 @@ from ...control import laws
 from ...simulation.engines import STUDIED
 from ...support import arguments
 from ...support.arguments import several
-from ...support.optional_packages import needed
+from ...support.optional_packages import require_package
 from ..axes import Values
 from ..options import Keywords, Names, Options, Progress, takes
 from .problem import Problem
@@ -117,6 +117,6 @@ def conduct(problem: Problem, budget: int, progress: Optional[Progress] = None) 
 
 
 def _cma() -> Any:
-    with needed("tuning", "cma", "tune"):
+    with require_package("tuning", "cma", "tune"):
         import cma
     return cma

@@ -67,7 +67,7 @@ class _Motion:
         self._fastest = model.vehicle.fastest
 
     def __call__(self, dt: float, command: np.ndarray, members: Mapping[str, Any]) -> State:
-        with interrupts.held():  # the engine would take one for a fault of the model
+        with interrupts.hold_signals():  # the engine would take one for a fault of the model
             state = state_of(members)
             joints = state.rotor_velocity.copy()
             state.rotor_velocity = joints[self._order]

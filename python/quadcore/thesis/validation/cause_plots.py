@@ -8,7 +8,7 @@ from typing import Any, Dict, List, Sequence, Tuple
 import numpy as np
 
 from ...report.colours import PALETTE
-from ...report.plots import dress, png, titled
+from ...report.plots import dress, make_figure, png
 from .damping import Damping
 from .error_budget import Chain, Link
 from .output import size
@@ -24,7 +24,7 @@ def draw_chains(chains: Sequence[Chain]) -> bytes:
     groups = _bars(chains)
     bars = sum(len(group) for group in groups.values())
     height = 0.9 + 0.19 * (bars + len(groups))
-    figure = titled(f"What each change moves, drag: {chains[0].drag}", 9, height, _DPI)
+    figure = make_figure(f"What each change moves, drag: {chains[0].drag}", 9, height, _DPI)
     axes = figure.add_axes((0.36, 0.55 / height, 0.61, 1 - 1.0 / height))
     dress(axes)
     largest = [link.largest for group in groups.values() for _, link in group]
@@ -92,7 +92,7 @@ def _colour(name: str, chains: Sequence[Chain]) -> str:
 
 def draw_damping(damping: Sequence[Damping]) -> bytes:
     """Draw the decay of a pitch rate that nothing should stop."""
-    figure = titled("Decay of a pitch rate in free fall, without air", 6.4, 3.4, _DPI)
+    figure = make_figure("Decay of a pitch rate in free fall, without air", 6.4, 3.4, _DPI)
     axes = figure.add_axes((0.12, 0.16, 0.85, 0.72))
     dress(axes)
     damping = sorted(damping, key=lambda entry: entry.sim_slow)

@@ -7,7 +7,7 @@ from typing import Any, Callable, Dict, List, NamedTuple, Sequence, Tuple
 import numpy as np
 
 from ...report.colours import PALETTE
-from ...report.plots import png, subplots, titled, widen
+from ...report.plots import make_figure, png, subplots, widen
 from .cause_plots import draw_chains, draw_damping
 from .experiment import MODEL, Case
 from .states import states
@@ -124,7 +124,7 @@ def _panels(
     """Make rows x columns panels of a height in inches, with room above for title and legend."""
     width, below = width or max(2.6 * columns + 1.2, 6), 0.45
     height = above + each * rows + below
-    figure = titled(title, width, height, _DPI)
+    figure = make_figure(title, width, height, _DPI)
     # Fixed margins: matplotlib's automatic layouts differ from version to version.
     margins = {
         "left": 1.1 / width,
