@@ -9,6 +9,7 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence
 import numpy as np
 
 from .._core import FlightError
+from ..report.thinning import thin
 from ..simulation.controller_pilot import controller_errors_as_failures
 from ..simulation.flight import Rows, columns_of, fly
 from ..simulation.flight_plan import FlightPlan
@@ -136,7 +137,7 @@ def flown(
     response = None if failure else step_response(log)
     limit = min((rotor.max_speed / rotor.slowdown for rotor in rotors), default=np.inf)
     places = np.array([rotor.position for rotor in rotors])
-    return outcome._replace(log=thinned(log), response=response, limit=limit, rotors=places)
+    return outcome._replace(log=thin(log), response=response, limit=limit, rotors=places)
 
 
 def _watched(simulation: Simulation) -> List[str]:

@@ -11,6 +11,7 @@ from ..._core import InputError, QuadcoreError
 from ...control.gains import Gains
 from ...support.warning import suppress_warnings
 from ..executor import conducted
+from ..measures import LOST
 from ..options import Progress
 from ..time_limit import time_limit
 from .problem import Flown, Problem, Trial
