@@ -1,7 +1,7 @@
 #pragma once
 
 #include "block.hpp"
-#include "engines/ode/hinged_tree.hpp"
+#include "ode/hinged_tree.hpp"
 
 /// \file
 /// Vehicles of a block as bodies on hinges, all on the frame: the engine gazebo11 in flight. Free

@@ -1,8 +1,8 @@
-#include "engines/ode/beside_contact.hpp"
-#include "engines/ode/hinged_motion.hpp"
 #include "hinged_block.hpp"
 #include "laws/motor_torque.hpp"
 #include "masks.hpp"
+#include "ode/beside_contact.hpp"
+#include "ode/hinged_motion.hpp"
 
 namespace quadcore::batch {
 namespace {

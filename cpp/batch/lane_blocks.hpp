@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "batch/lane_vehicle.hpp"
+#include "lane_vehicle.hpp"
 #include "quadcore/rotor_rows.hpp"
 
 namespace quadcore::batch {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "batch/block.hpp"
+#include "block.hpp"
 #include "ode/hinged_model.hpp"
 #include "quadcore/simulation.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "batch/lane_vehicle.hpp"
+#include "lane_vehicle.hpp"
 #include "quadcore/batch.hpp"
 
 namespace quadcore::batch {

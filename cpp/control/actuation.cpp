@@ -15,7 +15,7 @@ struct Lead {
   double time;
 };
 
-const Settings<Lead>& settings() {
+const Settings<Lead>& lead_settings() {
   static const Settings<Lead> all = {
       {T::flag("lead", "true", "whether the lag of the motors is inverted"), &Lead::lead},
       {T::number("lead_time", "s", "0.01", "time constant that is left of it").above(0),
@@ -27,14 +27,14 @@ const Settings<Lead>& settings() {
 }  // namespace
 
 const std::vector<TagSpec>& Actuation::table() {
-  static const std::vector<TagSpec> all = table_of(settings());
+  static const std::vector<TagSpec> all = table_of(lead_settings());
   return all;
 }
 
 Actuation::Actuation(const Belief& belief, const Values& values)
     : rotors_(belief.rotors), allocation_(belief) {
   Lead lead{};
-  configure(lead, settings(), values);
+  configure(lead, lead_settings(), values);
   leads_ = lead.lead;
   lead_time_ = lead.time;
 }

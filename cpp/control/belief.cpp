@@ -21,7 +21,7 @@ T factor(const char* name, const char* of) {
   return T::number(name, "", "1", std::string("believed ") + of + " over that of the plant");
 }
 
-const Settings<Doubts>& settings() {
+const Settings<Doubts>& doubt_settings() {
   static const Settings<Doubts> all = {
       {factor("believed_mass", "mass").above(0), &Doubts::mass},
       {factor("believed_inertia", "inertia").above(0), &Doubts::inertia},
@@ -53,14 +53,14 @@ void check_spins(const std::vector<double>& spins, std::size_t rotors) {
 }  // namespace
 
 const std::vector<TagSpec>& Belief::table() {
-  static const std::vector<TagSpec> table = table_of(settings());
+  static const std::vector<TagSpec> table = table_of(doubt_settings());
   return table;
 }
 
 Belief Belief::of(const VehicleDescription& vehicle, std::vector<double> spins,
                   const Values& values) {
   Doubts doubts{};
-  configure(doubts, settings(), values);
+  configure(doubts, doubt_settings(), values);
   const Vector3d& g_W = vehicle.gravity_W;
   if (!(g_W.z() < 0) || g_W.x() != 0 || g_W.y() != 0) {
     throw InputError("gravity is not along -z of the world, which these laws need");

@@ -1,9 +1,9 @@
-#include "control/cascade.hpp"
+#include "cascade.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "control/euler_rates.hpp"
+#include "euler_rates.hpp"
 
 namespace quadcore::control {
 namespace {

@@ -1,6 +1,6 @@
 #include "quadcore/control/flat_state.hpp"
 
-#include "control/jet.hpp"
+#include "jet.hpp"
 #include "quadcore/elementary.hpp"
 #include "quadcore/error.hpp"
 

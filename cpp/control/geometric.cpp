@@ -1,4 +1,4 @@
-#include "control/geometric.hpp"
+#include "geometric.hpp"
 
 namespace quadcore::control {
 

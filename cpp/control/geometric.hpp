@@ -1,6 +1,6 @@
 #pragma once
 
-#include "control/tracking.hpp"
+#include "tracking.hpp"
 
 namespace quadcore::control {
 

@@ -1,4 +1,4 @@
-#include "control/indi.hpp"
+#include "indi.hpp"
 
 #include <string>
 

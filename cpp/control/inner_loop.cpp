@@ -5,14 +5,14 @@
 namespace quadcore::control {
 namespace {
 
-const Settings<AttitudeGains>& settings() {
+const Settings<AttitudeGains>& attitude_settings() {
   static const Settings<AttitudeGains> all = with_attitude<AttitudeGains>({});
   return all;
 }
 
 AttitudeGains gains_of(const Values& values) {
   AttitudeGains gains{};
-  configure(gains, settings(), values);
+  configure(gains, attitude_settings(), values);
   return gains;
 }
 
@@ -25,7 +25,7 @@ const Values& checked(const Values& values) {
 
 const std::vector<TagSpec>& InnerLoop::table() {
   static const std::vector<TagSpec> all = [] {
-    std::vector<TagSpec> table = table_of(settings());
+    std::vector<TagSpec> table = table_of(attitude_settings());
     for (const std::vector<TagSpec>& more : {Actuation::table(), Belief::table()}) {
       table.insert(table.end(), more.begin(), more.end());
     }

@@ -1,7 +1,7 @@
-#include "control/cascade.hpp"
-#include "control/geometric.hpp"
-#include "control/indi.hpp"
-#include "control/lqr.hpp"
+#include "cascade.hpp"
+#include "geometric.hpp"
+#include "indi.hpp"
+#include "lqr.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/text.hpp"
 

@@ -1,9 +1,9 @@
-#include "control/lqr.hpp"
+#include "lqr.hpp"
 
 #include <cmath>
 
-#include "control/riccati.hpp"
 #include "quadcore/control/flat_state.hpp"
+#include "riccati.hpp"
 
 namespace quadcore::control {
 namespace {

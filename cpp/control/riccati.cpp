@@ -1,4 +1,4 @@
-#include "control/riccati.hpp"
+#include "riccati.hpp"
 
 #include <Eigen/LU>
 #include <Eigen/QR>

@@ -1,4 +1,4 @@
-#include "control/tracking.hpp"
+#include "tracking.hpp"
 
 #include <cmath>
 

@@ -1,8 +1,8 @@
 # The shipped plugins, and which of them have laws in lanes.
 set(QUADCORE_PLUGINS aerodynamic barometer battery controller fault gps ground_effect imu magnetometer
   motor motorpid odometry payload push reference wind)
-set(aerodynamic_lanes rotor_forces_lanes.cpp)
-set(motorpid_lanes motor_torques_lanes.cpp)
+set(aerodynamic_lanes aerodynamic/rotor_forces_lanes.cpp)
+set(motorpid_lanes motorpid/motor_torques_lanes.cpp)
 foreach(plugin ${QUADCORE_PLUGINS})
   set(${plugin}_source ${plugin}/${plugin}_plugin.cpp)
   set(${plugin}_module ${plugin}_plugin)
@@ -17,16 +17,3 @@ endforeach()
 foreach(source multirotor_base gps imu magnetometer odometry pressure wind)
   set(rotors_${source}_module rotors_gazebo_${source}_plugin)
 endforeach()
-
-# quadcore_add_plugin_sources(TARGET PLUGIN): a module is made of them, or a static core.
-function(quadcore_add_plugin_sources target plugin)
-  set(source ${PROJECT_SOURCE_DIR}/cpp/plugins/${${plugin}_source})
-  target_sources(${target} PRIVATE ${source})
-  # Each under a symbol of its own, so that several can be linked together.
-  set_source_files_properties(${source} PROPERTIES
-    COMPILE_DEFINITIONS QUADCORE_PLUGIN_SYMBOL=quadcore_${plugin}_plugin)
-  if(${plugin}_lanes)
-    quadcore_compile_lanes(${target}
-      ${PROJECT_SOURCE_DIR}/cpp/plugins/${plugin}/${${plugin}_lanes})
-  endif()
-endfunction()

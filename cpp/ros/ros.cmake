@@ -107,7 +107,7 @@ generate_messages(DEPENDENCIES geometry_msgs std_msgs)
 configure_file(${PROJECT_BINARY_DIR}/cpp/core/include/quadcore/plugin_interface.hpp
                ${CATKIN_DEVEL_PREFIX}/include/quadcore/plugin_interface.hpp COPYONLY)
 catkin_package(
-  INCLUDE_DIRS cpp/core/include ${CATKIN_DEVEL_PREFIX}/include
+  INCLUDE_DIRS cpp/core/include cpp/control/include ${CATKIN_DEVEL_PREFIX}/include
   LIBRARIES quadcore
   CATKIN_DEPENDS diagnostic_msgs geometry_msgs message_runtime nav_msgs roscpp rosgraph_msgs
                  sensor_msgs std_msgs std_srvs tf2_msgs trajectory_msgs visualization_msgs
@@ -124,46 +124,41 @@ list(FILTER named_as_others INCLUDE REGEX "^rotors_")
 set_target_properties(${named_as_others} PROPERTIES
   LIBRARY_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/lib/quadcore)
 
-function(add_ros_node name)
-  add_executable(${name} ${ARGN})
-  target_include_directories(${name} SYSTEM PRIVATE ${catkin_INCLUDE_DIRS}
+# What a file that includes messages is compiled with.
+function(quadcore_use_ros target scope)
+  target_include_directories(${target} SYSTEM ${scope} ${catkin_INCLUDE_DIRS}
                              ${CATKIN_DEVEL_PREFIX}/include ${foreign_dir})
-  target_compile_definitions(${name} PRIVATE BOOST_BIND_GLOBAL_PLACEHOLDERS)
-  target_link_libraries(${name} PRIVATE ${catkin_LIBRARIES} Threads::Threads)
-  add_dependencies(${name} ${catkin_EXPORTED_TARGETS} quadcore_generate_messages_cpp
+  target_compile_definitions(${target} ${scope} BOOST_BIND_GLOBAL_PLACEHOLDERS)
+  add_dependencies(${target} ${catkin_EXPORTED_TARGETS} quadcore_generate_messages_cpp
                    foreign_messages)
+endfunction()
+
+# quadcore_add_ros_objects(NAME SOURCE...) makes a library of one folder of the nodes. As in the core,
+# it links what is below it.
+function(quadcore_add_ros_objects name)
+  add_library(${name} OBJECT ${ARGN})
+  target_include_directories(${name} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
+  quadcore_use_ros(${name} PUBLIC)
+endfunction()
+
+# quadcore_add_ros_node(NAME SOURCE... [LIBRARIES FOLDER...]) makes a program of sources and folders.
+function(quadcore_add_ros_node name)
+  cmake_parse_arguments(PARSE_ARGV 1 given "" "" LIBRARIES)
+  add_executable(${name} ${given_UNPARSED_ARGUMENTS})
+  quadcore_use_ros(${name} PRIVATE)
+  list(TRANSFORM given_LIBRARIES PREPEND quadcore_ros_)
+  target_link_libraries(${name} PRIVATE ${given_LIBRARIES} ${catkin_LIBRARIES} Threads::Threads)
   set_target_properties(${name} PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/lib/quadcore
     INSTALL_RPATH $ORIGIN/..)
 endfunction()
 
-add_ros_node(quadcore_node
-  cpp/ros/bag_file.cpp cpp/ros/bag_log.cpp cpp/ros/broadcast.cpp cpp/ros/clock.cpp
-  cpp/ros/command_queue.cpp cpp/ros/command_subscriber.cpp
-  cpp/ros/command_topics.cpp
-  cpp/ros/csv_log.cpp cpp/ros/diagnostics.cpp cpp/ros/drag_choice.cpp cpp/ros/flight_log.cpp
-  cpp/ros/flight_loop.cpp cpp/ros/flight_thread.cpp cpp/ros/gazebo_bodies.cpp cpp/ros/gazebo_neighbours.cpp
-  cpp/ros/gazebo_physics.cpp
-  cpp/ros/gazebo_services.cpp cpp/ros/gazebo_states.cpp cpp/ros/gazebo_wrenches.cpp
-  cpp/ros/listener.cpp cpp/ros/log_per_flight.cpp cpp/ros/master_api.cpp cpp/ros/master_check.cpp
-  cpp/ros/master_watch.cpp cpp/ros/mat_file.cpp cpp/ros/mat_log.cpp
-  cpp/ros/model_claim.cpp cpp/ros/odometry_topic.cpp
-  cpp/ros/parameter_watch.cpp cpp/ros/path.cpp
-  cpp/ros/plant.cpp cpp/ros/private_parameters.cpp cpp/ros/quadcore_node.cpp cpp/ros/ros_types.cpp
-  cpp/ros/rotors_types.cpp cpp/ros/services.cpp cpp/ros/settings.cpp
-  cpp/ros/topic_broadcast.cpp cpp/ros/topic_inlets.cpp
-  cpp/ros/topic_services.cpp cpp/ros/vehicle_markers.cpp)
-target_link_libraries(quadcore_node PRIVATE quadcore)
-add_ros_node(controller_node
-  cpp/ros/controller_node.cpp cpp/ros/controller_settings.cpp cpp/ros/drag_choice.cpp
-  cpp/ros/guide.cpp cpp/ros/master_check.cpp cpp/ros/odometry_topic.cpp cpp/ros/plant.cpp
-  cpp/ros/plant_watch.cpp cpp/ros/private_parameters.cpp cpp/ros/ros_types.cpp
-  cpp/ros/set_points.cpp)
-target_link_libraries(controller_node PRIVATE quadcore)
-target_include_directories(controller_node PRIVATE cpp)
+foreach(folder messages parameters master flight logs gazebo topics services controller node)
+  add_subdirectory(cpp/ros/${folder})
+endforeach()
 install(TARGETS quadcore_node controller_node RUNTIME DESTINATION lib/quadcore)
 if(QUADCORE_BUILD_BENCHMARKS)
-  add_ros_node(ros_probe benchmarks/ros_probe.cpp)
+  quadcore_add_ros_node(ros_probe benchmarks/ros_probe.cpp)
   install(TARGETS ros_probe RUNTIME DESTINATION lib/quadcore)
 endif()
 
@@ -177,7 +172,7 @@ install(FILES scripts/ros/recorded_commands.py DESTINATION lib/quadcore)
 if(CATKIN_ENABLE_TESTING)
   find_package(rostest QUIET)
   if(rostest_FOUND)
-    add_ros_node(simulink_stand_in tests/ros/simulink_stand_in.cpp)
+    quadcore_add_ros_node(simulink_stand_in tests/ros/simulink_stand_in.cpp)
     foreach(test topics services lockstep playing logs log_per_flight clock several parameters faults
                  masters launch fly_from_python controller controller_faults set_points pid joystick
                  sensors disturbances markers tutorial rotors rotors_topics rotors_hover gazebo

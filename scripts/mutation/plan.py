@@ -22,7 +22,7 @@ def _core(name: str, sources: List[str], tests: List[str]) -> Part:
 
 
 def _headers(*names: str) -> List[str]:
-    return [f"cpp/{name}.hpp" for name in names]
+    return [f"cpp/physics/{name}.hpp" for name in names]
 
 
 def _plugin(name: str, sources: List[str], tests: List[str], laws: Sequence[str] = ()) -> Part:
@@ -73,10 +73,10 @@ PARTS = [
                 "gyrostat_motion.hpp",
                 "gyrostat_step.hpp",
                 "gyrostat_step_lanes.cpp",
-                "lowest_point.cpp",
                 "touching_points.cpp",
             )
         ]
+        + ["cpp/core/src/vehicle/lowest_point.cpp"]
         + _headers("lanes/four", "laws/contact", "laws/gyrostat", "laws/rotors", "lanes/vec3"),
         [
             "test_eigen.py",
@@ -116,13 +116,13 @@ PARTS = [
         [
             f"cpp/core/src/{name}.cpp"
             for name in (
-                "lumping",
-                "urdf_topology",
-                "references",
-                "model",
-                "kinematics",
-                "loads",
-                "spatial",
+                "read/lumping",
+                "read/urdf_topology",
+                "read/references",
+                "vehicle/model",
+                "vehicle/kinematics",
+                "vehicle/loads",
+                "numeric/spatial",
             )
         ]
         + [f"cpp/engines/ode/sdf_{n}.cpp" for n in ("conversion", "lumping", "numbers")],

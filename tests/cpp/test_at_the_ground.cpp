@@ -1,8 +1,8 @@
 #include <cmath>
 #include <vector>
 
-#include "eigen/lowest_point.hpp"
 #include "grounded.hpp"
+#include "lowest_point.hpp"
 
 using namespace quadcore;
 using namespace quadcore::test;

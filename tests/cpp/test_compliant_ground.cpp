@@ -2,9 +2,9 @@
 #include <vector>
 
 #include "eigen/contact_stiffness.hpp"
-#include "eigen/lowest_point.hpp"
 #include "eigen/touching_points.hpp"
 #include "grounded.hpp"
+#include "lowest_point.hpp"
 
 using namespace quadcore;
 using namespace quadcore::test;

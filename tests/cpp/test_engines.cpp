@@ -1,7 +1,7 @@
 #include <thread>
 
-#include "eigen/lowest_point.hpp"
 #include "lopsided.hpp"
+#include "lowest_point.hpp"
 #include "states.hpp"
 
 using namespace quadcore;

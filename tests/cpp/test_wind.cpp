@@ -1,8 +1,8 @@
 #include <cmath>
 #include <complex>
 
-#include "plugins/wind/dryden.hpp"
 #include "vehicle.hpp"
+#include "wind/dryden.hpp"
 
 using namespace quadcore;
 using namespace quadcore::wind;

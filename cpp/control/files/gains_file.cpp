@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "control/files/yaml_file.hpp"
+#include "files/yaml_file.hpp"
 #include "quadcore/control/controller.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/text.hpp"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <sstream>
 
-#include "control/files/yaml_file.hpp"
+#include "files/yaml_file.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/spatial.hpp"
 #include "quadcore/text.hpp"

@@ -1,4 +1,4 @@
-#include "control/files/yaml_file.hpp"
+#include "files/yaml_file.hpp"
 
 #include <algorithm>
 

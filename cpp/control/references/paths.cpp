@@ -2,11 +2,11 @@
 #include <cmath>
 #include <limits>
 
-#include "control/references/row_fit.hpp"
-#include "control/references/septic_path.hpp"
-#include "control/references/shapes.hpp"
 #include "quadcore/elementary.hpp"
 #include "quadcore/error.hpp"
+#include "references/row_fit.hpp"
+#include "references/septic_path.hpp"
+#include "references/shapes.hpp"
 
 namespace quadcore::control {
 namespace {
@@ -20,9 +20,9 @@ struct RowSettings : YawLaw {
 };
 
 /// A path whose rows say no yaw.
-class Heading final : public ReferenceShape {
+class PathWithoutYaw final : public ReferenceShape {
  public:
-  Heading(const SepticPath& path, const YawLaw& yaw) : path_(path), yaw_(yaw) {
+  PathWithoutYaw(const SepticPath& path, const YawLaw& yaw) : path_(path), yaw_(yaw) {
     const Reference first = path.at(path.begin());
     const Reference last = path.at(std::nextafter(path.end(), path.begin()));
     // From rest it leaves along the snap, and into rest it comes against it.
@@ -52,7 +52,7 @@ class Heading final : public ReferenceShape {
 std::unique_ptr<ReferenceShape> with_yaw_law(const std::string& name, SepticPath path,
                                              const YawLaw& yaw, const Values& values,
                                              const Rows& rows) {
-  if (rows.cols() != with_own_yaw) return std::make_unique<Heading>(path, yaw);
+  if (rows.cols() != with_own_yaw) return std::make_unique<PathWithoutYaw>(path, yaw);
   for (const char* own : {"yaw", "yaw_rate", "along"}) {
     if (values.count(own) == 0) continue;
     throw InputError("reference '" + name + "': its rows say the yaw; leave '" + own +

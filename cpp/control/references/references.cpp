@@ -2,10 +2,10 @@
 #include <cmath>
 #include <limits>
 
-#include "control/references/shapes.hpp"
-#include "eigen/lowest_point.hpp"
+#include "lowest_point.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/text.hpp"
+#include "references/shapes.hpp"
 
 namespace quadcore::control {
 

@@ -1,5 +1,5 @@
-#include "control/references/shapes.hpp"
 #include "quadcore/elementary.hpp"
+#include "references/shapes.hpp"
 
 namespace quadcore::control {
 namespace {

@@ -1,4 +1,4 @@
-#include "control/references/row_fit.hpp"
+#include "references/row_fit.hpp"
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>

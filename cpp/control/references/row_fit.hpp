@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "control/references/septic_path.hpp"
+#include "references/septic_path.hpp"
 
 namespace quadcore::control {
 

@@ -1,4 +1,4 @@
-#include "control/references/septic_path.hpp"
+#include "references/septic_path.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -1,12 +1,12 @@
-#include "control/references/set_points.hpp"
+#include "references/set_points.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "control/references/septic_path.hpp"
 #include "quadcore/elementary.hpp"
 #include "quadcore/error.hpp"
+#include "references/septic_path.hpp"
 
 namespace quadcore::control {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "control/references/yaw_law.hpp"
+#include "references/yaw_law.hpp"
 
 namespace quadcore::control {
 

@@ -1,4 +1,4 @@
-#include "control/references/shapes.hpp"
+#include "references/shapes.hpp"
 
 namespace quadcore::control {
 namespace {

@@ -1,4 +1,4 @@
-#include "control/references/yaw_law.hpp"
+#include "references/yaw_law.hpp"
 
 #include "quadcore/elementary.hpp"
 

@@ -6,7 +6,7 @@
 
 namespace quadcore {
 
-/// The constants of a gyrostat, whose equations stand in cpp/laws/gyrostat.hpp.
+/// The constants of a gyrostat, whose equations stand in cpp/physics/laws/gyrostat.hpp.
 struct Gyrostat {
   double inverse_mass;           ///< 1/kg
   Vector3d p_FCcm_F;             ///< m

@@ -61,7 +61,7 @@ struct Laws {
 };
 
 /// All that a step of the gyrostat reads and writes; matrices by columns. The equations stand in
-/// cpp/laws/gyrostat.hpp.
+/// cpp/physics/laws/gyrostat.hpp.
 struct GyrostatStep {
   std::size_t rotors;
   const double* constants;  ///< table of RotorConstant

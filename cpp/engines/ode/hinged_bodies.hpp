@@ -19,8 +19,8 @@ enum class Lanes { vehicles, rotors };
 /// acceleration is its carrier's, and what its hinge's rows ask for beyond that, and some turn
 /// about the axis, which no row resists, unless the hinge is locked. Each child, from the leaves
 /// on, hands its carrier the inertia and the force of which that turn is eliminated
-/// (cpp/laws/articulated.hpp), instead of all multipliers being solved for at once. Where cfm lets
-/// the rows give way, each of them is eliminated as a turn is.
+/// (cpp/physics/laws/articulated.hpp), instead of all multipliers being solved for at once. Where
+/// cfm lets the rows give way, each of them is eliminated as a turn is.
 ///
 /// Lanes are vehicles, or the rotors of one vehicle whose hinges are all on its frame: then the
 /// frame is the same in all lanes, and what rotors hand it is summed in their order.

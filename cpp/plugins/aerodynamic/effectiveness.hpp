@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "configuration.hpp"
-#include "plugins/rotor_shares.hpp"
 #include "quadcore/plugin.hpp"
+#include "shared/rotor_shares.hpp"
 
 namespace quadcore::aerodynamic {
 

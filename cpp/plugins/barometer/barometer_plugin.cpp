@@ -1,9 +1,9 @@
 #include <cmath>
 
-#include "plugins/noise_and_drift.hpp"
-#include "plugins/sensing.hpp"
 #include "quadcore/elementary.hpp"
 #include "quadcore/plugin.hpp"
+#include "shared/noise_and_drift.hpp"
+#include "shared/sensing.hpp"
 
 namespace quadcore::barometer {
 namespace {

@@ -1,8 +1,8 @@
 #include <cmath>
 
-#include "plugins/rotor_shares.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
+#include "shared/rotor_shares.hpp"
 
 namespace quadcore::battery {
 namespace {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <string>
 
-#include "control/setup.hpp"
+#include "controller_setup.hpp"
 #include "quadcore/control/rotor_health.hpp"
 #include "quadcore/plugin.hpp"
 #include "quadcore/rotor_shares.hpp"

@@ -3,9 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include "plugins/rotor_shares.hpp"
 #include "quadcore/counts.hpp"
 #include "quadcore/plugin.hpp"
+#include "shared/rotor_shares.hpp"
 
 namespace quadcore::fault {
 namespace {

@@ -1,7 +1,7 @@
 #include "earth.hpp"
-#include "plugins/noise_and_drift.hpp"
-#include "plugins/sensing.hpp"
 #include "quadcore/plugin.hpp"
+#include "shared/noise_and_drift.hpp"
+#include "shared/sensing.hpp"
 
 namespace quadcore::gps {
 namespace {

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "plugins/rotor_shares.hpp"
 #include "quadcore/plugin.hpp"
+#include "shared/rotor_shares.hpp"
 
 namespace quadcore::ground_effect {
 namespace {

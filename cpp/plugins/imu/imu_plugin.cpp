@@ -1,6 +1,6 @@
-#include "plugins/sensing.hpp"
 #include "quadcore/elementary.hpp"
 #include "quadcore/plugin.hpp"
+#include "shared/sensing.hpp"
 #include "triad.hpp"
 
 namespace quadcore::imu {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "plugins/sensing.hpp"
 #include "quadcore/elementary.hpp"
+#include "shared/sensing.hpp"
 
 namespace quadcore::imu {
 

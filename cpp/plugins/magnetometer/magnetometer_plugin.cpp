@@ -1,6 +1,6 @@
-#include "plugins/noise_and_drift.hpp"
-#include "plugins/sensing.hpp"
 #include "quadcore/plugin.hpp"
+#include "shared/noise_and_drift.hpp"
+#include "shared/sensing.hpp"
 
 namespace quadcore::magnetometer {
 namespace {

@@ -2,11 +2,11 @@
 #include <cmath>
 #include <sstream>
 
-#include "plugins/rotor_shares.hpp"
-#include "plugins/speed_limit.hpp"
 #include "quadcore/counts.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
+#include "shared/rotor_shares.hpp"
+#include "shared/speed_limit.hpp"
 
 namespace quadcore::motor {
 namespace {

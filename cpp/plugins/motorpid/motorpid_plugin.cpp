@@ -5,11 +5,11 @@
 #include "lanes/for_each_width.hpp"
 #include "laws/motor_target.hpp"
 #include "motor_torques.hpp"
-#include "plugins/rotor_shares.hpp"
-#include "plugins/speed_limit.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/lane_width.hpp"
 #include "quadcore/plugin.hpp"
+#include "shared/rotor_shares.hpp"
+#include "shared/speed_limit.hpp"
 
 namespace quadcore::motorpid {
 namespace {

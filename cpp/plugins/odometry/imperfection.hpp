@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "plugins/sensing.hpp"
+#include "shared/sensing.hpp"
 
 namespace quadcore::odometry {
 

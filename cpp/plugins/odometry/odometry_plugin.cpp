@@ -2,9 +2,9 @@
 #include <optional>
 
 #include "imperfection.hpp"
-#include "plugins/sensing.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
+#include "shared/sensing.hpp"
 
 namespace quadcore::odometry {
 namespace {

@@ -1,4 +1,4 @@
-#include "control/setup.hpp"
+#include "controller_setup.hpp"
 #include "quadcore/plugin.hpp"
 
 namespace quadcore::reference {

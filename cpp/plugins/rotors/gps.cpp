@@ -1,11 +1,11 @@
 #include <cmath>
 
+#include "gps/earth.hpp"
 #include "naming.hpp"
 #include "noise.hpp"
-#include "plugins/gps/earth.hpp"
-#include "plugins/sensing.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
+#include "shared/sensing.hpp"
 
 namespace quadcore::rotors {
 namespace {

@@ -1,9 +1,9 @@
 #include <cmath>
 
 #include "beliefs.hpp"
-#include "control/euler_rates.hpp"
-#include "control/riccati.hpp"
+#include "euler_rates.hpp"
 #include "quadcore/control/controller.hpp"
+#include "riccati.hpp"
 
 using namespace quadcore;
 using namespace quadcore::control;

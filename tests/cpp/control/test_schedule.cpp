@@ -3,8 +3,8 @@
 #include <cmath>
 #include <vector>
 
-#include "control/schedule.hpp"
 #include "quadcore/error.hpp"
+#include "schedule.hpp"
 
 using quadcore::control::Schedule;
 

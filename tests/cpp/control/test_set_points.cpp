@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "control/references/set_points.hpp"
 #include "derivatives.hpp"
 #include "quadcore/error.hpp"
+#include "references/set_points.hpp"
 
 using namespace quadcore;
 using namespace quadcore::control;

@@ -5,8 +5,8 @@
 /// \file
 /// Force laws as numbers and tables of numbers, a column for each rotor, laid out as
 /// rotor_layout.hpp says. Whoever has one may evaluate it for several rotors at once; the formulas
-/// stand in cpp/laws. Free of Eigen and of code, so that files compiled for one processor may
-/// include it.
+/// stand in cpp/physics/laws. Free of Eigen and of code, so that files compiled for one processor
+/// may include it.
 
 namespace quadcore {
 

@@ -1,12 +1,12 @@
-#include "control/setup.hpp"
+#include "controller_setup.hpp"
 
 #include <utility>
 
-#include "control/tags.hpp"
 #include "quadcore/control/rows_file.hpp"
 #include "quadcore/control/second_vehicle.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/text.hpp"
+#include "tags.hpp"
 
 namespace quadcore::control {
 namespace {

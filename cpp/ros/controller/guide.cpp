@@ -1,6 +1,6 @@
 #include "guide.hpp"
 
-#include "control/references/set_points.hpp"
+#include "references/set_points.hpp"
 
 namespace quadcore::node {
 namespace {

@@ -1,8 +1,8 @@
 #include "set_points.hpp"
 
-#include "control/references/set_points.hpp"
 #include "messages.hpp"
 #include "quadcore/error.hpp"
+#include "references/set_points.hpp"
 #include "ros_types.hpp"
 
 namespace quadcore::node {

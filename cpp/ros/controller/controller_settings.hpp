@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "control/setup.hpp"
+#include "controller_setup.hpp"
 #include "plant.hpp"
 #include "plant_watch.hpp"
 

@@ -5,7 +5,7 @@
 namespace quadcore {
 namespace {
 
-constexpr std::size_t longest = 1000;
+constexpr std::size_t longest_message = 1000;
 constexpr std::size_t head = 700;
 constexpr std::size_t tail = 250;
 
@@ -20,7 +20,7 @@ bool is_control(const std::string& text, std::size_t at) {
 
 /// A message that quotes what was wrong with a huge document would be huge itself.
 std::string shortened(const std::string& text) {
-  if (text.size() <= longest) return text;
+  if (text.size() <= longest_message) return text;
   std::size_t end = head, begin = text.size() - tail;
   while (!starts_character(text[end])) --end;
   while (!starts_character(text[begin])) ++begin;

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "control/schedule.hpp"
 #include "quadcore/control/controller.hpp"
 #include "quadcore/control/gains_file.hpp"
+#include "schedule.hpp"
 
 /// \file
 /// Controllers and references as tags tell of them: those of the plugins, and the parameters of the

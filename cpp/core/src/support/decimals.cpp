@@ -17,7 +17,7 @@ namespace quadcore {
 namespace {
 
 constexpr std::size_t most_digits = 17;
-constexpr std::size_t longest = 25;  // -d.dddddddddddddddde-xxx, and the end
+constexpr std::size_t longest_number = 25;  // -d.dddddddddddddddde-xxx, and the end
 
 #ifndef __cpp_lib_to_chars
 /// The C locale for this thread: a program may have chosen one with a decimal comma.
@@ -38,16 +38,16 @@ class PlainNumbers {
 #endif
 
 /// Writes "[-]d[.ddd]e[+-]xx" with the fewest digits that read back exactly.
-void write_scientific(double number, char (&text)[longest]) {
+void write_scientific(double number, char (&text)[longest_number]) {
 #ifdef __cpp_lib_to_chars
-  *std::to_chars(text, text + longest - 1, number, std::chars_format::scientific).ptr = '\0';
+  *std::to_chars(text, text + longest_number - 1, number, std::chars_format::scientific).ptr = '\0';
 #else
   // Standard libraries before GCC 11's: slower, and of some powers of two a digit longer.
   const PlainNumbers plain;
   // Every number of 15 digits reads back, but for those that are no longer normal.
   const bool normal = number == 0 || std::abs(number) >= std::numeric_limits<double>::min();
   for (int digits = normal ? 15 : 1; digits <= 17; ++digits) {
-    std::snprintf(text, longest, "%.*e", digits - 1, number);
+    std::snprintf(text, longest_number, "%.*e", digits - 1, number);
     if (std::strtod(text, nullptr) == number) break;
   }
   char* const exponent = std::strchr(text, 'e');
@@ -61,15 +61,15 @@ void write_scientific(double number, char (&text)[longest]) {
 }  // namespace
 
 double with_digits(double number, int digits) {
-  char text[longest];
+  char text[longest_number];
 #ifdef __cpp_lib_to_chars
   const auto written =
-      std::to_chars(text, text + longest, number, std::chars_format::general, digits);
+      std::to_chars(text, text + longest_number, number, std::chars_format::general, digits);
   std::from_chars(text, written.ptr, number);
   return number;
 #else
   const PlainNumbers plain;
-  std::snprintf(text, longest, "%.*g", digits, number);
+  std::snprintf(text, longest_number, "%.*g", digits, number);
   return std::strtod(text, nullptr);
 #endif
 }
@@ -79,7 +79,7 @@ void append_shortest(double number, std::string& text) {
     text += std::isnan(number) ? "nan" : number > 0 ? "inf" : "-inf";
     return;
   }
-  char scientific[longest];
+  char scientific[longest_number];
   write_scientific(number, scientific);
   const char* first = scientific;
   if (*first == '-') text += *first++;

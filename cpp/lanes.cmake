@@ -1,16 +1,17 @@
-# quadcore_compile_lanes(TARGET SOURCE OPTION...): adds SOURCE to TARGET once for each width of lanes,
-# compiled with the options, each time with that QUADCORE_LANES defined and the instructions of the
-# processors that have registers of that width; lane_width.hpp chooses one. SOURCE includes only what
-# may be compiled so: see cpp/lanes/pack.hpp.
+# quadcore_compile_lanes(TARGET SOURCE [INCLUDE FOLDER...] [OPTIONS OPTION...]) adds SOURCE to TARGET
+# once for each width of lanes, compiled with the options. Each time it defines QUADCORE_LANES and uses
+# the instructions of the processors with registers of that width; lane_width.hpp chooses one.
+# SOURCE includes only what may be compiled so: see cpp/physics/lanes/pack.hpp.
 function(quadcore_compile_lanes target source)
+  cmake_parse_arguments(PARSE_ARGV 2 given "" "" "INCLUDE;OPTIONS")
   get_filename_component(name ${source} NAME_WE)
+  get_target_property(type ${target} TYPE)
   foreach(lanes 1 2 4 8)
     set(object ${target}_${name}${lanes})
     add_library(${object} OBJECT ${source})
-    target_include_directories(${object} PRIVATE ${PROJECT_SOURCE_DIR}/cpp
-                                                 ${PROJECT_SOURCE_DIR}/cpp/core/include)
+    target_link_libraries(${object} PRIVATE quadcore_physics)
+    target_include_directories(${object} PRIVATE ${given_INCLUDE})
     target_compile_definitions(${object} PRIVATE QUADCORE_LANES=${lanes})
-    set_target_properties(${object} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     # Vectors never cross a function that is not inlined, so how they would be passed is of no concern.
     # What the compiler would vectorise by itself are vectors of three, written as scalars just before:
     # reading them back at once stalls.
@@ -18,7 +19,7 @@ function(quadcore_compile_lanes target source)
                                              -fno-trapping-math
                                              -fno-tree-vectorize
                                              -fno-tree-slp-vectorize
-                                             -Wno-psabi ${ARGN})
+                                             -Wno-psabi ${given_OPTIONS})
     if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
       target_compile_options(${object} PRIVATE -fno-tree-loop-distribute-patterns)
     endif()
@@ -29,8 +30,10 @@ function(quadcore_compile_lanes target source)
         target_compile_options(${object} PRIVATE -mavx512f)
       endif()
     endif()
-    target_sources(${target} PRIVATE $<TARGET_OBJECTS:${object}>)
-    # For who takes the objects of the target.
-    set_property(TARGET ${target} APPEND PROPERTY lane_objects $<TARGET_OBJECTS:${object}>)
+    if(type STREQUAL OBJECT_LIBRARY)  # which cannot hand on the objects of another
+      set_property(GLOBAL APPEND PROPERTY quadcore_objects $<TARGET_OBJECTS:${object}>)
+    else()
+      target_sources(${target} PRIVATE $<TARGET_OBJECTS:${object}>)
+    endif()
   endforeach()
 endfunction()
