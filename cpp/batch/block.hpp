@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "laws/rotor_forces.hpp"
 #include "quadcore/lane_laws.hpp"
 #include "quadcore/rotor_layout.hpp"
 
@@ -31,29 +32,29 @@ struct StateRow {
 
 /// Rows of what is constant of vehicles, matrices by columns; then for each rotor its own.
 struct ConstantRow {
+  static constexpr std::size_t number = 1, vector = 3, matrix = 9;
   enum : std::size_t {
-    inverse_mass = 0,
-    p_FCcm_F = 1,
-    I_C_F = 4,
-    inverse_reduced_I_F = 13,
-    frame_drag = 22,
-    sim_slow = 23,
-    flapping = 24,  ///< A1c, A1s, B1, B2, radius
-    kp = flapping + sizeof(Flapping) / sizeof(double),
-    fastest,          ///< speed that the motors follow
-    motors_sim_slow,  ///< by which a commanded speed is divided
-    rotors
+    inverse_mass,
+    p_FCcm_F = inverse_mass + number,
+    I_C_F = p_FCcm_F + vector,
+    inverse_reduced_I_F = I_C_F + matrix,
+    frame_drag = inverse_reduced_I_F + matrix,
+    sim_slow = frame_drag + number,
+    kp = sim_slow + number,
+    fastest = kp + number,               ///< speed that the motors follow
+    motors_sim_slow = fastest + number,  ///< by which a commanded speed is divided
+    rotors = motors_sim_slow + number
   };
   enum : std::size_t {
-    axis_F = 0,
-    p_CR_F = 3,
-    p_CRcm_F = 6,
-    moment = 9,
-    inverse_moment = 10,
-    damping = 11,
-    R_FR_at_zero = 12,
-    coefficients = 21,  ///< as CoefficientRow says
-    rotor_rows = coefficients + CoefficientRow::count
+    axis_F,
+    p_CR_F = axis_F + vector,
+    p_CRcm_F = p_CR_F + vector,
+    moment = p_CRcm_F + vector,
+    inverse_moment = moment + number,
+    damping = inverse_moment + number,
+    R_FR_at_zero = damping + number,
+    coefficients = R_FR_at_zero + matrix,  ///< of laws::RotorLaws
+    rotor_rows = coefficients + laws::RotorLaws::rows
   };
 
   static constexpr std::size_t rotor(std::size_t row, std::size_t i) {
@@ -70,13 +71,16 @@ struct MotorRow {
   enum : std::size_t { active, target, count };
 };
 
-/// Which laws the vehicles of a batch have: those of RotorForces without its numbers.
+/// Which laws the vehicles of a batch have.
 struct Laws {
-  bool across_link_z, at_origins, about_frame_z, on_rotor, parasitic, flaps;
-  bool forces, drag, motors;  ///< whether there is any
-  bool upright;               ///< as GyrostatStep
-  bool normals_turn;          ///< as GyrostatStep
-  bool turn;                  ///< some law or normal needs the turns of the rotors
+  RotorConventions conventions;
+  laws::RotorLaws::Places acting;  ///< on any of the vehicles; on others with coefficients of zero
+  bool drag;                       ///< of any frame
+  bool upright;                    ///< as GyrostatStep
+  bool normals_turn;               ///< as GyrostatStep
+
+  /// Whether some law or normal needs the turns of the rotors.
+  bool turn() const { return normals_turn || (acting & laws::in_link_axes); }
 };
 
 /// Larger than what is bounded; finite, because the compiler is told that numbers are.

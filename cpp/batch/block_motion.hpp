@@ -97,28 +97,15 @@ struct Rotors {
   }
 };
 
-/// The numbers that RotorForces has, of a pack of vehicles.
+/// The laws of the i-th rotors of a pack of vehicles, all of which are whole.
 template <class T>
-struct Forces : Laws {
-  Table<T> constants;
-  struct {
-    T A1c, A1s, B1, B2, radius;
-  } flapping;
-  T sim_slow;
-  bool meets_wind = false;
-
-  QUADCORE_LAW Forces(const Laws& laws, const Table<T>& table)
-      : Laws(laws),
-        constants(table),
-        flapping{table.number(ConstantRow::flapping), table.number(ConstantRow::flapping + 1),
-                 table.number(ConstantRow::flapping + 2), table.number(ConstantRow::flapping + 3),
-                 table.number(ConstantRow::flapping + 4)},
-        sim_slow(table.number(ConstantRow::sim_slow)) {}
-};
-
-template <class T>
-QUADCORE_LAW T coefficient(const Forces<T>& law, std::size_t row, std::size_t i) {
-  return law.constants.number(ConstantRow::rotor(ConstantRow::coefficients + row, i));
+QUADCORE_LAW laws::LawsOfRotors<T> laws_of_rotors(const Laws& laws, const Table<T>& constants,
+                                                  std::size_t i) {
+  return {laws.conventions,
+          laws.acting,
+          {constants.first + ConstantRow::rotor(ConstantRow::coefficients, i) * widest_lanes},
+          laws::broadcast<T>(1),
+          constants.number(ConstantRow::sim_slow)};
 }
 
 }  // namespace quadcore::batch

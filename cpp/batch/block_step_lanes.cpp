@@ -60,7 +60,6 @@ QUADCORE_LAW void differentiate(const Block& block, const Places& at, const doub
                                 const Share& share) {
   const Table<T> constants{at.constants}, state{from}, motors{at.motors};
   const Frames<T> frames(state);
-  const Forces<T> forces(block.laws, constants);
 
   Vec3<T> f_F{T{}, T{}, T{}};
   if (block.laws.drag) {
@@ -74,15 +73,13 @@ QUADCORE_LAW void differentiate(const Block& block, const Places& at, const doub
   for (std::size_t i = 0; i < block.rotors; ++i) {
     const Rotors<T, upright> rotors{block, frames, constants, state, at.turns, i};
     laws::RotorLoads<T> loads{{T{}, T{}, T{}}, {T{}, T{}, T{}}, T{}};
-    if (block.laws.forces) laws::add_rotor_forces<T>(forces, rotors, i, loads);
-    if (block.laws.motors) {
-      loads.joint_torque =
-          loads.joint_torque +
-          laws::motor_torque<T>(motors.number(i * MotorRow::count + MotorRow::active),
-                                constants.number(ConstantRow::kp),
-                                motors.number(i * MotorRow::count + MotorRow::target), T{},
-                                rotors.rate());
-    }
+    laws::add_rotor_forces(laws_of_rotors(block.laws, constants, i), rotors, loads);
+    loads.joint_torque =
+        loads.joint_torque +
+        laws::motor_torque<T>(motors.number(i * MotorRow::count + MotorRow::active),
+                              constants.number(ConstantRow::kp),
+                              motors.number(i * MotorRow::count + MotorRow::target), T{},
+                              rotors.rate());
     loads.joint_torque = loads.joint_torque - rotors.constant(ConstantRow::damping) * rotors.rate();
     joint_torques[i] = loads.joint_torque;
     f_F = f_F + loads.f_F;
@@ -107,7 +104,7 @@ QUADCORE_LAW void differentiate(const Block& block, const Places& at, const doub
                    constants.number(ConstantRow::inverse_mass) * (frames.R_WF * f_F) +
                        laws::broadcast<T>(block.gravity_W));
   share_out<stage>(at, share, StateRow::rate, angular);
-  if (stage != Stage::last && block.laws.turn) turn<T>(block, at, at.stage);
+  if (stage != Stage::last && block.laws.turn()) turn<T>(block, at, at.stage);
 }
 
 template <class T>
@@ -181,7 +178,7 @@ QUADCORE_LAW void fly(const Block& block, std::size_t first, std::int64_t count,
   Mask<T> steps{};
   for (std::int64_t n = 0; n < count && laws::any(flies); ++n) {
     flies &= is_quiet(block, constants, state, first, dt);
-    if (block.laws.turn) turn<T>(block, at, at.state);
+    if (block.laws.turn()) turn<T>(block, at, at.state);
     differentiate<T, Stage::first, upright>(block, at, at.state, {1, dt / 2});
     differentiate<T, Stage::between, upright>(block, at, at.stage, {2, dt / 2});
     differentiate<T, Stage::between, upright>(block, at, at.stage, {2, dt});

@@ -51,7 +51,6 @@ template <class T>
 QUADCORE_LAW void push(const Block& block, const Places<T>& at, Bodies<T>& bodies,
                        const HingedFrame<T>& frame) {
   const Table<T> constants{at.constants}, motors{at.motors};
-  const Forces<T> forces(block.laws, constants);
   bodies.clear_forces();
   const Vec3<T> none{T{}, T{}, T{}};
   Vec3<T> f_F = none, tau_F = none, reaction_F = none;
@@ -65,15 +64,13 @@ QUADCORE_LAW void push(const Block& block, const Places<T>& at, Bodies<T>& bodie
   for (std::size_t i = 0; i < block.rotors; ++i) {
     const MovingRotor<T> rotor(bodies, frame, i);
     laws::RotorLoads<T> loads{none, none, T{}};
-    if (block.laws.forces) laws::add_rotor_forces<T>(forces, rotor, i, loads);
+    laws::add_rotor_forces(laws_of_rotors(block.laws, constants, i), rotor, loads);
     const T rate = rotor.rate();
-    if (block.laws.motors) {
-      loads.joint_torque =
-          loads.joint_torque +
-          laws::motor_torque<T>(motors.number(i * MotorRow::count + MotorRow::active),
-                                constants.number(ConstantRow::kp),
-                                motors.number(i * MotorRow::count + MotorRow::target), T{}, rate);
-    }
+    loads.joint_torque =
+        loads.joint_torque +
+        laws::motor_torque<T>(motors.number(i * MotorRow::count + MotorRow::active),
+                              constants.number(ConstantRow::kp),
+                              motors.number(i * MotorRow::count + MotorRow::target), T{}, rate);
     reaction_F = reaction_F + loads.reaction_F;
     push_rotor(bodies, frame, i, loads.f_F, loads.joint_torque, rate);
   }

@@ -35,8 +35,13 @@ LaneBlocks::LaneBlocks(const std::vector<std::shared_ptr<const LaneVehicle>>& ve
              square(sure_rate)};
   for (const auto& vehicle : vehicles) {
     if (!vehicle) continue;
-    if (!first) first = vehicle.get();
+    if (!first) {
+      first = vehicle.get();
+      laws_ = first->laws;
+    }
     constants_differ_ |= vehicle->constants != first->constants;
+    laws_.acting |= vehicle->laws.acting;
+    laws_.drag |= vehicle->laws.drag;
     bounds_.fastest = std::min(bounds_.fastest, vehicle->fastest);
     bounds_.no_tilt |= vehicle->no_tilt;
     bounds_.reach = std::max(bounds_.reach, vehicle->reach);
@@ -44,7 +49,6 @@ LaneBlocks::LaneBlocks(const std::vector<std::shared_ptr<const LaneVehicle>>& ve
   const std::size_t places = (vehicles.size() + widest_lanes - 1) / widest_lanes * widest_lanes;
   flies_.resize(places);
   if (!first) return;
-  laws_ = first->laws;
   places_ = first->places;
   hinged_ = first->hinged;
   if (are_hinged()) {

@@ -1,6 +1,8 @@
 #include "lane_vehicle.hpp"
 
 #include <algorithm>
+#include <cstring>
+#include <type_traits>
 
 #include "eigen/compliant_ground.hpp"
 #include "eigen/gyrostat.hpp"
@@ -28,7 +30,7 @@ void put_gyrostat(const Model& model, const World& world, LaneVehicle& vehicle) 
   const Gyrostat body(model);
   if (world.ground_plane) vehicle.reach = CompliantGround(model, body).reach();
   vehicle.laws.upright = body.upright;
-  vehicle.laws.normals_turn = vehicle.laws.turn = body.normals_turn;
+  vehicle.laws.normals_turn = body.normals_turn;
   Rows rows(vehicle.constants);
   rows.put(Row::inverse_mass, body.inverse_mass);
   rows.put(Row::p_FCcm_F, body.p_FCcm_F);
@@ -88,9 +90,14 @@ bool put_hinged(const Model& model, const World& world, LaneVehicle& vehicle) {
   return true;
 }
 
+bool are_same(const RotorConventions& one, const RotorConventions& other) {
+  static_assert(std::has_unique_object_representations_v<RotorConventions>);
+  return std::memcmp(&one, &other, sizeof one) == 0;
+}
+
 }  // namespace
 
-std::optional<LaneVehicle> lane_vehicle(Simulation& simulation) {
+std::optional<LaneVehicle> lane_vehicle(const Simulation& simulation) {
   const ForceLaws& told = simulation.force_laws();
   const Model& model = simulation.model();
   const std::size_t rotors = model.joints.size();
@@ -100,20 +107,11 @@ std::optional<LaneVehicle> lane_vehicle(Simulation& simulation) {
       told.motor_torques.size() != 1) {
     return std::nullopt;
   }
-  // The tables of the laws hold what they do once a step has begun.
-  const Snapshot start = simulation.snapshot();
-  try {
-    simulation.step();
-  } catch (const FlightError&) {
-    simulation.restore(start);
-    return std::nullopt;
-  }
   LaneVehicle vehicle{{}, unbounded, false, -unbounded, {}, {}, {}};
   vehicle.constants.resize(ConstantRow::count(rotors));
   if (!like_gazebo) {
     put_gyrostat(model, simulation.world(), vehicle);
   } else if (!put_hinged(model, simulation.world(), vehicle)) {
-    simulation.restore(start);
     return std::nullopt;
   }
   for (const Quiet& quiet : told.quiet) {
@@ -122,49 +120,33 @@ std::optional<LaneVehicle> lane_vehicle(Simulation& simulation) {
   }
   using Row = ConstantRow;
   Rows rows(vehicle.constants);
-  rows.put(Row::flapping + 4, 1.0);  // a radius, where nothing flaps
-
-  Laws& laws = vehicle.laws;
   for (const FrameDrag& law : told.frame_drags) {
-    laws.drag = true;
+    vehicle.laws.drag = true;
     rows.put(Row::frame_drag, law.coefficient);
   }
   for (const RotorForces& law : told.rotor_forces) {
-    laws.forces = true;
-    laws.across_link_z = law.across_link_z;
-    laws.at_origins = law.at_origins;
-    laws.about_frame_z = law.about_frame_z;
-    laws.on_rotor = law.on_rotor;
-    laws.parasitic = law.parasitic;
-    laws.flaps = law.flaps;
-    laws.turn |= law.parasitic;
+    vehicle.laws.conventions = law.conventions;
+    vehicle.laws.acting = law.acting;
     rows.put(Row::sim_slow, law.sim_slow);
-    rows.put(Row::flapping, Vector3d(law.flapping.A1c, law.flapping.A1s, law.flapping.B1));
-    rows.put(Row::flapping + 3, law.flapping.B2);
-    rows.put(Row::flapping + 4, law.flapping.radius);
     for (std::size_t i = 0; i < rotors; ++i) {
-      const double* column = law.coefficients + rotor_offset(CoefficientRow::count, i);
-      for (std::size_t row = 0; row < CoefficientRow::count; ++row) {
+      const double* column = law.coefficients + rotor_offset(laws::RotorLaws::rows, i);
+      for (std::size_t row = 0; row < laws::RotorLaws::rows; ++row) {
         rows.put(Row::rotor(Row::coefficients + row, i), column[row * widest_lanes]);
       }
     }
   }
   const MotorTorques& motors = told.motor_torques.front();
-  laws.motors = true;
   rows.put(Row::kp, motors.kp);
   rows.put(Row::fastest, motors.fastest);
   rows.put(Row::motors_sim_slow, motors.sim_slow);
   vehicle.places.assign(motors.places, motors.places + rotors);
-  simulation.restore(start);
   return vehicle;
 }
 
 bool fit(const LaneVehicle& one, const LaneVehicle& other) {
   const Laws &a = one.laws, &b = other.laws;
-  return a.across_link_z == b.across_link_z && a.at_origins == b.at_origins &&
-         a.about_frame_z == b.about_frame_z && a.on_rotor == b.on_rotor && a.forces == b.forces &&
-         a.drag == b.drag && a.parasitic == b.parasitic && a.flaps == b.flaps &&
-         a.upright == b.upright && a.normals_turn == b.normals_turn && one.places == other.places &&
+  return are_same(a.conventions, b.conventions) && a.upright == b.upright &&
+         a.normals_turn == b.normals_turn && one.places == other.places &&
          !one.hinged == !other.hinged;
 }
 

@@ -20,9 +20,8 @@ struct LaneVehicle {
   std::shared_ptr<const HingedModel> hinged;  ///< for gazebo11; null for eigen
 };
 
-/// The vehicle of a simulation, which it leaves as it was, if laws that fly in lanes are all that
-/// acts on it.
-std::optional<LaneVehicle> lane_vehicle(Simulation& simulation);
+/// The vehicle of a simulation, if laws that fly in lanes are all that acts on it.
+std::optional<LaneVehicle> lane_vehicle(const Simulation& simulation);
 
 /// Whether two may fly in one batch's lanes.
 bool fit(const LaneVehicle& one, const LaneVehicle& other);

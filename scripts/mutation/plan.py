@@ -37,6 +37,8 @@ PARTS = [
         [
             "aerodynamic_plugin.cpp",
             "configuration.hpp",
+            "effectiveness.hpp",
+            "law_tags.hpp",
             "shown_motion.hpp",
             "rotor_forces_lanes.cpp",
         ],
@@ -44,6 +46,7 @@ PARTS = [
         laws=(
             "laws/drag",
             "laws/flapping",
+            "laws/law_list",
             "laws/rotor_disc",
             "laws/rotor_forces",
             "laws/thrust",

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lanes/for_each_width.hpp"
+#include "laws/rotor_forces.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/lane_width.hpp"
 
@@ -117,14 +118,16 @@ GyrostatStep EigenEngine::view() {
 void EigenEngine::step(double time, double dt, const ForceField& forces) {
   forces_ = &forces;
   const auto put = [](const auto& from, auto& to) { to = {from.data(), from.size()}; };
-  const ForceLaws& laws = forces.laws();
-  put(laws.rotor_forces, step_.rotor_forces);
+  const ForceLaws& told = forces.laws();
+  put(told.rotor_forces, step_.rotor_forces);
   step_.laws_turn = step_.normals_turn;
-  for (const RotorForces& law : laws.rotor_forces) step_.laws_turn |= law.parasitic;
-  put(laws.frame_drags, step_.frame_drags);
-  put(laws.motor_torques, step_.motor_torques);
+  for (const RotorForces& law : told.rotor_forces) {
+    step_.laws_turn |= (law.acting & laws::in_link_axes) != 0;
+  }
+  put(told.frame_drags, step_.frame_drags);
+  put(told.motor_torques, step_.motor_torques);
   step_.evaluate_rest = nullptr;
-  if (!laws.complete) {
+  if (!told.complete) {
     step_.evaluate_rest = [](void* engine) { static_cast<EigenEngine*>(engine)->evaluate_rest(); };
   }
   if (ground_ && is_at_ground(dt)) {

@@ -66,7 +66,7 @@ QUADCORE_LAW laws::RotorLoads<T> loads_of(const GyrostatStep& g, const Rotors& r
     loads.joint_torque = laws::load<T>(told + LoadRow::joint_torque * widest_lanes);
   }
   g.rotor_forces.for_each([&](const RotorForces& law) QUADCORE_INLINED {
-    laws::add_rotor_forces<T>(law, rotors, rotors.i, loads);
+    laws::add_rotor_forces(laws::laws_of_rotors<T>(law, rotors.i), rotors, loads);
   });
   g.motor_torques.for_each([&](const MotorTorques& law) QUADCORE_INLINED {
     loads.joint_torque = loads.joint_torque + laws::motor_torque<T>(law, rotors.i, rotors.rate());

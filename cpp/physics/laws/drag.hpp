@@ -1,18 +1,62 @@
 #pragma once
 
-#include "rotor_disc.hpp"
+#include "rotor_law.hpp"
 
 namespace quadcore::laws {
 
-/// Induced, translational and profile drag, thesis eqs. (2.28)-(2.30): each opposes the rotor's
-/// velocity in its own plane, linearly (the second branch of (2.29) is left out, as in the thesis).
-/// Acts at the rotor's centre of mass. The printed plus signs are a slip: drag opposes motion.
-/// \param coefficient  K_I, K_T1 or K_P [N s/m]
-/// \return             force on the rotor in F [N]
-template <class T, class K>
-QUADCORE_LAW Vec3<T> rotor_drag(const RotorDisc<T>& disc, K coefficient) {
-  return -coefficient * disc.V_F;
-}
+/// Drag that opposes the rotor's velocity in its own plane, linearly, at the rotor's centre of
+/// mass. The plus signs that the thesis prints are a slip: drag opposes motion.
+template <class T>
+struct InPlaneDrag {
+  T K;  ///< N s/m
+
+  static constexpr Effect effect = Effect::in_plane_drag;
+
+  template <class Motion>
+  QUADCORE_LAW Vec3<T> force(const RotorDisc<T>& disc, const Motion&) const {
+    return -K * disc.V_F;
+  }
+};
+
+/// Induced drag, thesis eq. (2.28).
+template <class T>
+struct InducedDrag : InPlaneDrag<T> {
+  static constexpr const char* term = "induced";
+  static constexpr Tag tags[] = {{"inducedDragCoeff", "N s/m", "0", "induced drag of a rotor, K_I",
+                                  "(2.28)", Tag::drag, Tag::at_least_zero, "0.01"}};
+  template <class Given>
+  static InducedDrag from(const Given& given) {
+    const auto [K] = given.numbers(tags);
+    return {{given.density_ratio * K}};
+  }
+};
+
+/// Translational drag, thesis eq. (2.29), of which the second branch is left out, as in the thesis.
+template <class T>
+struct TranslationalDrag : InPlaneDrag<T> {
+  static constexpr const char* term = "translational";
+  static constexpr Tag tags[] = {{"translationalDragCoeff", "N s/m", "0",
+                                  "translational drag of a rotor, K_T1", "(2.29)", Tag::drag,
+                                  Tag::at_least_zero, "0.0025"}};
+  template <class Given>
+  static TranslationalDrag from(const Given& given) {
+    const auto [K] = given.numbers(tags);
+    return {{given.density_ratio * K}};
+  }
+};
+
+/// Profile drag, thesis eq. (2.30).
+template <class T>
+struct ProfileDrag : InPlaneDrag<T> {
+  static constexpr const char* term = "profile";
+  static constexpr Tag tags[] = {{"profileDragCoeff", "N s/m", "0", "profile drag of a rotor, K_P",
+                                  "(2.30)", Tag::drag, Tag::at_least_zero, "0.005"}};
+  template <class Given>
+  static ProfileDrag from(const Given& given) {
+    const auto [K] = given.numbers(tags);
+    return {{given.density_ratio * K}};
+  }
+};
 
 /// Parasitic drag of the airframe, thesis eq. (2.31): -K |V| V at the vehicle's centre of mass, V
 /// its velocity through the air.
@@ -27,12 +71,32 @@ QUADCORE_LAW Vector parasitic_drag(const Vector& V_F, K speed, K coefficient) {
 /// Parasitic drag as the thesis' plugin (appendix A.5) computes it: -K |v_i| v_i of each component
 /// of the frame's WORLD velocity, taken as components in the propeller's own SPINNING axes, once
 /// per propeller, at its centre of mass. Kept because the published results rest on it.
-/// \param v_WF_W  velocity of the frame's origin in W [m/s]
-/// \return        force on the rotor, in the spinning axes of its link [N]
-template <class T, class C>
-QUADCORE_LAW Vec3<T> parasitic_drag_of_appendix(const Vec3<T>& v_WF_W, C K) {
-  return -K * Vec3<T>{absolute(v_WF_W.x) * v_WF_W.x, absolute(v_WF_W.y) * v_WF_W.y,
-                      absolute(v_WF_W.z) * v_WF_W.z};
-}
+template <class T>
+struct ParasiticDrag {
+  T K;  ///< N s^2/m^2
+
+  static constexpr const char* term = "parasitic";
+  static constexpr Effect effect = Effect::force_in_link_axes;
+  static constexpr Tag tags[] = {{"parasiticDragCoeff", "N s^2/m^2", "0",
+                                  "parasitic drag of the airframe, K_par", "(2.31)", Tag::drag,
+                                  Tag::at_least_zero, "0.003"}};
+  /// Of the airframe as a whole.
+  template <class Given>
+  static double coefficient(const Given& given) {
+    const auto [K] = given.numbers(tags);
+    return given.density_ratio * K;
+  }
+  template <class Given>
+  static ParasiticDrag from(const Given& given) {
+    return {given.appendix ? coefficient(given) : 0};
+  }
+
+  template <class Motion>
+  QUADCORE_LAW Vec3<T> force(const RotorDisc<T>&, const Motion& motion) const {
+    const Vec3<T> v_WF_W = motion.v_WF_W();
+    return -K * Vec3<T>{absolute(v_WF_W.x) * v_WF_W.x, absolute(v_WF_W.y) * v_WF_W.y,
+                        absolute(v_WF_W.z) * v_WF_W.z};
+  }
+};
 
 }  // namespace quadcore::laws

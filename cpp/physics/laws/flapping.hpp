@@ -1,27 +1,50 @@
 #pragma once
 
-#include "quadcore/lane_laws.hpp"
-#include "rotor_disc.hpp"
+#include "thrust.hpp"
 
 namespace quadcore::laws {
 
 /// Blade flapping, thesis eq. (2.25) as corrected: F = T/|w| (A V_p + B nu) at the rotor's centre
-/// of mass, in the body's non-spinning axes, with T/|w| = k |w|, s = sign(w) and
+/// of mass, in the body's non-spinning axes, with T/|w| = k |w|, nu the frame's angular velocity,
+/// s = sign(w) and
 ///   A = 1/r [-A1c  s A1s; -s A1s  -A1c],   B = [-s B2  B1; -B1  -s B2].
 /// Both matrices commute with a turn about the axis a, so that A V = (-A1c V - s A1s a x V)/r and
 /// B nu = -s B2 nu - B1 a x nu for the in-plane V and nu: no axes need to be chosen.
-/// \param w_WF_F  nu, angular velocity of the frame [rad/s]
-/// \param k       rotorThrustCoeff [N s^2/rad^2]
-/// \param c       as Flapping has them
-/// \return        force on the rotor in F [N]
-template <class T, class K, class Coefficients>
-QUADCORE_LAW Vec3<T> flapping(const RotorDisc<T>& disc, const Vec3<T>& w_WF_F, K k,
-                              const Coefficients& c) {
-  const T s = with_sign_of(disc.speed, broadcast<T>(1));
-  const Vec3<T> nu_F = across(disc.axis_F, w_WF_F);
-  const Vec3<T> A_V_r = -c.A1c * disc.V_F - (s * c.A1s) * cross(disc.axis_F, disc.V_F);
-  const Vec3<T> B_nu = (-s * c.B2) * nu_F - c.B1 * cross(disc.axis_F, nu_F);
-  return (k * absolute(disc.speed)) * ((1 / c.radius) * A_V_r + B_nu);
-}
+template <class T>
+struct Flapping {
+  T k;           ///< of the thrust [N s^2/rad^2]
+  T A1c, A1s;    ///< rad
+  T B1, B2;      ///< s/rad
+  T per_radius;  ///< 1/r [1/m]
+
+  static constexpr const char* term = "flapping";
+  static constexpr Effect effect = Effect::force;
+  static constexpr Tag tags[] = {
+      {"flappingA1c", "rad", "0", "blade flapping, longitudinal; positive opposes motion", "(2.26)",
+       Tag::drag},
+      {"flappingA1s", "rad", "0", "blade flapping, lateral", "(2.26)", Tag::drag},
+      {"flappingB1", "s/rad", "0", "blade flapping with the frame's rates, cross term", "(2.27)",
+       Tag::drag},
+      {"flappingB2", "s/rad", "0", "blade flapping with the frame's rates, direct term", "(2.27)",
+       Tag::drag},
+      {"rotorRadius", "m", "0.075", "radius of a rotor, for flapping", "(2.26)", Tag::nothing,
+       Tag::above_zero},
+  };
+  template <class Given>
+  static Flapping from(const Given& given) {
+    const auto [A1c, A1s, B1, B2, radius] = given.numbers(tags);
+    if (A1c == 0 && A1s == 0 && B1 == 0 && B2 == 0) return {};
+    return {Thrust<T>::from(given).k, A1c, A1s, B1, B2, 1 / radius};
+  }
+
+  template <class Motion>
+  QUADCORE_LAW Vec3<T> force(const RotorDisc<T>& disc, const Motion& motion) const {
+    const T s = with_sign_of(disc.speed, broadcast<T>(1));
+    const Vec3<T> nu_F = across(disc.axis_F, motion.w_WF_F());
+    const Vec3<T> A_V_r = -A1c * disc.V_F - (s * A1s) * cross(disc.axis_F, disc.V_F);
+    const Vec3<T> B_nu = (-s * B2) * nu_F - B1 * cross(disc.axis_F, nu_F);
+    return (disc.share * k * absolute(disc.speed)) * (per_radius * A_V_r + B_nu);
+  }
+};
 
 }  // namespace quadcore::laws

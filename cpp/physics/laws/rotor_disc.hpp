@@ -9,6 +9,7 @@ template <class T>
 struct RotorDisc {
   Vec3<T> axis_F;  ///< unit normal of the disc, along which it lifts
   T speed;         ///< real rotor speed: joint rate x sim_slow [rad/s]
+  T share;         ///< of thrust and reaction torque that a damaged rotor has left
   Vec3<T> V_F;     ///< in-plane velocity (through the air, if the drag model knows wind) [m/s]
 };
 

@@ -1,56 +1,56 @@
 #pragma once
 
-#include "drag.hpp"
-#include "flapping.hpp"
 #include "quadcore/lane_laws.hpp"
+#include "rotor_laws.hpp"
 #include "rotors.hpp"
-#include "thrust.hpp"
 
 /// \file
-/// The forces of a pack of rotors: of one vehicle, from rotor i on, or the i-th of several
-/// vehicles. Their motion may lie in tables or in registers: a Motion of packs T tells
-///   rate(), axis_F(), normal_F(), velocity_F(bool of_origins)   as RotorKinematics says,
+/// What all laws of a pack of rotors exert together. The rotors are those of one vehicle, from
+/// rotor i on, or the i-th of several vehicles. Their motion may lie in tables or in registers: a
+/// Motion of packs T has
+///   rate(), axis_F(), normal_F(), velocity_F(bool of_origins)   as RotorKinematics,
 ///   in_frame(f_R)   a vector, given in the axes of the rotors' links, in the frame's,
 ///   windy(), v_WA_F(), w_WF_F(), v_WF_W()   air and frame.
-/// A Law is RotorForces, or has what that has, and a coefficient<T>(law, row, i) of its own.
 
 namespace quadcore::laws {
 
+/// The laws of a pack of rotors.
 template <class T>
-QUADCORE_LAW T coefficient(const RotorForces& law, std::size_t row, std::size_t i) {
-  return load<T>(law.coefficients + rotor_offset(CoefficientRow::count, i) + row * widest_lanes);
+struct LawsOfRotors {
+  const RotorConventions& conventions;
+  RotorLaws::Places acting;
+  Table<T, widest_lanes> coefficients;  ///< rows of RotorLaws
+  T share;                              ///< of thrust and reaction torque that is left
+  T sim_slow;
+};
+
+/// The same of one vehicle, from rotor i on.
+template <class T>
+QUADCORE_LAW LawsOfRotors<T> laws_of_rotors(const RotorForces& law, std::size_t i) {
+  return {law.conventions,
+          law.acting,
+          {law.coefficients + rotor_offset(RotorLaws::rows, i)},
+          load<T>(law.shares + i),
+          broadcast<T>(law.sim_slow)};
 }
 
+template <class T, class Motion>
+QUADCORE_LAW RotorDisc<T> disc_of(const LawsOfRotors<T>& laws, const Motion& motion) {
+  const RotorConventions& conventions = laws.conventions;
+  const Vec3<T> normal_F = conventions.across_link_z ? motion.normal_F() : motion.axis_F();
+  Vec3<T> v_AR_F = motion.velocity_F(conventions.at_origins);
+  if (conventions.meets_wind && motion.windy()) v_AR_F = v_AR_F - motion.v_WA_F();
+  return {normal_F, motion.rate() * laws.sim_slow, laws.share, across(normal_F, v_AR_F)};
+}
+
+/// The force of a law, whatever axes it is written in.
 template <class T, class Law, class Motion>
-QUADCORE_LAW RotorDisc<T> disc_of(const Law& law, const Motion& motion) {
-  const Vec3<T> normal_F = law.across_link_z ? motion.normal_F() : motion.axis_F();
-  Vec3<T> v_AR_F = motion.velocity_F(law.at_origins);
-  if (law.meets_wind && motion.windy()) v_AR_F = v_AR_F - motion.v_WA_F();
-  return {normal_F, motion.rate() * law.sim_slow, across(normal_F, v_AR_F)};
-}
-
-template <class T, class Law>
-QUADCORE_LAW T reaction_of(const Law& law, const RotorDisc<T>& disc, std::size_t i) {
-  return reaction(disc, coefficient<T>(law, CoefficientRow::b, i));
-}
-
-/// Unit, about which the reaction torque acts on the vehicle, unless it acts about the frame's z.
-template <class T, class Law, class Motion>
-QUADCORE_LAW Vec3<T> reaction_axis_F(const Law& law, const RotorDisc<T>& disc,
-                                     const Motion& motion) {
-  return law.on_rotor ? motion.axis_F() : disc.axis_F;
-}
-
-template <class T, class Law, class Motion>
-QUADCORE_LAW Vec3<T> parasitic_F(const Law& law, const Motion& motion, std::size_t i) {
-  return motion.in_frame(parasitic_drag_of_appendix(
-      motion.v_WF_W(), coefficient<T>(law, CoefficientRow::parasitic, i)));
-}
-
-template <class T, class Law, class Motion>
-QUADCORE_LAW Vec3<T> flapping_F(const Law& law, const RotorDisc<T>& disc, const Motion& motion,
-                                std::size_t i) {
-  return flapping(disc, motion.w_WF_F(), coefficient<T>(law, CoefficientRow::k, i), law.flapping);
+QUADCORE_LAW Vec3<T> force_F(const Law& law, const RotorDisc<T>& disc, const Motion& motion) {
+  if constexpr (Law::effect == Effect::force_in_link_axes) {
+    return motion.in_frame(law.force(disc, motion));
+  } else {
+    return law.force(disc, motion);
+  }
 }
 
 /// What acts on a pack of rotors, as LoadRow says.
@@ -60,23 +60,36 @@ struct RotorLoads {
   T joint_torque;
 };
 
-/// Adds what the law exerts on a pack.
-template <class T, class Law, class Motion>
-QUADCORE_LAW void add_rotor_forces(const Law& law, const Motion& motion, std::size_t i,
-                                   RotorLoads<T>& loads) {
-  RotorDisc<T> disc = disc_of<T>(law, motion);
-  // The drag last, because it waits for the velocity.
-  loads.f_F = loads.f_F + thrust(disc, coefficient<T>(law, CoefficientRow::k, i));
-  loads.f_F = loads.f_F + rotor_drag(disc, coefficient<T>(law, CoefficientRow::linear, i));
-  const T torque = reaction_of(law, disc, i);
-  if (law.about_frame_z) {
+template <class T, class Motion>
+QUADCORE_LAW void add_reaction(const RotorConventions& conventions, const RotorDisc<T>& disc,
+                               const Motion& motion, T torque, RotorLoads<T>& loads) {
+  if (conventions.about_frame_z) {
     loads.reaction_F.z = loads.reaction_F.z + torque;
   } else {
-    loads.reaction_F = loads.reaction_F + torque * reaction_axis_F(law, disc, motion);
+    loads.reaction_F =
+        loads.reaction_F + torque * (conventions.on_rotor ? motion.axis_F() : disc.axis_F);
   }
-  if (law.on_rotor) loads.joint_torque = loads.joint_torque + torque;
-  if (law.flaps) loads.f_F = loads.f_F + flapping_F<T>(law, disc, motion, i);
-  if (law.parasitic) loads.f_F = loads.f_F + parasitic_F<T>(law, motion, i);
+  if (conventions.on_rotor) loads.joint_torque = loads.joint_torque + torque;
+}
+
+/// The laws that need the turns of the links.
+constexpr RotorLaws::Places in_link_axes = RotorLaws::with(Effect::force_in_link_axes);
+
+/// Adds what the laws exert on a pack.
+template <class T, class Motion>
+QUADCORE_LAW void add_rotor_forces(const LawsOfRotors<T>& laws, const Motion& motion,
+                                   RotorLoads<T>& loads) {
+  RotorDisc<T> disc = disc_of(laws, motion);
+  const auto add = [&](const auto& law, std::size_t) QUADCORE_INLINED {
+    if constexpr (std::decay_t<decltype(law)>::effect == Effect::reaction_torque) {
+      add_reaction(laws.conventions, disc, motion, law.torque(disc), loads);
+    } else {
+      loads.f_F = loads.f_F + force_F(law, disc, motion);
+    }
+  };
+  RotorLaws::for_each(laws.acting & ~in_link_axes, laws.coefficients, add);
+  // Last, because they wait for the turns of the links.
+  RotorLaws::for_each(laws.acting & in_link_axes, laws.coefficients, add);
 }
 
 }  // namespace quadcore::laws

@@ -1,24 +1,51 @@
 #pragma once
 
-#include "rotor_disc.hpp"
+#include "rotor_law.hpp"
 
 namespace quadcore::laws {
 
 /// Thrust, thesis eq. (2.10): T = k w^2 along the disc's normal, at the rotor's centre of mass.
-/// \param k  rotorThrustCoeff [N s^2/rad^2]
-/// \return   force on the rotor in F [N]
-template <class T, class K>
-QUADCORE_LAW Vec3<T> thrust(const RotorDisc<T>& disc, K k) {
-  return (k * disc.speed * disc.speed) * disc.axis_F;
-}
+template <class T>
+struct Thrust {
+  T k;  ///< N s^2/rad^2
+
+  static constexpr const char* term = "thrust";
+  static constexpr Effect effect = Effect::force;
+  static constexpr Tag tags[] = {{"rotorThrustCoeff", "N s^2/rad^2", required,
+                                  "thrust of a rotor per squared speed, k", "(2.10)", Tag::thrust,
+                                  Tag::at_least_zero}};
+  template <class Given>
+  static Thrust from(const Given& given) {
+    const auto [k] = given.numbers(tags);
+    return {given.density_ratio * k};
+  }
+
+  template <class Motion>
+  QUADCORE_LAW Vec3<T> force(const RotorDisc<T>& disc, const Motion&) const {
+    return (disc.share * k * disc.speed * disc.speed) * disc.axis_F;
+  }
+};
 
 /// Reaction torque, thesis eq. (2.11) without its inertial part (the engine has that): b w^2 with
 /// the sign of the spin, as the thesis has it; real air drags the frame the other way (b < 0).
-/// \param b  rotorTorqueCoeff [N m s^2/rad^2], negative for the opposing sign
-/// \return   torque about the axis it acts on, on the frame [N m]
-template <class T, class K>
-QUADCORE_LAW T reaction(const RotorDisc<T>& disc, K b) {
-  return b * disc.speed * absolute(disc.speed);
-}
+template <class T>
+struct Reaction {
+  T b;  ///< N m s^2/rad^2, negative for the opposing sign
+
+  static constexpr const char* term = "reaction";
+  static constexpr Effect effect = Effect::reaction_torque;
+  static constexpr Tag tags[] = {{"rotorTorqueCoeff", "N m s^2/rad^2", required,
+                                  "reaction torque of a rotor per squared speed, b", "(2.11)",
+                                  Tag::thrust, Tag::at_least_zero}};
+  template <class Given>
+  static Reaction from(const Given& given) {
+    const auto [b] = given.numbers(tags);
+    return {given.density_ratio * given.reaction_sign * b};
+  }
+
+  QUADCORE_LAW T torque(const RotorDisc<T>& disc) const {
+    return disc.share * b * disc.speed * absolute(disc.speed);
+  }
+};
 
 }  // namespace quadcore::laws

@@ -5,6 +5,7 @@
 #include "configuration.hpp"
 #include "effectiveness.hpp"
 #include "lanes/for_each_width.hpp"
+#include "law_tags.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/lane_width.hpp"
 #include "quadcore/plugin.hpp"
@@ -13,31 +14,23 @@
 namespace quadcore::aerodynamic {
 namespace {
 
-/// Wrench terms, in the order the descriptor names them.
-enum Term { kThrust, kReaction, kInduced, kTranslational, kProfile, kParasitic, kFlapping };
-
-/// Which warnings this flight has heard, behind the coefficients; filled up to a whole block, so
-/// that the tables of other plugins begin where a pack can be read at once.
+/// Which warnings this flight has heard, behind the shares; filled up to a whole block, so that the
+/// tables of other plugins begin where a pack can be read at once.
 enum Memory { kDriven, kUnfelt, kAliased, kMemorySize = widest_lanes - 1 };
 
 /// rad
 constexpr double surely_below_half_a_turn = 3;
 
-/// Drag tags and what the thesis' plugin (A.5) has in their place: compiled in, no tags.
-constexpr std::pair<const char*, const char*> compiled_in_drag[] = {
-    {"inducedDragCoeff", "0.01"},
-    {"translationalDragCoeff", "0.0025"},
-    {"profileDragCoeff", "0.005"},
-    {"parasiticDragCoeff", "0.003"},
-};
-
-/// A model made for the thesis' plugin flies another vehicle without them.
+/// A model made for the thesis' plugin flies another vehicle without the drag compiled in there.
 void warn_without_drag(const PluginSetup& setup) {
   std::string values;
-  for (const auto& [tag, value] : compiled_in_drag) {
-    if (setup.parameters.is_set(tag)) return;
-    values += (values.empty() ? "<" : ", <") + std::string(tag) + ">" + value;
-  }
+  bool is_set = false;
+  for_each_tag([&](const laws::Tag& tag) {
+    if (!tag.compiled_in) return;
+    is_set |= setup.parameters.is_set(tag.name);
+    values += (values.empty() ? "<" : ", <") + std::string(tag.name) + ">" + tag.compiled_in;
+  });
+  if (is_set) return;
   setup.warnings.push_back(
       "no drag is set, so that nothing slows the vehicle; the thesis' plugin (A.5) had " + values +
       " compiled in: write these tags, or one of them with 0 to fly without drag");
@@ -75,10 +68,9 @@ class AerodynamicPlugin final : public Plugin {
   explicit AerodynamicPlugin(const PluginSetup& setup)
       : config_(setup.parameters, setup.model.joints.size(), setup.world.atmosphere),
         joint_names_(setup.model.joint_names()),
-        law_(config_.law()),
         fastest_(surely_below_half_a_turn / setup.dt),
         follows_any_turn_(setup.follows_any_turn),
-        effectiveness_(setup, config_) {
+        effectiveness_(setup, config_.rotors) {
     static constexpr laws::ForEachWidth<void(const RotorForces&, const ShownMotion&)> widths{
         &add_rotor_forces<1>, &add_rotor_forces<2>, &add_rotor_forces<4>, &add_rotor_forces<8>};
     add_ = widths[lane_width(setup.model.joints.size())];
@@ -118,59 +110,55 @@ class AerodynamicPlugin final : public Plugin {
   }
 
   void forces(const Kinematics& kinematics, ConstPluginState state, Loads& loads) const override {
-    const RotorForces law = effectiveness_.has_begun(state) ? law_in_force(state) : law_;
     const ShownMotion shown{{kinematics.rotors.data(), loads.rotors().data(),
                              kinematics.rotors.size(), kinematics.has_rotations()},
                             kinematics.numbers()};
     if (loads.terms()) {
-      record(law, shown, loads);
+      record(with_shares(config_.separate(), state), shown, loads);
     } else {
-      add_(law, shown);
+      add_(with_shares(config_.summed(), state), shown);
     }
-    if (drags_frame()) {
+    if (config_.frame_drag != 0) {
       const Vector3d v_ACcm_F = kinematics.v_WCcm_F - kinematics.v_WA_F;
       loads.add_frame_force(
-          kParasitic,
-          vector(laws::parasitic_drag(components(v_ACcm_F), v_ACcm_F.norm(), config_.parasitic)),
+          RotorLaws::place_of<laws::ParasiticDrag>(),
+          vector(laws::parasitic_drag(components(v_ACcm_F), v_ACcm_F.norm(), config_.frame_drag)),
           kinematics.p_FCcm_F);
     }
   }
 
   void laws(ConstPluginState state, ForceLaws& laws) const override {
-    laws.rotor_forces.push_back(law_in_force(state));
+    laws.rotor_forces.push_back(config_.summed());
+    laws.rotor_forces.back().shares = state.data();  // as they are once a step has begun
     const double* const memory = state.data() + effectiveness_.size();
     laws.quiet.push_back({fastest_, drag_may_drive(),
                           follows_any_turn_ ? memory + kAliased : nullptr, memory + kDriven});
-    if (drags_frame()) laws.frame_drags.push_back({config_.parasitic});
+    if (config_.frame_drag != 0) laws.frame_drags.push_back({config_.frame_drag});
   }
 
  private:
-  /// Whether the parasitic drag is that of chapter 2, which acts on the airframe.
-  bool drags_frame() const { return !config_.appendix && config_.parasitic != 0; }
+  RotorForces with_shares(RotorForces law, ConstPluginState state) const {
+    law.shares = effectiveness_.in_force(state);
+    return law;
+  }
 
-  /// The same loads, rotor by rotor and term by term.
+  /// The same loads, rotor by rotor and law by law.
   void record(const RotorForces& law, const ShownMotion& shown, Loads& loads) const {
-    using Row = CoefficientRow;
     for (const std::size_t i : config_.rotors) {
       const ShownPack<double> motion{shown, i};
-      const laws::RotorDisc<double> disc = laws::disc_of<double>(law, motion);
-      const auto coefficient = [&](std::size_t row) {
-        return laws::coefficient<double>(law, row, i);
+      const laws::LawsOfRotors<double> of_rotor = laws::laws_of_rotors<double>(law, i);
+      const laws::RotorDisc<double> disc = laws::disc_of(of_rotor, motion);
+      const auto add = [&](const auto& one, std::size_t term) {
+        if constexpr (std::decay_t<decltype(one)>::effect == laws::Effect::reaction_torque) {
+          laws::RotorLoads<double> reaction{};
+          laws::add_reaction(law.conventions, disc, motion, one.torque(disc), reaction);
+          loads.add_frame_torque(term, vector(reaction.reaction_F));
+          loads.add_joint_torque(i, reaction.joint_torque);
+        } else {
+          loads.add_rotor_force(term, i, vector(laws::force_F(one, disc, motion)));
+        }
       };
-      const auto add = [&](Term term, const Vec3<double>& f_F) {
-        loads.add_rotor_force(term, i, vector(f_F));
-      };
-      add(kThrust, laws::thrust(disc, coefficient(Row::k)));
-      add(kInduced, laws::rotor_drag(disc, coefficient(Row::induced)));
-      add(kTranslational, laws::rotor_drag(disc, coefficient(Row::translational)));
-      add(kProfile, laws::rotor_drag(disc, coefficient(Row::profile)));
-      if (law.parasitic) add(kParasitic, laws::parasitic_F<double>(law, motion, i));
-      if (law.flaps) add(kFlapping, laws::flapping_F<double>(law, disc, motion, i));
-      const double torque = laws::reaction_of(law, disc, i);
-      loads.add_frame_torque(
-          kReaction, law.about_frame_z ? Vector3d(0, 0, torque)
-                                       : torque * vector(laws::reaction_axis_F(law, disc, motion)));
-      if (law.on_rotor) loads.add_joint_torque(i, torque);
+      RotorLaws::for_each(law.acting, of_rotor.coefficients, add);
     }
   }
 
@@ -193,9 +181,12 @@ class AerodynamicPlugin final : public Plugin {
     }
   }
 
-  bool drag_may_drive() const { return config_.appendix && config_.parasitic != 0; }
+  /// Whether any rotor has the parasitic drag of appendix A.5.
+  bool drag_may_drive() const {
+    return config_.summed().acting >> RotorLaws::place_of<laws::ParasiticDrag>() & 1;
+  }
 
-  /// Whether the vertical part of parasitic_drag_of_appendix() points along the motion.
+  /// Whether the vertical part of that drag points along the motion.
   bool drag_drives(const Kinematics& kinematics) const {
     if (!drag_may_drive()) return false;
     const Vector3d up_F = kinematics.R_WF.row(2);
@@ -204,16 +195,9 @@ class AerodynamicPlugin final : public Plugin {
     });
   }
 
-  RotorForces law_in_force(ConstPluginState state) const {
-    RotorForces law = law_;
-    law.coefficients = state.data();
-    return law;
-  }
-
   Config config_;
   std::vector<std::string> joint_names_;
-  RotorForces law_;  ///< while all rotors are whole
-  double fastest_;   ///< rate of a joint below which update() does not look at it [rad/s]
+  double fastest_;  ///< rate of a joint below which update() does not look at it [rad/s]
   bool follows_any_turn_;
   Effectiveness effectiveness_;
   void (*add_)(const RotorForces&, const ShownMotion&);
@@ -224,18 +208,7 @@ PluginDescriptor describe() {
   const std::string no_effect = "the thesis' tag, without effect there and here";
   return {
       "thrust, reaction torque and drag of the rotors (thesis eqs. 2.10-2.32, appendix A.5)",
-      {
-          T::number("rotorThrustCoeff", "N s^2/rad^2", "", "thrust of a rotor per squared speed, k")
-              .must()
-              .at_least(0)
-              .from("(2.10)")
-              .scaling(Effect::thrust),
-          T::number("rotorTorqueCoeff", "N m s^2/rad^2", "",
-                    "reaction torque of a rotor per squared speed, b")
-              .must()
-              .at_least(0)
-              .from("(2.11)")
-              .scaling(Effect::thrust),
+      tags_of_laws_and({
           T::number("sim_slow", "", "1",
                     "rotors turn this much slower in the engine than the forces assume")
               .above(0)
@@ -246,44 +219,11 @@ PluginDescriptor describe() {
                     "parasitic drag of appendix drives a vehicle tilted beyond 90 degrees, and it "
                     "feels no wind")
               .from("A.5, (2.28)-(2.31)"),
-          T::number("inducedDragCoeff", "N s/m", "0", "induced drag of a rotor, K_I")
-              .at_least(0)
-              .from("(2.28)")
-              .scaling(Effect::drag),
-          T::number("translationalDragCoeff", "N s/m", "0", "translational drag of a rotor, K_T1")
-              .at_least(0)
-              .from("(2.29)")
-              .scaling(Effect::drag),
-          T::number("profileDragCoeff", "N s/m", "0", "profile drag of a rotor, K_P")
-              .at_least(0)
-              .from("(2.30)")
-              .scaling(Effect::drag),
-          T::number("parasiticDragCoeff", "N s^2/m^2", "0", "parasitic drag of the airframe, K_par")
-              .at_least(0)
-              .from("(2.31)")
-              .scaling(Effect::drag),
           T::number("airDensity", "kg/m^3", "",
                     "density of the air for which the thrust, torque and drag coefficients are: "
                     "they become those of the world's <atmosphere> at z = 0")
               .above(0)
               .or_absent("they hold as they are"),
-          T::number("flappingA1c", "rad", "0",
-                    "blade flapping, longitudinal; positive opposes motion")
-              .from("(2.26)")
-              .scaling(Effect::drag),
-          T::number("flappingA1s", "rad", "0", "blade flapping, lateral")
-              .from("(2.26)")
-              .scaling(Effect::drag),
-          T::number("flappingB1", "s/rad", "0", "blade flapping with the frame's rates, cross term")
-              .from("(2.27)")
-              .scaling(Effect::drag),
-          T::number("flappingB2", "s/rad", "0",
-                    "blade flapping with the frame's rates, direct term")
-              .from("(2.27)")
-              .scaling(Effect::drag),
-          T::number("rotorRadius", "m", "0.075", "radius of a rotor, for flapping")
-              .above(0)
-              .from("(2.26)"),
           T::choice(
               "reactionTorque", {"thesis", "opposing"},
               "sign of the reaction torque: with the rotor's spin as in the thesis, or against")
@@ -300,8 +240,8 @@ PluginDescriptor describe() {
                   "before the first message"),
           T::number("updateRate", "1/s", "", no_effect).at_least(0).or_absent("no effect"),
           T::flag("publishTf", "false", no_effect),
-      },
-      {"thrust", "reaction", "induced", "translational", "profile", "parasitic", "flapping"},
+      }),
+      terms_of_laws(),
       create<AerodynamicPlugin>,
   };
 }

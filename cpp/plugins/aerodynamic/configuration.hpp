@@ -1,76 +1,112 @@
 #pragma once
 
+#include <array>
+#include <cstring>
 #include <vector>
 
+#include "laws/rotor_forces.hpp"
 #include "quadcore/error.hpp"
-#include "quadcore/force_laws.hpp"
 #include "quadcore/rotor_rows.hpp"
 #include "quadcore/tags.hpp"
 #include "quadcore/world.hpp"
 
 namespace quadcore::aerodynamic {
 
+using laws::RotorLaws;
+
+/// What the laws take their coefficients from.
+struct Given {
+  const Parameters& parameters;
+  double density_ratio;  ///< of the air, to that for which the coefficients are
+  double reaction_sign;  ///< 1 for a reaction torque with the spin, -1 against it
+  bool appendix;         ///< dragModel
+
+  /// The numbers of a law's tags.
+  template <std::size_t n>
+  std::array<double, n> numbers(const laws::Tag (&tags)[n]) const {
+    std::array<double, n> numbers;
+    for (std::size_t i = 0; i < n; ++i) numbers[i] = parameters.number(tags[i].name);
+    return numbers;
+  }
+};
+
+/// The laws of all rotors, which do not act on the rotors of others.
+struct RotorTable {
+  RotorLaws::Places acting;
+  RotorRows<RotorLaws::rows> coefficients;
+
+  RotorTable(const RotorLaws::Coefficients<double>& of_each, const std::vector<std::size_t>& rotors,
+             std::size_t rotor_count)
+      : acting(RotorLaws::acting(of_each)), coefficients(rotor_count) {
+    double numbers[RotorLaws::rows];
+    std::memcpy(numbers, &of_each, sizeof numbers);
+    for (const std::size_t i : rotors) {
+      for (std::size_t row = 0; row < RotorLaws::rows; ++row) {
+        coefficients.number(row, i) = numbers[row];
+      }
+    }
+  }
+};
+
 /// What the tags say, as the force laws take it.
-struct Config {
-  double sim_slow, parasitic;
+class Config {
+ public:
+  Config(const Parameters& p, std::size_t rotor_count, const Atmosphere& air)
+      : Config(p, rotor_count, read(p, air)) {}
+
+  double sim_slow;
   bool appendix;  ///< dragModel
   bool on_rotor;  ///< reactionOn
-  Flapping flapping;
   std::vector<std::size_t> rotors;
-  RotorRows<CoefficientRow::count> coefficients;  ///< 0 for the rotors of others
+  double frame_drag;  ///< of chapter 2, on the airframe [N s^2/m^2]
 
-  Config(const Parameters& p, std::size_t rotor_count, const Atmosphere& air)
+  /// The laws as steps evaluate them. Points into this, and to no shares.
+  RotorForces summed() const { return law(summed_); }
+  /// The same forces law by law.
+  RotorForces separate() const { return law(separate_); }
+
+ private:
+  Config(const Parameters& p, std::size_t rotor_count, const Given& given)
       : sim_slow(p.number("sim_slow")),
-        parasitic(p.number("parasiticDragCoeff")),
-        appendix(p.choice("dragModel") == "appendix"),
-        flapping{p.number("flappingA1c"), p.number("flappingA1s"), p.number("flappingB1"),
-                 p.number("flappingB2"), p.number("rotorRadius")},
+        appendix(given.appendix),
+        on_rotor(reacts_on_rotor(p)),
         rotors(p.joints("rotorJoints")),
-        coefficients(rotor_count) {
-    on_rotor = p.choice("reactionOn") == "rotor";
+        frame_drag(appendix ? 0 : laws::ParasiticDrag<double>::coefficient(given)),
+        separate_(RotorLaws::from(given), rotors, rotor_count),
+        summed_(RotorLaws::with_one_drag(RotorLaws::from(given)), rotors, rotor_count) {}
+
+  static bool reacts_on_rotor(const Parameters& p) { return p.choice("reactionOn") == "rotor"; }
+
+  static Given read(const Parameters& p, const Atmosphere& air) {
     const bool as_in_thesis = p.choice("reactionTorque") == "thesis";
-    if (on_rotor && as_in_thesis && p.is_set("reactionTorque")) {
+    if (reacts_on_rotor(p) && as_in_thesis && p.is_set("reactionTorque")) {
       throw InputError(
           "<reactionOn> rotor lets the air brake the rotors, so that <reactionTorque> cannot be "
           "thesis; write opposing, or leave it out");
     }
-    const double thinness = p.has("airDensity") ? air.density() / p.number("airDensity") : 1;
-    parasitic *= thinness;
-    const double reaction_sign = as_in_thesis && !on_rotor ? 1 : -1;
-    for (const std::size_t i : rotors) {
-      const auto coefficient = [&](std::size_t row) -> double& {
-        return coefficients.number(row, i);
-      };
-      using Row = CoefficientRow;
-      coefficient(Row::k) = thinness * p.number("rotorThrustCoeff");
-      coefficient(Row::b) = thinness * reaction_sign * p.number("rotorTorqueCoeff");
-      coefficient(Row::induced) = thinness * p.number("inducedDragCoeff");
-      coefficient(Row::translational) = thinness * p.number("translationalDragCoeff");
-      coefficient(Row::profile) = thinness * p.number("profileDragCoeff");
-      coefficient(Row::linear) =
-          coefficient(Row::induced) + coefficient(Row::translational) + coefficient(Row::profile);
-      coefficient(Row::parasitic) = parasitic;
-    }
+    return {p, p.has("airDensity") ? air.density() / p.number("airDensity") : 1,
+            as_in_thesis && !reacts_on_rotor(p) ? 1.0 : -1.0, p.choice("dragModel") == "appendix"};
   }
 
   /// Chapter 2: the disc stands across the joint's axis and meets the moving air. Appendix A.5: it
   /// stands across the propeller link's z, the air is still everywhere, and the reaction turns the
   /// frame about its own z. On a rotor, whose joint hands it to the frame, the reaction takes that
-  /// back, so that the air's torque is on the vehicle once. Points into this.
-  RotorForces law() const {
+  /// back, so that the air's torque is on the vehicle once.
+  RotorForces law(const RotorTable& table) const {
     RotorForces law;
-    law.coefficients = coefficients.data();
-    law.across_link_z = appendix;
-    law.at_origins = appendix;
-    law.meets_wind = !appendix;
-    law.about_frame_z = appendix && !on_rotor;
-    law.on_rotor = on_rotor;
-    law.parasitic = appendix && parasitic != 0;
-    law.flaps = flapping.A1c != 0 || flapping.A1s != 0 || flapping.B1 != 0 || flapping.B2 != 0;
-    law.flapping = flapping;
+    law.conventions.across_link_z = appendix;
+    law.conventions.at_origins = appendix;
+    law.conventions.meets_wind = !appendix;
+    law.conventions.about_frame_z = appendix && !on_rotor;
+    law.conventions.on_rotor = on_rotor;
+    law.acting = table.acting;
     law.sim_slow = sim_slow;
+    law.coefficients = table.coefficients.data();
+    law.shares = nullptr;
     return law;
   }
+
+  RotorTable separate_, summed_;
 };
 
 }  // namespace quadcore::aerodynamic

@@ -1,68 +1,49 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdint>
-#include <cstring>
+#include <vector>
 
-#include "configuration.hpp"
 #include "quadcore/plugin.hpp"
 #include "shared/rotor_shares.hpp"
 
 namespace quadcore::aerodynamic {
 
-/// The coefficients in force: those of the tags, with the rotors' shares of thrust and reaction
-/// torque that are left. They lie at the beginning of the plugin's state, behind them the number of
-/// the message that they follow, plus one, once a step has begun, and a digest of the tags' own: a
-/// state may come from a simulation with other tags.
+/// The rotors' shares of thrust and reaction torque that are left. They lie at the beginning of the
+/// plugin's state, a number for each rotor of the vehicle, and behind them the number of the
+/// message that they follow, plus one.
 class Effectiveness {
  public:
-  Effectiveness(const PluginSetup& setup, const Config& config)
-      : config_(config),
-        size_(static_cast<Eigen::Index>(
-            RotorRows<CoefficientRow::count>::size_of(setup.model.joints.size()))),
-        topic_(setup.topics.takes(setup.parameters.text("effectiveness"),
-                                  shares(config.rotors.size()))),
-        digest_(digest(config.coefficients.data(), size_)) {}
+  Effectiveness(const PluginSetup& setup, const std::vector<std::size_t>& rotors)
+      : rotors_(rotors),
+        whole_(setup.model.joints.size()),
+        size_(static_cast<Eigen::Index>(RotorRows<1>::size_of(whole_.rotors()))),
+        topic_(setup.topics.takes(setup.parameters.text("effectiveness"), shares(rotors.size()))) {
+    for (const std::size_t i : rotors) whole_.number(0, i) = 1;
+  }
 
   /// Numbers of state.
-  Eigen::Index size() const { return size_ + 2; }
+  Eigen::Index size() const { return size_ + 1; }
 
   void follow(const Sample& sample, PluginState state) const {
     const Topic& left = sample.topics[topic_];
-    if (state[size_] == left.count + 1 && state[size_ + 1] == digest_) return;
+    if (state[size_] == left.count + 1) return;
     check_shares(left, sample.time);
     state[size_] = left.count + 1;
-    state[size_ + 1] = digest_;
-    std::copy_n(config_.coefficients.data(), size_, state.data());
-    for (std::size_t j = 0; j < config_.rotors.size(); ++j) {
-      double* rows = state.data() + rotor_offset(CoefficientRow::count, config_.rotors[j]);
-      for (const std::size_t row : {CoefficientRow::k, CoefficientRow::b}) {
-        rows[row * widest_lanes] *= left.values[j];
-      }
+    for (std::size_t j = 0; j < rotors_.size(); ++j) {
+      state[static_cast<Eigen::Index>(rotors_[j])] = left.values[j];
     }
   }
 
-  /// Whether the coefficients in the state are in force; those of the tags are otherwise.
-  bool has_begun(ConstPluginState state) const {
-    return state[size_] != 0 && state[size_ + 1] == digest_;
+  /// The shares in force: all of each rotor until a step begins.
+  const double* in_force(ConstPluginState state) const {
+    return state[size_] != 0 ? state.data() : whole_.data();
   }
 
  private:
-  /// A whole number that other coefficients hardly have (FNV-1a over their bits).
-  static double digest(const double* coefficients, Eigen::Index count) {
-    std::uint64_t hash = 14695981039346656037u;
-    for (Eigen::Index i = 0; i < count; ++i) {
-      std::uint64_t bits;
-      std::memcpy(&bits, coefficients + i, sizeof bits);
-      hash = (hash ^ bits) * 1099511628211u;
-    }
-    return static_cast<double>(hash >> 12);
-  }
-
-  const Config& config_;
+  std::vector<std::size_t> rotors_;
+  RotorRows<1> whole_;
   Eigen::Index size_;  ///< of the table
   std::size_t topic_;
-  double digest_;
 };
 
 }  // namespace quadcore::aerodynamic

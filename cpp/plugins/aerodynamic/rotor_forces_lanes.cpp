@@ -12,7 +12,7 @@ void add_rotor_forces(const RotorForces& law, const ShownMotion& shown) {
     double* joint_torque = rows + LoadRow::joint_torque * widest_lanes;
     laws::RotorLoads<T> loads{laws::load3<T>(force), laws::load3<T>(reaction),
                               laws::load<T>(joint_torque)};
-    laws::add_rotor_forces<T>(law, ShownPack<T>{shown, i}, i, loads);
+    laws::add_rotor_forces(laws::laws_of_rotors<T>(law, i), ShownPack<T>{shown, i}, loads);
     laws::store3(force, loads.f_F);
     laws::store3(reaction, loads.reaction_F);
     laws::store(joint_torque, loads.joint_torque);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 /// \file
 /// Force laws as numbers and tables of numbers, a column for each rotor, laid out as
@@ -10,35 +11,22 @@
 
 namespace quadcore {
 
-/// Blade flapping coefficients, thesis eqs. (2.26), (2.27).
-struct Flapping {
-  double A1c;     ///< rad
-  double A1s;     ///< rad
-  double B1;      ///< s/rad
-  double B2;      ///< s/rad
-  double radius;  ///< r, rotor radius [m]
-};
-
-/// Rows of the rotors' coefficients, all 0 for rotors that are somebody else's: `k` of the thrust
-/// [N s^2/rad^2], `b` of the reaction torque [N m s^2/rad^2], positive if it turns the frame as the
-/// rotor turns; `induced`, `translational` and `profile` drag [N s/m], `linear` being their sum;
-/// `parasitic` drag [N s^2/m^2].
-struct CoefficientRow {
-  enum : std::size_t { k, b, induced, translational, profile, linear, parasitic, count };
+/// How the laws of rotors act, whichever they are.
+struct RotorConventions {
+  bool across_link_z;  ///< discs stand across their links' z, or across the joints' axes
+  bool at_origins;     ///< discs move as their links' origins, or as the centres of mass
+  bool meets_wind;     ///< whether the discs meet the moving air, or air that stands still
+  bool about_frame_z;  ///< reaction torques act so, however the rotors stand
+  bool on_rotor;       ///< reaction torques act about the joints' axes on the rotors
 };
 
 /// Thrust, reaction torque, drag and flapping of the rotors.
 struct RotorForces {
-  const double* coefficients;  ///< table of CoefficientRow
-  bool across_link_z;          ///< discs stand across their links' z, or across the joints' axes
-  bool at_origins;             ///< discs move as their links' origins, or as the centres of mass
-  bool meets_wind;             ///< whether the discs meet the moving air, or air that stands still
-  bool about_frame_z;          ///< reaction torques act so, however the rotors stand
-  bool on_rotor;               ///< reaction torques act about the joints' axes on the rotors
-  bool parasitic;              ///< each rotor takes the appendix' parasitic drag
-  bool flaps;                  ///< any flapping coefficient is set
-  Flapping flapping;           ///< if `flaps`
-  double sim_slow;             ///< speed of a real rotor over the rate of its joint
+  RotorConventions conventions;
+  std::uint32_t acting;  ///< a bit for each law of laws/rotor_laws.hpp, the first one's lowest
+  double sim_slow;       ///< speed of a real rotor over the rate of its joint
+  const double* coefficients;  ///< table of the laws' rows; 0 for rotors that are somebody else's
+  const double* shares;        ///< of each rotor, what is left of its thrust and reaction torque
 };
 
 /// Parasitic drag of the airframe at the vehicle's centre of mass.
