@@ -1,3 +1,4 @@
+#include "engines/eigen/runge_kutta.hpp"
 #include "laws/ahead.hpp"
 #include "laws/gyrostat.hpp"
 #include "laws/motor_torque.hpp"
@@ -5,14 +6,6 @@
 
 namespace quadcore::batch {
 namespace {
-
-/// Which of the four rates of a step: the first, the last, or between.
-enum class Stage { first, between, last };
-
-/// As Share of the step of one vehicle.
-struct Share {
-  double weight, reach;
-};
 
 /// The places of a pack of vehicles.
 struct Places {
@@ -22,17 +15,8 @@ struct Places {
 
 template <Stage stage, class T>
 QUADCORE_LAW void share_out(const Places& at, const Share& share, std::size_t row, T k) {
-  const std::size_t place = row * widest_lanes;
-  T sum = k;
-  if constexpr (stage == Stage::between) sum = laws::load<T>(at.sum + place) + share.weight * k;
-  if constexpr (stage == Stage::last) sum = laws::load<T>(at.sum + place) + k;
-  const T begin = laws::load<T>(at.state + place);
-  if constexpr (stage == Stage::last) {
-    laws::store(at.stage + place, begin + share.reach * sum);
-  } else {
-    laws::store(at.sum + place, sum);
-    laws::store(at.stage + place, begin + share.reach * k);
-  }
+  const StageNumbers numbers{at.state, at.stage, at.sum, at.stage};
+  share_out<stage>(numbers, share, row * widest_lanes, k);
 }
 
 template <Stage stage, class T>

@@ -3,33 +3,16 @@
 #include "laws/gyrostat.hpp"
 #include "laws/motor_torque.hpp"
 #include "laws/rotor_forces.hpp"
+#include "runge_kutta.hpp"
 
 namespace quadcore {
 namespace {
 
 using At = GyrostatState;
 
-/// Which of the four rates of a step: the first, the last, or between.
-enum class Stage { first, between, last };
-
-/// What becomes of the rate of a state, k: the sum of rates takes weight k, and the next state is
-/// reach k from where the step began, or after the last stage reach times the sum.
-struct Share {
-  double weight, reach;
-};
-
 template <Stage stage, class T>
-QUADCORE_LAW void share_out(const GyrostatStep& g, const Share& share, std::size_t at, T k) {
-  T sum = k;
-  if constexpr (stage == Stage::between) sum = laws::load<T>(g.sum + at) + share.weight * k;
-  if constexpr (stage == Stage::last) sum = laws::load<T>(g.sum + at) + k;
-  const T begin = laws::load<T>(g.state + at);
-  if constexpr (stage == Stage::last) {
-    laws::store(g.state + at, begin + share.reach * sum);
-  } else {
-    laws::store(g.sum + at, sum);
-    laws::store(g.stage + at, begin + share.reach * k);
-  }
+QUADCORE_LAW void share_out(const GyrostatStep& g, const Share& share, std::size_t place, T k) {
+  share_out<stage>(StageNumbers{g.state, g.stage, g.sum, g.state}, share, place, k);
 }
 
 /// Asks for what the laws do not tell.
