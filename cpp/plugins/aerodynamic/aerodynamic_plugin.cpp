@@ -7,6 +7,7 @@
 #include "lanes/for_each_width.hpp"
 #include "law_tags.hpp"
 #include "quadcore/error.hpp"
+#include "quadcore/force_laws.hpp"
 #include "quadcore/lane_width.hpp"
 #include "quadcore/plugin.hpp"
 #include "shown_motion.hpp"

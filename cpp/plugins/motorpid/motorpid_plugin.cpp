@@ -6,6 +6,7 @@
 #include "laws/motor_target.hpp"
 #include "motor_torques.hpp"
 #include "quadcore/error.hpp"
+#include "quadcore/force_laws.hpp"
 #include "quadcore/lane_width.hpp"
 #include "quadcore/plugin.hpp"
 #include "shared/rotor_shares.hpp"

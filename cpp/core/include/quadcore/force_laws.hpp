@@ -20,8 +20,8 @@ struct Quiet {
   const double* has_said_tilt = nullptr;
 };
 
-/// Laws that plugins hand out beside their forces(), for engines that evaluate them themselves.
-/// What they point to lies in the plugins or in their state.
+/// Laws that plugins of quadcore hand out beside their forces(), for engines that evaluate them
+/// themselves. What they point to lies in the plugins or in their state.
 struct ForceLaws {
   std::vector<RotorForces> rotor_forces;    ///< thrust, drag, reaction torques
   std::vector<FrameDrag> frame_drags;       ///< of the airframe

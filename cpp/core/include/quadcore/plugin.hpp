@@ -9,7 +9,6 @@
 #include "quadcore/carried_body.hpp"
 #include "quadcore/error.hpp"
 #include "quadcore/export.hpp"
-#include "quadcore/force_laws.hpp"
 #include "quadcore/kinematics.hpp"
 #include "quadcore/loads.hpp"
 #include "quadcore/model.hpp"
@@ -20,6 +19,10 @@
 #include "quadcore/world.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
+
+/// Laws that the plugins of quadcore hand to engines; force_laws.hpp has them, which is for these
+/// plugins alone.
+struct ForceLaws;
 
 /// A plugin's state: plain numbers that belong to the simulation, so that snapshot, restore and
 /// reset are exact. All zero at the start.
@@ -59,9 +62,9 @@ class Plugin {
   virtual void sense(const Sample&, PluginState) const {}
   /// The force law, evaluated as often as the engine's integrator needs.
   virtual void forces(const Kinematics&, ConstPluginState, Loads&) const {}
-  /// Hands out the laws that make up forces(), all of them, once when all plugins are made. An
-  /// engine may evaluate them itself, several rotors at once, and not call forces(). Tables that
-  /// they point to lie in the plugin or in this state.
+  /// For the plugins of quadcore: hands out the laws that make up forces(), all of them, once when
+  /// all plugins are made. An engine may evaluate them itself, several rotors at once, and not call
+  /// forces(). Tables that they point to lie in the plugin or in this state.
   virtual void laws(ConstPluginState, ForceLaws&) const {}
   /// Adds to the velocity of the air at the frame's origin, in world axes [m/s], before any force
   /// law is asked. The velocity that the motion holds is zero still.
@@ -75,9 +78,9 @@ class Plugin {
 /// not known all may be, but laws(), which would stand for forces(). Members have the hooks' names.
 struct Hooks {
   /// \cond
-  bool prepare = true, update = true, sense = true, forces = true, laws = false, air = true,
-       carried = true;
+  bool prepare = true, update = true, sense = true, forces = true, air = true, carried = true;
   /// \endcond
+  const char* laws = nullptr;  ///< law_interface, as the class was built with it; null for no laws()
 
   /// Those that class P, which is derived from Plugin, overrides.
   template <class P>
@@ -86,9 +89,9 @@ struct Hooks {
             !std::is_same_v<decltype(&P::update), decltype(&Plugin::update)>,
             !std::is_same_v<decltype(&P::sense), decltype(&Plugin::sense)>,
             !std::is_same_v<decltype(&P::forces), decltype(&Plugin::forces)>,
-            !std::is_same_v<decltype(&P::laws), decltype(&Plugin::laws)>,
             !std::is_same_v<decltype(&P::air), decltype(&Plugin::air)>,
-            !std::is_same_v<decltype(&P::carried), decltype(&Plugin::carried)>};
+            !std::is_same_v<decltype(&P::carried), decltype(&Plugin::carried)>,
+            std::is_same_v<decltype(&P::laws), decltype(&Plugin::laws)> ? nullptr : law_interface};
   }
 };
 

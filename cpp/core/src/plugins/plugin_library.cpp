@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <mutex>
 #include <sstream>
@@ -149,10 +150,12 @@ PluginLibrary open_plugin(const PluginElement& element, const std::string& path)
       who_is(element) +
       (built_in ? "" : " in " + std::filesystem::path(path).parent_path().string());
   const PluginModule& module = built_in ? *built_in_plugins().at(path) : load(path, who);
-  if (module.interface != std::string(plugin_interface)) {
-    throw InputError(who + " was built for plugin interface " + module.interface + ", this is " +
-                     plugin_interface + "; rebuild it against the installed quadcore");
-  }
+  const auto check = [&who](const std::string& what, const char* built_for, const char* here) {
+    if (std::strcmp(built_for, here) == 0) return;
+    throw InputError(who + " was built for " + what + " " + built_for + ", this is " + here +
+                     "; rebuild it against the installed quadcore");
+  };
+  check("plugin interface", module.interface, plugin_interface);
   const PluginDescriptor* descriptor = nullptr;
   try {
     descriptor = module.descriptor();
@@ -162,6 +165,9 @@ PluginLibrary open_plugin(const PluginElement& element, const std::string& path)
   if (!descriptor || !descriptor->create) {
     throw InputError(who + " has no " + (descriptor ? "create in its descriptor" : "descriptor") +
                      "; give it one and rebuild it");
+  }
+  if (const char* built_for = descriptor->create.hooks.laws) {
+    check("force laws", built_for, law_interface);
   }
   try {
     check_names(*descriptor);
