@@ -1,4 +1,4 @@
-#include "engines/eigen/runge_kutta.hpp"
+#include "lanes/runge_kutta.hpp"
 #include "laws/ahead.hpp"
 #include "laws/gyrostat.hpp"
 #include "laws/motor_torque.hpp"

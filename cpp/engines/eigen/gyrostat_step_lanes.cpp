@@ -1,9 +1,9 @@
 #include "gyrostat_motion.hpp"
 #include "gyrostat_step.hpp"
+#include "lanes/runge_kutta.hpp"
 #include "laws/gyrostat.hpp"
 #include "laws/motor_torque.hpp"
 #include "laws/rotor_forces.hpp"
-#include "runge_kutta.hpp"
 
 namespace quadcore {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lanes/vec3.hpp"
+#include "vec3.hpp"
 
 namespace quadcore {
 
