@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "quadcore/model.hpp"
+#include "quadcore/plugin/model.hpp"
 
 namespace bare {
 

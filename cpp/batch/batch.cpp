@@ -4,7 +4,7 @@
 
 #include "lane_blocks.hpp"
 #include "members.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "side_by_side.hpp"
 
 namespace quadcore {

@@ -5,7 +5,7 @@
 
 #include "laws/rotor_forces.hpp"
 #include "quadcore/lane_laws.hpp"
-#include "quadcore/rotor_layout.hpp"
+#include "quadcore/plugin/rotor_layout.hpp"
 
 /// \file
 /// Where the numbers of a batch lie: vehicles in blocks of widest_lanes, whose tables have a column

@@ -11,8 +11,8 @@
 #include "ode/body_state.hpp"
 #include "ode/body_work.hpp"
 #include "ode/ode_engine.hpp"
-#include "quadcore/elementary.hpp"
 #include "quadcore/lane_width.hpp"
+#include "quadcore/plugin/elementary.hpp"
 #include "quadcore/simulation.hpp"
 
 namespace quadcore::batch {

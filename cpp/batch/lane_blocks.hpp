@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lane_vehicle.hpp"
-#include "quadcore/rotor_rows.hpp"
+#include "quadcore/plugin/rotor_rows.hpp"
 
 namespace quadcore::batch {
 

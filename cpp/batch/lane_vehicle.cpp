@@ -8,7 +8,7 @@
 #include "eigen/gyrostat.hpp"
 #include "hinged_block.hpp"
 #include "ode/ode_engine.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::batch {
 namespace {

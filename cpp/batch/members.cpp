@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "flight_checks.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::batch {
 namespace {

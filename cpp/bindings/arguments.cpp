@@ -1,6 +1,6 @@
 #include "arguments.hpp"
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::bindings {
 namespace {

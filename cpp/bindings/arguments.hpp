@@ -8,7 +8,7 @@
 
 #include "built.hpp"
 #include "older_pybind11.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 /// \file
 /// Numbers and texts on their way between Python and the core.

@@ -10,7 +10,7 @@
 #include "arguments.hpp"
 #include "bindings.hpp"
 #include "guarded.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::bindings {
 namespace {

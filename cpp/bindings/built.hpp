@@ -4,7 +4,7 @@
 #include <string>
 
 #include "older_pybind11.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 /// \file
 /// Arguments that are objects of bound classes.

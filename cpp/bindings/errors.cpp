@@ -1,7 +1,7 @@
 #include <exception>
 
 #include "bindings.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::bindings {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "built.hpp"
 #include "older_pybind11.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/simulation.hpp"
 
 /// \file

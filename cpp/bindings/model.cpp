@@ -1,4 +1,4 @@
-#include "quadcore/model.hpp"
+#include "quadcore/plugin/model.hpp"
 
 #include <pybind11/eigen.h>
 #include <pybind11/numpy.h>
@@ -7,13 +7,13 @@
 #include "arguments.hpp"
 #include "bindings.hpp"
 #include "built.hpp"
-#include "quadcore/document.hpp"
 #include "quadcore/drawing.hpp"
-#include "quadcore/error.hpp"
 #include "quadcore/gazebo_reference.hpp"
+#include "quadcore/plugin/document.hpp"
+#include "quadcore/plugin/error.hpp"
+#include "quadcore/plugin/world.hpp"
 #include "quadcore/seen_or_sensed.hpp"
 #include "quadcore/text.hpp"
-#include "quadcore/world.hpp"
 #include "unpickled.hpp"
 
 namespace quadcore::bindings {

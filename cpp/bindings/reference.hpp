@@ -1,7 +1,7 @@
 #pragma once
 
 #include "older_pybind11.hpp"
-#include "quadcore/messages.hpp"
+#include "quadcore/plugin/messages.hpp"
 
 /// \file
 /// References on their way between Python and the core.

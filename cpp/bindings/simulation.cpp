@@ -9,7 +9,7 @@
 #include "arguments.hpp"
 #include "bindings.hpp"
 #include "guarded.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/plugin_library.hpp"
 #include "state.hpp"
 

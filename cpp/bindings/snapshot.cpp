@@ -4,7 +4,7 @@
 
 #include "bindings.hpp"
 #include "built.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/simulation.hpp"
 #include "unpickled.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "arguments.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::bindings {
 namespace {

@@ -1,4 +1,4 @@
-#include "quadcore/topics.hpp"
+#include "quadcore/plugin/topics.hpp"
 
 #include <pybind11/stl.h>
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "older_pybind11.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::bindings {
 

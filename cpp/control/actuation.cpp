@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "quadcore/elementary.hpp"
+#include "quadcore/plugin/elementary.hpp"
 
 namespace quadcore::control {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "quadcore/control/rotors.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::control {
 namespace {

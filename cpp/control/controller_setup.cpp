@@ -4,7 +4,7 @@
 
 #include "quadcore/control/rows_file.hpp"
 #include "quadcore/control/second_vehicle.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 #include "tags.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "quadcore/elementary.hpp"
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/elementary.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 namespace quadcore::control {
 

@@ -1,8 +1,8 @@
 #include "quadcore/control/flat_state.hpp"
 
 #include "jet.hpp"
-#include "quadcore/elementary.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/elementary.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::control {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "quadcore/elementary.hpp"
+#include "quadcore/plugin/elementary.hpp"
 
 namespace quadcore::control {
 namespace {

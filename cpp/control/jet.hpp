@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 namespace quadcore::control {
 

@@ -2,7 +2,7 @@
 #include "geometric.hpp"
 #include "indi.hpp"
 #include "lqr.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 
 namespace quadcore::control {

@@ -4,8 +4,8 @@
 #include <Eigen/QR>
 #include <cmath>
 
-#include "quadcore/elementary.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/elementary.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::control {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "quadcore/elementary.hpp"
+#include "quadcore/plugin/elementary.hpp"
 
 namespace quadcore::control {
 namespace {

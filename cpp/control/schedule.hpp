@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "quadcore/counts.hpp"
+#include "quadcore/plugin/counts.hpp"
 
 namespace quadcore::control {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/simulation.hpp"
 #include "quadcore/text.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 
 namespace quadcore::control {

@@ -4,7 +4,7 @@
 
 #include "quadcore/control/allocation.hpp"
 #include "quadcore/control/flat_state.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::control {
 

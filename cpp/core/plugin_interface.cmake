@@ -1,34 +1,3 @@
-# hash_plugin_interface(HASH HEADERS FOLDER) hashes the headers in FOLDER/quadcore that are for plugins
-# and every other there that they include, each once, and lists them: what a plugin and a core must
-# have in common.
-function(hash_plugin_interface hash_variable headers_variable folder)
-  set(waiting quadcore/plugin.hpp quadcore/random.hpp quadcore/elementary.hpp
-      quadcore/switch.hpp)
-  set(headers "")
-  set(digests "")
-  while(waiting)
-    list(GET waiting 0 header)
-    list(REMOVE_AT waiting 0)
-    # plugin_interface.hpp holds the hash.
-    if(header IN_LIST headers OR header STREQUAL quadcore/plugin_interface.hpp)
-      continue()
-    endif()
-    list(APPEND headers ${header})
-    file(SHA256 ${folder}/${header} digest)
-    string(APPEND digests "${header} ${digest}\n")
-    file(STRINGS ${folder}/${header} includes REGEX "^#include [\"<]quadcore/")
-    foreach(include IN LISTS includes)
-      string(REGEX REPLACE "^#include .(quadcore/[^\">]+).*" "\\1" include "${include}")
-      list(APPEND waiting ${include})
-    endforeach()
-  endwhile()
-  string(SHA256 hash "${digests}")
-  string(SUBSTRING ${hash} 0 16 hash)
-  list(TRANSFORM headers PREPEND ${folder}/)
-  set(${hash_variable} ${hash} PARENT_SCOPE)
-  set(${headers_variable} ${headers} PARENT_SCOPE)
-endfunction()
-
 # hash_headers(HASH HEADERS GLOB...) hashes the headers that match, by name and content, and lists them.
 function(hash_headers hash_variable headers_variable)
   file(GLOB headers ${ARGN})

@@ -1,7 +1,7 @@
 #include "eigen/eigen_engine.hpp"
 #include "ode/ode_engine.hpp"
 #include "quadcore/engine.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 
 namespace quadcore {

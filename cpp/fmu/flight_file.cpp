@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::fmu {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/model.hpp"
+#include "quadcore/plugin/model.hpp"
+#include "quadcore/plugin/world.hpp"
 #include "quadcore/simulation.hpp"
-#include "quadcore/world.hpp"
 
 namespace quadcore::fmu {
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "instance.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/plugin_library.hpp"
 #include "quadcore/text.hpp"
 

@@ -3,7 +3,7 @@
 #include <cstring>
 #include <type_traits>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::fmu {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <utility>
 
-#include "quadcore/error.hpp"
 #include "quadcore/log.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 
 namespace quadcore::fmu {

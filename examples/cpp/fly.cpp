@@ -1,6 +1,5 @@
 // Hold a quadrotor's height from C++, the twin of examples/step_from_python.py: fly MODEL.urdf
 #include <cstdio>
-#include <quadcore/error.hpp>
 #include <quadcore/simulation.hpp>
 #include <vector>
 

@@ -1,5 +1,4 @@
 #include <quadcore/plugin.hpp>
-#include <quadcore/random.hpp>
 
 namespace {
 

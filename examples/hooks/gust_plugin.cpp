@@ -1,4 +1,3 @@
-#include <quadcore/elementary.hpp>
 #include <quadcore/plugin.hpp>
 
 namespace {

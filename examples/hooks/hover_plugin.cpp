@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <quadcore/error.hpp>
 #include <quadcore/plugin.hpp>
 
 namespace {

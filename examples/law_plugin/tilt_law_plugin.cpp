@@ -3,7 +3,6 @@
 #include <optional>
 #include <quadcore/control/allocation.hpp>
 #include <quadcore/control/belief.hpp>
-#include <quadcore/elementary.hpp>
 #include <quadcore/plugin.hpp>
 
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "quadcore/random.hpp"
+#include "quadcore/plugin/random.hpp"
 #include "vehicle.hpp"
 
 /// \file

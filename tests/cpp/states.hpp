@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "quadcore/random.hpp"
+#include "quadcore/plugin/random.hpp"
+#include "quadcore/plugin/world.hpp"
 #include "quadcore/state.hpp"
-#include "quadcore/world.hpp"
 
 namespace quadcore::test {
 

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "lopsided.hpp"
-#include "quadcore/random.hpp"
+#include "quadcore/plugin/random.hpp"
 
 using namespace quadcore;
 using namespace quadcore::test;

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <limits>
 
-#include "quadcore/elementary.hpp"
-#include "quadcore/random.hpp"
+#include "quadcore/plugin/elementary.hpp"
+#include "quadcore/plugin/random.hpp"
 
 using namespace quadcore;
 

@@ -2,7 +2,7 @@
 
 #include "lopsided.hpp"
 #include "ode/gyroscopic.hpp"
-#include "quadcore/random.hpp"
+#include "quadcore/plugin/random.hpp"
 
 using namespace quadcore;
 using namespace quadcore::test;

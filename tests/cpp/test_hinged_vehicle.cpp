@@ -5,7 +5,7 @@
 #include "ode/ode_math.hpp"
 #include "ode/ode_process.hpp"
 #include "ode/ode_vehicle.hpp"
-#include "quadcore/random.hpp"
+#include "quadcore/plugin/random.hpp"
 
 using namespace quadcore;
 using namespace quadcore::test;

@@ -3,7 +3,7 @@
 #include <bitset>
 #include <cmath>
 
-#include "quadcore/random.hpp"
+#include "quadcore/plugin/random.hpp"
 
 using namespace quadcore;
 

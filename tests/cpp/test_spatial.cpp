@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "quadcore/random.hpp"
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/random.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 using namespace quadcore;
 

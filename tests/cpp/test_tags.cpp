@@ -1,4 +1,4 @@
-#include "quadcore/tags.hpp"
+#include "quadcore/plugin/tags.hpp"
 #include "vehicle.hpp"
 
 using namespace quadcore;

@@ -1,5 +1,5 @@
-#include "quadcore/error.hpp"
-#include "quadcore/topics.hpp"
+#include "quadcore/plugin/error.hpp"
+#include "quadcore/plugin/topics.hpp"
 #include "vehicle.hpp"
 
 using namespace quadcore;

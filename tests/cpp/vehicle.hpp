@@ -4,10 +4,10 @@
 
 #include <string>
 
-#include "quadcore/error.hpp"
-#include "quadcore/model.hpp"
+#include "quadcore/plugin/error.hpp"
+#include "quadcore/plugin/model.hpp"
+#include "quadcore/plugin/world.hpp"
 #include "quadcore/simulation.hpp"
-#include "quadcore/world.hpp"
 
 /// \file
 /// Small documents for the tests, and what they expect of errors.

@@ -5,7 +5,7 @@
 #include "expectations.hpp"
 #include "fuzz_input.hpp"
 #include "fuzz_vehicles.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 /// \file
 /// Damages snapshots of vehicles whose plugins remember much, restores them and flies on. Expected

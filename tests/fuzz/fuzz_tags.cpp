@@ -4,7 +4,7 @@
 #include "fuzz_input.hpp"
 #include "fuzz_vehicles.hpp"
 #include "grammar.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 /// \file
 /// Sets tags of plugins to odd texts and flies what is accepted for a few steps.

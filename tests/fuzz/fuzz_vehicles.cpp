@@ -1,7 +1,7 @@
 #include "fuzz_vehicles.hpp"
 
-#include "quadcore/document.hpp"
 #include "quadcore/engine.hpp"
+#include "quadcore/plugin/document.hpp"
 
 using namespace quadcore;
 

@@ -4,10 +4,10 @@
 #include <stdexcept>
 
 #include "expectations.hpp"
-#include "quadcore/error.hpp"
-#include "quadcore/model.hpp"
+#include "quadcore/plugin/error.hpp"
+#include "quadcore/plugin/model.hpp"
+#include "quadcore/plugin/world.hpp"
 #include "quadcore/simulation.hpp"
-#include "quadcore/world.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "hostile_text.hpp"
-#include "quadcore/document.hpp"
+#include "quadcore/plugin/document.hpp"
 
 int main(int count, char** folders) {
   int files = 0, failures = 0;

@@ -144,7 +144,7 @@ def test_a_plugin_built_from_a_changed_header_is_refused_by_name(tmp_path, toy, 
     changed = tmp_path / "changed"
     shutil.copytree(ROOT / "cpp", changed / "cpp")
     shutil.copy(ROOT / "CMakeLists.txt", changed)
-    header = changed / "cpp" / "core" / "include" / "quadcore" / "loads.hpp"
+    header = changed / "cpp" / "core" / "include" / "quadcore" / "plugin" / "loads.hpp"
     text = header.read_text()
     assert "struct Wrench {\n" in text
     header.write_text(text.replace("struct Wrench {\n", "struct Wrench {\n  double power = 0;\n"))

@@ -5,7 +5,7 @@
 
 #include "files/yaml_file.hpp"
 #include "quadcore/control/controller.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 
 namespace quadcore::control {

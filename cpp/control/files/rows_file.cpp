@@ -5,8 +5,8 @@
 #include <sstream>
 
 #include "files/yaml_file.hpp"
-#include "quadcore/error.hpp"
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/error.hpp"
+#include "quadcore/plugin/spatial.hpp"
 #include "quadcore/text.hpp"
 #include "quadcore/text_file.hpp"
 

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include "quadcore/elementary.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/elementary.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "references/row_fit.hpp"
 #include "references/septic_path.hpp"
 #include "references/shapes.hpp"

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "lowest_point.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 #include "references/shapes.hpp"
 

@@ -1,4 +1,4 @@
-#include "quadcore/elementary.hpp"
+#include "quadcore/plugin/elementary.hpp"
 #include "references/shapes.hpp"
 
 namespace quadcore::control {

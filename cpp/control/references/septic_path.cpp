@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::control {
 namespace {

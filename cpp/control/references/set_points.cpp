@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "quadcore/elementary.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/elementary.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "references/septic_path.hpp"
 
 namespace quadcore::control {

@@ -1,6 +1,6 @@
 #include "references/yaw_law.hpp"
 
-#include "quadcore/elementary.hpp"
+#include "quadcore/plugin/elementary.hpp"
 
 namespace quadcore::control {
 

@@ -6,8 +6,8 @@
 
 #include "ground_surface.hpp"
 #include "lowest_point.hpp"
-#include "quadcore/error.hpp"
-#include "quadcore/world.hpp"
+#include "quadcore/plugin/error.hpp"
+#include "quadcore/plugin/world.hpp"
 #include "touching_points.hpp"
 
 namespace quadcore {

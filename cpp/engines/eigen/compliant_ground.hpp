@@ -9,9 +9,9 @@
 #include "gyrostat.hpp"
 #include "laws/ahead.hpp"
 #include "laws/contact.hpp"
-#include "quadcore/kinematics.hpp"
-#include "quadcore/loads.hpp"
-#include "quadcore/model.hpp"
+#include "quadcore/plugin/kinematics.hpp"
+#include "quadcore/plugin/loads.hpp"
+#include "quadcore/plugin/model.hpp"
 
 namespace quadcore {
 

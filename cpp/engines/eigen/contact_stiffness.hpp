@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "gyrostat.hpp"
-#include "quadcore/model.hpp"
+#include "quadcore/plugin/model.hpp"
 
 namespace quadcore {
 

@@ -5,8 +5,8 @@
 
 #include "lanes/for_each_width.hpp"
 #include "laws/rotor_forces.hpp"
-#include "quadcore/error.hpp"
 #include "quadcore/lane_width.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore {
 namespace {

@@ -1,6 +1,6 @@
 #include "gyrostat.hpp"
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 
 namespace quadcore {

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "gyrostat_step.hpp"
-#include "quadcore/model.hpp"
-#include "quadcore/rotor_rows.hpp"
+#include "quadcore/plugin/model.hpp"
+#include "quadcore/plugin/rotor_rows.hpp"
 
 namespace quadcore {
 

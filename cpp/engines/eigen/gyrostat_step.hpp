@@ -4,7 +4,7 @@
 
 #include "lanes/pack.hpp"
 #include "quadcore/lane_laws.hpp"
-#include "quadcore/rotor_layout.hpp"
+#include "quadcore/plugin/rotor_layout.hpp"
 
 namespace quadcore {
 

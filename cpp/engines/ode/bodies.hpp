@@ -4,7 +4,7 @@
 #include <numeric>
 #include <vector>
 
-#include "quadcore/model.hpp"
+#include "quadcore/plugin/model.hpp"
 
 namespace quadcore {
 

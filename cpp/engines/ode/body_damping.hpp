@@ -1,6 +1,6 @@
 #pragma once
 
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 namespace quadcore {
 

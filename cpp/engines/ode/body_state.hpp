@@ -2,7 +2,7 @@
 
 #include <ode/ode.h>
 
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 namespace quadcore {
 

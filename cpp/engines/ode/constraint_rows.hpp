@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 namespace quadcore {
 

@@ -6,7 +6,7 @@
 #include "body_damping.hpp"
 #include "body_state.hpp"
 #include "ode_math.hpp"
-#include "quadcore/random.hpp"
+#include "quadcore/plugin/random.hpp"
 
 namespace quadcore {
 namespace {

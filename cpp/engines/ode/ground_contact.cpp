@@ -4,7 +4,7 @@
 
 #include "ground_surface.hpp"
 #include "ode_math.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "constraint_rows.hpp"
-#include "quadcore/model.hpp"
+#include "quadcore/plugin/model.hpp"
 
 namespace quadcore {
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "quadcore/model.hpp"
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/model.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 /// \file
 /// The torque -w x (I w) that makes a tumbling body keep its angular momentum, as the two ODE

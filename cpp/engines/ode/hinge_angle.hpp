@@ -1,7 +1,7 @@
 #pragma once
 
 #include "lanes/quaternion.hpp"
-#include "quadcore/elementary.hpp"
+#include "quadcore/plugin/elementary.hpp"
 
 namespace quadcore {
 

@@ -5,7 +5,7 @@
 #include "hinged_tree.hpp"
 #include "lanes/table.hpp"
 #include "laws/turned_by.hpp"
-#include "quadcore/rotor_layout.hpp"
+#include "quadcore/plugin/rotor_layout.hpp"
 
 namespace quadcore {
 

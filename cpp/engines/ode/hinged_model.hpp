@@ -4,7 +4,7 @@
 
 #include "bodies.hpp"
 #include "hinged_tree.hpp"
-#include "quadcore/world.hpp"
+#include "quadcore/plugin/world.hpp"
 
 namespace quadcore {
 

@@ -7,8 +7,8 @@
 #include "gazebo_step.hpp"
 #include "hinged_flight.hpp"
 #include "hinged_model.hpp"
-#include "quadcore/kinematics.hpp"
-#include "quadcore/loads.hpp"
+#include "quadcore/plugin/kinematics.hpp"
+#include "quadcore/plugin/loads.hpp"
 
 namespace quadcore {
 

@@ -7,8 +7,8 @@
 #include "beside_contact.hpp"
 #include "body_state.hpp"
 #include "ode_process.hpp"
-#include "quadcore/error.hpp"
-#include "quadcore/random.hpp"
+#include "quadcore/plugin/error.hpp"
+#include "quadcore/plugin/random.hpp"
 #include "sdf_conversion.hpp"
 
 namespace quadcore {

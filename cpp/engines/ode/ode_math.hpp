@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 /// \file
 /// ODE's arrays as Eigen objects.

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <string>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore {
 namespace {

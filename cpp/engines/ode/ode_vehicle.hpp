@@ -7,8 +7,8 @@
 #include "bodies.hpp"
 #include "constraint_rows.hpp"
 #include "gazebo_step.hpp"
-#include "quadcore/kinematics.hpp"
-#include "quadcore/loads.hpp"
+#include "quadcore/plugin/kinematics.hpp"
+#include "quadcore/plugin/loads.hpp"
 #include "quadcore/state.hpp"
 
 namespace quadcore {

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "lumping.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "sdf_lumping.hpp"
 
 namespace quadcore {

@@ -1,6 +1,6 @@
 #include "sdf_lumping.hpp"
 
-#include "quadcore/elementary.hpp"
+#include "quadcore/plugin/elementary.hpp"
 
 namespace quadcore {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "quadcore/elementary.hpp"
+#include "quadcore/plugin/elementary.hpp"
 #include "quadcore/text.hpp"
 
 namespace quadcore {

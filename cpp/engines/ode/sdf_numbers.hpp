@@ -1,6 +1,6 @@
 #pragma once
 
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 /// \file
 /// Numbers on their way from a URDF to a flight in Gazebo 11: sdformat 9 prints them with 16

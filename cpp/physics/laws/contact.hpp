@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 /// \file
 /// A point of a compliant body against the ground.

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "lanes/table.hpp"
-#include "quadcore/rotor_layout.hpp"
+#include "quadcore/plugin/rotor_layout.hpp"
 #include "rotor_law.hpp"
 
 namespace quadcore::laws {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "lanes/vec3.hpp"
-#include "quadcore/rotor_layout.hpp"
+#include "quadcore/plugin/rotor_layout.hpp"
 
 namespace quadcore::laws {
 

@@ -6,10 +6,11 @@
 #include "effectiveness.hpp"
 #include "lanes/for_each_width.hpp"
 #include "law_tags.hpp"
-#include "quadcore/error.hpp"
 #include "quadcore/force_laws.hpp"
 #include "quadcore/lane_width.hpp"
+#include "quadcore/law_interface.hpp"
 #include "quadcore/plugin.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "shown_motion.hpp"
 
 namespace quadcore::aerodynamic {
@@ -66,6 +67,8 @@ Vector3d vector(const Vec3<double>& v) { return {v.x, v.y, v.z}; }
 
 class AerodynamicPlugin final : public Plugin {
  public:
+  static constexpr const char* law_interface = quadcore::law_interface;
+
   explicit AerodynamicPlugin(const PluginSetup& setup)
       : config_(setup.parameters, setup.model.joints.size(), setup.world.atmosphere),
         joint_names_(setup.model.joint_names()),

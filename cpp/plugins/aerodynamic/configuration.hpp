@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "laws/rotor_forces.hpp"
-#include "quadcore/error.hpp"
-#include "quadcore/rotor_rows.hpp"
-#include "quadcore/tags.hpp"
-#include "quadcore/world.hpp"
+#include "quadcore/plugin/error.hpp"
+#include "quadcore/plugin/rotor_rows.hpp"
+#include "quadcore/plugin/tags.hpp"
+#include "quadcore/plugin/world.hpp"
 
 namespace quadcore::aerodynamic {
 

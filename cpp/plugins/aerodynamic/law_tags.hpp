@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "laws/rotor_laws.hpp"
-#include "quadcore/tags.hpp"
+#include "quadcore/plugin/tags.hpp"
 
 /// \file
 /// What the laws contribute to the descriptor of the plugin.

@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "quadcore/elementary.hpp"
 #include "quadcore/plugin.hpp"
+#include "quadcore/plugin/elementary.hpp"
 #include "shared/noise_and_drift.hpp"
 #include "shared/sensing.hpp"
 

@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "shared/rotor_shares.hpp"
 
 namespace quadcore::battery {

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "quadcore/counts.hpp"
 #include "quadcore/plugin.hpp"
+#include "quadcore/plugin/counts.hpp"
 #include "shared/rotor_shares.hpp"
 
 namespace quadcore::fault {

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "quadcore/elementary.hpp"
-#include "quadcore/messages.hpp"
-#include "quadcore/world.hpp"
+#include "quadcore/plugin/elementary.hpp"
+#include "quadcore/plugin/messages.hpp"
+#include "quadcore/plugin/world.hpp"
 
 namespace quadcore::gps {
 

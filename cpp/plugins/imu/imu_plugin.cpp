@@ -1,5 +1,5 @@
-#include "quadcore/elementary.hpp"
 #include "quadcore/plugin.hpp"
+#include "quadcore/plugin/elementary.hpp"
 #include "shared/sensing.hpp"
 #include "triad.hpp"
 

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <sstream>
 
-#include "quadcore/counts.hpp"
-#include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
+#include "quadcore/plugin/counts.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "shared/rotor_shares.hpp"
 #include "shared/speed_limit.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "quadcore/lane_laws.hpp"
-#include "quadcore/rotor_layout.hpp"
+#include "quadcore/plugin/rotor_layout.hpp"
 
 namespace quadcore::motorpid {
 

@@ -5,10 +5,11 @@
 #include "lanes/for_each_width.hpp"
 #include "laws/motor_target.hpp"
 #include "motor_torques.hpp"
-#include "quadcore/error.hpp"
 #include "quadcore/force_laws.hpp"
 #include "quadcore/lane_width.hpp"
+#include "quadcore/law_interface.hpp"
 #include "quadcore/plugin.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "shared/rotor_shares.hpp"
 #include "shared/speed_limit.hpp"
 
@@ -39,6 +40,8 @@ struct Config {
 /// derivative are sampled once per step. Until the first command the motors are free.
 class MotorPidPlugin final : public Plugin {
  public:
+  static constexpr const char* law_interface = quadcore::law_interface;
+
   explicit MotorPidPlugin(const PluginSetup& setup)
       : config_(setup.parameters),
         rotor_count_(setup.model.joints.size()),

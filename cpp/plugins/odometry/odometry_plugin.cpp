@@ -2,8 +2,8 @@
 #include <optional>
 
 #include "imperfection.hpp"
-#include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "shared/sensing.hpp"
 
 namespace quadcore::odometry {

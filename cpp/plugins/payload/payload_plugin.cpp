@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "quadcore/plugin.hpp"
-#include "quadcore/switch.hpp"
+#include "quadcore/plugin/switch.hpp"
 
 namespace quadcore::payload {
 namespace {

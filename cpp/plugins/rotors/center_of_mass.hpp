@@ -3,7 +3,7 @@
 #include <set>
 #include <string>
 
-#include "quadcore/model.hpp"
+#include "quadcore/plugin/model.hpp"
 #include "quadcore/urdf_tree.hpp"
 
 namespace quadcore::rotors {

@@ -3,8 +3,8 @@
 #include "gps/earth.hpp"
 #include "naming.hpp"
 #include "noise.hpp"
-#include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "shared/sensing.hpp"
 
 namespace quadcore::rotors {

@@ -2,9 +2,9 @@
 
 #include "center_of_mass.hpp"
 #include "naming.hpp"
-#include "quadcore/elementary.hpp"
 #include "quadcore/plugin.hpp"
-#include "quadcore/random.hpp"
+#include "quadcore/plugin/elementary.hpp"
+#include "quadcore/plugin/random.hpp"
 #include "standard_random.hpp"
 
 namespace quadcore::rotors {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "quadcore/elementary.hpp"
+#include "quadcore/plugin/elementary.hpp"
 
 namespace quadcore::rotors {
 

@@ -5,8 +5,8 @@
 #include "lag.hpp"
 #include "naming.hpp"
 #include "position_control.hpp"
-#include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/rotor_shares.hpp"
 #include "twins.hpp"
 

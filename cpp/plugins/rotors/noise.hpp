@@ -4,7 +4,7 @@
 #include <string>
 
 #include "quadcore/plugin.hpp"
-#include "quadcore/random.hpp"
+#include "quadcore/plugin/random.hpp"
 
 namespace quadcore::rotors {
 

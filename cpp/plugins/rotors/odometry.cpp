@@ -3,8 +3,8 @@
 #include "center_of_mass.hpp"
 #include "naming.hpp"
 #include "noise.hpp"
-#include "quadcore/counts.hpp"
 #include "quadcore/plugin.hpp"
+#include "quadcore/plugin/counts.hpp"
 
 namespace quadcore::rotors {
 namespace {

@@ -2,9 +2,9 @@
 
 #include "naming.hpp"
 #include "noise.hpp"
-#include "quadcore/elementary.hpp"
-#include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
+#include "quadcore/plugin/elementary.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::rotors {
 namespace {

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "quadcore/counts.hpp"
-#include "quadcore/elementary.hpp"
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/counts.hpp"
+#include "quadcore/plugin/elementary.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 namespace quadcore::rotors {
 

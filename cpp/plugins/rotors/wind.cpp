@@ -4,8 +4,8 @@
 
 #include "center_of_mass.hpp"
 #include "naming.hpp"
-#include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "wind_field.hpp"
 
 namespace quadcore::rotors {

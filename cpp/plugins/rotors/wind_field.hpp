@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/error.hpp"
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/error.hpp"
+#include "quadcore/plugin/spatial.hpp"
 #include "quadcore/text.hpp"
 #include "quadcore/text_file.hpp"
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/elementary.hpp"
 #include "quadcore/plugin.hpp"
-#include "quadcore/random.hpp"
+#include "quadcore/plugin/elementary.hpp"
+#include "quadcore/plugin/random.hpp"
 
 namespace quadcore::sensing {
 

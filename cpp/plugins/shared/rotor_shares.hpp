@@ -1,7 +1,7 @@
 #pragma once
 
+#include "quadcore/plugin/tags.hpp"
 #include "quadcore/rotor_shares.hpp"
-#include "quadcore/tags.hpp"
 
 namespace quadcore {
 

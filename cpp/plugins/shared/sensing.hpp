@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <limits>
 
-#include "quadcore/counts.hpp"
-#include "quadcore/error.hpp"
 #include "quadcore/plugin.hpp"
-#include "quadcore/random.hpp"
+#include "quadcore/plugin/counts.hpp"
+#include "quadcore/plugin/error.hpp"
+#include "quadcore/plugin/random.hpp"
 
 /// \file
 /// What sensors have in common: when they measure, their noise, and the way of what they measured

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "quadcore/elementary.hpp"
-#include "quadcore/random.hpp"
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/elementary.hpp"
+#include "quadcore/plugin/random.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 /// \file
 /// Turbulence with the spectra of Dryden, MIL-F-8785C, low altitude (3.7.2.2, 3.7.3), discretised

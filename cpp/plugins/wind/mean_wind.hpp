@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <vector>
 
-#include "quadcore/elementary.hpp"
-#include "quadcore/error.hpp"
-#include "quadcore/spatial.hpp"
-#include "quadcore/tags.hpp"
+#include "quadcore/plugin/elementary.hpp"
+#include "quadcore/plugin/error.hpp"
+#include "quadcore/plugin/spatial.hpp"
+#include "quadcore/plugin/tags.hpp"
 
 namespace quadcore::wind {
 

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "odometry_topic.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::node {
 namespace {

@@ -1,7 +1,7 @@
 #include "set_points.hpp"
 
 #include "messages.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "references/set_points.hpp"
 #include "ros_types.hpp"
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "quadcore/commands.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/simulation.hpp"
 
 namespace quadcore::node {

@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "flight_thread.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 /// \file
 /// What the flight's own thread does.

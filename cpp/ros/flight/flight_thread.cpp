@@ -1,6 +1,6 @@
 #include "flight_thread.hpp"
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::node {
 namespace {

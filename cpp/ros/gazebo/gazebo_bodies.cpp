@@ -1,7 +1,7 @@
 #include "gazebo_bodies.hpp"
 
 #include "messages.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 
 namespace quadcore::node {

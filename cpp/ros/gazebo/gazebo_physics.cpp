@@ -4,7 +4,7 @@
 #include <string>
 
 #include "messages.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::node {
 namespace {

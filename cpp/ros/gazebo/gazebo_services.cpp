@@ -14,7 +14,7 @@
 #include "gazebo_bodies.hpp"
 #include "gazebo_physics.hpp"
 #include "messages.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::node {
 namespace {

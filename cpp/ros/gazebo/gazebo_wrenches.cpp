@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::node {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 #include "ros_types.hpp"
 #include "vehicle_messages.hpp"

@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "quadcore/error.hpp"
 #include "quadcore/log.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::node {
 

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::node {
 namespace {

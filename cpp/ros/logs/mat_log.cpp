@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "mat_file.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::node {
 namespace {

@@ -7,7 +7,7 @@
 #include <future>
 #include <thread>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::node {
 

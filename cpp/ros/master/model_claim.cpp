@@ -3,7 +3,7 @@
 #include <std_msgs/String.h>
 
 #include "master_api.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::node {
 

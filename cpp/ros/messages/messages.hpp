@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <initializer_list>
 
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 /// \file
 /// Between numbers and parts of messages.

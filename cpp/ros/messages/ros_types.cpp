@@ -8,7 +8,7 @@
 
 #include "kept_publisher.hpp"
 #include "messages.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 #include "sensor_types.hpp"
 

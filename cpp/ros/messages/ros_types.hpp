@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/topics.hpp"
+#include "quadcore/plugin/topics.hpp"
 
 /// \file
 /// Topics of the simulation as topics of ROS: which type carries which kind of message.

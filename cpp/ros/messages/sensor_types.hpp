@@ -10,7 +10,7 @@
 #include <string>
 
 #include "messages.hpp"
-#include "quadcore/messages.hpp"
+#include "quadcore/plugin/messages.hpp"
 
 /// \file
 /// What sensors say, in types of ROS. `frame` is tf's name of the link that a sensor is mounted on.

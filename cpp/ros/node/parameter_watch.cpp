@@ -4,7 +4,7 @@
 
 #include "master_api.hpp"
 #include "private_parameters.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::node {
 

@@ -14,7 +14,7 @@
 #include "model_claim.hpp"
 #include "no_delay.hpp"
 #include "parameter_watch.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "services.hpp"
 #include "settings.hpp"
 #include "vehicle_markers.hpp"

@@ -2,7 +2,7 @@
 
 #include "flight_log.hpp"
 #include "private_parameters.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::node {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/plugin_library.hpp"
 #include "quadcore/text.hpp"
 

@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "quadcore/model.hpp"
+#include "quadcore/plugin/model.hpp"
 
 namespace quadcore::node {
 

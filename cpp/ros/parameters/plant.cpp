@@ -5,7 +5,7 @@
 #include <system_error>
 
 #include "drag_choice.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::node {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "private_parameters.hpp"
-#include "quadcore/document.hpp"
+#include "quadcore/plugin/document.hpp"
 #include "quadcore/simulation.hpp"
 
 namespace quadcore::node {

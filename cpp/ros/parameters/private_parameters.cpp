@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 
 namespace quadcore::node {

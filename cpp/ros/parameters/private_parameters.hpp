@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/tags.hpp"
+#include "quadcore/plugin/tags.hpp"
 
 namespace quadcore::node {
 

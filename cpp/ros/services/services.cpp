@@ -8,7 +8,7 @@
 #include <cstdio>
 
 #include "answer.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "topic_services.hpp"
 
 namespace quadcore::node {

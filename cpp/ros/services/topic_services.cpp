@@ -9,7 +9,7 @@
 #include "answer.hpp"
 #include "gazebo_wrenches.hpp"
 #include "messages.hpp"
-#include "quadcore/switch.hpp"
+#include "quadcore/plugin/switch.hpp"
 
 namespace quadcore::node {
 namespace {

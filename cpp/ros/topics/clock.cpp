@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "master_api.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::node {
 namespace {

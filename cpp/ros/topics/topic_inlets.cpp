@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore::node {
 

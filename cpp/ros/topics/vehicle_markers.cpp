@@ -8,7 +8,7 @@
 #include "plant.hpp"
 #include "quadcore/control/start.hpp"
 #include "quadcore/drawing.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 
 namespace quadcore::node {

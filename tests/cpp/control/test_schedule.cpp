@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "schedule.hpp"
 
 using quadcore::control::Schedule;

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "derivatives.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "references/set_points.hpp"
 
 using namespace quadcore;

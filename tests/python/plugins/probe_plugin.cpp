@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <quadcore/plugin.hpp>
-#include <quadcore/random.hpp>
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/export.hpp"
+#include "quadcore/plugin/export.hpp"
 #include "quadcore/simulation.hpp"
 
 namespace quadcore QUADCORE_EXPORT {

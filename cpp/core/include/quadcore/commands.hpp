@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "quadcore/export.hpp"
+#include "quadcore/plugin/export.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 

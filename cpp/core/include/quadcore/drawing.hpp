@@ -1,6 +1,6 @@
 #pragma once
 
-#include "quadcore/model.hpp"
+#include "quadcore/plugin/model.hpp"
 
 /// \file
 /// What every picture of a vehicle draws of it.

@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/export.hpp"
 #include "quadcore/force_laws.hpp"
-#include "quadcore/kinematics.hpp"
-#include "quadcore/loads.hpp"
-#include "quadcore/model.hpp"
+#include "quadcore/plugin/export.hpp"
+#include "quadcore/plugin/kinematics.hpp"
+#include "quadcore/plugin/loads.hpp"
+#include "quadcore/plugin/model.hpp"
+#include "quadcore/plugin/world.hpp"
 #include "quadcore/state.hpp"
-#include "quadcore/world.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 

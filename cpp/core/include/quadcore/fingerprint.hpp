@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/export.hpp"
+#include "quadcore/plugin/export.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "quadcore/commands.hpp"
-#include "quadcore/export.hpp"
+#include "quadcore/plugin/export.hpp"
 #include "quadcore/simulation.hpp"
 
 namespace quadcore QUADCORE_EXPORT {

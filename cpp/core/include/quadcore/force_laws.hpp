@@ -3,8 +3,8 @@
 #include <limits>
 #include <vector>
 
-#include "quadcore/export.hpp"
 #include "quadcore/lane_laws.hpp"
+#include "quadcore/plugin/export.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 

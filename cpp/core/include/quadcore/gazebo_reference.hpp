@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/export.hpp"
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/export.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 

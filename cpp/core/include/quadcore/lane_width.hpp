@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "quadcore/export.hpp"
+#include "quadcore/plugin/export.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/export.hpp"
+#include "quadcore/plugin/export.hpp"
+#include "quadcore/plugin/topics.hpp"
 #include "quadcore/state.hpp"
-#include "quadcore/topics.hpp"
 
 /// \file
 /// What the rows of a log hold, and how they are written.

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/export.hpp"
 #include "quadcore/plugin.hpp"
+#include "quadcore/plugin/export.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 

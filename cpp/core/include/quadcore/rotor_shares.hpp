@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/error.hpp"
-#include "quadcore/topics.hpp"
+#include "quadcore/plugin/error.hpp"
+#include "quadcore/plugin/topics.hpp"
 
 /// \file
 /// What faults say of rotors: of each the share that is left of something.

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/export.hpp"
+#include "quadcore/plugin/export.hpp"
 
 /// \file
 /// Models made for Gazebo hold more than flies. What is only seen or sensed is passed over with a

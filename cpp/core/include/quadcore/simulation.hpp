@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "quadcore/engine.hpp"
-#include "quadcore/export.hpp"
 #include "quadcore/fingerprint.hpp"
-#include "quadcore/model.hpp"
 #include "quadcore/plugin.hpp"
+#include "quadcore/plugin/export.hpp"
+#include "quadcore/plugin/model.hpp"
+#include "quadcore/plugin/world.hpp"
 #include "quadcore/state.hpp"
-#include "quadcore/world.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "quadcore/export.hpp"
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/export.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 

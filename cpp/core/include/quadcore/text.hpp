@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/export.hpp"
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/export.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 /// \file
 /// Reading and writing numbers and names strictly, whatever the locale.

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string>
 
-#include "quadcore/export.hpp"
+#include "quadcore/plugin/export.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 

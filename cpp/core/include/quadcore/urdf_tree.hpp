@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/export.hpp"
 #include "quadcore/gazebo_reference.hpp"
-#include "quadcore/model.hpp"
+#include "quadcore/plugin/export.hpp"
+#include "quadcore/plugin/model.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 

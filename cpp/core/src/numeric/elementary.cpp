@@ -1,4 +1,4 @@
-#include "quadcore/elementary.hpp"
+#include "quadcore/plugin/elementary.hpp"
 
 #include <cmath>
 #include <cstdint>

@@ -1,9 +1,9 @@
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "quadcore/elementary.hpp"
+#include "quadcore/plugin/elementary.hpp"
 
 namespace quadcore {
 

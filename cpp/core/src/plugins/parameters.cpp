@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "quadcore/error.hpp"
-#include "quadcore/tags.hpp"
+#include "quadcore/plugin/error.hpp"
+#include "quadcore/plugin/tags.hpp"
 #include "quadcore/text.hpp"
 
 namespace quadcore {

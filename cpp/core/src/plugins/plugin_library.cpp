@@ -10,7 +10,8 @@
 #include <sstream>
 
 #include "built_in_plugins.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/law_interface.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 
 namespace quadcore {

@@ -1,4 +1,4 @@
-#include "quadcore/tags.hpp"
+#include "quadcore/plugin/tags.hpp"
 
 #include <cmath>
 #include <iomanip>

@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
+#include "quadcore/plugin/topics.hpp"
 #include "quadcore/text.hpp"
-#include "quadcore/topics.hpp"
 
 /// \file
 /// Whether what plugins declare of topics agrees, and the order in which they run then.

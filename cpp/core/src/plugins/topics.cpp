@@ -1,9 +1,9 @@
-#include "quadcore/topics.hpp"
+#include "quadcore/plugin/topics.hpp"
 
 #include <algorithm>
 #include <cctype>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 
 namespace quadcore {

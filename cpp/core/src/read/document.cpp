@@ -1,4 +1,4 @@
-#include "quadcore/document.hpp"
+#include "quadcore/plugin/document.hpp"
 
 #include "quadcore/text_file.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 #include "references.hpp"
 

@@ -1,8 +1,8 @@
-#include "quadcore/passed_over.hpp"
+#include "quadcore/plugin/passed_over.hpp"
 
 #include <algorithm>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 
 namespace quadcore {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <set>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 
 namespace quadcore {

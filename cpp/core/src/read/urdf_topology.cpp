@@ -1,6 +1,6 @@
 #include <set>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 #include "quadcore/urdf_tree.hpp"
 

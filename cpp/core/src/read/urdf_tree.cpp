@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 #include "references.hpp"
 #include "xml.hpp"

@@ -1,11 +1,11 @@
-#include "quadcore/world.hpp"
+#include "quadcore/plugin/world.hpp"
 
 #include <cmath>
 #include <functional>
 #include <map>
 #include <sstream>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/seen_or_sensed.hpp"
 #include "quadcore/text.hpp"
 #include "xml.hpp"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/seen_or_sensed.hpp"
 #include "quadcore/text.hpp"
 #include "xml_limits.hpp"

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/document.hpp"
-#include "quadcore/passed_over.hpp"
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/document.hpp"
+#include "quadcore/plugin/passed_over.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 namespace quadcore {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "quadcore/document.hpp"
+#include "quadcore/plugin/document.hpp"
 
 namespace quadcore {
 

@@ -4,7 +4,7 @@
 #include <locale>
 #include <sstream>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/simulation.hpp"
 #include "quadcore/text.hpp"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "quadcore/error.hpp"
 #include "quadcore/log.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore {
 namespace {

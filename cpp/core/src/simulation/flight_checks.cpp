@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/simulation.hpp"
 
 namespace quadcore {

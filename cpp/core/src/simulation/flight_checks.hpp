@@ -1,6 +1,6 @@
 #pragma once
 
-#include "quadcore/kinematics.hpp"
+#include "quadcore/plugin/kinematics.hpp"
 #include "quadcore/state.hpp"
 
 namespace quadcore {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "quadcore/carried_body.hpp"
-#include "quadcore/model.hpp"
+#include "quadcore/plugin/carried_body.hpp"
+#include "quadcore/plugin/model.hpp"
 
 namespace quadcore {
 

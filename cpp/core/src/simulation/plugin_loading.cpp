@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/plugin_library.hpp"
 #include "quadcore/seen_or_sensed.hpp"
 #include "quadcore/simulation.hpp"

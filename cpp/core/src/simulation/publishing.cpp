@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "quadcore/commands.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/simulation.hpp"
 #include "quadcore/text.hpp"
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "flight_checks.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 
 namespace quadcore {

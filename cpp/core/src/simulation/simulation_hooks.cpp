@@ -3,7 +3,7 @@
 
 #include "flight_checks.hpp"
 #include "laden_model.hpp"
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/simulation.hpp"
 #include "quadcore/text.hpp"
 

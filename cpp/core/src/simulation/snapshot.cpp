@@ -1,6 +1,6 @@
 #include "flight_checks.hpp"
-#include "quadcore/error.hpp"
-#include "quadcore/random.hpp"
+#include "quadcore/plugin/error.hpp"
+#include "quadcore/plugin/random.hpp"
 #include "quadcore/simulation.hpp"
 
 namespace quadcore {

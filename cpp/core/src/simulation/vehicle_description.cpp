@@ -1,9 +1,9 @@
-#include "quadcore/vehicle_description.hpp"
+#include "quadcore/plugin/vehicle_description.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 #include "quadcore/simulation.hpp"
 
 namespace quadcore {

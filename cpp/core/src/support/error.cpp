@@ -1,4 +1,4 @@
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 #include "quadcore/text.hpp"
 

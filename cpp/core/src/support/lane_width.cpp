@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "quadcore/model.hpp"
+#include "quadcore/plugin/model.hpp"
 
 /// \file
 /// The ground's part in how a shape and the ground feel each other, measured in the running

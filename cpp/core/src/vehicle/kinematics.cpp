@@ -1,7 +1,7 @@
-#include "quadcore/kinematics.hpp"
+#include "quadcore/plugin/kinematics.hpp"
 
 #include "lanes/turn.hpp"
-#include "quadcore/elementary.hpp"
+#include "quadcore/plugin/elementary.hpp"
 
 namespace quadcore {
 namespace {

@@ -1,10 +1,10 @@
-#include "quadcore/loads.hpp"
+#include "quadcore/plugin/loads.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 namespace quadcore {
 

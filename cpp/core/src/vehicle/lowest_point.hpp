@@ -1,7 +1,7 @@
 #pragma once
 
-#include "quadcore/kinematics.hpp"
-#include "quadcore/model.hpp"
+#include "quadcore/plugin/kinematics.hpp"
+#include "quadcore/plugin/model.hpp"
 
 namespace quadcore {
 

@@ -1,4 +1,4 @@
-#include "quadcore/model.hpp"
+#include "quadcore/plugin/model.hpp"
 
 #include <Eigen/Eigenvalues>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "quadcore/control/belief.hpp"
-#include "quadcore/messages.hpp"
+#include "quadcore/plugin/messages.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 namespace control {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "quadcore/control/settings.hpp"
-#include "quadcore/messages.hpp"
-#include "quadcore/model.hpp"
+#include "quadcore/plugin/messages.hpp"
+#include "quadcore/plugin/model.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 namespace control {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "quadcore/control/controller.hpp"
-#include "quadcore/topics.hpp"
+#include "quadcore/plugin/topics.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 namespace control {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/vehicle_description.hpp"
+#include "quadcore/plugin/vehicle_description.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 namespace control {

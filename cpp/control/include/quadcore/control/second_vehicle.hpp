@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "quadcore/export.hpp"
-#include "quadcore/vehicle_description.hpp"
+#include "quadcore/plugin/export.hpp"
+#include "quadcore/plugin/vehicle_description.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 namespace control {

@@ -5,8 +5,8 @@
 #include <variant>
 #include <vector>
 
-#include "quadcore/export.hpp"
-#include "quadcore/tags.hpp"
+#include "quadcore/plugin/export.hpp"
+#include "quadcore/plugin/tags.hpp"
 
 /// \file
 /// Parameters of laws and references: one table each, from which the tags of plugins, the keywords

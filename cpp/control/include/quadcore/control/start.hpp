@@ -1,8 +1,8 @@
 #pragma once
 
 #include "quadcore/control/reference.hpp"
+#include "quadcore/plugin/vehicle_description.hpp"
 #include "quadcore/state.hpp"
-#include "quadcore/vehicle_description.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 namespace control {

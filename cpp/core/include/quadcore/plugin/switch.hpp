@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "quadcore/messages.hpp"
+#include "quadcore/plugin/messages.hpp"
 
 /// \file
 /// The kind of message that says whether something is so.

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "quadcore/export.hpp"
+#include "quadcore/plugin/export.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 

@@ -5,9 +5,9 @@
 #include <new>
 #include <vector>
 
-#include "quadcore/export.hpp"
-#include "quadcore/rotor_layout.hpp"
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/export.hpp"
+#include "quadcore/plugin/rotor_layout.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/export.hpp"
-#include "quadcore/messages.hpp"
+#include "quadcore/plugin/export.hpp"
+#include "quadcore/plugin/messages.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstddef>
 
-#include "quadcore/export.hpp"
-#include "quadcore/rotor_rows.hpp"
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/export.hpp"
+#include "quadcore/plugin/rotor_rows.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 

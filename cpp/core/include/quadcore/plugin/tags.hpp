@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/export.hpp"
-#include "quadcore/model.hpp"
+#include "quadcore/plugin/export.hpp"
+#include "quadcore/plugin/model.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "quadcore/counts.hpp"
-#include "quadcore/elementary.hpp"
+#include "quadcore/plugin/counts.hpp"
+#include "quadcore/plugin/elementary.hpp"
 
 /// \file
 /// Reproducible noise: the same on every machine and standard library, with a state that is a plain

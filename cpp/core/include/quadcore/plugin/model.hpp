@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/document.hpp"
-#include "quadcore/export.hpp"
-#include "quadcore/passed_over.hpp"
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/document.hpp"
+#include "quadcore/plugin/export.hpp"
+#include "quadcore/plugin/passed_over.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "quadcore/loads.hpp"
-#include "quadcore/model.hpp"
+#include "quadcore/plugin/loads.hpp"
+#include "quadcore/plugin/model.hpp"
 
 namespace quadcore {
 

@@ -9,7 +9,7 @@
 ///
 /// Within 1 unit in the last place of the true value (atan2: 2, asin: 3), for every argument.
 
-#include "quadcore/export.hpp"
+#include "quadcore/plugin/export.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 /// Elementary functions that give the same bytes on every machine.

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "quadcore/export.hpp"
-#include "quadcore/kinematics.hpp"
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/export.hpp"
+#include "quadcore/plugin/kinematics.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 

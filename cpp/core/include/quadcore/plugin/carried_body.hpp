@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "quadcore/model.hpp"
+#include "quadcore/plugin/model.hpp"
 
 namespace quadcore {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "quadcore/export.hpp"
+#include "quadcore/plugin/export.hpp"
 
 /// \file
 /// Frames and monogram notation (after Drake's), used for every vector in quadcore:

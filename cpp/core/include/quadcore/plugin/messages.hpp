@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "quadcore/export.hpp"
-#include "quadcore/spatial.hpp"
+#include "quadcore/plugin/export.hpp"
+#include "quadcore/plugin/spatial.hpp"
 
 /// \file
 /// The kinds of message that topics carry. Each is a type with one list of its fields: plugins,

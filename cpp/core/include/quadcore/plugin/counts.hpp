@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "quadcore/error.hpp"
+#include "quadcore/plugin/error.hpp"
 
 /// \file
 /// Whole numbers in a plugin's state, whose numbers are all doubles. A state comes from outside
