@@ -96,14 +96,8 @@ class Cases(Sequence[Case]):
         self._sizes = self._check_sizes(largest)
         scenario: Any = options.scenario
         world: Any = options.world
-        self.variation = Variation(
-            models,
-            design,
-            options.parameters,
-            options.xacro_args,
-            options.ignore,
-            scenario,
-        )
+        changes = options.parameters, options.xacro_args, options.ignore
+        self.variation = Variation(models, design, *changes, scenario)
         if not isinstance(world, World):
             world = read_world(world, options.ignore)
         everything = [*self.variation.models, world, *self.variation.worlds.values()]
@@ -156,13 +150,19 @@ class Cases(Sequence[Case]):
 
     def controller(self, case: Case) -> Any:
         """Make the controller of a flight, with what its point changes in it."""
-        values = of_controller(self.design[case.point])
-        return self.guidance.make(case.controller, self.vehicles[case.model], values)
+        return self._controller(case.controller, case.model, self.design[case.point])
 
     def vehicle(self, model: int, point: Point) -> Simulation:
         """Make a model as a point changes it."""
         plan = replace(self._plans[model], engine=self.engines[0], on_reference=False)
         return self.variation.apply(plan, model, point).simulation()
+
+    def start(self, model: int, point: Point, vehicle: Simulation) -> None:
+        """Start each shipped controller on a model as a point changes it."""
+        with _blaming(point):
+            for i in range(len(self.guidance.things)):
+                if not self.guidance.is_own(i):
+                    Guided(self._controller(i, model, point), vehicle).reset(vehicle)
 
     def check(self, commands: Optional[CommandsLike] = None) -> List[Simulation]:
         """Make each model, and start each shipped controller on it, at some of the points.
@@ -229,35 +229,30 @@ class Cases(Sequence[Case]):
             "ignore": list(options.ignore),
         }
 
+    def _controller(self, controller: int, model: int, point: Point) -> Any:
+        return self.guidance.make(controller, self.vehicles[model], of_controller(point))
+
     def _check_sizes(self, largest: int) -> Tuple[int, ...]:
-        guides = self.guidance.controllers, self.guidance.references
-        if self.guidance.is_given:
-            check_labels("controller", guides[0])
-            check_labels("reference", guides[1])
-        check_labels("engine", self.engines)
+        sides = {
+            "controller": self.guidance.controllers,
+            "reference": self.guidance.references,
+            "engine": self.engines,
+            "model": self.models,
+        }
+        for kind in list(sides)[:3] if self.guidance.is_given else ["engine"]:
+            check_labels(kind, sides[kind])
         known = [name for name, _ in list_engines()]
         for engine in self.engines:
             if engine not in known:
                 raise InputError(f"there is no engine '{engine}'; give some of {', '.join(known)}")
-        if not self.guidance.is_given:
-            for name in self.design.names:
-                if name.startswith(OF_CONTROLLER):
-                    raise InputError(f"vary {name}: there is no controller; name a --controller")
-        sides = self.engines, self.models
-        sizes = [*(len(side) or 1 for side in guides), *map(len, sides)]
-        sizes += [self.design.size, len(self.seeds)]
+        for name in self.design.names:
+            if name.startswith(OF_CONTROLLER) and not self.guidance.is_given:
+                raise InputError(f"vary {name}: there is no controller; name a --controller")
+        sizes = [len(side) or 1 for side in sides.values()]
+        sizes += [self.design.size, int(self.options.seeds)]
         if math.prod(sizes) > largest:
             raise InputError(f"these are {math.prod(sizes)} flights; at most {largest} are flown")
         return tuple(sizes)
-
-    def start(self, model: int, point: Point, vehicle: Simulation) -> None:
-        """Start each shipped controller on a model as a point changes it."""
-        with _blaming(point):
-            for i in range(len(self.guidance.things)):
-                if not self.guidance.is_own(i):
-                    values = of_controller(point)
-                    controller = self.guidance.make(i, self.vehicles[model], values)
-                    Guided(controller, vehicle).reset(vehicle)
 
 
 def check_sides(models: Sequence[Union[str, Path]], design: Design) -> None:
