@@ -79,18 +79,18 @@ class Options:
 
     parameters: Optional[Mapping[str, Value]] = field(default=None, metadata=_about(
         "set", "PLUGIN.TAG=VALUE",
-        "value of a plugin's tag, or of LINK.mass, LINK.ixx ... LINK.izz, xacro.ARG",
+        "other values of plugin tags, or of LINK.mass, LINK.ixx ... LINK.izz, xacro.ARG",
         parse.assignment(r"([^=]+\.[^.=]+)=(.+)", "PLUGIN.TAG=VALUE"),
         arguments.OPTIONS["parameters"], repeats=True,
     ))  # fmt: skip
     xacro_args: Optional[Mapping[str, object]] = field(default=None, metadata=_about(
-        "xacro", "ARG:=VALUE", "value of an argument of the xacro file",
+        "xacro", "ARG:=VALUE", "arguments of the xacro file",
         parse.assignment(r"([^:=]+):=(.*)", "ARG:=VALUE"),
         arguments.OPTIONS["xacro_args"], repeats=True,
     ))  # fmt: skip
     ignore: Sequence[str] = field(default=(), metadata=_about(
         "ignore", "NAME",
-        "foreign plugin (its name or file name), element, or model of the world to leave out",
+        "foreign plugins (name or file name), elements, or models of the world to leave out",
         kind=arguments.OPTIONS["ignore"], repeats=True,
     ))  # fmt: skip
     world: Union[str, Path, None] = field(default=None, metadata=_about(

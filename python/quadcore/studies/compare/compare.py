@@ -6,11 +6,9 @@ from typing import (
     TYPE_CHECKING,
     Any,
     Callable,
-    Iterator,
     List,
     Mapping,
     Optional,
-    Tuple,
     Union,
 )
 
@@ -22,7 +20,6 @@ from ...simulation.engines import ENGINE
 from ...simulation.log import Log
 from ...support import arguments, interrupts
 from ..axes import Values
-from ..cases import Case
 from ..executor import conducted
 from ..guidance import Guidance
 from ..options import CompareOptions, Keywords, Names, takes
@@ -131,54 +128,41 @@ def fly(
     if against is not None and not 0 <= against < len(plan):
         raise InputError(f"against is {against}; give a row from 0 to {len(plan) - 1}")
     tally = Tally(plan, keep, progress)
-    flights = _first(plan, against)
+    rows = list(range(len(plan)))
+    if against is not None:
+        rows.insert(0, rows.pop(against))
     try:
-        compared_with = _first_flown(plan, flights, tally, against)
+        compared_with = _fly_first(plan, rows, tally, against)
         if compared_with is not None:
 
-            def flown(flight: Tuple[int, Case]) -> Any:
-                row, case = flight
-                log = plan.fly(case)
+            def flown(row: int) -> Any:
+                log = plan.fly(plan[row])
                 return row, measured(plan, compared_with, log), log
 
-            def kept(result: Any) -> Outcome:
-                row, found, log = result
-                return _kept(row, found, log, keep)
-
-            start = tally.done
-
-            def note(i: int, outcome: Any) -> None:
-                row = start + i
-                tally.note(row - 1 if against is not None and row <= against else row, outcome)
-
-            apart = plan.guidance.runs_user_code
-            conducted(flown, flights, note, plan.options.processes, kept, apart=apart)
+            conducted(
+                flown,
+                rows,
+                lambda i, outcome: tally.note(rows[i], outcome),
+                plan.options.processes,
+                lambda result: _kept(result[0], result[1], result[2], keep),
+                apart=plan.guidance.runs_user_code,
+            )
     except KeyboardInterrupt as stop:
         stop.comparison = tally.result()  # type: ignore[attr-defined]
         raise
     return tally.result()
 
 
-def _first(plan: Plan, against: Optional[int]) -> Iterator[Tuple[int, Case]]:
-    """Give each case with its row, the one to compare with before all others."""
-    if against is not None:
-        yield against, plan[against]
-    for row, case in enumerate(plan):
-        if row != against:
-            yield row, case
-
-
-def _first_flown(
-    plan: Plan, flights: Iterator[Tuple[int, Case]], tally: Tally, wanted: Optional[int]
-) -> Optional[Log]:
-    """Take flights until one succeeds, which all later ones are compared with.
+def _fly_first(plan: Plan, rows: List[int], tally: Tally, wanted: Optional[int]) -> Optional[Log]:
+    """Take rows until one flies, which all later ones are compared with.
 
     One that is wanted must.
     """
     outcomes: List[Union[Log, QuadcoreError]] = []
-    for row, case in flights:
+    while rows:
+        row = rows.pop(0)
         # In a process too: what crashes there does not end the comparison.
-        conducted(plan.fly, [case], lambda _, outcome: outcomes.append(outcome), 1)
+        conducted(plan.fly, [plan[row]], lambda _, outcome: outcomes.append(outcome), 1)
         log = outcomes.pop()
         if isinstance(log, Log):
             tally.compare_with(row, log)
