@@ -46,15 +46,9 @@ def register(commands: Any) -> None:
         type=parse.integer(1),
         help="number of the flight that the others are compared with (the first that flies)",
     )
-    parser.add_argument(
-        "--out",
-        metavar="DIR",
-        type=Path,
-        help=f"write report, table, plots and, of up to {_FEW} flights, logs here",
-    )
+    options.add_out(parser, f"report, table, plots and, of up to {_FEW} flights, logs")
     options.add_wrenches(parser)
     parser.add_argument("--logs", action="store_true", help="every log in --out, however many")
-    parser.add_argument("--no-plots", action="store_true", help="no plots in --out")
 
 
 def compare(arguments: argparse.Namespace) -> None:

@@ -33,10 +33,7 @@ def register(commands: Any) -> None:
     parser.add_argument(
         "--margins", action="store_true", help="search for gain and delay margins, too"
     )
-    parser.add_argument(
-        "--out", metavar="DIR", type=Path, help="write tables, pictures and a page here"
-    )
-    parser.add_argument("--no-plots", action="store_true", help="no pictures in --out")
+    options.add_out(parser, "tables, pictures and a page", "pictures")
 
 
 def evaluate(arguments: argparse.Namespace) -> None:

@@ -177,6 +177,15 @@ def add_combined(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_out(
+    parser: argparse.ArgumentParser, what: str, plots: str = "plots", default: Path | None = None
+) -> None:
+    """Add the options that name the folder of the results and leave plots out."""
+    told = f"write {what} here" + ("" if default is None else f" ({default})")
+    parser.add_argument("--out", metavar="DIR", type=Path, default=default, help=told)
+    parser.add_argument("--no-plots", action="store_true", help=f"no {plots} in --out")
+
+
 def add_quiet(parser: argparse.ArgumentParser) -> None:
     """Add the option that leaves only warnings and errors on the terminal."""
     parser.add_argument("--quiet", action="store_true", help="print warnings and errors only")

@@ -35,9 +35,7 @@ def register(commands: Any) -> None:
     options.add_commands(parser)
     options.add_controller(parser)
     options.add(parser, "controller_rate", "delay", "scenario")
-    parser.add_argument(
-        "--out", metavar="DIR", type=Path, help="write log.csv and plots here; made if missing"
-    )
+    options.add_out(parser, "log.csv and plots")
     parser.add_argument(
         "--log",
         metavar="FILE",
@@ -48,7 +46,6 @@ def register(commands: Any) -> None:
     )
     options.add_log_topics(parser)
     options.add_wrenches(parser)
-    parser.add_argument("--no-plots", action="store_true", help="no plots in --out")
 
 
 def run(arguments: argparse.Namespace) -> None:

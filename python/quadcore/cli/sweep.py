@@ -54,13 +54,7 @@ def register(commands: Any) -> None:
     parser.add_argument(
         "--dask", metavar="ADDRESS", help="fly on the cluster of this scheduler, tcp://HOST:PORT"
     )
-    parser.add_argument(
-        "--out",
-        metavar="DIR",
-        type=Path,
-        default=_OUT,
-        help=f"write rows, sums, pictures and a page here ({_OUT})",
-    )
+    options.add_out(parser, "rows, sums, pictures and a page", "pictures", _OUT)
     parser.add_argument(
         "--resume", action="store_true", help="go on with the rows that are in --out"
     )
@@ -73,7 +67,6 @@ def register(commands: Any) -> None:
         help="what is drawn, and what the worst rows are worst in "
         f"({next(iter(of_guided.UNITS))}; with --commands {next(iter(motion.UNITS))})",
     )
-    parser.add_argument("--no-plots", action="store_true", help="no pictures in --out")
 
 
 def sweep(arguments: argparse.Namespace) -> None:

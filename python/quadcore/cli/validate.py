@@ -59,10 +59,7 @@ def register(commands: Any) -> None:
         "--commands its topic vel_cmd",
     )
     options.add(parser, "processes")
-    parser.add_argument(
-        "--out", metavar="DIR", type=Path, help="write page, tables and figures here"
-    )
-    parser.add_argument("--no-plots", action="store_true", help="no figures in --out")
+    options.add_out(parser, "page, tables and figures", "figures")
     of_flights = {name: parser.get_default(name) for name in _OF_FLIGHTS}
     parser.set_defaults(of_flights=of_flights)
 

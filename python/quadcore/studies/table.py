@@ -7,7 +7,7 @@ import io
 import json
 import math
 from pathlib import Path
-from typing import Any, Iterable, List, Mapping, Sequence, Tuple
+from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
 from ..support.output_files import atomic_write, cell, text_bytes
 
@@ -73,3 +73,19 @@ def _plain(content: Any) -> Any:
     if isinstance(content, (list, tuple)):
         return [_plain(value) for value in content]
     return None if content != content else content
+
+
+def setting_texts(setting: Mapping[str, Any], most: Optional[int] = None) -> Dict[str, str]:
+    """Write what flew for a page: of a long list at most so many, of empty values nothing."""
+    found = {}
+    for name, value in setting.items():
+        if isinstance(value, Mapping):
+            value = [f"{key}={one}" for key, one in value.items()]
+        text = str(value)
+        if isinstance(value, list):
+            shown = value[:most]
+            rest = f", ... ({len(value)})" if len(value) > len(shown) else ""
+            text = ", ".join(map(str, shown)) + rest
+        if text and value is not None:
+            found[name] = text
+    return found

@@ -12,7 +12,15 @@ from ... import __version__
 from ...report.thinning import pick_evenly
 from ..folder import remove_pictures, save_pictures
 from ..measures import MEANINGS, UNITS
-from ..table import NOT_FLOWN, csv_bytes, flown_and_failed, json_bytes, number_text, save
+from ..table import (
+    NOT_FLOWN,
+    csv_bytes,
+    flown_and_failed,
+    json_bytes,
+    number_text,
+    save,
+    setting_texts,
+)
 from .evaluate import Evaluation
 from .intervals import CONFIDENCE
 from .losses import losses
@@ -236,18 +244,6 @@ def margins_to_read(evaluation: Evaluation) -> List[Dict[str, str]]:
     ]
 
 
-def _told(plan: Plan) -> Dict[str, str]:
-    """Say what flew and how, as texts; what nobody asked for is left out."""
-    told = {}
-    for name, value in plan.told().items():
-        if isinstance(value, dict):
-            value = [f"{key}={one}" for key, one in value.items()]
-        text = ", ".join(map(str, value)) if isinstance(value, list) else str(value)
-        if text and value is not None:
-            told[name] = text
-    return told
-
-
 def _page(evaluation: Evaluation, plan: Plan, images: Mapping[str, bytes]) -> Dict[str, Any]:
     failures = [
         {
@@ -261,7 +257,7 @@ def _page(evaluation: Evaluation, plan: Plan, images: Mapping[str, bytes]) -> Di
     return {
         "title": "Evaluation of controllers",
         "summary": summary(evaluation),
-        "flight": _told(plan),
+        "flight": setting_texts(plan.told()),
         "shown": columns_to_read(lines),
         "lines": lines[:ROWS_OF_PAGE],
         "more": max(0, len(evaluation.groups) - ROWS_OF_PAGE),

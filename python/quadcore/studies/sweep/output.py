@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional, Sequence
+from typing import Any, Dict, List, Mapping, Optional
 
 import numpy as np
 
 from ... import __version__
 from ..._core import InputError
 from ..folder import remove_pictures, save_pictures
-from ..table import json_bytes, number_text, save
+from ..table import json_bytes, number_text, save, setting_texts
 from . import pictures
 from .again import command
 from .plan import AnyPlan
@@ -71,7 +71,7 @@ def write(plan: AnyPlan, columns: Columns, folder: Path, measure: str, plots: bo
         "sweep.html",
         title="Sweep",
         summary=told(plan, columns),
-        flight=_texts(plan.told()),
+        flight=setting_texts(plan.told(), 20),
         lines=[_line(row) for row in summaries(plan, columns)],
         sensitivities=[_line(row) for row in found if row["measure"] == measure],
         measure=measure,
@@ -133,22 +133,3 @@ def _line(row: Mapping[str, Any]) -> Dict[str, str]:
         else str("" if value is None else value)
         for name, value in row.items()
     }
-
-
-def _texts(plan: Mapping[str, Any]) -> Dict[str, str]:
-    """Say what flew, as texts; what nobody asked for is left out."""
-    found = {}
-    for name, value in plan.items():
-        if isinstance(value, Mapping):
-            value = [f"{key}={one}" for key, one in value.items()]
-        text = _shortened(value) if isinstance(value, Sequence) else str(value)
-        if text and value is not None:
-            found[name] = text
-    return found
-
-
-def _shortened(value: Any) -> str:
-    if isinstance(value, str):
-        return value
-    shown = [str(one) for one in value[:20]]
-    return ", ".join(shown) + (f", ... ({len(value)})" if len(value) > len(shown) else "")
