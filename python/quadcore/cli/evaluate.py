@@ -85,7 +85,8 @@ def _plan(arguments: argparse.Namespace) -> Plan:
 
 
 def _show(evaluation: Evaluation, files: list[Path]) -> None:
-    from ..studies.evaluate.output import causes, columns_to_read, rows_to_read, summary
+    from ..studies.evaluate.output import causes, summary
+    from ..studies.evaluate.shown_rows import columns_to_read, rows_to_read
 
     console = terminal.console()
     lines = rows_to_read(evaluation)

@@ -94,7 +94,7 @@ TEST_CASE("neighbours turn against each other unless they are told otherwise") {
   CHECK(spins({}) == std::vector<double>{1, 1, -1, -1, 1, -1});
   CHECK(spins({1, 1, 1, -1, -1, -1}) == std::vector<double>{1, 1, 1, -1, -1, -1});
   vehicle.rotors.pop_back();
-  CHECK(test::contains(test::refusal([&] { spins({}); }), "give their spins"));
+  CHECK(test::contains(test::refusal([&] { spins({}); }), "Give their spins"));
   vehicle.gravity_W = {1, 0, -9};
   CHECK(test::contains(test::refusal([&] { spins({}); }), "gravity"));
 }

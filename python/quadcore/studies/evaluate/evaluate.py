@@ -36,6 +36,7 @@ from ..table import flown_and_failed
 from .plan import Plan
 from .poles import has_poles, poles
 from .robustness import Searches
+from .shown_rows import columns_to_read, rows_to_read
 from .sums import JUDGED as JUDGED
 from .sums import over_seeds
 from .trial import Trial
@@ -82,8 +83,6 @@ class Evaluation(NamedTuple):
         return f"<Evaluation, {flown_and_failed([row['failure'] for row in self.table])}>"
 
     def _repr_html_(self) -> str:
-        from .output import columns_to_read, rows_to_read
-
         lines = rows_to_read(self)
         shown = {**columns_to_read(lines), "best": ""}
         rows = [[line[name] for name in shown] for line in lines[:SHOWN_ROWS]]

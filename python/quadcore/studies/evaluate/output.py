@@ -17,7 +17,6 @@ from ..table import (
     csv_bytes,
     flown_and_failed,
     json_bytes,
-    number_text,
     save,
     setting_texts,
 )
@@ -29,14 +28,12 @@ from .plan import Plan
 from .poles import gains_of
 from .poles import text as poles_text
 from .robustness import BOX, ENDS, margin_text
+from .shown_rows import NAMES, columns_to_read, error_text, rows_to_read
 
 ROWS_OF_PAGE = 200
 
 _PLAYERS, _PLAYED = 4, 8  # references, flights of each
 _SWITCHES = ("feed_forward", "drag", "gyroscopic", "flat_rates", "integral", "lead")
-
-_NAMES = ("controller", "reference", "engine", "model", "scenario")
-_SHOWN = ("rms_position", "largest_position", "tail_position")
 
 
 FILES = ("table.csv", "evaluation.json", "timing.csv", "report.html")
@@ -121,48 +118,6 @@ def summary(evaluation: Evaluation) -> str:
     return flown_and_failed([row["failure"] for row in evaluation.table])
 
 
-def rows_to_read(evaluation: Evaluation) -> List[Dict[str, str]]:
-    """Lines of the table for people: a combination each, the best of each reference marked."""
-    best: Dict[Any, float] = {}
-    for group in evaluation.groups:
-        key = tuple(group[name] for name in _NAMES[1:])
-        value = group["mean_tail_position"]
-        if group["failure_rate"] == 0 and not math.isnan(value):
-            best[key] = min(value, best.get(key, math.inf))
-    lines = []
-    for group in evaluation.groups:
-        flown = round((1 - group["failure_rate"]) * group["flights"]) if group["flights"] else 0
-        line = {name: str(group[name]) for name in _NAMES}
-        line["flown"] = f"{flown} of {group['flights']}"
-        line["flown"] += f", {group['not_flown']} not" * (group["not_flown"] > 0)
-        for name in _SHOWN:
-            line[name] = error_text(group[f"mean_{name}"]) + _interval(group, name)
-        line["cvar"] = error_text(group["cvar_tail_position"])
-        line["difference"] = error_text(group["difference_tail_position"])
-        line["difference"] += _interval(group, "tail_position", "difference_")
-        key = tuple(group[name] for name in _NAMES[1:])
-        is_best = group["failure_rate"] == 0 and group["mean_tail_position"] == best.get(key)
-        line["best"] = "*" if is_best else ""
-        lines.append(line)
-    return lines
-
-
-def columns_to_read(lines: Sequence[Mapping[str, str]]) -> Dict[str, str]:
-    """Headings of what is shown of `rows_to_read`: no names that all have in common."""
-    names = (name for name in _NAMES if len({line[name] for line in lines}) > 1)
-    shown = {"controller": "controller", **{name: name for name in names}, "flown": "flown"}
-    shown.update(rms_position="RMS (m)", largest_position="largest (m)")
-    shown.update(tail_position="last 10 s (m)", cvar="its CVaR (m)")
-    if any(line["difference"] for line in lines):
-        shown["difference"] = "from the first (m)"
-    return shown
-
-
-def _interval(group: Mapping[str, Any], name: str, of: str = "") -> str:
-    low, high = group[f"{of}low_{name}"], group[f"{of}high_{name}"]
-    return "" if math.isnan(low) else f" [{low:.3g}, {high:.3g}]"
-
-
 def causes(evaluation: Evaluation) -> List[str]:
     """Say why cascades do not hold the vehicle, a line for each axis that is unstable."""
     return [
@@ -173,20 +128,15 @@ def causes(evaluation: Evaluation) -> List[str]:
     ]
 
 
-def error_text(value: float) -> str:
-    """Write a number for a table that is read; an infinite error is that of a lost vehicle."""
-    return "lost" if math.isinf(value) else number_text(value)
-
-
 def _csv(table: Sequence[Mapping[str, Any]]) -> List[List[Any]]:
     return [list(table[0]), *(list(row.values()) for row in table)]
 
 
 def _timing(evaluation: Evaluation, plan: Plan) -> List[List[Any]]:
     measured = ("seconds", "real_time_factor", "updates", "update_median", "update_p99")
-    rows: List[List[Any]] = [[*_NAMES, "seed", *measured]]
+    rows: List[List[Any]] = [[*NAMES, "seed", *measured]]
     for row, outcome in zip(evaluation.table, evaluation.outcomes):
-        names = [row[name] for name in (*_NAMES, "seed")]
+        names = [row[name] for name in (*NAMES, "seed")]
         factor = plan.options.duration / outcome.seconds
         calls = outcome.updates, outcome.call, outcome.slow_call
         rows.append([*names, outcome.seconds, factor, *calls])

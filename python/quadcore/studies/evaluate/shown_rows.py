@@ -1,0 +1,61 @@
+"""Rows of an evaluation as people read them: on the terminal, on the page, in a notebook."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Sequence
+
+from ..table import number_text
+
+if TYPE_CHECKING:
+    from .evaluate import Evaluation
+
+NAMES = ("controller", "reference", "engine", "model", "scenario")
+_SHOWN = ("rms_position", "largest_position", "tail_position")
+
+
+def rows_to_read(evaluation: Evaluation) -> List[Dict[str, str]]:
+    """Lines of the table for people: a combination each, the best of each reference marked."""
+    best: Dict[Any, float] = {}
+    for group in evaluation.groups:
+        key = tuple(group[name] for name in NAMES[1:])
+        value = group["mean_tail_position"]
+        if group["failure_rate"] == 0 and not math.isnan(value):
+            best[key] = min(value, best.get(key, math.inf))
+    lines = []
+    for group in evaluation.groups:
+        flown = round((1 - group["failure_rate"]) * group["flights"]) if group["flights"] else 0
+        line = {name: str(group[name]) for name in NAMES}
+        line["flown"] = f"{flown} of {group['flights']}"
+        line["flown"] += f", {group['not_flown']} not" * (group["not_flown"] > 0)
+        for name in _SHOWN:
+            line[name] = error_text(group[f"mean_{name}"]) + _interval(group, name)
+        line["cvar"] = error_text(group["cvar_tail_position"])
+        line["difference"] = error_text(group["difference_tail_position"])
+        line["difference"] += _interval(group, "tail_position", "difference_")
+        key = tuple(group[name] for name in NAMES[1:])
+        is_best = group["failure_rate"] == 0 and group["mean_tail_position"] == best.get(key)
+        line["best"] = "*" if is_best else ""
+        lines.append(line)
+    return lines
+
+
+def columns_to_read(lines: Sequence[Mapping[str, str]]) -> Dict[str, str]:
+    """Headings of what is shown of `rows_to_read`: no names that all have in common."""
+    names = (name for name in NAMES if len({line[name] for line in lines}) > 1)
+    shown = {"controller": "controller", **{name: name for name in names}, "flown": "flown"}
+    shown.update(rms_position="RMS (m)", largest_position="largest (m)")
+    shown.update(tail_position="last 10 s (m)", cvar="its CVaR (m)")
+    if any(line["difference"] for line in lines):
+        shown["difference"] = "from the first (m)"
+    return shown
+
+
+def _interval(group: Mapping[str, Any], name: str, of: str = "") -> str:
+    low, high = group[f"{of}low_{name}"], group[f"{of}high_{name}"]
+    return "" if math.isnan(low) else f" [{low:.3g}, {high:.3g}]"
+
+
+def error_text(value: float) -> str:
+    """Write a number for a table that is read; an infinite error is that of a lost vehicle."""
+    return "lost" if math.isinf(value) else number_text(value)
