@@ -130,6 +130,18 @@ class Cases(Sequence[Case]):
         """Names of the models' robots."""
         return [model.name for model in self.variation.models]
 
+    def sides(self, case: Case) -> Dict[str, str]:
+        """Name the controller and reference of a flight, if there are any, its engine and model."""
+        found = {"engine": self.engines[case.engine], "model": self.models[case.model]}
+        if not self.guidance.is_given:
+            return found
+        controller = self.guidance.controllers[case.controller]
+        return {
+            "controller": controller,
+            "reference": self.guidance.references[case.reference],
+            **found,
+        }
+
     def unguided(self, case: Case) -> FlightPlan:
         """Describe a flight but for its controller."""
         plan = replace(

@@ -63,10 +63,7 @@ class Plan(Cases):
     def names(self, case: Case) -> Dict[str, Any]:
         """Give what a case is made of, as the first columns of the table."""
         return {
-            "controller": self.guidance.controllers[case.controller],
-            "reference": self.guidance.references[case.reference],
-            "engine": self.engines[case.engine],
-            "model": self.models[case.model],
+            **self.sides(case),
             "scenario": self.scenarios[case.point],
             "seed": self.seeds[case.seed],
         }

@@ -81,19 +81,8 @@ class Plan(Cases):
 
     def cells(self, row: int) -> Dict[str, Any]:
         """Give what a row flies, as the first columns of the table."""
-        case, guided = self[row], {}
-        if self.guidance.is_given:
-            guided = {
-                "controller": self.guidance.controllers[case.controller],
-                "reference": self.guidance.references[case.reference],
-            }
-        return {
-            **guided,
-            "engine": self.engines[case.engine],
-            "model": self.models[case.model],
-            **self.design[case.point],
-            "seed": self.seeds[case.seed],
-        }
+        case = self[row]
+        return {**self.sides(case), **self.design[case.point], "seed": self.seeds[case.seed]}
 
     def spec(self, row: int) -> Flight:
         """Describe a row; raises what making it raises."""
