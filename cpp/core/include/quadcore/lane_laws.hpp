@@ -22,7 +22,7 @@ struct RotorConventions {
 
 /// Thrust, reaction torque, drag and flapping of the rotors.
 struct RotorForces {
-  RotorConventions conventions;
+  RotorConventions conventions;  ///< of all rotors
   std::uint32_t acting;  ///< a bit for each law of laws/rotor_laws.hpp, the first one's lowest
   double sim_slow;       ///< speed of a real rotor over the rate of its joint
   const double* coefficients;  ///< table of the laws' rows; 0 for rotors that are somebody else's
