@@ -127,6 +127,7 @@ def test_the_cpp_example_flies_as_its_python_twin(tmp_path):
         ("nameless", "cannot describe itself: what am I?"),
         ("undescribed", "has no descriptor; give it one and rebuild it"),
         ("uncreatable", "has no create in its descriptor; give it one and rebuild it"),
+        ("outdated", "was built for force laws of old, this is "),
         ("twofold", "does not fit: its descriptor names 'fault' twice; keep one"),
     ],
 )

@@ -92,9 +92,13 @@ quadcore::PluginDescriptor describe() {
       {nullptr},
 #else
       {[](const quadcore::PluginSetup& setup) -> std::unique_ptr<quadcore::Plugin> {
-        if (setup.parameters.choice("fault") == "null") return nullptr;
-        return std::make_unique<FaultyPlugin>(setup);
-      }},
+         if (setup.parameters.choice("fault") == "null") return nullptr;
+         return std::make_unique<FaultyPlugin>(setup);
+       },
+#ifdef OLD_LAWS
+       {true, true, true, true, true, true, "of old"}
+#endif
+      },
 #endif
   };
 }
