@@ -161,8 +161,11 @@ def test_a_thousand_simulations_leave_no_memory_behind(toy):
         for _ in range(count):
             qc.Simulation("toy.urdf").run(0.001)
 
+    def grown():
+        before = resident_bytes()
+        come_and_go(1000)
+        return resident_bytes() - before
+
     come_and_go(100)
-    before = resident_bytes()
-    come_and_go(1000)
-    # One kilobyte per simulation would be found.
-    assert resident_bytes() - before < 1e6
+    # A leak of one kilobyte per simulation grows each time; a new page of the allocator does not.
+    assert min(grown() for _ in range(3)) < 1e6
