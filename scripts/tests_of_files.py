@@ -36,7 +36,7 @@ def _python_tests(path: Path, texts: Dict[Path, str]) -> Iterator[Path]:
         ]
         yield from listed[:MOST] or _closest(path, texts)
     else:
-        yield from _that_hold(re.escape(path.name), texts)
+        yield from _that_hold(re.escape(path.name if path.suffix else str(path)), texts)
 
 
 def _closest(path: Path, texts: Dict[Path, str]) -> List[Path]:
