@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import Any, Dict, Iterable, List, Mapping, Optional, Tuple
+from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple
 from xml.parsers import expat
 
 from .. import _core
@@ -83,9 +83,10 @@ def with_links(model: Model, parameters: Mapping[str, str]) -> Tuple[Model, Dict
     return (_changed(model, of_links) if of_links else model), left
 
 
-def link_values(document: Document) -> List[str]:
-    """List every LINK.NAME that a document's links have."""
-    return list(_attributes(document.text.encode()))
+def link_values(document: Document) -> Dict[str, str]:
+    """Find every LINK.NAME that a document's links have, with its text."""
+    found = _attributes(document.text.encode())
+    return {key: attribute.text for key, attribute in found.items()}
 
 
 def _is_special(key: str) -> bool:
@@ -119,7 +120,7 @@ def _changed(model: Model, values: Mapping[str, str]) -> Model:
             raise InputError(f"set {key}: '{value}' is not a finite number; write one")
         if key not in places:
             raise InputError(f"set {key}: the link has no <inertial> that says so; write one")
-        edits.append((*places[key], value.encode()))
+        edits.append((*places[key].span, value.encode()))
     text = document.text.encode()
     for begin, end, new in sorted(edits, reverse=True):
         text = text[:begin] + new + text[end:]
@@ -130,9 +131,17 @@ def _changed(model: Model, values: Mapping[str, str]) -> Model:
         raise InputError(f"set {', '.join(values)}: {error}") from None
 
 
-def _attributes(text: bytes) -> Dict[str, Tuple[int, int]]:
-    """Find LINK.NAME: begin and end of each value that may be changed."""
-    found: Dict[str, Tuple[int, int]] = {}
+class _Attribute(NamedTuple):
+    """A value of a link that may be changed."""
+
+    span: Tuple[int, int]
+    """Begin and end in the document's bytes."""
+    text: str
+
+
+def _attributes(text: bytes) -> Dict[str, _Attribute]:
+    """Find the values that may be changed, by LINK.NAME."""
+    found: Dict[str, _Attribute] = {}
     parser = expat.ParserCreate()
     path: List[str] = []
     link = ""
@@ -150,7 +159,8 @@ def _attributes(text: bytes) -> Dict[str, Tuple[int, int]]:
                 pattern = rb"\s" + attribute.encode() + rb"\s*=\s*(?:\"([^\"]*)\"|'([^']*)')"
                 match = re.compile(pattern).search(text, begin)
                 assert match is not None
-                found[f"{link}.{name}"] = match.span(1 if match[1] is not None else 2)
+                span = match.span(1 if match[1] is not None else 2)
+                found[f"{link}.{name}"] = _Attribute(span, attributes[attribute])
 
     parser.StartElementHandler = start
     parser.EndElementHandler = lambda _: path.pop()

@@ -8,33 +8,8 @@ from xml.sax.saxutils import escape
 
 from ... import _core
 from ..._core import Document, Model
-from ...model.overrides import link_values, with_links
+from ...model.overrides import with_links
 from ...support.values import Value, text_of
-
-
-def written(document: Document) -> Dict[str, str]:
-    """Give LINK.mass and the like of a document, as they are written."""
-    found: Dict[str, str] = {}
-    places = link_values(document)
-    parser = expat.ParserCreate()
-    path: List[str] = []
-    link = ""
-
-    def start(tag: str, attributes: Mapping[str, str]) -> None:
-        nonlocal link
-        path.append(tag)
-        if path[1:] == ["link"]:
-            link = attributes.get("name", "")
-        if path[1:-1] == ["link", "inertial"]:
-            for name, value in attributes.items():
-                key = f"{link}.{'mass' if tag == 'mass' else name}"
-                if key in places:
-                    found[key] = value
-
-    parser.StartElementHandler = start
-    parser.EndElementHandler = lambda _: path.pop()
-    parser.Parse(document.text, True)
-    return found
 
 
 def with_values(

@@ -7,9 +7,9 @@ from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 import numpy as np
 
 from ..._core import FlightError, InputError, parse_number
+from ...model.overrides import link_values
 from ...support import arguments
 from ...support.parameters import did_you_mean
-from .document import written
 from .horizons import Horizons
 from .subject import Subject
 
@@ -52,7 +52,7 @@ class Parameter:
     ) -> None:
         plugins, model = subject.simulation.plugins, subject.model
         tags = {f"{p.name}.{tag.name}": tag for p in plugins for tag in p.parameters}
-        links = written(model.document)
+        links = link_values(model.document)
         if name in subject.arguments:
             text, self.unit = subject.arguments[name], ""
         elif name in tags:
