@@ -23,7 +23,7 @@ template <class T>
 struct InducedDrag : InPlaneDrag<T> {
   static constexpr const char* term = "induced";
   static constexpr Tag tags[] = {{"inducedDragCoeff", "N s/m", "0", "induced drag of a rotor, K_I",
-                                  "(2.28)", Tag::drag, Tag::at_least_zero, "0.01"}};
+                                  "(2.28)", Tag::Scales::drag, Tag::at_least_zero, "0.01"}};
   template <class Given>
   static InducedDrag from(const Given& given) {
     const auto [K] = given.numbers(tags);
@@ -36,8 +36,8 @@ template <class T>
 struct TranslationalDrag : InPlaneDrag<T> {
   static constexpr const char* term = "translational";
   static constexpr Tag tags[] = {{"translationalDragCoeff", "N s/m", "0",
-                                  "translational drag of a rotor, K_T1", "(2.29)", Tag::drag,
-                                  Tag::at_least_zero, "0.0025"}};
+                                  "translational drag of a rotor, K_T1", "(2.29)",
+                                  Tag::Scales::drag, Tag::at_least_zero, "0.0025"}};
   template <class Given>
   static TranslationalDrag from(const Given& given) {
     const auto [K] = given.numbers(tags);
@@ -50,7 +50,7 @@ template <class T>
 struct ProfileDrag : InPlaneDrag<T> {
   static constexpr const char* term = "profile";
   static constexpr Tag tags[] = {{"profileDragCoeff", "N s/m", "0", "profile drag of a rotor, K_P",
-                                  "(2.30)", Tag::drag, Tag::at_least_zero, "0.005"}};
+                                  "(2.30)", Tag::Scales::drag, Tag::at_least_zero, "0.005"}};
   template <class Given>
   static ProfileDrag from(const Given& given) {
     const auto [K] = given.numbers(tags);
@@ -78,8 +78,8 @@ struct ParasiticDrag {
   static constexpr const char* term = "parasitic";
   static constexpr Effect effect = Effect::force_in_link_axes;
   static constexpr Tag tags[] = {{"parasiticDragCoeff", "N s^2/m^2", "0",
-                                  "parasitic drag of the airframe, K_par", "(2.31)", Tag::drag,
-                                  Tag::at_least_zero, "0.003"}};
+                                  "parasitic drag of the airframe, K_par", "(2.31)",
+                                  Tag::Scales::drag, Tag::at_least_zero, "0.003"}};
   /// Of the airframe as a whole.
   template <class Given>
   static double coefficient(const Given& given) {

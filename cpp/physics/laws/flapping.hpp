@@ -21,13 +21,13 @@ struct Flapping {
   static constexpr Effect effect = Effect::force;
   static constexpr Tag tags[] = {
       {"flappingA1c", "rad", "0", "blade flapping, longitudinal; positive opposes motion", "(2.26)",
-       Tag::drag},
-      {"flappingA1s", "rad", "0", "blade flapping, lateral", "(2.26)", Tag::drag},
+       Tag::Scales::drag},
+      {"flappingA1s", "rad", "0", "blade flapping, lateral", "(2.26)", Tag::Scales::drag},
       {"flappingB1", "s/rad", "0", "blade flapping with the frame's rates, cross term", "(2.27)",
-       Tag::drag},
+       Tag::Scales::drag},
       {"flappingB2", "s/rad", "0", "blade flapping with the frame's rates, direct term", "(2.27)",
-       Tag::drag},
-      {"rotorRadius", "m", "0.075", "radius of a rotor, for flapping", "(2.26)", Tag::nothing,
+       Tag::Scales::drag},
+      {"rotorRadius", "m", "0.075", "radius of a rotor, for flapping", "(2.26)", Tag::Scales::none,
        Tag::above_zero},
   };
   template <class Given>

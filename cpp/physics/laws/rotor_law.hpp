@@ -1,5 +1,6 @@
 #pragma once
 
+#include "quadcore/plugin/effect.hpp"
 #include "rotor_disc.hpp"
 
 /// \file
@@ -19,13 +20,12 @@ namespace quadcore::laws {
 /// code.
 struct Tag {
   enum Range { any, at_least_zero, above_zero };
-  /// What a study scales with it.
-  enum Scales { nothing, thrust, drag };
+  using Scales = quadcore::Effect;
 
   const char *name, *unit;
   const char* fallback;  ///< null if a model must have the tag
   const char *meaning, *equation;
-  Scales scales = nothing;
+  Scales scales = Scales::none;
   Range range = any;
   const char* compiled_in = nullptr;  ///< number that the thesis' plugin (A.5) has instead of a tag
 };

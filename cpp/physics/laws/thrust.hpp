@@ -12,8 +12,8 @@ struct Thrust {
   static constexpr const char* term = "thrust";
   static constexpr Effect effect = Effect::force;
   static constexpr Tag tags[] = {{"rotorThrustCoeff", "N s^2/rad^2", required,
-                                  "thrust of a rotor per squared speed, k", "(2.10)", Tag::thrust,
-                                  Tag::at_least_zero}};
+                                  "thrust of a rotor per squared speed, k", "(2.10)",
+                                  Tag::Scales::thrust, Tag::at_least_zero}};
   template <class Given>
   static Thrust from(const Given& given) {
     const auto [k] = given.numbers(tags);
@@ -36,7 +36,7 @@ struct Reaction {
   static constexpr Effect effect = Effect::reaction_torque;
   static constexpr Tag tags[] = {{"rotorTorqueCoeff", "N m s^2/rad^2", required,
                                   "reaction torque of a rotor per squared speed, b", "(2.11)",
-                                  Tag::thrust, Tag::at_least_zero}};
+                                  Tag::Scales::thrust, Tag::at_least_zero}};
   template <class Given>
   static Reaction from(const Given& given) {
     const auto [b] = given.numbers(tags);

@@ -26,8 +26,7 @@ inline TagSpec spec_of(const laws::Tag& tag) {
                      .from(tag.equation);
   if (tag.range == laws::Tag::at_least_zero) spec = spec.at_least(0);
   if (tag.range == laws::Tag::above_zero) spec = spec.above(0);
-  if (tag.scales == laws::Tag::thrust) spec = spec.scaling(Effect::thrust);
-  if (tag.scales == laws::Tag::drag) spec = spec.scaling(Effect::drag);
+  if (tag.scales != Effect::none) spec = spec.scaling(tag.scales);
   return tag.fallback ? spec : spec.must();
 }
 

@@ -6,6 +6,7 @@
 #include "quadcore/plugin/carried_body.hpp"
 #include "quadcore/plugin/counts.hpp"
 #include "quadcore/plugin/document.hpp"
+#include "quadcore/plugin/effect.hpp"
 #include "quadcore/plugin/elementary.hpp"
 #include "quadcore/plugin/error.hpp"
 #include "quadcore/plugin/export.hpp"

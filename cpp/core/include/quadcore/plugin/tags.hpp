@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "quadcore/plugin/effect.hpp"
 #include "quadcore/plugin/export.hpp"
 #include "quadcore/plugin/model.hpp"
 
@@ -21,14 +22,6 @@ enum class TagKind {
   file,     ///< the path of a file that can be read, relative to the document that holds the tag
   link,     ///< the name of a link of the model; empty = the root
   joints,   ///< names of continuous joints, separated by blanks; empty = all, in file order
-};
-
-/// A property of the vehicle that grows with a tag's number. Studies vary it by scaling these tags.
-enum class Effect {
-  none,    ///< none of these
-  thrust,  ///< thrust and reaction torque of the rotors
-  drag,    ///< resistance of the air
-  lag,     ///< time constant of the motors
 };
 
 /// Of a row of numbers: at least one.
