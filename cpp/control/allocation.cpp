@@ -7,14 +7,15 @@
 #include <limits>
 
 #include "quadcore/plugin/error.hpp"
+#include "quadcore/simulation.hpp"
 
 namespace quadcore::control {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Keeps the sums below finite.
-constexpr double largest_square = unattainable_speed * unattainable_speed;
+/// Keeps the sums below finite: a flight counts as diverged at this speed.
+constexpr double largest_square = Simulation::max_rate * Simulation::max_rate;
 
 /// What is orthogonal to three vectors of four numbers.
 Eigen::Vector4d orthogonal(const Eigen::Matrix<double, 4, 3>& vectors) {

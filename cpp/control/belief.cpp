@@ -6,6 +6,7 @@
 
 #include "quadcore/control/rotors.hpp"
 #include "quadcore/plugin/error.hpp"
+#include "quadcore/simulation.hpp"
 
 namespace quadcore::control {
 namespace {
@@ -91,7 +92,7 @@ Belief Belief::of(const VehicleDescription& vehicle, std::vector<double> spins,
     const double ratio = told.rate_per_command;
     const double fastest =
         doubts.fastest > 0 ? std::min(doubts.fastest, told.fastest) : told.fastest;
-    if (!(doubts.slowest < std::min(fastest, unattainable_speed))) {
+    if (!(doubts.slowest < std::min(fastest, Simulation::max_rate))) {
       throw InputError("'slowest' is not below the fastest speed of rotor '" + told.joint +
                        "', at most 1e6 rad/s. Give a lower one.");
     }

@@ -9,7 +9,7 @@
 namespace quadcore::control {
 namespace {
 
-/// A torque is none below this share of the moment of the thrust, from which it is measured.
+/// A torque below this share of the thrust's moment, which it is measured with, counts as zero.
 constexpr double rounding = 1e-12;
 
 /// By turns, in the order in which the rotors stand around the vehicle: of the two ways that in

@@ -4,13 +4,9 @@
 
 #include "quadcore/control/settings.hpp"
 #include "quadcore/plugin/vehicle_description.hpp"
-#include "quadcore/simulation.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 namespace control {
-
-/// No rotor is commanded to turn at this speed [rad/s]: a flight counts as diverged there.
-constexpr double unattainable_speed = Simulation::max_rate;
 
 /// A rotor as a controller believes it to be. Speeds are those of commands: before any division by
 /// sim_slow, positive as `spin` says.
