@@ -41,7 +41,7 @@ def taken(action: object, clock: object = time.perf_counter) -> float:
 def row_against_flight() -> None:
     swept = plan(ROUNDS * 4, "geometric", "circle")
     simulation = swept.spec(0).plan.simulation()
-    start, circle, law = simulation.snapshot(), qc.references.circle(), qc.laws.geometric()
+    start, circle, law = simulation.snapshot(), qc.references.circle(), qc.controllers.geometric()
 
     def fly() -> None:
         simulation.restore(start)

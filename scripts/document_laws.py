@@ -22,7 +22,7 @@ def millimetres(error: float) -> str:
 
 
 def fly(
-    law: str, reference: str, measure: str = "tail_position", slow: int = 1, **options: Any
+    law: str, reference: str, measure: str = "final_position", slow: int = 1, **options: Any
 ) -> List[str]:
     """Fly in each engine: the largest error of all seeds (mm), or when the vehicle was lost."""
     found = qc.evaluate(law, reference, ENGINES, xacro_args={"sim_slow": slow}, **options)
@@ -51,7 +51,7 @@ def reached(wind: Path) -> Iterator[Any]:
     for law in ("geometric", "geometric:rate_damping=0.81", "pd_compensated", "pd"):
         yield "`circle`", f"`{law}`", *fly(law, "circle")
     yield "`eight`", "`geometric`", *fly("geometric", "eight")
-    whole = fly("geometric", "waypoints", "largest_position", duration=12)
+    whole = fly("geometric", "waypoints", "max_position", duration=12)
     yield "`waypoints`, whole flight", "`geometric`", *whole
     for law in ("geometric", "lqr", "indi"):
         yield "`hover`, 3 m/s of wind", f"`{law}`", *fly(law, "hover", vary={"scenario": [wind]})
@@ -69,7 +69,7 @@ def printed() -> Iterator[Any]:
     """Fly the gains that the thesis prints."""
     for law in ("pid_thesis", "pid_thesis:kd_xy=2.5"):
         for slow in (1, 10):
-            yield f"`{law}`", slow, *fly(law, "spiral", "largest_position", slow)
+            yield f"`{law}`", slow, *fly(law, "spiral", "max_position", slow)
 
 
 def main() -> None:

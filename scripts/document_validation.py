@@ -53,7 +53,7 @@ def distances(study: Study) -> Iterator[Any]:
     for engine in study.engines:
         for slow in study.sim_slow:
             found = [rows[Case(engine, slow, drag)] for drag in study.drags]
-            yield engine, f"{slow:g}", *(size(one.largest["distance"]) for one in found if one)
+            yield engine, f"{slow:g}", *(size(one.max["distance"]) for one in found if one)
 
 
 def shares(study: Study) -> Iterator[Any]:
@@ -62,7 +62,7 @@ def shares(study: Study) -> Iterator[Any]:
     changes = max((chain.links for chain in chains), key=len)
     for change in (link.change for link in changes):
         links = [{link.change: link for link in chain.links}.get(change) for chain in chains]
-        largest = list(dict.fromkeys(size(link.largest) for link in links if link))
+        largest = list(dict.fromkeys(size(link.max) for link in links if link))
         yield change, *(size(link.share) if link else "" for link in links), ", ".join(largest)
     yield "sum: distance from the model", *(size(chain.distance) for chain in chains), ""
 
@@ -93,7 +93,7 @@ def slowed(study: Study) -> Iterator[Any]:
     for drag in ("none", "all"):
         for row in study.slowed:
             if row.case.drag == drag and row.difference:
-                apart = row.difference.largest
+                apart = row.difference.max
                 yaw = f"{np.degrees(apart['psi']):.3g}"
                 yield f"{row.case.sim_slow:g}", drag, size(apart["distance"]), yaw
 
@@ -133,7 +133,7 @@ def left_out(study: Study) -> Iterator[Any]:
     rows = {row.case.variant: row.difference for row in study.left_out}
     for variant, texts in LEFT_OUT.items():
         difference = rows[variant]
-        yield *texts, size(difference.largest["distance"]) if difference else "failed"
+        yield *texts, size(difference.max["distance"]) if difference else "failed"
 
 
 def hexarotor() -> Iterator[Any]:
@@ -146,7 +146,7 @@ def hexarotor() -> Iterator[Any]:
     rows = {row.case: row.difference for row in study.rows}
     for engine in study.engines:
         found = [rows[Case(engine, slow, "all")] for slow in study.sim_slow]
-        yield engine, *(size(one.largest["distance"]) if one else "failed" for one in found)
+        yield engine, *(size(one.max["distance"]) if one else "failed" for one in found)
 
 
 def write_tables(study: Study) -> None:

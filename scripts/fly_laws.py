@@ -16,7 +16,8 @@ import numpy as np
 from noise import NOISY, THESIS
 
 import quadcore as qc
-from quadcore.control import laws, references
+from quadcore.control import controllers, references
+from quadcore.control.built_in import BuiltInController
 from quadcore.studies.executor import each
 from quadcore.support.warning import suppress_warnings
 
@@ -31,7 +32,7 @@ class Case:
     name: str
     engine: str
     sim_slow: int
-    law: Callable[[], laws.Law]
+    law: Callable[[], BuiltInController]
     reference: Callable[[], references.Shape]
     bar: float  # mm; negative: the vehicle is to be lost
     duration: float = 30.0
@@ -43,7 +44,7 @@ class Case:
 def cases() -> List[Case]:
     """List all that is flown."""
     plants = [("eigen", 1), ("ode", 1), ("gazebo11", 1), ("gazebo11", 10)]
-    spiral, geometric = references.spiral, laws.geometric
+    spiral, geometric = references.spiral, controllers.geometric
     found = []
     for plant, bar in zip(plants, (0.05, 0.4, 0.8, 0.4)):
         found.append(Case("spiral, geometric", *plant, geometric, spiral, bar))
@@ -54,7 +55,9 @@ def cases() -> List[Case]:
         name = "spiral, geometric, noise of velocities besides"
         found.append(Case(name, *plant, geometric, spiral, 1, noise=NOISY, seeds=20))
     for plant, bar in zip(plants, (0.5, 0.5, 2)):
-        found.append(Case("spiral, pd_compensated", *plant, laws.pd_compensated, spiral, bar))
+        found.append(
+            Case("spiral, pd_compensated", *plant, controllers.pd_compensated, spiral, bar)
+        )
     shapes = {
         "circle": references.circle,
         "eight": references.eight,
@@ -70,7 +73,9 @@ def cases() -> List[Case]:
     )
     for plant in (*plants, ("ode", 10), ("eigen", 10)):
         found.append(
-            Case("spiral, pid_thesis", *plant, lambda: laws.pid_thesis(rate=1000), spiral, -1)
+            Case(
+                "spiral, pid_thesis", *plant, lambda: controllers.pid_thesis(rate=1000), spiral, -1
+            )
         )
     return found
 

@@ -233,7 +233,7 @@ void bind_control(py::module_& m) {
       },
       py::arg("path"), "Law, vehicle, rate, delay and parameters of a gains file.");
   m.def(
-      "laws",
+      "controllers",
       [] {
         py::list all;
         for (const control::LawInfo& law : control::laws()) {

@@ -27,7 +27,7 @@ class Geometric:
                     f"the estimate needs topic '{topic}'; add lib{plugin}_plugin.so, or fly with "
                     "--scenario sensors.yaml"
                 )
-        self._law = qc.laws.parse("geometric", simulation.model.name)
+        self._law = qc.controllers.parse("geometric", simulation.model.name)
         self._law.rate = self.rate
         self._law.reset(simulation)
         self._world = simulation.world

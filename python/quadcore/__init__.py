@@ -30,7 +30,7 @@ from ._core import (
     load_plugin_path,
     plugin_folders,
 )
-from .control import gains, laws, references
+from .control import controllers, gains, references
 from .control.controller import Controller, Odometry
 from .control.inner_loop import AttitudeThrust, InnerLoop, RatesThrust
 from .model.description import read_model, read_world
@@ -84,12 +84,12 @@ __all__ = [
     "__version__",
     "cmake_prefix",
     "compare",
+    "controllers",
     "engines",
     "evaluate",
     "export_fmu",
     "fit",
     "gains",
-    "laws",
     "load_plugin_path",
     "plugin_folders",
     "read_model",
@@ -114,8 +114,8 @@ _LATE = {
 }
 """Where to find the names that are imported at their first use: a single flight needs none."""
 
-for _module in (gains, laws, references):
-    # So that `from quadcore.laws import geometric` works, too.
+for _module in (controllers, gains, references):
+    # So that `from quadcore.controllers import geometric` works, too.
     sys.modules[f"{__name__}.{_module.__name__.rpartition('.')[2]}"] = _module
 
 

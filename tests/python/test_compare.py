@@ -186,12 +186,12 @@ def test_metrics_are_those_of_the_logs():
     row = result.table[1]
     assert row["final_z"] == b.table[-1, 3] - a.table[-1, 3]
     apart = np.linalg.norm(b.position - a.position, axis=1)
-    assert row["largest_position"] == pytest.approx(apart.max(), rel=1e-12)
+    assert row["max_position"] == pytest.approx(apart.max(), rel=1e-12)
     yaw = (roll_pitch_yaw(b.orientation) - roll_pitch_yaw(a.orientation))[:, 2]
-    assert row["largest_yaw"] == pytest.approx(np.abs(yaw).max(), rel=1e-9)
-    assert row["largest_attitude"] == pytest.approx(np.abs(yaw).max(), rel=1e-9)
+    assert row["max_yaw"] == pytest.approx(np.abs(yaw).max(), rel=1e-9)
+    assert row["max_attitude"] == pytest.approx(np.abs(yaw).max(), rel=1e-9)
     assert row["final_j1"] == b.rotor_velocity[-1, 0] - a.rotor_velocity[-1, 0]
-    assert all(result.table[0][f"largest_{state}"] == 0 for state in result.states)
+    assert all(result.table[0][f"max_{state}"] == 0 for state in result.states)
 
 
 def test_flights_logged_at_other_times_are_compared_in_between():
@@ -240,8 +240,8 @@ def test_the_first_that_flew_is_what_the_others_are_compared_with():
     result = qc.compare("toy.urdf", {"motor.kp": [-1, 1e-4, 2e-4]}, **SPIN)
     assert result.against == 1
     assert result.logs[0] is None
-    assert result.table["largest_position"][1] == 0
-    assert result.table["largest_yaw"][2] > 0
+    assert result.table["max_position"][1] == 0
+    assert result.table["max_yaw"][2] > 0
     nothing = qc.compare("toy.urdf", {"motor.kp": [-1, -2]}, **SPIN)
     assert nothing.against is None
     assert (result.refused, nothing.refused) == (1, 2)
@@ -256,7 +256,7 @@ def test_any_flight_can_be_what_the_others_are_compared_with(processes):
     assert last.against == 2
     for one, other in zip(first.logs, last.logs):
         assert np.array_equal(one.table, other.table)
-    assert last.table["largest_position"][2] == 0
+    assert last.table["max_position"][2] == 0
     assert last.table["final_j1"][0] == -first.table["final_j1"][2] != 0
     assert last.table["final_j1"][1] == first.table["final_j1"][1] - first.table["final_j1"][2]
 
@@ -282,14 +282,14 @@ def test_vehicles_are_compared_with_one_of_more_rotors():
     found = qc.compare(["quadrotor", "firefly"], against=1, **flight)
     assert list(found.table["failure"]) == ["", ""]
     assert list(found.states)[-6:] == [f"j{i}" for i in range(1, 7)]
-    assert np.isnan(found.table["largest_j6"][0]) and found.table["largest_j6"][1] == 0
-    assert found.table["largest_z"][0] > 0
+    assert np.isnan(found.table["max_j6"][0]) and found.table["max_j6"][1] == 0
+    assert found.table["max_z"][0] > 0
 
 
 def test_people_read_degrees_and_files_hold_radians(capsys):
     arguments = ["compare", "toy.urdf", *FLIGHT, "--no-plots", "--vary", "motor.kp=1e-4,2e-4"]
     assert main([*arguments, "--out", "out"]) == 0
-    degrees = f"{math.degrees(float(rows()[1]['largest_attitude'])):.4g}"
+    degrees = f"{math.degrees(float(rows()[1]['max_attitude'])):.4g}"
     assert float(degrees) > 0
     shown = capsys.readouterr().out
     assert "attitude (deg)" in shown and f"/ {degrees}" in shown

@@ -11,10 +11,10 @@ from flights import ENGINES, NOISE, quadrotor
 from twin_law import Twin
 
 import quadcore as qc
-from quadcore.control import laws, references
+from quadcore.control import controllers, references
 
 ROOT = Path(__file__).resolve().parents[2]
-FLYING = [name for name in laws.NAMES if name != "pid_thesis"]
+FLYING = [name for name in controllers.NAMES if name != "pid_thesis"]
 
 
 def at_slow(slow, **others):
@@ -34,7 +34,7 @@ def errors(log, reference):
     return np.linalg.norm(log.position - wanted, axis=1)
 
 
-def largest_at_the_end(log, reference, seconds=10):
+def max_at_the_end(log, reference, seconds=10):
     return errors(log, reference)[log.time > log.time[-1] - seconds].max()
 
 
@@ -45,7 +45,7 @@ def largest_at_the_end(log, reference, seconds=10):
 def test_the_geometric_law_flies_the_spiral_of_the_thesis(engine, slow, bar):
     spiral = references.spiral()
     log = on(spiral, engine, slow).run(30, controller="geometric", reference=spiral, log_every=5)
-    assert largest_at_the_end(log, spiral) < bar
+    assert max_at_the_end(log, spiral) < bar
 
 
 @pytest.mark.parametrize(
@@ -69,7 +69,7 @@ def test_the_printed_gains_lose_the_spiral(engine, slow):
     simulation = on(spiral, engine, slow)
     try:
         log = simulation.run(
-            30, controller=laws.pid_thesis(rate=1000), reference=spiral, log_every=10
+            30, controller=controllers.pid_thesis(rate=1000), reference=spiral, log_every=10
         )
     except qc.FlightError as error:
         log = error.log
@@ -82,7 +82,7 @@ def test_every_law_settles_at_a_place_through_noise(engine, law):
     hover = references.hover(x=0.3, y=-0.2, height=10.02, yaw=0.2)
     simulation = quadrotor(engine, parameters=at_slow(1, **NOISE), seed=3)
     log = simulation.run(30, controller=law, reference=hover, log_every=10)
-    assert largest_at_the_end(log, hover, 2) < 0.01
+    assert max_at_the_end(log, hover, 2) < 0.01
 
 
 def test_the_law_and_its_twin_in_numpy_fly_one_flight():
@@ -94,16 +94,16 @@ def test_the_law_and_its_twin_in_numpy_fly_one_flight():
 @pytest.mark.parametrize("believed", [0.9, 1.1])
 def test_a_thrust_believed_wrong_is_made_up_for(believed):
     spiral = references.spiral()
-    law = laws.geometric(believed_thrust=believed)
+    law = controllers.geometric(believed_thrust=believed)
     log = on(spiral).run(30, controller=law, reference=spiral, log_every=10)
-    assert largest_at_the_end(log, spiral) < 0.02
+    assert max_at_the_end(log, spiral) < 0.02
 
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_the_geometric_law_recovers_from_upside_down(engine):
     hover = references.hover(height=50)
     simulation = quadrotor(engine, parameters=at_slow(1), spawn=(0, 0, 50, np.pi, 0, 0))
-    law = laws.geometric(fastest=900)
+    law = controllers.geometric(fastest=900)
     log = simulation.run(6, controller=law, reference=hover)
     assert errors(log, hover)[log.time > 3].max() < 0.1
     assert log.position[:, 2].min() > 48
@@ -121,7 +121,7 @@ def test_wind_is_made_up_for(law, engine, tmp_path):
     simulation = quadrotor(engine, parameters=parameters, world=windy)
     log = simulation.run(22, controller=law, reference=hover, log_every=10)
     assert errors(log, hover).max() > 0.01
-    assert largest_at_the_end(log, hover, 2) < 1e-3
+    assert max_at_the_end(log, hover, 2) < 1e-3
 
 
 @pytest.mark.parametrize(
@@ -147,7 +147,7 @@ def test_the_geometric_law_takes_off_hovers_and_lands(engine, slow):
     ids=lambda value: value.name if isinstance(value, references.Shape) else "",
 )
 def test_the_geometric_law_flies_fast_references_in_gazebo(reference, options, bar):
-    law = laws.geometric(**options)
+    law = controllers.geometric(**options)
     log = on(reference, "gazebo11").run(12, controller=law, reference=reference, log_every=5)
     assert errors(log, reference).max() < bar
 
@@ -158,7 +158,7 @@ def test_the_geometric_law_flies_fast_references_in_gazebo(reference, options, b
 def test_the_compensated_cascade_flies_the_spiral(engine, bar):
     spiral = references.spiral()
     log = on(spiral, engine).run(12, controller="pd_compensated", reference=spiral, log_every=5)
-    assert largest_at_the_end(log, spiral, 6) < bar
+    assert max_at_the_end(log, spiral, 6) < bar
 
 
 def test_a_delay_is_that_of_a_law_that_waits_by_itself():
@@ -168,7 +168,7 @@ def test_a_delay_is_that_of_a_law_that_waits_by_itself():
         rate = 500
 
         def reset(self, simulation):
-            self.law = laws.geometric()
+            self.law = controllers.geometric()
             self.law.reset(simulation)
             self.waiting = []
 
@@ -176,7 +176,7 @@ def test_a_delay_is_that_of_a_law_that_waits_by_itself():
             self.waiting.append(self.law(t, state, reference))
             return self.waiting.pop(0) if len(self.waiting) > 3 else self.waiting[0]
 
-    one = quadrotor("eigen").run(1, controller=laws.geometric(delay=0.006), reference=hover)
+    one = quadrotor("eigen").run(1, controller=controllers.geometric(delay=0.006), reference=hover)
     other = quadrotor("eigen").run(1, controller=Late(), reference=hover)
     assert np.array_equal(one.table, other.table)
 
@@ -207,7 +207,7 @@ def test_references_and_laws_can_be_pickled():
         copy = pickle.loads(pickle.dumps(reference))
         assert np.array_equal(copy(0.7).position, reference(0.7).position)
         assert repr(copy) == repr(reference)
-    assert pickle.loads(pickle.dumps(laws.pd(kp_xy=1))).parameters == {"kp_xy": 1}
+    assert pickle.loads(pickle.dumps(controllers.pd(kp_xy=1))).parameters == {"kp_xy": 1}
 
 
 @pytest.mark.parametrize(
@@ -218,11 +218,17 @@ def test_references_and_laws_can_be_pickled():
         ({"controller": "geometrik", "reference": "spiral"}, "did you mean 'geometric'"),
         ({"controller": "pd", "reference": "spirale"}, "did you mean 'spiral'"),
         ({"controller": "pd", "reference": 5}, "reference is 5; give one of quadcore.references"),
-        ({"controller": laws.pd(delay=-1), "reference": "hover"}, "its delay is -1; give seconds"),
-        ({"controller": laws.pd(kp=1), "reference": "hover"}, "has no parameter 'kp'"),
-        ({"controller": laws.pd(kp_xy=-1), "reference": "hover"}, "'kp_xy' is -1; give"),
-        ({"controller": laws.pd(spins=[1, 1, 1, 1]), "reference": "hover"}, "independently"),
-        ({"controller": laws.pd(spins=[1, -1]), "reference": "hover"}, "spins are no 4 signs"),
+        (
+            {"controller": controllers.pd(delay=-1), "reference": "hover"},
+            "its delay is -1; give seconds",
+        ),
+        ({"controller": controllers.pd(kp=1), "reference": "hover"}, "has no parameter 'kp'"),
+        ({"controller": controllers.pd(kp_xy=-1), "reference": "hover"}, "'kp_xy' is -1; give"),
+        ({"controller": controllers.pd(spins=[1, 1, 1, 1]), "reference": "hover"}, "independently"),
+        (
+            {"controller": controllers.pd(spins=[1, -1]), "reference": "hover"},
+            "spins are no 4 signs",
+        ),
     ],
 )
 def test_what_cannot_be_flown_is_refused_before_the_flight(arguments, says):
@@ -233,8 +239,8 @@ def test_what_cannot_be_flown_is_refused_before_the_flight(arguments, says):
 
 
 def test_parameters_are_documented_where_they_are_given():
-    assert "kp_xy : float, default 2.4" in laws.pd.__doc__
-    assert "kd_xy : float, default 0.125" in laws.pid_thesis.__doc__
+    assert "kp_xy : float, default 2.4" in controllers.pd.__doc__
+    assert "kd_xy : float, default 0.125" in controllers.pid_thesis.__doc__
     assert "rate : float, default 1.5" in references.circle.__doc__
     with pytest.raises(AttributeError, match="there is no law 'pdd'"):
-        laws.pdd  # noqa: B018
+        controllers.pdd  # noqa: B018

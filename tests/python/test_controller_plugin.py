@@ -9,7 +9,7 @@ from hooked import G, with_plugins
 from vehicles import CROSS, DRAG, LIFT, MOTOR, plugin, vehicle
 
 import quadcore as qc
-from quadcore.control import laws, references
+from quadcore.control import controllers, references
 
 NOISY = {
     "positionNoise": 1e-3,
@@ -45,13 +45,13 @@ def test_a_law_as_plugin_and_from_python_is_one_flight(engine, timing, hangar):
     called = hangar(bare(), G, engine=engine)
     for simulation in (plugged, called):
         simulation.set_state(references.start(simulation, circle()))
-    law = laws.geometric(kp_xy=7, **timing)
+    law = controllers.geometric(kp_xy=7, **timing)
     one = plugged.run(1)
     other = called.run(1, controller=law, reference=circle())
     assert one.table.tobytes() == other.table.tobytes()
 
 
-@pytest.mark.parametrize("law", laws.NAMES)
+@pytest.mark.parametrize("law", controllers.NAMES)
 def test_a_flight_goes_on_from_a_snapshot_bit_for_bit_with_every_law(law, hangar):
     urdf = guided({"law": law, "delay": 0.007, "rate": 230})
     first, second = (hangar(urdf, G, engine="eigen", spawn=(1, 0, 10)) for _ in range(2))
@@ -93,7 +93,7 @@ def test_a_law_believes_in_the_vehicle_of_a_second_file(tmp_path, hangar):
     )
     plugged = hangar(guided({"law": "geometric", "belief": believed}), G, engine="ode")
     called = hangar(bare(), G, engine="ode")
-    law = laws.geometric(belief=hangar(heavier, G, engine="eigen"))
+    law = controllers.geometric(belief=hangar(heavier, G, engine="eigen"))
     one = plugged.run(0.5)
     other = called.run(0.5, controller=law, reference=circle())
     assert one.table.tobytes() == other.table.tobytes()

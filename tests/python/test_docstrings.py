@@ -14,7 +14,7 @@ from quadcore.thesis import chapter2
 
 PUBLIC = {
     f"{module.__name__}.{name}": getattr(module, name)
-    for module in (qc, qc.laws, qc.references, _core)
+    for module in (qc, qc.controllers, qc.references, _core)
     for name in getattr(module, "__all__", dir(module))
     if not name.startswith("_")
 }
@@ -109,6 +109,11 @@ def test_a_public_object_does_not_show_as_an_address():
     log = sim.run(0.01)
     shown = [sim, sim.state, sim.model, sim.world, sim.snapshot(), log, qc.references.hover()(0)]
     shown += [*sim.model.links, *sim.model.joints, *sim.plugins, *sim.plugins[0].parameters]
-    shown += [*sim.topics.values(), qc.laws.geometric(), qc.references.spiral(), qc.InnerLoop()]
+    shown += [
+        *sim.topics.values(),
+        qc.controllers.geometric(),
+        qc.references.spiral(),
+        qc.InnerLoop(),
+    ]
     shown += [qc.BatchSimulation(n=2), qc.FlightPlan.of(), qc.AttitudeThrust((0, 0, 0, 1), 1.0)]
     assert [repr(each) for each in shown if " at 0x" in repr(each)] == []

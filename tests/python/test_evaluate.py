@@ -8,7 +8,7 @@ from evaluations import evaluate
 from flights import NOISE
 
 import quadcore as qc
-from quadcore.control import laws, references
+from quadcore.control import controllers, references
 
 
 def test_a_row_is_what_the_flight_by_itself_is():
@@ -20,7 +20,7 @@ def test_a_row_is_what_the_flight_by_itself_is():
     away = np.linalg.norm([log.topics["error"][axis] for axis in "xyz"], axis=0)
     row = found.table[-1]
     assert (row["controller"], row["seed"], row["failure"]) == ("geometric", 4, "")
-    assert row["largest_position"] == away.max()
+    assert row["max_position"] == away.max()
     assert [r["seed"] for r in found.table] == [3, 4, 3, 4]
     group = found.groups[1]
     apart = [found.table[2 + i]["rms_position"] - found.table[i]["rms_position"] for i in range(2)]
@@ -38,7 +38,7 @@ def test_the_number_of_processes_changes_nothing():
 
 def test_conditions_reach_plant_world_and_controller():
     found = evaluate(
-        {"mine": laws.geometric(kp_xy=7)},
+        {"mine": controllers.geometric(kp_xy=7)},
         "circle",
         vary={"controller.delay": [0, 0.02], "frame.mass": [1.0, 1.3], "xacro.sim_slow": [1, 2]},
         xacro_args={},
@@ -46,7 +46,7 @@ def test_conditions_reach_plant_world_and_controller():
     )
     assert len(found.table) == 8
     assert found.table[0]["scenario"] == "controller.delay=0 frame.mass=1.0 xacro.sim_slow=1"
-    assert len({row["largest_position"] for row in found.table}) == 8
+    assert len({row["max_position"] for row in found.table}) == 8
     assert not any(row["failure"] for row in found.table)
 
 
@@ -60,4 +60,4 @@ def test_a_lost_vehicle_is_a_failure_with_its_time():
 def test_models_with_other_rotors_fly_beside_each_other():
     found = evaluate("geometric", "hover", models=["hexarotor", "crazyflie"], xacro_args={})
     assert [row["model"] for row in found.table] == ["hexarotor", "crazyflie"]
-    assert max(row["largest_position"] for row in found.table) < 0.01
+    assert max(row["max_position"] for row in found.table) < 0.01

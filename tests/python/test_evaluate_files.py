@@ -27,7 +27,7 @@ def test_everything_is_written_and_reproducible():
     found = rows()
     assert [row["controller"] for row in found[::4]] == ["pd", "geometric"]
     head = ["controller", "reference", "engine", "model", "scenario", "seed", "failure"]
-    assert list(found[0])[:10] == [*head, "rms_position", "largest_position", "tail_position"]
+    assert list(found[0])[:10] == [*head, "rms_position", "max_position", "final_position"]
     assert found[2]["reference"] == "step:dx=1,time=0.2"
     for name in ("table.csv", "evaluation.json", "report.html", "seeds.png"):
         assert Path("out", name).read_bytes() == Path("again", name).read_bytes(), name

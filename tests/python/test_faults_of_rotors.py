@@ -265,7 +265,7 @@ def test_the_shipped_vehicles_hear_of_faults():
 def test_a_law_that_begins_in_mid_flight_believes_the_vehicle_as_it_was_made(hangar):
     """What has befallen it since is told on topics, or not at all."""
     simulation = hangar(with_plugins(motored(), plugin("fault", {"losses": "0.001 1 0.9"})), G)
-    law = qc.laws.geometric()
+    law = qc.controllers.geometric()
     start = simulation.state.copy()
     law.reset(simulation)
     hover = law(0, start, qc.references.hover()(0))

@@ -45,7 +45,7 @@ class Excited:
     spins = ()
 
     def __init__(self):
-        self.law = qc.laws.geometric(rate=self.rate)
+        self.law = qc.controllers.geometric(rate=self.rate)
 
     def reset(self, simulation):
         self.law.reset(simulation)

@@ -84,7 +84,7 @@ def test_a_law_that_closes_the_loop_flies_the_spiral_as_on_the_simulation(engine
     instance = imported(engine, **fast)
     simulation = qc.Simulation("quadrotor", engine=engine, **fast)
     reference = qc.references.spiral()
-    laws = [qc.laws.geometric() for _ in range(2)]
+    laws = [qc.controllers.geometric() for _ in range(2)]
     for law in laws:
         law.reset(simulation)
     parts = ["fx", "fy", "fz", "tx", "ty", "tz"]

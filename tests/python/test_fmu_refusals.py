@@ -38,7 +38,7 @@ def refusal(instance, call, *arguments):
     "options",
     [
         {"rotor_velocity": [100.0] * 4},
-        {"controller": qc.laws.geometric()},
+        {"controller": qc.controllers.geometric()},
         {"reference": qc.references.spiral()},
         {"on_reference": True},
         {"commands": HOVER},

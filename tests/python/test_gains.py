@@ -11,7 +11,7 @@ from hooked import G
 from test_controller_plugin import guided
 
 import quadcore as qc
-from quadcore.control import gains, laws, references
+from quadcore.control import controllers, gains, references
 
 SHIPPED = sorted((Path(__file__).resolve().parents[2] / "config" / "gains").glob("*/*.yaml"))
 
@@ -67,11 +67,11 @@ def test_a_wrong_file_is_one_line_that_tells_where(text, line, says, tmp_path):
 
 def test_a_file_that_is_not_there_is_told(tmp_path):
     with pytest.raises(qc.InputError, match=r"no\.yaml: cannot be read"):
-        laws.of_file(tmp_path / "no.yaml")
+        controllers.of_file(tmp_path / "no.yaml")
 
 
 def test_a_law_has_the_gains_that_are_shipped_for_the_vehicle():
-    own = laws.of_file(SHIPPED[0])
+    own = controllers.of_file(SHIPPED[0])
     vehicle, law = SHIPPED[0].parent.name, SHIPPED[0].stem
     assert gains.law_for(law, vehicle).parameters == own.parameters != {}
     assert gains.law_for("geometric", "of nobody").parameters == {}
@@ -113,12 +113,12 @@ def test_tags_that_contradict_the_file_are_refused(tags, says, tmp_path, hangar)
 
 def test_a_law_of_a_file_flies_at_its_rate(tmp_path):
     path = written(tmp_path, "law: geometric\nrate: 100\nparameters:\n  kp_xy: 7\n")
-    law = laws.of_file(path)
+    law = controllers.of_file(path)
     assert (law.rate, law.delay) == (100, 0)
     hover = references.hover(x=0.1)
     one = quadrotor("eigen").run(0.5, controller=law, reference=hover)
     other = quadrotor("eigen").run(
-        0.5, controller=laws.geometric(rate=100, kp_xy=7), reference=hover
+        0.5, controller=controllers.geometric(rate=100, kp_xy=7), reference=hover
     )
     assert one.table.tobytes() == other.table.tobytes()
 
@@ -126,14 +126,14 @@ def test_a_law_of_a_file_flies_at_its_rate(tmp_path):
 def test_gains_of_another_vehicle_are_warned_of(tmp_path):
     path = written(tmp_path, "law: geometric\nvehicle: hexarotor\n")
     with pytest.warns(qc.QuadcoreWarning, match="for 'hexarotor', but 'quadrotor' flies"):
-        laws.parse(str(path), "quadrotor")
+        controllers.parse(str(path), "quadrotor")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        laws.parse(str(path), "hexarotor")
-        laws.parse(str(written(tmp_path, "law: geometric\n")), "quadrotor")
+        controllers.parse(str(path), "hexarotor")
+        controllers.parse(str(written(tmp_path, "law: geometric\n")), "quadrotor")
 
 
 def test_a_slowest_speed_that_no_rotor_attains_is_refused():
     sim = quadrotor("eigen", parameters={"motorpid_plugin.maxVelocity": 1e9})
     with pytest.raises(qc.InputError, match="'slowest' is not below the fastest speed"):
-        sim.run(0.01, controller=laws.geometric(slowest=2e6), reference="hover")
+        sim.run(0.01, controller=controllers.geometric(slowest=2e6), reference="hover")

@@ -13,7 +13,7 @@ from flights import quadrotor
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.control import laws, references
+from quadcore.control import controllers, references
 
 FLY = ["run", "quadrotor", "--engine", "eigen", "--xacro", "sim_slow:=1"]
 
@@ -95,7 +95,7 @@ def test_the_summary_tells_largest_rms_and_late_errors(capsys):
     log = columns("l.csv")
     away = np.linalg.norm([log[f"error.{axis}"] for axis in "xyz"], axis=0)
     late = away[log["t"] > log["t"][-1] - 10].max()
-    assert said["largest error"] == f"{away.max():.4g} m, of the last 10 s {late:.4g} m"
+    assert said["max error"] == f"{away.max():.4g} m, of the last 10 s {late:.4g} m"
     assert said["RMS error"] == f"{np.sqrt(np.mean(away**2)):.4g} m"
     assert said["controller"] == "pd, 500 Hz, delay 0 s"
     assert said["saturated updates"] == "0 of 6000"
@@ -109,7 +109,7 @@ def test_it_flies_what_python_flies(capsys):
     circle = references.circle()
     simulation = quadrotor("eigen", xacro_args={"sim_slow": 1})
     simulation.set_state(references.start(simulation, circle))
-    law = laws.geometric(kp_xy=7, rate=250, delay=0.004)
+    law = controllers.geometric(kp_xy=7, rate=250, delay=0.004)
     log = simulation.run(1, controller=law, reference=circle)
     assert np.array_equal(columns("log.csv")["x"], log.position[:, 0])
     assert np.array_equal(columns("log.csv")["error.z"], log.topics["error"]["z"])
@@ -218,7 +218,7 @@ def test_plans_of_guided_flights_fly_elsewhere_and_have_fingerprints():
     plan = qc.FlightPlan.of(
         engine="eigen",
         duration=0.3,
-        controller=laws.geometric(),
+        controller=controllers.geometric(),
         reference=references.circle(),
         on_reference=True,
     )
@@ -226,7 +226,7 @@ def test_plans_of_guided_flights_fly_elsewhere_and_have_fingerprints():
     assert np.array_equal(plan.fly().table, again.fly().table)
     assert plan.fingerprint() == again.fingerprint()
     other = qc.FlightPlan.of(
-        engine="eigen", duration=0.3, controller=laws.geometric(kp_xy=9),
+        engine="eigen", duration=0.3, controller=controllers.geometric(kp_xy=9),
         reference=references.circle(), on_reference=True,
     )  # fmt: skip
     assert other.fingerprint() != plan.fingerprint()

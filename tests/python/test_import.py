@@ -60,8 +60,9 @@ def test_the_packages_show_exactly_their_public_names():
 
 
 def test_public_modules_are_imported_by_their_public_names():
-    text = "from quadcore.laws import pd; import quadcore.references, quadcore.gains; print(pd())"
-    assert script(text).stdout.startswith("quadcore.laws.pd(")
+    text = "from quadcore.controllers import pd; import quadcore.references, quadcore.gains"
+    text += "; print(pd())"
+    assert script(text).stdout.startswith("quadcore.controllers.pd(")
 
 
 def imports_of(file):

@@ -10,7 +10,7 @@ import pytest
 from flights import ENGINES, quadrotor
 
 import quadcore as qc
-from quadcore.control import laws, references
+from quadcore.control import controllers, references
 
 WEIGHT = 1.04 * 9.8  # N
 SLOW = {"drone_plugin.sim_slow": 1, "motorpid_plugin.sim_slow": 1}
@@ -77,7 +77,7 @@ def test_an_outer_loop_of_ten_lines_hovers(engine, slow):
 def test_it_commands_what_the_geometric_law_does_inside():
     hover = references.hover(x=0.4, y=-0.3, height=20.2, yaw=0.5)
     plain = {"integral": False, "flat_rates": False, "drag": False}
-    inside = laws.geometric(**plain)
+    inside = controllers.geometric(**plain)
 
     class Same:
         """The outer loop of the law, once more."""

@@ -35,7 +35,7 @@ def recording(tmp_path_factory):
 
 def largest(out):
     rows = list(csv.DictReader((out / "plant.csv").open()))
-    return {(row["plant"], row["state"]): float(row["largest"]) for row in rows}
+    return {(row["plant"], row["state"]): float(row["max"]) for row in rows}
 
 
 @pytest.mark.parametrize("suffix", ["csv", "mat", "bag"])

@@ -25,7 +25,7 @@ from vehicles import (
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.control import laws, references
+from quadcore.control import controllers, references
 from quadcore.simulation.simulation import make_simulation
 from quadcore.thesis.chapter2 import GYROSTAT, Terms
 from quadcore.thesis.chapter2.plant import Plant, check
@@ -48,7 +48,7 @@ def apart(one, other):
 
 def test_with_equal_terms_the_law_of_the_thesis_flies_it_as_it_flies_eigen():
     spiral = references.spiral()
-    law = laws.pd_compensated(rate=250)
+    law = controllers.pd_compensated(rate=250)
     plants = [
         Plant(GYROSTAT, dt=4e-3, **CHAPTER_2),
         qc.Simulation(engine="eigen", dt=4e-3, **CHAPTER_2),
@@ -66,7 +66,7 @@ def test_so_it_does_any_vehicle_with_rate_delay_and_noise(hangar):
     simulation = hangar(urdf, GRAVITY, WIND, engine="eigen", dt=1e-3, spawn=(0, 0, 10))
     plant = Plant(GYROSTAT, model=simulation.model, world=simulation.world, dt=1e-3)
     hover = references.hover(x=0.1)
-    law = laws.indi(rate=330, delay=0.003)
+    law = controllers.indi(rate=330, delay=0.003)
     logs = [s.run(0.3, controller=law, reference=hover) for s in (plant, simulation)]
     assert apart(*logs) < 1e-8
     assert plant.topic("odom") == pytest.approx(simulation.topic("odom"), abs=1e-8)
@@ -76,7 +76,7 @@ def test_what_the_thesis_leaves_out_sets_it_apart():
     spiral = references.spiral()
     logs = [
         on(spiral, Plant(terms, dt=4e-3, **CHAPTER_2)).run(
-            1, controller=laws.pd_compensated(rate=250), reference=spiral
+            1, controller=controllers.pd_compensated(rate=250), reference=spiral
         )
         for terms in (Terms(), GYROSTAT)
     ]

@@ -8,7 +8,7 @@ from hooked import G, with_plugins
 from vehicles import CROSS, DRAG, LIFT, MOTOR, SKEW, Rotor, plugin, vehicle
 
 import quadcore as qc
-from quadcore.control import laws, references
+from quadcore.control import controllers, references
 
 OFF = (0.05, -0.02, 0.01)
 # As the motors are told: neither the file's order nor the one around the vehicle.
@@ -61,7 +61,7 @@ def test_a_belief_is_matched_by_the_names_of_the_joints(hangar, tmp_path):
     file.write_text(odd().replace("rotor1 rotor2", "rotor2 rotor1"))  # an order of its own
     plugged = hangar(guided(odd(), circle, law="geometric", belief=file), G, engine="eigen")
     called = hangar(odd(), G, engine="eigen")
-    law = laws.geometric(belief=qc.Simulation(file, engine="eigen"))
+    law = controllers.geometric(belief=qc.Simulation(file, engine="eigen"))
     logs = []
     for simulation, options in ((plugged, {}), (called, {"controller": law, "reference": circle})):
         simulation.set_state(references.start(simulation, circle))

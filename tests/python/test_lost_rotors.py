@@ -34,7 +34,7 @@ def scenario(rotor, detection=0.0, event="weaken: {}, to: 0"):
 
 def flown(rotor, spins, engine="eigen", detection=0.0, event="weaken: {}, to: 0", **options):
     """Log, distance and yaw over time of a flight in which a rotor is lost."""
-    law = qc.laws.parse(options.pop("law", "geometric"), "hexarotor")
+    law = qc.controllers.parse(options.pop("law", "geometric"), "hexarotor")
     law.spins = list(spins)
     usual = {
         "reference": qc.references.parse("hover"),
@@ -131,7 +131,7 @@ def test_the_plugin_is_told_as_the_law_from_python_is(engine):
     for simulation in (plugged, called):
         simulation.set_state(qc.references.start(simulation, shape, PAIRED))
     one = plugged.run(1.2, topics=["health"])
-    geometric = qc.laws.geometric(spins=PAIRED)
+    geometric = qc.controllers.geometric(spins=PAIRED)
     other = called.run(1.2, controller=geometric, reference=shape)
     assert one.table.tobytes() == other.table.tobytes()
     told, time = one.topics["health"], one.time

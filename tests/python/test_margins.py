@@ -13,7 +13,7 @@ from vehicles import plugin, vehicle
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.control import laws
+from quadcore.control import controllers
 from quadcore.studies.evaluate.plan import Plan
 from quadcore.studies.evaluate.robustness import ENDS, Searches, margin_text
 from quadcore.studies.evaluate.trial import Trial, lacking
@@ -41,7 +41,7 @@ class Own:
     rate = 500.0
 
     def __init__(self):
-        self._law = laws.geometric()
+        self._law = controllers.geometric()
 
     def reset(self, simulation):
         self._law.reset(simulation)

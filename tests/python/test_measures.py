@@ -40,11 +40,11 @@ def test_measures_are_those_of_a_motion_in_closed_form():
     rotors = np.column_stack([100 + 10 * time, np.full(2001, -50.0)])
     log = log_of(time, np.sin(time), np.sin(time) + error, rotors)
     found = measures.measure(log, 0.25, rotors_of(2e-6, 3e-6))
-    assert found["largest_position"] == pytest.approx(0.3)
+    assert found["max_position"] == pytest.approx(0.3)
     assert found["rms_position"] == pytest.approx(
         np.sqrt(0.09 * 2 * (1 - np.exp(-10)) / 20), rel=2e-3
     )
-    assert found["tail_position"] == pytest.approx(0.3 * np.exp(-10.01 / 4))
+    assert found["final_position"] == pytest.approx(0.3 * np.exp(-10.01 / 4))
     assert found["iae_position"] == pytest.approx(1.2 * (1 - np.exp(-5)), rel=1e-4)
     assert found["itae_position"] == pytest.approx(0.3 * 16 * (1 - 6 * np.exp(-5)), rel=1e-4)
     assert found["effort"] == pytest.approx(5)

@@ -42,7 +42,7 @@ def test_a_comparison_is_a_table_of_differences():
         "quadrotor", {"motorpid_plugin.kp": gains, "engine": ["eigen"]}, duration=0.05
     )
     head, first, failed, last = Cells(found._repr_html_()).rows
-    assert head[:2] == ["motorpid_plugin.kp", "largest position (m)"]
+    assert head[:2] == ["motorpid_plugin.kp", "max position (m)"]
     assert first[:2] == ["0.0005", "0"]
     assert "out of range" in failed[1]
     assert last[0] == "0.001"

@@ -128,7 +128,7 @@ def test_what_a_module_remembers_of_a_flight_no_other_flight_knows(options):
         evaluate("own:remembers", "hover", duration=0.05, processes=n, **options) for n in (1, 2)
     ]
     assert str(several[0][:4]) == str(several[1][:4])
-    assert len({row["largest_position"] for row in several[0].table}) == 1
+    assert len({row["max_position"] for row in several[0].table}) == 1
 
 
 def test_what_a_function_or_a_reference_of_ones_own_remembers_stays_in_its_flight():
@@ -143,7 +143,7 @@ def test_what_a_function_or_a_reference_of_ones_own_remembers_stays_in_its_fligh
         return references.hover()(t)
 
     found = evaluate([law], [place], seeds=3, duration=0.1, processes=1)
-    assert len({row["largest_position"] for row in found.table}) == 1
+    assert len({row["max_position"] for row in found.table}) == 1
     assert not calls and not places
 
 

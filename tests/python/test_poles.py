@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import quadcore as qc
-from quadcore.control import laws
+from quadcore.control import controllers
 from quadcore.simulation.simulation import make_simulation
 from quadcore.studies.evaluate.poles import gains_of, has_poles, poles, text
 
@@ -21,30 +21,32 @@ def test_the_zero_of_the_yaw_is_where_air_and_spin_up_cancel():
     hover = np.sqrt(simulation.mass * 9.8 / 4 / 1.1487e-5)
     zero = 2 * 2.69e-7 * hover / 2.8125e-5
     for slow in (1, 10):
-        assert by_axis(laws.pid_thesis(), slow=slow)["yaw"]["zero"] == pytest.approx(zero * slow)
-    assert np.isinf(by_axis(laws.pid_thesis(), "lagrange")["yaw"]["zero"])
-    opposing = by_axis(laws.pid_thesis(), **{"drone_plugin.reactionTorque": "opposing"})
+        assert by_axis(controllers.pid_thesis(), slow=slow)["yaw"]["zero"] == pytest.approx(
+            zero * slow
+        )
+    assert np.isinf(by_axis(controllers.pid_thesis(), "lagrange")["yaw"]["zero"])
+    opposing = by_axis(controllers.pid_thesis(), **{"drone_plugin.reactionTorque": "opposing"})
     assert opposing["yaw"]["zero"] == pytest.approx(-zero)
     assert opposing["yaw"]["stable"]
 
 
 @pytest.mark.parametrize("scale", [0.8, 1])
 def test_the_printed_gains_are_unstable_in_x_and_y_everywhere_and_in_yaw_at_sim_slow_1(scale):
-    law = laws.pid_thesis(scale=scale)
+    law = controllers.pid_thesis(scale=scale)
     for engine, slow in (("eigen", 1), ("gazebo11", 10), ("lagrange", 1)):
         found = by_axis(law, engine, slow)
         assert not found["x, y"]["stable"]
         assert found["z"]["stable"]
         assert found["roll, pitch"]["stable"]
         assert found["yaw"]["stable"] == ((engine, slow) != ("eigen", 1))
-    assert all(row["stable"] for row in by_axis(laws.pid()).values())
-    assert text(by_axis(laws.pid_thesis())["x, y"], 1) == "0.27 +- 1.63i"
+    assert all(row["stable"] for row in by_axis(controllers.pid()).values())
+    assert text(by_axis(controllers.pid_thesis())["x, y"], 1) == "0.27 +- 1.63i"
 
 
 def test_motors_without_lag_leave_the_polynomial_of_routh_and_hurwitz():
     """Around an ideal inner loop x and y are s^3 + Kd s^2 + Kp s + Ki."""
     fast = {"kp_rp": 1e5, "kd_rp": 6e2, "ki_rp": 0}
-    found = by_axis(laws.pid_thesis(**fast), **{"motorpid_plugin.kp": 0.07})["x, y"]["poles"]
+    found = by_axis(controllers.pid_thesis(**fast), **{"motorpid_plugin.kp": 0.07})["x, y"]["poles"]
     slow = [pole for pole in found if abs(pole) < 10]
     expected = np.roots([1, 0.125, 2.4, 0.8])
     for pole in expected:
@@ -52,7 +54,7 @@ def test_motors_without_lag_leave_the_polynomial_of_routh_and_hurwitz():
 
 
 def test_the_yaw_grows_in_flight_as_its_pole_says():
-    law = laws.pid_thesis(rate=1000)
+    law = controllers.pid_thesis(rate=1000)
     simulation = qc.Simulation(engine="eigen", xacro_args={"sim_slow": 1})
     hover = qc.references.hover()
     simulation.set_state(qc.references.start(simulation, hover))
@@ -71,25 +73,25 @@ def test_the_yaw_grows_in_flight_as_its_pole_says():
 
 
 def test_only_cascades_have_poles():
-    assert has_poles(laws.pd())
-    assert not has_poles(laws.geometric())
+    assert has_poles(controllers.pd())
+    assert not has_poles(controllers.geometric())
     assert not has_poles(lambda t, state, reference: None)
-    assert gains_of(laws.pid_thesis(kp_z=3))["kp_z"] == 3
-    assert gains_of(laws.pid_thesis())["kd_xy"] == 0.125
+    assert gains_of(controllers.pid_thesis(kp_z=3))["kp_z"] == 3
+    assert gains_of(controllers.pid_thesis())["kd_xy"] == 0.125
 
 
 def test_the_page_names_both_causes_of_the_printed_gains():
-    found = by_axis(laws.pid_thesis())
+    found = by_axis(controllers.pid_thesis())
     assert "Kd Kp = 0.3 is not above Ki = 0.8" in found["x, y"]["because"]
     assert "2 b w0 sim_slow / I_R = +9.01 1/s" in found["yaw"]["because"]
     assert not found["z"]["because"]
-    assert not by_axis(laws.pid_thesis(), slow=10)["yaw"]["because"]
-    assert not by_axis(laws.pid_thesis(kd_xy=2.5))["x, y"]["because"]
+    assert not by_axis(controllers.pid_thesis(), slow=10)["yaw"]["because"]
+    assert not by_axis(controllers.pid_thesis(kd_xy=2.5))["x, y"]["because"]
 
 
 @pytest.mark.parametrize(("slow", "fails"), [(1, True), (10, False)])
 def test_kd_2_5_alone_fails_at_sim_slow_1_by_its_yaw(slow, fails):
-    law = laws.pid_thesis(kd_xy=2.5, rate=1000)
+    law = controllers.pid_thesis(kd_xy=2.5, rate=1000)
     assert by_axis(law, slow=slow)["x, y"]["stable"]
     assert by_axis(law, slow=slow)["yaw"]["stable"] != fails
     simulation = qc.Simulation(engine="eigen", xacro_args={"sim_slow": slow})

@@ -35,7 +35,7 @@ def flown(scenario, duration=0.4, **options):
         xacro_args={"sim_slow": 1, "drag_model": "chapter2"},
         engine="eigen",
         duration=duration,
-        controller=qc.laws.parse("geometric", "quadrotor"),
+        controller=qc.controllers.parse("geometric", "quadrotor"),
         reference=qc.references.parse("hover"),
         **options,
     )
@@ -95,7 +95,7 @@ def test_a_scenario_flies_as_the_model_with_its_plugins_written_out(tmp_path):
         urdf,
         engine="eigen",
         duration=0.4,
-        controller=qc.laws.parse("geometric", "quadrotor"),
+        controller=qc.controllers.parse("geometric", "quadrotor"),
         reference=qc.references.parse("hover"),
     )
     same = plan.fly()
@@ -212,7 +212,7 @@ def test_a_hexarotor_with_motors_of_first_order_flies_through_everything(engine)
     command += ["--controller", "geometric", "--reference", "circle", "--scenario", "everything"]
     assert main([*command, "--out", "out", "--no-plots", "--quiet"]) == 0
     (row,) = rows()
-    assert row["failure"] == "" and float(row["largest_position"]) < 0.5
+    assert row["failure"] == "" and float(row["max_position"]) < 0.5
 
 
 def test_the_mathematical_model_refuses_what_it_cannot_feel(capsys):
@@ -234,7 +234,7 @@ def test_a_comparison_flies_in_a_scenario_or_in_several():
     table = qc.compare("quadrotor", {"scenario": ["none", scenario]}, **options).table
     assert list(table["scenario"]) == ["none", "storm.yaml"]
     assert list(table["failure"]) == ["", ""]
-    assert table["largest_position"][1] > 1e-6
+    assert table["max_position"][1] > 1e-6
     varied = qc.compare("quadrotor", {"wind.velocity": ["0 0 0"]}, scenario=scenario, **options)
     assert list(varied.table["failure"]) == [""]
 

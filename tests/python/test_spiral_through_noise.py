@@ -16,7 +16,7 @@ def worst(engine, slow, noise, seeds):
         "geometric", "spiral", engine, seeds=seeds, parameters=noise, xacro_args={"sim_slow": slow}
     )
     assert [row["failure"] for row in found.table] == [""] * seeds
-    return max(row["tail_position"] for row in found.table)
+    return max(row["final_position"] for row in found.table)
 
 
 @pytest.mark.parametrize(

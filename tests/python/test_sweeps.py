@@ -34,7 +34,7 @@ def test_a_row_is_what_the_flight_by_itself_is():
     simulation.set_state(qc.references.start(simulation, circle))
     log = simulation.run(0.5, controller="geometric", reference=circle, log_every=10)
     away = np.linalg.norm([log.topics["error"][axis] for axis in "xyz"], axis=0)
-    assert found.columns["largest_position"][1] == away.max()
+    assert found.columns["max_position"][1] == away.max()
     assert found.columns["failure"].tolist() == ["", ""]
 
 
@@ -69,7 +69,7 @@ def test_commands_fly_open_loop_and_their_motion_is_measured(tmp_path):
     up = qc.Simulation().state.orientation  # level
     assert up[3] == 1 and found.columns["final_tilt"][1] > 0
     z = 1 - 2 * (log.orientation[:, 0] ** 2 + log.orientation[:, 1] ** 2)
-    assert found.columns["largest_tilt"][1] == pytest.approx(np.arccos(z).max(), rel=1e-6)
+    assert found.columns["max_tilt"][1] == pytest.approx(np.arccos(z).max(), rel=1e-6)
 
 
 def test_rows_that_fly_together_are_what_they_are_alone(tmp_path, monkeypatch):
@@ -181,7 +181,7 @@ def test_the_command_line_of_a_row_flies_it_again(in_empty_folder):
     log = qc.Log.of_file("log.csv")
     away = np.linalg.norm([log.topics["error"][axis] for axis in "xyz"], axis=0)
     row = rows("out")[told["row"]]
-    assert float(row["largest_position"]) == away.max()
+    assert float(row["max_position"]) == away.max()
     assert float(row["rms_position"]) == told["rms_position"]
 
 

@@ -25,7 +25,7 @@ FAST = ["--drag", "none", "--sim-slow", "1", "--engine", "eigen", "--duration", 
 def distances(study):
     """Largest distance from the model by engine, sim_slow and drag."""
     assert not any(row.failure for row in study.rows)
-    return {row.case[:3]: row.difference.largest["distance"] for row in study.rows}
+    return {row.case[:3]: row.difference.max["distance"] for row in study.rows}
 
 
 def test_every_flight_ascends_and_moves_in_all_axes_without_a_steep_angle(study):
@@ -61,7 +61,7 @@ def test_a_chain_leads_from_the_plant_to_the_model_and_adds_up(study):
             assert link.end == after.begin
         assert sum(link.share for link in chain.links) == pytest.approx(chain.distance, abs=1e-12)
         ends = [study.flights[case].log for case in (chain.links[0].begin, chain.links[-1].end)]
-        whole = compare(*ends).largest["distance"]
+        whole = compare(*ends).max["distance"]
         assert chain.distance == pytest.approx(whole, abs=1e-12)
     assert [len(chain.links) for chain in study.chains] == [5, 6, 5, 6]
 
@@ -73,7 +73,7 @@ def test_the_fault_is_repaired_before_the_slow_down_is_undone(study):
     assert plants == [("gazebo11", 8), ("ode", 8), ("eigen", 8), ("eigen", 1)]
     for link in chain.links:
         assert abs(link.share) < chain.distance
-        assert link.largest < 1
+        assert link.max < 1
 
 
 def test_each_link_changes_one_thing(study):
@@ -85,17 +85,17 @@ def test_each_link_changes_one_thing(study):
 def test_the_links_say_what_is_wrong(study):
     chain = next(c for c in study.chains if (c.drag, c.sim_slow) == ("all", 1))
     fault, step, drag, left_out, rest = chain.links
-    assert fault.largest > 10
-    assert 0.01 < step.largest < 1
-    assert 0.1 < drag.largest < 1
-    assert 0.1 < left_out.largest < 1
-    assert rest.largest < 2e-4
+    assert fault.max > 10
+    assert 0.01 < step.max < 1
+    assert 0.1 < drag.max < 1
+    assert 0.1 < left_out.max < 1
+    assert rest.max < 2e-4
     bare = next(c for c in study.chains if (c.drag, c.sim_slow) == ("none", 1))
-    assert bare.links[2].largest < 1e-10
+    assert bare.links[2].max < 1e-10
 
 
 def test_what_is_left_out_is_the_torque_of_rotors_that_spin_up(study):
-    sizes = [row.difference.largest["distance"] for row in study.left_out]
+    sizes = [row.difference.max["distance"] for row in study.left_out]
     no_lag, spin_up, dragged, both = sizes
     assert no_lag > 0.5
     assert both == pytest.approx(spin_up, rel=0.05)
@@ -116,7 +116,7 @@ def test_only_gazebo_damps_and_as_expected(study):
 def test_the_model_has_no_second_engine_in_it(study):
     """Its flight is apart from that of the engine whose limit it is."""
     flights = [study.flights[Case("eigen", 1, "all", "given speeds")], study.flights[Case(MODEL)]]
-    assert 1e-6 < compare(*(flight.log for flight in flights)).largest["distance"] < 2e-4
+    assert 1e-6 < compare(*(flight.log for flight in flights)).max["distance"] < 2e-4
 
 
 def test_an_ascent_lifts_a_hexarotor_with_odd_rotors():

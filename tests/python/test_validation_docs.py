@@ -107,4 +107,4 @@ def test_the_docs_say_what_the_command_finds(study):
     for engine, slow, none, everything in table:
         for drag, printed in (("none", none), ("all", everything)):
             row = next(r for r in study.rows if r.case[:3] == (engine, float(slow), drag))
-            assert size(row.difference.largest["distance"]) == printed
+            assert size(row.difference.max["distance"]) == printed

@@ -48,7 +48,7 @@ def test_the_command_writes_tables_figures_and_one_page(out):
     )  # fmt: skip
     (found,) = json.loads((out / "validation.json").read_text())["errors"]
     for state in ("x", "psi", "vz", "thetadot", "distance"):
-        for kind, name in (("max", "largest"), ("rms", "rms")):
+        for kind, name in (("max", "max"), ("rms", "rms")):
             assert float(row[f"{kind}_{state}"]) == found[name][state]
     chain = list(csv.DictReader((out / "chains.csv").open()))
     total = sum(float(link["share"]) for link in chain[:-1])
@@ -128,7 +128,7 @@ def test_bars_are_labelled_as_the_tables_have_it_and_rounding_is_no_bar(short, m
     chains = [chain for chain in short.chains if chain.drag == "none"]
     cause_plots.draw_chains(chains)
     (axes,) = figures[0].axes
-    links = {(link.begin, link.end): link.largest for chain in chains for link in chain.links}
+    links = {(link.begin, link.end): link.max for chain in chains for link in chain.links}
     assert sorted(text.get_text() for text in axes.texts) == sorted(
         f" {size(largest)} m" for largest in links.values()
     )
@@ -198,7 +198,7 @@ def test_other_commands_motors_and_models_can_be_flown(tmp_path):
     found = json.loads((tmp_path / "validation.json").read_text())
     assert found["commands"] == [[0, 530, -530, 530, -530, 530, -530]]
     assert found["experiment"]["motor_lag"] is False
-    assert 0 < found["errors"][0]["largest"]["distance"] < 0.1
+    assert 0 < found["errors"][0]["max"]["distance"] < 0.1
 
 
 @pytest.mark.parametrize(

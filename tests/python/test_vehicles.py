@@ -17,7 +17,7 @@ SIZES = {"quadrotor": 1.0, "hexarotor": 1.0, "crazyflie": 0.25}
 LAWS = ("geometric", "indi", "lqr")
 
 
-def largest_error(simulation, reference, law, duration, since=0.0):
+def max_error(simulation, reference, law, duration, since=0.0):
     simulation.set_state(references.start(simulation, reference))
     log = simulation.run(duration, controller=law, reference=reference, log_every=10)
     wanted = np.array([reference(t).position for t in log.time])
@@ -38,7 +38,7 @@ def scaled(size):
 def test_shipped_vehicles_fly_with_their_gains(model, engine):
     for reference in scaled(SIZES[model]):
         simulation = qc.Simulation(model, engine=engine)
-        assert largest_error(simulation, reference, "geometric", 8, since=5) < 0.05, reference
+        assert max_error(simulation, reference, "geometric", 8, since=5) < 0.05, reference
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -54,10 +54,10 @@ def test_shipped_vehicles_fly_every_reference(model, law):
     ]
     for reference in moving:
         simulation = qc.Simulation(model, engine="eigen")
-        assert largest_error(simulation, reference, law, 4) < 0.05, reference
+        assert max_error(simulation, reference, law, 4) < 0.05, reference
     for reference in (references.step(dx=size), references.ramp(vx=size)):
         simulation = qc.Simulation(model, engine="eigen")
-        assert largest_error(simulation, reference, law, 10, since=8) < 0.05, reference
+        assert max_error(simulation, reference, law, 10, since=8) < 0.05, reference
 
 
 def test_the_crazyflie_is_as_it_was_measured():

@@ -179,7 +179,7 @@ DOUBTS = {
     "a plan that is flown": lambda: qc.FlightPlan.of(spawn=UPSIDE_DOWN, duration=0.1).fly(),
     "an event too late": lambda: qc.FlightPlan.of(scenario="lost_rotor", duration=0.1),
     "a file that xacro does not find": lambda: qc.Simulation("incomplete.xacro"),
-    "gains of another": lambda: qc.laws.parse("other.yaml", "quadrotor"),
+    "gains of another": lambda: qc.controllers.parse("other.yaml", "quadrotor"),
 }
 
 

@@ -98,7 +98,7 @@ def turning(reference, v, a, j, s, step=1e-30):
 
 
 class Twin:
-    """Flies as quadcore.laws.geometric() does."""
+    """Flies as quadcore.controllers.geometric() does."""
 
     rate = 500
 

@@ -201,22 +201,22 @@ def _show_flights(plan: Plan, comparison: Comparison, files: list[Path]) -> None
     console = terminal.console()
     whole = list(comparison.states)[:4]
     if comparison.against is not None:
-        console.print(f"differences from no. {comparison.against + 1}, final / largest")
+        console.print(f"differences from no. {comparison.against + 1}, final / max")
     units = {state: shown_in(comparison.states[state]) for state in whole}
     headings = [f"{state} ({unit})" for state, (unit, _) in units.items()]
     if plan.guidance.is_given:
-        headings.insert(0, "to the reference (m), RMS / largest")
+        headings.insert(0, "to the reference (m), RMS / max")
     table, failures = terminal.table("no.", "variant", *headings), []
     for number, (row, variant) in enumerate(zip(comparison.table, plan), start=1):
         if number > _ROWS:
             table.add_row("...", f"{len(plan) - _ROWS} more")
             break
         cells = [
-            " / ".join(number_text(row[f"{k}_{state}"] * factor) for k in ("final", "largest"))
+            " / ".join(number_text(row[f"{k}_{state}"] * factor) for k in ("final", "max"))
             for state, (_, factor) in units.items()
         ]
         if plan.guidance.is_given:
-            errors = [number_text(row[f"{kind}_error"]) for kind in ("rms", "largest")]
+            errors = [number_text(row[f"{kind}_error"]) for kind in ("rms", "max")]
             cells.insert(0, " / ".join(errors))
         if row["failure"]:
             cells = ["failed"]

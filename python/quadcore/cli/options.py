@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Callable, Optional, Sequence, Type, TypeVar
 
 from .._core import InputError, engines
-from ..control import laws, references
+from ..control import controllers, references
 from ..model import resources
 from ..simulation.engines import ENGINE, list_engines
 from ..simulation.flight_plan import FlightPlan
@@ -159,8 +159,8 @@ def add_combined(parser: argparse.ArgumentParser) -> None:
         "--controller",
         metavar="A,B",
         type=parse.several_calls,
-        help=f"{', '.join(laws.NAMES)}, perhaps with parameters, LAW:KEY=VALUE,...; files of "
-        "gains; MODULE:CLASS",
+        help=f"{', '.join(controllers.NAMES)}, optionally with parameters, NAME:KEY=VALUE,...; "
+        "gains files; MODULE:CLASS",
     )
     parser.add_argument(
         "--reference",
@@ -218,9 +218,9 @@ def add_controller(parser: argparse.ArgumentParser) -> None:
     """Add the options that name a flight in closed loop."""
     parser.add_argument(
         "--controller",
-        metavar="LAW|GAINS.yaml|MODULE:CLASS",
-        help=f"what flies: one of {', '.join(laws.NAMES)}, perhaps with parameters, LAW:KEY=VALUE,"
-        "...; a file of gains; or a class or function of your own",
+        metavar="NAME|GAINS.yaml|MODULE:CLASS",
+        help=f"controller: {', '.join(controllers.NAMES)}, optionally with parameters, "
+        "NAME:KEY=VALUE,...; a gains file; or your own class or function",
     )
     parser.add_argument(
         "--reference",

@@ -163,7 +163,7 @@ def _guided(
     return [
         ("controller", f"{arguments.controller}, {pilot.rate:g} Hz, delay {pilot.delay:g} s"),
         ("reference", f"{reference}{begins}"),
-        ("largest error", f"{errors.largest:.4g} m, of {late} {errors.tail:.4g} m"),
+        ("max error", f"{errors.max:.4g} m, of {late} {errors.final:.4g} m"),
         ("RMS error", f"{errors.rms:.4g} m"),
         ("saturated updates", f"{pilot.saturated} of {pilot.updates}"),
     ]

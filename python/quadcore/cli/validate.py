@@ -128,7 +128,7 @@ def judge(arguments: argparse.Namespace) -> None:
         console.print(f"{arguments.plant}: largest difference from")
         table = terminal.table("", *_JUDGED, numbers=True)
         for row in rows:
-            largest = row.difference.largest if row.difference else {}
+            largest = row.difference.max if row.difference else {}
             table.add_row(row.plant, *(size(largest[n]) if largest else "failed" for n in _JUDGED))
         console.print(table)
         if arguments.out is not None:
@@ -236,7 +236,7 @@ def _distances(study: Study) -> Table:
     for engine in study.engines:
         for slow in study.sim_slow:
             differences = [rows[Case(engine, slow, drag)] for drag in study.drags]
-            cells = [size(d.largest["distance"]) if d else "failed" for d in differences]
+            cells = [size(d.max["distance"]) if d else "failed" for d in differences]
             table.add_row(engine, f"{slow:g}", *cells)
     return table
 
@@ -245,8 +245,8 @@ def _chain(study: Study, chain: Chain) -> Table:
     from ..thesis.validation.output import size
 
     start = f"{study.engines[0]}, sim_slow {chain.sim_slow:g}, drag {chain.drag}: because of"
-    table = terminal.table(start, "share (m)", "largest (m)", numbers=True)
+    table = terminal.table(start, "share (m)", "max (m)", numbers=True)
     for link in chain.links:
-        table.add_row(link.change, size(link.share), size(link.largest))
+        table.add_row(link.change, size(link.share), size(link.max))
     table.add_row(chain.failure or f"sum, at {chain.time:.2f} s", size(chain.distance), "")
     return table

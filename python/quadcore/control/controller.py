@@ -10,7 +10,7 @@ import numpy as np
 from .. import _core
 from .._core import InputError, odometry_parts
 from ..support.arguments import brief
-from .law import Law
+from .built_in import BuiltInController
 
 SENSED = "odom"
 """Topic on which the odometry stands."""
@@ -142,7 +142,7 @@ def set_parameter(controller: Any, name: str, value: float) -> None:
             setattr(controller, name, value)
         except (AttributeError, TypeError) as error:
             raise InputError(f"controller: its {name} cannot be set: {error}") from None
-    elif isinstance(controller, Law):
+    elif isinstance(controller, BuiltInController):
         controller.parameters[name] = value
     else:
         raise InputError(f"controller.{name}: only laws of quadcore have parameters")

@@ -16,7 +16,7 @@ from ..model import resources
 from ..support.import_lock import LOCK
 from ..support.input_files import is_file
 from ..support.output_files import atomic_write, text_bytes
-from .law import Law
+from .built_in import BuiltInController
 from .rate_and_delay import DELAY, RATE, check_rate_or_delay
 
 
@@ -47,9 +47,9 @@ class Gains:
     parameters: Mapping[str, float] = field(default_factory=dict)
     history: Any = None
 
-    def make(self) -> Law:
+    def make(self) -> BuiltInController:
         """Make the law."""
-        return Law(self.law, self.rate, self.delay, (), None, **self.parameters)
+        return BuiltInController(self.law, self.rate, self.delay, (), None, **self.parameters)
 
 
 def read(path: Union[str, Path]) -> Gains:
@@ -86,7 +86,7 @@ def write(gains: Gains, path: Union[str, Path]) -> None:
         stream.write(text_bytes(text))
 
 
-def of_file(path: Union[str, Path]) -> Law:
+def of_file(path: Union[str, Path]) -> BuiltInController:
     """Make the law of a gains file; raises as `read`.
 
     Parameters
@@ -97,7 +97,7 @@ def of_file(path: Union[str, Path]) -> Law:
     return read(path).make()
 
 
-def law_for(name: str, vehicle: str) -> Law:
+def law_for(name: str, vehicle: str) -> BuiltInController:
     """Make a law with the gains that are shipped for a vehicle, or else with its defaults.
 
     Parameters
@@ -113,7 +113,7 @@ def law_for(name: str, vehicle: str) -> Law:
         No such law.
     """
     path = shipped(name, vehicle)
-    return Law(name) if path is None else of_file(path)
+    return BuiltInController(name) if path is None else of_file(path)
 
 
 def shipped(name: str, vehicle: str) -> Optional[Path]:

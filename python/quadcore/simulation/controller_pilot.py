@@ -9,7 +9,8 @@ import numpy as np
 
 from .. import _core
 from .._core import FlightError, InputError, QuadcoreError
-from ..control import laws, references
+from ..control import controllers, references
+from ..control.built_in import BuiltInController
 from ..control.controller import SENSED, Controller, Odometry, check_callable
 from ..control.inner_loop import AttitudeThrust, InnerLoop, RatesThrust
 from ..control.rate_and_delay import DELAY, RATE, check_rate_or_delay
@@ -44,7 +45,7 @@ class Guided(Pilot):
         reference: Union[references.ReferenceLike, str, None] = None,
     ) -> None:
         if isinstance(controller, str):
-            controller = laws.parse(controller, simulation.model.name)
+            controller = controllers.parse(controller, simulation.model.name)
         if isinstance(reference, str):
             reference = references.parse(reference)
         if isinstance(reference, references.Shape):
@@ -88,7 +89,7 @@ class Guided(Pilot):
         """Ask the controller."""
         self.updates += 1
         law, reference = self._controller, self._reference
-        if isinstance(law, laws.Law):
+        if isinstance(law, BuiltInController):
             if isinstance(reference, references.Shape):
                 speeds = law.at(simulation, SENSED, reference.shape)
             else:

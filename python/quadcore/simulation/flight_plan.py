@@ -12,7 +12,8 @@ import numpy as np
 
 from .. import _core
 from .._core import Model, World
-from ..control import laws, references
+from ..control import references
+from ..control.built_in import BuiltInController
 from ..control.references import ReferenceLike
 from ..model.description import read_both
 from ..model.overrides import check_names, with_links, without_xacro
@@ -205,7 +206,7 @@ class FlightPlan:
             state.rotor_velocity = np.array(self.rotor_velocity, dtype=float)
             simulation.set_state(state)
         if self.on_reference and self.reference is not None:
-            spins = self.controller.spins if isinstance(self.controller, laws.Law) else ()
+            spins = self.controller.spins if isinstance(self.controller, BuiltInController) else ()
             simulation.set_state(references.start(simulation, self.reference, spins))
         return simulation
 
@@ -279,7 +280,7 @@ class FlightPlan:
         told = {item.name: getattr(self, item.name) for item in fields(self)}
         for name in ("model", "world"):
             told[name] = [told[name].document.text, told[name].passed_over.ignored]
-        for name, own in (("controller", laws.Law), ("reference", references.Shape)):
+        for name, own in (("controller", BuiltInController), ("reference", references.Shape)):
             if told[name] is None:
                 del told[name]  # as plans of before had none
             elif not isinstance(told[name], own):

@@ -108,7 +108,7 @@ class Errors:
         """Nothing is open."""
 
     @property
-    def largest(self) -> float:
+    def max(self) -> float:
         """Of all rows, m."""
         return self._largest if self._count else math.nan
 
@@ -118,7 +118,7 @@ class Errors:
         return math.sqrt(self._squares / self._count) if self._count else math.nan
 
     @property
-    def tail(self) -> float:
+    def final(self) -> float:
         """Of the last `TAIL` seconds, m."""
         if not self._count:
             return math.nan

@@ -10,8 +10,8 @@ import numpy as np
 
 from .. import _core
 from ..control import references
+from ..control.built_in import BuiltInController
 from ..control.controller import Controller
-from ..control.law import Law
 from ..control.references import ReferenceLike
 from ..model.description import list_of_names, read_both
 from ..model.overrides import check_names, with_links, without_xacro
@@ -202,7 +202,7 @@ class Simulation(_core.Simulation):
         topics : sequence of str
             Names of topics to log, too: `Log.topics`.
         controller : name, object or callable, optional
-            Closed loop, instead of `commands`: the name of one of `quadcore.laws`, which flies with
+            Closed loop, instead of `commands`: the name of one of `quadcore.controllers`, with
             the gains that are shipped for the vehicle, if any, or what is called as
             controller(t, state, reference) at its rate and returns n rotor speeds in rad/s; see
             `Controller`.
@@ -278,7 +278,7 @@ class Simulation(_core.Simulation):
             raise _core.InputError("on_reference needs a reference to begin on; give one")
         if isinstance(reference, str):
             reference = references.parse(reference)
-        spins = controller.spins if isinstance(controller, Law) else ()
+        spins = controller.spins if isinstance(controller, BuiltInController) else ()
         with _core.Run(self):
             start = references.start(self, reference, spins)
         self.set_state(start)

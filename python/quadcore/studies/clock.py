@@ -7,7 +7,7 @@ from typing import Any, List, Tuple
 
 import numpy as np
 
-from ..control import laws
+from ..control.built_in import BuiltInController
 from ..control.controller import check_callable
 from ..simulation.controller_pilot import Guided
 
@@ -51,7 +51,7 @@ class ClockedPilot:
 
 def clocked(controller: Any) -> Any:
     """Make a controller that is timed; a law of quadcore is by its pilot."""
-    return controller if isinstance(controller, laws.Law) else Clocked(controller)
+    return controller if isinstance(controller, BuiltInController) else Clocked(controller)
 
 
 def typical_and_slow(seconds: List[float]) -> Tuple[float, float]:

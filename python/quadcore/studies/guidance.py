@@ -7,7 +7,8 @@ from functools import lru_cache
 from typing import Any, Callable, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
 from .._core import InputError
-from ..control import laws, references
+from ..control import controllers, references
+from ..control.built_in import BuiltInController
 from ..control.controller import check_callable, set_parameter
 from ..simulation.flight_plan import FlightPlan
 from ..support.arguments import brief
@@ -140,11 +141,13 @@ def shape(thing: Any) -> Any:
 
 def names_own(thing: Any) -> bool:
     """Whether a text names a module of the user's own."""
-    return isinstance(thing, str) and ":" in thing and thing.partition(":")[0] not in laws.NAMES
+    return (
+        isinstance(thing, str) and ":" in thing and thing.partition(":")[0] not in controllers.NAMES
+    )
 
 
 def _is_own(thing: Any) -> bool:
-    return names_own(thing) if isinstance(thing, str) else not isinstance(thing, laws.Law)
+    return names_own(thing) if isinstance(thing, str) else not isinstance(thing, BuiltInController)
 
 
 def give_all(controller: Any, values: Mapping[str, Any]) -> Any:
@@ -161,17 +164,17 @@ def _maker(thing: Any, vehicle: str) -> Callable[[], Any]:
     An object is given as it is: flights that run user code have processes of their own.
     """
     if names_own(thing):
-        return lambda: laws.parse(thing, vehicle)
+        return lambda: controllers.parse(thing, vehicle)
     if isinstance(thing, str):
-        thing = laws.parse(thing, vehicle)
+        thing = controllers.parse(thing, vehicle)
     check_callable(thing)
-    return thing.copy if isinstance(thing, laws.Law) else lambda: thing
+    return thing.copy if isinstance(thing, BuiltInController) else lambda: thing
 
 
 def _label(thing: Any) -> str:
     if isinstance(thing, str):
         return thing
-    if isinstance(thing, (laws.Law, references.Shape)):
+    if isinstance(thing, (BuiltInController, references.Shape)):
         values = ",".join(f"{name}={value:g}" for name, value in thing.parameters.items())
         return f"{thing.name}:{values}" if values else thing.name
     return getattr(thing, "__name__", type(thing).__name__)

@@ -17,12 +17,12 @@ LOST = 5.0
 
 UNITS = {
     "rms_position": "m",
-    "largest_position": "m",
-    "tail_position": "m",
+    "max_position": "m",
+    "final_position": "m",
     "steady_position": "m",
     "iae_position": "m s",
     "itae_position": "m s^2",
-    "largest_yaw": "rad",
+    "max_yaw": "rad",
     "rise_time": "s",
     "overshoot": "",
     "settling_time": "s",
@@ -34,12 +34,12 @@ UNITS = {
 
 MEANINGS = {
     "rms_position": "root of the mean square of the distance to the reference",
-    "largest_position": "largest distance to the reference",
-    "tail_position": f"the same of the last {TAIL:g} s",
+    "max_position": "largest distance to the reference",
+    "final_position": f"the same of the last {TAIL:g} s",
     "steady_position": f"length of the mean error of the last {TAIL:g} s, at most the second half",
     "iae_position": "integral of the distance",
     "itae_position": "integral of time x distance",
-    "largest_yaw": "largest error of the yaw",
+    "max_yaw": "largest error of the yaw",
     "rise_time": "from a tenth to nine tenths of a step",
     "overshoot": "beyond a step, as part of it",
     "settling_time": "from a step until the distance stays below 2 % of it",
@@ -74,7 +74,7 @@ def distance(log: Log) -> np.ndarray:
     return length
 
 
-def rms_and_largest(away: np.ndarray) -> Tuple[float, float]:
+def rms_and_max(away: np.ndarray) -> Tuple[float, float]:
     """Root of the mean square of a distance, and the largest."""
     return float(np.sqrt(np.mean(away**2))), float(away.max())
 
@@ -104,15 +104,15 @@ def measure(log: Log, saturated: float, rotors: Sequence[Rotor]) -> Dict[str, fl
     speeds = np.abs(log.rotor_velocity) * [rotor.slowdown for rotor in rotors]
     span = max(time[-1], np.finfo(float).tiny)
     rise, overshoot, settling = _step(log, away)
-    rms, largest = rms_and_largest(away)
+    rms, largest = rms_and_max(away)
     return {
         "rms_position": rms,
-        "largest_position": largest,
-        "tail_position": float(away[tail].max()),
+        "max_position": largest,
+        "final_position": float(away[tail].max()),
         "steady_position": float(np.linalg.norm(errors[late].mean(axis=0))),
         "iae_position": _integral(away, time),
         "itae_position": _integral(away * time, time),
-        "largest_yaw": float(np.abs(np.remainder(yaw + np.pi, 2 * np.pi) - np.pi).max()),
+        "max_yaw": float(np.abs(np.remainder(yaw + np.pi, 2 * np.pi) - np.pi).max()),
         "rise_time": rise,
         "overshoot": overshoot,
         "settling_time": settling,

@@ -61,7 +61,7 @@ class Sizes(NamedTuple):
 
     final: Dict[str, float]
     """With its sign."""
-    largest: Dict[str, float]
+    max: Dict[str, float]
     """Of magnitudes."""
     rms: Dict[str, float]
 
@@ -77,7 +77,7 @@ def metrics(against: Log, log: Log) -> np.ndarray:
     """Find the final and the largest difference of each state; shape (2, 16 + n)."""
     names = states(against.rotor_velocity.shape[1])
     found = sizes(differences(against, log), list(names))
-    return np.array([list(found.final.values()), list(found.largest.values())])
+    return np.array([list(found.final.values()), list(found.max.values())])
 
 
 def _at(time: np.ndarray, log: Log) -> Log:

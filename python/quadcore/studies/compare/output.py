@@ -133,13 +133,13 @@ def _page(
     for number, (row, variant) in enumerate(zip(comparison.table, plan), start=1):
         if number > _ROWS_OF_PAGE:
             break
-        errors = [number_text(row[f"{kind}_error"]) for kind in ("largest", "rms") if guided]
+        errors = [number_text(row[f"{kind}_error"]) for kind in ("max", "rms") if guided]
         cells = {
             kind: {
                 state: number_text(row[f"{kind}_{state}"] * factor)
                 for state, (_, factor) in units.items()
             }
-            for kind in ("final", "largest")
+            for kind in ("final", "max")
         }
         label = plan.label(variant)
         told = {"number": number, "label": label, "failure": row["failure"], "errors": errors}

@@ -20,7 +20,7 @@ import numpy as np
 from ..._core import InputError, QuadcoreError
 from ...report.html_table import SHOWN_ROWS, html_table, html_title
 from ...simulation.log import Log
-from ..measures import distance, rms_and_largest
+from ..measures import distance, rms_and_max
 from ..metrics import metrics, states
 from ..table import NOT_FLOWN, flown_and_failed, number_text, shown_in
 from .difference import Difference
@@ -40,8 +40,8 @@ class Comparison(NamedTuple):
     ----------
     table : ndarray
         Structured, a row per variant: ``model``, each axis, ``failure`` ("" if it flew), of guided
-        flights ``rms_error`` and ``largest_error``, the distance to the reference [m], and
-        ``final_STATE`` and ``largest_STATE`` for each of `states`, NaN where it did not fly.
+        flights ``rms_error`` and ``max_error``, the distance to the reference [m], and
+        ``final_STATE`` and ``max_STATE`` for each of `states`, NaN where it did not fly.
     logs : list
         `Log` of each variant, None where it did not fly; empty if logs were not asked for.
     states : dict of str to str
@@ -71,10 +71,10 @@ class Comparison(NamedTuple):
         axes = [name for name in varied if len(set(self.table[name])) > 1]
         states = list(self.states)[:4]
         units = {name: shown_in(self.states[name]) for name in states}
-        heads = [*axes, *(f"largest {name} ({unit})" for name, (unit, _) in units.items())]
+        heads = [*axes, *(f"max {name} ({unit})" for name, (unit, _) in units.items())]
         rows = []
         for row in self.table[:SHOWN_ROWS]:
-            cells = [number_text(row[f"largest_{name}"] * units[name][1]) for name in states]
+            cells = [number_text(row[f"max_{name}"] * units[name][1]) for name in states]
             cells = [row["failure"]] if row["failure"] else cells
             rows.append([*(str(row[axis]) for axis in axes), *cells])
         return html_title(self) + html_table(heads, rows, len(self.table))
@@ -83,7 +83,7 @@ class Comparison(NamedTuple):
 def measured(plan: Plan, against: Log, log: Log) -> Measured:
     """Measure a flight by its reference, and by the flight that all are compared with."""
     away = distance(log) if plan.guidance.is_given else np.array([np.nan])
-    return rms_and_largest(away), metrics(against, log)
+    return rms_and_max(away), metrics(against, log)
 
 
 class Tally:
@@ -131,8 +131,8 @@ class Tally:
             columns["seed"] = [plan.seeds[case.seed] for case in plan]
         columns["failure"] = self._failures
         if plan.guidance.is_given:
-            columns["rms_error"], columns["largest_error"] = self._errors.T
-        for i, kind in enumerate(("final", "largest")):
+            columns["rms_error"], columns["max_error"] = self._errors.T
+        for i, kind in enumerate(("final", "max")):
             for j, state in enumerate(self._states):
                 columns[f"{kind}_{state}"] = self._metrics[:, i, j]
         return Comparison(

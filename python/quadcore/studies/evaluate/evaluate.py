@@ -225,7 +225,7 @@ class _Flights:
 def _poles(plan: Plan) -> List[Dict[str, Any]]:
     """Find the poles of the laws that have some, on each model in the first scenario."""
     rows: List[Dict[str, Any]] = []
-    for names, flight in plan.laws():
+    for names, flight in plan.controllers_flown():
         if has_poles(flight.controller):
             with suppress(QuadcoreError):  # a vehicle that chapter 2 cannot describe
                 found = poles(flight.controller, replace(flight, on_reference=False).simulation())

@@ -90,7 +90,7 @@ def _players(evaluation: Evaluation) -> List[Dict[str, Any]]:
 def _known(plan: Plan) -> List[Dict[str, str]]:
     """Tell what each law of quadcore flew with: only alike can be compared."""
     rows = []
-    for names, flight in plan.laws():
+    for names, flight in plan.controllers_flown():
         gains = gains_of(flight.controller)
         shown = {part: f"{gains[part]:g}" if part in gains else "" for part in _SWITCHES}
         timing = {part: f"{getattr(flight.controller, part):g}" for part in ("rate", "delay")}
@@ -109,7 +109,7 @@ def _laws(plan: Plan) -> List[Dict[str, Any]]:
             "spins": flight.controller.spins,
             "parameters": gains_of(flight.controller),
         }
-        for names, flight in plan.laws()
+        for names, flight in plan.controllers_flown()
     ]
 
 

@@ -174,7 +174,7 @@ def _boxes(evaluation: Evaluation) -> Figure:
     values, names = [], []
     for group in reversed(groups):
         found = [
-            row["tail_position"]
+            row["final_position"]
             for row in evaluation.table
             if all(row[name] == group[name] for name in _GROUP) and not row["failure"]
         ]

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Dict, Iterator, Mapping, Sequence, Tuple, Union
 
-from ...control import laws, references
+from ...control import references
+from ...control.built_in import BuiltInController
 from ...simulation.engines import exerts_wrenches
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.scenario_events import Event
@@ -45,7 +46,7 @@ class Plan(Cases):
         design = Design(vary)
         check_sides(models, design)
         guidance = Guidance(
-            labelled("controller", controllers, laws.Law),
+            labelled("controller", controllers, BuiltInController),
             labelled("reference", references_, references.Shape),
             options.controller_rate,
             options.delay,
@@ -68,7 +69,7 @@ class Plan(Cases):
             "seed": self.seeds[case.seed],
         }
 
-    def laws(self) -> Iterator[Tuple[Dict[str, str], FlightPlan]]:
+    def controllers_flown(self) -> Iterator[Tuple[Dict[str, str], FlightPlan]]:
         """Name controller, model and engines, and describe a flight, for each law of quadcore.
 
         Engines that fly the same plugins are one.

@@ -19,16 +19,16 @@ from typing import Any, Dict, List
 import numpy as np
 
 from ... import _core
-from ...control.law import Law
+from ...control.built_in import BuiltInController
 from ...simulation.engines import exerts_wrenches
 from ...simulation.simulation import Simulation
 
 Polynomial = np.ndarray
 
 
-def gains_of(law: Law) -> Dict[str, float]:
+def gains_of(law: BuiltInController) -> Dict[str, float]:
     """Read the parameters with which a law flies: its own, or else its defaults."""
-    table = next(entry[2] for entry in _core.laws() if entry[0] == law.name)
+    table = next(entry[2] for entry in _core.controllers() if entry[0] == law.name)
     flags = {"true": 1.0, "false": 0.0}
     defaults = {
         spec.name: flags.get(spec.default, _core.parse_number(spec.default)) for spec in table
@@ -38,10 +38,10 @@ def gains_of(law: Law) -> Dict[str, float]:
 
 def has_poles(law: Any) -> bool:
     """Whether a law is a cascade of PIDs with an inner loop that waits for the motors."""
-    return isinstance(law, Law) and {"kp_xy", "ki_rp", "kd_yaw"} <= set(gains_of(law))
+    return isinstance(law, BuiltInController) and {"kp_xy", "ki_rp", "kd_yaw"} <= set(gains_of(law))
 
 
-def poles(law: Law, simulation: Simulation) -> List[Dict[str, Any]]:
+def poles(law: BuiltInController, simulation: Simulation) -> List[Dict[str, Any]]:
     """Find the poles of each axis.
 
     Parameters

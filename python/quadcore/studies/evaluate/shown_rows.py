@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from .evaluate import Evaluation
 
 NAMES = ("controller", "reference", "engine", "model", "scenario")
-_SHOWN = ("rms_position", "largest_position", "tail_position")
+_SHOWN = ("rms_position", "max_position", "final_position")
 
 
 def rows_to_read(evaluation: Evaluation) -> List[Dict[str, str]]:
@@ -19,7 +19,7 @@ def rows_to_read(evaluation: Evaluation) -> List[Dict[str, str]]:
     best: Dict[Any, float] = {}
     for group in evaluation.groups:
         key = tuple(group[name] for name in NAMES[1:])
-        value = group["mean_tail_position"]
+        value = group["mean_final_position"]
         if group["failure_rate"] == 0 and not math.isnan(value):
             best[key] = min(value, best.get(key, math.inf))
     lines = []
@@ -30,11 +30,11 @@ def rows_to_read(evaluation: Evaluation) -> List[Dict[str, str]]:
         line["flown"] += f", {group['not_flown']} not" * (group["not_flown"] > 0)
         for name in _SHOWN:
             line[name] = error_text(group[f"mean_{name}"]) + _interval(group, name)
-        line["cvar"] = error_text(group["cvar_tail_position"])
-        line["difference"] = error_text(group["difference_tail_position"])
-        line["difference"] += _interval(group, "tail_position", "difference_")
+        line["cvar"] = error_text(group["cvar_final_position"])
+        line["difference"] = error_text(group["difference_final_position"])
+        line["difference"] += _interval(group, "final_position", "difference_")
         key = tuple(group[name] for name in NAMES[1:])
-        is_best = group["failure_rate"] == 0 and group["mean_tail_position"] == best.get(key)
+        is_best = group["failure_rate"] == 0 and group["mean_final_position"] == best.get(key)
         line["best"] = "*" if is_best else ""
         lines.append(line)
     return lines
@@ -44,8 +44,8 @@ def columns_to_read(lines: Sequence[Mapping[str, str]]) -> Dict[str, str]:
     """Headings of what is shown of `rows_to_read`: no names that all have in common."""
     names = (name for name in NAMES if len({line[name] for line in lines}) > 1)
     shown = {"controller": "controller", **{name: name for name in names}, "flown": "flown"}
-    shown.update(rms_position="RMS (m)", largest_position="largest (m)")
-    shown.update(tail_position="last 10 s (m)", cvar="its CVaR (m)")
+    shown.update(rms_position="RMS (m)", max_position="max (m)")
+    shown.update(final_position="last 10 s (m)", cvar="its CVaR (m)")
     if any(line["difference"] for line in lines):
         shown["difference"] = "from the first (m)"
     return shown

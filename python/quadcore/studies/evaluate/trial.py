@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 from ..._core import ParameterInfo, parse_number
-from ...control import laws
+from ...control.built_in import BuiltInController
 from ...control.controller import check_callable, set_parameter
 from ...control.inner_loop import InnerLoop
 from ...simulation.flight_plan import FlightPlan
@@ -45,7 +45,7 @@ class Trial(NamedTuple):
         if self.thrust == self.drag == self.lag == 1:
             return flight
         described = replace(flight, on_reference=False).simulation()
-        if isinstance(controller, laws.Law):
+        if isinstance(controller, BuiltInController):
             if controller.belief is None:
                 controller.belief = described
         else:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 from typing import Any, Dict, List, Mapping, Optional
 
-from ...control import laws
+from ...control.built_in import BuiltInController
 from ..axes import OF_CONTROLLER
 from .plan import AnyPlan, Plan
 
@@ -58,7 +58,7 @@ def _with_values(plan: Plan, row: int, text: str, point: Mapping[str, str]) -> s
     if not set(keys) - {"rate", "delay"}:
         return text
     law: Any = plan.spec(row).plan.controller
-    assert isinstance(law, laws.Law)  # else it was refused
+    assert isinstance(law, BuiltInController)  # else it was refused
     values: List[str] = [f"{name}={value!r}" for name, value in law.parameters.items()]
     return f"{law.name}:{','.join(values)}"
 

@@ -16,9 +16,9 @@ UNITS = {
     "final_yaw": "rad",
     "final_tilt": "rad",
     "final_speed": "m/s",
-    "largest_tilt": "rad",
-    "largest_speed": "m/s",
-    "largest_rate": "rad/s",
+    "max_tilt": "rad",
+    "max_speed": "m/s",
+    "max_rate": "rad/s",
     "travelled": "m",
 }
 """Of each measure, by name."""
@@ -30,9 +30,9 @@ MEANINGS = {
     "final_yaw": "heading at the end",
     "final_tilt": "angle between the frame's z and the world's at the end",
     "final_speed": "of the frame's origin at the end",
-    "largest_tilt": "over the flight",
-    "largest_speed": "over the flight",
-    "largest_rate": "length of the angular velocity, over the flight",
+    "max_tilt": "over the flight",
+    "max_speed": "over the flight",
+    "max_rate": "length of the angular velocity, over the flight",
     "travelled": "length of the way",
 }
 

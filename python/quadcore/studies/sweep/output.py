@@ -104,7 +104,7 @@ def summaries(plan: AnyPlan, columns: Columns) -> List[Dict[str, Any]]:
                 low, middle, high = np.quantile(values, [0.05, 0.5, 0.95]).tolist()
                 row = {**names, "rows": len(chosen), "failed": failed, "measure": measure}
                 row.update(zip(("median", "low", "high"), (middle, low, high)))
-                rows.append({**row, "least": float(values.min()), "largest": float(values.max())})
+                rows.append({**row, "min": float(values.min()), "max": float(values.max())})
     return rows
 
 

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any, Dict, Mapping, Optional, Sequence, Tuple, Union
 
 from ..._core import InputError
-from ...control import laws, references
+from ...control import references
+from ...control.built_in import BuiltInController
 from ...simulation.commands import CommandsLike
 from ...support.values import whole
 from .. import measures as of_guided
@@ -132,7 +133,7 @@ def _guidance(controllers: Any, references_: Any, commands: Any, options: SweepO
             if given is None:
                 raise InputError(f"nothing to fly: name --{name}, or --commands")
         return Guidance(
-            labelled("controller", controllers, laws.Law),
+            labelled("controller", controllers, BuiltInController),
             labelled("reference", references_, references.Shape),
             options.controller_rate,
             options.delay,

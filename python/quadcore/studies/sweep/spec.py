@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Mapping, NamedTuple, Optional, Protocol, Tuple
 
 from ..._core import FlightError, InputError, QuadcoreError
-from ...control import laws
+from ...control import controllers
 from ...simulation.flight_plan import FlightPlan
 from ...support.user_code import describe_error
 from ...support.warning import suppress_warnings
@@ -44,7 +44,7 @@ class Own:
 
     def make(self, vehicle: str) -> Any:
         """Bring it in; raises `InputError`."""
-        return give_all(laws.parse(self.text, vehicle), dict(self.values))
+        return give_all(controllers.parse(self.text, vehicle), dict(self.values))
 
 
 @dataclass(frozen=True)

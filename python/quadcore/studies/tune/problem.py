@@ -11,7 +11,8 @@ import numpy as np
 
 from ... import _core
 from ..._core import FlightError, InputError
-from ...control import laws, references
+from ...control import references
+from ...control.built_in import BuiltInController
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
 from ...support import rotation
@@ -74,7 +75,7 @@ class Problem:
 
     def __init__(
         self,
-        law: Union[str, laws.Law],
+        law: Union[str, BuiltInController],
         models: Sequence[Union[str, Path]],
         references_: Sequence[Any],
         held_out: Sequence[Any],
@@ -86,7 +87,7 @@ class Problem:
     ) -> None:
         if not models or not references_ or not held_out:
             raise InputError("tuning needs a model, a reference, and a reference that is held out")
-        if names_own(law) or not isinstance(law, (str, laws.Law)):
+        if names_own(law) or not isinstance(law, (str, BuiltInController)):
             raise InputError(f"{law}: no law of quadcore: only their gains can be tuned")
         trained, judged = (
             labelled("reference", some, references.Shape) for some in (references_, held_out)
@@ -107,7 +108,7 @@ class Problem:
         self._cases.check()
         self.models = self._cases.models[: len(models)]
         self.vehicle = self._cases.vehicles[0]
-        self.law: laws.Law = guidance.make(0, self.vehicle, {})
+        self.law: BuiltInController = guidance.make(0, self.vehicle, {})
         self.training: List[Trial] = []
         self.held_out: List[Trial] = []
         for case in sorted(self._cases, key=lambda case: (case.model, case[1:])):
@@ -121,7 +122,7 @@ class Problem:
         self.to_come_back_to = [trial for trial in self.held_out if trial.plan.on_reference]
         self.start = self._start(only)
 
-    def with_gains(self, gains: Mapping[str, float]) -> laws.Law:
+    def with_gains(self, gains: Mapping[str, float]) -> BuiltInController:
         """Make the law with some gains."""
         law = self.law.copy()
         law.parameters.update(gains)
@@ -206,7 +207,7 @@ class Problem:
         return Trial(", ".join(parts), cases.unguided(case), values)
 
     def _start(self, only: Optional[Sequence[str]]) -> Dict[str, float]:
-        table = next(specs for name, _, specs in _core.laws() if name == self.law.name)
+        table = next(specs for name, _, specs in _core.controllers() if name == self.law.name)
         numbers = {
             spec.name: float(self.law.parameters.get(spec.name, spec.default))
             for spec in table

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Union
 
 from ..._core import FlightError
-from ...control import laws
+from ...control.built_in import BuiltInController
 from ...simulation.engines import STUDIED
 from ...support import arguments
 from ...support.arguments import several
@@ -33,7 +33,7 @@ _INTERRUPTED = "interrupted"
     budget=arguments.WHOLE,
 )
 def tune(
-    law: Union[str, laws.Law],
+    law: Union[str, BuiltInController],
     model: Names = "quadrotor",
     references: Sequence[Any] = ("spiral", "step"),
     held_out: Sequence[Any] = ("circle", "eight"),
@@ -55,8 +55,8 @@ def tune(
     Parameters
     ----------
     law
-        Name, ``NAME:KEY=VALUE,...`` or gains file, or one of `quadcore.laws`: its parameters are
-        where the search begins.
+        Name, ``NAME:KEY=VALUE,...``, gains file, or one of `quadcore.controllers`. The search
+        starts at its parameters.
     model
         What flies, or several; the gains are for the first.
     references

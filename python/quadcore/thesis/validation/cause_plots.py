@@ -27,16 +27,16 @@ def draw_chains(chains: Sequence[Chain]) -> bytes:
     figure = make_figure(f"What each change moves, drag: {chains[0].drag}", 9, height, _DPI)
     axes = figure.add_axes((0.36, 0.55 / height, 0.61, 1 - 1.0 / height))
     dress(axes)
-    largest = [link.largest for group in groups.values() for _, link in group]
+    largest = [link.max for group in groups.values() for _, link in group]
     low, high = _range(largest)
     ticks, top = [], 0
     named: Dict[str, Any] = {}
     for group in groups.values():
         for row, (whose, link) in enumerate(group, start=top):
-            shown = max(link.largest, low)
+            shown = max(link.max, low)
             colour = _colour(whose, chains)
             (bar,) = axes.barh(row, shown - low, 0.85, left=low, color=colour)
-            axes.text(shown, row, f" {size(link.largest)} m", va="center", fontsize="small")
+            axes.text(shown, row, f" {size(link.max)} m", va="center", fontsize="small")
             named.setdefault(whose, bar)
         ticks.append(top + (len(group) - 1) / 2)
         top += len(group) + 1

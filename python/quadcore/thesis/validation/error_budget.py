@@ -23,7 +23,7 @@ class Link(NamedTuple):
     end: Case
     share: float
     """m; of the whole distance, along its direction, at the time of the chain."""
-    largest: float
+    max: float
     """Largest distance between the two flights, m."""
     rms: float
 

@@ -19,7 +19,7 @@ from .thesis_figures import KINDS, thesis_figures
 
 PICTURE = re.compile(rf"(commands|damping|(chain|{'|'.join(KINDS)})_[a-z]+)\.png")
 _SIZES = (*STATES, "distance")
-_TOLD = ("largest", "rms")
+_TOLD = ("max", "rms")
 
 
 def write_tables(study: Study, directory: Path) -> List[Path]:
@@ -154,8 +154,8 @@ def _errors(rows: Sequence[Row]) -> Iterable[Sequence[Any]]:
 
 
 def _chains(chains: Sequence[Chain]) -> Iterable[Sequence[Any]]:
-    yield ["drag", "sim_slow", "change", "share", "largest", "rms", "failure"]
+    yield ["drag", "sim_slow", "change", "share", "max", "rms", "failure"]
     for chain in chains:
         for link in chain.links:
-            yield [*chain[:2], link.change, link.share, link.largest, link.rms, ""]
+            yield [*chain[:2], link.change, link.share, link.max, link.rms, ""]
         yield [*chain[:2], "sum", chain.distance, "", "", chain.failure]

@@ -126,12 +126,12 @@ def table_of(rows: Sequence[Judged], rotors: int) -> bytes:
     """Write all differences as CSV: plant, state, unit, largest, rms, final, failure."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(["plant", "state", "unit", "largest", "rms", "final", "failure"])
+    writer.writerow(["plant", "state", "unit", "max", "rms", "final", "failure"])
     for row in rows:
         if row.difference is None:
             writer.writerow([row.plant, "", "", "", "", "", row.failure])
             continue
         for state, unit in states(rotors).items():
-            parts = (row.difference.largest, row.difference.rms, row.difference.final)
+            parts = (row.difference.max, row.difference.rms, row.difference.final)
             writer.writerow([row.plant, state, unit, *(repr(part[state]) for part in parts), ""])
     return text_bytes(stream.getvalue())

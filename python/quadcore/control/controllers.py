@@ -1,6 +1,6 @@
 """Control laws, as `Simulation.run` flies them.
 
-Each function makes one, e.g. ``quadcore.laws.geometric(kp_xy=4)``; its docstring lists the
+Each function makes one, e.g. ``quadcore.controllers.geometric(kp_xy=4)``; its docstring lists the
 parameters. ``NAMES`` holds them all. `of_file` makes one of a gains file.
 """
 
@@ -13,8 +13,8 @@ from ..support.parameters import did_you_mean, docstring, read_values
 from ..support.user_code import import_controller
 from ..support.warning import warn
 from . import gains
+from .built_in import BuiltInController
 from .gains import law_for, of_file
-from .law import Law
 from .rate_and_delay import DELAY, RATE
 
 
@@ -72,7 +72,9 @@ belief : Simulation, optional
     A vehicle to take for the one that is flown."""
 
 
-def _function(name: str, summary: str, table: List[_core.ParameterSpec]) -> Callable[..., Law]:
+def _function(
+    name: str, summary: str, table: List[_core.ParameterSpec]
+) -> Callable[..., BuiltInController]:
     def make(
         *,
         rate: float = RATE,
@@ -80,20 +82,20 @@ def _function(name: str, summary: str, table: List[_core.ParameterSpec]) -> Call
         spins: Sequence[float] = (),
         belief: Optional[_core.Simulation] = None,
         **parameters: float,
-    ) -> Law:
-        return Law(name, rate, delay, spins, belief, **parameters)
+    ) -> BuiltInController:
+        return BuiltInController(name, rate, delay, spins, belief, **parameters)
 
     make.__name__ = make.__qualname__ = name
     make.__doc__ = docstring(summary, table, _COMMON)
     return make
 
 
-_MAKERS = {entry[0]: _function(*entry) for entry in _core.laws()}
+_MAKERS = {entry[0]: _function(*entry) for entry in _core.controllers()}
 NAMES = tuple(_MAKERS)
-__all__ = ["NAMES", "Law", "of_file", "parse", *NAMES]
+__all__ = ["NAMES", "BuiltInController", "of_file", "parse", *NAMES]
 
 
-def __getattr__(name: str) -> Callable[..., Law]:
+def __getattr__(name: str) -> Callable[..., BuiltInController]:
     try:
         return _MAKERS[name]
     except KeyError:

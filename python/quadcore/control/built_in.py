@@ -12,7 +12,7 @@ from ..support.parameters import values
 from .rate_and_delay import DELAY, RATE, check_rate_or_delay
 
 
-class Law:
+class BuiltInController:
     """A law of quadcore with its parameters; what it believes of the vehicle it takes from it.
 
     Attributes
@@ -106,9 +106,9 @@ class Law:
         """Whether the rotors could not do what was asked of them last."""
         return self._controller is not None and bool(self._controller.saturated)
 
-    def copy(self) -> Law:
+    def copy(self) -> BuiltInController:
         """Make the same law, as it is before it flies."""
-        same = Law(self.name, self.rate, self.delay, self.spins, self.belief)
+        same = BuiltInController(self.name, self.rate, self.delay, self.spins, self.belief)
         same.parameters.update(self.parameters)  # whose names the core checks
         return same
 
@@ -123,4 +123,4 @@ class Law:
 
     def __repr__(self) -> str:
         inside = "".join(f", {name}={value:g}" for name, value in self.parameters.items())
-        return f"quadcore.laws.{self.name}(rate={self.rate:g}{inside})"
+        return f"quadcore.controllers.{self.name}(rate={self.rate:g}{inside})"
