@@ -2,45 +2,30 @@
 
 #include "quadcore/plugin.hpp"
 #include "quadcore/plugin/elementary.hpp"
+#include "shared/mounted_sensor.hpp"
 #include "shared/noise_and_drift.hpp"
-#include "shared/sensing.hpp"
 
 namespace quadcore::barometer {
 namespace {
 
 using Errors = sensing::NoiseAndDrift<1>;
 
-/// What it remembers: when it measured, its errors, what is on the way.
-enum Memory { kSamples, kErrors, kChannel = kErrors + Errors::kMemorySize };
-
 /// Static pressure of the world's atmosphere where a link of the frame is.
-class BarometerPlugin final : public Plugin {
+class BarometerPlugin final
+    : public sensing::MountedSensor<messages::Pressure, Errors::kMemorySize> {
  public:
   explicit BarometerPlugin(const PluginSetup& setup)
-      : p_FS_F_(setup.model.pose_of_link.at(setup.parameters.choice("link")).xyz),
-        rate_(setup.parameters.number("rate")),
-        errors_(setup.parameters),
-        channel_(setup,
-                 setup.topics.publishes(setup.parameters.text("topic"),
-                                        messages::kind_of<messages::Pressure>()),
-                 messages::kind_of<messages::Pressure>(), setup.parameters.number("rate")) {}
-
-  std::size_t state_size() const override { return kChannel + channel_.state_size(); }
-
-  void sense(const Sample& sample, PluginState state) const override {
-    PluginState on_the_way(state.data() + kChannel, state.size() - kChannel);
-    if (rate_.is_due(sample, state[kSamples])) {
-      const Kinematics& k = sample.kinematics;
-      const double height = k.p_WF.z() + k.R_WF.row(2).dot(p_FS_F_);
-      const auto error = errors_.next(sample, state.segment<Errors::kMemorySize>(kErrors));
-      channel_.send(
-          sample, sample.seed, on_the_way,
-          messages::Pressure{pressure(sample, height) + error.value(), errors_.variance().value()});
-    }
-    channel_.deliver(sample, on_the_way);
-  }
+      : MountedSensor(setup), p_FS_F_(mounting(setup).xyz), errors_(setup.parameters) {}
 
  private:
+  std::optional<messages::Pressure> measure(const Sample& sample,
+                                            PluginState memory) const override {
+    const Kinematics& k = sample.kinematics;
+    const double height = k.p_WF.z() + k.R_WF.row(2).dot(p_FS_F_);
+    const double error = errors_.next(sample, memory).value();
+    return messages::Pressure{pressure(sample, height) + error, errors_.variance().value()};
+  }
+
   /// Of a layer whose temperature changes linearly, T = T0 + L z: p = p0 (T/T0)^(-g/(R L)), and
   /// p0 exp(-g z/(R T0)) of one that is isothermal (ISO 2533).
   static double pressure(const Sample& sample, double height) {
@@ -59,9 +44,7 @@ class BarometerPlugin final : public Plugin {
   }
 
   Vector3d p_FS_F_;  ///< of the link's origin [m]
-  sensing::Rate rate_;
   Errors errors_;
-  sensing::Channel channel_;
 };
 
 PluginDescriptor describe() {

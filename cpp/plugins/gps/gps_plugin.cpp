@@ -1,40 +1,23 @@
 #include "earth.hpp"
 #include "quadcore/plugin.hpp"
+#include "shared/mounted_sensor.hpp"
 #include "shared/noise_and_drift.hpp"
-#include "shared/sensing.hpp"
 
 namespace quadcore::gps {
 namespace {
 
 using Errors = sensing::NoiseAndDrift<3>;
 
-/// What it remembers: when it measured, the errors of the position, what is on the way.
-enum Memory { kSamples, kErrors, kChannel = kErrors + Errors::kMemorySize };
-
-/// Place and velocity of a link of the frame as a satellite receiver has them.
-class GpsPlugin final : public Plugin {
+/// Position and velocity of a link of the frame as a satellite receiver measures them.
+class GpsPlugin final : public sensing::MountedSensor<messages::Fix, Errors::kMemorySize> {
  public:
   explicit GpsPlugin(const PluginSetup& setup)
-      : p_FS_F_(setup.model.pose_of_link.at(setup.parameters.choice("link")).xyz),
-        rate_(setup.parameters.number("rate")),
+      : MountedSensor(setup),
+        p_FS_F_(mounting(setup).xyz),
         earth_({setup.parameters.number("latitude"), setup.parameters.number("longitude"),
                 setup.parameters.number("altitude")}),
         errors_(along(setup, "Noise"), along(setup, "Drift"), setup.parameters.number("driftTime")),
-        velocity_noise_(setup.parameters.number("velocityNoise")),
-        channel_(setup,
-                 setup.topics.publishes(setup.parameters.text("topic"),
-                                        messages::kind_of<messages::Fix>()),
-                 messages::kind_of<messages::Fix>(), setup.parameters.number("rate")) {}
-
-  std::size_t state_size() const override { return kChannel + channel_.state_size(); }
-
-  void sense(const Sample& sample, PluginState state) const override {
-    PluginState on_the_way(state.data() + kChannel, state.size() - kChannel);
-    if (rate_.is_due(sample, state[kSamples])) {
-      channel_.send(sample, sample.seed, on_the_way, measured(sample, state));
-    }
-    channel_.deliver(sample, on_the_way);
-  }
+        velocity_noise_(setup.parameters.number("velocityNoise")) {}
 
  private:
   static Vector3d along(const PluginSetup& setup, const std::string& what) {
@@ -42,8 +25,7 @@ class GpsPlugin final : public Plugin {
     return {level, level, setup.parameters.number("vertical" + what)};
   }
 
-  messages::Fix measured(const Sample& sample, PluginState state) const {
-    auto memory = state.segment<Errors::kMemorySize>(kErrors);
+  std::optional<messages::Fix> measure(const Sample& sample, PluginState memory) const override {
     const Vector3d error = errors_.next(sample, memory), variance = errors_.variance();
     const Kinematics& k = sample.kinematics;
     messages::Fix fix;
@@ -57,11 +39,9 @@ class GpsPlugin final : public Plugin {
   }
 
   Vector3d p_FS_F_;  ///< of the link's origin [m]
-  sensing::Rate rate_;
   Earth earth_;
   Errors errors_;          ///< of the position, along the world's axes [m]
   double velocity_noise_;  ///< m/s
-  sensing::Channel channel_;
 };
 
 PluginDescriptor describe() {

@@ -1,15 +1,14 @@
 #include "quadcore/plugin.hpp"
 #include "quadcore/plugin/elementary.hpp"
-#include "shared/sensing.hpp"
+#include "shared/mounted_sensor.hpp"
 #include "triad.hpp"
 
 namespace quadcore::imu {
 namespace {
 
-/// What it remembers: when it measured, whether it is turned on, time, velocity (world axes) and
-/// orientation then, how far its random numbers are drawn, the errors, what is on the way.
+/// What it remembers: whether it is turned on; time, velocity (world axes) and orientation of the
+/// last sample; how many random numbers it has drawn; the errors.
 enum Memory {
-  kSamples,
   kOn,
   kTime,
   kVelocity,
@@ -17,67 +16,55 @@ enum Memory {
   kDraws = kOrientation + 4,
   kGyroscope,
   kAccelerometer = kGyroscope + Triad::kMemorySize,
-  kChannel = kAccelerometer + Triad::kMemorySize
+  kMemorySize = kAccelerometer + Triad::kMemorySize
 };
 
 /// Angular velocity and specific force of a link of the frame, in the link's axes: the mean over
-/// the time since the last sample, as a unit that integrates its rates tells them.
-class ImuPlugin final : public Plugin {
+/// the time since the last sample, as a unit that integrates its rates reports them.
+class ImuPlugin final : public sensing::MountedSensor<messages::Imu, kMemorySize> {
  public:
   explicit ImuPlugin(const PluginSetup& setup)
-      : X_FS_(setup.model.pose_of_link.at(setup.parameters.choice("link"))),
+      : MountedSensor(setup),
+        X_FS_(mounting(setup)),
         q_FS_(X_FS_.rotation()),
-        rate_(setup.parameters.number("rate")),
         gyroscope_(setup.parameters, "gyro"),
-        accelerometer_(setup.parameters, "accelerometer"),
-        channel_(setup,
-                 setup.topics.publishes(setup.parameters.text("topic"),
-                                        messages::kind_of<messages::Imu>()),
-                 messages::kind_of<messages::Imu>(), setup.parameters.number("rate")) {}
-
-  std::size_t state_size() const override { return kChannel + channel_.state_size(); }
-
-  void sense(const Sample& sample, PluginState state) const override {
-    PluginState on_the_way(state.data() + kChannel, state.size() - kChannel);
-    if (state[kOn] == 0) {
-      state[kOn] = 1;
-      gyroscope_.begin(sample.seed, state[kDraws], errors(state, kGyroscope));
-      accelerometer_.begin(sample.seed, state[kDraws], errors(state, kAccelerometer));
-    }
-    if (rate_.is_due(sample, state[kSamples])) {
-      const Kinematics& k = sample.kinematics;
-      const Vector3d v_WS_W = k.v_WS_W(X_FS_.xyz);
-      const Quaterniond q_WS = k.q_WF * q_FS_;
-      // What was set was not measured: there is no time to take the mean over.
-      if (sample.jumped) {
-        channel_.clear(on_the_way);
-      } else {
-        channel_.send(sample, sample.seed, on_the_way, measured(sample, v_WS_W, q_WS, state));
-      }
-      state[kTime] = sample.time;
-      state.segment<3>(kVelocity) = v_WS_W;
-      state.segment<4>(kOrientation) = q_WS.coeffs();
-    }
-    channel_.deliver(sample, on_the_way);
-  }
+        accelerometer_(setup.parameters, "accelerometer") {}
 
  private:
-  static Eigen::Map<VectorXd> errors(PluginState& state, Eigen::Index begin) {
-    return {state.data() + begin, Triad::kMemorySize};
+  std::optional<messages::Imu> measure(const Sample& sample, PluginState memory) const override {
+    if (memory[kOn] == 0) {
+      memory[kOn] = 1;
+      gyroscope_.begin(sample.seed, memory[kDraws], errors(memory, kGyroscope));
+      accelerometer_.begin(sample.seed, memory[kDraws], errors(memory, kAccelerometer));
+    }
+    const Vector3d v_WS_W = sample.kinematics.v_WS_W(X_FS_.xyz);
+    const Quaterniond q_WS = sample.kinematics.q_WF * q_FS_;
+    // A motion that was set has no time over which the unit could take the mean.
+    std::optional<messages::Imu> message;
+    if (!sample.jumped) message = mean(sample, v_WS_W, q_WS, memory);
+    memory[kTime] = sample.time;
+    memory.segment<3>(kVelocity) = v_WS_W;
+    memory.segment<4>(kOrientation) = q_WS.coeffs();
+    return message;
   }
 
-  messages::Imu measured(const Sample& sample, const Vector3d& v_WS_W, const Quaterniond& q_WS,
-                         PluginState state) const {
-    const double period = sample.time - state[kTime];
-    const Quaterniond q_WSlast(state.data() + kOrientation);
-    const Vector3d f_W = (v_WS_W - state.segment<3>(kVelocity)) / period - sample.world.gravity_W;
+  static PluginState errors(PluginState& memory, Eigen::Index begin) {
+    return {memory.data() + begin, Triad::kMemorySize};
+  }
+
+  /// What the unit measures over the time since the last sample.
+  messages::Imu mean(const Sample& sample, const Vector3d& v_WS_W, const Quaterniond& q_WS,
+                     PluginState memory) const {
+    const double period = sample.time - memory[kTime];
+    const Quaterniond q_WSlast(memory.data() + kOrientation);
+    const Vector3d f_W = (v_WS_W - memory.segment<3>(kVelocity)) / period - sample.world.gravity_W;
     const Vector3d turn_S = turn(q_WSlast.conjugate() * q_WS);
     messages::Imu message;
-    message.angular_velocity = gyroscope_.apply(turn_S / period, period, sample.seed, state[kDraws],
-                                                errors(state, kGyroscope));
+    message.angular_velocity = gyroscope_.apply(turn_S / period, period, sample.seed,
+                                                memory[kDraws], errors(memory, kGyroscope));
     message.specific_force =
         accelerometer_.apply(of_turning_axes(turn_S, q_WSlast.conjugate() * f_W), period,
-                             sample.seed, state[kDraws], errors(state, kAccelerometer));
+                             sample.seed, memory[kDraws], errors(memory, kAccelerometer));
     message.angular_velocity_variance = gyroscope_.variance(period);
     message.specific_force_variance = accelerometer_.variance(period);
     return message;
@@ -106,9 +93,7 @@ class ImuPlugin final : public Plugin {
 
   Pose X_FS_;         ///< of the link in the frame
   Quaterniond q_FS_;  ///< the same turn
-  sensing::Rate rate_;
   Triad gyroscope_, accelerometer_;
-  sensing::Channel channel_;
 };
 
 PluginDescriptor describe() {

@@ -1,46 +1,28 @@
 #include "quadcore/plugin.hpp"
+#include "shared/mounted_sensor.hpp"
 #include "shared/noise_and_drift.hpp"
-#include "shared/sensing.hpp"
 
 namespace quadcore::magnetometer {
 namespace {
 
 using Errors = sensing::NoiseAndDrift<3>;
 
-/// What it remembers: when it measured, its errors, what is on the way.
-enum Memory { kSamples, kErrors, kChannel = kErrors + Errors::kMemorySize };
-
 /// The world's magnetic field, which is the same everywhere, in the axes of a link of the frame.
-class MagnetometerPlugin final : public Plugin {
+class MagnetometerPlugin final
+    : public sensing::MountedSensor<messages::Field, Errors::kMemorySize> {
  public:
   explicit MagnetometerPlugin(const PluginSetup& setup)
-      : R_FS_(setup.model.pose_of_link.at(setup.parameters.choice("link")).rotation()),
-        rate_(setup.parameters.number("rate")),
-        errors_(setup.parameters),
-        channel_(setup,
-                 setup.topics.publishes(setup.parameters.text("topic"),
-                                        messages::kind_of<messages::Field>()),
-                 messages::kind_of<messages::Field>(), setup.parameters.number("rate")) {}
-
-  std::size_t state_size() const override { return kChannel + channel_.state_size(); }
-
-  void sense(const Sample& sample, PluginState state) const override {
-    PluginState on_the_way(state.data() + kChannel, state.size() - kChannel);
-    if (rate_.is_due(sample, state[kSamples])) {
-      const Matrix3d R_WS = sample.kinematics.R_WF * R_FS_;
-      const Vector3d B_S = R_WS.transpose() * sample.world.magnetic_field_W;
-      const auto error = errors_.next(sample, state.segment<Errors::kMemorySize>(kErrors));
-      channel_.send(sample, sample.seed, on_the_way,
-                    messages::Field{B_S + error, errors_.variance().x()});
-    }
-    channel_.deliver(sample, on_the_way);
-  }
+      : MountedSensor(setup), R_FS_(mounting(setup).rotation()), errors_(setup.parameters) {}
 
  private:
+  std::optional<messages::Field> measure(const Sample& sample, PluginState memory) const override {
+    const Matrix3d R_WS = sample.kinematics.R_WF * R_FS_;
+    const Vector3d B_S = R_WS.transpose() * sample.world.magnetic_field_W;
+    return messages::Field{B_S + errors_.next(sample, memory), errors_.variance().x()};
+  }
+
   Matrix3d R_FS_;  ///< of the link in the frame
-  sensing::Rate rate_;
   Errors errors_;
-  sensing::Channel channel_;
 };
 
 PluginDescriptor describe() {

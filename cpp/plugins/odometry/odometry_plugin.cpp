@@ -4,33 +4,29 @@
 #include "imperfection.hpp"
 #include "quadcore/plugin.hpp"
 #include "quadcore/plugin/error.hpp"
-#include "shared/sensing.hpp"
+#include "shared/mounted_sensor.hpp"
 
 namespace quadcore::odometry {
 namespace {
 
-/// What the sensor remembers: when it measured, how far its noise stream has been drawn, the biases
-/// of position, orientation and velocities, then what is on the way.
-enum Memory { kMessages, kTime, kDraws, kBiases, kChannel = kBiases + 12 };
+/// What the sensor remembers: when it measured, how many random numbers it has drawn, the biases of
+/// position, orientation and velocities.
+enum Memory { kTime, kDraws, kBiases, kMemorySize = kBiases + 12 };
 
 /// Odometry of the frame (thesis appendix A.6): pose in the world, linear velocity in the world (or
 /// in body axes, as nav_msgs/Odometry defines it), angular velocity in body axes, each with what is
 /// wrong with it. The errors of the orientation are small rotations about the body axes.
-class OdometryPlugin final : public Plugin {
+class OdometryPlugin final : public sensing::MountedSensor<messages::Odometry, kMemorySize> {
  public:
   explicit OdometryPlugin(const PluginSetup& setup)
-      : rate_(setup.parameters.number("rate")),
+      : MountedSensor(setup),
         position_(setup.parameters, "position", true),
         orientation_(setup.parameters, "orientation", false),
         linear_velocity_(setup.parameters, "linearVelocity", true),
         angular_velocity_(setup.parameters, "angularVelocity", true),
         twist_in_body_(setup.parameters.choice("twistFrame") == "body"),
-        topic_(setup.topics.publishes(setup.parameters.text("topic"),
-                                      messages::kind_of<messages::Odometry>())),
-        channel_(setup, topic_, messages::kind_of<messages::Odometry>(),
-                 setup.parameters.number("rate")),
         is_perfect_(position_.is_none() && orientation_.is_none() && linear_velocity_.is_none() &&
-                    angular_velocity_.is_none() && channel_.is_direct()) {
+                    angular_velocity_.is_none() && channel().is_direct()) {
     const bool own_seed = setup.parameters.has("seed");
     const double seed = own_seed ? setup.parameters.number("seed") : 0;
     if (seed != std::floor(seed)) throw InputError("<seed> is not a whole number; write one");
@@ -41,19 +37,10 @@ class OdometryPlugin final : public Plugin {
     variances_.angular_velocity_variance = angular_velocity_.variance();
   }
 
-  std::size_t state_size() const override { return kChannel + channel_.state_size(); }
-
   void sense(const Sample& sample, PluginState state) const override {
-    if (is_perfect_) {
-      if (!rate_.is_due(sample, state[kMessages])) return;
-      return sample.topics.publish(topic_, sample.time, truth(sample.kinematics));
-    }
-    PluginState on_the_way(state.data() + kChannel, state.size() - kChannel);
-    if (rate_.is_due(sample, state[kMessages])) {
-      const std::uint64_t seed = seed_.value_or(sample.seed);
-      channel_.send(sample, seed, on_the_way, measured(sample, seed, state));
-    }
-    channel_.deliver(sample, on_the_way);
+    Sample seeded = sample;
+    seeded.seed = seed_.value_or(sample.seed);
+    MountedSensor::sense(seeded, state);
   }
 
  private:
@@ -66,14 +53,16 @@ class OdometryPlugin final : public Plugin {
     return message;
   }
 
-  messages::Odometry measured(const Sample& sample, std::uint64_t seed, PluginState state) const {
-    const double since = sample.jumped ? 0 : sample.time - state[kTime];
-    state[kTime] = sample.time;
-    const auto imperfect = [&](const Imperfection& error, const Vector3d& truth, int quantity) {
-      return error.apply(truth, since, seed, state[kDraws],
-                         state.segment<3>(kBiases + 3 * quantity));
-    };
+  std::optional<messages::Odometry> measure(const Sample& sample,
+                                            PluginState memory) const override {
     messages::Odometry message = truth(sample.kinematics);
+    if (is_perfect_) return message;
+    const double since = sample.jumped ? 0 : sample.time - memory[kTime];
+    memory[kTime] = sample.time;
+    const auto imperfect = [&](const Imperfection& error, const Vector3d& truth, int quantity) {
+      return error.apply(truth, since, sample.seed, memory[kDraws],
+                         memory.segment<3>(kBiases + 3 * quantity));
+    };
     message.position = imperfect(position_, message.position, 0);
     const Vector3d turn = imperfect(orientation_, Vector3d::Zero(), 1);
     const double angle = turn.norm();
@@ -84,13 +73,10 @@ class OdometryPlugin final : public Plugin {
     return message;
   }
 
-  sensing::Rate rate_;
   Imperfection position_, orientation_, linear_velocity_, angular_velocity_;
   bool twist_in_body_;
-  std::size_t topic_;
-  sensing::Channel channel_;
   bool is_perfect_;                    ///< each message is the truth, and arrives at once
-  messages::Odometry variances_;       ///< a message but for what moves
+  messages::Odometry variances_;       ///< a message without what moves
   std::optional<std::uint64_t> seed_;  ///< its own, if it has one
 };
 

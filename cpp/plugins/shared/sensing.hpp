@@ -43,15 +43,17 @@ class Rate {
 /// carries the time of its measurement. The first one after the motion was set arrives at once.
 class Channel {
  public:
-  /// \param rate  of the messages [1/s]
-  Channel(const PluginSetup& setup, std::size_t topic, const MessageKind& kind, double rate)
-      : topic_(topic),
+  /// Reads the tags `topic`, `rate`, `delay` and `dropout`.
+  Channel(const PluginSetup& setup, const MessageKind& kind)
+      : topic_(setup.topics.publishes(setup.parameters.text("topic"), kind)),
         row_(kind.fields.size() + 1),
         delay_(setup.parameters.number("delay")),
         dropout_(setup.parameters.number("dropout")) {
     // A message arrives with the first step that ends when it is old enough.
-    const double waiting =
-        std::ceil((delay_ + 2 * setup.dt) * std::min(rate, 1 / setup.dt) + 1e-6) + 1;
+    const double waiting = std::ceil((delay_ + 2 * setup.dt) *
+                                         std::min(setup.parameters.number("rate"), 1 / setup.dt) +
+                                     1e-6) +
+                           1;
     if (waiting * static_cast<double>(row_) > most_numbers) {
       throw InputError("<delay> lets more messages wait than can be kept; write a shorter one");
     }
@@ -64,11 +66,11 @@ class Channel {
   bool is_direct() const { return delay_ == 0 && dropout_ == 0; }
 
   template <class M>
-  void send(const Sample& sample, std::uint64_t seed, PluginState memory, const M& message) const {
+  void send(const Sample& sample, PluginState memory, const M& message) const {
     if (is_direct()) return sample.topics.publish(topic_, sample.time, message);
     if (sample.jumped) {
       clear(memory);
-    } else if (dropout_ > 0 && uniform(seed, memory[kDraws]) < dropout_) {
+    } else if (dropout_ > 0 && uniform(sample.seed, memory[kDraws]) < dropout_) {
       return;
     }
     if (sample.jumped || delay_ == 0) return sample.topics.publish(topic_, sample.time, message);

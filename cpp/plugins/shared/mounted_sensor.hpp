@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "quadcore/plugin.hpp"
+#include "shared/sensing.hpp"
+
+namespace quadcore::sensing {
+
+/// A sensor on the vehicle that measures at the `rate` of its tag and sends messages of one type
+/// through a Channel. Its state: when it measured, the N numbers of measure(), what is on the way.
+template <class Message, Eigen::Index N>
+class MountedSensor : public Plugin {
+ public:
+  explicit MountedSensor(const PluginSetup& setup)
+      : rate_(setup.parameters.number("rate")), channel_(setup, messages::kind_of<Message>()) {}
+
+  std::size_t state_size() const override { return kMemory + N + channel_.state_size(); }
+
+  void sense(const Sample& sample, PluginState state) const override {
+    PluginState on_the_way(state.data() + kMemory + N, state.size() - kMemory - N);
+    if (rate_.is_due(sample, state[kSamples])) {
+      const std::optional<Message> message =
+          measure(sample, PluginState(state.data() + kMemory, N));
+      if (message) {
+        channel_.send(sample, on_the_way, *message);
+      } else {
+        channel_.clear(on_the_way);
+      }
+    }
+    channel_.deliver(sample, on_the_way);
+  }
+
+ protected:
+  /// Where the link of the frame that the tag `link` names sits in it.
+  static Pose mounting(const PluginSetup& setup) {
+    return setup.model.pose_of_link.at(setup.parameters.choice("link"));
+  }
+
+  /// \param memory  N numbers, zero at the start
+  /// \return the message; or none after the motion was set, where that cannot be measured
+  virtual std::optional<Message> measure(const Sample& sample, PluginState memory) const = 0;
+
+  const Channel& channel() const { return channel_; }
+
+ private:
+  enum Memory { kSamples, kMemory };
+
+  Rate rate_;
+  Channel channel_;
+};
+
+}  // namespace quadcore::sensing
