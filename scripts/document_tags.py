@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import Iterator
 
 from markdown_table import table
-from world_elements import world_section
 
 import quadcore as qc
 from quadcore import _core
+from quadcore.model import resources
 from quadcore.model.description import load_description
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -46,25 +46,10 @@ LOG = {
     "j1 ... jn": ("rad/s", "velocity of each rotor joint as the engine has it, file order"),
 }
 
-TOPICS = {
-    "vel_cmd": "rotor speeds, rad/s, signed, before the division by `sim_slow`",
-    "odom": "units as in the log, variances in their squares",
-    "reference": "where the vehicle is to be and derivatives, world axes, m, rad, s",
-    "saturation": "steps so far whose command reached the motors' `maxVelocity`",
-    "effectiveness": "of each rotor the share of thrust and reaction torque that is left",
-    "power": "of each rotor the share of its motor's torque that is left",
-    "fault": "a rotor, counted from 1, and its shares, to be so at once",
-    "health": "of each joint that turns, what laws are told is left of its rotor's thrust",
-    "payload": "1: it rides on the frame, 0: it is gone",
-    "payload_carried": "mass of what rides on the frame, kg, 0 if nothing does; its place, m",
-    "push": "force, N, and torque, N m",
-    "wind": "velocity of the air, world axes, m/s",
-    "imu": "angular velocity, rad/s, and specific force, m/s^2, link axes, and their variances",
-    "faults": "the same for the battery, which multiplies by them",
-    "battery": "V, A drawn, A h left, A h of a full one",
-    "pressure": "static pressure of the air, Pa, and its variance",
-    "magnetic_field": "flux density, T, link axes, and its variance",
-    "fix": "degrees, m, m/s, and variances; place and velocity in world axes",
+WORLDS = {
+    "empty": "Gazebo's defaults without ground; what there is unless another is named",
+    "default": "the thesis': Gazebo's defaults with ground",
+    "basic": "RotorS': ground, steps of 10 ms, a thousand sweeps of the solver",
 }
 
 
@@ -138,6 +123,21 @@ def reference_section() -> str:
     )
 
 
+def world_section() -> str:
+    """Tabulate what a world may hold, and the shipped worlds."""
+    if set(WORLDS) != set(resources.shipped("worlds")):
+        sys.exit(f"worlds: described are {list(WORLDS)}")
+    rows = ((f"`{e.name}`", e.unit, e.default, e.range, e.meaning) for e in _core.world_elements())
+    return (
+        "\n## Worlds\n\n"
+        "An SDF file with one `<world>`. Of it these elements are read; any other is an error\n"
+        "that names it, unless [nothing feels it](#seen-or-sensed).\n\n"
+        + table(("element", "unit", "default", "range", "meaning"), rows)
+        + "\nShipped, and known by name:\n\n"
+        + table(("world", "what it is"), ((f"`{name}`", what) for name, what in WORLDS.items()))
+    )
+
+
 def engine_section() -> str:
     """Tabulate the engines, the default first."""
     rows = ((f"`{name}`", summary) for name, summary in qc.engines())
@@ -173,14 +173,12 @@ def log_section(simulation: qc.Simulation) -> str:
 def topic_section(simulation: qc.Simulation) -> str:
     """Tabulate the topics inside the core."""
     files = {plugin.name: f"`{plugin.filename}`" for plugin in simulation.plugins}
-    if set(TOPICS) != set(simulation.topics):
-        sys.exit(f"topics: described are {list(TOPICS)}")
     rows = []
     for name, topic in simulation.topics.items():
         plugins = [f"published by {files[topic.writer]}"] if topic.writer else []
         plugins += [f"taken by {files[reader]}" for reader in topic.readers]
         fields = " ".join(f"`{field}`" for field in topic.fields)
-        rows.append((f"`{name}`", f"`{topic.kind}`", fields, ", ".join(plugins), TOPICS[name]))
+        rows.append((f"`{name}`", f"`{topic.kind}`", fields, ", ".join(plugins), topic.meaning))
     return (
         "\n## Topics\n\nMessages between plugins, and between them and Python or ROS; "
         "see [plugins.md](plugins.md#topics).\n"

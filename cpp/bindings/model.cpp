@@ -262,6 +262,8 @@ most_levels, most_attributes : int
       .def_readonly("range", &GazeboTag::range, "Values that it may have, for a person.")
       .def_readonly("meaning", &GazeboTag::meaning, "In one line.");
   m.def("gazebo_tags", &gazebo_tags, "What a <gazebo reference> may hold, the felt tags first.");
+  m.def("world_elements", &world_elements,
+        "Elements that a world may hold, by their paths below <world>.");
 
   const auto nothing = std::vector<std::string>{};
   m.def("read_model", &read_model, py::arg("document"), py::arg("ignore") = nothing,

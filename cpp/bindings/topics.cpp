@@ -11,7 +11,7 @@ namespace {
 
 /// What plugins have declared of a topic.
 struct TopicInfo {
-  std::string name, kind;
+  std::string name, kind, meaning;
   std::vector<std::string> fields;
   std::optional<std::string> writer;  ///< nothing for the caller
   std::vector<std::string> readers;
@@ -21,7 +21,8 @@ TopicInfo describe(const Simulation& simulation, const Topic& topic) {
   const auto name_of = [&](int plugin) {
     return simulation.plugins()[static_cast<std::size_t>(plugin)].name;
   };
-  TopicInfo info{topic.name, topic.kind.name, topic.kind.fields, std::nullopt, {}};
+  TopicInfo info{topic.name,        topic.kind.name, topic.kind.meaning,
+                 topic.kind.fields, std::nullopt,    {}};
   if (topic.writer != the_caller) info.writer = name_of(topic.writer);
   for (const int reader : topic.readers) info.readers.push_back(name_of(reader));
   return info;
@@ -71,6 +72,9 @@ void bind_topics(py::module_& m, py::class_<Guarded, std::shared_ptr<Guarded>>& 
       .def_property_readonly(
           "kind", [](const TopicInfo& t) { return text(t.kind); },
           "Of its messages, such as \"odometry\".")
+      .def_property_readonly(
+          "meaning", [](const TopicInfo& t) { return text(t.meaning); },
+          "What the numbers are, with their units.")
       .def_readonly("fields", &TopicInfo::fields,
                     "Names of a message's numbers, in order, list of str.")
       .def_readonly("writer", &TopicInfo::writer,

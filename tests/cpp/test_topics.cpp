@@ -46,16 +46,19 @@ TEST_CASE("a message of any kind is a row of its fields and back") {
 TEST_CASE("all that declare a topic mean the same one") {
   Declared topics;
   topics.plugin("one");
-  const std::size_t first = topics.publishes("wind", wind);
+  MessageKind described = wind;
+  described.meaning = "velocity of the air, m/s";
+  const std::size_t first = topics.takes("wind", wind);
   topics.plugin("two");
-  CHECK(topics.takes("wind", wind) == first);
+  CHECK(topics.publishes("wind", described) == first);
   topics.settle();
+  CHECK(topics[first].kind.meaning == described.meaning);
   CHECK(topics.find("wind") == static_cast<int>(first));
   CHECK(topics.find("rain") == -1);
   CHECK(refusal([&] { topics.at("wnd"); }) ==
         "topic 'wnd' is not declared by any plugin (did you mean 'wind'?); declared are wind");
-  CHECK(topics[first].writer == 0);
-  CHECK(topics[first].readers == std::vector<int>{1});
+  CHECK(topics[first].writer == 1);
+  CHECK(topics[first].readers == std::vector<int>{0});
 }
 
 TEST_CASE("plugins that disagree about the kind of a topic are refused by name") {

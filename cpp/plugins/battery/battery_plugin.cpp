@@ -27,8 +27,9 @@ class BatteryPlugin final : public Plugin {
         efficiency_(setup.parameters.number("efficiency")),
         topic_(setup.topics.publishes(setup.parameters.text("topic"),
                                       messages::kind_of<messages::Battery>())),
-        effectiveness_(
-            setup.topics.publishes(setup.parameters.text("effectiveness"), shares(rotors_.size()))),
+        effectiveness_(setup.topics.publishes(
+            setup.parameters.text("effectiveness"),
+            shares(rotors_.size(), "each rotor's thrust and reaction torque"))),
         power_(setup.topics.takes(setup.parameters.text("power"), shares(rotors_.size()))),
         has_faults_(setup.parameters.has("faults")) {
     if (has_faults_) {

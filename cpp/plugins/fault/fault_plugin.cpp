@@ -62,16 +62,23 @@ class FaultPlugin final : public Plugin {
       : rotors_(setup.parameters.joints("rotorJoints").size()),
         losses_(events(setup.parameters, "losses", 3, rotors_)),
         cuts_(events(setup.parameters, "cuts", 2, rotors_)),
-        topic_(setup.topics.takes(setup.parameters.text("topic"),
-                                  {"fault", {"rotor", "effectiveness", "power"}})),
+        topic_(setup.topics.takes(
+            setup.parameters.text("topic"),
+            {"fault",
+             {"rotor", "effectiveness", "power"},
+             {},
+             "a rotor, counted from 1, and the shares that it keeps from now on"})),
         effectiveness_(
-            setup.topics.publishes(setup.parameters.text("effectiveness"), shares(rotors_))),
-        power_(setup.topics.publishes(setup.parameters.text("power"), shares(rotors_))),
+            setup.topics.publishes(setup.parameters.text("effectiveness"),
+                                   shares(rotors_, "each rotor's thrust and reaction torque"))),
+        power_(setup.topics.publishes(setup.parameters.text("power"),
+                                      shares(rotors_, "each motor's torque"))),
         joints_(setup.parameters.joints("rotorJoints")) {
     if (!setup.parameters.has("detection")) return;
     detection_ = setup.parameters.number("detection");
-    health_ =
-        setup.topics.publishes(setup.parameters.text("health"), shares(setup.model.joints.size()));
+    health_ = setup.topics.publishes(
+        setup.parameters.text("health"),
+        shares(setup.model.joints.size(), "each rotor's thrust, as detected"));
   }
 
   std::size_t state_size() const override { return kRotors + kOfRotor * rotors_; }

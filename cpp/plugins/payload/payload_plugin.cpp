@@ -8,7 +8,12 @@ namespace quadcore::payload {
 namespace {
 
 /// A body that rides on the frame: its mass, 0 if there is none, and its place in the frame.
-MessageKind carried_kind() { return {"carried", {"mass", "x", "y", "z"}}; }
+MessageKind carried_kind() {
+  return {"carried",
+          {"mass", "x", "y", "z"},
+          {},
+          "mass of the payload, kg, 0 without one; its position in the frame, m"};
+}
 
 /// What it remembers: whether the body rides on the frame, once a step has begun.
 enum Carrying { as_at_the_start, riding, gone };

@@ -15,7 +15,12 @@ class SpeedLimit {
   explicit SpeedLimit(const PluginSetup& setup) {
     if (!setup.parameters.has("maxVelocity")) return;
     fastest_ = setup.parameters.number("maxVelocity");
-    topic_ = setup.topics.publishes(setup.parameters.text("saturation"), {"saturation", {"steps"}});
+    topic_ =
+        setup.topics.publishes(setup.parameters.text("saturation"),
+                               {"saturation",
+                                {"steps"},
+                                {},
+                                "steps so far whose command reached the motors' `maxVelocity`"});
   }
 
   double fastest() const { return fastest_; }

@@ -26,8 +26,9 @@ class WindPlugin final : public Plugin {
         scales_(
             low_altitude(setup.parameters.number("height"), setup.parameters.number("turbulence"))),
         airspeed_(setup.parameters.number("airspeed")),
-        topic_(setup.topics.publishes(setup.parameters.text("topic"),
-                                      messages::kind_of<messages::Vector>())) {
+        topic_(setup.topics.publishes(
+            setup.parameters.text("topic"),
+            messages::kind_of<messages::Vector>(messages::WindSpeed::meaning))) {
     if (!shear_.acts() || !velocity_W_.isZero(0)) return;
     setup.warnings.push_back(
         "<shear> has no effect while <velocity> is 0; write the wind at "

@@ -54,10 +54,11 @@ def info(arguments: argparse.Namespace) -> None:
         console.print(f"plugin {plugin.name}: {plugin.summary}")
         console.print(f"  {plugin.filename}, loaded from {plugin.path}", soft_wrap=True)
         for name, topic in simulation.topics.items():
+            meaning = f"{topic.kind}: {topic.meaning}" if topic.meaning else topic.kind
             if topic.writer == plugin.name:
-                console.print(f"  publishes topic {name}, {topic.kind}")
+                console.print(f"  publishes topic {name}, {meaning}", soft_wrap=True)
             if plugin.name in topic.readers:
-                console.print(f"  takes topic {name}, {topic.kind}")
+                console.print(f"  takes topic {name}, {meaning}", soft_wrap=True)
         if console.is_terminal:
             console.print(_told(plugin, min(console.width, _LONGEST)), "", soft_wrap=True, sep="\n")
         else:  # to be searched: a line has all that is known of a parameter

@@ -7,17 +7,18 @@
 #include "quadcore/plugin/topics.hpp"
 
 /// \file
-/// What faults say of rotors: of each the share that is left of something.
+/// What faults leave of each rotor: a share of something.
 
 namespace quadcore {
 
-/// Topic on which control laws are told what is left of the rotors.
+/// Topic on which controllers read what is left of the rotors.
 constexpr const char* health_topic = "health";
 
-/// The kind of message that tells them of so many rotors: s1, s2 and so on, each from 0 to 1; all
-/// of each rotor before the first message.
-inline MessageKind shares(std::size_t rotors) {
-  MessageKind kind{"shares", {}, std::vector<double>(rotors, 1.0)};
+/// The kind of message that holds them for so many rotors: s1, s2 and so on, each from 0 to 1; 1
+/// before the first message.
+/// \param of  what each rotor has a share of
+inline MessageKind shares(std::size_t rotors, const std::string& of = "what the reader scales") {
+  MessageKind kind{"shares", {}, std::vector<double>(rotors, 1.0), "share that is left of " + of};
   for (std::size_t i = 1; i <= rotors; ++i) kind.fields.push_back("s" + std::to_string(i));
   return kind;
 }

@@ -35,6 +35,7 @@ std::vector<std::size_t> Topics::settle() {
   }
   for (const Declaration& declared : declarations_) {
     const Declaration& other = authority(declared.topic);
+    topics_[declared.topic].kind.meaning = other.kind.meaning;
     if (other.kind == declared.kind) continue;
     throw InputError(name_of(declared.plugin) + " has topic '" + topics_[declared.topic].name +
                      "' as " + describe(declared.kind) + ", but " + name_of(other.plugin) +

@@ -23,6 +23,7 @@ struct MessageKind {
   /// What whoever takes the topic goes by before the first message, a number for each field; empty
   /// where no number says it, and the topic holds zeros then.
   std::vector<double> unsaid = {};
+  std::string meaning = {};  ///< of the numbers, with their units, for people
 
   /// Whether messages mean the same.
   bool operator==(const MessageKind& other) const {
@@ -30,8 +31,8 @@ struct MessageKind {
   }
 };
 
-/// Types of message. What such a type M has to have, also one that a plugin brings along: `kind`,
-/// the MessageKind::name, and `M::for_each_field(m, visit)`, which calls `visit(member, {field,
+/// Types of message. Such a type M, also one of a plugin's own, has `kind`, the MessageKind::name,
+/// its `meaning`, and `M::for_each_field(m, visit)`, which calls `visit(member, {field,
 /// ...}, numbers)` with the names and the numbers of each member in order.
 namespace messages {
 
@@ -46,7 +47,9 @@ void visit_number(const Visit& visit, const char* name, Number& number) {
 
 /// Pose of the frame in the world and its velocity, with the variance of the noise on each.
 struct Odometry {
-  static constexpr const char* kind = "odometry";     ///< MessageKind::name
+  static constexpr const char* kind = "odometry";  ///< MessageKind::name
+  /// MessageKind::meaning
+  static constexpr const char* meaning = "units as in the log, variances in their squares";
   Vector3d position = Vector3d::Zero();               ///< world axes [m]
   Quaterniond orientation = Quaterniond::Identity();  ///< of the frame in the world, unit
   Vector3d linear_velocity =
@@ -70,9 +73,12 @@ struct Odometry {
   }
 };
 
-/// What an inertial measurement unit feels, in its own axes.
+/// Measurement of an inertial measurement unit, in its own axes.
 struct Imu {
-  static constexpr const char* kind = "imu";     ///< MessageKind::name
+  static constexpr const char* kind = "imu";  ///< MessageKind::name
+  /// MessageKind::meaning
+  static constexpr const char* meaning =
+      "angular velocity, rad/s, and specific force, m/s^2, link axes, and their variances";
   Vector3d angular_velocity = Vector3d::Zero();  ///< [rad/s]
   Vector3d specific_force = Vector3d::Zero();    ///< acceleration less gravity [m/s^2]
   double angular_velocity_variance = 0;          ///< of each component [rad^2/s^2]
@@ -87,17 +93,20 @@ struct Imu {
   }
 };
 
-/// What a satellite receiver tells: a place on Earth and in the world, and a velocity.
+/// Measurement of a satellite receiver: position on Earth and in the world, and velocity.
 struct Fix {
   static constexpr const char* kind = "fix";  ///< MessageKind::name
-  double latitude = 0;                        ///< positive north [deg]
-  double longitude = 0;                       ///< positive east [deg]
-  double altitude = 0;                        ///< [m]
-  Vector3d position = Vector3d::Zero();       ///< the same place in world axes [m]
-  Vector3d velocity = Vector3d::Zero();       ///< world axes [m/s]
-  double horizontal_variance = 0;             ///< of x and y each [m^2]
-  double vertical_variance = 0;               ///< of z [m^2]
-  double velocity_variance = 0;               ///< of each component [m^2/s^2]
+  /// MessageKind::meaning
+  static constexpr const char* meaning =
+      "degrees, m, m/s, and variances; position and velocity in world axes";
+  double latitude = 0;                   ///< positive north [deg]
+  double longitude = 0;                  ///< positive east [deg]
+  double altitude = 0;                   ///< [m]
+  Vector3d position = Vector3d::Zero();  ///< the same position in world axes [m]
+  Vector3d velocity = Vector3d::Zero();  ///< world axes [m/s]
+  double horizontal_variance = 0;        ///< of x and y each [m^2]
+  double vertical_variance = 0;          ///< of z [m^2]
+  double velocity_variance = 0;          ///< of each component [m^2/s^2]
 
   template <class M, class Visit>
   static void for_each_field(M& m, const Visit& visit) {
@@ -112,11 +121,13 @@ struct Fix {
   }
 };
 
-/// What a barometer tells.
+/// Measurement of a barometer.
 struct Pressure {
   static constexpr const char* kind = "pressure";  ///< MessageKind::name
-  double pressure = 0;                             ///< static, of the air [Pa]
-  double variance = 0;                             ///< [Pa^2]
+  /// MessageKind::meaning
+  static constexpr const char* meaning = "static pressure of the air, Pa, and its variance";
+  double pressure = 0;  ///< static, of the air [Pa]
+  double variance = 0;  ///< [Pa^2]
 
   template <class M, class Visit>
   static void for_each_field(M& m, const Visit& visit) {
@@ -125,11 +136,13 @@ struct Pressure {
   }
 };
 
-/// What a magnetometer tells, in its own axes.
+/// Measurement of a magnetometer, in its own axes.
 struct Field {
   static constexpr const char* kind = "field";  ///< MessageKind::name
-  Vector3d flux_density = Vector3d::Zero();     ///< [T]
-  double variance = 0;                          ///< of each component [T^2]
+  /// MessageKind::meaning
+  static constexpr const char* meaning = "magnetic flux density, T, link axes, and its variance";
+  Vector3d flux_density = Vector3d::Zero();  ///< [T]
+  double variance = 0;                       ///< of each component [T^2]
 
   template <class M, class Visit>
   static void for_each_field(M& m, const Visit& visit) {
@@ -138,13 +151,15 @@ struct Field {
   }
 };
 
-/// What a battery tells.
+/// State of a battery.
 struct Battery {
   static constexpr const char* kind = "battery";  ///< MessageKind::name
-  double voltage = 0;                             ///< between its poles [V]
-  double current = 0;                             ///< drawn from it [A]
-  double charge = 0;                              ///< that is left [A h]
-  double capacity = 0;                            ///< charge of a full one [A h]
+  /// MessageKind::meaning
+  static constexpr const char* meaning = "V, A drawn, A h left, A h of a full one";
+  double voltage = 0;   ///< between its poles [V]
+  double current = 0;   ///< drawn from it [A]
+  double charge = 0;    ///< that is left [A h]
+  double capacity = 0;  ///< charge of a full one [A h]
 
   template <class M, class Visit>
   static void for_each_field(M& m, const Visit& visit) {
@@ -155,17 +170,20 @@ struct Battery {
   }
 };
 
-/// Where a vehicle is to be, with the derivatives of a flat output, world axes.
+/// Desired state of a vehicle, with the derivatives of a flat output, world axes.
 struct Reference {
   static constexpr const char* kind = "reference";  ///< MessageKind::name
-  Vector3d position = Vector3d::Zero();             ///< of the frame's origin [m]
-  Vector3d velocity = Vector3d::Zero();             ///< [m/s]
-  Vector3d acceleration = Vector3d::Zero();         ///< [m/s^2]
-  Vector3d jerk = Vector3d::Zero();                 ///< [m/s^3]
-  Vector3d snap = Vector3d::Zero();                 ///< [m/s^4]
-  double yaw = 0;                                   ///< [rad]
-  double yaw_rate = 0;                              ///< [rad/s]
-  double yaw_acceleration = 0;                      ///< [rad/s^2]
+  /// MessageKind::meaning
+  static constexpr const char* meaning =
+      "desired position, its derivatives, and yaw; world axes, m, rad, s";
+  Vector3d position = Vector3d::Zero();      ///< of the frame's origin [m]
+  Vector3d velocity = Vector3d::Zero();      ///< [m/s]
+  Vector3d acceleration = Vector3d::Zero();  ///< [m/s^2]
+  Vector3d jerk = Vector3d::Zero();          ///< [m/s^3]
+  Vector3d snap = Vector3d::Zero();          ///< [m/s^4]
+  double yaw = 0;                            ///< [rad]
+  double yaw_rate = 0;                       ///< [rad/s]
+  double yaw_acceleration = 0;               ///< [rad/s^2]
 
   template <class M, class Visit>
   static void for_each_field(M& m, const Visit& visit) {
@@ -183,8 +201,10 @@ struct Reference {
 /// A force at a point and a torque; point and axes are the taker's.
 struct Wrench {
   static constexpr const char* kind = "wrench";  ///< MessageKind::name
-  Vector3d force = Vector3d::Zero();             ///< [N]
-  Vector3d torque = Vector3d::Zero();            ///< about the point [N m]
+  /// MessageKind::meaning
+  static constexpr const char* meaning = "force, N, and torque, N m";
+  Vector3d force = Vector3d::Zero();   ///< [N]
+  Vector3d torque = Vector3d::Zero();  ///< about the point [N m]
 
   template <class M, class Visit>
   static void for_each_field(M& m, const Visit& visit) {
@@ -196,7 +216,9 @@ struct Wrench {
 /// A vector of space; axes and unit are the publisher's.
 struct Vector {
   static constexpr const char* kind = "vector";  ///< MessageKind::name
-  Vector3d value = Vector3d::Zero();             ///< x, y, z
+  /// MessageKind::meaning
+  static constexpr const char* meaning = "a vector; the publisher defines axes and unit";
+  Vector3d value = Vector3d::Zero();  ///< x, y, z
 
   template <class M, class Visit>
   static void for_each_field(M& m, const Visit& visit) {
@@ -207,7 +229,9 @@ struct Vector {
 /// How the air moves, world axes.
 struct WindSpeed {
   static constexpr const char* kind = "wind_speed";  ///< MessageKind::name
-  Vector3d velocity = Vector3d::Zero();              ///< [m/s]
+  /// MessageKind::meaning
+  static constexpr const char* meaning = "velocity of the air, world axes, m/s";
+  Vector3d velocity = Vector3d::Zero();  ///< [m/s]
 
   template <class M, class Visit>
   static void for_each_field(M& m, const Visit& visit) {
@@ -218,7 +242,9 @@ struct WindSpeed {
 /// How a satellite receiver moves, world axes.
 struct GroundSpeed {
   static constexpr const char* kind = "ground_speed";  ///< MessageKind::name
-  Vector3d velocity = Vector3d::Zero();                ///< [m/s]
+  /// MessageKind::meaning
+  static constexpr const char* meaning = "velocity of the receiver, world axes, m/s";
+  Vector3d velocity = Vector3d::Zero();  ///< [m/s]
 
   template <class M, class Visit>
   static void for_each_field(M& m, const Visit& visit) {
@@ -227,11 +253,12 @@ struct GroundSpeed {
 };
 
 /// The rate of one joint [rad/s].
-inline MessageKind motor_speed() { return {"motor_speed", {"w"}}; }
+inline MessageKind motor_speed() { return {"motor_speed", {"w"}, {}, "joint rate, rad/s"}; }
 
 /// Speeds of as many rotors as there are, signed [rad/s], before any division by sim_slow.
 inline MessageKind speeds(std::size_t rotors) {
-  MessageKind kind{"speeds", {}};
+  MessageKind kind{
+      "speeds", {}, {}, "rotor speeds, rad/s, signed, before the division by `sim_slow`"};
   for (std::size_t i = 0; i < rotors; ++i) kind.fields.push_back("w" + std::to_string(i + 1));
   return kind;
 }
@@ -247,10 +274,10 @@ std::vector<std::pair<std::string, std::vector<std::string>>> parts_of() {
   return parts;
 }
 
-/// The kind that a type of message is.
+/// The kind that a type of message is; `meaning` may be narrower than the type's own.
 template <class M>
-MessageKind kind_of() {
-  MessageKind kind{M::kind, {}};
+MessageKind kind_of(const char* meaning = M::meaning) {
+  MessageKind kind{M::kind, {}, {}, meaning};
   for (const auto& [part, fields] : parts_of<M>()) {
     kind.fields.insert(kind.fields.end(), fields.begin(), fields.end());
   }

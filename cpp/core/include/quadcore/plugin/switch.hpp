@@ -10,11 +10,15 @@
 namespace quadcore {
 
 /// One number, 1 or 0.
-inline MessageKind switch_kind(const std::string& field) { return {"switch", {field}}; }
+inline MessageKind switch_kind(const std::string& field) {
+  return {"switch", {field}, {}, "1: " + field + ", 0: not"};
+}
 
 /// The same, of which is known what holds before the first message.
 inline MessageKind switch_kind(const std::string& field, bool unsaid) {
-  return {"switch", {field}, {unsaid ? 1.0 : 0.0}};
+  MessageKind kind = switch_kind(field);
+  kind.unsaid = {unsaid ? 1.0 : 0.0};
+  return kind;
 }
 
 /// Whether a kind, of at least one field, is a switch, whatever its field is called.

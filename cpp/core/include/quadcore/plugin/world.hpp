@@ -2,11 +2,13 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "quadcore/plugin/document.hpp"
 #include "quadcore/plugin/export.hpp"
 #include "quadcore/plugin/passed_over.hpp"
 #include "quadcore/plugin/spatial.hpp"
+#include "quadcore/plugin/tags.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 
@@ -59,5 +61,9 @@ struct World {
 /// Throws InputError with FILE:LINE on every element that is felt and not honoured, and on
 /// everything foreign that is not ignored.
 World read_world(const Document& document, const std::vector<std::string>& ignore = {});
+
+/// The elements that read_world() takes, named by their paths below `<world>`. Parsing, errors and
+/// the docs come from here.
+std::vector<TagSpec> world_elements();
 
 }  // namespace quadcore
