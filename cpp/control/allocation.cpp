@@ -150,47 +150,54 @@ bool Allocation::is_within(const Eigen::Vector4d& demand, const double* lost) co
   });
 }
 
+/// What the rotors exert is a zonotope, see the class. The demands of a share of the roll and pitch
+/// torques with any thrust are a plane through it. There two parallel facets are two parallel
+/// lines, one of which bounds the thrust from below, the other from above: all of them leave a
+/// convex polygon. Its largest share is at a corner, where a lower line rises above an upper one.
+/// Few rotors have few facets, so every pair of lines is tried.
 Allocation::Share Allocation::fit(const Demand& demand, const double* lost, bool at_any_yaw) const {
-  // Facets: least <= s level + T lift + yaw <= most bounds T from two sides by lines in s. The
-  // largest s in [0, 1] is where a lower line meets an upper one.
+  struct Line {
+    double thrust, slope;  // at a share of 0; change with the share
+    double at(double share) const { return thrust + share * slope; }
+  };
   const std::vector<Facets>& facets = at_any_yaw ? level_ : facets_;
-  const auto level = [&](const Facets& f) {
-    return demand.torque_F.x() * f.normal[1] + demand.torque_F.y() * f.normal[2];
+  const auto along_normal = [&](const Facets& pair) {
+    return demand.torque_F.x() * pair.normal[1] + demand.torque_F.y() * pair.normal[2];
   };
-  const auto line = [&](const Facets& f, bool upper) {  // T at s = 0 and its slope
-    const double lift = f.normal[0];
-    const double limit = left_of(upper == (lift > 0) ? f.most : f.least, lost);
-    return std::pair{limit / lift, -level(f) / lift};
+  const auto bound = [&](const Facets& pair, bool upper) {
+    const double lift = pair.normal[0];
+    const double limit = left_of(upper == (lift > 0) ? pair.most : pair.least, lost);
+    return Line{limit / lift, -along_normal(pair) / lift};
   };
-  double s = 1;
-  for (const Facets& f : facets) {
-    if (f.normal[0] == 0) {
-      const double change = level(f);
-      const VectorXd& limit = change > 0 ? f.most : f.least;
-      if (change != 0) s = std::clamp(left_of(limit, lost) / change, 0.0, s);
+  Share share{1, 0, 0};
+  for (const Facets& pair : facets) {
+    if (pair.normal[0] == 0) {  // the same at any thrust
+      const double torque = along_normal(pair);
+      const VectorXd& limit = torque > 0 ? pair.most : pair.least;
+      if (torque != 0) {
+        share.roll_pitch = std::clamp(left_of(limit, lost) / torque, 0.0, share.roll_pitch);
+      }
       continue;
     }
-    const auto [low, low_slope] = line(f, false);
-    for (const Facets& g : facets) {
-      if (g.normal[0] == 0) continue;
-      const auto [high, high_slope] = line(g, true);
-      if (low_slope > high_slope) {
-        s = std::clamp((high - low) / (low_slope - high_slope), 0.0, s);
-      }
+    const Line lower = bound(pair, false);
+    for (const Facets& other : facets) {
+      if (other.normal[0] == 0) continue;
+      const Line upper = bound(other, true);
+      if (lower.slope <= upper.slope) continue;
+      const double meeting = (upper.thrust - lower.thrust) / (lower.slope - upper.slope);
+      share.roll_pitch = std::clamp(meeting, 0.0, share.roll_pitch);
     }
   }
   double least = -infinity, most = infinity;
-  for (const Facets& f : facets) {
-    if (f.normal[0] == 0) continue;
-    const auto [low, low_slope] = line(f, false);
-    const auto [high, high_slope] = line(f, true);
-    least = std::max(least, low + s * low_slope);
-    most = std::min(most, high + s * high_slope);
+  for (const Facets& pair : facets) {
+    if (pair.normal[0] == 0) continue;
+    least = std::max(least, bound(pair, false).at(share.roll_pitch));
+    most = std::min(most, bound(pair, true).at(share.roll_pitch));
   }
-  // At the last share the two bounds are one but for rounding.
-  Share share{s, std::max(least, std::min(demand.thrust, most)), 0};
-  const auto [low, high] =
-      yaw_beside(share.thrust, s * demand.torque_F.x(), s * demand.torque_F.y(), lost);
+  // At a corner the two bounds are equal but for rounding.
+  share.thrust = std::max(least, std::min(demand.thrust, most));
+  const auto [low, high] = yaw_beside(share.thrust, share.roll_pitch * demand.torque_F.x(),
+                                      share.roll_pitch * demand.torque_F.y(), lost);
   share.yaw = std::max(low, std::min(demand.torque_F.z(), high));
   return share;
 }
