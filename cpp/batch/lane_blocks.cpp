@@ -173,9 +173,9 @@ void LaneBlocks::step(std::size_t block, std::int64_t count, double dt, double* 
   if (!is_empty()) step_(view(block, work, steps), count, dt);
 }
 
-void LaneBlocks::show(std::size_t block, std::size_t vehicles, double* work, double* rows) const {
+void LaneBlocks::show(std::size_t block, std::size_t vehicles, double* work, double* rows) {
   if (is_empty()) return;
-  show_(const_cast<LaneBlocks*>(this)->view(block, work, nullptr), work);
+  show_(view(block, work, nullptr), work);
   const std::size_t width = shown_rows();
   for (std::size_t i = 0; i < vehicles; ++i) {
     double* to = rows + i * width;

@@ -38,7 +38,7 @@ class LaneBlocks {
   void get_engine_state(std::size_t vehicle, std::vector<double>& state) const;
   void set_engine_state(std::size_t vehicle, const std::vector<double>& state);
   /// As Batch::get_state() has it, the rows of all vehicles of a block that there are.
-  void show(std::size_t block, std::size_t vehicles, double* work, double* rows) const;
+  void show(std::size_t block, std::size_t vehicles, double* work, double* rows);
 
   /// All that changes.
   struct Saved {
@@ -57,6 +57,10 @@ class LaneBlocks {
   }
 
  private:
+  template <class Table>
+  static auto column(Table& table, std::size_t rows, std::size_t vehicle) {
+    return table.data() + vehicle / widest_lanes * rows * widest_lanes + vehicle % widest_lanes;
+  }
   bool is_empty() const { return state_.empty(); }
   bool are_hinged() const { return hinged_ != nullptr; }
   std::size_t state_rows() const;
@@ -68,12 +72,6 @@ class LaneBlocks {
   void choose_width();
   double hinged_angle(std::size_t vehicle, const double* shown, std::size_t j) const;
   Block view(std::size_t block, double* work, std::int64_t* steps);
-  double* column(LaneNumbers& table, std::size_t rows, std::size_t vehicle) const {
-    return table.data() + vehicle / widest_lanes * rows * widest_lanes + vehicle % widest_lanes;
-  }
-  const double* column(const LaneNumbers& table, std::size_t rows, std::size_t vehicle) const {
-    return column(const_cast<LaneNumbers&>(table), rows, vehicle);
-  }
 
   std::size_t rotors_;
   Laws laws_ = {};
