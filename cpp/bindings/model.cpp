@@ -83,9 +83,19 @@ auto by_document(Read (*read)(const Document&, const std::vector<std::string>&))
       });
 }
 
-}  // namespace
+/// Getter of a member of a model or world.
+template <class T, class Member>
+auto get(Member T::* member) {
+  return [member](const Built<T>& built) -> Member { return (*built).*member; };
+}
 
-void bind_model(py::module_& m) {
+/// Getter of the document that a model or world was read from.
+template <class T>
+Document get_document(const Built<T>& built) {
+  return source_of(built->source).document;
+}
+
+void bind_documents(py::module_& m) {
   py::class_<Document>(m, "Document", R"(An XML text and where its lines came from.
 
 Attributes
@@ -127,7 +137,9 @@ most_levels, most_attributes : int
       .def_readonly("parent", &Unfelt::parent,
                     "Element around it, such as \"robot/link\"; \"\" for a module.")
       .def_readonly("what", &Unfelt::what, "What it is.");
+}
 
+void bind_bodies(py::module_& m) {
   py::class_<Collision>(m, "Collision", "A shape that may touch the ground.")
       .def_readonly("where", &Collision::where, "FILE:LINE.")
       .def_property_readonly(
@@ -177,16 +189,16 @@ most_levels, most_attributes : int
       .def_property_readonly(
           "rpy", [](const Joint& joint) -> Vector3d { return joint.pose.rpy; },
           "Roll, pitch, yaw of the child link in the parent link at angle zero, rad; shape (3,).");
+}
 
+void bind_vehicle(py::module_& m) {
   py::class_<Model, std::shared_ptr<Model>>(m, "Model", "A vehicle: bodies, joints, plugins.")
+      .def_property_readonly("name", get(&Model::name), "Of the robot.")
       .def_property_readonly(
-          "name", [](const Built<Model>& held) { return held->name; }, "Of the robot.")
-      .def_property_readonly(
-          "links", [](const Built<Model>& held) { return held->links; },
+          "links", get(&Model::links),
           "Bodies, list of Link: the frame, then of each joint the link that it carries.")
-      .def_property_readonly(
-          "joints", [](const Built<Model>& held) { return held->joints; },
-          "Continuous joints in the file's order, list of Joint.")
+      .def_property_readonly("joints", get(&Model::joints),
+                             "Continuous joints in the file's order, list of Joint.")
       .def_property_readonly(
           "link_poses", [](const Built<Model>& held) { return poses_of_links(*held); },
           "Pose of each of `links` in the frame, all joints at angle zero: homogeneous matrices, "
@@ -198,49 +210,36 @@ most_levels, most_attributes : int
           "joint_places", [](const Built<Model>& held) { return joint_places(*held); },
           "Origin of each joint's link from the frame's, in the frame's axes, all joints at angle "
           "zero, m; shape (n, 3).")
-      .def_property_readonly(
-          "warnings", [](const Built<Model>& held) { return held->warnings; },
-          "What is allowed but was perhaps not meant, list of str.")
-      .def_property_readonly(
-          "passed_over", [](const Built<Model>& held) { return held->passed_over; },
-          "What the reader did not take in.")
-      .def_property_readonly(
-          "document", [](const Built<Model>& held) { return source_of(held->source).document; },
-          "The text that it was read from.")
+      .def_property_readonly("warnings", get(&Model::warnings),
+                             "What is allowed but was perhaps not meant, list of str.")
+      .def_property_readonly("passed_over", get(&Model::passed_over),
+                             "What the reader did not take in.")
+      .def_property_readonly("document", &get_document<Model>, "The text that it was read from.")
       .def("__repr__",
            [](const Built<Model>& held) {
              return py::str("<Model '{}', {:.6g} kg, {} rotors>")
                  .format(text(held->name), mass_properties(*held).mass, held->joints.size());
            })
       .def(by_document(&read_model));
+}
 
+void bind_world(py::module_& m) {
   py::class_<World, std::shared_ptr<World>>(m, "World", "What a world file sets.")
+      .def_property_readonly("gravity", get(&World::gravity_W), "World axes, m/s^2; shape (3,).")
+      .def_property_readonly("wind", get(&World::wind_W),
+                             "Velocity of the air, world axes, m/s; shape (3,).")
+      .def_property_readonly("magnetic_field", get(&World::magnetic_field_W),
+                             "World axes (x east, y north, z up), T; shape (3,).")
+      .def_property_readonly("max_step_size", get(&World::max_step_size),
+                             "Length of a step unless a simulation is given another, s.")
       .def_property_readonly(
-          "gravity", [](const Built<World>& held) -> Vector3d { return held->gravity_W; },
-          "World axes, m/s^2; shape (3,).")
-      .def_property_readonly(
-          "wind", [](const Built<World>& held) -> Vector3d { return held->wind_W; },
-          "Velocity of the air, world axes, m/s; shape (3,).")
-      .def_property_readonly(
-          "magnetic_field",
-          [](const Built<World>& held) -> Vector3d { return held->magnetic_field_W; },
-          "World axes (x east, y north, z up), T; shape (3,).")
-      .def_property_readonly(
-          "max_step_size", [](const Built<World>& held) { return held->max_step_size; },
-          "Length of a step unless a simulation is given another, s.")
-      .def_property_readonly(
-          "real_time_update_rate",
-          [](const Built<World>& held) { return held->real_time_update_rate; },
+          "real_time_update_rate", get(&World::real_time_update_rate),
           "Steps per second of real time of what paces itself; 0 is as fast as possible.")
-      .def_property_readonly(
-          "ground_plane", [](const Built<World>& held) { return held->ground_plane; },
-          "Whether there is ground at z = 0.")
-      .def_property_readonly(
-          "passed_over", [](const Built<World>& held) { return held->passed_over; },
-          "What the reader did not take in.")
-      .def_property_readonly(
-          "document", [](const Built<World>& held) { return source_of(held->source).document; },
-          "The text that it was read from.")
+      .def_property_readonly("ground_plane", get(&World::ground_plane),
+                             "Whether there is ground at z = 0.")
+      .def_property_readonly("passed_over", get(&World::passed_over),
+                             "What the reader did not take in.")
+      .def_property_readonly("document", &get_document<World>, "The text that it was read from.")
       .def("__repr__",
            [](const Built<World>& held) {
              const Vector3d& g = held->gravity_W;
@@ -249,7 +248,9 @@ most_levels, most_attributes : int
                          held->ground_plane ? "ground" : "no ground");
            })
       .def(by_document(&read_world));
+}
 
+void bind_readers(py::module_& m) {
   m.def("parse_number", &parse_number, py::arg("text"),
         "The finite number that a text is, as in a URDF; None otherwise.");
   py::class_<GazeboTag>(m, "GazeboTag", "What a <gazebo reference> may hold.")
@@ -264,6 +265,8 @@ most_levels, most_attributes : int
   m.def("gazebo_tags", &gazebo_tags, "What a <gazebo reference> may hold, the felt tags first.");
   m.def("world_elements", &world_elements,
         "Elements that a world may hold, by their paths below <world>.");
+  m.def("everything_unfelt", &everything_unfelt,
+        "Every element and module that is known to be seen or sensed only.");
 
   const auto nothing = std::vector<std::string>{};
   m.def("read_model", &read_model, py::arg("document"), py::arg("ignore") = nothing,
@@ -272,8 +275,16 @@ most_levels, most_attributes : int
         "Reads a world file. Raises InputError with FILE:LINE.");
   m.def("check_ignored", &check_ignored, py::arg("ignore"), py::arg("readings"),
         "Raises InputError if a name to ignore was met in none of what was read.");
-  m.def("everything_unfelt", &everything_unfelt,
-        "Every element and module that is known to be seen or sensed only.");
+}
+
+}  // namespace
+
+void bind_model(py::module_& m) {
+  bind_documents(m);
+  bind_bodies(m);
+  bind_vehicle(m);
+  bind_world(m);
+  bind_readers(m);
 }
 
 }  // namespace quadcore::bindings
