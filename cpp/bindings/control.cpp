@@ -54,15 +54,9 @@ VehicleDescription describe(const Self& self) {
   return self->describe_vehicle();
 }
 
-/// Throws InputError if the odometry's velocity is along the axes of the frame: plugins that have
-/// this tag agree on it.
 void refuse_velocity_in_body(const std::string& who, const Self& flown) {
-  for (const LoadedPlugin& plugin : flown->plugins()) {
-    for (const Parameter& parameter : plugin.parameters.all()) {
-      if (parameter.spec.name != "twistFrame" || parameter.text != "body") continue;
-      throw InputError(who + " needs velocities in the world; set <twistFrame> to world");
-    }
-  }
+  if (!flown->has_velocity_in_body()) return;
+  throw InputError(who + " needs velocities in the world; set <twistFrame> to world");
 }
 
 /// A vehicle, driven as the one that flies, which it may be itself.

@@ -1,19 +1,6 @@
 #include "odometry_topic.hpp"
 
-#include <string>
-
 namespace quadcore::node {
-namespace {
-
-/// What a plugin's tag says; "" if it has no such tag.
-std::string tag(const LoadedPlugin& plugin, const std::string& name) {
-  for (const Parameter& parameter : plugin.parameters.all()) {
-    if (parameter.spec.name == name) return parameter.text;
-  }
-  return "";
-}
-
-}  // namespace
 
 OdometryTopic::OdometryTopic(const Simulation& simulation) {
   const int index = simulation.topics().find(name);
@@ -23,8 +10,10 @@ OdometryTopic::OdometryTopic(const Simulation& simulation) {
     return;
   index_ = index;
   const LoadedPlugin& writer = simulation.plugins()[static_cast<std::size_t>(topic.writer)];
-  publishes_tf_ = tag(writer, "publishTf") == "true";
-  twist_in_body_ = tag(writer, "twistFrame") == "body";
+  for (const Parameter& parameter : writer.parameters.all()) {
+    publishes_tf_ |= parameter.spec.name == "publishTf" && parameter.text == "true";
+  }
+  twist_in_body_ = simulation.has_velocity_in_body();
 }
 
 messages::Odometry OdometryTopic::truth(const VehicleState& state) const {

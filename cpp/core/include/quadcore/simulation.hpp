@@ -114,6 +114,9 @@ class Simulation : private ForceField {
   const Topics& topics() const { return topics_; }
   /// In the order of the URDF.
   const std::vector<LoadedPlugin>& plugins() const { return plugins_; }
+  /// Whether odometry has its linear velocity along the axes of the frame; plugins that have the
+  /// tag `twistFrame` agree on it.
+  bool has_velocity_in_body() const;
   /// What was perhaps not meant: first what the model and its plugins said as they were loaded,
   /// then, growing as it happens, what plugins said of this flight. The latter are part of a
   /// snapshot; a reset leaves the former.

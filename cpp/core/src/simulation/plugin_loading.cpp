@@ -198,6 +198,15 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
   wrenches_.resize(wrench_terms_.size());
 }
 
+bool Simulation::has_velocity_in_body() const {
+  return std::any_of(plugins_.begin(), plugins_.end(), [](const LoadedPlugin& plugin) {
+    const std::vector<Parameter>& all = plugin.parameters.all();
+    return std::any_of(all.begin(), all.end(), [](const Parameter& parameter) {
+      return parameter.spec.name == "twistFrame" && parameter.text == "body";
+    });
+  });
+}
+
 void Simulation::check_drivers() {
   const std::size_t joints = model_.joints.size();
   std::vector<const LoadedPlugin*> drivers(joints, nullptr);
