@@ -43,18 +43,6 @@ std::vector<double> alternate(const VehicleDescription& vehicle,
   return spins;
 }
 
-/// Those that follow a command, in the order of its numbers.
-std::vector<std::size_t> driven_joints(const VehicleDescription& vehicle) {
-  std::vector<std::size_t> joints;
-  for (std::size_t i = 0; i < vehicle.rotors.size(); ++i) {
-    if (vehicle.rotors[i].place != not_driven) joints.push_back(i);
-  }
-  std::stable_sort(joints.begin(), joints.end(), [&](std::size_t i, std::size_t j) {
-    return vehicle.rotors[i].place < vehicle.rotors[j].place;
-  });
-  return joints;
-}
-
 }  // namespace
 
 std::vector<double> find_spins(const VehicleDescription& vehicle,
@@ -70,7 +58,7 @@ std::vector<double> find_spins(const VehicleDescription& vehicle,
 std::vector<Rotor> list_rotors(const VehicleDescription& vehicle) {
   std::vector<double> spins;
   for (const RotorDescription& rotor : vehicle.rotors) spins.push_back(rotor.spin);
-  const std::vector<std::size_t> driven = driven_joints(vehicle);
+  const std::vector<std::size_t> driven = vehicle.commanded();
   const std::vector<double> found = find_spins(vehicle, driven);
   for (std::size_t i = 0; i < found.size(); ++i) spins[driven[i]] = found[i];
 

@@ -84,7 +84,7 @@ def test_a_xacro_file_to_believe_in_is_refused_with_what_to_do(hangar, tmp_path)
 
 def test_a_law_without_motors_that_say_their_order_is_refused(hangar):
     still = with_plugins(vehicle(CROSS, air=AIR), plugin("odometry", {}))
-    with pytest.raises(qc.InputError, match="not told which rotor follows which number"):
+    with pytest.raises(qc.InputError, match="no plugin says which rotor follows which number"):
         hangar(still, G).run(1, controller="pd", reference="hover")
 
 

@@ -59,8 +59,9 @@ struct VehicleDescription {
   std::vector<RotorDescription> rotors;  ///< every joint, in file order
   AirResistance air;                     ///< what still air does to it
 
-  /// Those of `rotors` that follow the command, in the order of its numbers. Throws InputError if
-  /// no plugin says who does, or if two follow one number.
+  /// Those of `rotors` that follow the command, in the order of its numbers.
+  std::vector<std::size_t> commanded() const;
+  /// The same. Throws InputError unless each number of the command drives exactly one rotor.
   std::vector<std::size_t> driven() const;
 };
 

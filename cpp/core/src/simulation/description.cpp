@@ -1,10 +1,10 @@
-#include "quadcore/plugin/vehicle_description.hpp"
-
 #include <algorithm>
 #include <cmath>
 
-#include "quadcore/plugin/error.hpp"
 #include "quadcore/simulation.hpp"
+
+/// \file
+/// Describes the vehicle of a simulation by probing its plugins.
 
 namespace quadcore {
 namespace {
@@ -47,46 +47,6 @@ double hover_rate(const VehicleDescription& vehicle, const VectorXd& turns) {
   return lift_F.norm() > 0 ? std::sqrt(weight / lift_F.norm()) : 0;
 }
 
-}  // namespace
-
-std::vector<std::size_t> VehicleDescription::driven() const {
-  std::vector<std::size_t> joints;
-  for (std::size_t place = 0; place < rotors.size(); ++place) {
-    for (std::size_t i = 0; i < rotors.size(); ++i) {
-      if (rotors[i].place != static_cast<int>(place)) continue;
-      if (joints.size() > place) {
-        throw InputError("rotors '" + rotors[joints.back()].joint + "' and '" + rotors[i].joint +
-                         "' follow one number of the command; drive them by one plugin");
-      }
-      joints.push_back(i);
-    }
-    if (joints.size() <= place) break;
-  }
-  const auto count = std::count_if(rotors.begin(), rotors.end(), [](const RotorDescription& rotor) {
-    return rotor.place != not_driven;
-  });
-  if (joints.empty() || static_cast<std::ptrdiff_t>(joints.size()) != count) {
-    throw InputError(
-        "it is not told which rotor follows which number of the command; add "
-        "libmotorpid_plugin.so, or let your motors' describe_rotors() say each one's place");
-  }
-  return joints;
-}
-
-void Simulation::prepare_plugins() {
-  const auto asks = [](const LoadedPlugin& p) { return p.descriptor->create.hooks.prepare; };
-  if (std::none_of(plugins_.begin(), plugins_.end(), asks)) return;
-  const VehicleDescription vehicle = describe_vehicle();
-  for (const LoadedPlugin& p : plugins_) {
-    if (!asks(p)) continue;
-    active_ = &p;
-    p.plugin->prepare(vehicle);
-  }
-  active_ = nullptr;
-}
-
-namespace {
-
 /// Puts numbers back at the end of a block.
 class Kept {
  public:
@@ -101,6 +61,18 @@ class Kept {
 };
 
 }  // namespace
+
+void Simulation::prepare_plugins() {
+  const auto asks = [](const LoadedPlugin& p) { return p.descriptor->create.hooks.prepare; };
+  if (std::none_of(plugins_.begin(), plugins_.end(), asks)) return;
+  const VehicleDescription vehicle = describe_vehicle();
+  for (const LoadedPlugin& p : plugins_) {
+    if (!asks(p)) continue;
+    active_ = &p;
+    p.plugin->prepare(vehicle);
+  }
+  active_ = nullptr;
+}
 
 VehicleDescription Simulation::describe_vehicle() {
   const std::vector<double> as_it_is = engine_->save();
