@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "gazebo_bodies.hpp"
 #include "gazebo_physics.hpp"
@@ -63,41 +64,17 @@ void check_frame(const Simulation& simulation, const std::string& model, const s
   throw InputError("'" + body + "' cannot be pushed; push the frame, " + model + "::" + frame);
 }
 
-/// Whether the action goes well; the response says so.
-template <class Response, class Action>
-bool succeeds(Response& response, const Action& action) {
-  try {
-    action();
-    response.success = true;
-  } catch (const std::exception& error) {
-    response.success = false;
-    response.status_message = error.what();
-  }
-  return response.success;
-}
+/// Whether a response has room for an error; if not, the call itself fails.
 template <class Response>
-bool succeeded(const Response& response) {
-  return response.success;
-}
-/// Whether the response has room for what went wrong; else the call fails.
-template <class Response>
-bool says_why(const Response&) {
-  return true;
-}
+constexpr bool has_status = true;
+template <>
+constexpr bool has_status<gazebo_msgs::BodyRequest::Response> = false;
 
-using Cleared = gazebo_msgs::BodyRequest::Response;
-template <class Action>
-bool succeeds(Cleared&, const Action& action) {
-  try {
-    action();
-  } catch (const std::exception& error) {
-    ROS_ERROR("gazebo/clear_body_wrenches: %s", error.what());
-    return false;
-  }
+template <class Response>
+bool is_success(const Response& response) {
+  if constexpr (has_status<Response>) return response.success;
   return true;
 }
-bool succeeded(const Cleared&) { return true; }
-bool says_why(const Cleared&) { return false; }
 
 }  // namespace
 
@@ -109,29 +86,40 @@ GazeboServices::GazeboServices(ros::NodeHandle& nh, const std::string& model, Fl
   offer_properties();
 }
 
-/// A service of gazebo_ros, which says in its own way what went wrong. In /gazebo it is for the
-/// neighbours' models, too: who does not know a model asks them.
+/// Offers a service of gazebo_ros. In /gazebo it also serves the neighbours' models: a node that
+/// does not know a model asks them.
 template <class Service, class Act>
 void GazeboServices::offer(const std::string& name, const Act& act) {
   using Request = typename Service::Request;
   using Response = typename Service::Response;
-  const boost::function<bool(Request&, Response&)> own = [act](Request& request,
-                                                               Response& response) {
-    return succeeds(response, [&] { act(request, response); });
+  const auto own = [act, name](Request& request, Response& response) {
+    std::optional<std::string> failure;
+    try {
+      act(request, response);
+    } catch (const std::exception& error) {
+      failure = error.what();
+    }
+    if constexpr (has_status<Response>) {
+      response.success = !failure;
+      response.status_message = failure.value_or("");
+    } else if (failure) {
+      ROS_ERROR("gazebo/%s: %s", name.c_str(), failure->c_str());
+    }
+    return !failure;
   };
   const auto answer = [own](Request& request, Response& response) {
-    return own(request, response) || says_why(response);
+    return own(request, response) || has_status<Response>;
   };
   const auto answer_for_all = [this, own, name](Request& request, Response& response) {
     if (own(request, response)) return true;
     for (const std::string& space : neighbours_->spaces()) {
-      Response told;
-      if (!ros::service::call(space + "/gazebo/" + name, request, told) || !succeeded(told))
-        continue;
-      response = told;
-      return true;
+      Response other;
+      if (ros::service::call(space + "/gazebo/" + name, request, other) && is_success(other)) {
+        response = other;
+        return true;
+      }
     }
-    return says_why(response);
+    return has_status<Response>;
   };
   const bool at_root = nh_.getNamespace() == "/";
   if (neighbours_) {

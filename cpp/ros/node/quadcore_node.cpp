@@ -2,7 +2,8 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <utility>
+#include <memory>
+#include <optional>
 
 #include "command_subscriber.hpp"
 #include "diagnostics.hpp"
@@ -22,8 +23,6 @@
 namespace quadcore::node {
 namespace {
 
-using Wall = std::chrono::steady_clock;
-
 void describe(const Simulation& simulation) {
   for (const std::string& warning : simulation.warnings()) ROS_WARN("%s", warning.c_str());
   for (const LoadedPlugin& plugin : simulation.plugins()) {
@@ -35,13 +34,23 @@ void describe(const Simulation& simulation) {
   }
 }
 
-/// What others ask the parameter server for, to be there again after a restart of the master.
-MasterWatch::Parameters public_parameters(const ros::NodeHandle& nh, const Settings& settings) {
-  MasterWatch::Parameters parameters;
-  for (const std::string& key : {std::string(use_sim_time), settings.plant.description}) {
-    if (!key.empty()) nh.getParam(key, parameters[key]);
+ros::NodeHandle start_node() {
+  ros::NodeHandle nh;
+  send_without_delay();
+  return nh;
+}
+
+/// Makes what is flown, and reports what it is made of.
+Simulation make_vehicle(const Settings& settings, const World& world) {
+  if (settings.verbose &&
+      ros::console::set_logger_level(ROSCONSOLE_DEFAULT_NAME, ros::console::levels::Debug)) {
+    ros::console::notifyLoggerLevelsChanged();
   }
-  return parameters;
+  Simulation simulation = make_simulation(settings.plant, world, [](const Model& model) {
+    return std::vector<PluginElement>{GazeboWrenches::plugin(model)};
+  });
+  describe(simulation);
+  return simulation;
 }
 
 void say_error(const std::string& error) {
@@ -49,103 +58,142 @@ void say_error(const std::string& error) {
   std::fflush(stderr);
 }
 
-/// Exit status.
-int run(const EndSignal& end_signal) {
-  ros::NodeHandle nh;
-  send_without_delay();
-  ParameterWatch::Values given = ParameterWatch::read();  // somebody may change them meanwhile
-  const Settings settings = read_settings(nh);
-  if (settings.verbose &&
-      ros::console::set_logger_level(ROSCONSOLE_DEFAULT_NAME, ros::console::levels::Debug)) {
-    ros::console::notifyLoggerLevelsChanged();
+/// The node. Its members stand in the order in which they come to life, and end in reverse: what is
+/// flown, whose clock it follows, what it sends and takes, the flight, what others may call.
+class Node {
+ public:
+  /// \return exit status
+  int run(const EndSignal& end_signal) {
+    connect();
+    watch(end_signal);
+    return end(end_signal);
   }
-  const World world = read_world_of(settings.plant);
-  Simulation simulation = make_simulation(settings.plant, world, [](const Model& model) {
-    return std::vector<PluginElement>{GazeboWrenches::plugin(model)};
-  });
-  const std::string model = model_name(settings.plant, simulation.model());
-  describe(simulation);
-  const ros::Publisher claim = claim_model(nh, model);
 
-  const KeptPublisher<rosgraph_msgs::Clock> clock = take_part_in_clock(nh, settings.clock);
-  FlightSettings flight_settings = settings.flight;
-  flight_settings.follows_clock = !clock;
-  flight_settings.real_time_factor =
-      settings.real_time_factor.value_or(world.real_time_update_rate * simulation.dt());
-  const std::string prefix = frame_prefix(nh);
-
-  std::optional<ClockFollower> follower;
-  if (!clock) follower.emplace(nh, simulation.dt());
-  std::optional<GazeboNeighbours> neighbours;
-  if (clock) neighbours.emplace(nh);
-  const GazeboNeighbours* const known = neighbours ? &*neighbours : nullptr;
-  GazeboStates gazebo_states(nh, simulation, model, known);
-  const VehicleMarkers markers(nh, simulation, prefix);
-  Broadcast broadcast(nh, simulation, clock, prefix, gazebo_states, settings.rotor_tf);
-  const std::vector<CommandTopic> topics = command_topics(nh, settings.plant, simulation);
-  std::vector<std::string> taken = simulated(topics);
-  taken.push_back(GazeboWrenches::topic);
-  TopicInlets inlets(nh, simulation, taken, flight_settings.lockstep);
-  GazeboWrenches wrenches;
-  std::unique_ptr<LogPerFlight> log;
-  if (!settings.log.empty()) {
-    log = open_log(settings.log, simulation, settings.log_topics, nh, prefix);
+ private:
+  FlightSettings flight_settings() const {
+    FlightSettings settings = settings_.flight;
+    settings.follows_clock = !clock_;
+    settings.real_time_factor =
+        settings_.real_time_factor.value_or(world_.real_time_update_rate * simulation_.dt());
+    return settings;
   }
-  Listener listener(broadcast, inlets, wrenches, simulation, topics, std::move(log),
-                    follower ? &*follower : nullptr);
-  ROS_INFO("flying %s with engine %s, commands on %s%s", simulation.model().name.c_str(),
-           simulation.engine_name().c_str(), described(topics).c_str(),
-           flight_settings.lockstep ? ", one for each odometry message" : "");
-  FlightThread flight(simulation, flight_settings, listener);
-  const auto send_gazebo_states = [&] {
-    try {
-      flight.tell([&](const Simulation& now) { gazebo_states.send(now); });
-    } catch (const InputError&) {
-      // The flight ends; who comes now has nothing more to see.
+
+  std::vector<std::string> simulated_topics() const {
+    std::vector<std::string> topics = simulated(topics_);
+    topics.push_back(GazeboWrenches::topic);
+    return topics;
+  }
+
+  /// Parameters that other nodes read, to be set again after a restart of the master.
+  MasterWatch::Parameters public_parameters() const {
+    MasterWatch::Parameters parameters;
+    for (const std::string& key : {std::string(use_sim_time), settings_.plant.description}) {
+      if (!key.empty()) nh_.getParam(key, parameters[key]);
     }
-  };
-  gazebo_states.for_newcomers(send_gazebo_states);
-  if (neighbours) {
-    neighbours->when_heard([&](bool complete) {
-      // In flight the next step sends them.
-      if (complete || flight.report().paused) send_gazebo_states();
-    });
+    return parameters;
   }
-  std::optional<ClockLeader> leader;
-  if (clock) leader.emplace(nh, flight, clock);
-  if (follower) follower->follow(flight);
-  const CommandSubscriber commands(nh, topics, flight_settings.lockstep, flight);
-  ParameterWatch parameters(flight, !clock, std::move(given));
-  Diagnostics diagnostics(nh, flight.report(), described(topics));
-  ros::AsyncSpinner spinner(1);
-  spinner.start();
-  // Last: whoever has waited for a service finds everything else there.
-  const Services services(nh, simulation, flight, model, wrenches, known);
-  MasterWatch master_watch(services.names(), public_parameters(nh, settings),
-                           [&parameters] { parameters.look(); });
 
-  Wall::time_point due = Wall::now() + std::chrono::seconds(1);
-  while (ros::ok() && !end_signal.has_come()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    if (leader) leader->look();
-    if (leader) neighbours->look(leader->spaces(), gazebo_states.asks_neighbours());
-    if (follower) follower->tell(flight.report());
-    if (Wall::now() < due) continue;
-    diagnostics.send(flight.report(), commands.refusals());
-    due += std::chrono::seconds(1);
+  void send_gazebo_states() {
+    try {
+      flight_.tell([this](const Simulation& now) { gazebo_states_.send(now); });
+    } catch (const InputError&) {
+      // The flight ends; a new subscriber has nothing more to see.
+    }
   }
-  flight.end();
-  end_signal.flight_is_being_written();
-  // Before anything that may take longer than there is time.
-  const std::string log_error = listener.close_log();
-  if (!log_error.empty()) say_error(log_error);
-  const int status = log_error.empty() ? 0 : 2;
-  end_signal.flight_ended_with(status);
-  spinner.stop();
-  master_watch.end();
-  ros::shutdown();
-  return status;
-}
+
+  /// Lets others reach the node: callbacks first, then the services, because a node that has waited
+  /// for a service expects everything else to be there.
+  void connect() {
+    ROS_INFO("flying %s with engine %s, commands on %s%s", simulation_.model().name.c_str(),
+             simulation_.engine_name().c_str(), described(topics_).c_str(),
+             settings_.flight.lockstep ? ", one for each odometry message" : "");
+    gazebo_states_.for_newcomers([this] { send_gazebo_states(); });
+    if (neighbours_) {
+      neighbours_->when_heard([this](bool complete) {
+        // In flight the next step sends them.
+        if (complete || flight_.report().paused) send_gazebo_states();
+      });
+    }
+    if (follower_) follower_->follow(flight_);
+    spinner_.start();
+    services_.emplace(nh_, simulation_, flight_, model_, wrenches_, neighbours_.get());
+    master_watch_.emplace(services_->names(), public_parameters(), [this] { parameters_.look(); });
+  }
+
+  /// Until the signal to end.
+  void watch(const EndSignal& end_signal) {
+    using Wall = std::chrono::steady_clock;
+    Wall::time_point due = Wall::now() + std::chrono::seconds(1);
+    while (ros::ok() && !end_signal.has_come()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      if (leader_) {
+        leader_->look();
+        neighbours_->look(leader_->spaces(), gazebo_states_.asks_neighbours());
+      }
+      if (follower_) follower_->tell(flight_.report());
+      if (Wall::now() < due) continue;
+      diagnostics_.send(flight_.report(), commands_.refusals());
+      due += std::chrono::seconds(1);
+    }
+  }
+
+  int end(const EndSignal& end_signal) {
+    flight_.end();
+    end_signal.flight_is_being_written();
+    // Before anything that may take longer than there is time.
+    const std::string log_error = listener_.close_log();
+    if (!log_error.empty()) say_error(log_error);
+    const int status = log_error.empty() ? 0 : 2;
+    end_signal.flight_ended_with(status);
+    spinner_.stop();
+    master_watch_->end();
+    ros::shutdown();
+    return status;
+  }
+
+  ros::NodeHandle nh_ = start_node();
+  ParameterWatch::Values given_ = ParameterWatch::read();  // somebody may change them meanwhile
+  Settings settings_ = read_settings(nh_);
+  World world_ = read_world_of(settings_.plant);
+  Simulation simulation_ = make_vehicle(settings_, world_);
+  std::string model_ = model_name(settings_.plant, simulation_.model());
+  ros::Publisher claim_ = claim_model(nh_, model_);
+
+  // Either this node leads the clock, and neighbours follow it, or it follows.
+  KeptPublisher<rosgraph_msgs::Clock> clock_ = take_part_in_clock(nh_, settings_.clock);
+  std::unique_ptr<ClockFollower> follower_ =
+      clock_ ? nullptr : std::make_unique<ClockFollower>(nh_, simulation_.dt());
+  std::unique_ptr<GazeboNeighbours> neighbours_ =
+      clock_ ? std::make_unique<GazeboNeighbours>(nh_) : nullptr;
+
+  std::string prefix_ = frame_prefix(nh_);
+  GazeboStates gazebo_states_{nh_, simulation_, model_, neighbours_.get()};
+  VehicleMarkers markers_{nh_, simulation_, prefix_};
+  Broadcast broadcast_{nh_, simulation_, clock_, prefix_, gazebo_states_, settings_.rotor_tf};
+  std::vector<CommandTopic> topics_ = command_topics(nh_, settings_.plant, simulation_);
+  TopicInlets inlets_{nh_, simulation_, simulated_topics(), settings_.flight.lockstep};
+  GazeboWrenches wrenches_;
+  Listener listener_{broadcast_,
+                     inlets_,
+                     wrenches_,
+                     simulation_,
+                     topics_,
+                     settings_.log.empty()
+                         ? nullptr
+                         : open_log(settings_.log, simulation_, settings_.log_topics, nh_, prefix_),
+                     follower_.get()};
+
+  FlightThread flight_{simulation_, flight_settings(), listener_};
+  std::unique_ptr<ClockLeader> leader_ =
+      clock_ ? std::make_unique<ClockLeader>(nh_, flight_, clock_) : nullptr;
+  CommandSubscriber commands_{nh_, topics_, settings_.flight.lockstep, flight_};
+  ParameterWatch parameters_{flight_, !clock_, given_};
+  Diagnostics diagnostics_{nh_, flight_.report(), described(topics_)};
+
+  ros::AsyncSpinner spinner_{1};
+  std::optional<Services> services_;
+  std::optional<MasterWatch> master_watch_;
+};
 
 }  // namespace
 }  // namespace quadcore::node
@@ -156,7 +204,7 @@ int main(int argc, char** argv) {
     quadcore::node::check_master_uri();
     ros::init(argc, argv, "quadcore", ros::init_options::NoSigintHandler);
     quadcore::node::check_master();
-    return quadcore::node::run(end_signal);
+    return quadcore::node::Node().run(end_signal);
   } catch (const std::exception& error) {
     quadcore::node::say_error(error.what());
     std::_Exit(2);  // a master that is mute may still be waited for
