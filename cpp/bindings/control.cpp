@@ -35,13 +35,13 @@ struct Flown {
 };
 using FlownInnerLoop = Flown<control::InnerLoop>;
 
-/// A law, which is told what is left of the rotors if a plugin tells it.
+/// A controller that reads the health of the rotors if a plugin publishes it.
 struct FlownLaw : Flown<Controller> {
   Self flown;
   control::RotorHealth health;
-  int topic;  ///< that tells; -1: none
+  int topic;  ///< of the health; -1: none
 
-  /// To be called with the vehicle locked.
+  /// Call it with the vehicle locked.
   void hear() {
     if (topic < 0) return;
     const Topic& said = flown->topics()[static_cast<std::size_t>(topic)];

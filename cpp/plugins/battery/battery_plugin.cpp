@@ -140,8 +140,8 @@ PluginDescriptor describe() {
           T::text("effectiveness", "effectiveness", "topic that the aerodynamics take"),
           power_tag(),
           T::text("faults", "",
-                  "topic of shares that are left besides: what the tag effectiveness "
-                  "of libfault_plugin.so names, if there is one")
+                  "topic of shares by which the battery multiplies its own: that of the tag "
+                  "effectiveness of libfault_plugin.so, if there is one")
               .or_absent("none"),
           T::joints("rotorJoints", "the rotors that it feeds"),
       },

@@ -149,7 +149,7 @@ class FaultPlugin final : public Plugin {
   std::vector<Event> losses_, cuts_;  ///< by time
   std::size_t topic_, effectiveness_, power_;
   std::vector<std::size_t> joints_;    ///< of the rotors
-  std::optional<std::size_t> health_;  ///< none: nobody is told
+  std::optional<std::size_t> health_;  ///< none: no controller reads it
   double detection_ = 0;               ///< s
 };
 
@@ -171,11 +171,10 @@ PluginDescriptor describe() {
                   "to be so at once"),
           T::text("effectiveness", "effectiveness", "topic that the aerodynamics take"),
           T::text("power", "power", "topic that the motors take"),
-          T::number("detection", "s", "",
-                    "how long a rotor must have been as it is until control laws are told")
+          T::number("detection", "s", "", "time from a change of a rotor until controllers read it")
               .at_least(0)
-              .or_absent("they never are"),
-          T::text("health", health_topic, "topic that control laws take"),
+              .or_absent("never"),
+          T::text("health", health_topic, "topic that controllers take"),
           T::joints("rotorJoints", "the rotors, in the order in which they are counted"),
       },
       {},

@@ -66,7 +66,7 @@ PluginDescriptor describe() {
           deviation("verticalNoise", "m", "the white noise on z"),
           deviation("horizontalDrift", "m",
                     "an error of x and y each that drifts, a Gauss-Markov process"),
-          deviation("verticalDrift", "m", "the like of z"),
+          deviation("verticalDrift", "m", "an error of z that drifts likewise"),
           Errors::drift_time_tag(),
           deviation("velocityNoise", "m/s", "the white noise on each component of the velocity"),
           sensing::Channel::delay_tag(),

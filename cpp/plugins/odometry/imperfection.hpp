@@ -6,8 +6,8 @@
 
 namespace quadcore::odometry {
 
-/// What is wrong with a measured vector: white noise, a bias that walks at random, steps in which
-/// it is told. Its memory is the bias.
+/// Errors of a measured vector: white noise, a bias that walks at random, quantisation. Its memory
+/// is the bias.
 class Imperfection {
  public:
   Imperfection(const Parameters& p, const std::string& quantity, bool has_resolution)

@@ -14,8 +14,8 @@ namespace {
 enum Memory { kTime, kDraws, kBiases, kMemorySize = kBiases + 12 };
 
 /// Odometry of the frame (thesis appendix A.6): pose in the world, linear velocity in the world (or
-/// in body axes, as nav_msgs/Odometry defines it), angular velocity in body axes, each with what is
-/// wrong with it. The errors of the orientation are small rotations about the body axes.
+/// in body axes, as nav_msgs/Odometry defines it), angular velocity in body axes, each with its
+/// errors. Those of the orientation are small rotations about the body axes.
 class OdometryPlugin final : public sensing::MountedSensor<messages::Odometry, kMemorySize> {
  public:
   explicit OdometryPlugin(const PluginSetup& setup)
@@ -95,8 +95,8 @@ PluginDescriptor describe() {
   };
   const auto resolution = [](const char* name, const char* unit, const char* of) {
     return T::number(name, unit, "0",
-                     std::string("step in which is told ") + of +
-                         ", 0: in none; adds step^2/12 to the variance")
+                     "quantisation step of " + std::string(of) +
+                         ", 0: none; adds step^2/12 to the variance")
         .at_least(0);
   };
   const char *position = "each position component", *turn = "the rotation about each body axis",

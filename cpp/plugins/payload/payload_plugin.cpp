@@ -62,7 +62,7 @@ class PayloadPlugin final : public Plugin {
       rides = !is_released || (is_picked_up && pick_up_ > release_);
     }
     const Carrying carrying = rides ? riding : gone;
-    if (state[0] != carrying) tell(sample, rides);
+    if (state[0] != carrying) publish(sample, rides);
     state[0] = carrying;
   }
 
@@ -72,7 +72,7 @@ class PayloadPlugin final : public Plugin {
   }
 
  private:
-  void tell(const Sample& sample, bool rides) const {
+  void publish(const Sample& sample, bool rides) const {
     double* const message = sample.topics.publish(carried_, sample.time);
     message[0] = rides ? body_.inertial.mass : 0;
     std::copy_n(body_.pose.xyz.data(), 3, message + 1);

@@ -11,8 +11,8 @@
 #include "quadcore/plugin/random.hpp"
 
 /// \file
-/// What sensors have in common: when they measure, their noise, and the way of what they measured
-/// to those who read it.
+/// What sensors have in common: when they measure, their noise, and the way of a measurement to its
+/// readers.
 
 namespace quadcore::sensing {
 
@@ -104,13 +104,13 @@ class Channel {
         .at_least(0);
   }
   static TagSpec dropout_tag() {
-    return TagSpec::number("dropout", "", "0", "share of the messages that get lost, by chance")
+    return TagSpec::number("dropout", "", "0", "probability that a message gets lost")
         .at_least(0)
         .at_most(1);
   }
 
  private:
-  /// How many numbers of chance are drawn, the place of the message that has waited longest, how
+  /// How many random numbers it has drawn, the place of the message that has waited longest, how
   /// many wait; then their places, each a time and a message.
   enum Memory : std::size_t { kDraws, kFirst, kWaiting, kRing };
   static constexpr double most_numbers = 500000;

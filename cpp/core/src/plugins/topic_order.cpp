@@ -45,7 +45,7 @@ std::vector<std::size_t> Topics::settle() {
   return order();
 }
 
-/// Lets each topic hold what whoever takes it goes by before the first message.
+/// Fills each topic with the numbers that its readers assume before the first message.
 void Topics::hold_what_is_unsaid() {
   for (const Declaration& declared : declarations_) {
     const std::vector<double>& unsaid = declared.kind.unsaid;
@@ -78,7 +78,7 @@ void Topics::close(Declaration& open) {
   topic.values.assign(open.kind.fields.size(), 0.0);
 }
 
-/// Who says what kind a topic is: its writer, or else the first who takes it.
+/// The declaration that defines the kind of a topic: its writer's, or else its first reader's.
 const Topics::Declaration& Topics::authority(std::size_t topic) const {
   const Declaration* first = nullptr;
   for (const Declaration& declared : declarations_) {
@@ -89,7 +89,7 @@ const Topics::Declaration& Topics::authority(std::size_t topic) const {
   return *first;
 }
 
-/// Of the plugins that wait for nobody any more, the first by name comes next.
+/// Of the plugins that wait for no other, the first by name comes next.
 std::vector<std::size_t> Topics::order() const {
   std::vector<std::size_t> order;
   std::vector<bool> placed(plugins_.size(), false);
@@ -122,7 +122,7 @@ const Topics::Declaration* Topics::awaited(std::size_t plugin,
   return nullptr;
 }
 
-/// All that are not placed wait for one another: whoever is followed for long enough is in a loop.
+/// All plugins without a place wait for one another, so that following them ends in a loop.
 void Topics::refuse_loop(const std::vector<bool>& placed) const {
   const auto unplaced = std::find(placed.begin(), placed.end(), false) - placed.begin();
   auto plugin = static_cast<std::size_t>(unplaced);

@@ -25,7 +25,7 @@ VehicleState still(const VehicleState& state) {
   return rest;
 }
 
-/// Of the joints that turn: those that are driven, or all where nobody says who is.
+/// 1 for each joint that turns: those that follow a command, or all if no plugin names them.
 VectorXd turning(const VehicleDescription& vehicle) {
   VectorXd turns(static_cast<Eigen::Index>(vehicle.rotors.size()));
   for (Eigen::Index i = 0; i < turns.size(); ++i) {
@@ -76,7 +76,7 @@ void Simulation::prepare_plugins() {
 
 VehicleDescription Simulation::describe_vehicle() {
   const std::vector<double> as_it_is = engine_->save();
-  // As before the flight: what has befallen plugins since is not the vehicle.
+  // As before the flight: later changes of the plugins' state are not part of the vehicle.
   const Kept state_of_plugins(plugin_state_);
   plugin_state_.setZero();
   const Model& flown = engine_->model();

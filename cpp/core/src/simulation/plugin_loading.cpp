@@ -25,10 +25,10 @@ std::string another_name(const std::string& name, const std::map<std::string, st
   return name + "_" + std::to_string(number);
 }
 
-/// The plugins to load. A module that is not there is passed over if it only senses; otherwise it
-/// is refused, as are two plugins of one name (but for modules that are named as another program's,
-/// which minds that less) and one whose tags cannot be read. They come by name: where a document
-/// has them must not matter.
+/// Finds the plugins to load, sorted by name, because their order in the document must not matter.
+/// A missing module that only senses is skipped; another is refused. So are plugins whose tags
+/// cannot be read, and two of one name, except modules named as those of another program, which
+/// allows that.
 std::vector<Found> find_plugins(const Model& model, PassedOver& passed_over,
                                 std::vector<std::string>& warnings) {
   std::vector<Found> plugins;
