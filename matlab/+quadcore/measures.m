@@ -14,12 +14,12 @@ function m = measures(log)
   yaw = rpy(:, 3) - wanted.yaw(:);
   late = t > t(end) - min(10, t(end) / 2);
   m.rms_position = sqrt(mean(away .^ 2));
-  m.largest_position = max(away);
-  m.tail_position = max(away(t > t(end) - 10));
+  m.max_position = max(away);
+  m.final_position = max(away(t > t(end) - 10));
   m.steady_position = norm(mean(errors(late, :), 1));
   m.iae_position = trapz(t, away);
   m.itae_position = trapz(t, away .* t);
-  m.largest_yaw = max(abs(mod(yaw + pi, 2 * pi) - pi));
+  m.max_yaw = max(abs(mod(yaw + pi, 2 * pi) - pi));
   [m.rise_time, m.overshoot, m.settling_time] = of_step(log, t, wanted, away);
 end
 
