@@ -94,7 +94,7 @@ WORLD = '<sdf version="1.6"><world name="w"><spherical_coordinates>{}</spherical
         ("<latitude_deg>90</latitude_deg>", r"<latitude_deg> is at a pole.*write one from -89"),
         (
             "\n<surface_model>MOON</surface_model>",
-            r"w\.world:2: <surface_model> 'MOON' is not supported; write EARTH_WGS84",
+            r"w\.world:2: <surface_model> is 'MOON'; write EARTH_WGS84",
         ),
         ("\n<latitude_deg>99</latitude_deg>", r"w\.world:2: <latitude_deg> is out of range; write"),
     ],
