@@ -113,8 +113,8 @@ class WorldReader {
 
   Row vector(std::string path, std::string unit, Vector3d& target, std::string meaning) {
     std::string fallback;
-    for (const double value : target) {
-      append_shortest(value, fallback.empty() ? fallback : fallback += ' ');
+    for (int i = 0; i < 3; ++i) {
+      append_shortest(target[i], fallback.empty() ? fallback : fallback += ' ');
     }
     return {T::numbers(std::move(path), std::move(unit), fallback, std::move(meaning)).of(3),
             [this, &target](const Element& e) { target = xml_.vector_in_text(e); }};
