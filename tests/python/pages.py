@@ -8,9 +8,10 @@ sees, tell what else becomes of it:
     <!-- file: NAME -->    it is a file that other blocks of the page use
     <!-- run: COMMAND -->  what a reader of the page has done before, in a shell
     <!-- python: CODE -->  the same in Python
+    <!-- output -->        the block before prints it; ... stands for any text
 
-Sweeps fly little, other flights are cut short except in tutorials and in READMEs, and programs
-of systems that are not here are stood in for (`stand_in.py`).
+Sweeps fly little, other flights are cut short except in tutorials, in READMEs and where the output
+is shown, and programs of systems that are not here are stood in for (`stand_in.py`).
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ WHOLE = (ROOT, ROOT / "python", ROOT / "docs" / "tutorials")
 PAGES = sorted((ROOT / "docs").rglob("*.md"))
 BLOCK = re.compile(
     r"^<!-- (?P<kind>run|python): (?P<before>.*?) -->$"
-    r"|(?:^<!-- (?P<marker>quoted|file): (?P<file>\S+) -->\n+)?"
+    r"|(?:^<!-- (?P<marker>quoted|file|output)(?:: (?P<file>\S+))? -->\n+)?"
     r"^ *```(?P<language>[^\n]*)\n(?P<text>.*?)^ *```$",
     re.DOTALL | re.MULTILINE,
 )
@@ -49,13 +50,24 @@ PIECE = """<robot name="piece" xmlns:xacro="http://www.ros.org/wiki/xacro">
 {}</robot>
 """
 DRIVER = """
-import re, subprocess
+import contextlib, doctest, io, os, subprocess, sys
 from pathlib import Path
 
-def _shell(*command):
-    ran = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    assert ran.returncode == 0, f"{command[-1]}\\n{ran.stdout}{ran.stderr}"
-    print(ran.stderr, end="")
+def _shell(*command, **environment):
+    ran = subprocess.run(
+        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+        env={**os.environ, **environment},
+    )
+    assert ran.returncode == 0, f"{command[-1]}\\n{ran.stdout}"
+    print(ran.stdout, end="")
+
+def _show(step, expected):
+    with contextlib.redirect_stdout(io.StringIO()) as out:
+        exec(step, globals())
+    printed = "".join(f"{line.rstrip()}\\n" for line in out.getvalue().splitlines())
+    print(printed, end="")
+    is_so = doctest.OutputChecker().check_output(expected, printed, doctest.ELLIPSIS)
+    assert is_so, f"the page shows\\n{expected}\\nbut it prints\\n{printed}"
 
 def _octave(text):
     served = Path("served")
@@ -74,19 +86,23 @@ def run(page, folder):
     """Run a page; what its Python prints and its commands complain of. Raises where one fails."""
     prepare(folder)
     steps, pieces = [DRIVER], 0
-    for block in blocks(page):
+    found = blocks(page)
+    for block, after in zip(found, [*found[1:], {"marker": None}]):
         language, text = block["language"], block["text"]
         if block["marker"] == "file":
             file = folder / block["file"]
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(text)
+        elif block["marker"] == "output":
+            steps[-1] = f"_show({steps[-1]!r}, {text!r})"
         elif block["marker"] == "quoted" or NOT_RUN.match(language or ""):
             continue
         elif block["kind"] == "python" or language == "python":
             steps.append(text or block["before"])
         elif block["kind"] == "run" or language == "sh":
             shell = text or block["before"]
-            steps.append(f"_shell('bash', '-eo', 'pipefail', '-c', {shell!r})")
+            whole = ", QUADCORE_SHORT=''" if after["marker"] == "output" else ""
+            steps.append(f"_shell('bash', '-eo', 'pipefail', '-c', {shell!r}{whole})")
         elif language in ("octave", "matlab"):
             steps.append(f"_octave({text!r})")
         elif language == "pycon":
