@@ -27,7 +27,8 @@ class Text(NamedTuple):
 
 def read_pages() -> Iterator[Text]:
     """Read the Markdown files of the checkout."""
-    names = subprocess.check_output(["git", "ls-files", "*.md"], cwd=ROOT, text=True)
+    list_files = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "*.md"]
+    names = subprocess.check_output(list_files, cwd=ROOT, text=True)
     for name in names.splitlines():
         yield Text(name, 1, (ROOT / name).read_text(encoding="utf-8"))
 
