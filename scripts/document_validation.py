@@ -154,8 +154,8 @@ def write_tables(study: Study) -> None:
     slow = [f"{n:g}" for n in study.sim_slow]
     page = "validation.md"
     put(page, "distances", ("engine", "sim_slow", *study.drags), distances(study))
-    heading = ("what changes", f"from sim_slow {slow[0]}", *(f"from {n}" for n in slow[1:]))
-    put(page, "shares", (*heading, "largest"), shares(study))
+    heading = ("change", f"from sim_slow {slow[0]}", *(f"from {n}" for n in slow[1:]))
+    put(page, "shares", (*heading, "maximum"), shares(study))
     titles = [kind.title.lower() for kind in KINDS.values()]
     put(page, "figures", ("drag", *titles), numbers(study))
     engines = [f"`{engine}`" for engine in study.engines]
