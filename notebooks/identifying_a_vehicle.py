@@ -8,9 +8,9 @@
 # %% [markdown]
 # # Identifying a vehicle
 #
-# A log of a flight, and a model that is not quite right: which numbers of the model does the
-# flight tell, and how well? Here the "real" vehicle is a simulation too, so that the answer is
-# known. It is heavier than the model believes, has stronger rotors, and its sensors are noisy.
+# Given the log of a flight and a model with wrong parameters: which parameters can be identified
+# from the flight, and how accurately? The "real" vehicle is a simulation too, so the true values
+# are known. It is heavier than the model, has stronger rotors, and its sensors are noisy.
 
 # %%
 import numpy as np
@@ -38,8 +38,8 @@ log = real.run(
 log
 
 # %% [markdown]
-# The search begins at the model's own numbers. Of the log it takes what the odometry said, noise
-# included, and the commands.
+# The search starts at the parameters of the model. It uses the odometry, including its noise, and
+# the commands of the log.
 
 # %%
 found = qc.fit(
@@ -53,38 +53,38 @@ for name, value in found.values.items():
 print(*found.told(), sep="\n")
 
 # %% [markdown]
-# Only the ratio of thrust to mass lifts the vehicle. They are told apart because the thrust also
-# turns it, and its moments about x and y are taken as known. Where the flight tells a number, it
-# lies within a few of its deviations:
+# Only the ratio of thrust to mass determines the lift. Both can be identified because the thrust
+# also rotates the vehicle, and the moments of inertia about x and y are known. The error of each
+# identifiable parameter, in standard deviations:
 
 # %%
-off = {
+errors = {
     name: abs(value - TRUE[name]) / found.identified.deviations[name]
     for name, value in found.values.items()
     if np.isfinite(found.identified.deviations[name])
 }
-assert off and max(off.values()) < 5
-off
+assert errors and max(errors.values()) < 5
+errors
 
 # %% [markdown]
-# The proof is another flight: the fitted model flies as the real vehicle does, on commands that
-# the fit has not seen.
+# The test is another flight. With commands that the fit has not used, the fitted model follows the
+# real vehicle. The final distance from the real vehicle, in m:
 
 # %%
 hover = real.hover_speed
 twist = np.array([1.02, 0.98, 1.02, 0.98])
 commands = np.array([[0, *(1.02 * hover)], [1, *(twist * hover)], [2, *hover]])
-flown = {
-    name: qc.Simulation(model, parameters=own, **shared).run(3.0, commands=commands)
-    for name, model, own, shared in (
+logs = {
+    name: qc.Simulation(model, parameters=parameters, **shared).run(3.0, commands=commands)
+    for name, model, parameters, shared in (
         ("real", "quadrotor", TRUE, SHARED),
         ("model", "quadrotor", {}, SHARED),
         ("fitted", found.model, {}, {"engine": "eigen"}),
     )
 }
-apart = {
-    name: float(np.linalg.norm(flown[name].position[-1] - flown["real"].position[-1]))
+distances = {
+    name: float(np.linalg.norm(logs[name].position[-1] - logs["real"].position[-1]))
     for name in ("model", "fitted")
 }
-assert apart["fitted"] < 0.05 * apart["model"]
-apart
+assert distances["fitted"] < 0.05 * distances["model"]
+distances

@@ -8,8 +8,8 @@
 # %% [markdown]
 # # Tuning a controller
 #
-# A PD cascade with gains that are far too soft, tuned by search on one reference and judged on
-# others that it was not tuned on. Needs the extra `tune`.
+# A PD cascade starts with very low gains. The search tunes them on one reference, and the tuned
+# controller is evaluated on others. This notebook needs the extra `tune`.
 
 # %%
 import matplotlib.pyplot as plt
@@ -24,19 +24,19 @@ before = qc.evaluate(SOFT, ["circle", "eight"], duration=8, xacro_args=XACRO)
 before
 
 # %% [markdown]
-# The search changes the two gains of the horizontal position. Each candidate flies the spiral
-# from its start and from beside it; the best so far has to fly the references that are held out,
-# too.
+# The search changes the two gains of the horizontal position. Each candidate tracks the spiral
+# from its start and from a start next to it. The best candidates must also track the held-out
+# references.
 
 # %%
 found = qc.tune(SOFT, only=["kp_xy", "kd_xy"], duration=5, budget=40, xacro_args=XACRO)
-print(f"{found.start:.3g} m became {found.error:.3g} m")
+print(f"RMS error: {found.start:.3g} m at the start, {found.error:.3g} m tuned")
 print("held out:", found.held_out)
 assert found.error < found.start
 found.gains.parameters
 
 # %% [markdown]
-# Both, flown on references that did not steer the search:
+# Both controllers on references that did not guide the search:
 
 # %%
 after = qc.evaluate(
@@ -50,20 +50,19 @@ after
 # %%
 figure, axes = plt.subplots()
 for row, outcome in after.drawn.items():
-    told = after.table[row]
-    if told["reference"].startswith("circle"):
+    inputs = after.table[row]
+    if inputs["reference"].startswith("circle"):
         error = outcome.log.topics["error"]
         distance = np.linalg.norm([error[axis] for axis in "xyz"], axis=0)
-        axes.semilogy(outcome.log.time, np.maximum(distance, 1e-6), label=told["controller"])
+        axes.semilogy(outcome.log.time, np.maximum(distance, 1e-6), label=inputs["controller"])
 axes.set_xlabel("time (s)")
-axes.set_ylabel("distance from the circle (m)")
+axes.set_ylabel("tracking error on the circle (m)")
 axes.legend()
 
 # %% [markdown]
-# How much can be wrong before the tuned gains lose the vehicle? The margins: factors on thrust
-# and torque, and delay.
+# How large can errors of the model be before the tuned controller fails? The margins are factors
+# on thrust and torque, and an additional delay in seconds.
 
 # %%
-forgiven = qc.evaluate(found.gains.make(), "circle", duration=4, margins=True, xacro_args=XACRO)
-told = ("gain_low", "gain_high", "delay_margin")
-{name: forgiven.margins[0][name] for name in told}
+margins = qc.evaluate(found.gains.make(), "circle", duration=4, margins=True, xacro_args=XACRO)
+{name: margins.margins[0][name] for name in ("gain_low", "gain_high", "delay_margin")}

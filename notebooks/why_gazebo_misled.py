@@ -8,9 +8,9 @@
 # %% [markdown]
 # # Why Gazebo misled
 #
-# A quadrotor that turns in free fall, its rotors running and no air around it, keeps its angular
-# momentum. In Gazebo 11 it does not: its physics engine takes the gyroscopic torque of each rotor
-# as it was at the beginning of a step, and that turns momentum into damping. Here we measure it.
+# A quadrotor that rotates in free fall, with running rotors and without air, keeps its angular
+# momentum. In Gazebo 11 it does not. Gazebo's physics engine uses the gyroscopic torque of each
+# rotor at the start of a step, and this acts as damping. This notebook measures the damping.
 
 # %%
 import matplotlib.pyplot as plt
@@ -32,8 +32,8 @@ NO_AIR = {
 SPEED = qc.Simulation("quadrotor").hover_speed  # rad/s, commanded
 
 
-def fall(engine, dt=0.001, sim_slow=1):
-    """Two seconds of a pitch rate of 0.1 rad/s that nothing should stop."""
+def simulate_fall(engine, dt=0.001, sim_slow=1):
+    """Simulate two seconds of free fall with a pitch rate of 0.1 rad/s."""
     sim = qc.Simulation(
         "quadrotor", engine, dt=dt, parameters=NO_AIR, xacro_args={"sim_slow": sim_slow}
     )
@@ -46,7 +46,7 @@ def fall(engine, dt=0.001, sim_slow=1):
 
 
 # %%
-logs = {engine: fall(engine) for engine, _ in qc.engines()}
+logs = {engine: simulate_fall(engine) for engine, _ in qc.engines()}
 figure, axes = plt.subplots()
 for engine, log in logs.items():
     axes.plot(log.time, log["wy"], label=engine)
@@ -55,46 +55,50 @@ axes.set_ylabel("pitch rate (rad/s)")
 axes.legend()
 
 # %% [markdown]
-# The rate decays in `gazebo11` alone, by about 0.8 1/s: as if the vehicle were held by a damper.
-# A controller that is tuned there leans on it.
+# The pitch rate decays only in `gazebo11`, with about 0.8 1/s. A controller that is tuned there
+# depends on this damping.
 #
-# The explicit step predicts $\lambda = \sum_i (I_{zz} - I_{xx}) W_i^2 \Delta t / 2 J$, the sum
-# being over the rotors, $W$ their speed, $J$ the moment of the whole about the pitch axis.
+# For an explicit step, the decay rate is
+# $\lambda = \sum_i (I_{zz} - I_{xx}) W_i^2 \Delta t / 2 J$. The sum is over the rotors, $W_i$ is
+# the speed of a rotor, and $J$ is the vehicle's moment of inertia about the pitch axis.
 
 # %%
 sim = qc.Simulation("quadrotor")
 rotor = sim.model.links[1].inertia
 
 
-def measured(log):
-    """Decay of the pitch rate, 1/s."""
+def measure_decay(log):
+    """Return the decay rate of the pitch rate, 1/s."""
     return -np.polyfit(log.time, np.log(np.abs(log["wy"])), 1)[0]
 
 
-def predicted(dt, sim_slow):
-    """The same by the formula."""
+def predict_decay(dt, sim_slow):
+    """Return the decay rate by the formula, 1/s."""
     speeds = SPEED / sim_slow
     return (rotor[2, 2] - rotor[0, 0]) * np.sum(speeds**2) * dt / (2 * sim.inertia[1, 1])
 
 
 rows = [(1e-3, 1), (5e-4, 1), (2.5e-4, 1), (1e-3, 10)]
-decays = np.array([(measured(fall("gazebo11", *row)), predicted(*row)) for row in rows])
+logs_of_gazebo11 = [simulate_fall("gazebo11", *row) for row in rows]
+decays = np.array(
+    [(measure_decay(log), predict_decay(*row)) for log, row in zip(logs_of_gazebo11, rows)]
+)
 for (dt, slow), (found, formula) in zip(rows, decays):
     print(f"step {1e3 * dt:g} ms, sim_slow {slow:2}: {found:.4f} 1/s, formula {formula:.4f} 1/s")
 assert np.allclose(decays[:, 0], decays[:, 1], rtol=0.05)
 
 # %% [markdown]
-# It goes with the step, and with the square of the rotors' speed: the slow-down of the rotors in
-# the published model (`sim_slow`) hides it a hundredfold at 10. More computing power, in smaller
-# steps, would have helped too; the engines `ode` and `eigen` do not have it.
+# The damping is proportional to the step and to the square of the rotor speed. In the published
+# model, the slowdown of the rotors (`sim_slow` 10) reduces it a hundredfold. Smaller steps reduce
+# it too. The engines `ode` and `eigen` do not have it:
 
 # %%
-others = {engine: measured(logs[engine]) for engine in ("ode", "eigen")}
+others = {engine: measure_decay(logs[engine]) for engine in ("ode", "eigen")}
 assert max(map(abs, others.values())) < 1e-3
 others
 
 # %% [markdown]
-# What it does to a flight: the same commands, in each engine.
+# The effect on a flight with the same commands in each engine:
 
 # %%
 found = qc.compare(

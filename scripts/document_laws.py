@@ -79,9 +79,9 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         wind = Path(folder) / "wind.yaml"
         wind.write_text(WIND)
-        put("control.md", "reached", ("reference", "law", *engines), reached(wind))
+        put("control.md", "reached", ("reference", "controller", *engines), reached(wind))
     put("control.md", "noise", ("noise", *engines), noise())
-    put("control.md", "printed", ("law", "sim_slow", *engines), printed())
+    put("control.md", "printed", ("controller", "sim_slow", *engines), printed())
 
 
 if __name__ == "__main__":

@@ -21,24 +21,25 @@ class Observation(NamedTuple):
 
 
 OBSERVATIONS: Dict[str, Observation] = {
-    "error": Observation("from the goal to the vehicle, world axes, m", lambda s: s.error),
+    "error": Observation("vector from the goal to the vehicle, world axes, m", lambda s: s.error),
     "body_error": Observation(
-        "the same in body axes, m", lambda s: np.einsum("nji,nj->ni", s.R_WF, s.error)
+        "vector from the goal to the vehicle, body axes, m",
+        lambda s: np.einsum("nji,nj->ni", s.R_WF, s.error),
     ),
     "rotation": Observation(
-        "matrix that turns vectors from body to world axes, row by row",
+        "rotation matrix from body to world axes, row by row",
         lambda s: s.R_WF.reshape(len(s.R_WF), 9),
         1.0,
     ),
     "up": Observation("the world's z axis, body axes", lambda s: s.R_WF[:, 2], 1.0),
-    "velocity": Observation("of the frame's origin, world axes, m/s", lambda s: s.linear_velocity),
+    "velocity": Observation(
+        "velocity of the frame's origin, world axes, m/s", lambda s: s.linear_velocity
+    ),
     "body_velocity": Observation(
-        "the same in body axes, m/s",
+        "velocity of the frame's origin, body axes, m/s",
         lambda s: np.einsum("nji,nj->ni", s.R_WF, s.linear_velocity),
     ),
     "rates": Observation("angular velocity, body axes, rad/s", lambda s: s.angular_velocity),
-    "rotors": Observation(
-        "joint velocities as the engine has them, rad/s", lambda s: s.rotor_velocity
-    ),
+    "rotors": Observation("joint velocities of the engine, rad/s", lambda s: s.rotor_velocity),
     "action": Observation("the last action", lambda s: s.action, 1.0),
 }

@@ -24,17 +24,17 @@ def _length(rows: np.ndarray) -> np.ndarray:
 
 REWARDS: Dict[str, Reward] = {
     "alive": Reward("1", lambda s: np.ones(len(s.error))),
-    "lost": Reward("-1 when the vehicle is lost, else 0", lambda s: -1.0 * s.lost),
-    "distance": Reward("less the distance from the goal, m", lambda s: -_length(s.error)),
+    "lost": Reward("-1 when the episode is terminated, else 0", lambda s: -1.0 * s.lost),
+    "distance": Reward("negative distance to the goal, m", lambda s: -_length(s.error)),
     "near": Reward(
-        "1 / (1 + distance^2), the distance in m", lambda s: 1 / (1 + _length(s.error) ** 2)
+        "1 / (1 + distance^2), distance in m", lambda s: 1 / (1 + _length(s.error) ** 2)
     ),
     "upright": Reward("cosine of the tilt", lambda s: s.R_WF[:, 2, 2]),
-    "speed": Reward("less the speed, m/s", lambda s: -_length(s.linear_velocity)),
-    "turning": Reward("less the angular velocity, rad/s", lambda s: -_length(s.angular_velocity)),
-    "effort": Reward("less the mean square of the action", lambda s: -np.mean(s.action**2, axis=1)),
+    "speed": Reward("negative speed, m/s", lambda s: -_length(s.linear_velocity)),
+    "turning": Reward("negative angular speed, rad/s", lambda s: -_length(s.angular_velocity)),
+    "effort": Reward("negative mean square of the action", lambda s: -np.mean(s.action**2, axis=1)),
     "haste": Reward(
-        "less the mean square of the change of the action",
+        "negative mean square of the change of the action",
         lambda s: -np.mean((s.action - s.action_before) ** 2, axis=1),
     ),
 }
