@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from quadcore.report.thinning import thin
+from quadcore.report.decimation import decimate
 from quadcore.studies.axes import parse_axis
 from quadcore.studies.compare.compare import fly
 from quadcore.studies.compare.plan import Plan
@@ -40,7 +40,7 @@ def seconds(processes):
         processes=processes,
     )
     start, used = time.perf_counter(), os.times()
-    fly(grid, lambda row, log: thin(log) if row % 5 == 0 else None)
+    fly(grid, lambda row, log: decimate(log) if row % 5 == 0 else None)
     wall, now = time.perf_counter() - start, os.times()
     parent, flights = (sum(now[i : i + 2]) - sum(used[i : i + 2]) for i in (0, 2))
     # The first flight, and what the parent does, are done by one process.

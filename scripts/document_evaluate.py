@@ -7,7 +7,7 @@ from images import save
 from noise import THESIS
 
 import quadcore as qc
-from quadcore.studies.evaluate.pictures import draw
+from quadcore.studies.evaluate.plots import draw
 
 LAWS = ["pd", "pd_compensated", "pid", "geometric", "indi", "lqr"]
 

@@ -13,8 +13,8 @@ from images import save
 
 from quadcore.studies.design import Design
 from quadcore.studies.options import SweepOptions
-from quadcore.studies.sweep.pictures import draw
 from quadcore.studies.sweep.plan import Plan
+from quadcore.studies.sweep.plots import draw
 from quadcore.studies.sweep.sensitivity import sensitivities
 from quadcore.studies.sweep.sweep import conduct
 from quadcore.studies.sweep.table import table

@@ -38,7 +38,7 @@ def test_everything_is_written_and_reproducible():
     page = Path("out/report.html").read_text()
     for text in (
         "step:dx=1,time=0.2",
-        "What each law flew with",
+        "Controller settings",
         "Poles of",
         'class="player"',
         "data:image/png;base64,",

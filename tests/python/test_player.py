@@ -14,7 +14,7 @@ from browser import told
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.report.player import PlayerFlight, fragment, page
+from quadcore.report.player import PlayerFlight, make_page, make_section
 
 ROTORS = np.array([[0.3, 0, 0.1], [0, 0.2, 0.1], [-0.25, -0.1, 0.12]])
 
@@ -63,7 +63,7 @@ class Tags(html.parser.HTMLParser):
 
 
 def test_the_page_is_well_formed_and_fetches_nothing():
-    text = page([PlayerFlight("<b>&\"'</script>", flown())])
+    text = make_page([PlayerFlight("<b>&\"'</script>", flown())])
     tags = Tags()
     tags.feed(text)
     assert tags.opened == [] and tags.fetched == []
@@ -74,7 +74,7 @@ def test_the_page_is_well_formed_and_fetches_nothing():
 
 def test_data_read_back_are_the_logs():
     log = flown()
-    flight = content_of(page([PlayerFlight("a", log, ROTORS)]))["flights"][0]
+    flight = content_of(make_page([PlayerFlight("a", log, ROTORS)]))["flights"][0]
     assert np.array_equal(flight["rotors"], ROTORS)
     expected = {
         "time": log.time[:, None],
@@ -92,7 +92,7 @@ def test_data_read_back_are_the_logs():
 
 def test_a_long_log_is_thinned_and_keeps_its_ends():
     log = flown(rows=100_001, reference=False)
-    flight = content_of(page([PlayerFlight("a", log)]))["flights"][0]
+    flight = content_of(make_page([PlayerFlight("a", log)]))["flights"][0]
     time = numbers(flight["columns"]["time"], 1)[:, 0]
     assert len(time) == 1500 and time[0] == 0 and time[-1] == 4
     assert np.ptp(np.diff(time)) < 1e-4
@@ -102,26 +102,28 @@ def test_a_long_log_is_thinned_and_keeps_its_ends():
 def test_a_topic_that_is_called_reference_and_is_none_is_left_alone():
     log = flown(reference=False)
     log.topics["reference"] = {"volts": log.time}
-    assert page([PlayerFlight("a", log)]) == page([PlayerFlight("a", flown(reference=False))])
+    assert make_page([PlayerFlight("a", log)]) == make_page(
+        [PlayerFlight("a", flown(reference=False))]
+    )
 
 
 def test_equal_flights_make_equal_pages():
-    assert page([PlayerFlight("a", flown())]) == page([PlayerFlight("a", flown())])
+    assert make_page([PlayerFlight("a", flown())]) == make_page([PlayerFlight("a", flown())])
 
 
 def test_a_vehicle_of_which_no_more_is_known_is_a_cross():
-    flight = content_of(page([PlayerFlight("a", flown(rotors=4))]))["flights"][0]
+    flight = content_of(make_page([PlayerFlight("a", flown(rotors=4))]))["flights"][0]
     assert (
         np.allclose(np.linalg.norm(flight["rotors"], axis=1), 0.25) and len(flight["rotors"]) == 4
     )
 
 
 def test_rotors_of_another_number_no_flight_and_no_row_are_refused():
-    with pytest.raises(qc.InputError, match=r"rotors has shape \(3, 3\).* of 4 rotors"):
+    with pytest.raises(qc.InputError, match=r"rotors has shape \(3, 3\).* has 4 rotors"):
         PlayerFlight("a", flown(rotors=4), ROTORS)
-    with pytest.raises(qc.InputError, match="no flight to watch"):
-        fragment([])
-    with pytest.raises(qc.InputError, match="'a': its log is empty"):
+    with pytest.raises(qc.InputError, match="no flight to animate"):
+        make_section([])
+    with pytest.raises(qc.InputError, match="'a': the log is empty"):
         PlayerFlight("a", flown(rows=0))
 
 
@@ -158,7 +160,7 @@ def test_the_slider_changes_what_is_drawn_and_told(tmp_path):
     go(0.0); told.again = seen();
     """
     )
-    found = told(page(flights), script, tmp_path)
+    found = told(make_page(flights), script, tmp_path)
     assert found["start"] == found["again"] != found["later"]
     assert [row[0] for row in found["cells"]] == ["first", "short"]
     at = [np.interp(2.0, log.time, log.position[:, i]) for i in range(3)]
@@ -195,13 +197,13 @@ def test_boxes_keys_wheel_and_fingers_change_what_is_drawn(tmp_path):
     """
     )
     flights = [PlayerFlight("a", flown(), ROTORS), PlayerFlight("b", flown(reference=False))]
-    found = told(page(flights), script, tmp_path)
+    found = told(make_page(flights), script, tmp_path)
     assert found and all(found.values()), found
 
 
 def test_two_players_on_one_page_keep_apart(tmp_path):
-    both = page([PlayerFlight("a", flown())]).replace(
-        "</section>", "</section>" + str(fragment([PlayerFlight("b", flown(duration=1.0))])), 1
+    both = make_page([PlayerFlight("a", flown())]).replace(
+        "</section>", "</section>" + str(make_section([PlayerFlight("b", flown(duration=1.0))])), 1
     )
     script = (
         LOOK
@@ -229,7 +231,9 @@ class TestCommand:
         first, second = content_of(text)["flights"]
         assert (first.pop("name"), second.pop("name")) == ("ode", "eigen")
         assert first == second
-        assert text == page([PlayerFlight("ode", log), PlayerFlight("eigen", log)], "ode, eigen")
+        assert text == make_page(
+            [PlayerFlight("ode", log), PlayerFlight("eigen", log)], "ode, eigen"
+        )
 
     def test_a_guided_flight_brings_its_reference(self):
         flight = ["--engine", "eigen", "--duration", "0.5", "--log-every", "10", "--quiet"]
@@ -265,7 +269,7 @@ class TestCommand:
             (["a.csv", "-o", "b.txt"], "b.txt: name a file that ends in .html"),
             (["a.csv", "-o", "no/b.html"], "no/b.html: there is no folder no"),
             (["a.csv", "-o", "b.html", "--names", "x,y"], "--names: 2 for 1 logs"),
-            (["a.csv", "-o", "b.html", "--model", "quadrotor"], "of 3 rotors"),
+            (["a.csv", "-o", "b.html", "--model", "quadrotor"], "has 3 rotors"),
         ],
     )
     def test_what_cannot_be_played_is_one_line_and_leaves_no_page(self, arguments, message, capsys):

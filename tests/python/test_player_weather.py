@@ -9,7 +9,7 @@ from test_player import LOOK, ROTORS, content_of, flown, numbers
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.report.player import PlayerFlight, page, topics_to_watch
+from quadcore.report.player import PlayerFlight, list_animated_topics, make_page
 
 SCENARIO = (
     "plugins:\n"
@@ -29,14 +29,14 @@ def befallen(tmp_path):
 def test_what_rides_and_what_blows_is_told_on_topics_and_drawn(tmp_path):
     plan = qc.FlightPlan.of(scenario=befallen(tmp_path), engine="eigen", xacro_args={"sim_slow": 1})
     simulation = plan.simulation()
-    topics = topics_to_watch(simulation)
+    topics = list_animated_topics(simulation)
     assert sorted(topics) == ["box_carried", "payload_carried", "wind"]
     log = simulation.run(0.8, topics=topics)
     parcel, box = (log.topics[name]["mass"] for name in ("payload_carried", "box_carried"))
     began, time = log.time > 0.0015, log.time
     assert (parcel[began] == np.where(time > 0.3005, 0, 0.2)[began]).all()
     assert (box[began] == np.where(time > 0.5005, 0.05, 0)[began]).all()
-    columns = content_of(page([PlayerFlight("a", log, None)]))["flights"][0]["columns"]
+    columns = content_of(make_page([PlayerFlight("a", log, None)]))["flights"][0]["columns"]
     assert np.array_equal(numbers(columns["wind"], 3)[-1], [3, -4, 0])
     riding = numbers(columns["carried payload_carried"], 4)[100]
     assert np.allclose(riding, [0.2, 0.01, -0.02, -0.1])
@@ -64,14 +64,14 @@ def test_the_table_has_wind_and_load_and_the_picture_shows_them(tmp_path):
     told.shown = [shows("wind"), shows("load")];
     """
     )
-    found = told(page([PlayerFlight("a", weathered(), ROTORS)]), script, tmp_path)
+    found = told(make_page([PlayerFlight("a", weathered(), ROTORS)]), script, tmp_path)
     assert found["start"] == ["", "0.25"]
     assert found["laden"] == ["5.0", "0.25"]
     assert found["free"] == ["5.0", ""]
     assert "none" not in found["shown"]
-    calm = told(page([PlayerFlight("a", flown(), ROTORS)]), script, tmp_path)
+    calm = told(make_page([PlayerFlight("a", flown(), ROTORS)]), script, tmp_path)
     assert calm["shown"] == ["none", "none"]
-    other = told(page([PlayerFlight("a", weathered((0, 4, 0)), ROTORS)]), script, tmp_path)
+    other = told(make_page([PlayerFlight("a", weathered((0, 4, 0)), ROTORS)]), script, tmp_path)
     assert len({found["picture"], calm["picture"], other["picture"]}) == 3
 
 

@@ -13,7 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 import quadcore as qc
 from quadcore.cli import main
 from quadcore.report import log_plots, plots
-from quadcore.studies.compare import pictures as overlaid
+from quadcore.studies.compare import plots as overlaid
 
 ONE = {f"{name}.png" for name in ("position", "attitude", "rates", "rotors", "path")}
 
@@ -72,7 +72,7 @@ def test_rounding_is_drawn_as_a_flat_line():
     table = np.zeros((3, 18))
     table[:, 0], table[:, 7] = range(3), 1
     table[:, 1], table[:, 3] = [0, 1e-14, -1e-14], [10, 9, 7]
-    x, _, z = log_plots._position(qc.Log(table, {})).axes
+    x, _, z = log_plots._draw_position(qc.Log(table, {})).axes
     assert x.get_ylim() == (-1, 1) and list(x.get_yticks()) == [0]
     assert z.get_ylim()[1] - z.get_ylim()[0] < 4
 
@@ -99,10 +99,10 @@ def test_no_label_is_cut_off_or_lies_on_its_neighbour(size, from_):
     table[:, 1:4] = table[:, 8:14] = from_ - size * np.linspace(0, 1, 9)[:, None]
     log = qc.Log(table, {}, topics={"error": dict(zip("xyz", table[:, 1:4].T))})
     for draw in (
-        log_plots._position,
-        log_plots._error,
-        log_plots._rates,
-        log_plots.glance,
+        log_plots._draw_position,
+        log_plots._draw_error,
+        log_plots._draw_rates,
+        log_plots.draw_overview,
     ):
         figure = draw(log)
         renderer = FigureCanvasAgg(figure).get_renderer()
@@ -116,12 +116,14 @@ def test_no_label_is_cut_off_or_lies_on_its_neighbour(size, from_):
             assert not any(label.overlaps(box) for box in others)
 
 
-def test_speeds_of_slow_rotors_are_drawn_as_commanded_too():
+def test_each_slow_rotor_has_a_panel_with_its_speed_times_the_slowdown():
     log = qc.Log.of_file("climb.csv")
     log.per_command = 0.1
-    (beside,) = log_plots._rotors(log).axes[1].child_axes
+    panels = log_plots._draw_rotors(log).axes
+    assert [axes.get_ylabel() for axes in panels] == [f"rotor {i} (rad/s)" for i in range(1, 5)]
+    (beside,) = panels[1].child_axes
     assert np.allclose(beside._functions[0](np.array([47.1])), 471)
-    assert beside.get_ylabel() == "commanded (rad/s)"
+    assert beside.get_ylabel() == r"$\times$ slowdown (rad/s)"
 
 
 def test_flights_over_each_other_tell_commands_and_what_they_are_compared_with(monkeypatch):
@@ -134,7 +136,7 @@ def test_flights_over_each_other_tell_commands_and_what_they_are_compared_with(m
     *_, rotors, differences = drawn.values()
     (beside,) = rotors.axes[0].child_axes
     assert np.allclose(beside._functions[0](np.array([47.1])), 471)
-    assert differences._suptitle.get_text() == "Distance from kp 0.001"
+    assert differences._suptitle.get_text() == "Difference from kp 0.001"
 
 
 def test_a_run_that_can_hardly_be_meant_is_said_and_flown(capsys):

@@ -256,20 +256,20 @@ def test_an_evaluation_has_scenarios_for_an_axis_and_tells_each_laws_loss():
         assert pushed["loss"] == pytest.approx(pushed["rms_position"] - calm["rms_position"])
         assert pushed["loss"] > 1e-3
     page = Path("out/report.html").read_text()
-    assert "What each law loses in each scenario" in page
+    assert "Effect of each scenario" in page
 
 
 def test_pictures_over_time_have_a_mark_where_something_happens():
     import matplotlib.pyplot as plt
 
-    from quadcore.studies.evaluate.event_marks import mark
+    from quadcore.studies.evaluate.event_marks import mark_events
 
     events = Scenario(
         written("events: [{at: 0.2, cut: 1}, {at: 0.2, weaken: 2, to: 0.5}, {at: 3, cut: 3}]")
     ).events
     figure, axes = plt.subplots()
     axes.plot([0, 1], [0, 1])
-    mark(figure, {"storm": events})
+    mark_events(figure, events)
     told = [(text.get_text(), text.xy[0]) for text in axes.texts]
     assert told == [("rotor 1 cut, rotor 2 to 0.5", 0.2)]  # what is after the flight is not there
     plt.close(figure)

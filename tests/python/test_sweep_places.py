@@ -162,7 +162,7 @@ def test_models_travel_as_documents():
     shutil.rmtree("here")
     flown = script(
         "import pickle\nspec = pickle.load(open('spec.pickle', 'rb'))\n"
-        "print(spec.fingerprint(), repr(spec.measured()['rms_position']))"
+        "print(spec.fingerprint(), repr(spec.measure()['rms_position']))"
     )
     assert flown.stdout.split() == [spec.fingerprint(), repr(expected["rms_position"])]
 

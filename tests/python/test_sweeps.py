@@ -232,7 +232,7 @@ def test_parquet_holds_what_the_csv_holds(tmp_path):
          "samples is 3; design sobol takes a power of two: 2 or 4"),
         ([*SHORT, "--vary", "drone_plugin.k=1,2"], "drone_plugin"),
         ([*SHORT, "--vary", "engine=eigen,ode"], "vary engine: name the engines by themselves"),
-        ([*SHORT, "--vary", "frame.mass=1,2", "--measure", "x"], "there is no measure 'x'"),
+        ([*SHORT, "--vary", "frame.mass=1,2", "--measure", "x"], "metric 'x' does not exist"),
         ([*SHORT, "--vary", "frame.mass=1:2:2000000"], "these are 2000000 flights"),
         (["nowhere.yaml"], "nowhere.yaml: cannot be read"),
     ],

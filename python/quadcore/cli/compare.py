@@ -7,11 +7,19 @@ from pathlib import Path
 from typing import Any
 
 from .._core import InputError, QuadcoreError
-from ..report.thinning import thin
+from ..report.decimation import decimate
 from ..simulation.engines import ENGINE
 from ..simulation.log import Log
 from ..studies.compare.compare import fly
-from ..studies.compare.output import FILES, drawn, listed, log_name, remove_logs, summary, write
+from ..studies.compare.output import (
+    FILES,
+    format_values,
+    log_name,
+    pick_drawn,
+    remove_logs,
+    summarise,
+    write,
+)
 from ..studies.compare.plan import Plan
 from ..studies.compare.result import Comparison
 from ..studies.folder import output_folder
@@ -136,7 +144,7 @@ def _keeper(arguments: argparse.Namespace, plan: Plan) -> Any:
     out = arguments.out
     if out is None:
         return None
-    to_draw = set() if arguments.no_plots else set(drawn(len(plan)))
+    to_draw = set() if arguments.no_plots else set(pick_drawn(len(plan)))
     has_logs = _has_logs(arguments, plan)
     remove_logs(out)
     if has_logs:
@@ -145,7 +153,7 @@ def _keeper(arguments: argparse.Namespace, plan: Plan) -> Any:
     def keep(row: int, log: Log) -> Log | None:
         if has_logs:
             log.to_csv(out / log_name(row, len(plan)))
-        return thin(log) if row in to_draw else None
+        return decimate(log) if row in to_draw else None
 
     return keep
 
@@ -193,7 +201,7 @@ def _show_models(plan: Plan) -> None:
     if plan.axes:
         table = terminal.table("varied", "values", "as written")
         for axis in plan.axes:
-            table.add_row(axis.name, listed(axis.values), plan.as_written(axis) or "-")
+            table.add_row(axis.name, format_values(axis.values), plan.as_written(axis) or "-")
         console.print(table, "")
 
 
@@ -222,6 +230,6 @@ def _show_flights(plan: Plan, comparison: Comparison, files: list[Path]) -> None
             cells = ["failed"]
             failures.append(f"no. {number} ({plan.label(variant)}): {row['failure']}")
         table.add_row(str(number), plan.label(variant), *cells)
-    console.print(table, "", *failures, summary(comparison), sep="\n")
+    console.print(table, "", *failures, summarise(comparison), sep="\n")
     for file in files:
         console.print(f"written {file}")

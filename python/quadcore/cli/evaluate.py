@@ -85,7 +85,7 @@ def _plan(arguments: argparse.Namespace) -> Plan:
 
 
 def _show(evaluation: Evaluation, files: list[Path]) -> None:
-    from ..studies.evaluate.output import causes, summary
+    from ..studies.evaluate.output import list_unstable_axes, summarise
     from ..studies.evaluate.shown_rows import columns_to_read, rows_to_read
 
     console = terminal.console()
@@ -99,18 +99,18 @@ def _show(evaluation: Evaluation, files: list[Path]) -> None:
         console.print("", _margins(evaluation))
     if len(lines) > _ROWS:
         console.print(f"{len(lines) - _ROWS} more combinations")
-    for cause in causes(evaluation):
+    for cause in list_unstable_axes(evaluation):
         console.print(f"unstable: {cause}")
-    console.print(summary(evaluation))
+    console.print(summarise(evaluation))
     for file in files:
         console.print(f"written {file}")
 
 
 def _margins(evaluation: Evaluation) -> Any:
-    from ..studies.evaluate.output import margins_to_read
+    from ..studies.evaluate.output import format_margins
 
     table = terminal.table("controller", "gain", "delay (s)", "box, median / worst (m)")
-    for row in margins_to_read(evaluation):
+    for row in format_margins(evaluation):
         if row["failure"]:
             table.add_row(row["controller"], row["failure"])
             continue

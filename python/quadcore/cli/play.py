@@ -42,7 +42,7 @@ def add_names(parser: argparse.ArgumentParser) -> None:
 
 def play(arguments: argparse.Namespace) -> None:
     """Read the logs and write the page."""
-    from ..report.player import PlayerFlight, page  # not every command should pay for jinja2
+    from ..report.player import PlayerFlight, make_page  # not every command should pay for jinja2
 
     if arguments.out.suffix.lower() not in (".html", ".htm"):
         raise InputError(f"{arguments.out}: name a file that ends in .html, which it would hold")
@@ -52,7 +52,7 @@ def play(arguments: argparse.Namespace) -> None:
     flights = [
         PlayerFlight(name, Log.of_file(file), rotors) for name, file in zip(names, arguments.logs)
     ]
-    text = page(flights, ", ".join(names))
+    text = make_page(flights, ", ".join(names))
     with atomic_write(arguments.out) as stream:
         stream.write(text_bytes(text))
     if not arguments.quiet:

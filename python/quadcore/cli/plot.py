@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any, List, Sequence
 
-from ..report.thinning import thin
+from ..report.decimation import decimate
 from ..simulation.log import Log
 from ..studies.table import save
 from ..support.output_files import make_folder
@@ -50,9 +50,9 @@ def plot(arguments: argparse.Namespace) -> None:
 
 def _over_each_other(names: Sequence[str], logs: Sequence[Log], folder: Path) -> List[Path]:
     from ..report.plots import png
-    from ..studies.compare.pictures import Curve, draw  # matplotlib is slow to import
+    from ..studies.compare.plots import Curve, draw  # matplotlib is slow to import
 
-    curves = [Curve(name, thin(log, _ROWS)) for name, log in zip(names, logs)]
+    curves = [Curve(name, decimate(log, _ROWS)) for name, log in zip(names, logs)]
     figures = draw(curves, curves[0].log, names[0])
     make_folder(folder)
     return save(folder, {f"{name}.png": png(figure) for name, figure in figures.items()})

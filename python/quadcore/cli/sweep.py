@@ -128,7 +128,7 @@ def _plan(arguments: argparse.Namespace) -> Plan:
 
 
 def _show(plan: Plan, columns: Any, measure: str, files: list[Path]) -> None:
-    from ..studies.sweep.output import summaries, told
+    from ..studies.sweep.output import count_rows, summaries
     from ..studies.sweep.sensitivity import sensitivities
     from ..studies.table import number_text
 
@@ -146,7 +146,7 @@ def _show(plan: Plan, columns: Any, measure: str, files: list[Path]) -> None:
         for row in found:
             table.add_row(*(_cell(row[name], number_text) for name in shown))
         console.print(table, "")
-    console.print(told(plan, columns))
+    console.print(count_rows(plan, columns))
     for file in files:
         console.print(f"written {file}")
 

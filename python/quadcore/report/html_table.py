@@ -1,4 +1,4 @@
-"""Tables of HTML that needs no script: what a notebook shows of an object."""
+"""HTML tables without scripts, for notebooks."""
 
 from __future__ import annotations
 
@@ -6,30 +6,30 @@ from html import escape
 from typing import Iterable, Sequence
 
 SHOWN_ROWS = 30
-"""That a table has at most."""
+"""Maximum number of rows of a table."""
 
 
 def html_table(heads: Sequence[str], rows: Iterable[Sequence[str]], count: int = 0) -> str:
-    """Make a table of texts.
+    """Make an HTML table of texts.
 
     Parameters
     ----------
     heads
-        Of the columns; none: the table has no head.
+        Column headings; empty for a table without them.
     rows
-        At most `SHOWN_ROWS`.
+        At most `SHOWN_ROWS` rows.
     count
-        Of all rows; the table says how many are not shown.
+        Number of all rows; the table states how many are not shown.
     """
     head = "".join(f"<th>{escape(cell)}</th>" for cell in heads)
     body = "".join(
         "<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in row) + "</tr>" for row in rows
     )
-    more = f"<p>{count - SHOWN_ROWS} more</p>" if count > SHOWN_ROWS else ""
+    more = f"<p>{count - SHOWN_ROWS} more rows</p>" if count > SHOWN_ROWS else ""
     top = f"<thead><tr>{head}</tr></thead>" if heads else ""
     return f"<table>{top}<tbody>{body}</tbody></table>{more}"
 
 
 def html_title(described: object) -> str:
-    """Make a paragraph of the text of an object, without its angle brackets."""
+    """Make a paragraph of the `repr` of an object, without its angle brackets."""
     return f"<p>{escape(repr(described)[1:-1])}</p>"

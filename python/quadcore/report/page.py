@@ -1,4 +1,4 @@
-"""Reports as one HTML file that needs no other."""
+"""Reports as self-contained HTML files."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def write_page(path: Path, template: str, **values: object) -> None:
     Raises
     ------
     InputError
-        The file cannot be written.
+        If the file cannot be written.
     """
     page = render(template, **values)
     with atomic_write(path) as stream:
@@ -29,10 +29,10 @@ def render(template: str, **values: object) -> str:
     Parameters
     ----------
     template
-        Name of a file in ``templates/``; a page extends ``page.html``. The filter ``picture`` shows
-        bytes of a PNG: ``{{ bytes | picture("what it shows") }}``.
+        Name of a file in ``templates/``; pages extend ``page.html``. The filter ``image`` embeds a
+        PNG: ``{{ bytes | image("caption") }}``.
     values
-        What the template uses; texts are escaped.
+        Variables of the template; texts are escaped.
     """
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(str(Path(__file__).parent / "templates")),
@@ -41,13 +41,13 @@ def render(template: str, **values: object) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["picture"] = picture
+    environment.filters["image"] = embed_image
     return environment.get_template(template).render(values)
 
 
-def picture(data: bytes, meaning: str) -> str:
-    """Make an image of the bytes of a PNG that stands in the page itself."""
+def embed_image(data: bytes, caption: str) -> str:
+    """Make an HTML image that contains the bytes of a PNG."""
     from markupsafe import Markup
 
     source = f"data:image/png;base64,{base64.b64encode(data).decode()}"
-    return Markup('<img src="{}" alt="{}">').format(source, meaning)
+    return Markup('<img src="{}" alt="{}">').format(source, caption)

@@ -1,4 +1,4 @@
-"""What all pictures are made of: figures, panels, and how they look."""
+"""Parts that all plots share: figures, panels, axes, and their style."""
 
 from __future__ import annotations
 
@@ -40,30 +40,33 @@ finally:
     if _toolkit is not None:
         os.environ["MPLBACKEND"] = _toolkit
 
-# x, y, z keep theirs throughout.
-AXES = ("#d55e00", "#009e73", "#0072b2")
-WHOLE = (0.0, 0.02, 0.94, 0.94)  # of a figure that axes in space fill
-NOTHING = 1e-6  # m, m/s, rad/s, deg: a range below which there is rounding to be seen
+AXES = ("#d55e00", "#009e73", "#0072b2")  # colours of x, y, z in all plots
+REFERENCE = {"color": "0.25", "linestyle": (0, (4, 3)), "linewidth": 1, "label": "reference"}
+WHOLE = (0.0, 0.02, 0.94, 0.94)  # part of a figure that 3D axes fill
+NOTHING = 1e-6  # m, m/s, rad/s, deg: a smaller range is rounding noise
 
 
 def png(figure: Figure) -> bytes:
-    """Picture of a figure; the same flight gives the same bytes."""
+    """Return a figure as PNG; equal flights give equal bytes."""
     FigureCanvasAgg(figure)
     stream = io.BytesIO()
-    figure.savefig(stream, format="png", metadata={"Software": "quadcore"})  # and no version
+    figure.savefig(stream, format="png", metadata={"Software": "quadcore"})  # without a version
     return stream.getvalue()
 
 
-def add_commanded_axis(axes: Any, per_command: float) -> None:
-    """Tell speeds of joints as commanded, too, on the right."""
-    to_command = (lambda rate: rate / per_command, lambda told: told * per_command)
-    axes.secondary_yaxis("right", functions=to_command).set_ylabel("commanded (rad/s)")
+def add_unslowed_axis(axes: Any, per_command: float) -> None:
+    """Add an axis on the right that shows the joint speed times the slowdown."""
+    conversions = (lambda rate: rate / per_command, lambda speed: speed * per_command)
+    axes.secondary_yaxis("right", functions=conversions).set_ylabel(r"$\times$ slowdown (rad/s)")
 
 
 def space(figure: Figure, place: Any, paths: Sequence[np.ndarray]) -> Tuple[Any, np.ndarray]:
-    """Put axes in space into a figure, with room for paths, each (rows, 3).
+    """Add 3D axes to a figure, with room for paths, each (rows, 3).
 
-    Returns the axes and their low corner.
+    Returns
+    -------
+    tuple
+        The axes and their low corner.
     """
     axes = figure.add_axes(place, projection="3d")
     # The same scale along all three axes, with room for flights that hardly move.
@@ -106,7 +109,7 @@ def panels(
 
 
 def subplots(figure: Figure, rows: int, columns: int, margins: Any, **shared: Any) -> Any:
-    """Put dressed panels into a figure, whose numbers have nine signs at most."""
+    """Add styled panels to a figure; tick labels have at most nine characters."""
     grid = figure.subplots(rows, columns, squeeze=False, gridspec_kw=margins, **shared)
     for axes in grid.flat:
         dress(axes)
@@ -117,9 +120,9 @@ def subplots(figure: Figure, rows: int, columns: int, margins: Any, **shared: An
 
 
 class _Numbers(ScalarFormatter):
-    """Has a number of its own for what all share only where that saves so many digits.
+    """Use an axis offset only if it shortens the tick labels by seven digits.
 
-    Matplotlib has but a setting of the whole process for it, which other threads would feel.
+    Matplotlib's own setting for this is global and would affect other threads.
     """
 
     def __init__(self) -> None:
@@ -128,7 +131,7 @@ class _Numbers(ScalarFormatter):
 
 
 def dress(axes: Any) -> None:
-    """Give a panel the style of all."""
+    """Style a panel."""
     axes.grid(color="0.9", linewidth=0.6)
     axes.set_axisbelow(True)
     axes.margins(x=0.01)
@@ -137,7 +140,7 @@ def dress(axes: Any) -> None:
 
 
 def widen(axes: Any, least: float) -> None:
-    """Show a range of at least that much, so that rounding is a flat line."""
+    """Show a range of at least `least`, so that rounding noise is a flat line."""
     low, high = axes.get_ylim()
     if high - low < least:
         middle = (low + high) / 2
@@ -145,7 +148,7 @@ def widen(axes: Any, least: float) -> None:
 
 
 def flatten(axes: Any, least: float) -> None:
-    """Show what moves less than that much as a flat line on a scale of one unit."""
+    """Show curves that vary by less than `least` as flat lines on a scale of one unit."""
     low, high = axes.dataLim.intervaly
     if high - low < least:
         middle = round((low + high) / 2, 3) + 0.0
@@ -154,7 +157,7 @@ def flatten(axes: Any, least: float) -> None:
 
 
 def make_figure(title: str, width: float, height: float, dpi: int = 150) -> Figure:
-    """Make an empty figure, its size in inches."""
+    """Make an empty figure; width and height in inches."""
     figure = Figure(figsize=(width, height), dpi=dpi)
     figure.suptitle(
         title, x=0.1 / width, y=1 - 0.1 / height, ha="left", va="top", fontsize="medium"

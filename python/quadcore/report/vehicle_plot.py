@@ -1,4 +1,4 @@
-"""A picture of a vehicle: frames, masses, boxes of inertia, rotors with number and spin."""
+"""Plot of a vehicle: frames, masses, equivalent inertia boxes, rotors with number and spin."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from ..simulation.simulation import Simulation
 
 _FRAME, _AHEAD, _BACK, _STILL = "0.35", PALETTE[0], PALETTE[1], "0.6"
-_TRIAD, _ABOVE = 0.6, 0.68  # radii: axes of a rotor's link, and its number beyond them
-_PAPER = {"facecolor": "white", "edgecolor": "none", "pad": 1}  # under text that lines cross
+_TRIAD, _ABOVE = 0.6, 0.68  # disc radii: length of a rotor's axes, distance of its number
+_BACKGROUND = {"facecolor": "white", "edgecolor": "none", "pad": 1}  # behind text
 _EDGES = [(i, j) for i in range(8) for j in range(i) if bin(i ^ j).count("1") == 1]
 
 
@@ -29,13 +29,13 @@ class _Rotor(NamedTuple):
     name: str
     mass: float
     place: np.ndarray
-    """Origin of its link in the frame, m."""
+    """Origin of the link in the frame, m."""
     axis: np.ndarray
-    """In the frame, unit."""
+    """Unit vector in the frame."""
     rate: float
-    """Of the joint in hover, rad/s; NaN if none is known."""
+    """Joint velocity in hover, rad/s; NaN if unknown."""
     command: float
-    """That makes it turn so, rad/s."""
+    """Command for that velocity, rad/s."""
 
     @property
     def colour(self) -> str:
@@ -44,7 +44,7 @@ class _Rotor(NamedTuple):
 
 
 def draw(simulation: Simulation) -> Figure:
-    """Draw what a simulation flies, all joints at angle zero: in space, and from above."""
+    """Draw the vehicle of a simulation in 3D and from above, all joints at angle zero."""
     rotors, model = _rotors(simulation), simulation.model
     boxes = [_box(link, pose) for link, pose in zip(model.links, model.link_poses)]
     radius = model.drawn_disc_radius
@@ -65,7 +65,7 @@ def draw(simulation: Simulation) -> Figure:
         _triad(axes, pose, length)
     axes.plot(*simulation.center_of_mass[:, None], "o", color="black", markersize=4)
     _from_above(figure.add_axes((0.56, 0.22, 0.43, 0.7)), simulation, rotors, boxes, radius)
-    figure.text(0.01, 0.015, _told(simulation, rotors), fontsize="small", va="bottom")
+    figure.text(0.01, 0.015, _describe(simulation, rotors), fontsize="small", va="bottom")
     return figure
 
 
@@ -74,7 +74,7 @@ def _rotors(simulation: Simulation) -> List[_Rotor]:
     try:
         hover = _core.ReferenceShape("hover", {}).at(0.0)
         rates = _core.start_on(simulation, hover, [])["rotor_velocity"]
-    except InputError:  # nothing drives them, or they cannot hold it
+    except InputError:  # no motors, or too little thrust to hover
         rates = np.full(simulation.rotor_count, np.nan)
     commands = rates / [rotor.rate_per_command for rotor in simulation.rotors]
     parts = zip(model.joints, model.links[1:], model.link_poses[1:], rates, commands)
@@ -85,7 +85,7 @@ def _rotors(simulation: Simulation) -> List[_Rotor]:
 
 
 def _box(link: _core.Link, pose: np.ndarray) -> np.ndarray:
-    """Corners in the frame of the box with a link's mass and inertia; shape (8, 3)."""
+    """Return the corners of a link's equivalent inertia box in the frame; shape (8, 3)."""
     return np.asarray(link.inertia_box @ pose[:3, :3].T + pose[:3, 3])
 
 
@@ -117,16 +117,16 @@ def _from_above(
         _spin(axes, rotor, 0.75 * radius)
         axes.text(x, y, str(rotor.number), ha="center", va="center", color=rotor.colour)
         if not np.isnan(rotor.command):
-            told = f"{rotor.command:+.4g}"
+            text = f"{rotor.command:+.4g}"
             where = (x, y - 0.45 * radius)
-            axes.text(*where, told, ha="center", va="center", fontsize="x-small", bbox=_PAPER)
+            axes.text(*where, text, ha="center", va="center", fontsize="x-small", bbox=_BACKGROUND)
     for name, colour, tip in zip("xy", AXES, np.eye(2)):
         axes.annotate(
             "", 0.8 * radius * tip, (0, 0), arrowprops={"arrowstyle": "->", "color": colour}
         )
         axes.text(*(0.95 * radius * tip), name, color=colour, ha="center", va="center")
     axes.plot(*simulation.center_of_mass[:2], "o", color="black", markersize=4)
-    axes.set_title("from above, with the commands in hover (rad/s)", fontsize="small", loc="left")
+    axes.set_title("top view with hover commands (rad/s)", fontsize="small", loc="left")
     axes.margins(0.12)
     axes.set_xlabel("x (m)")
     axes.set_ylabel("y (m)")
@@ -135,7 +135,7 @@ def _from_above(
 
 
 def _spin(axes: Any, rotor: _Rotor, radius: float) -> None:
-    """Draw an arrow in the sense in which a rotor turns, as seen from above."""
+    """Draw an arrow in the direction of rotation, seen from above."""
     if rotor.colour == _STILL:
         return
     ends = np.radians([150, 30] if rotor.colour == _BACK else [30, 150])
@@ -156,7 +156,7 @@ def _outline(box: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
     return low[0] + corners[:, 0] * (high - low)[0], low[1] + corners[:, 1] * (high - low)[1]
 
 
-def _told(simulation: Simulation, rotors: List[_Rotor]) -> str:
+def _describe(simulation: Simulation, rotors: List[_Rotor]) -> str:
     frame = simulation.model.links[0]
     masses = f"{frame.name} {frame.mass:.4g} kg"
     for mass, group in groupby(rotors, key=lambda rotor: rotor.mass):
@@ -164,10 +164,10 @@ def _told(simulation: Simulation, rotors: List[_Rotor]) -> str:
         masses += f" {mass:.4g} kg each"
     return (
         textwrap.fill(masses, 150)
-        + f"\nwhole: centre of mass (dot) at ({_numbers(simulation.center_of_mass)}) m; Ixx, Iyy, "
-        f"Izz about it {_numbers(np.diag(simulation.inertia))} kg m$^2$\n"
-        "Boxes have each link's mass and inertia. Blue rotors turn counter-clockwise seen from "
-        "above in hover, orange ones clockwise."
+        + f"\nvehicle: centre of mass (dot) at ({_numbers(simulation.center_of_mass)}) m; Ixx, "
+        f"Iyy, Izz about it {_numbers(np.diag(simulation.inertia))} kg m$^2$\n"
+        "Boxes: equivalent inertia box of each link. In hover, blue rotors turn counter-clockwise "
+        "seen from above, orange ones clockwise."
     )
 
 

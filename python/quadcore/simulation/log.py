@@ -125,11 +125,13 @@ class Log(Trajectory):
         if len(self) == 0:
             return html_title(self)
         with LOCK:
-            from ..report.log_plots import glance
-            from ..report.page import picture
+            from ..report.log_plots import draw_overview
+            from ..report.page import embed_image
             from ..report.plots import png
 
-        return html_title(self) + str(picture(png(glance(self)), "position and attitude over time"))
+        return html_title(self) + str(
+            embed_image(png(draw_overview(self)), "position and attitude over time")
+        )
 
     def to_csv(self, path: PathLike) -> None:
         """Write `table` as text with the fewest digits that restore every bit.

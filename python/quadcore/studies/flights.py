@@ -9,7 +9,7 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence
 import numpy as np
 
 from .._core import FlightError
-from ..report.thinning import thin
+from ..report.decimation import decimate
 from ..simulation.controller_pilot import controller_errors_as_failures
 from ..simulation.flight import Rows, columns_of, fly
 from ..simulation.flight_plan import FlightPlan
@@ -137,10 +137,10 @@ def flown(
     response = None if failure else step_response(log)
     limit = min((rotor.max_speed / rotor.slowdown for rotor in rotors), default=np.inf)
     places = np.array([rotor.position for rotor in rotors])
-    return outcome._replace(log=thin(log), response=response, limit=limit, rotors=places)
+    return outcome._replace(log=decimate(log), response=response, limit=limit, rotors=places)
 
 
 def _watched(simulation: Simulation) -> List[str]:
-    from ..report.player import topics_to_watch  # not every flight should pay for jinja2
+    from ..report.player import list_animated_topics  # not every flight should pay for jinja2
 
-    return topics_to_watch(simulation)
+    return list_animated_topics(simulation)

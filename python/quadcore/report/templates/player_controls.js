@@ -1,9 +1,9 @@
-// What whoever watches can do.
+// Controls: table, time, mouse, fingers, keys.
 
 // ---- the table ----
 
-function tell(flight, { position, reference, wind, carried }) {
-  const state = !begun(flight) ? " (not begun)" : ended(flight) ? " (ended)" : "";
+function updateRow(flight, { position, reference, wind, carried }) {
+  const state = !started(flight) ? " (not started)" : ended(flight) ? " (ended)" : "";
   flight.cells[0].textContent = position.map((value) => value.toFixed(3)).join(", ") + state;
   const away = reference ? 1000 * Math.hypot(...difference(position, reference)) : NaN;
   flight.cells[1].textContent = reference ? String(Number(away.toPrecision(3))) : "";
@@ -18,9 +18,9 @@ for (const flight of flights) {
   const label = row.insertCell().appendChild(document.createElement("label"));
   flight.box = label.appendChild(document.createElement("input"));
   Object.assign(flight.box, { type: "checkbox", checked: true });
-  const swatch = label.appendChild(document.createElement("span"));
-  swatch.className = "swatch";
-  swatch.style.background = flight.colour;
+  const dash = flight.dash.map((length) => 1.5 * length).join(" ");
+  label.insertAdjacentHTML("beforeend", `<svg class="swatch" viewBox="0 0 40 8" aria-hidden="true">
+    <line x2="40" y1="4" y2="4" stroke="${flight.colour}" stroke-width="5" stroke-dasharray="${dash}"/></svg>`);
   label.append(flight.name);
   flight.cells = ["where", "away", "wind", "load"].map((column) => {
     const cell = row.insertCell();
@@ -129,7 +129,7 @@ canvas.addEventListener("keydown", (event) => {
   action();
 });
 
-// ---- begin ----
+// ---- start ----
 
 if (!flights.some((flight) => flight.wind)) root.classList.add("calm");
 if (!flights.some((flight) => flight.carried.length)) root.classList.add("unladen");

@@ -1,4 +1,4 @@
-// The flights that the page holds, at any time.
+// States of the flights at any time.
 // World axes are x, y, z with z up; lengths in m, times in s, quaternions x, y, z, w.
 
 const root = document.currentScript.closest(".player");
@@ -11,20 +11,20 @@ function unpacked(text) {
 }
 
 class Flight {
-  constructor({ name, rotors, columns }, colour) {
-    Object.assign(this, { name, rotors, colour, shown: true });
+  constructor({ name, rotors, columns }, colour, dash) {
+    Object.assign(this, { name, rotors, colour, dash, shown: true });
     for (const column in columns) this[column] = unpacked(columns[column]);
     this.rows = this.time.length;
     this.carried = Object.keys(columns).filter((column) => column.startsWith("carried "));
     this.turning = this.rotor_velocity.length / this.rows;
     const speeds = this.rotor_velocity.map(Math.abs).sort();
-    this.usual = speeds[speeds.length >> 1] || 1;  // median; of a vehicle at rest anything
+    this.usual = speeds[speeds.length >> 1] || 1;  // median; 1 for a vehicle at rest
   }
 
   begin() { return this.time[0]; }
   end() { return this.time[this.rows - 1]; }
 
-  // Row that is in force at a time, and how far the next is on its way.
+  // Row at or before a time, the next row, and the share of the way to it.
   place(t) {
     let low = 0, high = this.rows - 1;
     while (low < high) {
@@ -37,7 +37,7 @@ class Flight {
     return { row: low, next, share };
   }
 
-  // Numbers of a column at a place, between two rows.
+  // Values of a column, interpolated between two rows.
   between(column, width, { row, next, share }, sign = 1) {
     const values = [];
     for (let i = 0; i < width; ++i) {
@@ -63,7 +63,7 @@ class Flight {
   }
 }
 
-// Rows of the rotation matrix of a quaternion, which need not be of unit length.
+// Rows of the rotation matrix of a quaternion of any length.
 function matrix([x, y, z, w]) {
   const s = 2 / (x * x + y * y + z * z + w * w);
   return [
@@ -76,8 +76,9 @@ function matrix([x, y, z, w]) {
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const difference = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
 
-const flights = content.flights.map(
-  (told, i) => new Flight(told, content.colours[i % content.colours.length]));
+const { colours, dashes } = content;
+const flights = content.flights.map((flight, i) => new Flight(
+  flight, colours[i % colours.length], dashes[Math.floor(i / colours.length) % dashes.length]));
 const shown = () => flights.filter((flight) => flight.shown);
 const begin = Math.min(...flights.map((flight) => flight.begin()));
 const end = Math.max(...flights.map((flight) => flight.end()));

@@ -1,17 +1,17 @@
-// How the flights are seen: the eye, and what is drawn on the canvas.
+// The camera and everything that is drawn on the canvas.
 
 const canvas = part("canvas");
 const pen = canvas.getContext("2d");
 
-// ---- the eye ----
+// ---- camera ----
 
 const view = { azimuth: -1.0, elevation: 0.45, distance: 1, target: [0, 0, 0] };
-let scene;  // box of all that is to be seen: low, high; height and squares of the grid below
+let scene;  // bounding box (low, high), height of the grid (floor) and edge of its squares
 
 function fit() {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
   for (const flight of shown().length ? shown() : flights) {
-    // What was lost flies out of the picture, as long as there is something to be lost from.
+    // With a reference, that alone sets the view: a diverged vehicle may leave it.
     const guided = flight.reference && flight.reference.some(Number.isFinite);
     const points = guided ? flight.reference : flight.position;
     for (let i = 0; i < points.length; ++i) {
@@ -28,7 +28,7 @@ function fit() {
   scene = { low, high, square, floor: square * Math.floor(low[2] / square) };
 }
 
-// Where a point of the world is on the canvas; null behind the eye.
+// Project a point of the world to the canvas; null behind the camera.
 function camera(width, height) {
   const [sa, ca] = [Math.sin(view.azimuth), Math.cos(view.azimuth)];
   const [se, ce] = [Math.sin(view.elevation), Math.cos(view.elevation)];
@@ -47,7 +47,7 @@ function camera(width, height) {
 
 let project;
 
-// A line through points of the world; `point(i)` gives the i-th.
+// Draw a line through points of the world; `point(i)` returns the i-th.
 function line(count, point, first = 0) {
   pen.beginPath();
   let down = false;
@@ -90,7 +90,7 @@ function drawGrid(ink) {
   });
   const digits = Math.max(0, -Math.floor(Math.log10(square)));
   pen.fillText(
-    `grid at z = ${z.toFixed(digits)} m, squares of ${square.toFixed(digits)} m`, 10, 20);
+    `grid at z = ${z.toFixed(digits)} m, ${square.toFixed(digits)} m squares`, 10, 20);
 }
 
 function drawTrack(flight, row, ink) {
@@ -98,9 +98,9 @@ function drawTrack(flight, row, ink) {
     style(ink, 1.2, 0.55, [5, 5]);
     line(flight.rows, column(flight.reference));
   }
-  style(flight.colour, 1.2, 0.3);
+  style(flight.colour, 1.2, 0.3, flight.dash);
   line(flight.rows, column(flight.position));
-  style(flight.colour, 2);
+  style(flight.colour, 2, 1, flight.dash);
   line(row + 1, column(flight.position));
 }
 
@@ -112,7 +112,7 @@ function drawVehicle(flight, now, ink) {
   const of = (place) => now.turn.map((row, i) => now.position[i] + larger * dot(row, place));
   const gap = Math.min(...flight.rotors.map((a, i) => Math.min(reach, ...flight.rotors.map(
     (b, j) => (i === j ? reach : 0.45 * Math.hypot(...difference(a, b)))))));
-  const alpha = begun(flight) && !ended(flight) ? 1 : 0.45;
+  const alpha = started(flight) && !ended(flight) ? 1 : 0.45;
   style(flight.colour, 1, 0.4 * alpha);
   line(2, (i) => (i ? now.position : [now.position[0], now.position[1], scene.floor]));
   flight.rotors.forEach((place, rotor) => {
@@ -129,8 +129,8 @@ function drawVehicle(flight, now, ink) {
     }
   });
   style(ink, 2, alpha);
-  line(2, (i) => of([i * reach, 0, 0]));  // forward is along x of the frame
-  for (const [mass, ...place] of now.carried) if (mass > 0) drawCarried(of([0, 0, 0]), of(place), ink);
+  line(2, (i) => of([i * reach, 0, 0]));  // forward, along x of the frame
+  for (const [mass, ...place] of now.carried) if (mass > 0) drawPayload(of([0, 0, 0]), of(place), ink);
   if (now.wind && Math.hypot(...now.wind) > 0) drawWind(now.position, now.wind, ink);
   if (now.reference) {
     const p = project(now.reference);
@@ -140,8 +140,8 @@ function drawVehicle(flight, now, ink) {
   }
 }
 
-// A body that hangs on the frame.
-function drawCarried(frame, place, ink) {
+// Draw a payload that hangs on the frame.
+function drawPayload(frame, place, ink) {
   const p = project(place);
   if (!p) return;
   style(ink, 1.5, 0.8);
@@ -149,7 +149,7 @@ function drawCarried(frame, place, ink) {
   pen.fillRect(p[0] - 5, p[1] - 5, 10, 10);
 }
 
-// An arrow that blows away from the vehicle, of a length that does not go by the view's distance.
+// Draw the wind as an arrow from the vehicle; its length does not depend on the camera distance.
 function drawWind(from, wind, ink) {
   const a = project(from);
   const b = project(from.map((value, i) => value + 0.01 * wind[i]));
@@ -171,7 +171,7 @@ function drawWind(from, wind, ink) {
 }
 
 let time = begin;
-const begun = (flight) => time >= flight.begin();
+const started = (flight) => time >= flight.begin();
 const ended = (flight) => time > flight.end() + 1e-3;
 
 function draw() {
@@ -192,5 +192,5 @@ function draw() {
   for (const flight of shown()) drawVehicle(flight, states.get(flight), ink);
   part(".time").value = time;
   part(".clock").textContent = `${time.toFixed(2)} of ${end.toFixed(2)} s`;
-  for (const flight of flights) tell(flight, states.get(flight));
+  for (const flight of flights) updateRow(flight, states.get(flight));
 }

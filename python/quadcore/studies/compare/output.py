@@ -1,4 +1,4 @@
-"""What a comparison leaves behind: table, pictures, report."""
+"""Files of a comparison: table, plots, page."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
-from ...report.thinning import pick_evenly
+from ...report.decimation import pick_evenly
 from ..folder import remove_listed
 from ..table import csv_bytes, flown_and_failed, json_bytes, number_text, save, shown_in
 from .plan import Plan
@@ -16,8 +16,8 @@ _ROWS_OF_PAGE = 200
 _DRAWN = 40  # flights in one picture
 
 
-def drawn(count: int) -> List[int]:
-    """Which of so many flights to draw: all, or evenly many with the first and the last."""
+def pick_drawn(count: int) -> List[int]:
+    """Return the flights to draw: all, or evenly spaced ones with the first and the last."""
     return pick_evenly(count, _DRAWN)
 
 
@@ -25,12 +25,12 @@ FILES = ("table.csv", "comparison.json", "report.html")
 
 
 def log_name(row: int, count: int) -> str:
-    """Name the log of one of so many flights, within the folder."""
+    """Return the file name of the log of a flight, one of `count`, within the folder."""
     return f"logs/{row + 1:0{len(str(count))}}.csv"
 
 
 def remove_logs(folder: Path) -> None:
-    """Remove the logs of an earlier comparison, and no others."""
+    """Remove the logs of an earlier comparison."""
     remove_listed(folder, "comparison.json", "logs", re.compile(r"logs/[0-9]+\.csv").fullmatch)
 
 
@@ -42,56 +42,56 @@ def write(
     plots: bool,
     has_logs: bool,
 ) -> List[Path]:
-    """Write ``table.csv``, ``comparison.json``, ``report.html`` and, if asked, pictures.
+    """Write ``table.csv``, ``comparison.json``, ``report.html`` and plots.
 
     Parameters
     ----------
     comparison
-        Its `logs` hold, `thinned`, the flights to draw.
+        Results; `logs` contains the decimated logs of the flights to draw.
     plan
-        What was flown.
+        Plan of the comparison.
     flight
-        What all flights share, for the report.
+        Conditions that all flights share, for the page.
     folder
-        Where to.
+        Existing folder.
     plots
         Whether to draw.
     has_logs
         Whether the logs of the flights were written.
     """
-    from ...report.page import write_page  # not every command should pay for jinja2
+    from ...report.page import write_page  # jinja2 is slow to import
 
-    # What was flown comes first: pictures can fail, and take their time.
+    # Results first: drawing is slow and can fail.
     tables = {
         "table.csv": csv_bytes(_rows(comparison)),
         "comparison.json": json_bytes(_content(comparison, flight, has_logs)),
     }
     written = save(folder, tables)
-    images = _images(comparison, plan) if plots else {}
+    images = _draw_plots(comparison, plan) if plots else {}
     written += save(folder, {f"{name}.png": data for name, data in images.items()})
     page = folder / "report.html"
-    write_page(page, "compare.html", **_page(comparison, plan, flight, images))
+    write_page(page, "compare.html", **_page_values(comparison, plan, flight, images))
     return [*written, page]
 
 
-def summary(comparison: Comparison) -> str:
-    """How many flew, in one line."""
+def summarise(comparison: Comparison) -> str:
+    """Return the numbers of successful and failed flights in one line."""
     return flown_and_failed(comparison.table["failure"].tolist())
 
 
-def _images(comparison: Comparison, plan: Plan) -> Dict[str, bytes]:
+def _draw_plots(comparison: Comparison, plan: Plan) -> Dict[str, bytes]:
     # matplotlib is slow to import.
     from ...report.plots import png
-    from . import pictures
+    from . import plots
 
     curves, against = [], None
     for row, (log, variant) in enumerate(zip(comparison.logs, plan)):
         if log is not None:
-            curves.append(pictures.Curve(plan.label(variant), log))
+            curves.append(plots.Curve(plan.label(variant), log))
             against = curves[-1] if row == comparison.against else against
     if against is None:
         return {}
-    figures = pictures.draw(curves, against.log, against.label)
+    figures = plots.draw(curves, against.log, against.label)
     return {name: png(figure) for name, figure in figures.items()}
 
 
@@ -124,7 +124,7 @@ def _number(comparison: Comparison) -> Optional[int]:
     return None if comparison.against is None else comparison.against + 1
 
 
-def _page(
+def _page_values(
     comparison: Comparison, plan: Plan, flight: Mapping[str, str], images: Mapping[str, bytes]
 ) -> Dict[str, Any]:
     units = {state: shown_in(unit) for state, unit in comparison.states.items()}
@@ -142,22 +142,26 @@ def _page(
             for kind in ("final", "max")
         }
         label = plan.label(variant)
-        told = {"number": number, "label": label, "failure": row["failure"], "errors": errors}
-        rows.append({**told, **cells})
-    shown = len(drawn(len(plan)))
+        head = {"number": number, "label": label, "failure": row["failure"], "errors": errors}
+        rows.append({**head, **cells})
+    shown = len(pick_drawn(len(plan)))
     return {
         "title": "Comparison of flights",
-        "summary": summary(comparison),
+        "summary": summarise(comparison),
         "flight": flight,
         "differences": comparison.differences,
         "first": plan.models[0],
         "guided": guided,
         "axes": [
-            {"name": axis.name, "listed": listed(axis.values), "written": plan.as_written(axis)}
+            {
+                "name": axis.name,
+                "listed": format_values(axis.values),
+                "written": plan.as_written(axis),
+            }
             for axis in plan.axes
         ],
-        "pictures": [{"name": name, "data": data} for name, data in images.items()],
-        "thinned": f"{shown} of {len(plan)} are drawn." if shown < len(plan) else "",
+        "plots": [{"name": name, "data": data} for name, data in images.items()],
+        "omitted": f"The plots show {shown} of {len(plan)} flights." if shown < len(plan) else "",
         "against": comparison.against is not None and f"no. {_number(comparison)}",
         "units": {state: unit for state, (unit, _) in units.items()},
         "groups": _groups(list(comparison.states)),
@@ -167,13 +171,13 @@ def _page(
 
 
 def _groups(states: Sequence[str]) -> List[Tuple[str, Sequence[str]]]:
-    """Split the states into tables that a page has room for: the lengths, then the parts."""
+    """Split the states into tables that fit the page: norms first, then components."""
     parts = [states[4:7], states[7:10], states[10:13], states[13:16], states[16:]]
     return [("", states[:4]), *zip((*states[:4], "rotors"), parts)]
 
 
-def listed(values: Any) -> str:
-    """Values of an axis, the middle of many left out."""
+def format_values(values: Any) -> str:
+    """List the values of an axis; the middle of a long list is left out."""
     if len(values) <= 12:
         return ", ".join(values)
     return ", ".join([*(values[i] for i in range(3)), "...", values[len(values) - 1]]) + (

@@ -21,8 +21,8 @@ from typing import (
 )
 
 from ..._core import InputError, QuadcoreError
+from ...report.decimation import pick_evenly
 from ...report.html_table import SHOWN_ROWS, html_table, html_title
-from ...report.thinning import pick_evenly
 from ...simulation.engines import STUDIED
 from ...simulation.flight_plan import FlightPlan
 from ...support import arguments

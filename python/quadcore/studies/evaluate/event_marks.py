@@ -1,41 +1,42 @@
-"""Events of scenarios in pictures over time."""
+"""Marks of scenario events in plots over time."""
 
 from __future__ import annotations
 
-from itertools import product
-from typing import Any, Dict, List, Mapping, Sequence
+from typing import Any, Dict, List, Sequence
 
 from ...simulation.scenario_events import Event
 
 
-def mark(figure: Any, events: Mapping[str, Sequence[Event]]) -> None:
-    """Draw a line at the time of each event, with what happens and, among several, where.
+def mark_events(figure: Any, events: Sequence[Event]) -> None:
+    """Draw a labelled line at the time of each event.
 
     Parameters
     ----------
     figure
-        Of motion over time.
+        Plots over time.
     events
-        By scenario.
+        Events of the scenario of the flights.
     """
-    marks: Dict[float, List[str]] = {}
-    for scenario, happening in events.items():
-        for event in happening:
-            text = event.text if len(events) == 1 else f"{scenario}: {event.text}"
-            marks.setdefault(event.time, []).append(text)
-    for axes, (time, told) in product(figure.axes, marks.items()):
-        if time > axes.get_xlim()[1]:
-            continue
-        axes.axvline(time, color="0.6", linewidth=0.8, linestyle=":", zorder=0)
-        axes.annotate(
-            ", ".join(told),
-            (time, 1),
-            (2, -2),
-            xycoords=("data", "axes fraction"),
-            textcoords="offset points",
-            rotation=90,
-            va="top",
-            fontsize=6,
-            color="0.4",
-            gid="event",
-        )
+    texts: Dict[float, List[str]] = {}
+    for event in events:
+        texts.setdefault(event.time, []).append(event.text)
+    for axes in figure.axes:
+        for time, happening in texts.items():
+            if time <= axes.get_xlim()[1]:
+                _mark(axes, time, ", ".join(happening))
+
+
+def _mark(axes: Any, time: float, text: str) -> None:
+    axes.axvline(time, color="0.6", linewidth=0.8, linestyle=":", zorder=0)
+    axes.annotate(
+        text,
+        (time, 1),
+        (2, -2),
+        xycoords=("data", "axes fraction"),
+        textcoords="offset points",
+        rotation=90,
+        va="top",
+        fontsize=6,
+        color="0.4",
+        gid="event",
+    )

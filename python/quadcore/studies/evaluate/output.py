@@ -1,4 +1,4 @@
-"""What an evaluation leaves behind: tables, pictures, page."""
+"""Files of an evaluation: tables, plots, page."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import Any, Dict, List, Mapping, Sequence
 import numpy as np
 
 from ... import __version__
-from ...report.thinning import pick_evenly
 from ..folder import remove_pictures, save_pictures
 from ..measures import MEANINGS, UNITS
 from ..table import (
@@ -23,8 +22,8 @@ from ..table import (
 from .evaluate import Evaluation
 from .intervals import CONFIDENCE
 from .losses import losses
-from .pictures import by_reference, draw, is_picture, label
 from .plan import Plan
+from .plots import draw, group_flights, is_plot, make_label, name_group
 from .poles import gains_of
 from .poles import text as poles_text
 from .robustness import BOX, ENDS, margin_text
@@ -32,7 +31,6 @@ from .shown_rows import NAMES, columns_to_read, error_text, rows_to_read
 
 ROWS_OF_PAGE = 200
 
-_PLAYERS, _PLAYED = 4, 8  # references, flights of each
 _SWITCHES = ("feed_forward", "drag", "gyroscopic", "flat_rates", "integral", "lead")
 
 
@@ -40,21 +38,21 @@ FILES = ("table.csv", "evaluation.json", "timing.csv", "report.html")
 
 
 def write(evaluation: Evaluation, plan: Plan, folder: Path, plots: bool) -> List[Path]:
-    """Write `FILES` and pictures, and remove the pictures of an earlier evaluation.
+    """Write `FILES` and plots, and remove the plots of an earlier evaluation.
 
     Parameters
     ----------
     evaluation, plan
-        What was flown.
+        Results and their plan.
     folder
-        Where to.
+        Existing folder.
     plots
         Whether to draw.
     """
-    from ...report.page import write_page  # not every command should pay for jinja2
+    from ...report.page import write_page  # jinja2 is slow to import
 
-    remove_pictures(folder, "evaluation.json", is_picture)
-    # What was flown comes first: pictures can fail, and take their time.
+    remove_pictures(folder, "evaluation.json", is_plot)
+    # Results first: drawing is slow and can fail.
     content = _content(evaluation, plan)
     tables = {
         "table.csv": csv_bytes(_csv(evaluation.table)),
@@ -65,30 +63,42 @@ def write(evaluation: Evaluation, plan: Plan, folder: Path, plots: bool) -> List
     images = draw(evaluation, plan.events()) if plots else {}
     written += save_pictures(folder, "evaluation.json", content, images)
     page = folder / "report.html"
-    players = _players(evaluation) if plots else []
-    values = _page(evaluation, plan, images)
-    write_page(page, "evaluate.html", **values, players=players, known=_known(plan))
+    animations = _make_animations(evaluation) if plots else []
+    values = _page_values(evaluation, plan, images)
+    settings = _list_settings(plan)
+    write_page(page, "evaluate.html", **values, animations=animations, settings=settings)
     return [*written, page]
 
 
-def _players(evaluation: Evaluation) -> List[Dict[str, Any]]:
-    """Make a player of the flights along each of the first references."""
-    from ...report.player import PlayerFlight, fragment
+def _make_animations(evaluation: Evaluation) -> List[Dict[str, Any]]:
+    """Make an animation of the flights along each reference in each scenario."""
+    from ...report.player import PlayerFlight, make_section
 
-    players = []
-    for reference, flights in list(by_reference(evaluation).items())[:_PLAYERS]:
-        picked = [flights[i] for i in pick_evenly(len(flights), _PLAYED)]
-        shown = [
-            PlayerFlight(named, outcome.log, outcome.rotors)
-            for named, outcome in picked
-            if outcome.log is not None
-        ]
-        players.append({"reference": reference, "player": fragment(shown)})
-    return players
+    return [
+        {
+            "name": name_group(evaluation, reference, scenario),
+            "player": make_section(
+                [
+                    PlayerFlight(label, outcome.log, outcome.rotors)
+                    for label, outcome in flights
+                    if outcome.log is not None
+                ]
+            ),
+        }
+        for (reference, scenario), flights in group_flights(evaluation).items()
+    ]
 
 
-def _known(plan: Plan) -> List[Dict[str, str]]:
-    """Tell what each law of quadcore flew with: only alike can be compared."""
+def _describe_omitted_flights(evaluation: Evaluation) -> str:
+    """State how many combinations the plots and animations show, unless they show all."""
+    shown, count = len(evaluation.drawn), len(evaluation.groups)
+    if shown in (0, count):
+        return ""
+    return f"Plots and animations show {shown} of {count} combinations."
+
+
+def _list_settings(plan: Plan) -> List[Dict[str, str]]:
+    """List the settings of each built-in controller for the page."""
     rows = []
     for names, flight in plan.controllers_flown():
         gains = gains_of(flight.controller)
@@ -98,8 +108,8 @@ def _known(plan: Plan) -> List[Dict[str, str]]:
     return rows
 
 
-def _laws(plan: Plan) -> List[Dict[str, Any]]:
-    """Tell all that a law of quadcore flew with."""
+def _list_controllers(plan: Plan) -> List[Dict[str, Any]]:
+    """List all parameters of each built-in controller."""
     return [
         {
             **names,
@@ -113,13 +123,13 @@ def _laws(plan: Plan) -> List[Dict[str, Any]]:
     ]
 
 
-def summary(evaluation: Evaluation) -> str:
-    """How many flew, in one line."""
+def summarise(evaluation: Evaluation) -> str:
+    """Return the numbers of successful and failed flights in one line."""
     return flown_and_failed([row["failure"] for row in evaluation.table])
 
 
-def causes(evaluation: Evaluation) -> List[str]:
-    """Say why cascades do not hold the vehicle, a line for each axis that is unstable."""
+def list_unstable_axes(evaluation: Evaluation) -> List[str]:
+    """List the unstable axes of cascaded controllers with pole and cause."""
     return [
         f"{row['controller']} ({row['engine']}), {row['axis']}: pole at {poles_text(row, 1)} 1/s"
         + (f"; cause: {row['because']}" if row["because"] else "")
@@ -148,7 +158,7 @@ def _content(evaluation: Evaluation, plan: Plan) -> Dict[str, Any]:
         "quadcore": __version__,
         "numpy": np.__version__,
         "plan": plan.told(),
-        "laws": _laws(plan),
+        "laws": _list_controllers(plan),
         "units": UNITS,
         "meanings": MEANINGS,
         "confidence": CONFIDENCE,
@@ -179,12 +189,12 @@ def _content(evaluation: Evaluation, plan: Plan) -> Dict[str, Any]:
 
 
 def _finite(row: Mapping[str, Any]) -> Dict[str, Any]:
-    """Write an infinite error as what it means."""
+    """Replace infinite errors, which JSON cannot represent."""
     return {name: "lost" if value == math.inf else value for name, value in row.items()}
 
 
-def margins_to_read(evaluation: Evaluation) -> List[Dict[str, str]]:
-    """Rows of the margins for people."""
+def format_margins(evaluation: Evaluation) -> List[Dict[str, str]]:
+    """Format the rows of the margins for the terminal and the page."""
     return [
         {
             name: value if isinstance(value, str) else margin_text(row, name, error_text)
@@ -194,10 +204,10 @@ def margins_to_read(evaluation: Evaluation) -> List[Dict[str, str]]:
     ]
 
 
-def _page(evaluation: Evaluation, plan: Plan, images: Mapping[str, bytes]) -> Dict[str, Any]:
+def _page_values(evaluation: Evaluation, plan: Plan, images: Mapping[str, bytes]) -> Dict[str, Any]:
     failures = [
         {
-            "label": f"{label(row, evaluation.table)}, {row['reference']}, seed {row['seed']}",
+            "label": f"{make_label(row, evaluation.table)}, seed {row['seed']}",
             "failure": row["failure"],
         }
         for row in evaluation.table
@@ -206,7 +216,7 @@ def _page(evaluation: Evaluation, plan: Plan, images: Mapping[str, bytes]) -> Di
     lines = rows_to_read(evaluation)
     return {
         "title": "Evaluation of controllers",
-        "summary": summary(evaluation),
+        "summary": summarise(evaluation),
         "flight": setting_texts(plan.told()),
         "shown": columns_to_read(lines),
         "lines": lines[:ROWS_OF_PAGE],
@@ -222,9 +232,10 @@ def _page(evaluation: Evaluation, plan: Plan, images: Mapping[str, bytes]) -> Di
             }
             for row in losses(evaluation.groups)
         ],
-        "margins": margins_to_read(evaluation),
-        "unsearched": plan.unsearched,
-        "causes": causes(evaluation),
+        "margins": format_margins(evaluation),
+        "omitted_margins": plan.unsearched,
+        "omitted_flights": _describe_omitted_flights(evaluation),
+        "causes": list_unstable_axes(evaluation),
         "poles": [
             {
                 **row,
@@ -233,5 +244,5 @@ def _page(evaluation: Evaluation, plan: Plan, images: Mapping[str, bytes]) -> Di
             }
             for row in evaluation.poles
         ],
-        "pictures": [{"name": name, "data": data} for name, data in images.items()],
+        "plots": [{"name": name, "data": data} for name, data in images.items()],
     }

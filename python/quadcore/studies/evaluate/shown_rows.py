@@ -1,4 +1,4 @@
-"""Rows of an evaluation as people read them: on the terminal, on the page, in a notebook."""
+"""Summary table of an evaluation for the terminal, the page and notebooks."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _SHOWN = ("rms_position", "max_position", "final_position")
 
 
 def rows_to_read(evaluation: Evaluation) -> List[Dict[str, str]]:
-    """Lines of the table for people: a combination each, the best of each reference marked."""
+    """Format a row per combination; the best controller of each group is marked."""
     best: Dict[Any, float] = {}
     for group in evaluation.groups:
         key = tuple(group[name] for name in NAMES[1:])
@@ -41,13 +41,13 @@ def rows_to_read(evaluation: Evaluation) -> List[Dict[str, str]]:
 
 
 def columns_to_read(lines: Sequence[Mapping[str, str]]) -> Dict[str, str]:
-    """Headings of what is shown of `rows_to_read`: no names that all have in common."""
+    """Return the headings of the columns to show; names that all rows share are left out."""
     names = (name for name in NAMES if len({line[name] for line in lines}) > 1)
     shown = {"controller": "controller", **{name: name for name in names}, "flown": "flown"}
     shown.update(rms_position="RMS (m)", max_position="max (m)")
-    shown.update(final_position="last 10 s (m)", cvar="its CVaR (m)")
+    shown.update(final_position="last 10 s (m)", cvar="CVaR 10 % (m)")
     if any(line["difference"] for line in lines):
-        shown["difference"] = "from the first (m)"
+        shown["difference"] = "vs. first controller (m)"
     return shown
 
 
@@ -57,5 +57,5 @@ def _interval(group: Mapping[str, Any], name: str, of: str = "") -> str:
 
 
 def error_text(value: float) -> str:
-    """Write a number for a table that is read; an infinite error is that of a lost vehicle."""
-    return "lost" if math.isinf(value) else number_text(value)
+    """Format an error; infinity stands for a failed flight."""
+    return "failed" if math.isinf(value) else number_text(value)

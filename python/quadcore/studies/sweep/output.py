@@ -1,4 +1,4 @@
-"""What a sweep leaves behind besides its rows: sums, pictures, page."""
+"""Files of a sweep in addition to its rows: summary, plots, page."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ... import __version__
 from ..._core import InputError
 from ..folder import remove_pictures, save_pictures
 from ..table import json_bytes, number_text, save, setting_texts
-from . import pictures
+from . import plots as sweep_plots
 from .again import command
 from .plan import AnyPlan
 from .sensitivity import combinations, sensitivities
@@ -20,33 +20,33 @@ from .sweep import TABLE
 FILES = (TABLE, "sweep.json", "report.html")
 
 WORST = 10
-"""Rows that are told with their command line, and as many of those that failed."""
+"""Number of worst rows, and of failed rows, that are listed with their command."""
 
 Columns = Mapping[str, np.ndarray]
 
 
 def main_measure(plan: AnyPlan, asked: Optional[str] = None) -> str:
-    """Choose what is drawn, and what "worst" means; raises `InputError` if it is no measure."""
+    """Return the metric that is drawn and ranked; raises `InputError` if it does not exist."""
     if asked is not None and asked not in plan.measures:
-        raise InputError(f"there is no measure '{asked}'; give one of {', '.join(plan.measures)}")
+        raise InputError(f"metric '{asked}' does not exist. Use one of {', '.join(plan.measures)}.")
     return asked or plan.measures[0]
 
 
 def write(plan: AnyPlan, columns: Columns, folder: Path, measure: str, plots: bool) -> List[Path]:
-    """Write `FILES` but the table, which is there, and pictures.
+    """Write `FILES` except the table, which exists already, and plots.
 
     Parameters
     ----------
     plan, columns
-        What was flown, and what came of it.
+        Plan and results.
     folder
-        Where to.
+        Existing folder.
     measure
-        What is drawn, and what "worst" means.
+        Metric that is drawn and ranked.
     plots
         Whether to draw.
     """
-    from ...report.page import write_page  # not every command should pay for jinja2
+    from ...report.page import write_page  # jinja2 is slow to import
 
     found = sensitivities(plan, columns)
     content = {
@@ -59,32 +59,32 @@ def write(plan: AnyPlan, columns: Columns, folder: Path, measure: str, plots: bo
         "summary": summaries(plan, columns),
         "sensitivities": found,
         "measure": measure,
-        "worst": worst(plan, columns, measure),
+        "worst": list_worst(plan, columns, measure),
     }
-    remove_pictures(folder, "sweep.json", pictures.NAMES.__contains__)
+    remove_pictures(folder, "sweep.json", sweep_plots.NAMES.__contains__)
     written = save(folder, {"sweep.json": json_bytes(content)})
-    images = pictures.draw(plan, columns, found, measure) if plots else {}
+    images = sweep_plots.draw(plan, columns, found, measure) if plots else {}
     written += save_pictures(folder, "sweep.json", content, images)
     page = folder / "report.html"
     write_page(
         page,
         "sweep.html",
         title="Sweep",
-        summary=told(plan, columns),
+        summary=count_rows(plan, columns),
         flight=setting_texts(plan.told(), 20),
-        lines=[_line(row) for row in summaries(plan, columns)],
-        sensitivities=[_line(row) for row in found if row["measure"] == measure],
+        lines=[_format(row) for row in summaries(plan, columns)],
+        sensitivities=[_format(row) for row in found if row["measure"] == measure],
         measure=measure,
-        worst=[_line(row) for row in worst(plan, columns, measure)],
+        worst=[_format(row) for row in list_worst(plan, columns, measure)],
         meanings=plan.meanings,
         units=plan.units,
-        pictures=[{"name": name, "data": data} for name, data in images.items()],
+        plots=[{"name": name, "data": data} for name, data in images.items()],
     )
     return [folder / TABLE, *written, page]
 
 
-def told(plan: AnyPlan, columns: Columns) -> str:
-    """Say how many flew, in one line."""
+def count_rows(plan: AnyPlan, columns: Columns) -> str:
+    """Return the numbers of successful and failed rows in one line."""
     failed = int((columns["failure"] != "").sum())
     there = len(columns["row"])
     missing = len(plan) - there
@@ -93,7 +93,7 @@ def told(plan: AnyPlan, columns: Columns) -> str:
 
 
 def summaries(plan: AnyPlan, columns: Columns) -> List[Dict[str, Any]]:
-    """Tell quantiles of each measure for each combination of what flies."""
+    """Return quantiles of each metric for each combination of controller, reference and so on."""
     rows = []
     for names, chosen in combinations(columns):
         failed = int((columns["failure"][chosen] != "").sum())
@@ -108,8 +108,8 @@ def summaries(plan: AnyPlan, columns: Columns) -> List[Dict[str, Any]]:
     return rows
 
 
-def worst(plan: AnyPlan, columns: Columns, measure: str) -> List[Dict[str, Any]]:
-    """Tell rows that failed, and those with the largest measure, with what flies them again."""
+def list_worst(plan: AnyPlan, columns: Columns, measure: str) -> List[Dict[str, Any]]:
+    """List failed rows and those with the largest metric, each with the command to repeat it."""
     values = columns[measure].astype(float)
     failed = np.flatnonzero(columns["failure"] != "")[:WORST]
     order = np.argsort(-np.where(np.isfinite(values), values, -np.inf), kind="stable")
@@ -125,8 +125,8 @@ def worst(plan: AnyPlan, columns: Columns, measure: str) -> List[Dict[str, Any]]
     ]
 
 
-def _line(row: Mapping[str, Any]) -> Dict[str, str]:
-    """Write a row for people."""
+def _format(row: Mapping[str, Any]) -> Dict[str, str]:
+    """Format the values of a row."""
     return {
         name: number_text(value)
         if isinstance(value, float)

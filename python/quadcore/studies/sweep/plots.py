@@ -1,4 +1,4 @@
-"""Pictures of a sweep."""
+"""Plots of a sweep."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, 
 import numpy as np
 
 from ...report.colours import PALETTE
+from ...report.decimation import pick_evenly
 from ...report.plots import dress, make_figure, panels, png
-from ...report.thinning import pick_evenly
 from .plan import AnyPlan
 from .sensitivity import COMBINATION, axes_of_numbers, combinations
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 NAMES = ("measure", "sensitivity", "surface", "parallel")
 
-_COMBINATIONS = 4  # that are drawn
+_COMBINATIONS = 4  # in one figure
 _AXES = 12
 _LINES = 600
-_WIDE = 30  # times the least, from which on a logarithm shows more
-_SCALE = "viridis"
+_WIDE = 30  # ratio of maximum to minimum from which colours are logarithmic
+_COLOURS = "viridis"
 
 Columns = Mapping[str, np.ndarray]
 
@@ -29,14 +29,19 @@ Columns = Mapping[str, np.ndarray]
 def draw(
     plan: AnyPlan, columns: Columns, sensitivities: Sequence[Mapping[str, Any]], measure: str
 ) -> Dict[str, bytes]:
-    """Draw how a measure is spread, and what it depends on: PNG by name.
+    """Draw the distribution and the sensitivities of a metric.
 
     Parameters
     ----------
     plan, columns, sensitivities
-        What was flown, what came of it, and what that is sensitive to.
+        Plan, results and sensitivities of the sweep.
     measure
-        The one that is drawn.
+        Metric to draw.
+
+    Returns
+    -------
+    dict
+        PNG by name.
     """
     found = list(combinations(columns))
     parts = [
@@ -46,19 +51,24 @@ def draw(
         )
         for names, chosen in found
     ]
-    parts = [part for part in parts if len(part[1]) > 1][:_COMBINATIONS]
+    parts = [part for part in parts if len(part[1]) > 1]
     if not parts:
         return {}
+    note = f" ({_COMBINATIONS} of {len(parts)} combinations)" if len(parts) > _COMBINATIONS else ""
+    parts = parts[:_COMBINATIONS]
     label = f"{measure} ({plan.units[measure]})" if plan.units[measure] else measure
     rows = {_label(names, [other for other, _ in found]): len(at) for names, at in found}
-    figures: Dict[str, Figure] = {"measure": _spread(parts, rows, columns[measure], label)}
+    figures: Dict[str, Figure] = {
+        "measure": _draw_distribution(parts, rows, columns[measure], label, note)
+    }
     axes = axes_of_numbers(plan, columns)[:_AXES]
-    told = [row for row in sensitivities if row["measure"] == measure and row["axis"] in axes]
-    if told:
-        figures["sensitivity"] = _sensitivity(told, measure)
-        figures["surface"] = _surface(parts, columns, _leading(told), measure, label)
+    found_rows = [row for row in sensitivities if row["measure"] == measure and row["axis"] in axes]
+    if found_rows:
+        figures["sensitivity"] = _draw_sensitivity(found_rows, measure)
+        leading = _leading_axes(found_rows)
+        figures["surface"] = _draw_surface(parts, columns, leading, measure, label, note)
     if len(axes) > 1:
-        figures["parallel"] = _parallel(parts, columns, axes, measure, label)
+        figures["parallel"] = _draw_parallel(parts, columns, axes, measure, label, note)
     return {name: png(figure) for name, figure in figures.items()}
 
 
@@ -66,19 +76,25 @@ Parts = List[Tuple[str, np.ndarray]]
 
 
 def _label(names: Mapping[str, str], among: Sequence[Mapping[str, str]]) -> str:
-    """Name a combination by what sets it apart from the others."""
+    """Label a combination by the names that differ among the combinations."""
     return ", ".join(v for k, v in names.items() if len({other[k] for other in among}) > 1)
 
 
-def _scaled(values: np.ndarray) -> np.ndarray:
-    """Take the logarithm of what spans magnitudes, where colours are concerned."""
-    is_wide = values.min() > 0 and values.max() > _WIDE * values.min()
-    return np.log(values) if is_wide else values
+def _colour_scale(values: np.ndarray) -> Any:
+    """Return a scale of colours, logarithmic for values that span magnitudes."""
+    from matplotlib.colors import LogNorm, Normalize
+
+    low, high = values.min(), values.max()
+    scale = LogNorm if low > 0 and high > _WIDE * low else Normalize
+    return scale(low, high if high > low else low + 1)
 
 
-def _spread(parts: Parts, rows: Mapping[str, int], values: np.ndarray, label: str) -> Figure:
-    """Draw shares of all rows; one that failed stays below nothing."""
-    figure, grid = panels("Which share of the rows stays below", 1, height=2.8, above=0.7)
+def _draw_distribution(
+    parts: Parts, rows: Mapping[str, int], values: np.ndarray, label: str, note: str
+) -> Figure:
+    """Draw cumulative distributions; failed rows count as infinite."""
+    title = f"Cumulative distribution of {label}{note}"
+    figure, grid = panels(title, 1, height=2.8, above=0.7)
     axes = grid[0, 0]
     for i, (named, chosen) in enumerate(parts):
         found = np.sort(values[chosen])
@@ -87,52 +103,61 @@ def _spread(parts: Parts, rows: Mapping[str, int], values: np.ndarray, label: st
     if values[np.concatenate([chosen for _, chosen in parts])].min() > 0:
         axes.set_xscale("log")
     axes.set_xlabel(label)
+    axes.set_ylabel("share of the rows (1)")
     axes.set_ylim(0, 1)
-    _legend(figure, axes, parts)
+    _add_legend(figure, axes, parts)
     return figure
 
 
-def _sensitivity(told: Sequence[Mapping[str, Any]], measure: str) -> Figure:
-    is_sobol = any(np.isfinite(row["total"]) for row in told)
-    what = "Sobol indices" if is_sobol else "Rank correlations"
-    height = 1.1 + 0.3 * len(told)
-    figure = make_figure(f"{what} of {measure}", 8, height)
+def _draw_sensitivity(rows: Sequence[Mapping[str, Any]], measure: str) -> Figure:
+    is_sobol = any(np.isfinite(row["total"]) for row in rows)
+    what = "Sobol index" if is_sobol else "Rank correlation"
+    height = 1.1 + 0.3 * len(rows)
+    figure = make_figure(f"Sensitivity of {measure}", 8, height)
     axes = figure.add_axes((0.45, 0.5 / height, 0.52, 1 - 1.0 / height))
     dress(axes)
-    places = np.arange(len(told))[::-1]
+    places = np.arange(len(rows))[::-1]
     if is_sobol:
         for name, shift, colour in (("first", 0.2, PALETTE[0]), ("total", -0.2, PALETTE[1])):
-            widths = [row[name] for row in told]
-            ends = [row[f"{name}_interval"] for row in told]
+            widths = [row[name] for row in rows]
+            ends = [row[f"{name}_interval"] for row in rows]
             axes.barh(
-                places + shift, widths, xerr=ends, height=0.36, color=colour, label=name, capsize=2
+                places + shift,
+                widths,
+                xerr=ends,
+                height=0.36,
+                color=colour,
+                label=f"{name} order" if name == "first" else name,
+                capsize=2,
             )
         axes.legend(frameon=False, fontsize="small")
     else:
-        axes.barh(places, [row["rank"] for row in told], height=0.6, color=PALETTE[0])
+        axes.barh(places, [row["rank"] for row in rows], height=0.6, color=PALETTE[0])
         axes.set_xlim(-1, 1)
+    axes.set_xlabel(f"{what} (1)" + ", with 95 % interval" * is_sobol)
     axes.axvline(0, color="black", linewidth=0.8)
     axes.set_yticks(places)
-    named = [{name: row[name] for name in COMBINATION if name in row} for row in told]
-    labels = [(_label(names, named), row["axis"]) for names, row in zip(named, told)]
+    named = [{name: row[name] for name in COMBINATION if name in row} for row in rows]
+    labels = [(_label(names, named), row["axis"]) for names, row in zip(named, rows)]
     axes.set_yticklabels([": ".join(filter(None, each)) for each in labels], fontsize="small")
     return figure
 
 
-def _leading(told: Sequence[Mapping[str, Any]]) -> List[str]:
-    """Name the two axes that matter most."""
+def _leading_axes(rows: Sequence[Mapping[str, Any]]) -> List[str]:
+    """Return the two axes with the largest effect."""
     weight: Dict[str, float] = {}
-    for row in told:
+    for row in rows:
         size = row["total"] if np.isfinite(row["total"]) else abs(row["rank"])
         weight[row["axis"]] = max(weight.get(row["axis"], 0.0), float(np.nan_to_num(size)))
     return sorted(weight, key=lambda axis: -weight[axis])[:2]
 
 
-def _surface(
-    parts: Parts, columns: Columns, leading: Sequence[str], measure: str, label: str
+def _draw_surface(
+    parts: Parts, columns: Columns, leading: Sequence[str], measure: str, label: str, note: str
 ) -> Figure:
     height = 3.2
-    figure = make_figure("Response surface: rows, and the quadratic through them", 8, height)
+    title = f"Response surface of {measure}: rows (dots) and quadratic fit (background){note}"
+    figure = make_figure(title, 8, height)
     grid = figure.subplots(
         1,
         len(parts),
@@ -159,9 +184,9 @@ def _surface(
         limits = {"vmin": values[chosen].min(), "vmax": values[chosen].max()}
         extents = [low + across * (high - low) for low, high in ends]
         if surface is not None:
-            axes.contourf(*extents, surface, 12, cmap=_SCALE, alpha=0.6, **limits)
+            axes.contourf(*extents, surface, 12, cmap=_COLOURS, alpha=0.6, **limits)
         dots = axes.scatter(
-            x[picked], y[picked], c=values[picked], s=6, cmap=_SCALE, edgecolors="none", **limits
+            x[picked], y[picked], c=values[picked], s=6, cmap=_COLOURS, edgecolors="none", **limits
         )
         axes.set_ylabel(leading[1], fontsize="small")
         figure.colorbar(dots, ax=axes, label=label)
@@ -179,7 +204,7 @@ def _terms(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 def _quadratic(
     axes: Sequence[np.ndarray], values: np.ndarray, across: np.ndarray
 ) -> Optional[np.ndarray]:
-    """Least squares over the unit square; None if the rows are too few."""
+    """Fit a quadratic over the unit square; None if there are too few rows."""
     terms = _terms(*axes)
     if len(terms) < 3 * terms.shape[1]:
         return None
@@ -190,32 +215,35 @@ def _quadratic(
     return surface
 
 
-def _parallel(
-    parts: Parts, columns: Columns, axes_shown: Sequence[str], measure: str, label: str
+def _draw_parallel(
+    parts: Parts, columns: Columns, axes_shown: Sequence[str], measure: str, label: str, note: str
 ) -> Figure:
     from matplotlib.collections import LineCollection
 
     names = [*axes_shown, measure]
     height = 3.0
-    figure = make_figure(f"Parallel coordinates, coloured by {measure}", 8, height)
-    axes = figure.add_axes((0.07, 0.2, 0.84, 0.66))
+    figure = make_figure(f"Parallel coordinates, coloured by {measure}{note}", 8, height)
+    axes = figure.add_axes((0.05, 0.2, 0.78, 0.66))
     dress(axes)
-    chosen = np.concatenate([rows for _, rows in parts])
+    chosen = np.concatenate([part for _, part in parts])
     ends = {name: (columns[name][chosen].min(), columns[name][chosen].max()) for name in names}
-    picked = chosen[pick_evenly(len(chosen), _LINES)]
-    picked = picked[np.argsort(columns[measure][picked])]  # the largest on top
-    heights = np.stack([_unit(columns[name][picked], ends[name]) for name in names], axis=1)
-    shades = _scaled(columns[measure][picked])
-    heights[:, -1] = _unit(shades, (shades.min(), shades.max()))
+    rows = chosen[pick_evenly(len(chosen), _LINES)]
+    rows = rows[np.argsort(columns[measure][rows])]  # the largest on top
+    heights = np.stack([_unit(columns[name][rows], ends[name]) for name in names], axis=1)
+    scale = _colour_scale(columns[measure][chosen])
+    heights[:, -1] = scale(columns[measure][rows])
     places = np.broadcast_to(np.arange(len(names)), heights.shape)
     lines = LineCollection(
         list(np.stack([places, heights], axis=2)),
-        array=heights[:, -1],
-        cmap=_SCALE,
+        array=columns[measure][rows],
+        norm=scale,
+        cmap=_COLOURS,
         linewidths=0.6,
         alpha=0.7,
     )
     axes.add_collection(lines)
+    bar = figure.add_axes((0.87, 0.2, 0.02, 0.66))
+    figure.colorbar(lines, cax=bar, label=label).solids.set_alpha(1)
     axes.set_xlim(-0.1, len(names) - 0.9)
     axes.set_ylim(-0.05, 1.05)
     axes.set_yticks([])
@@ -228,7 +256,7 @@ def _parallel(
     return figure
 
 
-def _legend(figure: Figure, axes: Any, parts: Parts) -> None:
+def _add_legend(figure: Figure, axes: Any, parts: Parts) -> None:
     if len(parts) > 1:
         figure.legend(
             *axes.get_legend_handles_labels(),

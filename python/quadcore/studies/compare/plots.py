@@ -1,4 +1,4 @@
-"""Flights drawn over each other."""
+"""Plots of several flights in common axes."""
 
 from __future__ import annotations
 
@@ -9,49 +9,49 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 
 from ...report.colours import PALETTE
-from ...report.plots import NOTHING, WHOLE, add_commanded_axis, flatten, make_figure, panels, space
+from ...report.plots import NOTHING, WHOLE, add_unslowed_axis, flatten, make_figure, panels, space
 from ...simulation.log import Log
 from ...support.rotation import continuous
 from ..metrics import differences
 
-_LABELS = 6
+_LABELS = 6  # in the legend of many flights
 _NO_DIFFERENCE = 1e-9  # m, deg, m/s, rad/s
 
 
 class Curve(NamedTuple):
-    """One flight as it is drawn."""
+    """One flight of a plot."""
 
     label: str
     log: Log
 
 
 def draw(curves: Sequence[Curve], against: Log, name: str) -> Dict[str, Figure]:
-    """Draw the flights, and how far each is from one of them.
+    """Draw the flights and their differences from a baseline.
 
     Parameters
     ----------
     curves
-        At least one.
+        At least one flight.
     against
-        The one, thinned as they are.
+        Log of the baseline, decimated like the others.
     name
-        Of that one, for the title.
+        Name of the baseline, for the title.
     """
     styles = _styles(curves)
     return {
-        "path": _path(curves, styles),
-        "position": _position(curves, styles),
-        "attitude": _attitude(curves, styles),
-        "rates": _rates(curves, styles),
-        "rotors": _rotors(curves, styles),
-        "differences": _differences(curves, styles, against, name),
+        "path": _draw_path(curves, styles),
+        "position": _draw_position(curves, styles),
+        "attitude": _draw_attitude(curves, styles),
+        "rates": _draw_rates(curves, styles),
+        "rotors": _draw_rotors(curves, styles),
+        "differences": _draw_differences(curves, styles, against, name),
     }
 
 
 def _styles(curves: Sequence[Curve]) -> List[Dict[str, Any]]:
     count = len(curves)
     viridis = ScalarMappable(cmap="viridis")
-    viridis.set_clim(0, 1.05 * count)  # without the palest
+    viridis.set_clim(0, 1.05 * count)  # without the palest colours
     shades = viridis.to_rgba(np.arange(count))
     named = set(np.linspace(0, count - 1, min(count, _LABELS)).round().astype(int))
     styles = []
@@ -60,7 +60,7 @@ def _styles(curves: Sequence[Curve]) -> List[Dict[str, Any]]:
         styles.append(
             {
                 "color": PALETTE[i] if few else shades[i],
-                # Earlier ones shine through at the edges of those that cover them.
+                # Earlier curves are wider, so that later ones do not hide them.
                 "linewidth": 1.2 + (1.6 * (1 - i / count) if few else 0),
                 "label": curve.label if few or i in named else None,
             }
@@ -68,7 +68,7 @@ def _styles(curves: Sequence[Curve]) -> List[Dict[str, Any]]:
     return styles
 
 
-def _path(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure:
+def _draw_path(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure:
     figure = make_figure("Paths of the frame", 6, 6)
     axes, _ = space(figure, WHOLE, [curve.log.position for curve in curves])
     for curve, style in zip(curves, styles):
@@ -77,53 +77,53 @@ def _path(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure:
     return figure
 
 
-def _position(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure:
+def _draw_position(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure:
     values = [curve.log.position for curve in curves]
-    return _figure("Position", curves, styles, [(values, [f"{a} (m)" for a in "xyz"])])
+    return _draw_panels("Position", curves, styles, [(values, [f"{a} (m)" for a in "xyz"])])
 
 
-def _attitude(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure:
+def _draw_attitude(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure:
     values = [np.degrees(continuous(curve.log.rpy)) for curve in curves]
     labels = [f"{angle} (deg)" for angle in ("roll", "pitch", "yaw")]
-    return _figure("Attitude", curves, styles, [(values, labels)])
+    return _draw_panels("Attitude", curves, styles, [(values, labels)])
 
 
-def _rates(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure:
+def _draw_rates(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure:
     linear = [curve.log.linear_velocity for curve in curves]
     angular = [curve.log.angular_velocity for curve in curves]
     sides = [
         (linear, [f"$v_{axis}$ (m/s)" for axis in "xyz"]),
         (angular, [rf"$\omega_{axis}$ (rad/s)" for axis in "xyz"]),
     ]
-    return _figure("Linear (world) and angular (body) velocity", curves, styles, sides)
+    return _draw_panels("Linear (world) and angular (body) velocity", curves, styles, sides)
 
 
-def _rotors(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure:
+def _draw_rotors(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure:
     count = max(curve.log.rotor_velocity.shape[1] for curve in curves)
     values = [np.abs(curve.log.rotor_velocity) for curve in curves]
     labels = [f"rotor {i} (rad/s)" for i in range(1, 1 + count)]
     title = "Speed of the rotor joints"
     sizes = {curve.log.per_command for curve in curves}
     if len(sizes) == 1 and curves[0].log.is_slow:
-        title += ", and as commanded"
-        figure = _figure(title, curves, styles, [(values, labels)], right=0.8)
+        title += "; right axis: times the slowdown"
+        figure = _draw_panels(title, curves, styles, [(values, labels)], right=0.8)
         for axes in figure.axes:
-            add_commanded_axis(axes, curves[0].log.per_command)
+            add_unslowed_axis(axes, curves[0].log.per_command)
         return figure
-    return _figure(title, curves, styles, [(values, labels)])
+    return _draw_panels(title, curves, styles, [(values, labels)])
 
 
-def _differences(
+def _draw_differences(
     curves: Sequence[Curve], styles: Sequence[Dict[str, Any]], against: Log, name: str
 ) -> Figure:
     scale = np.array([1, 180 / np.pi, 1, 1])
     values = [differences(against, curve.log)[:, :4] * scale for curve in curves]
     labels = ["position (m)", "attitude (deg)", "velocity (m/s)", "rates (rad/s)"]
-    title = f"Distance from {name}"
-    return _figure(title, curves, styles, [(values, labels)], _NO_DIFFERENCE)
+    title = f"Difference from {name}"
+    return _draw_panels(title, curves, styles, [(values, labels)], _NO_DIFFERENCE)
 
 
-def _figure(
+def _draw_panels(
     title: str,
     curves: Sequence[Curve],
     styles: Sequence[Dict[str, Any]],
@@ -131,19 +131,26 @@ def _figure(
     least: float = NOTHING,
     right: float = 0.1,
 ) -> Figure:
-    """Make a column of panels for each side: its values by flight, and its columns' labels.
+    """Make a column of panels for each side.
 
-    What moves less than `least` is drawn flat.
+    Parameters
+    ----------
+    sides
+        Arrays of each flight, and the labels of their columns.
+    least
+        Range below which curves are drawn flat.
+    right
+        Width of the right margin, inches.
     """
     named = [style["label"] for style in styles if style["label"]]
-    # A sign is a tenth of an inch wide at most; a legend line is as wide as seven.
+    # A character is at most 0.1 inches wide, a legend line 0.7.
     columns = max(1, int((8 if len(sides) > 1 else 7) * 10 / (7 + max(map(len, named)))))
     lines = 1 + (len(named) - 1) // columns
     above = 0.45 + 0.22 * lines
     figure, grid = panels(title, len(sides[0][1]), len(sides), above=above, right=right)
     for column, (values, labels) in zip(grid.T, sides):
         for curve, style, table in zip(curves, styles, values):
-            # Differences end where the flight does that they are from.
+            # Differences end where the baseline ends.
             for axes, state in zip(column, table.T):
                 axes.plot(curve.log.time[: len(state)], state, **style)
         for axes, label in zip(column, labels):

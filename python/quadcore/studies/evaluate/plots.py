@@ -1,0 +1,283 @@
+"""Plots of an evaluation."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple
+
+import numpy as np
+
+from ...report.colours import PALETTE, curve_style
+from ...report.decimation import pick_evenly
+from ...report.plots import REFERENCE, dress, make_figure, panels, png
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+from ...simulation.scenario_events import Event
+from ..flights import Outcome
+from ..measures import distance, lost
+from .evaluate import Evaluation
+from .event_marks import mark_events
+from .robustness import RATES
+
+_ROTOR_PANELS = 12  # in one figure
+_BOXES = 40
+_FLOOR = 1e-7  # m; errors below are drawn here, as a logarithmic axis would enlarge rounding noise
+_ERROR = f"tracking error (m), at least {_FLOOR:g}"
+_GROUP = ("controller", "reference", "engine", "model", "scenario")
+_MARGINS = {"left": 0.09, "right": 0.98, "bottom": 0.12}
+
+Flights = List[Tuple[str, Outcome]]
+"""Flights that share a figure, with their labels."""
+
+
+def draw(
+    evaluation: Evaluation, events: Optional[Mapping[str, Sequence[Event]]] = None
+) -> Dict[str, bytes]:
+    """Draw all plots of an evaluation.
+
+    Parameters
+    ----------
+    evaluation
+        Flights and statistics.
+    events
+        Events by scenario.
+
+    Returns
+    -------
+    dict
+        PNG by name, in the order of the page.
+    """
+    figures: Dict[str, Figure] = {}
+    for i, ((reference, scenario), flights) in enumerate(group_flights(evaluation).items(), 1):
+        name = name_group(evaluation, reference, scenario)
+        figures[f"tracks_{i}"] = _draw_tracks(name, flights)
+        figures[f"errors_{i}"] = _draw_errors(name, flights)
+        figures[f"rotors_{i}"] = _draw_rotors(name, flights)
+        for kind in ("errors", "rotors"):
+            mark_events(figures[f"{kind}_{i}"], (events or {}).get(scenario, ()))
+        if any(outcome.response is not None for _, outcome in flights):
+            figures[f"response_{i}"] = _draw_responses(name, flights)
+    if any(group["flights"] * (1 - group["failure_rate"]) > 1 for group in evaluation.groups):
+        figures["seeds"] = _draw_boxes(evaluation)
+    if evaluation.margins:
+        figures["margins"] = _draw_margins(evaluation.margins)
+        figures["rates"] = _draw_rates(evaluation.margins)
+    return {name: png(figure) for name, figure in figures.items()}
+
+
+def is_plot(name: str) -> bool:
+    """Whether `draw` makes plots with that name."""
+    return (
+        re.fullmatch(r"(tracks|errors|rotors|response)_\d+|seeds|margins|rates", name) is not None
+    )
+
+
+def make_label(row: Mapping[str, Any], rows: Any, kinds: Sequence[str] = _GROUP) -> str:
+    """Label a row by the names that differ among the rows."""
+    parts = [
+        str(row[name])
+        for name in kinds
+        if name == "controller" or len({other[name] for other in rows}) > 1
+    ]
+    return ", ".join(part for part in parts if part)
+
+
+def group_flights(evaluation: Evaluation) -> Dict[Tuple[str, str], Flights]:
+    """Group the flights with logs by reference and scenario, and label them."""
+    found: Dict[Tuple[str, str], Flights] = {}
+    for row, outcome in evaluation.drawn.items():
+        cells = evaluation.table[row]
+        label = make_label(cells, evaluation.table, ("controller", "engine", "model"))
+        if outcome.failure:
+            label += " (failed)"
+        found.setdefault((cells["reference"], cells["scenario"]), []).append((label, outcome))
+    return found
+
+
+def name_group(evaluation: Evaluation, reference: str, scenario: str) -> str:
+    """Name a group of `group_flights` for a title."""
+    has_scenarios = len({row["scenario"] for row in evaluation.table}) > 1
+    return f"{reference}, scenario {scenario}" if has_scenarios else reference
+
+
+def _rows_before_failure(outcome: Outcome) -> slice:
+    """Return the rows before the vehicle diverges: later ones would set the scale of the axes."""
+    assert outcome.log is not None
+    end = lost(outcome.log)
+    return slice(None if end is None else int(np.searchsorted(outcome.log.time, end)))
+
+
+def _draw_tracks(name: str, flights: Flights) -> Figure:
+    room = _header_height(flights)
+    height = 3.6 + room
+    figure = make_figure(f"Tracks: {name}", 8, height)
+    margins = dict(_MARGINS, top=1 - room / height, bottom=0.5 / height, wspace=0.25)
+    above, side = figure.subplots(1, 2, gridspec_kw=margins)
+    reference = next(outcome.log.topics["reference"] for _, outcome in flights if outcome.log)
+    for axes, (a, b) in ((above, "xy"), (side, "xz")):
+        dress(axes)
+        for i, (label, outcome) in enumerate(flights):
+            assert outcome.log is not None
+            at = dict(zip("xyz", outcome.log.position[_rows_before_failure(outcome)].T))
+            axes.plot(at[a], at[b], label=label, linewidth=1.2, **curve_style(i))
+        axes.plot(reference[a], reference[b], zorder=3, **REFERENCE)
+        axes.set_xlabel(f"{a} (m)")
+        axes.set_ylabel(f"{b} (m)")
+        axes.set_aspect("equal", adjustable="datalim")
+    _add_legend(figure, above)
+    return figure
+
+
+def _draw_errors(name: str, flights: Flights) -> Figure:
+    title = f"Tracking error: {name}"
+    figure, grid = panels(title, 1, height=2.8, above=_header_height(flights))
+    axes = grid[0, 0]
+    for i, (label, outcome) in enumerate(flights):
+        assert outcome.log is not None
+        rows = _rows_before_failure(outcome)
+        errors = np.maximum(distance(outcome.log)[rows], _FLOOR)
+        axes.semilogy(outcome.log.time[rows], errors, label=label, linewidth=1, **curve_style(i))
+    axes.set_ylabel(_ERROR)
+    axes.set_ylim(_FLOOR / 1.5, max(axes.get_ylim()[1], 1e4 * _FLOOR))
+    _add_legend(figure, axes)
+    return figure
+
+
+def _draw_rotors(name: str, flights: Flights) -> Figure:
+    drawn = [flights[i] for i in pick_evenly(len(flights), _ROTOR_PANELS)]
+    title = f"Rotor speed: {name}"
+    if len(drawn) < len(flights):
+        title += f" ({len(drawn)} of {len(flights)} flights)"
+    figure, grid = panels(title, len(drawn), height=1.3, above=0.7)
+    for axes, (label, outcome) in zip(grid[:, 0], drawn):
+        assert outcome.log is not None
+        rows = _rows_before_failure(outcome)
+        speeds = np.abs(outcome.log.rotor_velocity[rows])
+        for i, speed in enumerate(speeds.T):
+            axes.plot(
+                outcome.log.time[rows], speed, linewidth=0.8, label=f"rotor {i + 1}",
+                **curve_style(i),
+            )  # fmt: skip
+        if np.isfinite(outcome.limit):
+            axes.axhline(outcome.limit, color="black", linestyle="--", linewidth=1, label="limit")
+        axes.set_ylim(bottom=0)
+        axes.set_title(label, loc="left", fontsize="small", pad=2)
+        axes.set_ylabel("speed (rad/s)")
+    _add_legend(figure, *grid[:, 0])
+    return figure
+
+
+def _draw_responses(name: str, flights: Flights) -> Figure:
+    title = f"Estimated step response: {name}"
+    figure, grid = panels(title, 1, height=2.8, above=_header_height(flights))
+    axes = grid[0, 0]
+    for i, (label, outcome) in enumerate(flights):
+        if outcome.response is not None:
+            axes.plot(*outcome.response.T, label=label, linewidth=1.2, **curve_style(i))
+    axes.axhline(1, **REFERENCE)
+    axes.set_ylim(-0.2, 1.8)
+    axes.set_ylabel("position / step (1)")
+    axes.set_xlabel("time after the step (s)")
+    _add_legend(figure, axes)
+    return figure
+
+
+def _draw_boxes(evaluation: Evaluation) -> Figure:
+    groups = [group for group in evaluation.groups if group["failure_rate"] < 1]
+    drawn = [groups[i] for i in pick_evenly(len(groups), _BOXES)]
+    height = 1.2 + 0.3 * len(drawn)
+    title = "Maximum tracking error in the last 10 s over the seeds"
+    if len(drawn) < len(groups):
+        title += f" ({len(drawn)} of {len(groups)} combinations)"
+    figure = make_figure(title, 8, height)
+    axes = figure.add_axes((0.4, 0.6 / height, 0.57, 1 - 1.1 / height))
+    dress(axes)
+    values, labels = [], []
+    for group in reversed(drawn):
+        errors = [
+            max(row["final_position"], _FLOOR)
+            for row in evaluation.table
+            if all(row[name] == group[name] for name in _GROUP) and not row["failure"]
+        ]
+        values.append(errors)
+        failed = round(group["failure_rate"] * group["flights"])
+        labels.append(make_label(group, groups) + f", {failed} failed" * (failed > 0))
+    axes.set_xscale("log")
+    for place, errors in enumerate(values):
+        low, left, middle, right, high = np.quantile(errors, [0, 0.25, 0.5, 0.75, 1])
+        axes.plot([low, high], [place, place], color="black", marker="|", linewidth=1)
+        axes.barh(place, right - left, left=left, height=0.6, color="white", edgecolor="black")
+        axes.plot([middle, middle], [place - 0.3, place + 0.3], color=PALETTE[1])
+    axes.set_xlim(min(map(min, values)) / 1.2, max(map(max, values)) * 1.2)
+    axes.set_yticks(range(len(labels)))
+    axes.set_yticklabels(labels, fontsize="small")
+    axes.set_xlabel(f"{_ERROR}; line: median, box: quartiles, whiskers: range")
+    return figure
+
+
+def _draw_margins(rows: Any) -> Figure:
+    height = 1.2 + 0.35 * len(rows)
+    figure = make_figure("Gain and delay margins", 8, height)
+    gain, delay = figure.subplots(
+        1, 2, sharey=True, gridspec_kw=dict(_MARGINS, left=0.28, top=0.8, bottom=0.6 / height)
+    )
+    places = np.arange(len(rows))[::-1]
+    for place, row in zip(places, rows):
+        low, high = row.get("gain_low", np.nan), row.get("gain_high", np.nan)
+        gain.barh(place, np.log10(high / low), left=np.log10(low), height=0.6, color=PALETTE[0])
+        delay.barh(place, 1e3 * row.get("delay_margin", np.nan), height=0.6, color=PALETTE[1])
+    for axes in (gain, delay):
+        dress(axes)
+    gain.axvline(0, color="black", linewidth=0.8)
+    ticks = np.array([0.1, 0.2, 0.5, 1, 2, 5, 10])
+    gain.set_xticks(np.log10(ticks))
+    gain.set_xticklabels([f"{tick:g}" for tick in ticks])
+    gain.set_xlabel("true thrust / modelled thrust (1)")
+    delay.set_xlabel("delay margin (ms)")
+    gain.set_yticks(places)
+    gain.set_yticklabels([row["controller"] for row in rows], fontsize="small")
+    return figure
+
+
+def _draw_rates(rows: Any) -> Figure:
+    room = _header_height([(row["controller"], None) for row in rows])
+    figure, grid = panels("RMS tracking error by update rate", 1, height=2.8, above=room)
+    axes = grid[0, 0]
+    for i, row in enumerate(rows):
+        errors = [row.get(f"rms_at_{rate:g}_Hz", np.nan) for rate in RATES]
+        axes.loglog(
+            RATES, np.maximum(errors, _FLOOR), marker="o", label=row["controller"], **curve_style(i)
+        )
+    axes.set_xlabel("update rate (Hz)")
+    axes.set_ylabel(f"RMS {_ERROR}")
+    _add_legend(figure, axes)
+    return figure
+
+
+def _columns(labels: Sequence[str]) -> int:
+    """Return the number of columns of a legend."""
+    return max(1, min(4, 90 // (6 + max(map(len, labels), default=1))))
+
+
+def _header_height(flights: Sequence[Tuple[str, Any]]) -> float:
+    """Return the height of title and legend, inches."""
+    labels = [label for label, _ in flights] + ["reference"]
+    return 0.45 + 0.2 * -(-len(labels) // _columns(labels))
+
+
+def _add_legend(figure: Figure, *axes: Any) -> None:
+    """Add a legend of all curves of some panels, each label once."""
+    entries = {
+        label: handle for each in axes for handle, label in zip(*each.get_legend_handles_labels())
+    }
+    figure.legend(
+        list(entries.values()),
+        list(entries),
+        loc="upper left",
+        bbox_to_anchor=(0, 1 - 0.25 / figure.get_figheight()),
+        ncol=_columns(list(entries)),
+        frameon=False,
+        fontsize="small",
+    )
