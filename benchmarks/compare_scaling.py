@@ -15,9 +15,9 @@ import numpy as np
 
 from quadcore.report.decimation import decimate
 from quadcore.studies.axes import parse_axis
-from quadcore.studies.compare.compare import fly
+from quadcore.studies.compare.compare import fly_plan
 from quadcore.studies.compare.plan import Plan
-from quadcore.studies.guidance import Guidance
+from quadcore.studies.control_setup import ControlSetup
 from quadcore.studies.options import CompareOptions
 
 COMMANDS = Path(__file__).resolve().parents[1] / "tests/data/gazebo11/commands_S5.csv"
@@ -28,7 +28,7 @@ LEAST_SPEEDUP = 1.8
 def plan(duration, *axes, processes=None):
     vary = {name: parse_axis(name, values).values for name, values in axes}
     options = CompareOptions(duration=duration, xacro_args={"sim_slow": 1}, processes=processes)
-    return Plan(["quadrotor"], vary, "eigen", Guidance(), options, COMMANDS)
+    return Plan(["quadrotor"], vary, "eigen", ControlSetup(), options, COMMANDS)
 
 
 def seconds(processes):
@@ -40,7 +40,7 @@ def seconds(processes):
         processes=processes,
     )
     start, used = time.perf_counter(), os.times()
-    fly(grid, lambda row, log: decimate(log) if row % 5 == 0 else None)
+    fly_plan(grid, lambda row, log: decimate(log) if row % 5 == 0 else None)
     wall, now = time.perf_counter() - start, os.times()
     parent, flights = (sum(now[i : i + 2]) - sum(used[i : i + 2]) for i in (0, 2))
     # The first flight, and what the parent does, are done by one process.
@@ -61,5 +61,5 @@ print(f"200 flights of 10 s, two processes  {two[0]:6.2f} s, at most {LONGEST:g}
 for i, kind in enumerate(("wall", "undisturbed")):
     print(f"two processes over one, {kind:11} {one[i] / two[i]:6.2f}, at least {LEAST_SPEEDUP}")
 for count in (1000, 10_000):
-    fly(plan(0.01, ("motorpid_plugin.kp", f"1e-4:1e-3:{count}")))
+    fly_plan(plan(0.01, ("motorpid_plugin.kp", f"1e-4:1e-3:{count}")))
     print(f"{count:6} variants: peak of the parent {peak():.0f} MiB")

@@ -14,7 +14,7 @@ import numpy as np
 import yaml
 
 import quadcore as qc
-from quadcore.studies.evaluate.evaluate import conduct
+from quadcore.studies.evaluate.evaluate import fly_plan
 from quadcore.studies.evaluate.output import write
 from quadcore.studies.evaluate.plan import Plan
 from quadcore.studies.options import EvaluateOptions
@@ -31,7 +31,7 @@ def seconds_of_evaluation():
     shapes = ["spiral", "circle", "eight", "waypoints"]
     start, used = time.perf_counter(), os.times()
     plan = Plan(laws, shapes, ["eigen"], ["quadrotor"], {}, options)
-    evaluation = conduct(plan)
+    evaluation = fly_plan(plan)
     with tempfile.TemporaryDirectory() as folder:
         write(evaluation, plan, Path(folder), plots=True)
     wall, now = time.perf_counter() - start, os.times()

@@ -17,8 +17,8 @@ from quadcore.studies.design import Design
 from quadcore.studies.options import SweepOptions
 from quadcore.studies.sweep.batches import fly_together
 from quadcore.studies.sweep.plan import Plan
-from quadcore.studies.sweep.spec import done
-from quadcore.studies.sweep.sweep import conduct
+from quadcore.studies.sweep.row_spec import fly_row
+from quadcore.studies.sweep.sweep import fly_plan
 
 ROWS, ROUNDS = 200, 5
 AXES = {"frame.mass": "uniform:0.9:1.1", "drone_plugin.rotorThrustCoeff": "uniform:1.1e-5:1.2e-5"}
@@ -48,7 +48,7 @@ def row_against_flight() -> None:
         simulation.run(10, controller=law, reference=circle, log_every=10)
 
     ratios = [
-        taken(lambda row=row: done(swept.spec(row)), time.process_time)
+        taken(lambda row=row: fly_row(swept.spec(row)), time.process_time)
         / taken(fly, time.process_time)
         for row in range(ROUNDS * 4)
     ]
@@ -62,7 +62,7 @@ def two_against_one() -> None:
     def seconds(processes: int) -> np.ndarray:
         used = os.times()
         with tempfile.TemporaryDirectory() as folder:
-            wall = taken(lambda: conduct(swept, Path(folder), processes=processes))
+            wall = taken(lambda: fly_plan(swept, Path(folder), processes=processes))
         parent, flights = (sum(os.times()[i : i + 2]) - sum(used[i : i + 2]) for i in (0, 2))
         return np.array([wall, parent + flights / processes])
 
@@ -79,7 +79,7 @@ def together_against_alone() -> None:
     swept = plan(32, None, None, commands)
     specs = [swept.spec(row) for row in range(32)]
     ratios = [
-        taken(lambda: [done(spec) for spec in specs]) / taken(lambda: fly_together(specs))
+        taken(lambda: [fly_row(spec) for spec in specs]) / taken(lambda: fly_together(specs))
         for _ in range(ROUNDS)
     ]
     print(f"32 rows open loop, alone : together   {statistics.median(ratios):.2f}")
@@ -90,10 +90,10 @@ def memory() -> None:
         return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
     with tempfile.TemporaryDirectory() as folder:
-        conduct(plan(50, "geometric", "circle", duration=0.2), Path(folder))
+        fly_plan(plan(50, "geometric", "circle", duration=0.2), Path(folder))
     before = most()
     with tempfile.TemporaryDirectory() as folder:
-        conduct(plan(2000, "geometric", "circle", duration=0.2), Path(folder))
+        fly_plan(plan(2000, "geometric", "circle", duration=0.2), Path(folder))
     print(f"memory of the parent, 2000 rows less 50   {(most() - before) / 1024:.1f} MB")
 
 

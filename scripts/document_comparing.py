@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 import quadcore as qc
 from quadcore.report.colours import PALETTE
 from quadcore.report.plots import dress, png
-from quadcore.studies.metrics import differences
+from quadcore.studies.flight_differences import compute_differences
 
 ROOT = Path(__file__).resolve().parents[1]
 COMMANDS = ROOT / "tests" / "data" / "gazebo11" / "commands_S5.csv"
@@ -27,7 +27,7 @@ def fly(vary: Any, engine: str = "eigen", **options: Any) -> qc.Comparison:
 
 def distance(reference: qc.Log, log: qc.Log) -> Any:
     """Distance of the positions (m), for a logarithmic scale."""
-    return differences(reference, log)[1:, 0]
+    return compute_differences(reference, log)[1:, 0]
 
 
 def panel(axes: Any, title: str, curves: Iterable[Tuple[Any, Any, int, str]]) -> None:

@@ -15,9 +15,9 @@ from quadcore.studies.design import Design
 from quadcore.studies.options import SweepOptions
 from quadcore.studies.sweep.plan import Plan
 from quadcore.studies.sweep.plots import draw
-from quadcore.studies.sweep.sensitivity import sensitivities
-from quadcore.studies.sweep.sweep import conduct
-from quadcore.studies.sweep.table import table
+from quadcore.studies.sweep.sensitivity import compute_sensitivities
+from quadcore.studies.sweep.sweep import fly_plan
+from quadcore.studies.sweep.table import make_table
 
 # Those of the tutorial: what the law believes over what is so.
 AXES = {
@@ -32,8 +32,8 @@ def main() -> None:
     options = SweepOptions(duration=5.0, xacro_args={"sim_slow": 1})
     plan = Plan(design, "geometric", "circle", ["eigen"], ["quadrotor"], options)
     with tempfile.TemporaryDirectory() as folder:
-        columns = table(conduct(plan, Path(folder)))
-    pictures = draw(plan, columns, sensitivities(plan, columns), "rms_position")
+        columns = make_table(fly_plan(plan, Path(folder)))
+    pictures = draw(plan, columns, compute_sensitivities(plan, columns), "rms_position")
     save("sweep_surface", pictures["surface"])
 
 

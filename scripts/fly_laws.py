@@ -18,7 +18,7 @@ from noise import NOISY, THESIS
 import quadcore as qc
 from quadcore.control import controllers, references
 from quadcore.control.built_in import BuiltInController
-from quadcore.studies.executor import each
+from quadcore.studies.executor import run_cases
 from quadcore.support.warning import suppress_warnings
 
 WAYPOINTS = Path(__file__).resolve().parents[1] / "config" / "waypoints.yaml"
@@ -130,7 +130,7 @@ def main() -> int:
         print(f"{row} {max(flown):9.4f}  {bar:8}{'' if met else ' missed'}", flush=True)
 
     print(f"{'':48} {'engine':8} slow largest error and bar [mm]")
-    each(lambda i: fly(flights[i]), range(len(flights)), take)
+    run_cases(lambda i: fly(flights[i]), range(len(flights)), take)
     return int(bool(missed))
 
 

@@ -49,5 +49,5 @@ def refused(*arguments, **options):
 def outcomes(function, cases, processes):
     """What became of cases in parallel, by index."""
     found = {}
-    executor.each(function, cases, found.__setitem__, processes)
+    executor.run_cases(function, cases, found.__setitem__, processes)
     return found

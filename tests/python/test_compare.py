@@ -17,7 +17,7 @@ from processes import outcomes
 import quadcore as qc
 from quadcore.cli import main
 from quadcore.model import resources
-from quadcore.studies import metrics
+from quadcore.studies import flight_differences
 from quadcore.studies.compare import Comparison
 from quadcore.support.rotation import roll_pitch_yaw
 
@@ -196,8 +196,10 @@ def test_metrics_are_those_of_the_logs():
 
 def test_flights_logged_at_other_times_are_compared_in_between():
     coarse, fine = (qc.Simulation("quadrotor", "eigen", dt=dt).run(0.5) for dt in (0.002, 0.0005))
-    assert metrics.differences(coarse, fine)[:, 0].max() < 1e-5  # of a parabola, by chords
-    assert metrics.differences(fine, coarse)[:, 0].max() < 1e-12
+    assert (
+        flight_differences.compute_differences(coarse, fine)[:, 0].max() < 1e-5
+    )  # of a parabola, by chords
+    assert flight_differences.compute_differences(fine, coarse)[:, 0].max() < 1e-12
 
 
 def test_logs_of_a_comparison_before_are_gone_and_others_stay():

@@ -8,8 +8,14 @@ from scipy.spatial.transform import Rotation
 
 from quadcore import Log
 from quadcore._core import Document
-from quadcore.studies import metrics
-from quadcore.studies.compare.difference import ABSENT, Difference, Fact, differences, facts
+from quadcore.studies import flight_differences
+from quadcore.studies.compare.model_differences import (
+    ABSENT,
+    Difference,
+    Fact,
+    compare_documents,
+    list_facts,
+)
 from quadcore.support.rotation import continuous, roll_pitch_yaw
 
 BEFORE = """<robot name="r">
@@ -52,7 +58,7 @@ def document(text, name="b.urdf"):
 
 
 def test_each_difference_is_told_once_with_both_places():
-    found = differences(document(BEFORE, "a.urdf"), document(AFTER))
+    found = compare_documents(document(BEFORE, "a.urdf"), document(AFTER))
     assert found == [
         Difference("link a/collision[2]/geometry/sphere radius", "2", "3", "a.urdf:6", "b.urdf:6"),
         Difference("joint j", "continuous", "fixed", "a.urdf:10", "b.urdf:10"),
@@ -65,18 +71,18 @@ def test_each_difference_is_told_once_with_both_places():
         Difference("p.new", ABSENT, "present", "", "b.urdf:13"),
         Difference("plugin s", ABSENT, "s.so", "", "b.urdf:14"),
     ]
-    assert differences(document(BEFORE), document(BEFORE)) == []
+    assert compare_documents(document(BEFORE), document(BEFORE)) == []
 
 
 def test_facts_are_named_by_their_path_and_hang_on_their_link_joint_or_plugin():
-    found = facts(document(BEFORE))
+    found = list_facts(document(BEFORE))
     assert found["link a"] == Fact("", "b.urdf:2", None)
     assert found["link a/inertial/origin xyz"] == Fact("0 0 1", "b.urdf:3", "link a")
     assert found["link b kind"] == Fact("round", "b.urdf:9", "link b")
     assert found["joint j/parent link"] == Fact("a", "b.urdf:10", "joint j")
     assert found["plugin p"] == Fact("x.so", "b.urdf:12", None)
     assert found["p.flag"] == Fact("", "b.urdf:12", "plugin p")
-    assert facts(document("<robot><k><m>a \n b</m></k></robot>"))["k/m"].text == "a b"
+    assert list_facts(document("<robot><k><m>a \n b</m></k></robot>"))["k/m"].text == "a b"
     assert not any("visual" in name or "material" in name for name in found)
     assert "link a/inertial" not in found and "plugin p filename" not in found
 
@@ -84,7 +90,7 @@ def test_facts_are_named_by_their_path_and_hang_on_their_link_joint_or_plugin():
 def test_lines_come_from_the_files_that_a_document_was_made_of():
     text = "<robot>\n<link name='a'>\n<mass value='1'/>\n</link>\n</robot>\n"
     places = [("a.xacro", 5), ("b.xacro", 7), ("c.xacro", 9), ("b.xacro", 8), ("a.xacro", 6)]
-    found = facts(Document("a.xacro", text, places))
+    found = list_facts(Document("a.xacro", text, places))
     assert found["link a"].at == "b.xacro:7"
     assert found["link a/mass value"].at == "c.xacro:9"
 
@@ -94,17 +100,17 @@ def test_joints_in_another_order_are_told_with_the_first_places():
         lines = [f'<joint name="{name}" type="t"/>' for name in names]
         return document("\n".join(["<robot>", *lines, "</robot>"]))
 
-    assert differences(robot("a", "b", "c"), robot("b", "a", "c")) == [
+    assert compare_documents(robot("a", "b", "c"), robot("b", "a", "c")) == [
         Difference("order of the joints", "a b c", "b a c", "b.urdf:2", "b.urdf:2")
     ]
     links = [
         document(f"<robot><link name='{a}'/><link name='{b}'/></robot>") for a, b in ("ab", "ba")
     ]
-    assert differences(*links) == []
+    assert compare_documents(*links) == []
     # Only of those that both have.
-    (gone,) = differences(robot("x", "a", "b"), robot("a", "b"))
+    (gone,) = compare_documents(robot("x", "a", "b"), robot("a", "b"))
     assert gone == Difference("joint x", "t", ABSENT, "b.urdf:2", "")
-    both = differences(robot("x", "a", "b"), robot("b", "y", "a"))
+    both = compare_documents(robot("x", "a", "b"), robot("b", "y", "a"))
     assert both[-1] == Difference("order of the joints", "a b", "b a", "b.urdf:3", "b.urdf:2")
 
 
@@ -122,7 +128,7 @@ def test_joints_in_another_order_are_told_with_the_first_places():
 )
 def test_numbers_are_compared_as_numbers(a, b, same):
     first, second = (document(f"<robot><k>{text}</k></robot>") for text in (a, b))
-    assert (differences(first, second) == []) == same
+    assert (compare_documents(first, second) == []) == same
 
 
 def a_log(seed, times, rotors=3):
@@ -140,12 +146,12 @@ TIMES = np.array([0, 0.1, 0.3, 0.4, 0.7])
 
 def test_differences_are_those_of_each_state_row_by_row():
     reference, log = a_log(1, TIMES), a_log(2, TIMES)
-    found = metrics.differences(reference, log)
-    names = list(metrics.states(3))
+    found = flight_differences.compute_differences(reference, log)
+    names = list(flight_differences.list_states(3))
     assert found.shape == (5, len(names)) == (5, 19)
     assert names[:4] == ["position", "attitude", "velocity", "rates"]
     assert names[16:] == ["j1", "j2", "j3"]
-    units = dict(zip(names, metrics.states(3).values()))
+    units = dict(zip(names, flight_differences.list_states(3).values()))
     assert units["position"] == units["z"] == "m"
     assert units["attitude"] == units["yaw"] == units["roll"] == "rad"
     assert units["velocity"] == units["vy"] == "m/s"
@@ -169,7 +175,7 @@ def test_differences_are_those_of_each_state_row_by_row():
     assert np.abs(found[:, 7:10]).max() <= np.pi
     assert np.array_equal(found[:, 10:], apart[:, 8:])
 
-    final, largest = metrics.metrics(reference, log)
+    final, largest = flight_differences.compute_final_and_max(reference, log)
     assert np.array_equal(final, found[-1])
     assert np.array_equal(largest, np.abs(found).max(axis=0))
 
@@ -185,9 +191,11 @@ def test_angles_on_either_side_of_half_a_turn_are_near_each_other():
         return Log(table, {})
 
     for axis, name in ((0, "roll"), (2, "yaw")):
-        column = list(metrics.states(1)).index(name)
+        column = list(flight_differences.list_states(1)).index(name)
         for before, after, apart in ((179, -178, 3), (-178, 179, -3), (10, 30, 20), (91, -91, 178)):
-            final, largest = metrics.metrics(turned(axis, before), turned(axis, after))
+            final, largest = flight_differences.compute_final_and_max(
+                turned(axis, before), turned(axis, after)
+            )
             assert final[column] == pytest.approx(np.radians(apart), abs=1e-12)
             assert largest[column] == pytest.approx(np.radians(abs(apart)), abs=1e-12)
 
@@ -203,7 +211,12 @@ def pitched(*degrees):
 def test_a_flip_of_the_angles_beyond_the_vertical_is_no_difference():
     """At 89 degrees of pitch roll and yaw are 0, at 91 they are 180."""
     below, beyond = pitched(60, 89), pitched(62, 91)
-    found = dict(zip(metrics.states(0), np.degrees(metrics.differences(below, beyond)).T))
+    found = dict(
+        zip(
+            flight_differences.list_states(0),
+            np.degrees(flight_differences.compute_differences(below, beyond)).T,
+        )
+    )
     assert np.allclose(found["pitch"], 2)
     assert np.allclose(found["roll"], 0) and np.allclose(found["yaw"], 0)
 
@@ -219,35 +232,35 @@ def test_the_sign_of_a_quaternion_makes_no_difference():
     reference, log = a_log(1, TIMES), a_log(2, TIMES)
     turned = Log(log.table.copy(), {})
     turned.table[:, 4:8] *= -1
-    found = metrics.differences(reference, turned)
-    assert np.allclose(found, metrics.differences(reference, log), atol=1e-12)
+    found = flight_differences.compute_differences(reference, turned)
+    assert np.allclose(found, flight_differences.compute_differences(reference, log), atol=1e-12)
 
 
 def test_only_the_time_that_both_cover_is_compared_and_a_reference_interpolated():
     whole = a_log(1, TIMES)
     longer = a_log(1, np.append(TIMES, 0.9))
-    assert metrics.differences(whole, longer).shape[0] == 5
-    assert np.abs(metrics.differences(longer, whole)).max() == 0
+    assert flight_differences.compute_differences(whole, longer).shape[0] == 5
+    assert np.abs(flight_differences.compute_differences(longer, whole)).max() == 0
     # A time of the last row that rounding has put behind it counts.
     rounded = Log(whole.table.copy(), {})
     rounded.table[-1, 0] += 5e-10
-    assert metrics.differences(whole, rounded).shape[0] == 5
+    assert flight_differences.compute_differences(whole, rounded).shape[0] == 5
 
     dense = a_log(1, np.linspace(0, 0.7, 701))
     between = a_log(1, [0.05, 0.25, 0.5])
-    found = metrics.differences(dense, between)
+    found = flight_differences.compute_differences(dense, between)
     assert found.shape[0] == 3
     assert np.abs(found).max() < 1e-6
-    coarse = metrics.differences(a_log(1, [0, 0.7]), a_log(1, [0.2]))
+    coarse = flight_differences.compute_differences(a_log(1, [0, 0.7]), a_log(1, [0.2]))
     assert np.abs(coarse[:, [4, 5, 6, 10, 11, 12]]).max() < 1e-12  # straight lines stay
     assert 1e-4 < coarse[0, 1] < 0.1  # the turn lies on its chord, of unit length
-    assert np.linalg.norm(metrics._at(np.array([0.2]), a_log(1, [0, 0.7])).orientation) == (
-        pytest.approx(1, abs=1e-15)
-    )
+    assert np.linalg.norm(
+        flight_differences._interpolate(np.array([0.2]), a_log(1, [0, 0.7])).orientation
+    ) == (pytest.approx(1, abs=1e-15))
 
 
 def test_another_number_of_rotors_leaves_theirs_open():
-    found = metrics.differences(a_log(1, TIMES, 3), a_log(2, TIMES, 2))
+    found = flight_differences.compute_differences(a_log(1, TIMES, 3), a_log(2, TIMES, 2))
     assert found.shape == (5, 19)
     assert np.isnan(found[:, 16:]).all() and np.isfinite(found[:, :16]).all()
 

@@ -15,7 +15,7 @@ from test_own_controllers import here as here
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.studies.evaluate.evaluate import conduct
+from quadcore.studies.evaluate.evaluate import fly_plan
 from quadcore.studies.evaluate.plan import Plan
 from quadcore.studies.options import EvaluateOptions
 
@@ -141,5 +141,5 @@ def test_an_interrupt_carries_the_evaluation():
     options = EvaluateOptions(seeds=3, duration=0.2, processes=1)
     plan = Plan("pd", "hover", ["eigen"], ["quadrotor"], {}, options)
     with pytest.raises(KeyboardInterrupt) as raised:
-        conduct(plan, progress)
+        fly_plan(plan, progress)
     assert raised.value.evaluation.table[0]["failure"] == ""

@@ -11,9 +11,9 @@ from processes import ran, refused
 
 import quadcore as qc
 from quadcore.model.overrides import link_values
-from quadcore.studies.fit.document import with_values
-from quadcore.studies.fit.horizons import _commands as commands_from_speeds
-from quadcore.studies.fit.record import read
+from quadcore.studies.fit.horizons import _make_commands as commands_from_speeds
+from quadcore.studies.fit.model_text import write_values
+from quadcore.studies.fit.record import read_record
 
 DATA = Path(__file__).resolve().parents[1] / "data" / "gazebo11"
 
@@ -130,7 +130,7 @@ def _state(simulation, log):
 
 def test_commands_are_read_from_the_log_that_has_them(flown):
     log, commands = flown
-    assert np.array_equal(read(log, 4).commands, commands)
+    assert np.array_equal(read_record(log, 4).commands, commands)
 
 
 def test_measured_speeds_of_rotors_serve_in_place_of_commands(flown):
@@ -150,7 +150,7 @@ def test_commands_are_found_from_measured_speeds(model):
     time, hover = np.arange(0, 1, simulation.dt), simulation.hover_speed
     wanted = hover * (1 + 0.02 * np.sin(6 * time[:, None] + np.arange(6)))
     log = simulation.run(1, commands=np.column_stack([time, wanted]))
-    record = read(log, simulation.rotor_count)
+    record = read_record(log, simulation.rotor_count)
     found, steps = commands_from_speeds(record, simulation.dt, simulation.rotors)
     late = steps > 0.5 / simulation.dt
     np.testing.assert_allclose(found[late], wanted[steps[late]], rtol=0.003)
@@ -209,7 +209,7 @@ def test_values_are_written_where_they_stand_and_added_where_they_do_not():
         "drone_plugin.parasiticDragCoeff": 0.125,
         "drone_plugin.rotorRadius": 0.07,
     }
-    changed = with_values(model, values)
+    changed = write_values(model, values)
     assert link_values(changed.document)["frame.izz"] == "0.015"
     plugin = qc.Simulation(changed).plugins[0]
     tags = {tag.name: tag.value for tag in plugin.parameters}

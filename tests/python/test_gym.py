@@ -18,7 +18,7 @@ from gymnasium.utils.env_checker import check_env  # noqa: E402
 from gymnasium.vector import AutoresetMode  # noqa: E402
 
 import quadcore.gym as gym  # noqa: E402
-from quadcore.gym.situation import Situation  # noqa: E402
+from quadcore.gym.step_data import StepData  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 CALM = {"xacro_args": {"sim_slow": 1}, "parameters": {"drone_plugin.dragModel": "chapter2"}}
@@ -100,7 +100,7 @@ def test_actions_are_shares_of_the_speed_of_hovering_in_the_order_of_the_command
 def situation():
     """One vehicle, turned by 90 degrees about z, and another upside down."""
     turned = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1.0]])
-    return Situation(
+    return StepData(
         error=np.array([[1.0, 2, 2], [0, 0, 0]]),
         R_WF=np.array([turned, np.diag([1.0, -1, -1])]),
         linear_velocity=np.array([[3.0, 0, 4], [0, 0, 1]]),
@@ -127,7 +127,7 @@ def situation():
     ],
 )
 def test_observations_are_what_their_names_say(name, first):
-    assert np.allclose(gym.OBSERVATIONS[name].of(situation())[0], first, atol=1e-15)
+    assert np.allclose(gym.OBSERVATIONS[name].compute(situation())[0], first, atol=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -145,7 +145,7 @@ def test_observations_are_what_their_names_say(name, first):
     ],
 )
 def test_rewards_are_what_their_names_say(name, both):
-    assert np.allclose(gym.REWARDS[name].of(situation()), both, atol=1e-15)
+    assert np.allclose(gym.REWARDS[name].compute(situation()), both, atol=1e-15)
 
 
 def test_a_vehicle_out_of_reach_ends_its_episode_alone():

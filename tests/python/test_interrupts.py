@@ -17,7 +17,7 @@ import pytest
 from processes import outcomes, script
 
 import quadcore as qc
-from quadcore.studies.executor import contained, each
+from quadcore.studies.executor import contain_errors, run_cases
 from quadcore.support import interrupts
 
 TRIALS = int(os.environ.get("QUADCORE_TRIALS", "4"))  # moments, of each signal and command
@@ -224,13 +224,13 @@ def test_an_interrupt_while_an_outcome_is_taken_loses_none_of_the_others(tmp_pat
         taken.append((index, outcome))
 
     with pytest.raises(interrupts.Interrupted), interrupts.raise_on_signals():
-        each(lambda number: number, range(1000), take, 2, written)
+        run_cases(lambda number: number, range(1000), take, 2, written)
     assert sorted(str(number) for number, _ in taken) == files(tmp_path)
     assert all(outcome == index for index, outcome in taken) and 1 < len(taken) < 1000
 
 
 def test_a_foreign_exception_in_a_case_is_that_case_alone():
-    results = outcomes(contained(lambda number: 1 / number), [1, 0, 2], 2)
+    results = outcomes(contain_errors(lambda number: 1 / number), [1, 0, 2], 2)
     assert (results[0], results[2]) == (1, 0.5)
     assert isinstance(results[1], qc.QuadcoreError)
     assert str(results[1]).startswith("ZeroDivisionError: division by zero (")
@@ -243,7 +243,7 @@ from quadcore.studies import executor
 found = {}
 most = 16 + max(int(name) for name in os.listdir("/proc/self/fd"))
 resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
-executor.each(lambda number: -number, range(20), found.__setitem__, 16)
+executor.run_cases(lambda number: -number, range(20), found.__setitem__, 16)
 print(found == {i: -i for i in range(20)})
 """
 

@@ -14,10 +14,10 @@ from vehicles import plugin, vehicle
 import quadcore as qc
 from quadcore.cli import main
 from quadcore.control import controllers
+from quadcore.studies.evaluate.margins import ENDS, MarginSearch, format_margin
 from quadcore.studies.evaluate.plan import Plan
-from quadcore.studies.evaluate.robustness import ENDS, Searches, margin_text
-from quadcore.studies.evaluate.trial import Trial, lacking
-from quadcore.studies.flights import NAN, Outcome
+from quadcore.studies.evaluate.trial import Trial, list_missing_effects
+from quadcore.studies.measured_flight import NAN, Outcome
 from quadcore.studies.options import EvaluateOptions
 
 
@@ -67,7 +67,7 @@ def test_the_inner_loop_of_an_own_law_believes_in_the_vehicle_as_it_is_described
     laws_["its own"].inner_loop = qc.InnerLoop(spins=[1, -1, 1, -1])
     plan = Plan(laws_, "hover", ["eigen"], ["quadrotor"], {}, EvaluateOptions(duration=1.0))
     for row in range(2):
-        flight = Trial(row, thrust=2.0).flight(plan)
+        flight = Trial(row, thrust=2.0).make_plan(plan)
         told = flight.controller.inner_loop.belief
         assert thrust_of(flight.simulation()) == pytest.approx(2 * thrust_of(told))
     assert flight.controller.inner_loop.spins == [1, -1, 1, -1]
@@ -78,13 +78,13 @@ URDF = Path(__file__).resolve().parents[2] / "urdf"
 
 @pytest.mark.parametrize("model", sorted(path.name.split(".")[0] for path in URDF.glob("*.xacro")))
 def test_of_every_shipped_model_thrust_drag_and_lag_can_be_varied(model):
-    assert lacking(qc.Simulation(model, engine="eigen")) == []
+    assert list_missing_effects(qc.Simulation(model, engine="eigen")) == []
 
 
 @pytest.mark.parametrize("motor", ["pid", "first_order"])
 def test_the_motors_of_either_kind_say_how_they_lag(motor):
     simulation = qc.Simulation("hexarotor", engine="eigen", xacro_args={"motor": motor})
-    assert lacking(simulation) == []
+    assert list_missing_effects(simulation) == []
 
 
 @pytest.mark.parametrize("model", ["quadrotor", "hexarotor", "firefly"])
@@ -93,7 +93,7 @@ def test_the_vehicle_of_a_trial_pushes_resists_and_lags_by_the_factors_asked_for
     plan = Plan({"own": Own()}, "hover", ["eigen"], [model], {}, options)
 
     def flown(**factors):
-        return Trial(0, **factors).flight(plan).simulation()
+        return Trial(0, **factors).make_plan(plan).simulation()
 
     plain = flown()
     hover = plain.hover_speed
@@ -130,15 +130,15 @@ def rise(simulation):
 
 def test_a_margin_at_the_end_of_its_search_is_told_as_larger():
     row = {"gain_low": 0.1, "gain_high": 10.0, "delay_margin": 0.5}
-    assert [margin_text(row, name, "{:g}".format) for name in ENDS] == ["< 0.1", "> 10", "> 0.5"]
-    assert margin_text({"gain_high": 9.9}, "gain_high", "{:g}".format) == "9.9"
+    assert [format_margin(row, name, "{:g}".format) for name in ENDS] == ["< 0.1", "> 10", "> 0.5"]
+    assert format_margin({"gain_high": 9.9}, "gain_high", "{:g}".format) == "9.9"
 
     def never_lost(trials):
         return [Outcome("", {**NAN, "rms_position": 0.1 * trial.thrust}) for trial in trials]
 
-    searches = Searches(["one"], [])
+    searches = MarginSearch(["one"], [])
     searches.run(never_lost)
-    (row,) = searches.rows()
+    (row,) = searches.list_rows()
     assert {name: row[name] for name in ENDS} == ENDS
     assert row["box_worst"] == pytest.approx(0.1 / 0.9)
 
@@ -168,9 +168,9 @@ def test_the_search_finds_the_edge():
             Outcome("" if 0.5 < t.thrust < 3 and t.delay < 0.1 else "lost", NAN) for t in trials
         ]
 
-    searches = Searches(["one"], ["drag"])
+    searches = MarginSearch(["one"], ["drag"])
     searches.run(lost_outside)
-    (row,) = searches.rows()
+    (row,) = searches.list_rows()
     assert row["gain_low"] == pytest.approx(0.5, rel=0.02)
     assert row["gain_high"] == pytest.approx(3, rel=0.02)
     assert row["delay_margin"] == pytest.approx(0.1, abs=0.002)
@@ -184,7 +184,7 @@ def test_an_interrupted_search_says_so():
             raise KeyboardInterrupt
         return [Outcome("", NAN)]
 
-    searches = Searches(["one"], [])
+    searches = MarginSearch(["one"], [])
     with pytest.raises(KeyboardInterrupt):
         searches.run(interrupted)
-    assert searches.rows()[0]["failure"] == "not flown: interrupted"
+    assert searches.list_rows()[0]["failure"] == "not flown: interrupted"

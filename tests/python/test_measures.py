@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from quadcore.simulation.log import Log
-from quadcore.studies import measures
-from quadcore.studies.evaluate.intervals import cvar, interval
-from quadcore.studies.evaluate.sums import over_seeds
-from quadcore.studies.flights import NAN, Outcome
+from quadcore.studies import tracking_metrics
+from quadcore.studies.evaluate.intervals import compute_cvar, compute_interval
+from quadcore.studies.evaluate.seed_statistics import summarise_seeds
+from quadcore.studies.measured_flight import NAN, Outcome
 from quadcore.studies.step_response import step_response
-from quadcore.studies.table import NOT_FLOWN, flown_and_failed
+from quadcore.studies.table import NOT_FLOWN, count_outcomes
 
 
 def log_of(time, wanted, position, rotors=None):
@@ -39,7 +39,7 @@ def test_measures_are_those_of_a_motion_in_closed_form():
     error = 0.3 * np.exp(-time / 4)
     rotors = np.column_stack([100 + 10 * time, np.full(2001, -50.0)])
     log = log_of(time, np.sin(time), np.sin(time) + error, rotors)
-    found = measures.measure(log, 0.25, rotors_of(2e-6, 3e-6))
+    found = tracking_metrics.measure(log, 0.25, rotors_of(2e-6, 3e-6))
     assert found["max_position"] == pytest.approx(0.3)
     assert found["rms_position"] == pytest.approx(
         np.sqrt(0.09 * 2 * (1 - np.exp(-10)) / 20), rel=2e-3
@@ -63,7 +63,7 @@ def test_rise_overshoot_and_settling_are_those_of_a_second_order_system():
         np.cos(root * w * since) + d / root * np.sin(root * w * since)
     )
     wanted = np.where(time >= 2.0005, 5.0, 3.0)
-    found = measures.measure(log_of(time, wanted, 3 + 2 * answer), 0, rotors_of(0, 0))
+    found = tracking_metrics.measure(log_of(time, wanted, 3 + 2 * answer), 0, rotors_of(0, 0))
     assert found["overshoot"] == pytest.approx(np.exp(-np.pi * d / root), rel=1e-3)
     t = np.arange(0, 20, 1e-4)
     exact = 1 - np.exp(-d * w * t) * (np.cos(root * w * t) + d / root * np.sin(root * w * t))
@@ -78,7 +78,9 @@ def test_effort_and_energy_are_those_of_the_speeds_whatever_the_joints_are_slowe
     rotors = np.column_stack([100 + 10 * time, np.full(2001, -50.0)])
     given = time, 0 * time, 0 * time
     whole, slowed = (
-        measures.measure(log_of(*given, rotors / slow), 0, rotors_of(2e-6, 3e-6, slowdown=slow))
+        tracking_metrics.measure(
+            log_of(*given, rotors / slow), 0, rotors_of(2e-6, 3e-6, slowdown=slow)
+        )
         for slow in (1, 10)
     )
     for name in ("effort", "energy"):
@@ -87,7 +89,7 @@ def test_effort_and_energy_are_those_of_the_speeds_whatever_the_joints_are_slowe
 
 def test_the_steady_error_of_a_short_flight_is_that_of_its_second_half():
     time = np.linspace(0, 4, 401)
-    found = measures.measure(
+    found = tracking_metrics.measure(
         log_of(time, 0 * time, np.where(time <= 2, 1, 0.25)), 0, rotors_of(0, 0)
     )
     assert found["steady_position"] == pytest.approx(0.25)
@@ -95,9 +97,11 @@ def test_the_steady_error_of_a_short_flight_is_that_of_its_second_half():
 
 def test_who_is_more_than_5_m_off_is_lost():
     time = np.linspace(0, 10, 101)
-    assert measures.lost(log_of(time, 0 * time, 0.49 * time)) is None
-    assert measures.lost(log_of(time, 0 * time, 0.7 * time)) == pytest.approx(7.2)
-    assert measures.lost(log_of(time, 0 * time, np.full(101, np.nan))) == 0
+    assert tracking_metrics.find_failure_time(log_of(time, 0 * time, 0.49 * time)) is None
+    assert tracking_metrics.find_failure_time(log_of(time, 0 * time, 0.7 * time)) == pytest.approx(
+        7.2
+    )
+    assert tracking_metrics.find_failure_time(log_of(time, 0 * time, np.full(101, np.nan))) == 0
 
 
 def test_the_step_response_is_found_in_any_motion_that_excites_it():
@@ -118,16 +122,16 @@ def test_the_step_response_is_found_in_any_motion_that_excites_it():
 
 def test_intervals_hold_the_mean_as_often_as_they_say():
     draws = np.random.default_rng(1).normal(3, 1, size=(300, 30))
-    held = [low < 3 < high for low, high in map(interval, draws)]
+    held = [low < 3 < high for low, high in map(compute_interval, draws)]
     assert 0.89 < np.mean(held) < 0.98
-    assert interval(draws[0]) == interval(draws[0])
-    assert np.isnan(interval(draws[0, :1])).all()
+    assert compute_interval(draws[0]) == compute_interval(draws[0])
+    assert np.isnan(compute_interval(draws[0, :1])).all()
 
 
 def test_the_value_at_risk_is_the_mean_of_the_worst_tenth():
-    assert cvar(np.arange(1, 21)) == pytest.approx(19.5)
-    assert cvar(np.array([1.0, 7.0])) == 7
-    assert np.isnan(cvar(np.array([])))
+    assert compute_cvar(np.arange(1, 21)) == pytest.approx(19.5)
+    assert compute_cvar(np.array([1.0, 7.0])) == 7
+    assert np.isnan(compute_cvar(np.array([])))
 
 
 def judged(*values):
@@ -143,26 +147,26 @@ def judged(*values):
 
 
 def test_flights_that_an_interrupt_left_out_did_not_fail():
-    (row,) = over_seeds([(0, 0)] * 3, [{"seed": i} for i in range(3)], judged(2.0, None, np.nan))
+    (row,) = summarise_seeds(
+        [(0, 0)] * 3, [{"seed": i} for i in range(3)], judged(2.0, None, np.nan)
+    )
     assert (row["flights"], row["not_flown"], row["failure_rate"]) == (2, 1, 0.5)
-    (row,) = over_seeds([(0, 0)] * 2, [{}] * 2, judged(np.nan, np.nan))
+    (row,) = summarise_seeds([(0, 0)] * 2, [{}] * 2, judged(np.nan, np.nan))
     assert (row["flights"], row["not_flown"]) == (0, 2)
     assert np.isnan(row["failure_rate"])
-    assert flown_and_failed(["", "lost", NOT_FLOWN]) == (
-        "3 flights: 1 flown, 1 failed, 1 not flown"
-    )
+    assert count_outcomes(["", "lost", NOT_FLOWN]) == ("3 flights: 1 flown, 1 failed, 1 not flown")
 
 
 def test_a_lost_flight_is_worse_than_any_in_the_value_at_risk():
     flights = judged(*range(1, 20), None)
-    (row,) = over_seeds([(0, 0)] * 20, [{}] * 20, flights)
+    (row,) = summarise_seeds([(0, 0)] * 20, [{}] * 20, flights)
     assert row["mean_rms_position"] == 10
     assert row["cvar_rms_position"] == np.inf
 
 
 def test_every_measure_has_an_interval_and_a_paired_difference():
     first, second = judged(1.0, 2.0, 4.0), judged(1.5, 2.5, 4.5)
-    _, row = over_seeds([(0, 0)] * 3 + [(1, 0)] * 3, [{}] * 6, first + second)
+    _, row = summarise_seeds([(0, 0)] * 3 + [(1, 0)] * 3, [{}] * 6, first + second)
     for name in NAN:
         assert row[f"low_{name}"] < row[f"mean_{name}"] < row[f"high_{name}"]
         ends = row[f"difference_low_{name}"], row[f"difference_high_{name}"]

@@ -12,7 +12,7 @@ import scipy.io
 import quadcore as qc
 from quadcore.cli import main
 from quadcore.serve import Server
-from quadcore.studies.measures import measure
+from quadcore.studies.tracking_metrics import measure
 from quadcore.thesis.chapter2.model import MathematicalModel
 from quadcore.thesis.chapter2.vehicle import Vehicle
 

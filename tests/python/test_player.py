@@ -34,9 +34,14 @@ def flown(rows=200, duration=4.0, reference=True, rotors=3):
     return qc.Log(table, {}, topics=topics)
 
 
+def contents_of(text):
+    written = re.findall(r'<script type="application/json"[^>]*>(.*?)</script>', text, re.S)
+    return list(map(json.loads, written))
+
+
 def content_of(text):
-    (written,) = re.findall(r'<script type="application/json"[^>]*>(.*?)</script>', text, re.S)
-    return json.loads(written)
+    (content,) = contents_of(text)
+    return content
 
 
 def numbers(packed, width):
@@ -105,6 +110,12 @@ def test_a_topic_that_is_called_reference_and_is_none_is_left_alone():
     assert make_page([PlayerFlight("a", log)]) == make_page(
         [PlayerFlight("a", flown(reference=False))]
     )
+
+
+def test_the_first_32_flights_look_different():
+    content = content_of(make_page([PlayerFlight(str(i), flown(rows=2)) for i in range(33)]))
+    assert len(content["flights"]) == 33
+    assert len(set(content["colours"])) * len(set(map(tuple, content["dashes"]))) == 32
 
 
 def test_equal_flights_make_equal_pages():

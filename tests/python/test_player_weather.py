@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from browser import told
 from evaluations import FLY
-from test_player import LOOK, ROTORS, content_of, flown, numbers
+from test_player import LOOK, ROTORS, content_of, contents_of, flown, numbers
 
 import quadcore as qc
 from quadcore.cli import main
@@ -79,7 +79,9 @@ def test_the_page_of_an_evaluation_has_them(tmp_path):
     command = [*FLY, "--controller", "geometric", "--reference", "hover", "--engine", "eigen"]
     scenarios = ["--scenario", f"none,{befallen(tmp_path)}"]
     assert main([*command, *scenarios, "--out", str(tmp_path / "out"), "--quiet"]) == 0
-    contents = content_of((tmp_path / "out" / "report.html").read_text())["flights"]
-    columns = [set(flight["columns"]) for flight in contents]
+    text = (tmp_path / "out" / "report.html").read_text()
+    assert "Animation: hover, scenario none" in text
+    contents = [content["flights"] for content in contents_of(text)]
+    columns = [set(flight["columns"]) for (flight,) in contents]  # a player for each scenario
     assert "wind" not in columns[0]
     assert {"wind", "carried box_carried", "carried payload_carried"} <= columns[1]

@@ -8,12 +8,12 @@ import pytest
 import quadcore as qc
 from quadcore.control import controllers
 from quadcore.simulation.simulation import make_simulation
-from quadcore.studies.evaluate.poles import gains_of, has_poles, poles, text
+from quadcore.studies.evaluate.poles import compute_poles, format_poles, has_poles, read_gains
 
 
 def by_axis(law, engine="eigen", slow=1, **parameters):
     simulation = make_simulation(engine, xacro_args={"sim_slow": slow}, parameters=parameters)
-    return {row["axis"]: row for row in poles(law, simulation)}
+    return {row["axis"]: row for row in compute_poles(law, simulation)}
 
 
 def test_the_zero_of_the_yaw_is_where_air_and_spin_up_cancel():
@@ -40,7 +40,7 @@ def test_the_printed_gains_are_unstable_in_x_and_y_everywhere_and_in_yaw_at_sim_
         assert found["roll, pitch"]["stable"]
         assert found["yaw"]["stable"] == ((engine, slow) != ("eigen", 1))
     assert all(row["stable"] for row in by_axis(controllers.pid()).values())
-    assert text(by_axis(controllers.pid_thesis())["x, y"], 1) == "0.27 +- 1.63i"
+    assert format_poles(by_axis(controllers.pid_thesis())["x, y"], 1) == "0.27 +- 1.63i"
 
 
 def test_motors_without_lag_leave_the_polynomial_of_routh_and_hurwitz():
@@ -76,8 +76,8 @@ def test_only_cascades_have_poles():
     assert has_poles(controllers.pd())
     assert not has_poles(controllers.geometric())
     assert not has_poles(lambda t, state, reference: None)
-    assert gains_of(controllers.pid_thesis(kp_z=3))["kp_z"] == 3
-    assert gains_of(controllers.pid_thesis())["kd_xy"] == 0.125
+    assert read_gains(controllers.pid_thesis(kp_z=3))["kp_z"] == 3
+    assert read_gains(controllers.pid_thesis())["kd_xy"] == 0.125
 
 
 def test_the_page_names_both_causes_of_the_printed_gains():

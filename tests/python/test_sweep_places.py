@@ -19,7 +19,7 @@ from processes import LONG, script
 from sweeps import lines, sweep
 
 import quadcore as qc
-from quadcore.studies.sweep.spec import Flight
+from quadcore.studies.sweep.row_spec import Flight
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 
@@ -153,12 +153,12 @@ def test_models_travel_as_documents():
         [str(here / "mine.urdf")],
         SweepOptions(duration=0.1),
     )
-    spec = plan.spec(0)
+    spec = plan.make_spec(0)
     assert isinstance(spec, Flight)
     import pickle
 
     Path("spec.pickle").write_bytes(pickle.dumps(spec))
-    expected = dict(spec.measured())
+    expected = dict(spec.measure())
     shutil.rmtree("here")
     flown = script(
         "import pickle\nspec = pickle.load(open('spec.pickle', 'rb'))\n"

@@ -20,7 +20,7 @@ from sweeps import lines, rows, sweep
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.studies.folder import output_folder
+from quadcore.studies.output_folder import output_folder
 
 FLY = ["sweep", "--controller=geometric", "--reference=circle", "--xacro=sim_slow:=1", "--quiet"]
 SMALL = [*FLY, "--vary=frame.mass=uniform:0.9:1.1", "--samples=40", "--duration=1", "--no-plots"]
@@ -194,7 +194,7 @@ def test_a_flight_that_never_ends_is_one_row():
 HOLDER = """
 import sys
 from pathlib import Path
-from quadcore.studies.folder import output_folder
+from quadcore.studies.output_folder import output_folder
 
 with output_folder(Path("out")):
     print("held", flush=True)
@@ -211,7 +211,7 @@ with output_folder(Path("out")):
     ],
 )
 def test_two_studies_do_not_write_into_one_folder(command, monkeypatch, capsys):
-    monkeypatch.setattr("quadcore.studies.folder._PATIENCE", 0.0)
+    monkeypatch.setattr("quadcore.studies.output_folder._PATIENCE", 0.0)
     words = [*command, "--duration=0.05", "--no-plots", "--quiet", "--out=out"]
     with subprocess.Popen(
         [sys.executable, "-c", HOLDER], stdin=subprocess.PIPE, stdout=subprocess.PIPE
@@ -295,13 +295,13 @@ import resource
 import quadcore as qc
 from quadcore.studies.design import Design
 from quadcore.studies.sweep.plan import Calls
-from quadcore.studies.sweep.sweep import conduct
+from quadcore.studies.sweep.sweep import fly_plan
 from pathlib import Path
 
 def most(count, folder):
     Path(folder).mkdir()
     design = Design({"a": f"0:1:{count}"})
-    conduct(Calls(design, lambda point: point["a"], ["value"], 9.0), Path(folder), processes=1)
+    fly_plan(Calls(design, lambda point: point["a"], ["value"], 9.0), Path(folder), processes=1)
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 few = most(2000, "few")

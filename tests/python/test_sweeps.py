@@ -91,7 +91,7 @@ def test_rows_that_fly_together_are_what_they_are_alone(tmp_path, monkeypatch):
         )
 
     together = fly()
-    monkeypatch.setattr("quadcore.studies.sweep.places.fly_together", lambda specs: None)
+    monkeypatch.setattr("quadcore.studies.sweep.execution.fly_together", lambda specs: None)
     alone = fly()
     for name, column in together.columns.items():
         np.testing.assert_array_equal(column, alone.columns[name])

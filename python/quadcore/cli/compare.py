@@ -10,7 +10,7 @@ from .._core import InputError, QuadcoreError
 from ..report.decimation import decimate
 from ..simulation.engines import ENGINE
 from ..simulation.log import Log
-from ..studies.compare.compare import fly
+from ..studies.compare.compare import fly_plan
 from ..studies.compare.output import (
     FILES,
     format_values,
@@ -22,9 +22,9 @@ from ..studies.compare.output import (
 )
 from ..studies.compare.plan import Plan
 from ..studies.compare.result import Comparison
-from ..studies.folder import output_folder
 from ..studies.options import CompareOptions
-from ..studies.table import number_text, shown_in
+from ..studies.output_folder import output_folder
+from ..studies.table import choose_display_unit, format_number
 from ..support import parse
 from ..support.output_files import make_folder
 from ..support.values import SPAWN
@@ -83,7 +83,7 @@ def _compare(arguments: argparse.Namespace, plan: Plan) -> None:
     with keep_partial_output("comparison", out, put), terminal.progress(
         arguments.quiet
     ) as progress:
-        comparison = fly(
+        comparison = fly_plan(
             plan,
             _keeper(arguments, plan),
             progress,
@@ -95,7 +95,7 @@ def _compare(arguments: argparse.Namespace, plan: Plan) -> None:
     report_failures(
         comparison.table["failure"].tolist(),
         comparison.refused,
-        lambda i: f"no. {i + 1} ({plan.label(plan[i])})",
+        lambda i: f"no. {i + 1} ({plan.make_label(plan[i])})",
     )
 
 
@@ -125,9 +125,9 @@ def _plan(arguments: argparse.Namespace) -> Plan:
 
 
 def _warn_of_commands(plan: Plan) -> None:
-    if plan.guidance.is_given:
+    if plan.control.is_closed_loop:
         return
-    first = plan.flight(plan[0])
+    first = plan.make_plan(plan[0])
     try:
         simulation = first.simulation()
     except QuadcoreError:  # a row of the table, with its reason
@@ -160,10 +160,10 @@ def _keeper(arguments: argparse.Namespace, plan: Plan) -> Any:
 
 def _flight(arguments: argparse.Namespace, plan: Plan) -> dict[str, str]:
     """Describe what all flights share."""
-    guided = plan.guidance.is_given
+    guided = plan.control.is_closed_loop
     shared = plan.options
     begins = "on the reference"
-    if not plan.guidance.on_reference:
+    if not plan.control.on_reference:
         begins = ", ".join(f"{part:g}" for part in shared.spawn or SPAWN)
     told = {
         "commands": None if guided else arguments.commands or "none",
@@ -192,7 +192,7 @@ def _flight(arguments: argparse.Namespace, plan: Plan) -> dict[str, str]:
 
 def _show_models(plan: Plan) -> None:
     console = terminal.console()
-    for model, found in plan.differences().items():
+    for model, found in plan.compare_models().items():
         console.print(f"{model} differs from {plan.models[0]} in")
         table = terminal.table("  what", "from", "to", "at", "and at")
         for d in found:
@@ -201,7 +201,9 @@ def _show_models(plan: Plan) -> None:
     if plan.axes:
         table = terminal.table("varied", "values", "as written")
         for axis in plan.axes:
-            table.add_row(axis.name, format_values(axis.values), plan.as_written(axis) or "-")
+            table.add_row(
+                axis.name, format_values(axis.values), plan.format_written_value(axis) or "-"
+            )
         console.print(table, "")
 
 
@@ -210,9 +212,9 @@ def _show_flights(plan: Plan, comparison: Comparison, files: list[Path]) -> None
     whole = list(comparison.states)[:4]
     if comparison.against is not None:
         console.print(f"differences from no. {comparison.against + 1}, final / max")
-    units = {state: shown_in(comparison.states[state]) for state in whole}
+    units = {state: choose_display_unit(comparison.states[state]) for state in whole}
     headings = [f"{state} ({unit})" for state, (unit, _) in units.items()]
-    if plan.guidance.is_given:
+    if plan.control.is_closed_loop:
         headings.insert(0, "to the reference (m), RMS / max")
     table, failures = terminal.table("no.", "variant", *headings), []
     for number, (row, variant) in enumerate(zip(comparison.table, plan), start=1):
@@ -220,16 +222,16 @@ def _show_flights(plan: Plan, comparison: Comparison, files: list[Path]) -> None
             table.add_row("...", f"{len(plan) - _ROWS} more")
             break
         cells = [
-            " / ".join(number_text(row[f"{k}_{state}"] * factor) for k in ("final", "max"))
+            " / ".join(format_number(row[f"{k}_{state}"] * factor) for k in ("final", "max"))
             for state, (_, factor) in units.items()
         ]
-        if plan.guidance.is_given:
-            errors = [number_text(row[f"{kind}_error"]) for kind in ("rms", "max")]
+        if plan.control.is_closed_loop:
+            errors = [format_number(row[f"{kind}_error"]) for kind in ("rms", "max")]
             cells.insert(0, " / ".join(errors))
         if row["failure"]:
             cells = ["failed"]
-            failures.append(f"no. {number} ({plan.label(variant)}): {row['failure']}")
-        table.add_row(str(number), plan.label(variant), *cells)
+            failures.append(f"no. {number} ({plan.make_label(variant)}): {row['failure']}")
+        table.add_row(str(number), plan.make_label(variant), *cells)
     console.print(table, "", *failures, summarise(comparison), sep="\n")
     for file in files:
         console.print(f"written {file}")

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from .._core import InputError
 from ..simulation.engines import STUDIED
-from ..studies.folder import output_folder
 from ..studies.options import EvaluateOptions
+from ..studies.output_folder import output_folder
 from . import options, terminal
 from .failed_flights import report_failures
 from .interrupted_output import keep_partial_output
@@ -46,7 +46,7 @@ def evaluate(arguments: argparse.Namespace) -> None:
 
 
 def _evaluate(arguments: argparse.Namespace, plan: Plan) -> None:
-    from ..studies.evaluate.evaluate import conduct
+    from ..studies.evaluate.evaluate import fly_plan
     from ..studies.evaluate.output import write
 
     out = arguments.out
@@ -57,7 +57,7 @@ def _evaluate(arguments: argparse.Namespace, plan: Plan) -> None:
     with keep_partial_output("evaluation", out, put), terminal.progress(
         arguments.quiet
     ) as progress:
-        evaluation = conduct(plan, progress, arguments.margins)
+        evaluation = fly_plan(plan, progress, arguments.margins)
     files = put(evaluation, not arguments.no_plots)
     if not arguments.quiet:
         _show(evaluation, files)
@@ -86,11 +86,11 @@ def _plan(arguments: argparse.Namespace) -> Plan:
 
 def _show(evaluation: Evaluation, files: list[Path]) -> None:
     from ..studies.evaluate.output import list_unstable_axes, summarise
-    from ..studies.evaluate.shown_rows import columns_to_read, rows_to_read
+    from ..studies.evaluate.summary_table import choose_columns, format_rows
 
     console = terminal.console()
-    lines = rows_to_read(evaluation)
-    shown = columns_to_read(lines)
+    lines = format_rows(evaluation)
+    shown = choose_columns(lines)
     table = terminal.table(*shown.values(), "")
     for line in lines[:_ROWS]:
         table.add_row(*(line[name] for name in shown), line["best"])

@@ -134,10 +134,10 @@ def _show(found: Fit, out: Path) -> None:
         told = "not told" if math.isnan(deviation) else f"{deviation:.2g}"
         table.add_row(name, f"{found.start[name]:.6g}", f"{value:.6g}", told, found.units[name])
     console.print(table, "")
-    for line in found.told():
+    for line in found.describe():
         console.print(line)
     table = terminal.table("left over (rms)", "start", "found", "held out", "unit", numbers=True)
-    for name, unit, numbers in found.left_over():
+    for name, unit, numbers in found.list_residuals():
         table.add_row(name, *(f"{number:.4g}" for number in numbers), unit)
     console.print("", table)
     console.print(f"written {out}")

@@ -15,8 +15,16 @@ from ..model import resources
 from ..simulation.engines import ENGINE, list_engines
 from ..simulation.flight_plan import FlightPlan
 from ..studies.axes import parse_axis
-from ..studies.guidance import Guidance
-from ..studies.options import SPAWNED, About, Names, Options, changed, described, explained
+from ..studies.control_setup import ControlSetup
+from ..studies.options import (
+    SPAWNED,
+    Names,
+    OptionInfo,
+    Options,
+    change_option,
+    describe_options,
+    explain,
+)
 from ..support import parse
 from ..support.values import SPAWN, Number
 
@@ -38,12 +46,12 @@ class FlightOptions(Options):
     """Options of a single flight."""
 
     scenario: Optional[Names] = field(
-        default=None, metadata=changed("scenario", metavar="FILE", read=str)
+        default=None, metadata=change_option("scenario", metavar="FILE", read=str)
     )
-    seed: int = field(default=0, metadata=changed("seed", meaning="seed of all noise"))
-    log_every: Optional[int] = field(default=1, metadata=changed("log_every", without=""))
+    seed: int = field(default=0, metadata=change_option("seed", meaning="seed of all noise"))
+    log_every: Optional[int] = field(default=1, metadata=change_option("log_every", without=""))
     spawn: Optional[Sequence[Number]] = field(
-        default=None, metadata=changed("spawn", without=SPAWNED)
+        default=None, metadata=change_option("spawn", without=SPAWNED)
     )
 
 
@@ -61,7 +69,7 @@ def add(
 ) -> None:
     """Add options by their names in Python, or all; some with other defaults."""
     for each in fields(kind):
-        about: About = each.metadata["about"]
+        about: OptionInfo = each.metadata["about"]
         if not about.flag or (names and each.name not in names):
             continue
         default = defaults.get(each.name, each.default)
@@ -70,7 +78,7 @@ def add(
             f"--{about.flag}",
             metavar=about.metavar,
             type=about.read,
-            help=explained(about, default) + ("; repeatable" if about.repeats else ""),
+            help=explain(about, default) + ("; repeatable" if about.repeats else ""),
             **more,  # type: ignore[arg-type]
         )
 
@@ -78,7 +86,7 @@ def add(
 def read(arguments: argparse.Namespace, kind: Type[Kind]) -> Kind:
     """Make the options that `add` asked for."""
     given: dict[str, Any] = {}
-    for name, about in described(kind).items():
+    for name, about in describe_options(kind).items():
         value = getattr(arguments, about.flag.replace("-", "_"), None)
         if about.flag and value is not None:
             is_mapping = about.repeats and about.read is not str
@@ -139,7 +147,7 @@ def add_study(
     """Add the options that all studies share."""
     add(parser, *CHANGES, kind=kind)
     add_engine(parser, engine, list_engines())
-    add(parser, *(name for name in described(kind) if name not in CHANGES), kind=kind)
+    add(parser, *(name for name in describe_options(kind) if name not in CHANGES), kind=kind)
     parser.add_argument(
         "--options",
         metavar="FILE.yaml",
@@ -270,12 +278,12 @@ def flight_plan(arguments: argparse.Namespace) -> FlightPlan:
         log_every=arguments.log_every or 1,
         topics=tuple(given.get("log_topics", ())),
     )
-    guidance = guidance_of(arguments) if "controller" in given else Guidance()
-    return guidance.guide(plan) if guidance.is_given else plan
+    control = guidance_of(arguments) if "controller" in given else ControlSetup()
+    return control.guide(plan) if control.is_closed_loop else plan
 
 
-def guidance_of(arguments: argparse.Namespace) -> Guidance:
-    """Make the guidance that `add_controller` asked for."""
+def guidance_of(arguments: argparse.Namespace) -> ControlSetup:
+    """Make the control that `add_controller` asked for."""
     names = ("controller", "reference", "controller_rate", "delay")
     given = {name: getattr(arguments, name) for name in names}
     if arguments.controller is None:
@@ -284,7 +292,7 @@ def guidance_of(arguments: argparse.Namespace) -> Guidance:
                 raise InputError(f"--{name.replace('_', '-')} needs a --controller; name one")
     elif arguments.commands is not None:
         raise InputError("a flight takes --commands or a --controller; give one of them")
-    return Guidance.single(**given, spawn=arguments.spawn)
+    return ControlSetup.single(**given, spawn=arguments.spawn)
 
 
 def varied(arguments: argparse.Namespace) -> dict[str, Any]:

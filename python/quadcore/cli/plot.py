@@ -8,7 +8,7 @@ from typing import Any, List, Sequence
 
 from ..report.decimation import decimate
 from ..simulation.log import Log
-from ..studies.table import save
+from ..studies.table import save_files
 from ..support.output_files import make_folder
 from . import options, terminal
 from .play import add_names, names_of
@@ -55,4 +55,4 @@ def _over_each_other(names: Sequence[str], logs: Sequence[Log], folder: Path) ->
     curves = [Curve(name, decimate(log, _ROWS)) for name, log in zip(names, logs)]
     figures = draw(curves, curves[0].log, names[0])
     make_folder(folder)
-    return save(folder, {f"{name}.png": png(figure) for name, figure in figures.items()})
+    return save_files(folder, {f"{name}.png": png(figure) for name, figure in figures.items()})

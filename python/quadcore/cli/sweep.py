@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..simulation.engines import STUDIED
-from ..studies import measures as of_guided
-from ..studies.distributions import DESIGNS, forms
-from ..studies.folder import output_folder
+from ..studies import tracking_metrics as of_guided
+from ..studies.distributions import DESIGNS, list_forms
 from ..studies.options import SweepOptions
-from ..studies.sweep import motion
+from ..studies.output_folder import output_folder
+from ..studies.sweep import motion_metrics
 from ..support import parse
 from . import options, terminal
 from .failed_flights import report_failures
@@ -32,7 +32,7 @@ def register(commands: Any) -> None:
     )
     options.add_combined(parser)
     options.add_commands(parser)
-    options.add_vary(parser, f"{options.CONTROLLER_KEYS}; or drawn from {', '.join(forms())}")
+    options.add_vary(parser, f"{options.CONTROLLER_KEYS}; or drawn from {', '.join(list_forms())}")
     parser.add_argument(
         "--points", metavar="FILE.csv", help="rows are points of the axes that its header names"
     )
@@ -65,29 +65,29 @@ def register(commands: Any) -> None:
         "--measure",
         metavar="NAME",
         help="what is drawn, and what the worst rows are worst in "
-        f"({next(iter(of_guided.UNITS))}; with --commands {next(iter(motion.UNITS))})",
+        f"({next(iter(of_guided.UNITS))}; with --commands {next(iter(motion_metrics.UNITS))})",
     )
 
 
 def sweep(arguments: argparse.Namespace) -> None:
     """Fly what is missing, and tell what came of it."""
-    from ..studies.sweep.output import FILES, main_measure
+    from ..studies.sweep.output import FILES, choose_metric
 
     arguments, plan = planned(arguments, _plan)
-    measure = main_measure(plan, arguments.measure)
+    measure = choose_metric(plan, arguments.measure)
     with output_folder(arguments.out, FILES):  # after the flights would be too late
         _sweep(arguments, plan, measure)
 
 
 def _sweep(arguments: argparse.Namespace, plan: Plan, measure: str) -> None:
     from ..studies.sweep.output import write
-    from ..studies.sweep.sweep import TABLE, conduct
-    from ..studies.sweep.table import table
+    from ..studies.sweep.sweep import TABLE, fly_plan
+    from ..studies.sweep.table import make_table
 
     out = arguments.out
     try:
         with terminal.progress(arguments.quiet) as progress:
-            rows = conduct(
+            rows = fly_plan(
                 plan,
                 out,
                 arguments.resume,
@@ -99,7 +99,7 @@ def _sweep(arguments: argparse.Namespace, plan: Plan, measure: str) -> None:
     except KeyboardInterrupt:
         terminal.say(f"rows so far: {out / TABLE}; --resume flies the rest")
         raise
-    columns = table(rows)
+    columns = make_table(rows)
     files = write(plan, columns, out, measure, not arguments.no_plots)
     if not arguments.quiet:
         _show(plan, columns, measure, files)
@@ -107,9 +107,9 @@ def _sweep(arguments: argparse.Namespace, plan: Plan, measure: str) -> None:
 
 
 def _plan(arguments: argparse.Namespace) -> Plan:
-    from ..studies.sweep.plan import Plan, designed
+    from ..studies.sweep.plan import Plan, make_design
 
-    design, shared = designed(
+    design, shared = make_design(
         options.unique("--vary", arguments.vary),
         options.read(arguments, SweepOptions),
         arguments.points,
@@ -128,35 +128,35 @@ def _plan(arguments: argparse.Namespace) -> Plan:
 
 
 def _show(plan: Plan, columns: Any, measure: str, files: list[Path]) -> None:
-    from ..studies.sweep.output import count_rows, summaries
-    from ..studies.sweep.sensitivity import sensitivities
-    from ..studies.table import number_text
+    from ..studies.sweep.output import count_rows, summarise_rows
+    from ..studies.sweep.sensitivity import compute_sensitivities
+    from ..studies.table import format_number
 
     console = terminal.console()
-    lines = [row for row in summaries(plan, columns) if row["measure"] == measure]
+    lines = [row for row in summarise_rows(plan, columns) if row["measure"] == measure]
     if lines:
-        table = terminal.table(*lines[0], numbers=True)
+        make_table = terminal.table(*lines[0], numbers=True)
         for row in lines:
-            table.add_row(*(_cell(value, number_text) for value in row.values()))
-        console.print(table, "")
-    found = [row for row in sensitivities(plan, columns) if row["measure"] == measure]
+            make_table.add_row(*(_cell(value, format_number) for value in row.values()))
+        console.print(make_table, "")
+    found = [row for row in compute_sensitivities(plan, columns) if row["measure"] == measure]
     if found:
         shown = [name for name in found[0] if name not in _UNTOLD]
-        table = terminal.table(*shown, numbers=True)
+        make_table = terminal.table(*shown, numbers=True)
         for row in found:
-            table.add_row(*(_cell(row[name], number_text) for name in shown))
-        console.print(table, "")
+            make_table.add_row(*(_cell(row[name], format_number) for name in shown))
+        console.print(make_table, "")
     console.print(count_rows(plan, columns))
     for file in files:
         console.print(f"written {file}")
 
 
-def _cell(value: Any, number_text: Any) -> str:
-    return number_text(value) if isinstance(value, float) else str(value)
+def _cell(value: Any, format_number: Any) -> str:
+    return format_number(value) if isinstance(value, float) else str(value)
 
 
 def _report(columns: Any) -> None:
-    from ..studies.sweep.spec import REFUSED
+    from ..studies.sweep.row_spec import REFUSED
 
     reasons = columns["failure"].tolist()
     refused = sum(reason.startswith(REFUSED) for reason in reasons)

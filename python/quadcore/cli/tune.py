@@ -77,7 +77,7 @@ def register(commands: Any) -> None:
 
 def tune(arguments: argparse.Namespace) -> None:
     """Search, print what was found, and write it."""
-    from ..studies.tune.tune import conduct
+    from ..studies.tune.tune import search_gains
 
     arguments, problem = planned(arguments, _problem)
     out = arguments.out
@@ -88,7 +88,7 @@ def tune(arguments: argparse.Namespace) -> None:
     with keep_partial_output("tuning", out, put, "the best so far"), terminal.progress(
         arguments.quiet, "tuning"
     ) as progress:
-        found = conduct(problem, arguments.budget, progress)
+        found = search_gains(problem, arguments.budget, progress)
     put(found)
     if not arguments.quiet:
         _show(found, out)

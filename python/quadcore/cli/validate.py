@@ -10,7 +10,7 @@ from rich.table import Table
 
 from .._core import FlightError, InputError, QuadcoreError, engines
 from ..simulation.flight_plan import FlightPlan
-from ..studies.executor import conducted
+from ..studies.executor import run_contained
 from ..support import interrupts, parse
 from ..support.output_files import atomic_write, prepare_folder
 from ..support.values import SPAWN
@@ -196,7 +196,7 @@ def _draw(study: Study, arguments: argparse.Namespace, failures: List[str]) -> D
                     write_picture(name, picture, arguments.out)
                     drawn[name] = picture
 
-            conducted(draw, names, take, arguments.jobs, progress=progress)
+            run_contained(draw, names, take, arguments.jobs, progress=progress)
     finally:
         in_order = {name: drawn[name] for name in names if name in drawn}
         with interrupts.hold_signals():

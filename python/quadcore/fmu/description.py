@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 from .variables import Variable
 
 
-def description(
+def make_description(
     model: str, identifier: str, guid: str, tool: str, step: float, variables: Sequence[Variable]
 ) -> bytes:
     """Describe an FMU for importers.

@@ -18,9 +18,9 @@ from ..simulation.flight_plan import FlightPlan
 from ..simulation.simulation import Simulation
 from ..support.input_files import read_bytes
 from ..support.output_files import atomic_write
-from .description import description
+from .description import make_description
 from .libraries import Libraries
-from .variables import Variable, spawn_and_seed, variables_of
+from .variables import Variable, list_start_variables, list_variables
 
 _VERSION = 2  # of flight.yaml, which cpp/fmu/flight_file.cpp reads
 _OPTIONS = (
@@ -72,22 +72,24 @@ def write_fmu(path: Path, plan: FlightPlan) -> None:
     if plan.engine not in dict(_core.engines()):
         raise InputError(f"an FMU flies on one of the engines, not on {plan.engine}; choose one")
     libraries = Libraries(simulation)
-    variables = [*variables_of(simulation), *spawn_and_seed(plan.spawn, plan.seed)]
-    files = dict(_files(simulation))
-    flight = _flight(plan, simulation, variables, {tag: name for tag, (name, _) in files.items()})
+    variables = [*list_variables(simulation), *list_start_variables(plan.spawn, plan.seed)]
+    files = dict(_read_files(simulation))
+    flight = _make_flight_file(
+        plan, simulation, variables, {tag: name for tag, (name, _) in files.items()}
+    )
     contents = {f"resources/{name}": data for name, data in files.values()}
-    digest = hashlib.sha256(_yaml(flight))
+    digest = hashlib.sha256(_write_yaml(flight))
     for _, data in sorted(contents.items()):
         digest.update(data)
-    digest.update(libraries.content())
+    digest.update(libraries.compute_digest())
     guid = str(uuid.UUID(bytes=digest.digest()[:16]))
     name = simulation.model.name
     identifier = re.sub(r"\W|^(?=\d)", "_", name, flags=re.ASCII)
-    contents["modelDescription.xml"] = description(
+    contents["modelDescription.xml"] = make_description(
         name, identifier, f"{{{guid}}}", f"quadcore {__version__}", simulation.dt, variables
     )
-    contents["resources/flight.yaml"] = _yaml({**flight, "guid": f"{{{guid}}}"})
-    for library, data in libraries.files(identifier, guid).items():
+    contents["resources/flight.yaml"] = _write_yaml({**flight, "guid": f"{{{guid}}}"})
+    for library, data in libraries.make_files(identifier, guid).items():
         contents[f"binaries/linux64/{library}"] = data
     with atomic_write(path) as stream, zipfile.ZipFile(stream, "w") as archive:
         for place, data in contents.items():
@@ -96,7 +98,7 @@ def write_fmu(path: Path, plan: FlightPlan) -> None:
             archive.writestr(entry, data, zipfile.ZIP_DEFLATED)
 
 
-def _files(simulation: Simulation) -> Iterator[Tuple[str, Tuple[str, bytes]]]:
+def _read_files(simulation: Simulation) -> Iterator[Tuple[str, Tuple[str, bytes]]]:
     """Find the files that tags name: PLUGIN.TAG, name among the resources, and what it holds."""
     for plugin in simulation.plugins:
         for tag in plugin.parameters:
@@ -105,7 +107,7 @@ def _files(simulation: Simulation) -> Iterator[Tuple[str, Tuple[str, bytes]]]:
                 yield key, (f"{key}{Path(tag.file).suffix}", read_bytes(Path(tag.file), _LARGEST))
 
 
-def _flight(
+def _make_flight_file(
     plan: FlightPlan, simulation: Simulation, variables: List[Variable], files: Dict[str, str]
 ) -> Dict[str, Any]:
     tags = (variable for variable in variables if variable.kind in ("parameter", "file"))
@@ -115,8 +117,8 @@ def _flight(
         "dt": simulation.dt,
         "seed": plan.seed,
         "spawn": [float(x) for x in plan.spawn],
-        "model": _document(plan.model.document, plan.model.passed_over.ignored),
-        "world": _document(plan.world.document, plan.world.passed_over.ignored),
+        "model": _pack_document(plan.model.document, plan.model.passed_over.ignored),
+        "world": _pack_document(plan.world.document, plan.world.passed_over.ignored),
         "parameters": {key: value for key, value in plan.parameters.items() if key not in files},
         "tags": {tag.key: str(tag.start) for tag in tags if tag.key not in files},
         "files": files,
@@ -128,7 +130,7 @@ def _flight(
     }
 
 
-def _document(document: Document, ignored: List[str]) -> Dict[str, Any]:
+def _pack_document(document: Document, ignored: List[str]) -> Dict[str, Any]:
     lines = [(Path(file).name, line) for file, line in document.lines]
     files = sorted({file for file, _ in lines})
     return {
@@ -140,6 +142,6 @@ def _document(document: Document, ignored: List[str]) -> Dict[str, Any]:
     }
 
 
-def _yaml(flight: Dict[str, Any]) -> bytes:
+def _write_yaml(flight: Dict[str, Any]) -> bytes:
     text: str = yaml.safe_dump(flight, default_flow_style=None, allow_unicode=True)
     return text.encode()

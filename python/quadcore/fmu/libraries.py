@@ -51,23 +51,23 @@ class Libraries:
                 )
             self._plugins[str(path.relative_to(own))] = path.read_bytes()
         self._linked: Dict[str, bytes] = {}
-        loaded = _loaded()
+        loaded = _list_loaded()
         to_see = [self._interface, *self._plugins.values()]
         while to_see:
-            for name in _needed(to_see.pop()) - set(self._linked):
+            for name in _read_needed(to_see.pop()) - set(self._linked):
                 for path in loaded:
                     if f"{path.name}.".startswith(f"{name}."):  # links lead to longer names
                         self._linked[name] = path.read_bytes()
                         to_see.append(self._linked[name])
 
-    def content(self) -> bytes:
+    def compute_digest(self) -> bytes:
         """Digest of all, by which an FMU is told from another."""
         digest = hashlib.sha256(self._interface)
         for _, data in sorted([*self._plugins.items(), *self._linked.items()]):
             digest.update(data)
         return digest.digest()
 
-    def files(self, identifier: str, guid: str) -> Dict[str, bytes]:
+    def make_files(self, identifier: str, guid: str) -> Dict[str, bytes]:
         """Give each its place among the binaries; what others need is renamed by the GUID."""
         names = {}
         for name in self._linked:  # in place, so as long as before
@@ -87,7 +87,7 @@ class Libraries:
         return files
 
 
-def _needed(data: bytes) -> Set[str]:
+def _read_needed(data: bytes) -> Set[str]:
     """Read from an ELF file for 64 bits which others it needs (man 5 elf)."""
     (headers,) = struct.unpack_from("<Q", data, 32)
     size, count = struct.unpack_from("<HH", data, 54)
@@ -106,7 +106,7 @@ def _needed(data: bytes) -> Set[str]:
     return {name for name in names if not _EVERYWHERE.fullmatch(name)}
 
 
-def _loaded() -> List[Path]:
+def _list_loaded() -> List[Path]:
     """Find the libraries that this process has loaded."""
     maps = Path("/proc/self/maps").read_text(errors="surrogateescape").splitlines()
     return sorted({Path(line[line.index("/") :]) for line in maps if ".so" in line})

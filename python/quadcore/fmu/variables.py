@@ -33,7 +33,7 @@ class Variable(NamedTuple):
     description: str = ""
 
 
-def variables_of(simulation: Simulation) -> List[Variable]:
+def list_variables(simulation: Simulation) -> List[Variable]:
     """List all that can be set and read.
 
     Raises
@@ -41,11 +41,11 @@ def variables_of(simulation: Simulation) -> List[Variable]:
     InputError
         Two have one name.
     """
-    of_topics = [*_outputs(simulation), *_inputs(simulation)]
+    of_topics = [*_list_outputs(simulation), *_list_inputs(simulation)]
     taken = {variable.name for variable in of_topics}
     parameters = [  # a plugin may have the name of a topic, and a tag that of a field of it
         tag._replace(name=f"{tag.name}_tag") if tag.name in taken else tag
-        for tag in _parameters(simulation)
+        for tag in _list_parameters(simulation)
     ]
     found = [*of_topics, *parameters]
     known: Dict[str, Variable] = {}
@@ -59,27 +59,29 @@ def variables_of(simulation: Simulation) -> List[Variable]:
     return found
 
 
-def _outputs(simulation: Simulation) -> Iterator[Variable]:
+def _list_outputs(simulation: Simulation) -> Iterator[Variable]:
     columns = _core.log_columns(simulation.rotor_count)
     units = [*_STATE_UNITS, *["rad/s"] * simulation.rotor_count]
     for i, (name, unit) in enumerate(zip(columns, units)):
         if i > 0:  # time is the importer's
-            yield _output(name, "state", "", i, unit, "continuous")
+            yield _make_output(name, "state", "", i, unit, "continuous")
     for number, term in enumerate(simulation.wrench_terms):
         for i, (component, unit) in enumerate(_WRENCH):
             name = f"wrench_{term}.{component}"
-            yield _output(name, "wrench", term, 6 * number + i, unit, "continuous")
+            yield _make_output(name, "wrench", term, 6 * number + i, unit, "continuous")
     for topic in simulation.topics.values():
         if topic.writer is not None:
             for i, field in enumerate(["stamp", *topic.fields]):
-                yield _output(f"{topic.name}.{field}", "topic", topic.name, i, "", "discrete")
+                yield _make_output(f"{topic.name}.{field}", "topic", topic.name, i, "", "discrete")
 
 
-def _output(name: str, kind: str, key: str, index: int, unit: str, variability: str) -> Variable:
+def _make_output(
+    name: str, kind: str, key: str, index: int, unit: str, variability: str
+) -> Variable:
     return Variable(name, kind, key, index, "Real", "output", variability, unit=unit)
 
 
-def _inputs(simulation: Simulation) -> Iterator[Variable]:
+def _list_inputs(simulation: Simulation) -> Iterator[Variable]:
     for topic in simulation.topics.values():
         if topic.writer is None:
             is_command = topic.name == simulation.command_topic
@@ -93,7 +95,7 @@ def _inputs(simulation: Simulation) -> Iterator[Variable]:
                 )  # fmt: skip
 
 
-def _parameters(simulation: Simulation) -> Iterator[Variable]:
+def _list_parameters(simulation: Simulation) -> Iterator[Variable]:
     for plugin in simulation.plugins:
         for tag in plugin.parameters:
             key = f"{plugin.name}.{tag.name}"
@@ -107,7 +109,7 @@ def _parameters(simulation: Simulation) -> Iterator[Variable]:
             )  # fmt: skip
 
 
-def spawn_and_seed(spawn: Sequence[float], seed: int) -> Iterator[Variable]:
+def list_start_variables(spawn: Sequence[float], seed: int) -> Iterator[Variable]:
     """Give the parameters that are no plugin's."""
     for i, (name, value) in enumerate(zip(_SPAWN, spawn)):
         yield Variable(

@@ -12,7 +12,7 @@ from .._core import FlightError, InputError, Model
 from ..simulation.batch import BatchState
 from ..simulation.simulation import Simulation
 from .episodes import Episodes
-from .task import Task, split
+from .task import Task, split_options
 
 _NOBODY = np.zeros(1, bool)
 
@@ -53,7 +53,7 @@ class Env(gymnasium.Env):
     def __init__(
         self, model: Union[str, Path, Model] = "quadrotor", engine: str = "eigen", **options: Any
     ) -> None:
-        rules, others = split(options)
+        rules, others = split_options(options)
         self.simulation = Simulation(model, engine, **others)
         self.task = Task(self.simulation, rules)
         self.observation_space = self.task.observation_space
@@ -73,7 +73,7 @@ class Env(gymnasium.Env):
         """Begin an episode; `seed` is that of goals and noise from now on."""
         check_no_options(options)
         super().reset(seed=seed)
-        self._episodes.of([self.np_random])
+        self._episodes.set_generators([self.np_random])
         (noise,) = self._episodes.begin(np.ones(1, bool))
         self.simulation.reset(seed=int(noise))
         self._flies = True
@@ -96,7 +96,7 @@ class Env(gymnasium.Env):
         except FlightError as error:
             info["failure"] = str(error)
         state = before if info else self._state()
-        done = self._episodes.judge(state, actions, np.array([bool(info)]), _NOBODY)
+        done = self._episodes.finish_step(state, actions, np.array([bool(info)]), _NOBODY)
         terminated, truncated = bool(done.terminated[0]), bool(done.truncated[0])
         self._flies = not (terminated or truncated)
         return done.observation[0], float(done.reward[0]), terminated, truncated, info

@@ -9,11 +9,11 @@ from gymnasium.utils import seeding
 
 from ..simulation.batch import BatchState
 from ..support.rotation import matrix
-from .situation import Situation
+from .step_data import StepData
 from .task import Task
 
 
-class Outcome(NamedTuple):
+class StepResult(NamedTuple):
     """Of an action, a row or a number for each vehicle."""
 
     observation: np.ndarray
@@ -41,11 +41,11 @@ class Episodes:
         """Where the vehicles are to go, world axes, (n, 3), m."""
         return self._goals.copy()
 
-    def sow(self, seed: int) -> None:
+    def set_seeds(self, seed: int) -> None:
         """Give vehicle i the generator of seed + i."""
         self._generators = [seeding.np_random(seed + i)[0] for i in range(len(self._homes))]
 
-    def of(self, generators: Sequence[np.random.Generator]) -> None:
+    def set_generators(self, generators: Sequence[np.random.Generator]) -> None:
         """Take over generators."""
         self._generators = list(generators)
 
@@ -63,27 +63,27 @@ class Episodes:
     def observe(self, state: BatchState) -> np.ndarray:
         """Give the observations of vehicles that have begun."""
         nobody = np.zeros(len(self._homes), bool)
-        return self._task.observe(self._situation(state, self._action, lost=nobody))
+        return self._task.observe(self._make_step(state, self._action, lost=nobody))
 
-    def judge(
+    def finish_step(
         self, state: BatchState, actions: np.ndarray, failed: np.ndarray, begun: np.ndarray
-    ) -> Outcome:
+    ) -> StepResult:
         """Say what came of actions, which those that have just begun did not take."""
         actions = np.where(begun[:, None], 0.0, actions)
         self._count += ~begun
         away = np.linalg.norm(state.position - self._goals, axis=1)
         lost = failed | ~(away <= self._task.rules.reach)
-        situation = self._situation(state, actions, lost)
+        step = self._make_step(state, actions, lost)
         self._action = actions
-        return Outcome(
-            self._task.observe(situation),
-            np.where(begun, 0.0, self._task.reward(situation)),
+        return StepResult(
+            self._task.observe(step),
+            np.where(begun, 0.0, self._task.reward(step)),
             lost,
             ~lost & (self._count >= self._task.actions),
         )
 
-    def _situation(self, state: BatchState, action: np.ndarray, lost: np.ndarray) -> Situation:
-        return Situation(
+    def _make_step(self, state: BatchState, action: np.ndarray, lost: np.ndarray) -> StepData:
+        return StepData(
             state.position - self._goals,
             matrix(state.orientation),
             state.linear_velocity,

@@ -6,7 +6,7 @@ from typing import Callable, Dict, NamedTuple
 
 import numpy as np
 
-from .situation import Situation
+from .step_data import StepData
 
 
 class Observation(NamedTuple):
@@ -14,7 +14,7 @@ class Observation(NamedTuple):
 
     meaning: str
     """With axes and units."""
-    of: Callable[[Situation], np.ndarray]
+    compute: Callable[[StepData], np.ndarray]
     """Rows of numbers, (n, count)."""
     bound: float = float(np.finfo(np.float32).max)
     """That none exceeds; finite, as Gymnasium wants it."""

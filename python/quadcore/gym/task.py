@@ -16,7 +16,7 @@ from ..control.inner_loop import AttitudeThrust, InnerLoop
 from ..simulation.simulation import Simulation
 from .observations import OBSERVATIONS
 from .rewards import REWARDS
-from .situation import Situation
+from .step_data import StepData
 
 
 class Rules(NamedTuple):
@@ -85,10 +85,10 @@ class Task:
                 "action; give one that makes whole ones"
             )
         self.actions = max(1, round(rules.duration * rules.rate))
-        self.hover = _hover(vehicle)
+        self.hover = _hover_commands(vehicle)
         rotors = len(self.hover)
         seen = [OBSERVATIONS[name] for name in rules.observation]
-        widths = [one.of(_nothing(rotors)).shape[1] for one in seen]
+        widths = [one.compute(_make_empty_step(rotors)).shape[1] for one in seen]
         bounds = np.repeat([one.bound for one in seen], widths).astype(np.float32)
         self.observation_space = spaces.Box(-bounds, bounds, dtype=np.float32)
         self.action_space = spaces.Box(-1, 1, (rotors,), np.float32)
@@ -112,16 +112,16 @@ class Task:
         commands: np.ndarray = self.hover * (1 + self.rules.authority * actions)
         return commands
 
-    def observe(self, situation: Situation) -> np.ndarray:
+    def observe(self, step: StepData) -> np.ndarray:
         """Give the observations, (n, width)."""
-        parts = [OBSERVATIONS[name].of(situation) for name in self.rules.observation]
+        parts = [OBSERVATIONS[name].compute(step) for name in self.rules.observation]
         return np.concatenate(parts, axis=1).astype(np.float32)
 
-    def reward(self, situation: Situation) -> np.ndarray:
+    def reward(self, step: StepData) -> np.ndarray:
         """Give the rewards, (n,)."""
-        total = np.zeros(len(situation.error))
+        total = np.zeros(len(step.error))
         for name, weight in self.rules.reward.items():
-            total += weight * REWARDS[name].of(situation)
+            total += weight * REWARDS[name].compute(step)
         return total
 
     @staticmethod
@@ -151,7 +151,7 @@ class Task:
             )
 
 
-def split(options: Mapping[str, Any]) -> Tuple[Rules, Mapping[str, Any]]:
+def split_options(options: Mapping[str, Any]) -> Tuple[Rules, Mapping[str, Any]]:
     """Tell the rules from other arguments."""
     if "seed" in options:
         raise InputError("seed: an environment takes it when it is reset; give it to reset()")
@@ -159,13 +159,13 @@ def split(options: Mapping[str, Any]) -> Tuple[Rules, Mapping[str, Any]]:
     return Rules(**own), {name: value for name, value in options.items() if name not in own}
 
 
-def _hover(vehicle: Simulation) -> np.ndarray:
+def _hover_commands(vehicle: Simulation) -> np.ndarray:
     hovering = references.start(vehicle, references.hover())
     weight = vehicle.mass * float(np.linalg.norm(vehicle.world.gravity))
     upright = AttitudeThrust((0, 0, 0, 1), weight)
     return InnerLoop().speeds(vehicle, vehicle.dt, hovering, upright)
 
 
-def _nothing(rotors: int) -> Situation:
+def _make_empty_step(rotors: int) -> StepData:
     zero, none = np.zeros((1, 3)), np.zeros((1, rotors))
-    return Situation(zero, np.eye(3)[None], zero, zero, none, none, none, np.zeros(1, bool))
+    return StepData(zero, np.eye(3)[None], zero, zero, none, none, none, np.zeros(1, bool))

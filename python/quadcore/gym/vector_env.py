@@ -16,7 +16,7 @@ from ..simulation.simulation import Simulation
 from ..support.warning import suppress_warnings
 from .env import check_no_options
 from .episodes import Episodes
-from .task import Task, split
+from .task import Task, split_options
 
 Step = Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, Dict[str, Any]]
 
@@ -63,10 +63,10 @@ class VectorEnv(_VectorEnv):
         engine: str = "eigen",
         **options: Any,
     ) -> None:
-        rules, others = split(options)
+        rules, others = split_options(options)
         self.batch = BatchSimulation(model, num_envs, engine, **others)
         with suppress_warnings():  # it has been said of the batch
-            self.task = Task(Simulation(model, engine, **_in_common(others)), rules)
+            self.task = Task(Simulation(model, engine, **_pick_common(others)), rules)
         self.num_envs = self.batch.n
         self.single_observation_space = self.task.observation_space
         self.single_action_space = self.task.action_space
@@ -90,7 +90,7 @@ class VectorEnv(_VectorEnv):
         super().reset(seed=seed)
         if seed is not None or not self._has_begun:
             # Without a seed, one that nobody can foresee.
-            self._episodes.sow(int(self.np_random.integers(2**31)) if seed is None else seed)
+            self._episodes.set_seeds(int(self.np_random.integers(2**31)) if seed is None else seed)
         self._has_begun = True
         everyone = np.ones(self.num_envs, bool)
         self._begin(everyone)
@@ -119,7 +119,7 @@ class VectorEnv(_VectorEnv):
         failed = np.array([bool(why) for why in failures])
         self.batch.read_state(self._rows)
         self._rows[failed] = before[failed]
-        done = self._episodes.judge(self._state(), actions, failed, begun=ended)
+        done = self._episodes.finish_step(self._state(), actions, failed, begun=ended)
         self._ended = done.terminated | done.truncated
         infos = {"failure": np.array(failures, object), "_failure": failed} if failed.any() else {}
         return (*done, infos)
@@ -132,7 +132,7 @@ class VectorEnv(_VectorEnv):
         return BatchState.of(self._rows)
 
 
-def _in_common(options: Mapping[str, Any]) -> Dict[str, Any]:
+def _pick_common(options: Mapping[str, Any]) -> Dict[str, Any]:
     """Give the arguments of a `Simulation` in which all vehicles of a batch agree."""
     alike = {k: v for k, v in options.items() if k in ("world", "dt", "xacro_args", "ignore")}
     parameters = (options.get("parameters") or {}).items()

@@ -105,7 +105,7 @@ def make_section(flights: Sequence[PlayerFlight]) -> str:
 
     if not flights:
         raise InputError("no flight to animate. Give at least one.")
-    content = {
+    content: Dict[str, Any] = {
         "colours": PALETTE,
         "dashes": [[] if dashes == "-" else dashes[1] for dashes in DASHES],
         "flights": [_pack_flight(flight) for flight in flights],

@@ -60,7 +60,7 @@ class Client:
             self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         _, self.dt, rotors, _ = self._ask(Request.HELLO, [protocol.VERSION])
         self.rotors = int(rotors)
-        self.columns: List[str] = protocol.text_of(self._ask(Request.COLUMNS)).split(",")
+        self.columns: List[str] = protocol.decode_text(self._ask(Request.COLUMNS)).split(",")
 
     def step(self, speeds: Optional[Sequence[float]] = None, steps: int = 1) -> Row:
         """Fly on; returns the row at the end.
@@ -94,11 +94,11 @@ class Client:
         self.close()
 
     def _ask(self, kind: Request, numbers: Sequence[float] = ()) -> Row:
-        self._socket.sendall(protocol.pack(kind, numbers))
+        self._socket.sendall(protocol.pack_message(kind, numbers))
         try:
-            reply, answer = protocol.read(self._socket.recv)
+            reply, answer = protocol.read_message(self._socket.recv)
         except EOFError:
             raise ConnectionError("the server has gone") from None
         if reply != Reply.DONE:
-            raise ServerError(protocol.text_of(answer), reply == Reply.FAILED)
+            raise ServerError(protocol.decode_text(answer), reply == Reply.FAILED)
         return answer

@@ -47,7 +47,7 @@ class Connection:
             return self._client.recv(count)
 
         try:
-            message = protocol.read(receive)
+            message = protocol.read_message(receive)
         except socket.timeout:
             raise ConnectionError(f"stopped within a message for {self._timeout:g} s") from None
         self._has_asked = True

@@ -45,22 +45,22 @@ class ProtocolError(Exception):
     """What came is no message."""
 
 
-def pack(kind: int, numbers: Sequence[float] = ()) -> bytes:
+def pack_message(kind: int, numbers: Sequence[float] = ()) -> bytes:
     """Write a message."""
     return struct.pack(f"<{2 + len(numbers)}d", kind, len(numbers), *numbers)
 
 
-def numbers_of(text: str) -> List[int]:
+def encode_text(text: str) -> List[int]:
     """Code a text: a number for each byte of UTF-8."""
     return list(text.encode())
 
 
-def text_of(numbers: Sequence[float]) -> str:
+def decode_text(numbers: Sequence[float]) -> str:
     """Read a text."""
     return bytes(int(number) for number in numbers).decode(errors="replace")
 
 
-def read(receive: Callable[[int], bytes]) -> Tuple[int, Tuple[float, ...]]:
+def read_message(receive: Callable[[int], bytes]) -> Tuple[int, Tuple[float, ...]]:
     """Read a message: its kind and numbers.
 
     Parameters
@@ -75,7 +75,7 @@ def read(receive: Callable[[int], bytes]) -> Tuple[int, Tuple[float, ...]]:
     ProtocolError
         What came is none.
     """
-    head = _exactly(_HEAD.size, receive)
+    head = _receive_exactly(_HEAD.size, receive)
     if not head:
         raise EOFError
     if len(head) < _HEAD.size:
@@ -84,13 +84,13 @@ def read(receive: Callable[[int], bytes]) -> Tuple[int, Tuple[float, ...]]:
     for name, number, largest in (("kind", kind, max(Request)), ("length", count, LONGEST)):
         if not (number == number and 0 <= number <= largest and number == int(number)):
             raise ProtocolError(f"a message of {name} {number:g}; a whole number to {largest}")
-    body = _exactly(8 * int(count), receive)
+    body = _receive_exactly(8 * int(count), receive)
     if len(body) < 8 * count:
         raise ProtocolError(f"ended within a message, after {len(body)} of {8 * int(count)} bytes")
     return int(kind), struct.unpack(f"<{int(count)}d", body)
 
 
-def _exactly(count: int, receive: Callable[[int], bytes]) -> bytes:
+def _receive_exactly(count: int, receive: Callable[[int], bytes]) -> bytes:
     """So many bytes, or fewer at the end."""
     data = b""
     while len(data) < count:

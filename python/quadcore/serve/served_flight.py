@@ -59,7 +59,7 @@ class ServedFlight:
         """
         if not numbers:
             raise _core.InputError("a step needs the number of steps, and a command or none")
-        steps = _whole(numbers[0], "the number of steps", _MOST_STEPS)
+        steps = _check_whole(numbers[0], "the number of steps", _MOST_STEPS)
         if self._failure is not None:
             raise self._failure
         if steps > 0:
@@ -93,7 +93,7 @@ class ServedFlight:
         """
         if len(numbers) > 1:
             raise _core.InputError(f"a reset takes a seed or nothing, not {len(numbers)} numbers")
-        seed = _whole(numbers[0], "the seed", 2**53) if numbers else None
+        seed = _check_whole(numbers[0], "the seed", 2**53) if numbers else None
         before = self._unwritten
         self._finish()
         self._begin(seed)
@@ -157,7 +157,7 @@ class ServedFlight:
         self._recorder = recorder
 
 
-def _whole(number: float, what: str, largest: int) -> int:
+def _check_whole(number: float, what: str, largest: int) -> int:
     if not (np.isfinite(number) and 0 <= number <= largest and number == int(number)):
         raise _core.InputError(f"{what} is {number:g}; give a whole number from 0 to {largest}")
     return int(number)

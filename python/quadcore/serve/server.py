@@ -131,7 +131,7 @@ class Server:
                 except EOFError:
                     return
                 except ProtocolError as error:
-                    client.send(_text(Reply.REFUSED, str(error)))
+                    client.send(_pack_text(Reply.REFUSED, str(error)))
                     raise
                 client.send(self._answer(flown, Request(kind), numbers))
         finally:
@@ -140,16 +140,16 @@ class Server:
     def _answer(self, flown: ServedFlight, kind: Request, numbers: Sequence[float]) -> bytes:
         try:
             if kind == Request.HELLO:
-                return protocol.pack(Reply.DONE, self._greet(numbers))
+                return protocol.pack_message(Reply.DONE, self._greet(numbers))
             if kind == Request.COLUMNS:
-                return _text(Reply.DONE, ",".join(self.columns))
+                return _pack_text(Reply.DONE, ",".join(self.columns))
             if kind == Request.STEP:
-                return protocol.pack(Reply.DONE, flown.step(numbers))
-            return protocol.pack(Reply.DONE, flown.reset(numbers))
+                return protocol.pack_message(Reply.DONE, flown.step(numbers))
+            return protocol.pack_message(Reply.DONE, flown.reset(numbers))
         except _core.InputError as error:
-            return _text(Reply.REFUSED, str(error))
+            return _pack_text(Reply.REFUSED, str(error))
         except _core.FlightError as error:
-            return _text(Reply.FAILED, str(error))
+            return _pack_text(Reply.FAILED, str(error))
 
     def _greet(self, numbers: Sequence[float]) -> List[float]:
         if list(numbers) != [protocol.VERSION]:
@@ -161,8 +161,8 @@ class Server:
         return [protocol.VERSION, simulation.dt, simulation.command_width, len(self.columns)]
 
 
-def _text(reply: Reply, text: str) -> bytes:
-    return protocol.pack(reply, protocol.numbers_of(text))
+def _pack_text(reply: Reply, text: str) -> bytes:
+    return protocol.pack_message(reply, protocol.encode_text(text))
 
 
 def _listen(address: Union[int, str]) -> Tuple[socket.socket, Optional[str]]:
@@ -175,7 +175,7 @@ def _listen(address: Union[int, str]) -> Tuple[socket.socket, Optional[str]]:
         else:
             if not address:
                 raise _core.InputError("the path of the socket is empty; name one")
-            _remove_dead(address)
+            _remove_stale_socket(address)
             listening.bind(address)
         listening.listen()
     except (OSError, OverflowError) as error:
@@ -184,7 +184,7 @@ def _listen(address: Union[int, str]) -> Tuple[socket.socket, Optional[str]]:
     return listening, None if isinstance(address, int) else address
 
 
-def _remove_dead(path: str) -> None:
+def _remove_stale_socket(path: str) -> None:
     """Remove the socket of a server that was killed."""
     if not (os.path.exists(path) and stat.S_ISSOCK(os.stat(path).st_mode)):
         return

@@ -64,11 +64,11 @@ def parse_axis(name: str, text: str) -> Axis:
         No values, or a range that is none.
     """
     if ":" in text and name not in ("world", "scenario"):
-        return Axis(name, _range(name, text))
+        return Axis(name, _parse_range(name, text))
     return Axis(name, [part.strip() for part in text.split(",") if part.strip()])
 
 
-def axes_of(vary: Mapping[str, Values]) -> List[Axis]:
+def make_axes(vary: Mapping[str, Values]) -> List[Axis]:
     """Make axes of names and values; numbers become the texts that a URDF would hold.
 
     Raises
@@ -92,7 +92,7 @@ def axes_of(vary: Mapping[str, Values]) -> List[Axis]:
     return axes
 
 
-def _range(name: str, text: str) -> Range:
+def _parse_range(name: str, text: str) -> Range:
     number = r"([-+0-9.eE]+)"
     match = re.fullmatch(rf"(log:)?{number}:{number}:([0-9]{{1,18}})", text)
     first, last = (parse_number(match[2]), parse_number(match[3])) if match else (None, None)

@@ -33,10 +33,10 @@ from ..support.output_files import shown
 from ..support.values import whole
 from ..support.warning import suppress_warnings
 from .axes import OF_CONTROLLER
+from .control_setup import ControlSetup
 from .design import Design, Point
-from .guidance import Guidance
 from .options import Options
-from .variation import Variation, of_controller
+from .variation import Variation, pick_controller_values
 
 T = TypeVar("T", bound=Options)
 
@@ -62,7 +62,7 @@ class Cases(Sequence[Case]):
     ----------
     design
         Points of the axes: what each flight changes.
-    guidance
+    control
         Controllers and references.
     models, engines
         Files or names.
@@ -82,14 +82,14 @@ class Cases(Sequence[Case]):
     def __init__(
         self,
         design: Design,
-        guidance: Guidance,
+        control: ControlSetup,
         models: Sequence[Union[str, Path]],
         engines: Sequence[str],
         options: Options,
         wrenches: bool = False,
         largest: int = 100_000,
     ) -> None:
-        self.design, self.guidance, self.options = design, guidance, options
+        self.design, self.control, self.options = design, control, options
         self.models, self.engines = [shown(model) for model in models], list(engines)
         first = whole(options.seed)
         self.seeds = range(first, first + options.seeds)
@@ -107,11 +107,11 @@ class Cases(Sequence[Case]):
         common: Dict[str, Any] = {"dt": options.dt, "duration": options.duration, **where}
         self._plans = [
             FlightPlan.of(
-                model, world, on_reference=guidance.on_reference, wrenches=wrenches, **common
+                model, world, on_reference=control.on_reference, wrenches=wrenches, **common
             )
             for model in self.variation.models
         ]
-        guidance.check(self.vehicles)
+        control.check(self.vehicles)
 
     def __len__(self) -> int:
         return math.prod(self._sizes)
@@ -130,51 +130,51 @@ class Cases(Sequence[Case]):
         """Names of the models' robots."""
         return [model.name for model in self.variation.models]
 
-    def sides(self, case: Case) -> Dict[str, str]:
+    def name_sides(self, case: Case) -> Dict[str, str]:
         """Name the controller and reference of a flight, if there are any, its engine and model."""
         found = {"engine": self.engines[case.engine], "model": self.models[case.model]}
-        if not self.guidance.is_given:
+        if not self.control.is_closed_loop:
             return found
-        controller = self.guidance.controllers[case.controller]
+        controller = self.control.controllers[case.controller]
         return {
             "controller": controller,
-            "reference": self.guidance.references[case.reference],
+            "reference": self.control.references[case.reference],
             **found,
         }
 
-    def unguided(self, case: Case) -> FlightPlan:
+    def make_plan_without_controller(self, case: Case) -> FlightPlan:
         """Describe a flight but for its controller."""
         plan = replace(
             self._plans[case.model],
             engine=self.engines[case.engine],
             seed=self.seeds[case.seed],
-            reference=self.guidance.shapes[case.reference] if self.guidance.is_given else None,
+            reference=self.control.shapes[case.reference] if self.control.is_closed_loop else None,
         )
         plan = self.variation.apply(plan, case.model, self.design[case.point])
-        return replace(plan, log_every=self.rows_every(plan.step))
+        return replace(plan, log_every=self.steps_per_row(plan.step))
 
-    def flight(self, case: Case) -> FlightPlan:
+    def make_plan(self, case: Case) -> FlightPlan:
         """Describe a flight with a controller of its own; raises what making that raises."""
-        plan = self.unguided(case)
-        if not self.guidance.is_given:
+        plan = self.make_plan_without_controller(case)
+        if not self.control.is_closed_loop:
             return plan
-        return replace(plan, controller=self.controller(case))
+        return replace(plan, controller=self.make_controller(case))
 
-    def controller(self, case: Case) -> Any:
+    def make_controller(self, case: Case) -> Any:
         """Make the controller of a flight, with what its point changes in it."""
-        return self._controller(case.controller, case.model, self.design[case.point])
+        return self._make_controller(case.controller, case.model, self.design[case.point])
 
-    def vehicle(self, model: int, point: Point) -> Simulation:
+    def make_vehicle(self, model: int, point: Point) -> Simulation:
         """Make a model as a point changes it."""
         plan = replace(self._plans[model], engine=self.engines[0], on_reference=False)
         return self.variation.apply(plan, model, point).simulation()
 
-    def start(self, model: int, point: Point, vehicle: Simulation) -> None:
+    def start_controllers(self, model: int, point: Point, vehicle: Simulation) -> None:
         """Start each shipped controller on a model as a point changes it."""
-        with _blaming(point):
-            for i in range(len(self.guidance.things)):
-                if not self.guidance.is_own(i):
-                    Guided(self._controller(i, model, point), vehicle).reset(vehicle)
+        with _name_point_in_errors(point):
+            for i in range(len(self.control.things)):
+                if not self.control.is_user_code(i):
+                    Guided(self._make_controller(i, model, point), vehicle).reset(vehicle)
 
     def check(self, commands: Optional[CommandsLike] = None) -> List[Simulation]:
         """Make each model, and start each shipped controller on it, at some of the points.
@@ -196,34 +196,34 @@ class Cases(Sequence[Case]):
         """
         made = []
         for model in range(len(self.models)):
-            for i, point in enumerate(self.design.to_try()):
+            for i, point in enumerate(self.design.pick_trial_points()):
                 with suppress_warnings() if i else nullcontext():  # the first says what is doubtful
-                    vehicle = self.vehicle(model, point)
-                    self.start(model, point, vehicle)
+                    vehicle = self.make_vehicle(model, point)
+                    self.start_controllers(model, point, vehicle)
                 if not i:
                     made.append(vehicle)
         for plan in self._plans:
             for world in [plan.world, *self.variation.worlds.values()]:
                 step = replace(plan, world=world).step
-                check_logged(self.options.duration, step, self.rows_every(step))
+                check_logged(self.options.duration, step, self.steps_per_row(step))
         if commands is not None:
-            self.command(commands, [vehicle.command_width for vehicle in made])
+            self.set_commands(commands, [vehicle.command_width for vehicle in made])
         return made
 
-    def command(self, commands: CommandsLike, widths: Sequence[int]) -> None:
+    def set_commands(self, commands: CommandsLike, widths: Sequence[int]) -> None:
         """Let all flights follow commands, for models of so many rotors."""
         self._plans = [
             replace(plan, commands=as_commands(commands, width))
             for plan, width in zip(self._plans, widths)
         ]
 
-    def rows_every(self, dt: float) -> int:
+    def steps_per_row(self, dt: float) -> int:
         """Count the steps from one logged row to the next."""
         if self.options.log_every is None:
             return max(1, round(1 / (LOG_RATE * dt)))
         return self.options.log_every
 
-    def setting(self) -> Dict[str, Any]:
+    def list_settings(self) -> Dict[str, Any]:
         """Give what all flights share, in plain values."""
         options, step = self.options, self._plans[0].step
         spawn = options.spawn
@@ -232,7 +232,7 @@ class Cases(Sequence[Case]):
             "duration": float(options.duration),
             "world": None if options.world is None else str(options.world),
             "dt": step,
-            "log_every": self.rows_every(step),
+            "log_every": self.steps_per_row(step),
             "spawn": None if spawn is None else [float(value) for value in spawn],
             "controller_rate": options.controller_rate,
             "delay": options.delay,
@@ -241,24 +241,24 @@ class Cases(Sequence[Case]):
             "ignore": list(options.ignore),
         }
 
-    def _controller(self, controller: int, model: int, point: Point) -> Any:
-        return self.guidance.make(controller, self.vehicles[model], of_controller(point))
+    def _make_controller(self, controller: int, model: int, point: Point) -> Any:
+        return self.control.make(controller, self.vehicles[model], pick_controller_values(point))
 
     def _check_sizes(self, largest: int) -> Tuple[int, ...]:
         sides = {
-            "controller": self.guidance.controllers,
-            "reference": self.guidance.references,
+            "controller": self.control.controllers,
+            "reference": self.control.references,
             "engine": self.engines,
             "model": self.models,
         }
-        for kind in list(sides)[:3] if self.guidance.is_given else ["engine"]:
+        for kind in list(sides)[:3] if self.control.is_closed_loop else ["engine"]:
             check_labels(kind, sides[kind])
         known = [name for name, _ in list_engines()]
         for engine in self.engines:
             if engine not in known:
                 raise InputError(f"there is no engine '{engine}'; give some of {', '.join(known)}")
         for name in self.design.names:
-            if name.startswith(OF_CONTROLLER) and not self.guidance.is_given:
+            if name.startswith(OF_CONTROLLER) and not self.control.is_closed_loop:
                 raise InputError(f"vary {name}: there is no controller; name a --controller")
         sizes = [len(side) or 1 for side in sides.values()]
         sizes += [self.design.size, int(self.options.seeds)]
@@ -267,14 +267,16 @@ class Cases(Sequence[Case]):
         return tuple(sizes)
 
 
-def check_sides(models: Sequence[Union[str, Path]], design: Design) -> None:
+def check_models(models: Sequence[Union[str, Path]], design: Design) -> None:
     """Raise `InputError` if a model is named twice, or an axis varies the engines."""
     check_labels("model", [shown(model) for model in models])
     if "engine" in design.names:
         raise InputError("vary engine: name the engines by themselves")
 
 
-def spread(vary: Mapping[str, Any], options: T, least: int = 1) -> Tuple[Mapping[str, Any], T]:
+def make_scenario_axis(
+    vary: Mapping[str, Any], options: T, least: int = 1
+) -> Tuple[Mapping[str, Any], T]:
     """Make an axis of the scenarios that the options name, if there are so many."""
     scenario: Any = options.scenario
     names = list(scenario) if isinstance(scenario, (list, tuple)) else [scenario]
@@ -296,7 +298,7 @@ def check_labels(kind: str, names: Sequence[str]) -> None:
         raise InputError(f"no {kind} is named; name at least one")
 
 
-def label_of(point: Mapping[str, str]) -> str:
+def label_point(point: Mapping[str, str]) -> str:
     """Name a point."""
     return " ".join(
         value if name == "scenario" else f"{name}={value}" for name, value in point.items()
@@ -304,7 +306,7 @@ def label_of(point: Mapping[str, str]) -> str:
 
 
 @contextmanager
-def _blaming(point: Mapping[str, str]) -> Iterator[None]:
+def _name_point_in_errors(point: Mapping[str, str]) -> Iterator[None]:
     """Name what a point gives to controllers in an error of the block."""
     try:
         yield
@@ -312,4 +314,4 @@ def _blaming(point: Mapping[str, str]) -> Iterator[None]:
         given = {name: text for name, text in point.items() if name.startswith(OF_CONTROLLER)}
         if not given or str(error).startswith("vary "):
             raise
-        raise InputError(f"vary {label_of(given)}: {error}") from error
+        raise InputError(f"vary {label_point(given)}: {error}") from error

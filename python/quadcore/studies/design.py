@@ -9,7 +9,7 @@ from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Seq
 from .._core import InputError
 from ..support.input_files import read_text
 from . import distributions
-from .axes import Axis, axes_of, parse_axis
+from .axes import Axis, make_axes, parse_axis
 
 LARGEST = 1_000_000
 """Rows of one sweep."""
@@ -64,11 +64,11 @@ class Design(Sequence[Point]):
             else:
                 listed[name] = parse_axis(name, given).values if isinstance(given, str) else given
         self.kind, self.samples = design, samples
-        self.listed = axes_of(listed)
+        self.listed = make_axes(listed)
         """Axes whose values are listed."""
         blocks = [Block([axis.name], _Column(axis)) for axis in self.listed]
         if points is not None:
-            blocks.append(_table(Path(points)))
+            blocks.append(_read_table(Path(points)))
         if self.drawn:
             names = list(self.drawn)
             if samples is None:
@@ -76,11 +76,11 @@ class Design(Sequence[Point]):
             if samples > LARGEST:
                 raise InputError(f"samples is {samples}; at most {LARGEST} rows are swept")
             values = list(self.drawn.values())
-            rows = distributions.drawn(names, values, design, samples, seed)
+            rows = distributions.draw_points(names, values, design, samples, seed)
             blocks.append(Block(names, rows, is_drawn=True))
         elif samples is not None:
             raise InputError(
-                f"samples is {samples} but no axis is drawn; vary one as {', '.join(forms())}"
+                f"samples is {samples} but no axis is drawn; vary one as {', '.join(list_forms())}"
             )
         self.blocks = blocks
         self._sizes = [len(block.rows) for block in blocks]
@@ -119,18 +119,18 @@ class Design(Sequence[Point]):
                 column = list(block.names).index(name)
                 yield from (row[column] for row in block.rows)
 
-    def to_try(self) -> List[Point]:
+    def pick_trial_points(self) -> List[Point]:
         """Choose points in which each axis once has each value, or its ends if there are many."""
         if not len(self):
             return []
         first: Point = self[0]
         chosen = [first]
         for block in self.blocks:
-            for at in _ends(block) if len(block.rows) > _FEW else range(len(block.rows)):
+            for at in _end_rows(block) if len(block.rows) > _FEW else range(len(block.rows)):
                 chosen.append({**first, **dict(zip(block.names, block.rows[at]))})
         return list({tuple(point.items()): point for point in chosen}.values())
 
-    def told(self) -> Dict[str, Any]:
+    def describe(self) -> Dict[str, Any]:
         """Give the number of values of each axis and how points are drawn, in plain values."""
         return {
             "axes": {name: len(set(self.values(name))) for name in self.names},
@@ -163,12 +163,12 @@ class _Column(Sequence[Tuple[str]]):
         return (self._values[i],)
 
 
-def forms() -> List[str]:
+def list_forms() -> List[str]:
     """Write how a distribution is asked for."""
-    return distributions.forms()
+    return distributions.list_forms()
 
 
-def _ends(block: Block) -> List[int]:
+def _end_rows(block: Block) -> List[int]:
     """Rows with the least and the largest value of each column that holds numbers."""
     found = [0, len(block.rows) - 1]
     for column in range(len(block.names)):
@@ -180,7 +180,7 @@ def _ends(block: Block) -> List[int]:
     return sorted(set(found))
 
 
-def _table(path: Path) -> Block:
+def _read_table(path: Path) -> Block:
     header, *lines = read_text(path, _LARGEST).rstrip().splitlines() or [""]
     names = [name.strip() for name in header.split(",")]
     if not all(names):

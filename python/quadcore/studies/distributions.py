@@ -24,7 +24,7 @@ class Distribution(NamedTuple):
     """Makes one of scipy.stats, frozen."""
 
 
-def _stats() -> Any:
+def _import_stats() -> Any:
     from scipy import stats  # slow to import
 
     return stats
@@ -32,35 +32,39 @@ def _stats() -> Any:
 
 KNOWN: Dict[str, Distribution] = {
     "uniform": Distribution(
-        ("LOW", "HIGH"), "all alike", lambda low, high: _stats().uniform(low, high - low)
+        ("LOW", "HIGH"), "all alike", lambda low, high: _import_stats().uniform(low, high - low)
     ),
     "loguniform": Distribution(
-        ("LOW", "HIGH"), "all magnitudes alike", lambda low, high: _stats().loguniform(low, high)
+        ("LOW", "HIGH"),
+        "all magnitudes alike",
+        lambda low, high: _import_stats().loguniform(low, high),
     ),
     "normal": Distribution(
-        ("MEAN", "DEVIATION"), "", lambda mean, deviation: _stats().norm(mean, deviation)
+        ("MEAN", "DEVIATION"), "", lambda mean, deviation: _import_stats().norm(mean, deviation)
     ),
     "truncnormal": Distribution(
         ("MEAN", "DEVIATION", "LOW", "HIGH"),
         "the same within bounds",
-        lambda mean, deviation, low, high: _stats().truncnorm(
+        lambda mean, deviation, low, high: _import_stats().truncnorm(
             (low - mean) / deviation, (high - mean) / deviation, mean, deviation
         ),
     ),
     "lognormal": Distribution(
         ("MEDIAN", "DEVIATION"),
         "whose natural logarithm is normal, with this deviation",
-        lambda median, deviation: _stats().lognorm(deviation, scale=median),
+        lambda median, deviation: _import_stats().lognorm(deviation, scale=median),
     ),
     "triangular": Distribution(
         ("LOW", "MODE", "HIGH"),
         "",
-        lambda low, mode, high: _stats().triang((mode - low) / (high - low), low, high - low),
+        lambda low, mode, high: _import_stats().triang(
+            (mode - low) / (high - low), low, high - low
+        ),
     ),
 }
 
 
-def forms() -> List[str]:
+def list_forms() -> List[str]:
     """Write how each is asked for."""
     return [":".join((name, *known.arguments)) for name, known in KNOWN.items()]
 
@@ -92,49 +96,53 @@ def parse(name: str, text: str) -> Optional[Any]:
     return made
 
 
-def _random(dimensions: int, count: int, seed: int) -> np.ndarray:
+def _draw_random(dimensions: int, count: int, seed: int) -> np.ndarray:
     return np.random.default_rng(seed).random((count, dimensions))
 
 
-def _latin(dimensions: int, count: int, seed: int) -> np.ndarray:
-    made = _qmc().LatinHypercube(dimensions, **_seeded(_qmc().LatinHypercube, seed))
+def _draw_latin(dimensions: int, count: int, seed: int) -> np.ndarray:
+    made = _import_qmc().LatinHypercube(
+        dimensions, **_seed_argument(_import_qmc().LatinHypercube, seed)
+    )
     points: np.ndarray = made.random(count)
     return points
 
 
-def _sobol(dimensions: int, count: int, seed: int) -> np.ndarray:
+def _draw_sobol(dimensions: int, count: int, seed: int) -> np.ndarray:
     _check_power("sobol", count)
     points: np.ndarray = (
-        _qmc().Sobol(dimensions, **_seeded(_qmc().Sobol, seed)).random_base2(count.bit_length() - 1)
+        _import_qmc()
+        .Sobol(dimensions, **_seed_argument(_import_qmc().Sobol, seed))
+        .random_base2(count.bit_length() - 1)
     )
     return points
 
 
-def _saltelli(dimensions: int, count: int, seed: int) -> np.ndarray:
+def _draw_saltelli(dimensions: int, count: int, seed: int) -> np.ndarray:
     _check_power("saltelli", count)
     if count < 2:
         raise InputError("samples is 1; design saltelli tells nothing of one; give at least 2")
     with require_package("design saltelli", "SALib", "sweep"):
         from SALib.sample import sobol
     points: np.ndarray = sobol.sample(
-        unit_problem(dimensions), count, calc_second_order=False, seed=seed
+        make_unit_problem(dimensions), count, calc_second_order=False, seed=seed
     )
     return points
 
 
 DESIGNS: Dict[str, Tuple[str, Callable[[int, int, int], np.ndarray]]] = {
-    "latin": ("a Latin hypercube", _latin),
-    "sobol": ("a scrambled Sobol set", _sobol),
-    "random": ("independent points", _random),
+    "latin": ("a Latin hypercube", _draw_latin),
+    "sobol": ("a scrambled Sobol set", _draw_sobol),
+    "random": ("independent points", _draw_random),
     "saltelli": (
         "the sets of Saltelli, for Sobol indices: samples x (axes + 2) flights",
-        _saltelli,
+        _draw_saltelli,
     ),
 }
 """Sets of points in the unit cube, by name, with what they are."""
 
 
-def unit_problem(dimensions: int) -> Dict[str, Any]:
+def make_unit_problem(dimensions: int) -> Dict[str, Any]:
     """Tell SALib of axes that are drawn from the unit cube."""
     return {
         "num_vars": dimensions,
@@ -143,7 +151,7 @@ def unit_problem(dimensions: int) -> Dict[str, Any]:
     }
 
 
-def drawn(
+def draw_points(
     names: Sequence[str], distributions: Sequence[Any], design: str, samples: int, seed: int
 ) -> List[List[str]]:
     """Draw values of several axes.
@@ -189,13 +197,13 @@ def _check_power(design: str, count: int) -> None:
         )
 
 
-def _qmc() -> Any:
+def _import_qmc() -> Any:
     with require_package("this design", "scipy, from 1.7 on,", "sweep"):
         from scipy.stats import qmc
     return qmc
 
 
-def _seeded(engine: Any, seed: int) -> Dict[str, Any]:
+def _seed_argument(engine: Any, seed: int) -> Dict[str, Any]:
     """Name the seed as this release of scipy does."""
     named = "rng" if "rng" in inspect.signature(engine.__init__).parameters else "seed"
     return {named: np.random.default_rng(seed)}

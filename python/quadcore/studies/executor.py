@@ -30,12 +30,12 @@ _PATIENCE = 10.0  # s; how long a process that was asked to end may take
 _PR_SET_PDEATHSIG = 1  # of linux/prctl.h
 
 
-def usable_cores() -> int:
+def count_cores() -> int:
     """Count the cores that this process may use."""
     return len(os.sched_getaffinity(0))
 
 
-def each(
+def run_cases(
     function: Callable[[Case], Result],
     cases: Iterable[Case],
     take: Take,
@@ -77,23 +77,23 @@ def each(
     RuntimeError
         Anything else that `function` raised, with its traceback; see `contained`.
     """
-    crew = _Crew(function, conclude, cases, apart)
+    pool = _WorkerPool(function, conclude, cases, apart)
     try:
-        crew.hire(processes or usable_cores())
-        while crew.busy:
-            for connection in wait(list(crew.busy)):
+        pool.start(processes or count_cores())
+        while pool.busy:
+            for connection in wait(list(pool.busy)):
                 with interrupts.hold_signals():
-                    take(*crew.take(connection))
+                    take(*pool.take(connection))
     except KeyboardInterrupt:
         with interrupts.hold_signals():
-            for outcome in crew.dismiss():
+            for outcome in pool.stop():
                 take(*outcome)
         raise
     finally:
-        collections.deque(crew.dismiss(), maxlen=0)
+        collections.deque(pool.stop(), maxlen=0)
 
 
-def conducted(
+def run_contained(
     function: Callable[[Case], Result],
     cases: Iterable[Case],
     take: Take,
@@ -111,17 +111,19 @@ def conducted(
     """
     done = 0
 
-    def take_and_tell(index: int, outcome: Any) -> None:
+    def take_and_report(index: int, outcome: Any) -> None:
         nonlocal done
         take(index, outcome)
         done += 1
         if progress is not None:
             progress(done, len(cases))  # type: ignore[arg-type]
 
-    each(contained(function), cases, take_and_tell, processes, contained(conclude), apart)
+    run_cases(
+        contain_errors(function), cases, take_and_report, processes, contain_errors(conclude), apart
+    )
 
 
-def contained(function: Callable[[Case], Result]) -> Callable[[Case], Result]:
+def contain_errors(function: Callable[[Case], Result]) -> Callable[[Case], Result]:
     """Make `function` raise QuadcoreError for any fault, so that it is one case's alone."""
 
     def call(case: Case) -> Result:
@@ -135,16 +137,16 @@ def contained(function: Callable[[Case], Result]) -> Callable[[Case], Result]:
     return call
 
 
-class Died(QuadcoreError):
+class ProcessDied(QuadcoreError):
     """The process of a case died."""
 
     def __init__(self, exit_code: int) -> None:
-        super().__init__(_death(exit_code))
+        super().__init__(_describe_death(exit_code))
         self.was_killed = exit_code < 0
         """Whether by a signal, which may well have had nothing to do with the case."""
 
 
-class _Crew:
+class _WorkerPool:
     """Processes that work on cases."""
 
     def __init__(
@@ -160,7 +162,7 @@ class _Crew:
         self.busy: Dict[Connection, Tuple[int, Any]] = {}
         """Index of the case and process, by the end of its pipe."""
 
-    def hire(self, processes: int) -> None:
+    def start(self, processes: int) -> None:
         """Start so many, or as many as the system gives, each with a case."""
         for _ in range(processes):
             with interrupts.hold_signals():
@@ -176,7 +178,7 @@ class _Crew:
             connection.close()
             process.join()
             self._replace()
-            return index, Died(process.exitcode)
+            return index, ProcessDied(process.exitcode)
         if fault is not None:
             self.busy[connection] = index, process  # to be ended
             raise RuntimeError(fault)
@@ -188,7 +190,7 @@ class _Crew:
             self._give(connection, process)
         return index, result
 
-    def dismiss(self) -> Iterator[Tuple[int, Any]]:
+    def stop(self) -> Iterator[Tuple[int, Any]]:
         """End all, and yield what some had finished."""
         for _, process in self.busy.values():
             process.terminate()
@@ -228,7 +230,7 @@ class _Crew:
 def _start(task: Task, others: List[Connection]) -> Tuple[Connection, Any]:
     here, there = _FORK.Pipe()
     process = _FORK.Process(
-        target=_work, args=(task, there, [here, *others], os.getpid()), daemon=True
+        target=_run_worker, args=(task, there, [here, *others], os.getpid()), daemon=True
     )
     # What comes before the child is ready waits for it, instead of finding the parent's handlers.
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, interrupts.SIGNALS)
@@ -243,9 +245,9 @@ def _start(task: Task, others: List[Connection]) -> Tuple[Connection, Any]:
     return here, process
 
 
-def _work(task: Task, pipe: Connection, inherited: List[Connection], parent: int) -> None:
+def _run_worker(task: Task, pipe: Connection, inherited: List[Connection], parent: int) -> None:
     try:
-        _obey(parent)
+        _set_signals(parent)
         for connection in inherited:  # else nobody would see that the parent is gone
             connection.close()
         _serve(*task, pipe)
@@ -259,14 +261,14 @@ def _serve(
 ) -> None:
     with contextlib.suppress(EOFError, BrokenPipeError, ConnectionResetError):
         while True:
-            result, fault = _outcome(function, pipe.recv())
+            result, fault = _call(function, pipe.recv())
             with interrupts.hold_signals():
                 if fault is None and not isinstance(result, QuadcoreError):
-                    result, fault = _outcome(conclude, result)
+                    result, fault = _call(conclude, result)
                 pipe.send((result, fault))
 
 
-def _outcome(function: Callable[[Any], Any], argument: Any) -> Tuple[Any, Optional[str]]:
+def _call(function: Callable[[Any], Any], argument: Any) -> Tuple[Any, Optional[str]]:
     """Give the result or the QuadcoreError in its place, and the traceback of any other fault."""
     try:
         return function(argument), None
@@ -280,7 +282,7 @@ def _outcome(function: Callable[[Any], Any], argument: Any) -> Tuple[Any, Option
         return None, traceback.format_exc()
 
 
-def _obey(parent: int) -> None:
+def _set_signals(parent: int) -> None:
     """Leave Ctrl-C and a closed terminal to the parent, which hears them too; end when told to."""
 
     def end(number: int, _: Any) -> None:
@@ -297,7 +299,7 @@ def _obey(parent: int) -> None:
         raise interrupts.Interrupted(signal.SIGTERM)
 
 
-def _death(exit_code: int) -> str:
+def _describe_death(exit_code: int) -> str:
     if exit_code >= 0:
         return f"its process ended with status {exit_code}"
     try:

@@ -40,7 +40,7 @@ SPAWNED = "{:g},{:g},{:g}".format(*SPAWN)
 """Where a flight begins by default, as --spawn takes it."""
 
 
-class About(NamedTuple):
+class OptionInfo(NamedTuple):
     """How an option is written, read, checked and explained."""
 
     flag: str
@@ -55,7 +55,7 @@ class About(NamedTuple):
     repeats: bool
 
 
-def _about(
+def _describe(
     flag: str,
     metavar: str,
     meaning: str,
@@ -63,8 +63,8 @@ def _about(
     kind: Kind = arguments.ANY,
     without: str = "",
     repeats: bool = False,
-) -> Dict[str, About]:
-    return {"about": About(flag, metavar, meaning, read, kind, without, repeats)}
+) -> Dict[str, OptionInfo]:
+    return {"about": OptionInfo(flag, metavar, meaning, read, kind, without, repeats)}
 
 
 @dataclass(frozen=True)
@@ -77,32 +77,32 @@ class Options:
         If a value is of another kind than its option's.
     """
 
-    parameters: Optional[Mapping[str, Value]] = field(default=None, metadata=_about(
+    parameters: Optional[Mapping[str, Value]] = field(default=None, metadata=_describe(
         "set", "PLUGIN.TAG=VALUE",
         "other values of plugin tags, or of LINK.mass, LINK.ixx ... LINK.izz, xacro.ARG",
         parse.assignment(r"([^=]+\.[^.=]+)=(.+)", "PLUGIN.TAG=VALUE"),
         arguments.OPTIONS["parameters"], repeats=True,
     ))  # fmt: skip
-    xacro_args: Optional[Mapping[str, object]] = field(default=None, metadata=_about(
+    xacro_args: Optional[Mapping[str, object]] = field(default=None, metadata=_describe(
         "xacro", "ARG:=VALUE", "arguments of the xacro file",
         parse.assignment(r"([^:=]+):=(.*)", "ARG:=VALUE"),
         arguments.OPTIONS["xacro_args"], repeats=True,
     ))  # fmt: skip
-    ignore: Sequence[str] = field(default=(), metadata=_about(
+    ignore: Sequence[str] = field(default=(), metadata=_describe(
         "ignore", "NAME",
         "foreign plugins (name or file name), elements, or models of the world to leave out",
         kind=arguments.OPTIONS["ignore"], repeats=True,
     ))  # fmt: skip
-    world: Union[str, Path, None] = field(default=None, metadata=_about(
+    world: Union[str, Path, None] = field(default=None, metadata=_describe(
         "world", "FILE",
         f"world file, or a shipped world: {', '.join(resources.shipped('worlds'))}",
         kind=arguments.ANY, without="empty",
     ))  # fmt: skip
-    dt: Optional[float] = field(default=None, metadata=_about(
+    dt: Optional[float] = field(default=None, metadata=_describe(
         "dt", "S", "step in s", parse.positive,
         arguments.OPTIONS["dt"], "the world's",
     ))  # fmt: skip
-    scenario: Optional[Names] = field(default=None, metadata=_about(
+    scenario: Optional[Names] = field(default=None, metadata=_describe(
         "scenario", "A,B",
         "disturbances and faults, files or shipped: "
         + ", ".join([NONE, *resources.shipped("config/scenarios")]),
@@ -110,48 +110,48 @@ class Options:
     ))  # fmt: skip
     seed: int = field(
         default=0,
-        metadata=_about("seed", "N", "first seed of all noise", parse.integer(0, 2**64 - 1)),
+        metadata=_describe("seed", "N", "first seed of all noise", parse.integer(0, 2**64 - 1)),
     )
-    seeds: int = field(default=1, metadata=_about(
+    seeds: int = field(default=1, metadata=_describe(
         "seeds", "N", "number of seeds, counted from the first on",
         parse.integer(1), arguments.COUNT,
     ))  # fmt: skip
     duration: float = field(
         default=10.0,
-        metadata=_about("duration", "S", "time to fly in s", parse.positive, arguments.SECONDS),
+        metadata=_describe("duration", "S", "time to fly in s", parse.positive, arguments.SECONDS),
     )
-    spawn: Optional[Sequence[Number]] = field(default=None, metadata=_about(
+    spawn: Optional[Sequence[Number]] = field(default=None, metadata=_describe(
         "spawn", "X,Y,Z[,ROLL,PITCH,YAW]", "start pose of the frame in m and rad",
         parse.pose, without="on the reference",
     ))  # fmt: skip
-    log_every: Optional[int] = field(default=None, metadata=_about(
+    log_every: Optional[int] = field(default=None, metadata=_describe(
         "log-every", "N", "steps from one logged or measured row to the next",
         parse.integer(1), without="each hundredth of a second",
     ))  # fmt: skip
-    controller_rate: Optional[float] = field(default=None, metadata=_about(
+    controller_rate: Optional[float] = field(default=None, metadata=_describe(
         "controller-rate", "HZ", "calls of the controller per second",
         parse.positive, without="the controller's, else 500",
     ))  # fmt: skip
-    delay: Optional[float] = field(default=None, metadata=_about(
+    delay: Optional[float] = field(default=None, metadata=_describe(
         "delay", "S", "actuation delay in s", parse.not_negative,
         without="the controller's, else 0",
     ))  # fmt: skip
-    time_limit: float = field(default=300.0, metadata=_about(
+    time_limit: float = field(default=300.0, metadata=_describe(
         "time-limit", "S", "limit of the wall clock for one flight in s",
         parse.positive, arguments.LIMIT,
     ))  # fmt: skip
-    processes: Optional[int] = field(default=None, metadata=_about(
+    processes: Optional[int] = field(default=None, metadata=_describe(
         "jobs", "N", "processes", parse.integer(1),
         arguments.or_none(arguments.COUNT), "one per core",
     ))  # fmt: skip
-    progress: Optional[Progress] = field(default=None, metadata=_about(
+    progress: Optional[Progress] = field(default=None, metadata=_describe(
         "", "", "function that is called as progress(done, total)",
         kind=arguments.or_none(arguments.PROGRESS), without="none",
     ))  # fmt: skip
 
     def __post_init__(self) -> None:
         """Check each value."""
-        arguments.check(vars(self), kinds(type(self)))
+        arguments.check(vars(self), list_kinds(type(self)))
 
 
 class Keywords(TypedDict, total=False):
@@ -175,12 +175,12 @@ class Keywords(TypedDict, total=False):
     progress: Optional[Progress]
 
 
-def changed(name: str, **parts: Any) -> Dict[str, About]:
+def change_option(name: str, **parts: Any) -> Dict[str, OptionInfo]:
     """Describe an option again, some parts otherwise."""
-    return {"about": described(Options)[name]._replace(**parts)}
+    return {"about": describe_options(Options)[name]._replace(**parts)}
 
 
-def described(kind: Type[Options]) -> Dict[str, About]:
+def describe_options(kind: Type[Options]) -> Dict[str, OptionInfo]:
     """Give the description of each option, by name."""
     return {each.name: each.metadata["about"] for each in fields(kind)}
 
@@ -189,7 +189,7 @@ def described(kind: Type[Options]) -> Dict[str, About]:
 class EvaluateOptions(Options):
     """Options of `evaluate`."""
 
-    duration: float = field(default=30.0, metadata=changed("duration"))
+    duration: float = field(default=30.0, metadata=change_option("duration"))
 
 
 @dataclass(frozen=True)
@@ -197,10 +197,11 @@ class CompareOptions(Options):
     """Options of `compare`."""
 
     log_every: Optional[int] = field(
-        default=1, metadata=changed("log_every", kind=arguments.COUNT, without="")
+        default=1, metadata=change_option("log_every", kind=arguments.COUNT, without="")
     )
     spawn: Optional[Sequence[Number]] = field(
-        default=None, metadata=changed("spawn", without=f"{SPAWNED}; with a reference, on that")
+        default=None,
+        metadata=change_option("spawn", without=f"{SPAWNED}; with a reference, on that"),
     )
 
 
@@ -210,23 +211,23 @@ class SweepOptions(Options):
 
     spawn: Optional[Sequence[Number]] = field(
         default=None,
-        metadata=changed("spawn", without=f"on the reference; with --commands {SPAWNED}"),
+        metadata=change_option("spawn", without=f"on the reference; with --commands {SPAWNED}"),
     )
 
 
-def kinds(kind: Type[Options]) -> Dict[str, Kind]:
+def list_kinds(kind: Type[Options]) -> Dict[str, Kind]:
     """Give the kind of each option's value, by name."""
-    return {name: about.kind for name, about in described(kind).items()}
+    return {name: about.kind for name, about in describe_options(kind).items()}
 
 
-def explained(about: About, default: Any) -> str:
+def explain(about: OptionInfo, default: Any) -> str:
     """Write meaning and default of an option in one line."""
     plain = f"{default:g}" if isinstance(default, float) else str(default)
     without = about.without or ("" if default in (None, ()) else plain)
     return f"{about.meaning} ({without})" if without else about.meaning
 
 
-def takes(kind: Type[Options], **own: Kind) -> Callable[[Function], Function]:
+def accept_options(kind: Type[Options], **own: Kind) -> Callable[[Function], Function]:
     """Let a function take options as ``**options``, shown by its signature and docstring.
 
     Parameters
@@ -240,7 +241,7 @@ def takes(kind: Type[Options], **own: Kind) -> Callable[[Function], Function]:
     def decorate(function: Function) -> Function:
         signature, hints = inspect.signature(function), get_type_hints(kind)
         *named, rest = signature.parameters.values()
-        known = {**{each.name: arguments.ANY for each in named}, **own, **kinds(kind)}
+        known = {**{each.name: arguments.ANY for each in named}, **own, **list_kinds(kind)}
 
         @functools.wraps(function)
         def call(*values: Any, **given: Any) -> Any:
@@ -260,17 +261,17 @@ def takes(kind: Type[Options], **own: Kind) -> Callable[[Function], Function]:
             for each in fields(kind)
         ]
         call.__signature__ = signature.replace(parameters=[*named, *options])  # type: ignore[attr-defined]
-        call.__doc__ = (function.__doc__ or "").replace("    **options\n", _paragraphs(kind))
+        call.__doc__ = (function.__doc__ or "").replace("    **options\n", _document_options(kind))
         return call  # type: ignore[return-value]
 
     return decorate
 
 
-def _paragraphs(kind: Type[Options]) -> str:
+def _document_options(kind: Type[Options]) -> str:
     """Write the options as a docstring's parameters."""
     lines = []
     for each in fields(kind):
-        meaning = explained(each.metadata["about"], each.default)
+        meaning = explain(each.metadata["about"], each.default)
         told = textwrap.fill(f"{meaning[0].upper()}{meaning[1:]}.", 88)
         lines.append(f"    {each.name}\n{textwrap.indent(told, ' ' * 8)}\n")
     return "".join(lines)

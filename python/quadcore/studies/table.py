@@ -12,7 +12,7 @@ from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 from ..support.output_files import atomic_write, cell, text_bytes
 
 
-def csv_bytes(rows: Iterable[Sequence[Any]]) -> bytes:
+def make_csv(rows: Iterable[Sequence[Any]]) -> bytes:
     """Write rows as CSV; NaN is an empty cell."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
@@ -21,18 +21,18 @@ def csv_bytes(rows: Iterable[Sequence[Any]]) -> bytes:
     return text_bytes(stream.getvalue())
 
 
-def json_bytes(content: Any) -> bytes:
+def make_json(content: Any) -> bytes:
     """Write lists and dictionaries as JSON; NaN is null."""
     text = json.dumps(_plain(content), indent=1, ensure_ascii=False, allow_nan=False)
     return text_bytes(text + "\n")
 
 
-def number_text(value: float) -> str:
+def format_number(value: float) -> str:
     """Four digits, for a table that is read."""
     return "" if math.isnan(value) else f"{value:.4g}"
 
 
-def shown_in(unit: str) -> Tuple[str, float]:
+def choose_display_unit(unit: str) -> Tuple[str, float]:
     """Name the unit in which people are shown a quantity, and give the factor to it.
 
     Files hold radians.
@@ -44,7 +44,7 @@ NOT_FLOWN = "not flown: interrupted"
 """Stands for the reason of flights that an interrupt left out: they did not fail."""
 
 
-def flown_and_failed(failures: Sequence[str]) -> str:
+def count_outcomes(failures: Sequence[str]) -> str:
     """How many flew, in one line, of flights of which those that failed have a reason."""
     left_out = sum(1 for failure in failures if failure == NOT_FLOWN)
     failed = sum(1 for failure in failures if failure) - left_out
@@ -53,7 +53,7 @@ def flown_and_failed(failures: Sequence[str]) -> str:
     return told + (f", {left_out} not flown" if left_out else "")
 
 
-def save(folder: Path, files: Mapping[str, bytes]) -> List[Path]:
+def save_files(folder: Path, files: Mapping[str, bytes]) -> List[Path]:
     """Write files into a folder, each whole or not at all, and name them.
 
     Raises
@@ -75,7 +75,7 @@ def _plain(content: Any) -> Any:
     return None if content != content else content
 
 
-def setting_texts(setting: Mapping[str, Any], most: Optional[int] = None) -> Dict[str, str]:
+def format_settings(setting: Mapping[str, Any], most: Optional[int] = None) -> Dict[str, str]:
     """Write what flew for a page: of a long list at most so many, of empty values nothing."""
     found = {}
     for name, value in setting.items():

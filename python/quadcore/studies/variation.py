@@ -82,7 +82,7 @@ class Variation:
         return plan.befallen(self.scenarios[point.get("scenario")])
 
 
-def of_controller(point: Mapping[str, str]) -> Dict[str, float]:
+def pick_controller_values(point: Mapping[str, str]) -> Dict[str, float]:
     """Give what a point changes in a controller.
 
     Raises

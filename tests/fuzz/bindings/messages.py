@@ -50,7 +50,7 @@ def message(chance: random.Random) -> bytes:
         numbers = [chance.choice(_NUMBERS)] * chance.randrange(3)
     else:
         numbers = []
-    whole = protocol.pack(kind, numbers)
+    whole = protocol.pack_message(kind, numbers)
     change = chance.randrange(8)
     if change == 0:
         return whole[: chance.randrange(len(whole) + 1)]
@@ -66,5 +66,5 @@ def _read_replies(client: socket.socket) -> None:
     """Check that what came back is whole messages."""
     with suppress(EOFError, ConnectionResetError):
         while True:
-            kind, _ = protocol.read(client.recv)
+            kind, _ = protocol.read_message(client.recv)
             assert kind in (0, 1, 2)

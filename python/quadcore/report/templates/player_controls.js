@@ -19,8 +19,10 @@ for (const flight of flights) {
   flight.box = label.appendChild(document.createElement("input"));
   Object.assign(flight.box, { type: "checkbox", checked: true });
   const dash = flight.dash.map((length) => 1.5 * length).join(" ");
-  label.insertAdjacentHTML("beforeend", `<svg class="swatch" viewBox="0 0 40 8" aria-hidden="true">
-    <line x2="40" y1="4" y2="4" stroke="${flight.colour}" stroke-width="5" stroke-dasharray="${dash}"/></svg>`);
+  label.insertAdjacentHTML(
+    "beforeend",
+    '<svg class="swatch" viewBox="0 0 40 8" aria-hidden="true"><line x2="40" y1="4" y2="4" ' +
+    `stroke="${flight.colour}" stroke-width="5" stroke-dasharray="${dash}"/></svg>`);
   label.append(flight.name);
   flight.cells = ["where", "away", "wind", "load"].map((column) => {
     const cell = row.insertCell();

@@ -20,11 +20,11 @@ from ...simulation.engines import ENGINE
 from ...simulation.log import Log
 from ...support import arguments, interrupts
 from ..axes import Values
-from ..executor import conducted
-from ..guidance import Guidance
-from ..options import CompareOptions, Keywords, Names, takes
+from ..control_setup import ControlSetup
+from ..executor import run_contained
+from ..options import CompareOptions, Keywords, Names, accept_options
 from .plan import Plan
-from .result import Comparison, Keep, Measured, Outcome, Progress, Tally, measured
+from .result import Comparison, Keep, Measured, Outcome, Progress, Tally, measure
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 _LARGEST_LOGS = 2 * 2**30  # bytes
 
 
-@takes(
+@accept_options(
     CompareOptions,
     models=arguments.SOME,
     vary=arguments.or_none(arguments.AXES),
@@ -100,15 +100,15 @@ def compare(
     """
     shared = CompareOptions(**options)
     timing = shared.controller_rate, shared.delay
-    guidance = Guidance.single(controller, reference, shared.spawn, *timing)
+    control = ControlSetup.single(controller, reference, shared.spawn, *timing)
     several = arguments.several(models)
-    plan = Plan(several, vary or {}, engine, guidance, shared, commands, wrenches)
+    plan = Plan(several, vary or {}, engine, control, shared, commands, wrenches)
     if logs:
         _check_memory(plan)
-    return fly(plan, (lambda _, log: log) if logs else None, shared.progress, against)
+    return fly_plan(plan, (lambda _, log: log) if logs else None, shared.progress, against)
 
 
-def fly(
+def fly_plan(
     plan: Plan,
     keep: Optional[Keep] = None,
     progress: Optional[Progress] = None,
@@ -137,20 +137,20 @@ def fly(
 
             def flown(row: int) -> Any:
                 log = plan.fly(plan[row])
-                return row, measured(plan, compared_with, log), log
+                return row, measure(plan, compared_with, log), log
 
-            conducted(
+            run_contained(
                 flown,
                 rows,
-                lambda i, outcome: tally.note(rows[i], outcome),
+                lambda i, outcome: tally.add_outcome(rows[i], outcome),
                 plan.options.processes,
-                lambda result: _kept(result[0], result[1], result[2], keep),
-                apart=plan.guidance.runs_user_code,
+                lambda result: _keep(result[0], result[1], result[2], keep),
+                apart=plan.control.runs_user_code,
             )
     except KeyboardInterrupt as stop:
-        stop.comparison = tally.result()  # type: ignore[attr-defined]
+        stop.comparison = tally.make_comparison()  # type: ignore[attr-defined]
         raise
-    return tally.result()
+    return tally.make_comparison()
 
 
 def _fly_first(plan: Plan, rows: List[int], tally: Tally, wanted: Optional[int]) -> Optional[Log]:
@@ -162,28 +162,28 @@ def _fly_first(plan: Plan, rows: List[int], tally: Tally, wanted: Optional[int])
     while rows:
         row = rows.pop(0)
         # In a process too: what crashes there does not end the comparison.
-        conducted(plan.fly, [plan[row]], lambda _, outcome: outcomes.append(outcome), 1)
+        run_contained(plan.fly, [plan[row]], lambda _, outcome: outcomes.append(outcome), 1)
         log = outcomes.pop()
         if isinstance(log, Log):
-            tally.compare_with(row, log)
+            tally.set_baseline(row, log)
             with interrupts.hold_signals():
-                tally.note(row, _kept(row, measured(plan, log, log), log, tally.keep))
+                tally.add_outcome(row, _keep(row, measure(plan, log, log), log, tally.keep))
             return log
         if wanted is not None:
             if isinstance(log, InputError):
                 raise InputError(f"no. {row + 1}, to compare the others with, is refused: {log}")
             raise FlightError(f"no. {row + 1}, to compare the others with, failed: {log}")
-        tally.note(row, log)
+        tally.add_outcome(row, log)
     return None
 
 
-def _kept(row: int, found: Measured, log: Log, keep: Optional[Keep]) -> Outcome:
+def _keep(row: int, found: Measured, log: Log, keep: Optional[Keep]) -> Outcome:
     return found, None if keep is None else keep(row, log)
 
 
 def _check_memory(plan: Plan) -> None:
     """Refuse logs that could not be held: better now than when the machine swaps."""
-    rows = plan.options.duration / plan.dt / plan.rows_every(plan.dt)
+    rows = plan.options.duration / plan.dt / plan.steps_per_row(plan.dt)
     size = len(plan) * rows * (14 + plan.rotor_count) * 8
     if size > _LARGEST_LOGS:
         raise InputError(

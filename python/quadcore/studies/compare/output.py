@@ -7,8 +7,15 @@ from pathlib import Path
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
 from ...report.decimation import pick_evenly
-from ..folder import remove_listed
-from ..table import csv_bytes, flown_and_failed, json_bytes, number_text, save, shown_in
+from ..output_folder import remove_listed_files
+from ..table import (
+    choose_display_unit,
+    count_outcomes,
+    format_number,
+    make_csv,
+    make_json,
+    save_files,
+)
 from .plan import Plan
 from .result import Comparison
 
@@ -31,7 +38,9 @@ def log_name(row: int, count: int) -> str:
 
 def remove_logs(folder: Path) -> None:
     """Remove the logs of an earlier comparison."""
-    remove_listed(folder, "comparison.json", "logs", re.compile(r"logs/[0-9]+\.csv").fullmatch)
+    remove_listed_files(
+        folder, "comparison.json", "logs", re.compile(r"logs/[0-9]+\.csv").fullmatch
+    )
 
 
 def write(
@@ -63,12 +72,12 @@ def write(
 
     # Results first: drawing is slow and can fail.
     tables = {
-        "table.csv": csv_bytes(_rows(comparison)),
-        "comparison.json": json_bytes(_content(comparison, flight, has_logs)),
+        "table.csv": make_csv(_table_rows(comparison)),
+        "comparison.json": make_json(_make_content(comparison, flight, has_logs)),
     }
-    written = save(folder, tables)
+    written = save_files(folder, tables)
     images = _draw_plots(comparison, plan) if plots else {}
-    written += save(folder, {f"{name}.png": data for name, data in images.items()})
+    written += save_files(folder, {f"{name}.png": data for name, data in images.items()})
     page = folder / "report.html"
     write_page(page, "compare.html", **_page_values(comparison, plan, flight, images))
     return [*written, page]
@@ -76,7 +85,7 @@ def write(
 
 def summarise(comparison: Comparison) -> str:
     """Return the numbers of successful and failed flights in one line."""
-    return flown_and_failed(comparison.table["failure"].tolist())
+    return count_outcomes(comparison.table["failure"].tolist())
 
 
 def _draw_plots(comparison: Comparison, plan: Plan) -> Dict[str, bytes]:
@@ -87,7 +96,7 @@ def _draw_plots(comparison: Comparison, plan: Plan) -> Dict[str, bytes]:
     curves, against = [], None
     for row, (log, variant) in enumerate(zip(comparison.logs, plan)):
         if log is not None:
-            curves.append(plots.Curve(plan.label(variant), log))
+            curves.append(plots.Curve(plan.make_label(variant), log))
             against = curves[-1] if row == comparison.against else against
     if against is None:
         return {}
@@ -95,13 +104,15 @@ def _draw_plots(comparison: Comparison, plan: Plan) -> Dict[str, bytes]:
     return {name: png(figure) for name, figure in figures.items()}
 
 
-def _rows(comparison: Comparison) -> Iterable[Sequence[Any]]:
+def _table_rows(comparison: Comparison) -> Iterable[Sequence[Any]]:
     yield ["number", *(comparison.table.dtype.names or ())]
     for number, row in enumerate(comparison.table.tolist(), start=1):
         yield [number, *row]
 
 
-def _content(comparison: Comparison, flight: Mapping[str, str], has_logs: bool) -> Dict[str, Any]:
+def _make_content(
+    comparison: Comparison, flight: Mapping[str, str], has_logs: bool
+) -> Dict[str, Any]:
     names = comparison.table.dtype.names or ()
     flown = [row for row, reason in enumerate(comparison.table["failure"]) if not reason]
     return {
@@ -112,7 +123,7 @@ def _content(comparison: Comparison, flight: Mapping[str, str], has_logs: bool) 
             for model, found in comparison.differences.items()
         },
         "units": comparison.states,
-        "against": _number(comparison),
+        "against": _baseline_number(comparison),
         "rows": [
             {"number": number, **dict(zip(names, row))}
             for number, row in enumerate(comparison.table.tolist(), start=1)
@@ -120,28 +131,28 @@ def _content(comparison: Comparison, flight: Mapping[str, str], has_logs: bool) 
     }
 
 
-def _number(comparison: Comparison) -> Optional[int]:
+def _baseline_number(comparison: Comparison) -> Optional[int]:
     return None if comparison.against is None else comparison.against + 1
 
 
 def _page_values(
     comparison: Comparison, plan: Plan, flight: Mapping[str, str], images: Mapping[str, bytes]
 ) -> Dict[str, Any]:
-    units = {state: shown_in(unit) for state, unit in comparison.states.items()}
+    units = {state: choose_display_unit(unit) for state, unit in comparison.states.items()}
     rows = []
-    guided = plan.guidance.is_given
+    guided = plan.control.is_closed_loop
     for number, (row, variant) in enumerate(zip(comparison.table, plan), start=1):
         if number > _ROWS_OF_PAGE:
             break
-        errors = [number_text(row[f"{kind}_error"]) for kind in ("max", "rms") if guided]
+        errors = [format_number(row[f"{kind}_error"]) for kind in ("max", "rms") if guided]
         cells = {
             kind: {
-                state: number_text(row[f"{kind}_{state}"] * factor)
+                state: format_number(row[f"{kind}_{state}"] * factor)
                 for state, (_, factor) in units.items()
             }
             for kind in ("final", "max")
         }
-        label = plan.label(variant)
+        label = plan.make_label(variant)
         head = {"number": number, "label": label, "failure": row["failure"], "errors": errors}
         rows.append({**head, **cells})
     shown = len(pick_drawn(len(plan)))
@@ -156,21 +167,21 @@ def _page_values(
             {
                 "name": axis.name,
                 "listed": format_values(axis.values),
-                "written": plan.as_written(axis),
+                "written": plan.format_written_value(axis),
             }
             for axis in plan.axes
         ],
         "plots": [{"name": name, "data": data} for name, data in images.items()],
         "omitted": f"The plots show {shown} of {len(plan)} flights." if shown < len(plan) else "",
-        "against": comparison.against is not None and f"no. {_number(comparison)}",
+        "against": comparison.against is not None and f"no. {_baseline_number(comparison)}",
         "units": {state: unit for state, (unit, _) in units.items()},
-        "groups": _groups(list(comparison.states)),
+        "groups": _group_states(list(comparison.states)),
         "rows": rows,
         "more": max(0, len(plan) - _ROWS_OF_PAGE),
     }
 
 
-def _groups(states: Sequence[str]) -> List[Tuple[str, Sequence[str]]]:
+def _group_states(states: Sequence[str]) -> List[Tuple[str, Sequence[str]]]:
     """Split the states into tables that fit the page: norms first, then components."""
     parts = [states[4:7], states[7:10], states[10:13], states[13:16], states[16:]]
     return [("", states[:4]), *zip((*states[:4], "rotors"), parts)]

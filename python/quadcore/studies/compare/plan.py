@@ -17,12 +17,12 @@ from ...simulation.flight import check_logged
 from ...simulation.log import Log
 from ...simulation.simulation import Simulation
 from ..axes import OF_CONTROLLER, WHOLE, Axis, Values
-from ..cases import Case, Cases, spread
+from ..cases import Case, Cases, make_scenario_axis
+from ..control_setup import ControlSetup
 from ..design import Design
-from ..guidance import Guidance
 from ..options import CompareOptions
 from ..time_limit import time_limit
-from .difference import Difference, differences, facts
+from .model_differences import Difference, compare_documents, list_facts
 
 LARGEST = 100_000
 """Variants of one comparison."""
@@ -35,7 +35,7 @@ class Plan(Cases):
     ----------
     models, vary, engine, options, commands, wrenches
         As for `compare`.
-    guidance
+    control
         One controller and one reference, or none.
 
     Raises
@@ -50,74 +50,74 @@ class Plan(Cases):
         models: Sequence[Union[str, Path]],
         vary: Mapping[str, Values],
         engine: str,
-        guidance: Guidance,
+        control: ControlSetup,
         options: CompareOptions,
         commands: Optional[CommandsLike] = None,
         wrenches: bool = False,
     ) -> None:
-        vary, options = spread(vary, options, least=2)
+        vary, options = make_scenario_axis(vary, options, least=2)
         design = Design(vary)
         self.axes = design.listed
-        if commands is not None and guidance.is_given:
+        if commands is not None and control.is_closed_loop:
             raise InputError("a flight takes commands or a controller; give one of them")
         _check_size(len(models), self.axes)
         known = [name for name, _ in list_engines()]
         for name in design.values("engine"):
             if name not in known:
                 raise InputError(f"vary engine: there is no {_nearest(name, known)}")
-        super().__init__(design, guidance, models, [engine], options, wrenches, LARGEST)
-        built = self._built()
+        super().__init__(design, control, models, [engine], options, wrenches, LARGEST)
+        built = self._build_models()
         first = next(iter(built.values()), None)
         self.dt = 1e-3 if first is None else first.dt
         """s, of the first model as it is."""
-        check_logged(options.duration, self.dt, self.rows_every(self.dt))
+        check_logged(options.duration, self.dt, self.steps_per_row(self.dt))
         self._check_tags(built.values())
         self._check_guidance(built)
         self.rotor_count = len(self.variation.models[0].joints)
         if commands is not None:
             self._check_rotors()
             width = self.rotor_count if first is None else first.command_width
-            self.command(commands, [width] * len(models))
+            self.set_commands(commands, [width] * len(models))
 
     def fly(self, case: Case) -> Log:
         """Fly a variant; raises what building or flying it raises."""
         with time_limit(self.options.time_limit):
-            flight = self.flight(case)
+            flight = self.make_plan(case)
             simulation = flight.simulation()
             with controller_errors_as_failures(simulation):
                 return flight.flown_by(simulation)
 
-    def label(self, case: Case) -> str:
+    def make_label(self, case: Case) -> str:
         """Name of a variant for a person: what sets it apart from the others."""
         parts = [self.models[case.model]] if len(self.models) > 1 else []
         for axis, value in zip(self.axes, self.design[case.point].values()):
             if len(axis.values) > 1 or not parts:
-                parts.append(f"{axis.name.split(',')[0].split('.')[-1]} {_short(value)}")
+                parts.append(f"{axis.name.split(',')[0].split('.')[-1]} {_shorten(value)}")
         if len(self.seeds) > 1:
             parts.append(f"seed {self.seeds[case.seed]}")
         return ", ".join(parts) or self.models[case.model]
 
-    def differences(self) -> Dict[str, List[Difference]]:
+    def compare_models(self) -> Dict[str, List[Difference]]:
         """List what sets each model's file apart from the first's, by name of the model."""
         first, *others = self.variation.models
         return {
-            name: differences(first.document, model.document)
+            name: compare_documents(first.document, model.document)
             for name, model in zip(self.models[1:], others)
         }
 
-    def as_written(self, axis: Axis) -> str:
+    def format_written_value(self, axis: Axis) -> str:
         """Tell what the first model's file gives an axis' tags, and where; "" for none."""
-        written = facts(self.variation.models[0].document)
+        written = list_facts(self.variation.models[0].document)
         found = [written[tag] for tag in axis.tags if tag in written]
         return "; ".join(f"{fact.text} ({fact.at})" for fact in found)
 
-    def _built(self) -> Dict[int, Simulation]:
+    def _build_models(self) -> Dict[int, Simulation]:
         """Build the models as they are; one that cannot be is a variant that will fail."""
         built = {}
         scenario = {name: value for name, value in self.design[0].items() if name == "scenario"}
         for model in range(len(self.models)):
             with suppress(QuadcoreError):
-                built[model] = self.vehicle(model, scenario)
+                built[model] = self.make_vehicle(model, scenario)
         return built
 
     def _check_tags(self, built: Iterable[Simulation]) -> None:
@@ -143,7 +143,7 @@ class Plan(Cases):
         refused = []
         for model, vehicle in built.items():
             try:
-                return self.start(model, self.design[0], vehicle)
+                return self.start_controllers(model, self.design[0], vehicle)
             except InputError as error:
                 refused.append(error)
         if refused:
@@ -168,7 +168,7 @@ def _check_size(models: int, axes: Sequence[Axis]) -> None:
         )
 
 
-def _short(value: str) -> str:
+def _shorten(value: str) -> str:
     """Leave out digits that a label has no room for."""
     try:
         return f"{float(value):.4g}" if len(value) > 8 else value

@@ -12,7 +12,7 @@ from ...report.colours import PALETTE
 from ...report.plots import NOTHING, WHOLE, add_unslowed_axis, flatten, make_figure, panels, space
 from ...simulation.log import Log
 from ...support.rotation import continuous
-from ..metrics import differences
+from ..flight_differences import compute_differences
 
 _LABELS = 6  # in the legend of many flights
 _NO_DIFFERENCE = 1e-9  # m, deg, m/s, rad/s
@@ -37,7 +37,7 @@ def draw(curves: Sequence[Curve], against: Log, name: str) -> Dict[str, Figure]:
     name
         Name of the baseline, for the title.
     """
-    styles = _styles(curves)
+    styles = _curve_styles(curves)
     return {
         "path": _draw_path(curves, styles),
         "position": _draw_position(curves, styles),
@@ -48,7 +48,7 @@ def draw(curves: Sequence[Curve], against: Log, name: str) -> Dict[str, Figure]:
     }
 
 
-def _styles(curves: Sequence[Curve]) -> List[Dict[str, Any]]:
+def _curve_styles(curves: Sequence[Curve]) -> List[Dict[str, Any]]:
     count = len(curves)
     viridis = ScalarMappable(cmap="viridis")
     viridis.set_clim(0, 1.05 * count)  # without the palest colours
@@ -117,7 +117,7 @@ def _draw_differences(
     curves: Sequence[Curve], styles: Sequence[Dict[str, Any]], against: Log, name: str
 ) -> Figure:
     scale = np.array([1, 180 / np.pi, 1, 1])
-    values = [differences(against, curve.log)[:, :4] * scale for curve in curves]
+    values = [compute_differences(against, curve.log)[:, :4] * scale for curve in curves]
     labels = ["position (m)", "attitude (deg)", "velocity (m/s)", "rates (rad/s)"]
     title = f"Difference from {name}"
     return _draw_panels(title, curves, styles, [(values, labels)], _NO_DIFFERENCE)

@@ -20,10 +20,10 @@ import numpy as np
 from ..._core import InputError, QuadcoreError
 from ...report.html_table import SHOWN_ROWS, html_table, html_title
 from ...simulation.log import Log
-from ..measures import distance, rms_and_max
-from ..metrics import metrics, states
-from ..table import NOT_FLOWN, flown_and_failed, number_text, shown_in
-from .difference import Difference
+from ..flight_differences import compute_final_and_max, list_states
+from ..table import NOT_FLOWN, choose_display_unit, count_outcomes, format_number
+from ..tracking_metrics import compute_errors, compute_rms_and_max
+from .model_differences import Difference
 from .plan import Plan
 
 Progress = Callable[[int, int], None]
@@ -63,27 +63,27 @@ class Comparison(NamedTuple):
     refused: int
 
     def __repr__(self) -> str:
-        return f"<Comparison, {flown_and_failed(self.table['failure'].tolist())}>"
+        return f"<Comparison, {count_outcomes(self.table['failure'].tolist())}>"
 
     def _repr_html_(self) -> str:
         names = self.table.dtype.names or ()
         varied = names[: names.index("failure")]
         axes = [name for name in varied if len(set(self.table[name])) > 1]
-        states = list(self.states)[:4]
-        units = {name: shown_in(self.states[name]) for name in states}
+        list_states = list(self.states)[:4]
+        units = {name: choose_display_unit(self.states[name]) for name in list_states}
         heads = [*axes, *(f"max {name} ({unit})" for name, (unit, _) in units.items())]
         rows = []
         for row in self.table[:SHOWN_ROWS]:
-            cells = [number_text(row[f"max_{name}"] * units[name][1]) for name in states]
+            cells = [format_number(row[f"max_{name}"] * units[name][1]) for name in list_states]
             cells = [row["failure"]] if row["failure"] else cells
             rows.append([*(str(row[axis]) for axis in axes), *cells])
         return html_title(self) + html_table(heads, rows, len(self.table))
 
 
-def measured(plan: Plan, against: Log, log: Log) -> Measured:
+def measure(plan: Plan, against: Log, log: Log) -> Measured:
     """Measure a flight by its reference, and by the flight that all are compared with."""
-    away = distance(log) if plan.guidance.is_given else np.array([np.nan])
-    return rms_and_max(away), metrics(against, log)
+    away = compute_errors(log) if plan.control.is_closed_loop else np.array([np.nan])
+    return compute_rms_and_max(away), compute_final_and_max(against, log)
 
 
 class Tally:
@@ -96,16 +96,16 @@ class Tally:
         self._plan, self._progress = plan, progress
         self._refused = 0
         self._errors = np.full((len(plan), 2), np.nan)
-        self._make_room(plan.rotor_count)
+        self._allocate(plan.rotor_count)
         self._failures = [NOT_FLOWN] * len(plan)
         self._kept: List[Any] = [] if keep is None else [None] * len(plan)
 
-    def compare_with(self, row: int, log: Log) -> None:
+    def set_baseline(self, row: int, log: Log) -> None:
         """Take the flight that the others are compared with."""
         self.against = row
-        self._make_room(log.rotor_velocity.shape[1])
+        self._allocate(log.rotor_velocity.shape[1])
 
-    def note(self, row: int, outcome: Union[Outcome, QuadcoreError]) -> None:
+    def add_outcome(self, row: int, outcome: Union[Outcome, QuadcoreError]) -> None:
         """Take what became of a flight."""
         if isinstance(outcome, QuadcoreError):
             self._failures[row] = str(outcome)
@@ -119,37 +119,40 @@ class Tally:
         if self._progress is not None:
             self._progress(self.done, len(self._plan))
 
-    def result(self) -> Comparison:
+    def make_comparison(self) -> Comparison:
         """Tell it all."""
         plan = self._plan
         points = [plan.design[case.point] for case in plan]
         columns: Dict[str, Any] = {
             "model": [plan.models[case.model] for case in plan],
-            **{name: _numbers([point[name] for point in points]) for name in plan.design.names},
+            **{
+                name: _convert_numbers([point[name] for point in points])
+                for name in plan.design.names
+            },
         }
         if len(plan.seeds) > 1:
             columns["seed"] = [plan.seeds[case.seed] for case in plan]
         columns["failure"] = self._failures
-        if plan.guidance.is_given:
+        if plan.control.is_closed_loop:
             columns["rms_error"], columns["max_error"] = self._errors.T
         for i, kind in enumerate(("final", "max")):
             for j, state in enumerate(self._states):
                 columns[f"{kind}_{state}"] = self._metrics[:, i, j]
         return Comparison(
-            _structured(columns),
+            _make_structured_array(columns),
             self._kept,
             self._states,
             self.against,
-            plan.differences(),
+            plan.compare_models(),
             self._refused,
         )
 
-    def _make_room(self, rotor_count: int) -> None:
-        self._states = states(rotor_count)
+    def _allocate(self, rotor_count: int) -> None:
+        self._states = list_states(rotor_count)
         self._metrics = np.full((len(self._plan), 2, len(self._states)), np.nan)
 
 
-def _numbers(values: Sequence[str]) -> np.ndarray:
+def _convert_numbers(values: Sequence[str]) -> np.ndarray:
     """Numbers if all are, else texts."""
     try:
         return np.array([float(value) for value in values])
@@ -157,7 +160,7 @@ def _numbers(values: Sequence[str]) -> np.ndarray:
         return np.array(values)
 
 
-def _structured(columns: Mapping[str, Sequence[Any]]) -> np.ndarray:
+def _make_structured_array(columns: Mapping[str, Sequence[Any]]) -> np.ndarray:
     arrays = {name: np.asarray(values) for name, values in columns.items()}
     table = np.empty(
         len(arrays["model"]), dtype=[(name, array.dtype) for name, array in arrays.items()]

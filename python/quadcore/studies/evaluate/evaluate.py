@@ -28,17 +28,17 @@ from ...simulation.flight_plan import FlightPlan
 from ...support import arguments
 from ...support.warning import warn
 from ..axes import Values
-from ..executor import conducted
-from ..flights import Outcome, flown
-from ..guidance import Named
-from ..options import EvaluateOptions, Keywords, Names, Progress, takes
-from ..table import flown_and_failed
+from ..control_setup import Named
+from ..executor import run_contained
+from ..measured_flight import Outcome, fly_and_measure
+from ..options import EvaluateOptions, Keywords, Names, Progress, accept_options
+from ..table import count_outcomes
+from .margins import MarginSearch
 from .plan import Plan
-from .poles import has_poles, poles
-from .robustness import Searches
-from .shown_rows import columns_to_read, rows_to_read
-from .sums import JUDGED as JUDGED
-from .sums import over_seeds
+from .poles import compute_poles, has_poles
+from .seed_statistics import JUDGED as JUDGED
+from .seed_statistics import summarise_seeds
+from .summary_table import choose_columns, format_rows
 from .trial import Trial
 
 if TYPE_CHECKING:
@@ -80,16 +80,16 @@ class Evaluation(NamedTuple):
         return {row: outcome for row, outcome in enumerate(self.outcomes) if outcome.log}
 
     def __repr__(self) -> str:
-        return f"<Evaluation, {flown_and_failed([row['failure'] for row in self.table])}>"
+        return f"<Evaluation, {count_outcomes([row['failure'] for row in self.table])}>"
 
     def _repr_html_(self) -> str:
-        lines = rows_to_read(self)
-        shown = {**columns_to_read(lines), "best": ""}
+        lines = format_rows(self)
+        shown = {**choose_columns(lines), "best": ""}
         rows = [[line[name] for name in shown] for line in lines[:SHOWN_ROWS]]
         return html_title(self) + html_table(list(shown.values()), rows, len(lines))
 
 
-@takes(
+@accept_options(
     EvaluateOptions,
     engines=arguments.SOME,
     models=arguments.SOME,
@@ -141,18 +141,18 @@ def evaluate(
     shared = EvaluateOptions(**options)
     names = arguments.several(engines), arguments.several(models)
     plan = Plan(controllers, references, *names, vary or {}, shared)
-    return conduct(plan, shared.progress, margins)
+    return fly_plan(plan, shared.progress, margins)
 
 
-def conduct(plan: Plan, progress: Optional[Progress] = None, margins: bool = False) -> Evaluation:
+def fly_plan(plan: Plan, progress: Optional[Progress] = None, margins: bool = False) -> Evaluation:
     """Fly a plan; parameters as for `evaluate`."""
     flights = _Flights(plan, progress, margins)
     try:
         flights.fly()
     except KeyboardInterrupt as stop:
-        stop.evaluation = flights.evaluation()  # type: ignore[attr-defined]
+        stop.evaluation = flights.make_evaluation()  # type: ignore[attr-defined]
         raise
-    return flights.evaluation()
+    return flights.make_evaluation()
 
 
 class _Flights:
@@ -162,41 +162,43 @@ class _Flights:
         self._plan, self._progress = plan, progress
         self._outcomes = [Outcome()] * len(plan)
         self._done = 0
-        self._searches: Optional[Searches] = None
+        self._searches: Optional[MarginSearch] = None
         if margins:
-            self._searches = Searches(plan.guidance.controllers, plan.lacking)
-            if plan.unsearched:
-                warn(plan.unsearched)
-        self._poles = _poles(plan)
+            self._searches = MarginSearch(plan.control.controllers, plan.lacking)
+            if plan.omitted_margins:
+                warn(plan.omitted_margins)
+        self._poles = _compute_poles(plan)
 
     def fly(self) -> None:
         """Fly all cases, then what the searches ask for."""
         plan = self._plan
-        self._conduct([partial(plan.flight, case) for case in plan], self._outcomes, _drawn(plan))
+        self._fly_all(
+            [partial(plan.make_plan, case) for case in plan], self._outcomes, _pick_drawn(plan)
+        )
         if self._searches is not None:
             self._searches.run(self._fly_trials)
 
-    def evaluation(self) -> Evaluation:
+    def make_evaluation(self) -> Evaluation:
         """Sum up the flights so far."""
         plan, outcomes = self._plan, self._outcomes
-        names = [plan.names(case) for case in plan]
+        names = [plan.name_case(case) for case in plan]
         return Evaluation(
             [
                 {**name, "failure": outcome.failure, **outcome.measures}
                 for name, outcome in zip(names, outcomes)
             ],
-            over_seeds([case[:-1] for case in plan], names, outcomes),
-            [] if self._searches is None else self._searches.rows(),
+            summarise_seeds([case[:-1] for case in plan], names, outcomes),
+            [] if self._searches is None else self._searches.list_rows(),
             self._poles,
             outcomes,
         )
 
     def _fly_trials(self, trials: Sequence[Trial]) -> List[Outcome]:
         outcomes = [Outcome()] * len(trials)
-        self._conduct([partial(trial.flight, self._plan) for trial in trials], outcomes)
+        self._fly_all([partial(trial.make_plan, self._plan) for trial in trials], outcomes)
         return outcomes
 
-    def _conduct(
+    def _fly_all(
         self,
         flights: Sequence[Callable[[], FlightPlan]],
         outcomes: List[Outcome],
@@ -208,7 +210,7 @@ class _Flights:
         total = max(self._done + len(flights), expected)
 
         def fly(i: int) -> Outcome:
-            return flown(flights[i], options.time_limit, i in drawn)
+            return fly_and_measure(flights[i], options.time_limit, i in drawn)
 
         def take(i: int, outcome: Union[Outcome, QuadcoreError]) -> None:
             if isinstance(outcome, QuadcoreError):
@@ -218,22 +220,24 @@ class _Flights:
             if self._progress is not None:
                 self._progress(self._done, total)
 
-        apart = self._plan.guidance.runs_user_code
-        conducted(fly, range(len(flights)), take, options.processes, apart=apart)
+        apart = self._plan.control.runs_user_code
+        run_contained(fly, range(len(flights)), take, options.processes, apart=apart)
 
 
-def _poles(plan: Plan) -> List[Dict[str, Any]]:
+def _compute_poles(plan: Plan) -> List[Dict[str, Any]]:
     """Find the poles of the laws that have some, on each model in the first scenario."""
     rows: List[Dict[str, Any]] = []
-    for names, flight in plan.controllers_flown():
+    for names, flight in plan.list_built_in_flights():
         if has_poles(flight.controller):
             with suppress(QuadcoreError):  # a vehicle that chapter 2 cannot describe
-                found = poles(flight.controller, replace(flight, on_reference=False).simulation())
+                found = compute_poles(
+                    flight.controller, replace(flight, on_reference=False).simulation()
+                )
                 rows += [{**names, **row} for row in found]
     return rows
 
 
-def _drawn(plan: Plan) -> Set[int]:
+def _pick_drawn(plan: Plan) -> Set[int]:
     """Choose the rows to draw: of first seeds, all or evenly many."""
     firsts = range(0, len(plan), len(plan.seeds))
     return {firsts[i] for i in pick_evenly(len(firsts), _DRAWN)}

@@ -9,25 +9,25 @@ from typing import Any, Dict, List, Mapping, Sequence
 import numpy as np
 
 from ... import __version__
-from ..folder import remove_pictures, save_pictures
-from ..measures import MEANINGS, UNITS
+from ..output_folder import remove_plots, save_plots
 from ..table import (
     NOT_FLOWN,
-    csv_bytes,
-    flown_and_failed,
-    json_bytes,
-    save,
-    setting_texts,
+    count_outcomes,
+    format_settings,
+    make_csv,
+    make_json,
+    save_files,
 )
+from ..tracking_metrics import MEANINGS, UNITS
 from .evaluate import Evaluation
 from .intervals import CONFIDENCE
-from .losses import losses
+from .margins import BOX, ENDS, format_margin
 from .plan import Plan
 from .plots import draw, group_flights, is_plot, make_label, name_group
-from .poles import gains_of
-from .poles import text as poles_text
-from .robustness import BOX, ENDS, margin_text
-from .shown_rows import NAMES, columns_to_read, error_text, rows_to_read
+from .poles import format_poles as poles_text
+from .poles import read_gains
+from .scenario_effects import compute_scenario_effects
+from .summary_table import NAMES, choose_columns, format_error, format_rows
 
 ROWS_OF_PAGE = 200
 
@@ -51,17 +51,17 @@ def write(evaluation: Evaluation, plan: Plan, folder: Path, plots: bool) -> List
     """
     from ...report.page import write_page  # jinja2 is slow to import
 
-    remove_pictures(folder, "evaluation.json", is_plot)
+    remove_plots(folder, "evaluation.json", is_plot)
     # Results first: drawing is slow and can fail.
-    content = _content(evaluation, plan)
+    content = _make_content(evaluation, plan)
     tables = {
-        "table.csv": csv_bytes(_csv(evaluation.table)),
-        "evaluation.json": json_bytes(content),
-        "timing.csv": csv_bytes(_timing(evaluation, plan)),
+        "table.csv": make_csv(_table_rows(evaluation.table)),
+        "evaluation.json": make_json(content),
+        "timing.csv": make_csv(_timing_rows(evaluation, plan)),
     }
-    written = save(folder, tables)
-    images = draw(evaluation, plan.events()) if plots else {}
-    written += save_pictures(folder, "evaluation.json", content, images)
+    written = save_files(folder, tables)
+    images = draw(evaluation, plan.list_events()) if plots else {}
+    written += save_plots(folder, "evaluation.json", content, images)
     page = folder / "report.html"
     animations = _make_animations(evaluation) if plots else []
     values = _page_values(evaluation, plan, images)
@@ -100,8 +100,8 @@ def _describe_omitted_flights(evaluation: Evaluation) -> str:
 def _list_settings(plan: Plan) -> List[Dict[str, str]]:
     """List the settings of each built-in controller for the page."""
     rows = []
-    for names, flight in plan.controllers_flown():
-        gains = gains_of(flight.controller)
+    for names, flight in plan.list_built_in_flights():
+        gains = read_gains(flight.controller)
         shown = {part: f"{gains[part]:g}" if part in gains else "" for part in _SWITCHES}
         timing = {part: f"{getattr(flight.controller, part):g}" for part in ("rate", "delay")}
         rows.append({**names, **timing, **shown})
@@ -117,15 +117,15 @@ def _list_controllers(plan: Plan) -> List[Dict[str, Any]]:
             "rate": float(flight.controller.rate),
             "delay": float(flight.controller.delay),
             "spins": flight.controller.spins,
-            "parameters": gains_of(flight.controller),
+            "parameters": read_gains(flight.controller),
         }
-        for names, flight in plan.controllers_flown()
+        for names, flight in plan.list_built_in_flights()
     ]
 
 
 def summarise(evaluation: Evaluation) -> str:
     """Return the numbers of successful and failed flights in one line."""
-    return flown_and_failed([row["failure"] for row in evaluation.table])
+    return count_outcomes([row["failure"] for row in evaluation.table])
 
 
 def list_unstable_axes(evaluation: Evaluation) -> List[str]:
@@ -138,11 +138,11 @@ def list_unstable_axes(evaluation: Evaluation) -> List[str]:
     ]
 
 
-def _csv(table: Sequence[Mapping[str, Any]]) -> List[List[Any]]:
+def _table_rows(table: Sequence[Mapping[str, Any]]) -> List[List[Any]]:
     return [list(table[0]), *(list(row.values()) for row in table)]
 
 
-def _timing(evaluation: Evaluation, plan: Plan) -> List[List[Any]]:
+def _timing_rows(evaluation: Evaluation, plan: Plan) -> List[List[Any]]:
     measured = ("seconds", "real_time_factor", "updates", "update_median", "update_p99")
     rows: List[List[Any]] = [[*NAMES, "seed", *measured]]
     for row, outcome in zip(evaluation.table, evaluation.outcomes):
@@ -153,11 +153,11 @@ def _timing(evaluation: Evaluation, plan: Plan) -> List[List[Any]]:
     return rows
 
 
-def _content(evaluation: Evaluation, plan: Plan) -> Dict[str, Any]:
+def _make_content(evaluation: Evaluation, plan: Plan) -> Dict[str, Any]:
     return {
         "quadcore": __version__,
         "numpy": np.__version__,
-        "plan": plan.told(),
+        "plan": plan.describe(),
         "laws": _list_controllers(plan),
         "units": UNITS,
         "meanings": MEANINGS,
@@ -172,11 +172,11 @@ def _content(evaluation: Evaluation, plan: Plan) -> Dict[str, Any]:
             }
             for row, outcome in zip(evaluation.table, evaluation.outcomes)
         ],
-        "losses": [_finite(row) for row in losses(evaluation.groups)],
-        "combinations": [_finite(group) for group in evaluation.groups],
-        "margins": [_finite(row) for row in evaluation.margins],
+        "losses": [_replace_infinity(row) for row in compute_scenario_effects(evaluation.groups)],
+        "combinations": [_replace_infinity(group) for group in evaluation.groups],
+        "margins": [_replace_infinity(row) for row in evaluation.margins],
         "searched": {**ENDS, "box": BOX},
-        "unsearched": plan.unsearched if evaluation.margins else "",
+        "unsearched": plan.omitted_margins if evaluation.margins else "",
         "poles": [
             {
                 **row,
@@ -188,7 +188,7 @@ def _content(evaluation: Evaluation, plan: Plan) -> Dict[str, Any]:
     }
 
 
-def _finite(row: Mapping[str, Any]) -> Dict[str, Any]:
+def _replace_infinity(row: Mapping[str, Any]) -> Dict[str, Any]:
     """Replace infinite errors, which JSON cannot represent."""
     return {name: "lost" if value == math.inf else value for name, value in row.items()}
 
@@ -197,7 +197,7 @@ def format_margins(evaluation: Evaluation) -> List[Dict[str, str]]:
     """Format the rows of the margins for the terminal and the page."""
     return [
         {
-            name: value if isinstance(value, str) else margin_text(row, name, error_text)
+            name: value if isinstance(value, str) else format_margin(row, name, format_error)
             for name, value in row.items()
         }
         for row in evaluation.margins
@@ -213,12 +213,12 @@ def _page_values(evaluation: Evaluation, plan: Plan, images: Mapping[str, bytes]
         for row in evaluation.table
         if row["failure"] not in ("", NOT_FLOWN)
     ]
-    lines = rows_to_read(evaluation)
+    lines = format_rows(evaluation)
     return {
         "title": "Evaluation of controllers",
         "summary": summarise(evaluation),
-        "flight": setting_texts(plan.told()),
-        "shown": columns_to_read(lines),
+        "flight": format_settings(plan.describe()),
+        "shown": choose_columns(lines),
         "lines": lines[:ROWS_OF_PAGE],
         "more": max(0, len(evaluation.groups) - ROWS_OF_PAGE),
         "failures": failures[:ROWS_OF_PAGE],
@@ -227,13 +227,13 @@ def _page_values(evaluation: Evaluation, plan: Plan, images: Mapping[str, bytes]
         "units": UNITS,
         "losses": [
             {
-                name: value if isinstance(value, str) else error_text(value)
+                name: value if isinstance(value, str) else format_error(value)
                 for name, value in row.items()
             }
-            for row in losses(evaluation.groups)
+            for row in compute_scenario_effects(evaluation.groups)
         ],
         "margins": format_margins(evaluation),
-        "omitted_margins": plan.unsearched,
+        "omitted_margins": plan.omitted_margins,
         "omitted_flights": _describe_omitted_flights(evaluation),
         "causes": list_unstable_axes(evaluation),
         "poles": [

@@ -11,11 +11,11 @@ from ...simulation.engines import exerts_wrenches
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.scenario_events import Event
 from ..axes import Values
-from ..cases import Case, Cases, check_sides, label_of, spread
+from ..cases import Case, Cases, check_models, label_point, make_scenario_axis
+from ..control_setup import ControlSetup, Named, add_labels
 from ..design import Design
-from ..guidance import Guidance, Named, labelled
 from ..options import EvaluateOptions
-from . import robustness, trial
+from . import margins, trial
 
 
 class Plan(Cases):
@@ -42,50 +42,50 @@ class Plan(Cases):
         vary: Mapping[str, Values],
         options: EvaluateOptions,
     ) -> None:
-        vary, options = spread(vary, options)
+        vary, options = make_scenario_axis(vary, options)
         design = Design(vary)
-        check_sides(models, design)
-        guidance = Guidance(
-            labelled("controller", controllers, BuiltInController),
-            labelled("reference", references_, references.Shape),
+        check_models(models, design)
+        control = ControlSetup(
+            add_labels("controller", controllers, BuiltInController),
+            add_labels("reference", references_, references.Shape),
             options.controller_rate,
             options.delay,
             on_reference=options.spawn is None,
         )
-        super().__init__(design, guidance, models, engines, options)
-        self.scenarios = [label_of(point) for point in design]
-        self.lacking = trial.lacking(self.check()[0])
+        super().__init__(design, control, models, engines, options)
+        self.scenarios = [label_point(point) for point in design]
+        self.lacking = trial.list_missing_effects(self.check()[0])
 
     @property
-    def unsearched(self) -> str:
+    def omitted_margins(self) -> str:
         """What is left out of the margins, and why, in one line; "" if nothing is."""
-        return robustness.unsearched(self.models[0], self.lacking)
+        return margins.describe_omitted(self.models[0], self.lacking)
 
-    def names(self, case: Case) -> Dict[str, Any]:
+    def name_case(self, case: Case) -> Dict[str, Any]:
         """Give what a case is made of, as the first columns of the table."""
         return {
-            **self.sides(case),
+            **self.name_sides(case),
             "scenario": self.scenarios[case.point],
             "seed": self.seeds[case.seed],
         }
 
-    def controllers_flown(self) -> Iterator[Tuple[Dict[str, str], FlightPlan]]:
+    def list_built_in_flights(self) -> Iterator[Tuple[Dict[str, str], FlightPlan]]:
         """Name controller, model and engines, and describe a flight, for each law of quadcore.
 
         Engines that fly the same plugins are one.
         """
         of_plugins = [name for name in self.engines if exerts_wrenches(name)]
         several = [of_plugins, *([name] for name in self.engines if name not in of_plugins)]
-        for row, label in enumerate(self.guidance.controllers):
+        for row, label in enumerate(self.control.controllers):
             for model, vehicle in enumerate(self.models):
                 for flown in several:
-                    if flown and not self.guidance.is_own(row):
+                    if flown and not self.control.is_user_code(row):
                         engine = self.engines.index(flown[0])
-                        flight = self.flight(Case(row, engine=engine, model=model))
+                        flight = self.make_plan(Case(row, engine=engine, model=model))
                         names = {"controller": label, "model": vehicle, "engine": ", ".join(flown)}
                         yield names, flight
 
-    def events(self) -> Dict[str, Sequence[Event]]:
+    def list_events(self) -> Dict[str, Sequence[Event]]:
         """Give what happens in time, by scenario."""
         read = self.variation.scenarios
         found = {
@@ -93,13 +93,13 @@ class Plan(Cases):
         }
         return {name: scenario.events for name, scenario in found.items() if scenario is not None}
 
-    def told(self) -> Dict[str, Any]:
+    def describe(self) -> Dict[str, Any]:
         """Give what flies and how, in plain values; controllers are told by `laws`."""
         return {
-            "controllers": self.guidance.controllers,
-            "references": self.guidance.references,
+            "controllers": self.control.controllers,
+            "references": self.control.references,
             "engines": self.engines,
             "models": self.models,
             "scenarios": self.scenarios,
-            **self.setting(),
+            **self.list_settings(),
         }

@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 from ...simulation.scenario_events import Event
-from ..flights import Outcome
-from ..measures import distance, lost
+from ..measured_flight import Outcome
+from ..tracking_metrics import compute_errors, find_failure_time
 from .evaluate import Evaluation
 from .event_marks import mark_events
-from .robustness import RATES
+from .margins import RATES
 
 _ROTOR_PANELS = 12  # in one figure
 _BOXES = 40
@@ -105,7 +105,7 @@ def name_group(evaluation: Evaluation, reference: str, scenario: str) -> str:
 def _rows_before_failure(outcome: Outcome) -> slice:
     """Return the rows before the vehicle diverges: later ones would set the scale of the axes."""
     assert outcome.log is not None
-    end = lost(outcome.log)
+    end = find_failure_time(outcome.log)
     return slice(None if end is None else int(np.searchsorted(outcome.log.time, end)))
 
 
@@ -137,7 +137,7 @@ def _draw_errors(name: str, flights: Flights) -> Figure:
     for i, (label, outcome) in enumerate(flights):
         assert outcome.log is not None
         rows = _rows_before_failure(outcome)
-        errors = np.maximum(distance(outcome.log)[rows], _FLOOR)
+        errors = np.maximum(compute_errors(outcome.log)[rows], _FLOOR)
         axes.semilogy(outcome.log.time[rows], errors, label=label, linewidth=1, **curve_style(i))
     axes.set_ylabel(_ERROR)
     axes.set_ylim(_FLOOR / 1.5, max(axes.get_ylim()[1], 1e4 * _FLOOR))

@@ -26,7 +26,7 @@ from ...simulation.simulation import Simulation
 Polynomial = np.ndarray
 
 
-def gains_of(law: BuiltInController) -> Dict[str, float]:
+def read_gains(law: BuiltInController) -> Dict[str, float]:
     """Read the parameters with which a law flies: its own, or else its defaults."""
     table = next(entry[2] for entry in _core.controllers() if entry[0] == law.name)
     flags = {"true": 1.0, "false": 0.0}
@@ -38,10 +38,12 @@ def gains_of(law: BuiltInController) -> Dict[str, float]:
 
 def has_poles(law: Any) -> bool:
     """Whether a law is a cascade of PIDs with an inner loop that waits for the motors."""
-    return isinstance(law, BuiltInController) and {"kp_xy", "ki_rp", "kd_yaw"} <= set(gains_of(law))
+    return isinstance(law, BuiltInController) and {"kp_xy", "ki_rp", "kd_yaw"} <= set(
+        read_gains(law)
+    )
 
 
-def poles(law: BuiltInController, simulation: Simulation) -> List[Dict[str, Any]]:
+def compute_poles(law: BuiltInController, simulation: Simulation) -> List[Dict[str, Any]]:
     """Find the poles of each axis.
 
     Parameters
@@ -64,7 +66,7 @@ def poles(law: BuiltInController, simulation: Simulation) -> List[Dict[str, Any]
     """
     from ...thesis.chapter2 import Vehicle  # scipy is slow to import
 
-    gains, vehicle = gains_of(law), Vehicle.of(simulation)
+    gains, vehicle = read_gains(law), Vehicle.of(simulation)
     inertia = float(np.mean(vehicle.rotor_inertia))
     lag = np.array([inertia / vehicle.motor_gain, 1.0])
     zero = math.inf
@@ -72,24 +74,26 @@ def poles(law: BuiltInController, simulation: Simulation) -> List[Dict[str, Any]
         weight = vehicle.mass * float(np.linalg.norm(vehicle.gravity))
         hover = math.sqrt(weight / (len(vehicle.arms) * vehicle.k))
         zero = 2 * vehicle.b * hover * vehicle.slow / inertia
-    roll = _pid(gains, "rp")
+    roll = _pid_polynomial(gains, "rp")
     tilt = np.polyadd(np.polymul([1, 0, 0, 0], lag), roll)  # of phi/phi_d above, and its numerator
     answer = roll[1:]
-    side = np.polyadd(np.polymul([1, 0, 0, 0], tilt), np.polymul(_pid(gains, "xy"), answer))
-    height = np.polyadd(np.polymul([1, 0, 0, 0], lag), _pid(gains, "z"))
-    turned = np.polymul([-1 / zero, 1.0], _pid(gains, "yaw"))
+    side = np.polyadd(
+        np.polymul([1, 0, 0, 0], tilt), np.polymul(_pid_polynomial(gains, "xy"), answer)
+    )
+    height = np.polyadd(np.polymul([1, 0, 0, 0], lag), _pid_polynomial(gains, "z"))
+    turned = np.polymul([-1 / zero, 1.0], _pid_polynomial(gains, "yaw"))
     yaw = np.polyadd(np.polymul([1, 0, 0, 0], lag), turned)
-    without = np.polyadd(np.polymul([1, 0, 0, 0], lag), _pid(gains, "yaw"))
+    without = np.polyadd(np.polymul([1, 0, 0, 0], lag), _pid_polynomial(gains, "yaw"))
     return [
-        _row("x, y", side, math.inf, _too_much_integral(gains)),
-        _row("z", height, math.inf, ""),
-        _row("roll, pitch", tilt, math.inf, ""),
-        _row("yaw", yaw, zero, _wrong_way(zero, _roots(without))),
+        _make_row("x, y", side, math.inf, _explain_xy(gains)),
+        _make_row("z", height, math.inf, ""),
+        _make_row("roll, pitch", tilt, math.inf, ""),
+        _make_row("yaw", yaw, zero, _explain_yaw(zero, _find_roots(without))),
     ]
 
 
-def _too_much_integral(gains: Dict[str, float]) -> str:
-    d, p, i = _pid(gains, "xy")
+def _explain_xy(gains: Dict[str, float]) -> str:
+    d, p, i = _pid_polynomial(gains, "xy")
     if d * p > i:
         return "the inner loop is too slow for the outer one"
     return (
@@ -98,7 +102,7 @@ def _too_much_integral(gains: Dict[str, float]) -> str:
     )
 
 
-def _wrong_way(zero: float, without: np.ndarray) -> str:
+def _explain_yaw(zero: float, without: np.ndarray) -> str:
     if math.isinf(zero) or zero < 0 or np.any(without.real >= 0):
         return ""
     return (
@@ -107,13 +111,13 @@ def _wrong_way(zero: float, without: np.ndarray) -> str:
     )
 
 
-def _pid(gains: Dict[str, float], axis: str) -> Polynomial:
+def _pid_polynomial(gains: Dict[str, float], axis: str) -> Polynomial:
     """Give k_d s^2 + k_p s + k_i."""
     return gains["scale"] * np.array([gains[f"k{part}_{axis}"] for part in "dpi"])
 
 
-def _row(axis: str, polynomial: Polynomial, zero: float, cause: str) -> Dict[str, Any]:
-    roots = _roots(polynomial)
+def _make_row(axis: str, polynomial: Polynomial, zero: float, cause: str) -> Dict[str, Any]:
+    roots = _find_roots(polynomial)
     stable = bool(np.all(roots.real < 0))
     return {
         "axis": axis,
@@ -124,13 +128,13 @@ def _row(axis: str, polynomial: Polynomial, zero: float, cause: str) -> Dict[str
     }
 
 
-def _roots(polynomial: Polynomial) -> np.ndarray:
+def _find_roots(polynomial: Polynomial) -> np.ndarray:
     # A gain that is 0 leaves a pole at 0 that nothing excites.
     roots: np.ndarray = np.roots(np.trim_zeros(polynomial))
     return roots
 
 
-def text(row: Dict[str, Any], count: int = 3) -> str:
+def format_poles(row: Dict[str, Any], count: int = 3) -> str:
     """Write the poles farthest to the right, of pairs one."""
     shown = [pole for pole in row["poles"] if pole.imag >= 0][:count]
     return ", ".join(f"{p.real:.3g}" + (f" +- {p.imag:.3g}i" if p.imag else "") for p in shown)

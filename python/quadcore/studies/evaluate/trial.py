@@ -32,9 +32,9 @@ class Trial(NamedTuple):
     lag: float = 1.0
     """Factor on the time constant of the motors."""
 
-    def flight(self, plan: Cases) -> FlightPlan:
+    def make_plan(self, plan: Cases) -> FlightPlan:
         """Describe the flight; raises what making the controller raises."""
-        flight = plan.flight(Case(self.controller))
+        flight = plan.make_plan(Case(self.controller))
         controller = flight.controller
         if self.rate is not None:
             set_parameter(controller, "rate", self.rate)
@@ -49,11 +49,11 @@ class Trial(NamedTuple):
             if controller.belief is None:
                 controller.belief = described
         else:
-            controller = _Told(controller, described)
-        changed = {**flight.parameters, **self._changes(described)}
+            controller = _NominalModelController(controller, described)
+        changed = {**flight.parameters, **self._scale_tags(described)}
         return replace(flight, controller=controller, parameters=changed)
 
-    def _changes(self, simulation: Simulation) -> Dict[str, str]:
+    def _scale_tags(self, simulation: Simulation) -> Dict[str, str]:
         """Return the tags of the vehicle that flies."""
         return {
             key: repr(number * getattr(self, tag.effect) ** tag.power)
@@ -61,7 +61,7 @@ class Trial(NamedTuple):
         }
 
 
-def lacking(simulation: Simulation) -> List[str]:
+def list_missing_effects(simulation: Simulation) -> List[str]:
     """Name the effects that no tag of a vehicle scales."""
     found = {tag.effect for _, tag, _ in _scaling_tags(simulation)}
     return [name for name in EFFECTS if name not in found]
@@ -76,7 +76,7 @@ def _scaling_tags(simulation: Simulation) -> Iterator[Tuple[str, ParameterInfo, 
                 yield f"{plugin.name}.{tag.name}", tag, number
 
 
-class _Told:
+class _NominalModelController:
     """A controller of one's own that is told of another vehicle than flies; the rest is its own."""
 
     def __init__(self, controller: Any, vehicle: Simulation) -> None:

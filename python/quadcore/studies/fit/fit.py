@@ -13,11 +13,11 @@ from ...simulation.log import Log
 from ...support import arguments
 from ...support.warning import suppress_warnings
 from . import record as records
+from .fitted_model import FittedModel
 from .horizons import Horizons
-from .identify import Combination, Identified, identify
-from .problem import Problem, free_parameter, names_of
+from .identifiability import Combination, Identifiability, analyse
+from .problem import Problem, check_free_names, make_parameter
 from .search import search
-from .subject import Subject
 
 Progress = Callable[[int, int], None]
 
@@ -61,7 +61,7 @@ class Fit(NamedTuple):
     values: Dict[str, float]
     start: Dict[str, float]
     units: Dict[str, str]
-    identified: Identified
+    identified: Identifiability
     shift: float
     train: Dict[str, Tuple[float, float]]
     held_out: Dict[str, Tuple[float, float]]
@@ -77,7 +77,7 @@ class Fit(NamedTuple):
         found = (f"{name} = {v:.6g} +- {deviations[name]:.2g}" for name, v in self.values.items())
         return f"<Fit: {', '.join(found)}>"
 
-    def told(self) -> List[str]:
+    def describe(self) -> List[str]:
         """Say what the flight does not tell, and how well what it tells is apart, in lines."""
         lines = [
             f"not told one by one, only {each} = {each.value:.6g} +- {each.deviation:.2g}"
@@ -89,7 +89,7 @@ class Fit(NamedTuple):
         values = ", ".join(f"{value:.2g}" for value in self.identified.singular_values)
         return [*lines, f"singular values of the unit derivatives: {values}"]
 
-    def left_over(self) -> List[Tuple[str, str, List[float]]]:
+    def list_residuals(self) -> List[Tuple[str, str, List[float]]]:
         """Name each channel with its unit, and what is left over.
 
         At the start, with what was found, and of that where it was held out.
@@ -168,47 +168,52 @@ def fit(
     told = dict(locals())
     options = ("parameters", "world", "dt", "xacro_args", "ignore")
     arguments.check({name: told[name] for name in (*_KINDS, *options)}, _KINDS)
-    named = names_of(free)
-    subject = Subject(named, model, engine, world, dt, parameters, xacro_args, ignore)
-    simulation = subject.simulation
+    named = check_free_names(free)
+    fitted = FittedModel(named, model, engine, world, dt, parameters, xacro_args, ignore)
+    simulation = fitted.simulation
     known = dict(bounds or {})
     for name in known:
         if name not in named:
             raise InputError(f"bound {name}: it is not free; free it, or leave the bound out")
-    wanted = [free_parameter(name, subject, known.get(name)) for name in named]
-    flown = records.read(log, simulation.rotor_count, commands, sensed)
-    names = records.channels(channels, flown)
+    wanted = [make_parameter(name, fitted, known.get(name)) for name in named]
+    flown = records.read_record(log, simulation.rotor_count, commands, sensed)
+    names = records.choose_channels(channels, flown)
     rotors = simulation.rotors
 
     def problem(is_held_out: bool) -> Problem:
         pieces = Horizons(
-            flown, subject.make, subject.fixed, simulation.dt, horizon, names, rotors,
+            flown, fitted.make, fitted.fixed, simulation.dt, horizon, names, rotors,
             lambda i: (i % _HELD_OUT == _HELD_OUT - 1) == is_held_out,
         )  # fmt: skip
         return Problem(pieces, wanted)
 
     with suppress_warnings():
         train = problem(False)
-        train.horizons.shift = _best_shift(train, round(shift / simulation.dt))
+        train.horizons.shift = _find_shift(train, round(shift / simulation.dt))
         try:
             found = search(train, progress=progress)
         except KeyboardInterrupt as stop:
             best = dict(zip([p.name for p in wanted], stop.values.tolist()))  # type: ignore[attr-defined]
-            stop.model = subject.with_values(best)  # type: ignore[attr-defined]
+            stop.model = fitted.make_model(best)  # type: ignore[attr-defined]
             raise
-        return _told(train, problem, found, subject)
+        return _make_fit(train, problem, found, fitted)
 
 
-def _told(
-    train: Problem, problem: Callable[[bool], Problem], found: np.ndarray, subject: Subject
+def _make_fit(
+    train: Problem, problem: Callable[[bool], Problem], found: np.ndarray, fitted: FittedModel
 ) -> Fit:
     wanted = train.parameters
     names = [p.name for p in wanted]
-    train.look(found)
-    left = train.left(found)
+    train.linearise_starts(found)
+    left = train.compute_residuals(found)
     freedom = len(left) - train.starts.size - len(found)
-    identified = identify(
-        names, found, np.array([p.size for p in wanted]), train.derivative(found), left, freedom
+    identified = analyse(
+        names,
+        found,
+        np.array([p.size for p in wanted]),
+        train.compute_derivative(found),
+        left,
+        freedom,
     )
     start = np.array([p.start for p in wanted])
     residuals: List[Dict[str, Tuple[float, float]]] = []
@@ -223,7 +228,7 @@ def _told(
         for tried in (start, found):
             judged.starts[:] = 0
             judged.noise = train.noise.copy()
-            each.append(_left_over(judged, tried))
+            each.append(_compute_rms(judged, tried))
         residuals.append({name: (each[0][name], each[1][name]) for name in each[0]})
     values = dict(zip(names, found.tolist()))
     return Fit(
@@ -231,25 +236,25 @@ def _told(
         dict(zip(names, start.tolist())),
         {p.name: p.unit for p in wanted},
         identified,
-        train.horizons.shift * subject.simulation.dt,
+        train.horizons.shift * fitted.simulation.dt,
         residuals[0],
         residuals[1],
-        subject.with_values(values),
+        fitted.make_model(values),
     )
 
 
-def _left_over(problem: Problem, values: np.ndarray) -> Dict[str, float]:
+def _compute_rms(problem: Problem, values: np.ndarray) -> Dict[str, float]:
     """Tell what is left over by channel when starts are fitted; infinite where a flight fails."""
     try:
-        problem.look(values)
-        problem.correct(values)
-        problem.look(values)
+        problem.linearise_starts(values)
+        problem.correct_starts(values)
+        problem.linearise_starts(values)
     except FlightError:
         return dict.fromkeys(problem.horizons.channels, np.inf)
-    return problem.rms(values)
+    return problem.compute_rms(values)
 
 
-def _best_shift(problem: Problem, most: int) -> int:
+def _find_shift(problem: Problem, most: int) -> int:
     """Find the lag in steps, from coarse to fine, with a short search for each."""
     costs: Dict[int, float] = {}
 
@@ -259,7 +264,7 @@ def _best_shift(problem: Problem, most: int) -> int:
             problem.starts[:] = 0
             problem.noise[:] = 1
             values = search(problem, rounds=2)
-            problem.look(values)
+            problem.linearise_starts(values)
             costs[steps] = float(np.sum(np.log(problem.noise)))
         return costs[steps]
 

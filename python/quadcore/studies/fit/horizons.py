@@ -62,12 +62,12 @@ class Horizons:
         self._make, self._fixed, self._dt = make, fixed, dt
         self.channels = list(channels)
         self.rotors = record.rotors.shape[1]
-        record = _evenly(record, dt)
+        record = _drop_close_rows(record, dt)
         steps = np.rint((record.time - record.time[0]) / dt).astype(int)
         self._late = record.time - record.time[0] - steps * dt
         if length > record.time[-1] - record.time[0]:
             raise InputError("the log is shorter than a horizon; make that shorter")
-        pieces = self._starts(steps, round(length / dt))
+        pieces = self._split_pieces(steps, round(length / dt))
         starts = [piece for i, piece in enumerate(pieces) if part(i)]
         if not starts:
             raise InputError(f"the log has {len(pieces)} horizons, too few; make them shorter")
@@ -85,8 +85,8 @@ class Horizons:
         self._offsets = np.array([steps[r] - steps[a] for r, a in zip(self._rows, first)])
         self._begin = steps[self._first]
         self._record = record
-        self._commands, self._command_steps = _commands(record, dt, rotors)
-        self._angles = _angles(record)
+        self._commands, self._command_steps = _make_commands(record, dt, rotors)
+        self._angles = _joint_angles(record)
         self.corrections = 12 + self.rotors
         sizes = {**CHANNELS, "rotors": self.rotors}
         self.sizes = [sizes[name] for name in self.channels]
@@ -94,12 +94,12 @@ class Horizons:
         self.shift = 0
         """Steps by which what was measured lags behind the commands."""
 
-    def channel_of_each(self) -> np.ndarray:
+    def list_channels(self) -> np.ndarray:
         """Give the number of the channel of each number that is compared."""
         one = np.repeat(np.arange(len(self.sizes)), self.sizes)
         return np.tile(one, self.width // len(one))
 
-    def apart(self, parameters: Sequence[Mapping[str, float]], starts: np.ndarray) -> np.ndarray:
+    def fly(self, parameters: Sequence[Mapping[str, float]], starts: np.ndarray) -> np.ndarray:
         """Fly every piece with each set of parameters, from corrected starts.
 
         Parameters
@@ -120,29 +120,29 @@ class Horizons:
             given[name] = np.repeat([each[name] for each in parameters], self.count)
         threads = 1 if n < _FEW else None
         batch = BatchSimulation(n=n, parameters=given, dt=self._dt, threads=threads, **self._make)
-        batch.set_state(self._states(starts.reshape(n, self.corrections), groups))
+        batch.set_state(self._make_states(starts.reshape(n, self.corrections), groups))
         rows = np.array(self._rows)
         state = np.empty((n, batch.state_width))
         states = np.empty((groups, *rows.shape, batch.state_width))
         begin, flown = np.tile(self._begin, groups), 0
-        changes = self._changes(int(self._offsets.max()))
+        changes = self._list_command_steps(int(self._offsets.max()))
         for stop in sorted({*np.unique(self._offsets).tolist(), *changes}):
             if flown in changes:
-                batch.step(self._command_at(begin + flown), 0)
+                batch.step(self._find_command(begin + flown), 0)
             batch.step(None, stop - flown)
             flown = stop
             piece, row = np.nonzero(self._offsets == stop)
             if len(piece):
                 batch.read_state(state)
                 states[:, piece, row] = state.reshape(groups, self.count, -1)[:, piece]
-        compared = self._compared(
+        compared = self._compare(
             BatchState.of(states.reshape(-1, batch.state_width)), np.tile(rows.ravel(), groups)
         )
         compared = compared.reshape(n, self.width)
         compared[batch.failed] = np.nan
         return compared.reshape(groups, self.count, self.width)
 
-    def _starts(self, steps: np.ndarray, length: int) -> List[Any]:
+    def _split_pieces(self, steps: np.ndarray, length: int) -> List[Any]:
         """Rows in which pieces begin and end."""
         if length < 1:
             raise InputError("a horizon is shorter than a step; make it longer")
@@ -154,25 +154,25 @@ class Horizons:
             first = max(last, first + 1)  # a gap of the log may be longer than a horizon
         return found
 
-    def _changes(self, end: int) -> List[int]:
+    def _list_command_steps(self, end: int) -> List[int]:
         """Find the steps of a piece, 0 and later, with which some command changes."""
         since = (self._command_steps[None, :] + self.shift) - self._begin[:, None]
         inside = since[(since > 0) & (since < end)]
         return [0, *np.unique(inside).tolist()]
 
-    def _command_at(self, steps: np.ndarray) -> np.ndarray:
+    def _find_command(self, steps: np.ndarray) -> np.ndarray:
         row = np.searchsorted(self._command_steps, steps - self.shift, "right") - 1
         commands: np.ndarray = self._commands[np.maximum(row, 0)]
         return commands
 
-    def _states(self, corrections: np.ndarray, groups: int) -> np.ndarray:
+    def _make_states(self, corrections: np.ndarray, groups: int) -> np.ndarray:
         r, rows = self._record, np.tile(self._first, groups)
         turn = corrections[:, 3:6] - r.rates[rows] * self._late[rows, None]
         moved = corrections[:, :3] - r.velocity[rows] * self._late[rows, None]
         return np.hstack(
             [
                 r.position[rows] + moved,
-                _turned(r.orientation[rows], turn),
+                _turn(r.orientation[rows], turn),
                 r.velocity[rows] + corrections[:, 6:9],
                 r.rates[rows] + corrections[:, 9:12],
                 r.rotors[rows] + corrections[:, 12:],
@@ -180,13 +180,13 @@ class Horizons:
             ]
         )
 
-    def _compared(self, state: BatchState, rows: np.ndarray) -> np.ndarray:
+    def _compare(self, state: BatchState, rows: np.ndarray) -> np.ndarray:
         """Flown less measured, of rows that may be a little off the grid of steps."""
         r, late = self._record, self._late[rows, None]
         parts: Dict[str, Callable[[], np.ndarray]] = {
             "position": lambda: state.position + late * state.linear_velocity - r.position[rows],
-            "attitude": lambda: _between(
-                r.orientation[rows], _turned(state.orientation, late * state.angular_velocity)
+            "attitude": lambda: _turn_between(
+                r.orientation[rows], _turn(state.orientation, late * state.angular_velocity)
             ),
             "velocity": lambda: state.linear_velocity - r.velocity[rows],
             "rates": lambda: state.angular_velocity - r.rates[rows],
@@ -195,7 +195,7 @@ class Horizons:
         return np.hstack([parts[name]() for name in self.channels])
 
 
-def _evenly(record: Record, dt: float) -> Record:
+def _drop_close_rows(record: Record, dt: float) -> Record:
     """Leave out rows that lie closer than most do."""
     steps = np.rint((record.time - record.time[0]) / dt).astype(int)
     every = int(np.median(np.diff(steps)))
@@ -207,7 +207,7 @@ def _evenly(record: Record, dt: float) -> Record:
     return Record(**parts, commands=record.commands)
 
 
-def _commands(record: Record, dt: float, rotors: Sequence[Rotor]) -> Any:
+def _make_commands(record: Record, dt: float, rotors: Sequence[Rotor]) -> Any:
     """Return commands and the steps with which they begin.
 
     Without recorded commands, they are those with which the motors follow the measured speeds w:
@@ -228,7 +228,7 @@ def _commands(record: Record, dt: float, rotors: Sequence[Rotor]) -> Any:
     return np.ascontiguousarray(middle), np.rint((record.time[:-1] - start) / dt).astype(int)
 
 
-def _angles(record: Record) -> np.ndarray:
+def _joint_angles(record: Record) -> np.ndarray:
     """Angles of the joints, 0 in the first row; (-pi, pi]."""
     mean = (record.rotors[1:] + record.rotors[:-1]) / 2
     turned = np.cumsum(mean * np.diff(record.time)[:, None], axis=0)
@@ -236,24 +236,24 @@ def _angles(record: Record) -> np.ndarray:
     return np.pi - np.remainder(np.pi - angles, 2 * np.pi)
 
 
-def _times(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+def _multiply(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Multiply quaternions x, y, z, w."""
     vector = a[:, 3:] * b[:, :3] + b[:, 3:] * a[:, :3] + np.cross(a[:, :3], b[:, :3])
     scalar = a[:, 3:] * b[:, 3:] - np.sum(a[:, :3] * b[:, :3], axis=1, keepdims=True)
     return np.hstack([vector, scalar])
 
 
-def _turned(q: np.ndarray, turn: np.ndarray) -> np.ndarray:
+def _turn(q: np.ndarray, turn: np.ndarray) -> np.ndarray:
     """Turn by a small angle about the body's axes, rad."""
     half = turn / 2
     small = np.hstack([half, np.ones((len(q), 1))])
-    turned = _times(q, small / np.linalg.norm(small, axis=1, keepdims=True))
+    turned = _multiply(q, small / np.linalg.norm(small, axis=1, keepdims=True))
     return turned
 
 
-def _between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+def _turn_between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Small turn from a to b in a's axes, rad."""
     inverse = a * np.array([-1, -1, -1, 1])
-    apart = _times(inverse, b)
+    apart = _multiply(inverse, b)
     turn: np.ndarray = 2 * np.sign(apart[:, 3:]) * apart[:, :3]
     return turn

@@ -10,8 +10,8 @@ from ..._core import FlightError, InputError, parse_number
 from ...model.overrides import link_values
 from ...support import arguments
 from ...support.parameters import did_you_mean
+from .fitted_model import FittedModel
 from .horizons import Horizons
-from .subject import Subject
 
 _STEP = 1e-4  # of a parameter, for its derivative
 _START_STEPS = (1e-5, 1e-5, 1e-5, 1e-4, 1e-2)
@@ -33,7 +33,7 @@ class Parameter:
     ----------
     name
         ``PLUGIN.TAG``, ``LINK.mass``, ``LINK.ixx`` or the like, ``xacro.ARG``.
-    subject
+    fitted
         With the value from which the search begins.
     bounds
         Between which it must stay.
@@ -47,20 +47,20 @@ class Parameter:
     def __init__(
         self,
         name: str,
-        subject: Subject,
+        fitted: FittedModel,
         bounds: Tuple[float, float] = (-np.inf, np.inf),
     ) -> None:
-        plugins, model = subject.simulation.plugins, subject.model
+        plugins, model = fitted.simulation.plugins, fitted.model
         tags = {f"{p.name}.{tag.name}": tag for p in plugins for tag in p.parameters}
         links = link_values(model.document)
-        if name in subject.arguments:
-            text, self.unit = subject.arguments[name], ""
+        if name in fitted.arguments:
+            text, self.unit = fitted.arguments[name], ""
         elif name in tags:
             text, self.unit = tags[name].value, tags[name].unit
         elif name in links:
             text, self.unit = links[name], "kg" if name.endswith(".mass") else "kg m^2"
         else:
-            known = [*tags, *links, *subject.arguments]
+            known = [*tags, *links, *fitted.arguments]
             raise InputError(f"free {name}: model {model.name} has none{did_you_mean(name, known)}")
         value = parse_number(text)
         if value is None:
@@ -72,7 +72,7 @@ class Parameter:
         self.size = abs(value) or 1e-2
 
 
-def names_of(free: Sequence[str]) -> List[str]:
+def check_free_names(free: Sequence[str]) -> List[str]:
     """List what is free; raises `InputError` for what cannot be."""
     names = [str(name) for name in arguments.several(free)]
     for name in names:
@@ -83,11 +83,13 @@ def names_of(free: Sequence[str]) -> List[str]:
     return names
 
 
-def free_parameter(name: str, subject: Subject, bounds: Optional[Tuple[float, float]]) -> Parameter:
+def make_parameter(
+    name: str, fitted: FittedModel, bounds: Optional[Tuple[float, float]]
+) -> Parameter:
     """Make one; without bounds what is not negative stays so."""
     if bounds is not None:
-        return Parameter(name, subject, bounds)
-    made = Parameter(name, subject)
+        return Parameter(name, fitted, bounds)
+    made = Parameter(name, fitted)
     if made.start >= 0 and not name.endswith((".ixy", ".ixz", ".iyz")):
         made.bounds = (0.0, np.inf)
     return made
@@ -108,11 +110,11 @@ class Problem:
         self._start_steps = np.repeat(_START_STEPS, sizes)
         self.noise = np.ones(len(horizons.channels))
         """Standard deviation of each channel, as far as it is known."""
-        self._of_each = horizons.channel_of_each()
+        self._of_each = horizons.list_channels()
         self._along = np.zeros((horizons.count, horizons.width, 0))
         self._by_starts = np.zeros((horizons.count, horizons.width, horizons.corrections))
 
-    def look(self, values: np.ndarray) -> None:
+    def linearise_starts(self, values: np.ndarray) -> None:
         """Find what other starts would do near these parameters; they are eliminated from now on.
 
         Raises
@@ -122,16 +124,16 @@ class Problem:
         """
         steps = np.diag(self._start_steps)
         starts = np.stack([self.starts, *(self.starts + step for step in steps)])
-        flown = self.horizons.apart([self._named(values)] * len(starts), starts)
+        flown = self.horizons.fly([self._name_values(values)] * len(starts), starts)
         if not np.isfinite(flown).all():
             raise FlightError(
                 "flights from measured states fail; shorten the horizon, or begin with other values"
             )
         change = (flown[1:] - flown[0]) / self._start_steps[:, None, None]
         self._by_starts = np.moveaxis(change, 0, 2)  # (count, width, corrections)
-        self._orient()
+        self._update_basis()
 
-    def _orient(self) -> None:
+    def _update_basis(self) -> None:
         weighted = self._by_starts / self._weights[None, :, None]
         size = np.linalg.norm(weighted, axis=1, keepdims=True)
         unit = weighted / np.where(size > 0, size, 1)
@@ -142,31 +144,31 @@ class Problem:
         weights: np.ndarray = self.noise[self._of_each]
         return weights
 
-    def left(self, values: np.ndarray) -> np.ndarray:
+    def compute_residuals(self, values: np.ndarray) -> np.ndarray:
         """Give what flights leave over that no other starts would take away, in its noise.
 
         Returns
         -------
         ndarray, shape (count * width,)
         """
-        flown = self.horizons.apart([self._named(values)], self.starts[None])[0]
-        return self._projected(np.nan_to_num(flown, nan=_FAR)).ravel()
+        flown = self.horizons.fly([self._name_values(values)], self.starts[None])[0]
+        return self._project(np.nan_to_num(flown, nan=_FAR)).ravel()
 
-    def derivative(self, values: np.ndarray) -> np.ndarray:
+    def compute_derivative(self, values: np.ndarray) -> np.ndarray:
         """Give the derivative of `left` by each parameter, shape (count * width, parameters)."""
         steps = np.array([_STEP * max(abs(v), p.size) for v, p in zip(values, self.parameters)])
         inward = np.array([v + h > p.bounds[1] for v, h, p in zip(values, steps, self.parameters)])
         steps = np.where(inward, -steps, steps)
         sets = [values, *(values + step for step in np.diag(steps))]
         starts = np.broadcast_to(self.starts, (len(sets), *self.starts.shape))
-        flown = self.horizons.apart([self._named(each) for each in sets], starts)
+        flown = self.horizons.fly([self._name_values(each) for each in sets], starts)
         flown = np.nan_to_num(flown, nan=_FAR)
         changes = (flown[1:] - flown[0]) / steps[:, None, None]
-        return np.stack([self._projected(change).ravel() for change in changes], axis=1)
+        return np.stack([self._project(change).ravel() for change in changes], axis=1)
 
-    def correct(self, values: np.ndarray) -> None:
+    def correct_starts(self, values: np.ndarray) -> None:
         """Move the starts to where least is left over, and take the noise from what is."""
-        flown = self.horizons.apart([self._named(values)], self.starts[None])[0]
+        flown = self.horizons.fly([self._name_values(values)], self.starts[None])[0]
         for i, (by_start, left) in enumerate(zip(self._by_starts, flown)):
             weighted = by_start / self._weights[:, None]
             size = np.linalg.norm(weighted, axis=0)
@@ -176,33 +178,33 @@ class Problem:
 
     def learn_noise(self, values: np.ndarray) -> None:
         """Take each channel's noise from what is left over."""
-        left = self.left(values).reshape(self.horizons.count, -1) * self._weights
+        left = self.compute_residuals(values).reshape(self.horizons.count, -1) * self._weights
         free = 1 - self._along.shape[2] / self.horizons.width
         for channel in range(len(self.noise)):
             part = left[:, self._of_each == channel]
             least = _FINEST[self.horizons.channels[channel]]
             self.noise[channel] = max(np.sqrt(np.mean(part**2) / max(free, 0.1)), least)
         if self._along.shape[2]:
-            self._orient()
+            self._update_basis()
 
-    def rms(self, values: np.ndarray) -> Dict[str, float]:
+    def compute_rms(self, values: np.ndarray) -> Dict[str, float]:
         """Tell what is left over by channel, root of the mean square in its unit."""
-        left = self.left(values).reshape(self.horizons.count, -1) * self._weights
+        left = self.compute_residuals(values).reshape(self.horizons.count, -1) * self._weights
         return {
             name: float(np.sqrt(np.mean(left[:, self._of_each == i] ** 2)))
             for i, name in enumerate(self.horizons.channels)
         }
 
-    def _projected(self, flown: np.ndarray) -> np.ndarray:
+    def _project(self, flown: np.ndarray) -> np.ndarray:
         weighted = (flown / self._weights)[:, :, None]
         taken = self._along @ (np.swapaxes(self._along, 1, 2) @ weighted)
         rest: np.ndarray = (weighted - taken)[:, :, 0]
         return rest
 
-    def _named(self, values: np.ndarray) -> Dict[str, float]:
+    def _name_values(self, values: np.ndarray) -> Dict[str, float]:
         return {p.name: float(v) for p, v in zip(self.parameters, values)}
 
 
-def bounds_of(parameters: Sequence[Parameter]) -> Tuple[List[float], List[float]]:
+def list_bounds(parameters: Sequence[Parameter]) -> Tuple[List[float], List[float]]:
     """Give lower and upper bounds."""
     return [p.bounds[0] for p in parameters], [p.bounds[1] for p in parameters]

@@ -46,7 +46,7 @@ class Record(NamedTuple):
     commands: Optional[np.ndarray]
 
 
-def read(
+def read_record(
     log: Union[Log, str, Path],
     rotors: int,
     commands: Union[np.ndarray, str, Path, None] = None,
@@ -82,7 +82,7 @@ def read(
     if commands is not None:
         table: Optional[np.ndarray] = as_commands(commands, rotors)
     elif _COMMANDS in flown.topics:
-        table = _commands_of(flown)
+        table = _read_commands(flown)
     else:
         table = None
     if sensed is None:
@@ -93,14 +93,14 @@ def read(
             flown.angular_velocity,
         )
     else:
-        parts = _sensed(flown, where, sensed)
+        parts = _read_sensed_state(flown, where, sensed)
     position, orientation, velocity, rates = parts
     return Record(
         flown.time.copy(), position, orientation, velocity, rates, flown.rotor_velocity, table
     )
 
 
-def channels(given: Optional[Sequence[str]], flown: Record) -> List[str]:
+def choose_channels(given: Optional[Sequence[str]], flown: Record) -> List[str]:
     """Choose what is compared; raises `InputError` for what there is not."""
     if given is None:
         return ["position", "attitude", "rates"] + ["rotors"] * (flown.commands is not None)
@@ -114,7 +114,7 @@ def channels(given: Optional[Sequence[str]], flown: Record) -> List[str]:
     return [name for name in CHANNELS if name in given]
 
 
-def _sensed(log: Log, where: str, topic: str) -> Tuple[np.ndarray, ...]:
+def _read_sensed_state(log: Log, where: str, topic: str) -> Tuple[np.ndarray, ...]:
     fields = log.topics.get(topic, {})
     names = ("x y z", "qx qy qz qw", "vx vy vz", "wx wy wz")
     if not set(" ".join(names).split()) <= set(fields):
@@ -128,7 +128,7 @@ def _sensed(log: Log, where: str, topic: str) -> Tuple[np.ndarray, ...]:
     return tuple(parts)
 
 
-def _commands_of(log: Log) -> Optional[np.ndarray]:
+def _read_commands(log: Log) -> Optional[np.ndarray]:
     """Give each command once, with the time at which it came; None before the first."""
     fields = log.topics[_COMMANDS]
     table = np.column_stack(

@@ -6,7 +6,7 @@ from typing import Any, Callable, Optional, Tuple
 
 import numpy as np
 
-from .problem import Problem, bounds_of
+from .problem import Problem, list_bounds
 
 _ROUNDS = 12
 """In each, parameters are sought from given starts and noise, and these are corrected then."""
@@ -41,7 +41,7 @@ def search(
     values = np.array([p.start for p in problem.parameters])
     try:
         for done in range(rounds):
-            values, is_still = _round(problem, values, done)
+            values, is_still = _run_round(problem, values, done)
             if progress is not None:
                 progress(done + 1, rounds)
             if is_still:
@@ -52,25 +52,25 @@ def search(
     return values
 
 
-def _round(problem: Problem, values: np.ndarray, done: int) -> Tuple[np.ndarray, bool]:
+def _run_round(problem: Problem, values: np.ndarray, done: int) -> Tuple[np.ndarray, bool]:
     """Seek once more, and tell whether that still moved anything."""
     from scipy.optimize import least_squares
 
     if done:  # first with the starts as measured: far from the parameters others mislead
-        problem.look(values)
+        problem.linearise_starts(values)
     else:
         problem.learn_noise(values)
     found: Any = least_squares(
-        problem.left,
+        problem.compute_residuals,
         values,
-        problem.derivative,
-        bounds=bounds_of(problem.parameters),
+        problem.compute_derivative,
+        bounds=list_bounds(problem.parameters),
         x_scale=np.array([p.size for p in problem.parameters]),
         xtol=1e-9,
         max_nfev=_LATER if done else _TRIALS,
     )
     if done:
-        problem.correct(found.x)
+        problem.correct_starts(found.x)
     problem.learn_noise(found.x)
     moved = np.linalg.norm(found.jac @ (found.x - values))
     return found.x, bool(done > 1 and moved < _STILL)

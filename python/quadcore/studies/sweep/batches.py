@@ -13,8 +13,8 @@ from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
 from ...support.warning import suppress_warnings
 from ..time_limit import time_limit
-from . import motion
-from .spec import Flight, Row, Spec
+from . import motion_metrics
+from .row_spec import Flight, Row, RowSpec
 
 ENGINE = "eigen"
 """In which several vehicles share each instruction."""
@@ -22,7 +22,7 @@ ENGINE = "eigen"
 _SLIP = 1e-9  # s; by which a command may come late, as in a flight by itself
 
 
-def fly_together(specs: Sequence[Spec]) -> Optional[List[Row]]:
+def fly_together(specs: Sequence[RowSpec]) -> Optional[List[Row]]:
     """Fly rows on one batch, each to the same bytes as by itself; None if they cannot be.
 
     Parameters
@@ -95,7 +95,7 @@ def _fly(flights: Sequence[Flight]) -> List[Row]:
             held = np.broadcast_to(first.commands[now, 1:], (len(plans), batch.command_width))
             batch.step(np.ascontiguousarray(held), 0)
     return [
-        Row(spec.row, failure, None if failure else motion.measure(Log(table, {})), print_)
+        Row(spec.row, failure, None if failure else motion_metrics.measure(Log(table, {})), print_)
         for spec, failure, table, print_ in zip(
             flights, batch.failures, tables, [spec.fingerprint() for spec in flights]
         )

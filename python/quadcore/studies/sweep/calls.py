@@ -10,7 +10,7 @@ from ..._core import InputError, QuadcoreError
 from ...support.arguments import brief
 from ..design import LARGEST, Design
 from ..time_limit import time_limit
-from .spec import Measures, digest, source_of
+from .row_spec import Measures, compute_digest, read_source
 
 
 class Calls:
@@ -61,19 +61,19 @@ class Calls:
         """Of the first columns."""
         return self.design.names
 
-    def cells(self, row: int) -> Dict[str, Any]:
+    def list_cells(self, row: int) -> Dict[str, Any]:
         """Tell a row's point."""
         return dict(self.design[row])
 
-    def spec(self, row: int) -> Call:
+    def make_spec(self, row: int) -> Call:
         """Describe a row."""
-        return Call(row, self.cells(row), self._function, self.measures, self._limit)
+        return Call(row, self.list_cells(row), self._function, self.measures, self._limit)
 
-    def told(self) -> Dict[str, Any]:
+    def describe(self) -> Dict[str, Any]:
         """Say what is called."""
         return {
             "function": getattr(self._function, "__qualname__", repr(self._function)),
-            **self.design.told(),
+            **self.design.describe(),
         }
 
 
@@ -95,13 +95,13 @@ class Call:
         """
         function, text = self.function, b""
         if isinstance(function, FunctionType) and not function.__closure__:
-            text = source_of(function.__module__)
+            text = read_source(function.__module__)
         if not text:
             return ""
-        called = f"{function.__module__} {function.__qualname__} {dict(self.names)} {digest(text)}"
-        return digest(called.encode())
+        called = f"{function.__module__} {function.__qualname__} {dict(self.names)}"
+        return compute_digest(f"{called} {compute_digest(text)}".encode())
 
-    def measured(self) -> Measures:
+    def measure(self) -> Measures:
         """Call it.
 
         Raises

@@ -12,7 +12,7 @@ _PATIENCE = 30.0  # s; for a scheduler to answer
 
 
 @contextmanager
-def cluster(address: str) -> Iterator[Tuple[Any, Callable[[], None]]]:
+def connect_cluster(address: str) -> Iterator[Tuple[Any, Callable[[], None]]]:
     """Be a client of a scheduler.
 
     Parameters
@@ -33,11 +33,11 @@ def cluster(address: str) -> Iterator[Tuple[Any, Callable[[], None]]]:
     with require_package("--dask", "distributed", "dask"):
         from distributed import Client
 
-    with _quiet():
-        yield from _of(Client, address)
+    with _silence_loggers():
+        yield from _connect(Client, address)
 
 
-def _of(make: Any, address: str) -> Iterator[Tuple[Any, Callable[[], None]]]:
+def _connect(make: Any, address: str) -> Iterator[Tuple[Any, Callable[[], None]]]:
     try:
         client = make(address, timeout=_PATIENCE, set_as_default=False)
     except (OSError, ValueError) as error:
@@ -58,7 +58,7 @@ def _of(make: Any, address: str) -> Iterator[Tuple[Any, Callable[[], None]]]:
 
 
 @contextmanager
-def _quiet() -> Iterator[None]:
+def _silence_loggers() -> Iterator[None]:
     """Let what the client says of a lost scheduler be told once, by us."""
     import logging
 

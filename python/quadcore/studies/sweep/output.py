@@ -9,12 +9,12 @@ import numpy as np
 
 from ... import __version__
 from ..._core import InputError
-from ..folder import remove_pictures, save_pictures
-from ..table import json_bytes, number_text, save, setting_texts
+from ..output_folder import remove_plots, save_plots
+from ..table import format_number, format_settings, make_json, save_files
 from . import plots as sweep_plots
-from .again import command
 from .plan import AnyPlan
-from .sensitivity import combinations, sensitivities
+from .repeat_command import write_command
+from .sensitivity import compute_sensitivities, list_combinations
 from .sweep import TABLE
 
 FILES = (TABLE, "sweep.json", "report.html")
@@ -25,7 +25,7 @@ WORST = 10
 Columns = Mapping[str, np.ndarray]
 
 
-def main_measure(plan: AnyPlan, asked: Optional[str] = None) -> str:
+def choose_metric(plan: AnyPlan, asked: Optional[str] = None) -> str:
     """Return the metric that is drawn and ranked; raises `InputError` if it does not exist."""
     if asked is not None and asked not in plan.measures:
         raise InputError(f"metric '{asked}' does not exist. Use one of {', '.join(plan.measures)}.")
@@ -48,31 +48,31 @@ def write(plan: AnyPlan, columns: Columns, folder: Path, measure: str, plots: bo
     """
     from ...report.page import write_page  # jinja2 is slow to import
 
-    found = sensitivities(plan, columns)
+    found = compute_sensitivities(plan, columns)
     content = {
         "quadcore": __version__,
         "numpy": np.__version__,
-        "plan": plan.told(),
+        "plan": plan.describe(),
         "units": plan.units,
         "meanings": plan.meanings,
         "rows": len(columns["row"]),
-        "summary": summaries(plan, columns),
+        "summary": summarise_rows(plan, columns),
         "sensitivities": found,
         "measure": measure,
         "worst": list_worst(plan, columns, measure),
     }
-    remove_pictures(folder, "sweep.json", sweep_plots.NAMES.__contains__)
-    written = save(folder, {"sweep.json": json_bytes(content)})
+    remove_plots(folder, "sweep.json", sweep_plots.NAMES.__contains__)
+    written = save_files(folder, {"sweep.json": make_json(content)})
     images = sweep_plots.draw(plan, columns, found, measure) if plots else {}
-    written += save_pictures(folder, "sweep.json", content, images)
+    written += save_plots(folder, "sweep.json", content, images)
     page = folder / "report.html"
     write_page(
         page,
         "sweep.html",
         title="Sweep",
         summary=count_rows(plan, columns),
-        flight=setting_texts(plan.told(), 20),
-        lines=[_format(row) for row in summaries(plan, columns)],
+        flight=format_settings(plan.describe(), 20),
+        lines=[_format(row) for row in summarise_rows(plan, columns)],
         sensitivities=[_format(row) for row in found if row["measure"] == measure],
         measure=measure,
         worst=[_format(row) for row in list_worst(plan, columns, measure)],
@@ -92,10 +92,10 @@ def count_rows(plan: AnyPlan, columns: Columns) -> str:
     return text + (f", {missing} not flown" if missing else "")
 
 
-def summaries(plan: AnyPlan, columns: Columns) -> List[Dict[str, Any]]:
+def summarise_rows(plan: AnyPlan, columns: Columns) -> List[Dict[str, Any]]:
     """Return quantiles of each metric for each combination of controller, reference and so on."""
     rows = []
-    for names, chosen in combinations(columns):
+    for names, chosen in list_combinations(columns):
         failed = int((columns["failure"][chosen] != "").sum())
         for measure in plan.measures:
             values = columns[measure][chosen].astype(float)
@@ -119,7 +119,7 @@ def list_worst(plan: AnyPlan, columns: Columns, measure: str) -> List[Dict[str, 
             "row": int(columns["row"][i]),
             "failure": str(columns["failure"][i]),
             measure: float(values[i]),
-            "again": command(plan, int(columns["row"][i])),
+            "again": write_command(plan, int(columns["row"][i])),
         }
         for i in [*failed, *largest]
     ]
@@ -128,7 +128,7 @@ def list_worst(plan: AnyPlan, columns: Columns, measure: str) -> List[Dict[str, 
 def _format(row: Mapping[str, Any]) -> Dict[str, str]:
     """Format the values of a row."""
     return {
-        name: number_text(value)
+        name: format_number(value)
         if isinstance(value, float)
         else str("" if value is None else value)
         for name, value in row.items()

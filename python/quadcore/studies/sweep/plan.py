@@ -11,16 +11,16 @@ from ...control import references
 from ...control.built_in import BuiltInController
 from ...simulation.commands import CommandsLike
 from ...support.values import whole
-from .. import measures as of_guided
-from ..cases import Cases, check_sides, spread
+from .. import tracking_metrics as of_guided
+from ..cases import Cases, check_models, make_scenario_axis
+from ..control_setup import ControlSetup, add_labels, names_user_code
 from ..design import LARGEST, Design
-from ..guidance import Guidance, labelled, names_own
 from ..options import SweepOptions
-from ..variation import of_controller
-from . import motion
+from ..variation import pick_controller_values
+from . import motion_metrics
 from .batches import ENGINE
 from .calls import Calls as Calls
-from .spec import Flight, Own
+from .row_spec import Flight, UserController
 
 _TOGETHER = 32  # rows: four times as many as share an instruction, and few to lose
 
@@ -56,13 +56,13 @@ class Plan(Cases):
         options: SweepOptions,
         commands: Optional[CommandsLike] = None,
     ) -> None:
-        guidance = _guidance(controllers, references_, commands, options)
-        check_sides(models, design)
-        super().__init__(design, guidance, models, engines, options, largest=LARGEST)
-        measured = of_guided if guidance.is_given else motion
+        control = _make_control_setup(controllers, references_, commands, options)
+        check_models(models, design)
+        super().__init__(design, control, models, engines, options, largest=LARGEST)
+        measured = of_guided if control.is_closed_loop else motion_metrics
         self.units, self.meanings = measured.UNITS, measured.MEANINGS
         self.measures = list(measured.UNITS)
-        self.names = list(self.cells(0))
+        self.names = list(self.list_cells(0))
         """Of the first columns, which say what flies."""
         self._commands = str(commands) if isinstance(commands, (str, Path)) else None
         self.check(commands)
@@ -73,41 +73,41 @@ class Plan(Cases):
     @property
     def at_once(self) -> int:
         """Rows of a task at most: several where they can fly on one batch."""
-        return 1 if self.guidance.is_given or self.engines != [ENGINE] else _TOGETHER
+        return 1 if self.control.is_closed_loop or self.engines != [ENGINE] else _TOGETHER
 
     @property
     def apart(self) -> bool:
         """Whether each flight needs a process of its own."""
-        return self.guidance.runs_user_code
+        return self.control.runs_user_code
 
-    def cells(self, row: int) -> Dict[str, Any]:
+    def list_cells(self, row: int) -> Dict[str, Any]:
         """Give what a row flies, as the first columns of the table."""
         case = self[row]
-        return {**self.sides(case), **self.design[case.point], "seed": self.seeds[case.seed]}
+        return {**self.name_sides(case), **self.design[case.point], "seed": self.seeds[case.seed]}
 
-    def spec(self, row: int) -> Flight:
+    def make_spec(self, row: int) -> Flight:
         """Describe a row; raises what making it raises."""
         case, own = self[row], None
-        plan = self.unguided(case)
-        if self.guidance.is_given:
-            thing = self.guidance.things[case.controller]
-            if names_own(thing):
-                values = {**self.guidance.timing, **of_controller(self.design[case.point])}
-                own = Own.of(thing, values)
+        plan = self.make_plan_without_controller(case)
+        if self.control.is_closed_loop:
+            thing = self.control.things[case.controller]
+            if names_user_code(thing):
+                values = {**self.control.timing, **pick_controller_values(self.design[case.point])}
+                own = UserController.of(thing, values)
             else:
-                plan = replace(plan, controller=self.controller(case))
-        return Flight(row, self.cells(row), plan, own, self.options.time_limit)
+                plan = replace(plan, controller=self.make_controller(case))
+        return Flight(row, self.list_cells(row), plan, own, self.options.time_limit)
 
-    def told(self) -> Dict[str, Any]:
+    def describe(self) -> Dict[str, Any]:
         """Give what flies and how, in plain values."""
         return {
-            "controllers": self.guidance.controllers,
-            "references": self.guidance.references,
+            "controllers": self.control.controllers,
+            "references": self.control.references,
             "commands": self._commands,
             "engines": self.engines,
             "models": self.models,
-            **self.design.told(),
-            **self.setting(),
+            **self.design.describe(),
+            **self.list_settings(),
         }
 
 
@@ -115,7 +115,7 @@ AnyPlan = Union[Plan, Calls]
 """Says what the rows of a sweep are."""
 
 
-def designed(
+def make_design(
     vary: Mapping[str, Any],
     options: SweepOptions,
     points: Union[str, Path, None],
@@ -123,18 +123,20 @@ def designed(
     samples: Optional[int],
 ) -> Tuple[Design, SweepOptions]:
     """Make the points of a sweep, of the scenarios in its options too; arguments as for `sweep`."""
-    vary, options = spread(vary, options)
+    vary, options = make_scenario_axis(vary, options)
     return Design(vary, points, design, samples, whole(options.seed)), options
 
 
-def _guidance(controllers: Any, references_: Any, commands: Any, options: SweepOptions) -> Guidance:
+def _make_control_setup(
+    controllers: Any, references_: Any, commands: Any, options: SweepOptions
+) -> ControlSetup:
     if commands is None:
         for name, given in (("controller", controllers), ("reference", references_)):
             if given is None:
                 raise InputError(f"nothing to fly: name --{name}, or --commands")
-        return Guidance(
-            labelled("controller", controllers, BuiltInController),
-            labelled("reference", references_, references.Shape),
+        return ControlSetup(
+            add_labels("controller", controllers, BuiltInController),
+            add_labels("reference", references_, references.Shape),
             options.controller_rate,
             options.delay,
             on_reference=options.spawn is None,
@@ -142,4 +144,4 @@ def _guidance(controllers: Any, references_: Any, commands: Any, options: SweepO
     if controllers is not None or references_ is not None:
         raise InputError("a flight takes --commands or a --controller; give one of them")
     timing = options.controller_rate, options.delay
-    return Guidance.single(None, None, None, *timing)
+    return ControlSetup.single(None, None, None, *timing)

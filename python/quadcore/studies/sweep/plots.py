@@ -10,7 +10,7 @@ from ...report.colours import PALETTE
 from ...report.decimation import pick_evenly
 from ...report.plots import dress, make_figure, panels, png
 from .plan import AnyPlan
-from .sensitivity import COMBINATION, axes_of_numbers, combinations
+from .sensitivity import COMBINATION, list_combinations, list_numeric_axes
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -43,10 +43,10 @@ def draw(
     dict
         PNG by name.
     """
-    found = list(combinations(columns))
+    found = list(list_combinations(columns))
     parts = [
         (
-            _label(names, [other for other, _ in found]),
+            _make_label(names, [other for other, _ in found]),
             chosen[np.isfinite(columns[measure][chosen])],
         )
         for names, chosen in found
@@ -57,11 +57,11 @@ def draw(
     note = f" ({_COMBINATIONS} of {len(parts)} combinations)" if len(parts) > _COMBINATIONS else ""
     parts = parts[:_COMBINATIONS]
     label = f"{measure} ({plan.units[measure]})" if plan.units[measure] else measure
-    rows = {_label(names, [other for other, _ in found]): len(at) for names, at in found}
+    rows = {_make_label(names, [other for other, _ in found]): len(at) for names, at in found}
     figures: Dict[str, Figure] = {
         "measure": _draw_distribution(parts, rows, columns[measure], label, note)
     }
-    axes = axes_of_numbers(plan, columns)[:_AXES]
+    axes = list_numeric_axes(plan, columns)[:_AXES]
     found_rows = [row for row in sensitivities if row["measure"] == measure and row["axis"] in axes]
     if found_rows:
         figures["sensitivity"] = _draw_sensitivity(found_rows, measure)
@@ -75,7 +75,7 @@ def draw(
 Parts = List[Tuple[str, np.ndarray]]
 
 
-def _label(names: Mapping[str, str], among: Sequence[Mapping[str, str]]) -> str:
+def _make_label(names: Mapping[str, str], among: Sequence[Mapping[str, str]]) -> str:
     """Label a combination by the names that differ among the combinations."""
     return ", ".join(v for k, v in names.items() if len({other[k] for other in among}) > 1)
 
@@ -138,7 +138,7 @@ def _draw_sensitivity(rows: Sequence[Mapping[str, Any]], measure: str) -> Figure
     axes.axvline(0, color="black", linewidth=0.8)
     axes.set_yticks(places)
     named = [{name: row[name] for name in COMBINATION if name in row} for row in rows]
-    labels = [(_label(names, named), row["axis"]) for names, row in zip(named, rows)]
+    labels = [(_make_label(names, named), row["axis"]) for names, row in zip(named, rows)]
     axes.set_yticklabels([": ".join(filter(None, each)) for each in labels], fontsize="small")
     return figure
 
@@ -178,8 +178,8 @@ def _draw_surface(
         y = columns[leading[1]]
         ends = [(each[chosen].min(), each[chosen].max()) for each in (x, y)]
         across = np.linspace(0, 1, 40)
-        surface = _quadratic(
-            [_unit(x[chosen], ends[0]), _unit(y[chosen], ends[1])], values[chosen], across
+        surface = _fit_quadratic(
+            [_normalise(x[chosen], ends[0]), _normalise(y[chosen], ends[1])], values[chosen], across
         )
         limits = {"vmin": values[chosen].min(), "vmax": values[chosen].max()}
         extents = [low + across * (high - low) for low, high in ends]
@@ -193,7 +193,7 @@ def _draw_surface(
     return figure
 
 
-def _unit(values: np.ndarray, ends: Tuple[float, float]) -> np.ndarray:
+def _normalise(values: np.ndarray, ends: Tuple[float, float]) -> np.ndarray:
     return (values - ends[0]) / ((ends[1] - ends[0]) or 1.0)
 
 
@@ -201,7 +201,7 @@ def _terms(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=-1)
 
 
-def _quadratic(
+def _fit_quadratic(
     axes: Sequence[np.ndarray], values: np.ndarray, across: np.ndarray
 ) -> Optional[np.ndarray]:
     """Fit a quadratic over the unit square; None if there are too few rows."""
@@ -229,7 +229,7 @@ def _draw_parallel(
     ends = {name: (columns[name][chosen].min(), columns[name][chosen].max()) for name in names}
     rows = chosen[pick_evenly(len(chosen), _LINES)]
     rows = rows[np.argsort(columns[measure][rows])]  # the largest on top
-    heights = np.stack([_unit(columns[name][rows], ends[name]) for name in names], axis=1)
+    heights = np.stack([_normalise(columns[name][rows], ends[name]) for name in names], axis=1)
     scale = _colour_scale(columns[measure][chosen])
     heights[:, -1] = scale(columns[measure][rows])
     places = np.broadcast_to(np.arange(len(names)), heights.shape)
@@ -243,7 +243,7 @@ def _draw_parallel(
     )
     axes.add_collection(lines)
     bar = figure.add_axes((0.87, 0.2, 0.02, 0.66))
-    figure.colorbar(lines, cax=bar, label=label).solids.set_alpha(1)
+    figure.colorbar(lines, cax=bar, label=label)
     axes.set_xlim(-0.1, len(names) - 0.9)
     axes.set_ylim(-0.05, 1.05)
     axes.set_yticks([])

@@ -13,7 +13,7 @@ from typing import Any, Dict, Iterator, List, Mapping, Tuple
 import numpy as np
 
 from ...support.optional_packages import require_package
-from ..distributions import unit_problem
+from ..distributions import make_unit_problem
 from .plan import AnyPlan
 
 Columns = Mapping[str, np.ndarray]
@@ -26,7 +26,7 @@ COMBINATION = ("controller", "reference", "engine", "model")
 _INDICES = ("first", "first_interval", "total", "total_interval")
 
 
-def sensitivities(plan: AnyPlan, columns: Columns) -> List[Dict[str, Any]]:
+def compute_sensitivities(plan: AnyPlan, columns: Columns) -> List[Dict[str, Any]]:
     """Tell what each measure is sensitive to.
 
     Parameters
@@ -44,11 +44,11 @@ def sensitivities(plan: AnyPlan, columns: Columns) -> List[Dict[str, Any]]:
         where there are none: other designs, axes that are not drawn, rows that failed.
     """
     found = []
-    for names, chosen in combinations(columns):
-        for measure, values in measured(plan, columns, chosen):
-            sobol = _sobol(plan, columns, chosen, values)
-            for axis in axes_of_numbers(plan, columns):
-                rank = _rank(columns[axis][chosen], values)
+    for names, chosen in list_combinations(columns):
+        for measure, values in list_metrics(plan, columns, chosen):
+            sobol = _sobol_indices(plan, columns, chosen, values)
+            for axis in list_numeric_axes(plan, columns):
+                rank = _rank_correlation(columns[axis][chosen], values)
                 of_axis = sobol.get(axis, dict.fromkeys(_INDICES, math.nan))
                 if not (math.isnan(rank) and math.isnan(of_axis["total"])):
                     row = {**names, "measure": measure, "axis": axis, "rank": rank}
@@ -56,7 +56,7 @@ def sensitivities(plan: AnyPlan, columns: Columns) -> List[Dict[str, Any]]:
     return found
 
 
-def combinations(columns: Columns) -> Iterator[Tuple[Dict[str, str], np.ndarray]]:
+def list_combinations(columns: Columns) -> Iterator[Tuple[Dict[str, str], np.ndarray]]:
     """Name each combination of what flies, and where its rows are."""
     shared = [name for name in COMBINATION if name in columns]
     count = len(columns["row"])
@@ -69,7 +69,7 @@ def combinations(columns: Columns) -> Iterator[Tuple[Dict[str, str], np.ndarray]
         yield dict(zip(shared, map(str, key))), where
 
 
-def measured(
+def list_metrics(
     plan: AnyPlan, columns: Columns, chosen: np.ndarray
 ) -> Iterator[Tuple[str, np.ndarray]]:
     """Give the measures that some rows have, and whether they failed if some did."""
@@ -82,7 +82,7 @@ def measured(
         yield FAILED, failed
 
 
-def axes_of_numbers(plan: AnyPlan, columns: Columns) -> List[str]:
+def list_numeric_axes(plan: AnyPlan, columns: Columns) -> List[str]:
     """Name the axes whose values are numbers, and several."""
     return [
         name
@@ -91,7 +91,7 @@ def axes_of_numbers(plan: AnyPlan, columns: Columns) -> List[str]:
     ]
 
 
-def _rank(axis: np.ndarray, values: np.ndarray) -> float:
+def _rank_correlation(axis: np.ndarray, values: np.ndarray) -> float:
     """Rank correlation of those that have a value; NaN without any."""
     from scipy.stats import rankdata
 
@@ -104,7 +104,7 @@ def _rank(axis: np.ndarray, values: np.ndarray) -> float:
     return float(a @ b) / size if size > 0 else math.nan
 
 
-def _sobol(
+def _sobol_indices(
     plan: AnyPlan, columns: Columns, chosen: np.ndarray, values: np.ndarray
 ) -> Dict[str, Dict[str, float]]:
     """Give the indices of each drawn axis; nothing if there are none."""
@@ -121,7 +121,7 @@ def _sobol(
 
     names = list(design.drawn)
     told = sobol.analyze(
-        unit_problem(len(names)),
+        make_unit_problem(len(names)),
         values.reshape(points, seeds).mean(axis=1),
         calc_second_order=False,
         seed=0,

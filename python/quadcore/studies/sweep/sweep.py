@@ -24,16 +24,16 @@ from ..._core import InputError
 from ...simulation.commands import CommandsLike
 from ...simulation.engines import STUDIED
 from ...support import arguments, interrupts
-from ..folder import output_folder
-from ..options import Keywords, Names, Progress, SweepOptions, takes
-from ..table import flown_and_failed
-from .dask import cluster
-from .places import fly_here, fly_over
-from .plan import AnyPlan, Calls, Plan, designed
-from .rows import Rows
-from .sensitivity import sensitivities
-from .spec import Row
-from .table import table, write_parquet
+from ..options import Keywords, Names, Progress, SweepOptions, accept_options
+from ..output_folder import output_folder
+from ..table import count_outcomes
+from .dask import connect_cluster
+from .execution import fly_locally, fly_on_executor
+from .plan import AnyPlan, Calls, Plan, make_design
+from .row_file import RowFile
+from .row_spec import Row
+from .sensitivity import compute_sensitivities
+from .table import make_table, write_parquet
 
 if TYPE_CHECKING:
     import concurrent.futures
@@ -60,10 +60,10 @@ class Sweep(NamedTuple):
     sensitivities: List[Dict[str, Any]]
 
     def __repr__(self) -> str:
-        return f"<Sweep, {flown_and_failed(self.columns['failure'].tolist())}>"
+        return f"<Sweep, {count_outcomes(self.columns['failure'].tolist())}>"
 
 
-@takes(
+@accept_options(
     SweepOptions,
     engines=arguments.NAMES,
     models=arguments.NAMES,
@@ -147,7 +147,7 @@ def sweep(
         What was written is kept.
     """
     shared = SweepOptions(**options)
-    made, shared = designed(vary or {}, shared, points, design, samples)
+    made, shared = make_design(vary or {}, shared, points, design, samples)
     plan: AnyPlan
     if function is not None:
         if (controllers, references, commands) != (None, None, None):
@@ -163,14 +163,14 @@ def sweep(
             out = stack.enter_context(tempfile.TemporaryDirectory())
         folder = Path(out)
         stack.enter_context(output_folder(folder))
-        rows = conduct(
+        rows = fly_plan(
             plan, folder, resume, parquet, shared.processes, executor, dask, shared.progress
         )
-        columns = table(rows)
-    return Sweep(columns, sensitivities(plan, columns))
+        columns = make_table(rows)
+    return Sweep(columns, compute_sensitivities(plan, columns))
 
 
-def conduct(
+def fly_plan(
     plan: AnyPlan,
     folder: Path,
     resume: bool = False,
@@ -179,11 +179,11 @@ def conduct(
     executor: Optional[concurrent.futures.Executor] = None,
     dask: Optional[str] = None,
     progress: Optional[Progress] = None,
-) -> Rows:
+) -> RowFile:
     """Fly what is missing of a plan; parameters as for `sweep`."""
     if executor is not None and dask is not None:
         raise InputError("executor and dask are given; keep one")
-    rows = Rows(folder / TABLE, plan, resume)
+    rows = RowFile(folder / TABLE, plan, resume)
     flown = rows.count
 
     def take(row: Row) -> None:
@@ -195,12 +195,12 @@ def conduct(
 
     try:
         if dask is not None:
-            with cluster(dask) as (of_dask, check):
-                fly_over(of_dask, plan, rows.missing, take, check)
+            with connect_cluster(dask) as (of_dask, check):
+                fly_on_executor(of_dask, plan, rows.missing, take, check)
         elif executor is not None:
-            fly_over(executor, plan, rows.missing, take)
+            fly_on_executor(executor, plan, rows.missing, take)
         else:
-            fly_here(plan, rows.missing, take, processes)
+            fly_locally(plan, rows.missing, take, processes)
     finally:
         with interrupts.hold_signals():
             rows.close()

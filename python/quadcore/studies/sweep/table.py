@@ -11,26 +11,26 @@ import numpy as np
 
 from ..._core import parse_number
 from ...support.output_files import atomic_write
-from .rows import Rows
+from .row_file import RowFile
 
 _TEXTS = ("failure", "fingerprint")
 _MANY = 10_000  # rows that are held at once when they are read
 
 
-def table(rows: Rows) -> Dict[str, np.ndarray]:
+def make_table(rows: RowFile) -> Dict[str, np.ndarray]:
     """Hold all rows that are there, by column: numbers where all are numbers, else texts."""
-    texts = _texts(rows)
+    texts = _text_columns(rows)
     columns: Dict[str, Any] = {
         name: [] if name in texts else array.array("Q" if name in rows.whole else "d")
         for name in rows.columns
     }
     for row in rows.read():
         for name, value in row.items():
-            columns[name].append(_made(value, name in texts, name in rows.whole))
+            columns[name].append(_convert(value, name in texts, name in rows.whole))
     return {name: np.array(values) for name, values in columns.items()}
 
 
-def write_parquet(rows: Rows, path: Path) -> None:
+def write_parquet(rows: RowFile, path: Path) -> None:
     """Write the rows that are there as Parquet, whole or not at all, few of them held at a time.
 
     Raises
@@ -44,21 +44,21 @@ def write_parquet(rows: Rows, path: Path) -> None:
         import pyarrow as arrow
         from pyarrow import parquet
 
-    texts = _texts(rows)
+    texts = _text_columns(rows)
     kinds = {name: arrow.float64() for name in rows.columns}
     kinds.update(dict.fromkeys(texts, arrow.string()))
     kinds.update((name, arrow.uint64()) for name in rows.whole)
     schema = arrow.schema(list(kinds.items()))
     with atomic_write(path) as stream, parquet.ParquetWriter(stream, schema) as writer:
-        for several in _pieces(rows.read()):
+        for several in _split_rows(rows.read()):
             arrays = []
             for name, kind in kinds.items():
-                made = [_made(row[name], name in texts, name in rows.whole) for row in several]
+                made = [_convert(row[name], name in texts, name in rows.whole) for row in several]
                 arrays.append(arrow.array(made, kind))
             writer.write_table(arrow.Table.from_arrays(arrays, schema=schema))
 
 
-def _texts(rows: Rows) -> List[str]:
+def _text_columns(rows: RowFile) -> List[str]:
     """Columns that hold more than numbers."""
     found = list(_TEXTS)
     for row in rows.read():
@@ -70,7 +70,7 @@ def _texts(rows: Rows) -> List[str]:
     return found
 
 
-def _pieces(rows: Iterator[Dict[str, str]]) -> Iterator[List[Dict[str, str]]]:
+def _split_rows(rows: Iterator[Dict[str, str]]) -> Iterator[List[Dict[str, str]]]:
     piece: List[Dict[str, str]] = []
     for row in rows:
         piece.append(row)
@@ -81,13 +81,13 @@ def _pieces(rows: Iterator[Dict[str, str]]) -> Iterator[List[Dict[str, str]]]:
         yield piece
 
 
-def _made(text: str, is_text: bool, is_whole: bool) -> Any:
+def _convert(text: str, is_text: bool, is_whole: bool) -> Any:
     if is_text:
         return sys.intern(text)
-    return int(text) if is_whole else _value(text)
+    return int(text) if is_whole else _parse_float(text)
 
 
-def _value(text: str) -> float:
+def _parse_float(text: str) -> float:
     return float(text) if text else float("nan")
 
 

@@ -17,22 +17,24 @@ from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
 from ...support import rotation
 from ..axes import Values
-from ..cases import Case, Cases, check_sides, label_of, spread
+from ..cases import Case, Cases, check_models, label_point, make_scenario_axis
+from ..control_setup import ControlSetup, add_labels, names_user_code, set_parameters
 from ..design import Design
-from ..guidance import Guidance, give_all, labelled, names_own
-from ..measures import LOST, distance, loss, lost
 from ..options import Options
-from ..variation import of_controller
+from ..tracking_metrics import FAILURE_DISTANCE, compute_errors, describe_failure, find_failure_time
+from ..variation import pick_controller_values
 
 _GAIN = re.compile(r"(k[pidrw]|[qr])_\w+")
 
-BESIDE, ASKEW = (0.3, -0.2, 0.25), (0.1, -0.1, 0.2)
+OFFSET, TURN = (0.3, -0.2, 0.25), (0.1, -0.1, 0.2)
 """Where flights begin that tell whether gains hold a vehicle at all, from the reference's start:
 how far off in the world (m), and turned how far about an axis of the frame (rad)."""
-_BACK = 10.0  # s, in which it is to be back
-_LATE = 2.0  # s, the last of them
-_LEFT = 0.5  # of the distance at the start, at most, by then: z of `pd` has a pole at -0.22 1/s
-_APART = ("duration", "dt", "seed", "scenario", "processes", "progress")
+_RETURN_TIME = 10.0  # s, in which it is to be back
+_LAST = 2.0  # s, the last of them
+_REMAINDER = (
+    0.5  # of the distance at the start, at most, by then: z of `pd` has a pole at -0.22 1/s
+)
+_UNLISTED = ("duration", "dt", "seed", "scenario", "processes", "progress")
 """Options that the history does not list, or lists apart."""
 
 
@@ -45,11 +47,11 @@ class Trial(NamedTuple):
     """Without a controller."""
     values: Mapping[str, float]
     """What the point changes in the controller."""
-    beside: bool = False
-    """Whether it begins `BESIDE` the reference."""
+    has_offset: bool = False
+    """Whether it begins `OFFSET` the reference."""
 
 
-class Flown(NamedTuple):
+class TrialResult(NamedTuple):
     """How gains did in a case."""
 
     error: float
@@ -87,10 +89,10 @@ class Problem:
     ) -> None:
         if not models or not references_ or not held_out:
             raise InputError("tuning needs a model, a reference, and a reference that is held out")
-        if names_own(law) or not isinstance(law, (str, BuiltInController)):
+        if names_user_code(law) or not isinstance(law, (str, BuiltInController)):
             raise InputError(f"{law}: no law of quadcore: only their gains can be tuned")
         trained, judged = (
-            labelled("reference", some, references.Shape) for some in (references_, held_out)
+            add_labels("reference", some, references.Shape) for some in (references_, held_out)
         )
         for label, _ in judged:
             if label in dict(trained):
@@ -98,29 +100,29 @@ class Problem:
         if options.log_every is not None:
             raise InputError("tuning writes no log; leave log_every out")
         self.options = options
-        vary, options = spread(vary, options)
+        vary, options = make_scenario_axis(vary, options)
         design = Design(vary)
         everything = [*models, *held_out_models]
-        check_sides(everything, design)
+        check_models(everything, design)
         timing = options.controller_rate, options.delay
-        guidance = Guidance([("", law)], [*trained, *judged], *timing, options.spawn is None)
-        self._cases = Cases(design, guidance, everything, [engine], options)
+        control = ControlSetup([("", law)], [*trained, *judged], *timing, options.spawn is None)
+        self._cases = Cases(design, control, everything, [engine], options)
         self._cases.check()
         self.models = self._cases.models[: len(models)]
         self.vehicle = self._cases.vehicles[0]
-        self.law: BuiltInController = guidance.make(0, self.vehicle, {})
+        self.law: BuiltInController = control.make(0, self.vehicle, {})
         self.training: List[Trial] = []
         self.held_out: List[Trial] = []
         for case in sorted(self._cases, key=lambda case: (case.model, case[1:])):
             is_trained = case.model < len(models) and case.reference < len(trained)
-            (self.training if is_trained else self.held_out).append(self._trial(case))
+            (self.training if is_trained else self.held_out).append(self._make_trial(case))
         self.training += [
-            trial._replace(label=f"{trial.label}, from beside it", beside=True)
+            trial._replace(label=f"{trial.label}, from beside it", has_offset=True)
             for trial in self.training
             if trial.plan.on_reference
         ]
-        self.to_come_back_to = [trial for trial in self.held_out if trial.plan.on_reference]
-        self.start = self._start(only)
+        self.return_trials = [trial for trial in self.held_out if trial.plan.on_reference]
+        self.start = self._start_gains(only)
 
     def with_gains(self, gains: Mapping[str, float]) -> BuiltInController:
         """Make the law with some gains."""
@@ -128,47 +130,53 @@ class Problem:
         law.parameters.update(gains)
         return law
 
-    def fly(self, trial: Trial, gains: Mapping[str, float]) -> Flown:
+    def fly(self, trial: Trial, gains: Mapping[str, float]) -> TrialResult:
         """Fly a trial and measure it; raises `InputError` if the law refuses gains or vehicle."""
         failure = ""
         try:
-            log = self._log(trial, gains)
+            log = self._fly_log(trial, gains)
         except FlightError as error:
             log, failure = error.log, str(error)  # type: ignore[attr-defined]
-        away = np.minimum(np.nan_to_num(distance(log), nan=LOST), LOST)
-        late = lost(log)
+        away = np.minimum(
+            np.nan_to_num(compute_errors(log), nan=FAILURE_DISTANCE), FAILURE_DISTANCE
+        )
+        late = find_failure_time(log)
         if late is not None:
-            failure = loss(log)
-            away[log.time >= late] = LOST
+            failure = describe_failure(log)
+            away[log.time >= late] = FAILURE_DISTANCE
         # What a flight that failed has not flown, it was lost in.
         rest = max(0.0, 1 - (log.time[-1] - log.time[0]) / trial.plan.duration) if failure else 0.0
-        square = (1 - rest) * np.mean(away**2) + rest * LOST**2
-        return Flown(float(np.sqrt(square)), failure)
+        square = (1 - rest) * np.mean(away**2) + rest * FAILURE_DISTANCE**2
+        return TrialResult(float(np.sqrt(square)), failure)
 
-    def comes_back(self, trial: Trial, gains: Mapping[str, float]) -> str:
+    def check_return(self, trial: Trial, gains: Mapping[str, float]) -> str:
         """Fly a trial from its start and from beside it; "" if both are one flight in the end.
 
         On the reference a law that knows all hardly needs its gains, and whatever error is left
         there is no fault of theirs: what they are for is that a vehicle beside it comes back.
         """
-        longer = trial._replace(plan=replace(trial.plan, duration=_BACK))
+        longer = trial._replace(plan=replace(trial.plan, duration=_RETURN_TIME))
         try:
-            logs = [self._log(longer._replace(beside=beside), gains) for beside in (False, True)]
+            logs = [
+                self._fly_log(longer._replace(has_offset=has_offset), gains)
+                for has_offset in (False, True)
+            ]
         except FlightError as error:
             return str(error)
         apart = np.linalg.norm(logs[0].position - logs[1].position, axis=1)
-        left = float(apart[logs[0].time > logs[0].time[-1] - _LATE].max())
-        if left <= _LEFT * apart[0]:
+        left = float(apart[logs[0].time > logs[0].time[-1] - _LAST].max())
+        if left <= _REMAINDER * apart[0]:
             return ""
-        return f"after {_BACK:g} s it is {left:.3g} m from where it should be, of {apart[0]:.3g} m"
+        offset = float(apart[0])
+        return f"{left:.3g} m of an offset of {offset:.3g} m remain after {_RETURN_TIME:g} s"
 
-    def _log(self, trial: Trial, gains: Mapping[str, float]) -> Log:
-        plan = replace(trial.plan, controller=give_all(self.with_gains(gains), trial.values))
+    def _fly_log(self, trial: Trial, gains: Mapping[str, float]) -> Log:
+        plan = replace(trial.plan, controller=set_parameters(self.with_gains(gains), trial.values))
         simulation = plan.simulation()
-        if trial.beside:
+        if trial.has_offset:
             state = simulation.state.copy()
-            state.position = state.position + BESIDE
-            state.orientation = rotation.turned(state.orientation, np.array(ASKEW))
+            state.position = state.position + OFFSET
+            state.orientation = rotation.turned(state.orientation, np.array(TURN))
             simulation.set_state(state)
         return simulation.run(
             plan.duration,
@@ -177,7 +185,7 @@ class Problem:
             reference=plan.reference,
         )
 
-    def setting(self) -> Dict[str, Any]:
+    def list_settings(self) -> Dict[str, Any]:
         """Say how everything flies, in plain values."""
         plan = self.training[0].plan
         told = {each.name: getattr(self.options, each.name) for each in fields(Options)}
@@ -188,25 +196,25 @@ class Problem:
             "duration": plan.duration,
             "dt": plan.step,
             **{
-                name: _plain(value)
+                name: _make_plain(value)
                 for name, value in told.items()
-                if value and value != defaults[name] and name not in _APART
+                if value and value != defaults[name] and name not in _UNLISTED
             },
             **({"vary": axes} if axes else {}),
         }
 
-    def _trial(self, case: Case) -> Trial:
-        cases, parts = self._cases, [self._cases.guidance.references[case.reference]]
+    def _make_trial(self, case: Case) -> Trial:
+        cases, parts = self._cases, [self._cases.control.references[case.reference]]
         if len(cases.models) > 1:
             parts.append(cases.models[case.model])
         if len(cases.design) > 1:
-            parts.append(label_of(cases.design[case.point]))
+            parts.append(label_point(cases.design[case.point]))
         if len(cases.seeds) > 1:
             parts.append(f"seed {cases.seeds[case.seed]}")
-        values = of_controller(cases.design[case.point])
-        return Trial(", ".join(parts), cases.unguided(case), values)
+        values = pick_controller_values(cases.design[case.point])
+        return Trial(", ".join(parts), cases.make_plan_without_controller(case), values)
 
-    def _start(self, only: Optional[Sequence[str]]) -> Dict[str, float]:
+    def _start_gains(self, only: Optional[Sequence[str]]) -> Dict[str, float]:
         table = next(specs for name, _, specs in _core.controllers() if name == self.law.name)
         numbers = {
             spec.name: float(self.law.parameters.get(spec.name, spec.default))
@@ -228,9 +236,9 @@ class Problem:
         return start
 
 
-def _plain(value: Any) -> Any:
+def _make_plain(value: Any) -> Any:
     if isinstance(value, Mapping):
-        return {str(key): _plain(one) for key, one in value.items()}
+        return {str(key): _make_plain(one) for key, one in value.items()}
     if isinstance(value, (list, tuple, np.ndarray)):
-        return [_plain(one) for one in value]
+        return [_make_plain(one) for one in value]
     return value if isinstance(value, (bool, int, float)) else str(value)

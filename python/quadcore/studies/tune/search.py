@@ -10,11 +10,11 @@ import numpy as np
 from ..._core import InputError, QuadcoreError
 from ...control.gains import Gains
 from ...support.warning import suppress_warnings
-from ..executor import conducted
-from ..measures import LOST
+from ..executor import run_contained
 from ..options import Progress
 from ..time_limit import time_limit
-from .problem import Flown, Problem, Trial
+from ..tracking_metrics import FAILURE_DISTANCE
+from .problem import Problem, Trial, TrialResult
 
 OBJECTIVE = (
     "mean over the cases, from the start of the reference and from beside it, of the root mean "
@@ -85,9 +85,9 @@ class Search:
         )
         while len(self.evaluations) < self._budget:
             points = strategy.ask()
-            strategy.tell(points, self._try([self._gains(point) for point in points]))
+            strategy.tell(points, self._try([self._scale_gains(point) for point in points]))
 
-    def result(self, cma: Any, ended: str) -> Optional[Tuning]:
+    def make_tuning(self, cma: Any, ended: str) -> Optional[Tuning]:
         """Give the best so far."""
         from ... import __version__  # which is there once the package is
 
@@ -99,9 +99,9 @@ class Search:
             "start": dict(self._problem.start),
             "objective": OBJECTIVE,
             "models": self._problem.models,
-            "tuned_on": [case.label for case in self._problem.training if not case.beside],
+            "tuned_on": [case.label for case in self._problem.training if not case.has_offset],
             "held_out": {label: float(value) for label, value in held_out.items()},
-            **self._problem.setting(),
+            **self._problem.list_settings(),
             "quadcore": __version__,
             "optimiser": f"cma {cma.__version__}",
             "seed": self._seed,
@@ -116,7 +116,7 @@ class Search:
         start = self.evaluations[0]
         return Tuning(found, error, start, list(self.evaluations), held_out, self.refused)
 
-    def _gains(self, point: np.ndarray) -> Dict[str, float]:
+    def _scale_gains(self, point: np.ndarray) -> Dict[str, float]:
         start = self._problem.start
         return {name: value * math.exp(x) for (name, value), x in zip(start.items(), point)}
 
@@ -145,17 +145,17 @@ class Search:
             if flown.failure:
                 return self._refuse(f"lose {case.label}: {flown.failure}")
             held_out[case.label] = flown.error
-        left: List[str] = [""] * len(problem.to_come_back_to)
+        left: List[str] = [""] * len(problem.return_trials)
 
         def take(index: int, outcome: Union[str, QuadcoreError]) -> None:
             left[index] = str(outcome)
 
         def fly(index: int) -> str:
             with suppress_warnings(), time_limit(self._limit):
-                return problem.comes_back(problem.to_come_back_to[index], gains)
+                return problem.check_return(problem.return_trials[index], gains)
 
-        conducted(fly, range(len(left)), take, self._processes)
-        for case, failure in zip(problem.to_come_back_to, left):
+        run_contained(fly, range(len(left)), take, self._processes)
+        for case, failure in zip(problem.return_trials, left):
             if failure:
                 return self._refuse(f"do not come back to {case.label} from beside it: {failure}")
         self._least = error
@@ -165,18 +165,18 @@ class Search:
         self.refused += 1
         self.refusal = f"those that fly best {reason}"
 
-    def _fly(self, flights: Sequence[Tuple[Trial, Mapping[str, float]]]) -> List[Flown]:
-        outcomes: List[Optional[Flown]] = [None] * len(flights)
+    def _fly(self, flights: Sequence[Tuple[Trial, Mapping[str, float]]]) -> List[TrialResult]:
+        outcomes: List[Optional[TrialResult]] = [None] * len(flights)
 
-        def take(index: int, outcome: Union[Flown, QuadcoreError]) -> None:
+        def take(index: int, outcome: Union[TrialResult, QuadcoreError]) -> None:
             # Gains that the law itself refuses are as bad as can be.
             failed = isinstance(outcome, QuadcoreError)
-            outcomes[index] = Flown(LOST, str(outcome)) if failed else outcome  # type: ignore
+            outcomes[index] = TrialResult(FAILURE_DISTANCE, str(outcome)) if failed else outcome  # type: ignore
 
-        def fly(index: int) -> Flown:
+        def fly(index: int) -> TrialResult:
             with suppress_warnings(), time_limit(self._limit):
                 return self._problem.fly(*flights[index])
 
         # By their numbers: a reference may be a function, which no process can send to another.
-        conducted(fly, range(len(flights)), take, self._processes)
+        run_contained(fly, range(len(flights)), take, self._processes)
         return outcomes  # type: ignore[return-value]

@@ -11,7 +11,7 @@ from ...support import arguments
 from ...support.arguments import several
 from ...support.optional_packages import require_package
 from ..axes import Values
-from ..options import Keywords, Names, Options, Progress, takes
+from ..options import Keywords, Names, Options, Progress, accept_options
 from .problem import Problem
 from .search import Search, Tuning
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _INTERRUPTED = "interrupted"
 
 
-@takes(
+@accept_options(
     Options,
     model=arguments.NAMES,
     references=arguments.GUIDES,
@@ -94,19 +94,19 @@ def tune(
     judged = several(held_out), several(held_out_models)
     chosen = None if only is None else several(only)
     problem = Problem(law, *flown, *judged, chosen, engine, vary or {}, shared)
-    return conduct(problem, budget, shared.progress)
+    return search_gains(problem, budget, shared.progress)
 
 
-def conduct(problem: Problem, budget: int, progress: Optional[Progress] = None) -> Tuning:
+def search_gains(problem: Problem, budget: int, progress: Optional[Progress] = None) -> Tuning:
     """Search for the gains of a problem; raises as `tune`."""
-    cma = _cma()
+    cma = _import_cma()
     search = Search(problem, budget, progress)
     try:
         search.run(cma)
     except KeyboardInterrupt as stop:
-        stop.tuning = search.result(cma, _INTERRUPTED)  # type: ignore[attr-defined]
+        stop.tuning = search.make_tuning(cma, _INTERRUPTED)  # type: ignore[attr-defined]
         raise
-    found = search.result(cma, "")
+    found = search.make_tuning(cma, "")
     if found is None:
         failure = FlightError(
             f"no gains found: {search.refusal}; begin elsewhere, or search longer"
@@ -116,7 +116,7 @@ def conduct(problem: Problem, budget: int, progress: Optional[Progress] = None) 
     return found
 
 
-def _cma() -> Any:
+def _import_cma() -> Any:
     with require_package("tuning", "cma", "tune"):
         import cma
     return cma

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..._core import InputError
 from ...report.page import write_page
-from ...studies.table import csv_bytes, json_bytes, save
+from ...studies.table import make_csv, make_json, save_files
 from .error_budget import Chain
 from .experiment import Case
 from .states import STATES
@@ -33,10 +33,10 @@ def write_tables(study: Study, directory: Path) -> List[Path]:
         A file cannot be written.
     """
     files = {
-        "commands.csv": csv_bytes(_commands(study)),
-        "errors.csv": csv_bytes(_errors(study.rows)),
-        "chains.csv": csv_bytes(_chains(study.chains)),
-        "validation.json": json_bytes(as_json(study)),
+        "commands.csv": make_csv(_commands(study)),
+        "errors.csv": make_csv(_errors(study.rows)),
+        "chains.csv": make_csv(_chains(study.chains)),
+        "validation.json": make_json(as_json(study)),
     }
     for old in directory.glob("*.png"):
         if PICTURE.fullmatch(old.name):
@@ -44,7 +44,7 @@ def write_tables(study: Study, directory: Path) -> List[Path]:
                 old.unlink()
             except OSError as error:
                 raise InputError(f"{old}: cannot be removed: {error.strerror}") from error
-    return save(directory, files)
+    return save_files(directory, files)
 
 
 def write_picture(name: str, picture: bytes, directory: Path) -> None:
@@ -55,7 +55,7 @@ def write_picture(name: str, picture: bytes, directory: Path) -> None:
     InputError
         It cannot be written.
     """
-    save(directory, {f"{name}.png": picture})
+    save_files(directory, {f"{name}.png": picture})
 
 
 def write_report(study: Study, pictures: Mapping[str, bytes], directory: Path) -> Path:

@@ -16,8 +16,13 @@ from ...simulation.commands import as_commands
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
 from ...simulation.state import State
-from ...studies.fit.record import read
-from ...studies.metrics import Sizes, differences, sizes, states
+from ...studies.fit.record import read_record
+from ...studies.flight_differences import (
+    DifferenceSizes,
+    compute_differences,
+    list_states,
+    summarise_differences,
+)
 from ...support.output_files import text_bytes
 from ..chapter2 import GYROSTAT, MathematicalModel, Terms, Vehicle
 from ..chapter2.vehicle import command_order
@@ -30,7 +35,7 @@ class Judged(NamedTuple):
 
     plant: str
     """One of `MODELS`, or an engine."""
-    difference: Optional[Sizes]
+    difference: Optional[DifferenceSizes]
     """The recording less the flight, by `states`."""
     failure: str
     """Why there is none."""
@@ -89,7 +94,7 @@ def _commands(
     recording: Union[str, Path], commands: Union[str, Path, np.ndarray, None], rotors: int
 ) -> np.ndarray:
     if commands is None:
-        commands = read(recording, rotors).commands
+        commands = read_record(recording, rotors).commands
     if commands is None:
         if Path(recording).suffix.lower() != ".bag":
             raise InputError(f"{recording}: has no topic vel_cmd; give the --commands that flew")
@@ -118,8 +123,10 @@ def _judged(name: str, log: Log, fly: Callable[[], Log]) -> Judged:
         flown = fly()
     except FlightError as error:
         return Judged(name, None, str(error))
-    apart = differences(flown, log)
-    return Judged(name, sizes(apart, list(states(log.rotor_velocity.shape[1]))), "")
+    apart = compute_differences(flown, log)
+    return Judged(
+        name, summarise_differences(apart, list(list_states(log.rotor_velocity.shape[1]))), ""
+    )
 
 
 def table_of(rows: Sequence[Judged], rotors: int) -> bytes:
@@ -131,7 +138,7 @@ def table_of(rows: Sequence[Judged], rotors: int) -> bytes:
         if row.difference is None:
             writer.writerow([row.plant, "", "", "", "", "", row.failure])
             continue
-        for state, unit in states(rotors).items():
+        for state, unit in list_states(rotors).items():
             parts = (row.difference.max, row.difference.rms, row.difference.final)
             writer.writerow([row.plant, state, unit, *(repr(part[state]) for part in parts), ""])
     return text_bytes(stream.getvalue())

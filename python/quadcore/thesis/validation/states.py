@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...simulation.log import Log
-from ...studies.metrics import Sizes, sizes
+from ...studies.flight_differences import DifferenceSizes, summarise_differences
 from ...support.rotation import roll_pitch_yaw
 from ..chapter2.kinematics import euler_rates_to_body
 
@@ -21,11 +21,11 @@ def states(log: Log) -> np.ndarray:
     return np.hstack([log.position, eta, log.linear_velocity, etadot])
 
 
-def compare(log: Log, reference: Log) -> Sizes:
+def compare(log: Log, reference: Log) -> DifferenceSizes:
     """Compare two flights that were logged at the same times: by state, and "distance", m."""
     apart = states(log) - states(reference)
     distance = np.linalg.norm(apart[:, :3], axis=1, keepdims=True)
-    return sizes(np.hstack([apart, distance]), (*STATES, "distance"))
+    return summarise_differences(np.hstack([apart, distance]), (*STATES, "distance"))
 
 
 def steepest(log: Log) -> float:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Union
 
 from ..._core import InputError, QuadcoreError
-from ...studies.executor import conducted
-from ...studies.metrics import Sizes
+from ...studies.executor import run_contained
+from ...studies.flight_differences import DifferenceSizes
 from ...studies.table import NOT_FLOWN
 from .damping import Damping, measure
 from .error_budget import ORDER, Chain, forge, stages
@@ -19,7 +19,7 @@ class Row(NamedTuple):
     """One flight against another."""
 
     case: Case
-    difference: Optional[Sizes]
+    difference: Optional[DifferenceSizes]
     steepest: float
     """Largest roll or pitch, rad."""
     failure: str
@@ -130,7 +130,7 @@ def _fly(
             flight = Flight(case, None, str(flight))
         flights[case] = flight
 
-    conducted(experiment.fly, cases, take, processes, progress=progress)
+    run_contained(experiment.fly, cases, take, processes, progress=progress)
 
 
 def _row(flight: Flight, reference: Flight) -> Row:

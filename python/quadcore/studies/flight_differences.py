@@ -19,12 +19,12 @@ _PARTS = {
 }
 
 
-def states(rotor_count: int) -> Dict[str, str]:
+def list_states(rotor_count: int) -> Dict[str, str]:
     """Names and units of the columns of `differences`."""
     return {**_WHOLE, **_PARTS, **{f"j{i}": "rad/s" for i in range(1, 1 + rotor_count)}}
 
 
-def differences(against: Log, log: Log) -> np.ndarray:
+def compute_differences(against: Log, log: Log) -> np.ndarray:
     """Differences of each state from that of another flight, over the time that both cover.
 
     Where the flights were logged at different times, the other one is interpolated.
@@ -37,7 +37,7 @@ def differences(against: Log, log: Log) -> np.ndarray:
         for them.
     """
     log = Log(log.table[log.time <= against.time[-1] + 1e-9], {})
-    against = _at(log.time, against)
+    against = _interpolate(log.time, against)
     position = log.position - against.position
     angles = angles_between(log.rpy, against.rpy)
     # |q - p| and |q + p| are 2 sin and 2 cos of a quarter of the angle: exact for small angles too,
@@ -56,7 +56,7 @@ def differences(against: Log, log: Log) -> np.ndarray:
     return np.hstack([whole, position, angles, velocity, rates, rotors])
 
 
-class Sizes(NamedTuple):
+class DifferenceSizes(NamedTuple):
     """Sizes of the difference of two flights over their time, by state."""
 
     final: Dict[str, float]
@@ -66,21 +66,21 @@ class Sizes(NamedTuple):
     rms: Dict[str, float]
 
 
-def sizes(rows: np.ndarray, names: Sequence[str]) -> Sizes:
+def summarise_differences(rows: np.ndarray, names: Sequence[str]) -> DifferenceSizes:
     """Measure differences of the states of these names; rows of shape (rows, states)."""
     magnitudes = np.abs(rows)
     found = (rows[-1], magnitudes.max(axis=0), np.sqrt((magnitudes**2).mean(axis=0)))
-    return Sizes(*(dict(zip(names, values.tolist())) for values in found))
+    return DifferenceSizes(*(dict(zip(names, values.tolist())) for values in found))
 
 
-def metrics(against: Log, log: Log) -> np.ndarray:
+def compute_final_and_max(against: Log, log: Log) -> np.ndarray:
     """Find the final and the largest difference of each state; shape (2, 16 + n)."""
-    names = states(against.rotor_velocity.shape[1])
-    found = sizes(differences(against, log), list(names))
+    names = list_states(against.rotor_velocity.shape[1])
+    found = summarise_differences(compute_differences(against, log), list(names))
     return np.array([list(found.final.values()), list(found.max.values())])
 
 
-def _at(time: np.ndarray, log: Log) -> Log:
+def _interpolate(time: np.ndarray, log: Log) -> Log:
     if np.array_equal(time, log.time[: len(time)]):
         return Log(log.table[: len(time)], {})
     table = np.stack([np.interp(time, log.time, column) for column in log.table.T], axis=1)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 
-class Situation(NamedTuple):
+class StepData(NamedTuple):
     """Where n vehicles are after an action, a row for each.
 
     Attributes

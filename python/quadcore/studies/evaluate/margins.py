@@ -26,7 +26,7 @@ from typing import (
 
 import numpy as np
 
-from ..flights import Outcome
+from ..measured_flight import Outcome
 from ..table import NOT_FLOWN
 from .trial import Trial
 
@@ -44,14 +44,14 @@ _STEPS = 7  # of each bisection: 2 % of a gain, 1 % of the range of the delay
 _SAMPLES = 16  # in the box
 _FIRST_DELAY = 0.004  # s
 _TRIALS = 60  # of a controller, about
-_FLOWN = "rms_position"
+_METRIC = "rms_position"
 
 Found = Dict[str, float]
 Search = Generator[List[Trial], List[Outcome], Found]
 Fly = Callable[[List[Trial]], List[Outcome]]
 
 
-class Searches:
+class MarginSearch:
     """What is to be found out about controllers: on the first of everything else.
 
     Parameters
@@ -78,7 +78,7 @@ class Searches:
     def run(self, fly: Fly) -> None:
         """Make all searches side by side; `fly` flies what they ask for next."""
         running: List[Tuple[int, Search]] = []
-        as_it_is = self._flown(fly, [Trial(row) for row in range(len(self._rows))])
+        as_it_is = self._fly_new(fly, [Trial(row) for row in range(len(self._rows))])
         for trial, outcome in as_it_is.items():
             if outcome.flew:
                 running += [(trial.controller, kind(trial)) for kind in self._kinds]
@@ -86,21 +86,21 @@ class Searches:
                 self._rows[trial.controller]["failure"] = outcome.failure
         asked = [(row, search, next(search)) for row, search in running]
         while asked:
-            self._flown(fly, [trial for *_, trials in asked for trial in trials])
-            asked = list(self._answered(asked))
+            self._fly_new(fly, [trial for *_, trials in asked for trial in trials])
+            asked = list(self._advance(asked))
         for row, _ in running:
             self._rows[row]["failure"] = ""
 
-    def rows(self) -> List[Dict[str, Any]]:
+    def list_rows(self) -> List[Dict[str, Any]]:
         """Give a row per controller: `NAMES`, and the reason where nothing could be found."""
         return [dict(row) for row in self._rows]
 
-    def _flown(self, fly: Fly, trials: Sequence[Trial]) -> Mapping[Trial, Outcome]:
+    def _fly_new(self, fly: Fly, trials: Sequence[Trial]) -> Mapping[Trial, Outcome]:
         new = [trial for trial in dict.fromkeys(trials) if trial not in self._done]
         self._done.update(zip(new, fly(new)))
         return self._done
 
-    def _answered(self, asked: Sequence[Tuple[int, Search, List[Trial]]]) -> Iterator[Any]:
+    def _advance(self, asked: Sequence[Tuple[int, Search, List[Trial]]]) -> Iterator[Any]:
         for row, search, trials in asked:
             try:
                 yield row, search, search.send([self._done[trial] for trial in trials])
@@ -108,7 +108,7 @@ class Searches:
                 self._rows[row].update(stop.value)
 
 
-def _gain(own: Trial) -> Search:
+def _search_gain(own: Trial) -> Search:
     """Find the factors on thrust and torque of all rotors between which it is not lost."""
 
     def at(logarithm: float) -> Trial:
@@ -117,41 +117,41 @@ def _gain(own: Trial) -> Search:
     found = {}
     for name in ("gain_low", "gain_high"):
         end = math.log(ENDS[name])
-        if (yield from _flies(at(end))):
+        if (yield from _try_flight(at(end))):
             found[name] = ENDS[name]
         else:
-            found[name] = math.exp((yield from _between(at, 0.0, end)))
+            found[name] = math.exp((yield from _bisect(at, 0.0, end)))
     return found
 
 
-def _between(at: Callable[[float], Trial], good: float, bad: float) -> Generator[Any, Any, float]:
+def _bisect(at: Callable[[float], Trial], good: float, bad: float) -> Generator[Any, Any, float]:
     for _ in range(_STEPS):
         middle = (good + bad) / 2
-        good, bad = (middle, bad) if (yield from _flies(at(middle))) else (good, middle)
+        good, bad = (middle, bad) if (yield from _try_flight(at(middle))) else (good, middle)
     return good
 
 
-def _delay(own: Trial) -> Search:
+def _search_delay(own: Trial) -> Search:
     """Find the largest delay besides the controller's own with which the vehicle is not lost, s."""
 
     def at(delay: float) -> Trial:
         return own._replace(delay=delay)
 
     good, bad = 0.0, _FIRST_DELAY
-    while (yield from _flies(at(bad))):
+    while (yield from _try_flight(at(bad))):
         if bad == LARGEST_DELAY:
             return {"delay_margin": bad}
         good, bad = bad, min(2 * bad, LARGEST_DELAY)
-    return {"delay_margin": (yield from _between(at, good, bad))}
+    return {"delay_margin": (yield from _bisect(at, good, bad))}
 
 
-def _rates(own: Trial) -> Search:
+def _sweep_rates(own: Trial) -> Search:
     """Error at each rate; NaN where the vehicle is lost."""
     outcomes = yield [own._replace(rate=rate) for rate in RATES]
-    return {f"rms_at_{r:g}_Hz": o.measures[_FLOWN] for r, o in zip(RATES, outcomes)}
+    return {f"rms_at_{r:g}_Hz": o.measures[_METRIC] for r, o in zip(RATES, outcomes)}
 
 
-def _box(own: Trial) -> Search:
+def _sample_model_errors(own: Trial) -> Search:
     """Worst and median error over wrong beliefs; the worst is infinite if a vehicle is lost."""
     corners = list(itertools.product(*((1 - part, 1 + part) for part in BOX.values())))
     inside = np.random.default_rng(0).uniform(-1, 1, (_SAMPLES, len(BOX)))
@@ -160,7 +160,7 @@ def _box(own: Trial) -> Search:
         own._replace(**{name: 1 / believed for name, believed in zip(BOX, point)})
         for point in points
     ]
-    errors = [o.measures[_FLOWN] if o.flew else math.inf for o in outcomes]
+    errors = [o.measures[_METRIC] if o.flew else math.inf for o in outcomes]
     return {"box_median": float(np.median(errors)), "box_worst": max(errors)}
 
 
@@ -173,14 +173,14 @@ class _Kind(NamedTuple):
 
 
 _KINDS = (
-    _Kind("gain", _gain, {"thrust"}),
-    _Kind("delay", _delay),
-    _Kind("rates", _rates),
-    _Kind("box", _box, set(BOX)),
+    _Kind("gain", _search_gain, {"thrust"}),
+    _Kind("delay", _search_delay),
+    _Kind("rates", _sweep_rates),
+    _Kind("box", _sample_model_errors, set(BOX)),
 )
 
 
-def unsearched(model: str, lacking: Collection[str]) -> str:
+def describe_omitted(model: str, lacking: Collection[str]) -> str:
     """Tell in one line what cannot be searched for a vehicle, and why; "" if everything can."""
     left_out = [kind.name for kind in _KINDS if kind.varies & set(lacking)]
     if not left_out:
@@ -192,12 +192,12 @@ def unsearched(model: str, lacking: Collection[str]) -> str:
     )
 
 
-def _flies(trial: Trial) -> Generator[List[Trial], List[Outcome], bool]:
+def _try_flight(trial: Trial) -> Generator[List[Trial], List[Outcome], bool]:
     (outcome,) = yield [trial]
     return outcome.flew
 
 
-def margin_text(row: Mapping[str, Any], name: str, number: Callable[[float], str]) -> str:
+def format_margin(row: Mapping[str, Any], name: str, number: Callable[[float], str]) -> str:
     """Write what was found; a margin at the end of its search is larger, or smaller, than that."""
     value = row.get(name, math.nan)
     if value == ENDS.get(name):

@@ -14,10 +14,10 @@ import numpy as np
 from ..._core import InputError, QuadcoreError, parse_number
 from ...support.output_files import Appended, atomic_write, cell, check_writable, text_bytes
 from .plan import AnyPlan
-from .spec import Row, digest
+from .row_spec import Row, compute_digest
 
 
-class Rows:
+class RowFile:
     """A CSV file with a row for each flight, in the order in which they end.
 
     The columns are ``row``, what flies, ``failure``, the measures and ``fingerprint``. Once all are
@@ -50,16 +50,16 @@ class Rows:
                 )
         self._where = np.full((len(plan), 2), -1, dtype=np.int64)  # begin and length of each
         self.whole = ("row", *plan.whole)
-        self._head = _line(self.columns)
+        self._head = _write_line(self.columns)
         check_writable(path)
         if path.exists() and path.stat().st_size > 0 and not resume:
-            raise self._taken()
+            raise self._make_conflict()
         self._file = Appended(path, older=True)
         try:
             self.is_resumed = os.fstat(self._file.fileno()).st_size > 0
             if self.is_resumed and not resume:
-                raise self._taken()
-            self._end = self._note() if self.is_resumed else 0
+                raise self._make_conflict()
+            self._end = self._index_rows() if self.is_resumed else 0
         except InputError:
             self._file.close()
             raise
@@ -79,7 +79,7 @@ class Rows:
 
     def take(self, row: Row) -> None:
         """Append a row; raises `InputError` if it does not fit, the others being whole."""
-        line = _line(self._cells(row))
+        line = _write_line(self._cells(row))
         begin = self._end
         self._append(line)
         self._where[row.row] = begin, len(line)
@@ -89,7 +89,7 @@ class Rows:
         if self.count == len(self._plan) and (np.diff(self._where[:, 0]) < 0).any():
             with atomic_write(self.path) as ordered:
                 ordered.write(self._head)
-                for line in self._file.parts(self._places()):
+                for line in self._file.parts(self._list_places()):
                     ordered.write(line)
             lengths = self._where[:, 1]
             self._where[:, 0] = len(self._head) + np.cumsum(lengths) - lengths
@@ -99,17 +99,17 @@ class Rows:
         """Give the rows that are there, by number."""
         file = Appended(self.path, older=True) if self._file.closed else self._file
         try:
-            for line in file.parts(self._places()):
-                yield dict(zip(self.columns, _split(line)))
+            for line in file.parts(self._list_places()):
+                yield dict(zip(self.columns, _split_line(line)))
         finally:
             if file is not self._file:
                 file.close()
 
-    def _places(self) -> Iterator[Tuple[int, int]]:
+    def _list_places(self) -> Iterator[Tuple[int, int]]:
         """Begin and length of each row that is there."""
         return ((begin, length) for begin, length in self._where.tolist() if begin >= 0)
 
-    def _taken(self) -> InputError:
+    def _make_conflict(self) -> InputError:
         return InputError(
             f"{self.path}: holds rows already; go on with --resume, or name another folder"
         )
@@ -118,7 +118,7 @@ class Rows:
         measured = row.measures or {}
         return [
             row.row,
-            *self._plan.cells(row.row).values(),
+            *self._plan.list_cells(row.row).values(),
             row.failure,
             *(measured.get(name, np.nan) for name in self._plan.measures),
             row.fingerprint,
@@ -128,7 +128,7 @@ class Rows:
         self._file.write(line)
         self._end += len(line)
 
-    def _note(self) -> int:
+    def _index_rows(self) -> int:
         """Note where rows are, and give the bytes that stay: what a kill cut off does not."""
         lines = self._file.lines()
         head = next(lines, b"")
@@ -143,12 +143,12 @@ class Rows:
         for number, line in enumerate(lines, start=2):
             if not line.endswith(b"\n"):
                 break
-            row = self._checked(number, _split(line))
+            row = self._check_row(number, _split_line(line))
             self._where[row] = end, len(line)
             end += len(line)
         return end
 
-    def _checked(self, number: int, cells: Sequence[str]) -> int:
+    def _check_row(self, number: int, cells: Sequence[str]) -> int:
         """Give the number of a row; raise `InputError` unless it is the plan's."""
         place = f"{self.path}:{number}"
         if len(cells) != len(self.columns) or not re.fullmatch(r"[0-9]{1,18}", cells[0]):
@@ -158,7 +158,7 @@ class Rows:
             raise InputError(f"{place}: row {row} of a sweep that has {len(self._plan)}")
         if self._where[row, 0] >= 0:
             raise InputError(f"{place}: row {row} is there twice; take one out")
-        known, planned = dict(zip(self.columns, cells)), self._plan.cells(row)
+        known, planned = dict(zip(self.columns, cells)), self._plan.list_cells(row)
         for name in self._plan.measures:
             if not _is_measure(known[name]):
                 raise InputError(
@@ -166,12 +166,12 @@ class Rows:
                     "take the line out"
                 )
         for name, value in planned.items():
-            if known[name] != _split(_line([value]))[0]:
+            if known[name] != _split_line(_write_line([value]))[0]:
                 raise InputError(
                     f"{place}: was flown with {name} {known[name]}, now it is {value}; name "
                     "another folder, or fly what was flown"
                 )
-        if known["fingerprint"] != fingerprint(self._plan, row):
+        if known["fingerprint"] != compute_fingerprint(self._plan, row):
             raise InputError(
                 f"{place}: was flown with other inputs than these: a model, a world, a file or an "
                 "option has changed; name another folder, or fly what was flown"
@@ -181,17 +181,17 @@ class Rows:
         return row
 
 
-def fingerprint(plan: AnyPlan, row: int) -> str:
+def compute_fingerprint(plan: AnyPlan, row: int) -> str:
     """Digest of what a row depends on; "" if nobody can tell, and of why if it cannot be flown."""
     try:
-        return plan.spec(row).fingerprint()
+        return plan.make_spec(row).fingerprint()
     except QuadcoreError as error:
-        return digest(str(error).encode())
+        return compute_digest(str(error).encode())
 
 
-def _line(cells: Sequence[Any]) -> bytes:
+def _write_line(cells: Sequence[Any]) -> bytes:
     stream = io.StringIO()
-    csv.writer(stream, lineterminator="\n").writerow([_plain(value) for value in cells])
+    csv.writer(stream, lineterminator="\n").writerow([_escape(value) for value in cells])
     return text_bytes(stream.getvalue())
 
 
@@ -200,7 +200,7 @@ def _is_measure(text: str) -> bool:
     return text in ("", "inf", "-inf") or parse_number(text) is not None
 
 
-def _plain(value: Any) -> Any:
+def _escape(value: Any) -> Any:
     if isinstance(value, str):
         if parse_number(value) is not None:
             return value
@@ -209,7 +209,7 @@ def _plain(value: Any) -> Any:
     return "" if value != value else value
 
 
-def _split(line: bytes) -> List[str]:
+def _split_line(line: bytes) -> List[str]:
     try:
         return next(csv.reader([line.decode("utf-8", "replace")]), [])
     except csv.Error:  # of a damaged file

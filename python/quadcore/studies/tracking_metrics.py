@@ -12,7 +12,7 @@ from ..simulation.log import Log
 from ..simulation.recording import TAIL
 from ..support.rotation import roll_pitch_yaw
 
-LOST = 5.0
+FAILURE_DISTANCE = 5.0
 """A vehicle that is farther from its reference is lost, m."""
 
 UNITS = {
@@ -52,29 +52,29 @@ _SETTLED = 0.02  # of a step
 _JUMP = 1e-3  # m; a reference that moves more between two rows, and suddenly, has a step
 
 
-def lost(log: Log) -> Optional[float]:
+def find_failure_time(log: Log) -> Optional[float]:
     """Time from which a vehicle is lost, s, or None."""
-    away = np.flatnonzero(~(distance(log) <= LOST))
+    away = np.flatnonzero(~(compute_errors(log) <= FAILURE_DISTANCE))
     return float(log.time[away[0]]) if len(away) else None
 
 
-def loss(log: Log) -> str:
+def describe_failure(log: Log) -> str:
     """Tell when and where a vehicle is lost; "" if it is not."""
-    time = lost(log)
+    time = find_failure_time(log)
     if time is None:
         return ""
     x, y, z = log.position[np.flatnonzero(log.time == time)[0]]
     return f"lost at t = {time:.6g} s, x = {x:.4g} m, y = {y:.4g} m, z = {z:.4g} m"
 
 
-def distance(log: Log) -> np.ndarray:
+def compute_errors(log: Log) -> np.ndarray:
     """Distance to the reference, m; shape (rows,)."""
     error = log.topics["error"]
     length: np.ndarray = np.sqrt(error["x"] ** 2 + error["y"] ** 2 + error["z"] ** 2)
     return length
 
 
-def rms_and_max(away: np.ndarray) -> Tuple[float, float]:
+def compute_rms_and_max(away: np.ndarray) -> Tuple[float, float]:
     """Root of the mean square of a distance, and the largest."""
     return float(np.sqrt(np.mean(away**2))), float(away.max())
 
@@ -96,37 +96,37 @@ def measure(log: Log, saturated: float, rotors: Sequence[Rotor]) -> Dict[str, fl
     dict
         A number for each of `UNITS`; NaN for what the flight does not have, such as a step.
     """
-    time, away = log.time - log.time[0], distance(log)
+    time, away = log.time - log.time[0], compute_errors(log)
     tail = time > time[-1] - TAIL
     late = time > time[-1] - min(TAIL, time[-1] / 2)
     errors = np.column_stack([log.topics["error"][axis] for axis in "xyz"])
     yaw = roll_pitch_yaw(log.orientation)[:, 2] - log.topics["reference"]["yaw"]
     speeds = np.abs(log.rotor_velocity) * [rotor.slowdown for rotor in rotors]
     span = max(time[-1], np.finfo(float).tiny)
-    rise, overshoot, settling = _step(log, away)
-    rms, largest = rms_and_max(away)
+    rise, overshoot, settling = _measure_step(log, away)
+    rms, largest = compute_rms_and_max(away)
     return {
         "rms_position": rms,
         "max_position": largest,
         "final_position": float(away[tail].max()),
         "steady_position": float(np.linalg.norm(errors[late].mean(axis=0))),
-        "iae_position": _integral(away, time),
-        "itae_position": _integral(away * time, time),
+        "iae_position": _integrate(away, time),
+        "itae_position": _integrate(away * time, time),
         "max_yaw": float(np.abs(np.remainder(yaw + np.pi, 2 * np.pi) - np.pi).max()),
         "rise_time": rise,
         "overshoot": overshoot,
         "settling_time": settling,
         "effort": float(np.abs(np.diff(speeds, axis=0)).sum() / span / max(1, speeds.shape[1])),
         "saturated": saturated,
-        "energy": _integral(speeds**3 @ [rotor.torque_coefficient for rotor in rotors], time),
+        "energy": _integrate(speeds**3 @ [rotor.torque_coefficient for rotor in rotors], time),
     }
 
 
-def _integral(values: np.ndarray, time: np.ndarray) -> float:
+def _integrate(values: np.ndarray, time: np.ndarray) -> float:
     return float(np.sum((values[1:] + values[:-1]) / 2 * np.diff(time)))
 
 
-def _step(log: Log, away: np.ndarray) -> Tuple[float, float, float]:
+def _measure_step(log: Log, away: np.ndarray) -> Tuple[float, float, float]:
     """Rise, overshoot and settling if the reference has one step, else NaN."""
     none = math.nan, math.nan, math.nan
     wanted = np.column_stack([log.topics["reference"][axis] for axis in "xyz"])

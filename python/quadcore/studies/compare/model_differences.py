@@ -35,7 +35,7 @@ class Fact(NamedTuple):
     """The fact, if any, without which this one is none: the link, joint or plugin."""
 
 
-def facts(document: Document) -> Dict[str, Fact]:
+def list_facts(document: Document) -> Dict[str, Fact]:
     """Everything in a model that may influence a flight, by name, in the file's order."""
     found: Dict[str, Fact] = {}
     for element in _parse(document).children:
@@ -47,14 +47,14 @@ def facts(document: Document) -> Dict[str, Fact]:
     return found
 
 
-def differences(before: Document, after: Document) -> List[Difference]:
+def compare_documents(before: Document, after: Document) -> List[Difference]:
     """List what two models do not share; numbers are compared as numbers."""
-    old, new = facts(before), facts(after)
+    old, new = list_facts(before), list_facts(after)
     rows = []
     for what in {**old, **new}:
         a, b = old.get(what), new.get(what)
         if a is not None and b is not None:
-            if not _same(a.text, b.text):
+            if not _are_equal(a.text, b.text):
                 rows.append(Difference(what, a.text, b.text, a.at, b.at))
             continue
         fact, other = (a, new) if a is not None else (b, old)
@@ -66,7 +66,7 @@ def differences(before: Document, after: Document) -> List[Difference]:
             rows.append(Difference(what, present, ABSENT, fact.at, ""))
         else:
             rows.append(Difference(what, ABSENT, present, "", fact.at))
-    return rows + _order(old, new)
+    return rows + _compare_joint_order(old, new)
 
 
 class _Element:
@@ -131,7 +131,7 @@ def _add_inner(
         _add_inner(found, child, child.attributes, path, f"{path}/", within)
 
 
-def _order(old: Dict[str, Fact], new: Dict[str, Fact]) -> List[Difference]:
+def _compare_joint_order(old: Dict[str, Fact], new: Dict[str, Fact]) -> List[Difference]:
     """Tell if joints both have come in another order, because that numbers the rotors."""
     a = [name for name in old if name.startswith("joint ") and old[name].within is None]
     b = [name for name in new if name.startswith("joint ") and new[name].within is None]
@@ -142,7 +142,7 @@ def _order(old: Dict[str, Fact], new: Dict[str, Fact]) -> List[Difference]:
     return [Difference("order of the joints", before, after, old[a[0]].at, new[b[0]].at)]
 
 
-def _same(a: str, b: str) -> bool:
+def _are_equal(a: str, b: str) -> bool:
     if a == b:
         return True
     try:

@@ -18,7 +18,7 @@ Named = Union[str, Any, Mapping[str, Any], Sequence[Any]]
 """A name, an object, several of these, or a mapping of labels to them."""
 
 
-class Guidance:
+class ControlSetup:
     """Controllers and references, each with a label; or none, for flights open loop.
 
     Parameters
@@ -48,10 +48,12 @@ class Guidance:
         self.references = [label for label, _ in references_]
         self.things = [thing for _, thing in controllers]
         """The controllers as they were given."""
-        self.shapes = [shape(thing) for _, thing in references_]
+        self.shapes = [make_reference(thing) for _, thing in references_]
         self.timing = {"rate": controller_rate, "delay": delay}
         self.on_reference = on_reference
-        self._maker = lru_cache(maxsize=None)(lambda i, vehicle: _maker(self.things[i], vehicle))
+        self._make_factory = lru_cache(maxsize=None)(
+            lambda i, vehicle: _make_factory(self.things[i], vehicle)
+        )
 
     @classmethod
     def single(
@@ -61,7 +63,7 @@ class Guidance:
         spawn: Optional[Sequence[Any]],
         controller_rate: Optional[float],
         delay: Optional[float],
-    ) -> Guidance:
+    ) -> ControlSetup:
         """Take one controller and one reference, or neither.
 
         Without a reference the vehicle hovers at the spawn.
@@ -78,25 +80,25 @@ class Guidance:
         return cls([("", controller)], [("", reference)], controller_rate, delay, on_reference)
 
     @property
-    def is_given(self) -> bool:
+    def is_closed_loop(self) -> bool:
         """Whether the flights are closed loop."""
         return bool(self.things)
 
     @property
     def runs_user_code(self) -> bool:
         """Whether flights call code of the user's, which may keep a state from flight to flight."""
-        return any(map(_is_own, self.things)) or not all(
+        return any(map(_is_user_code, self.things)) or not all(
             isinstance(one, references.Shape) for one in self.shapes
         )
 
-    def is_own(self, controller: int) -> bool:
+    def is_user_code(self, controller: int) -> bool:
         """Whether a controller is the user's."""
-        return _is_own(self.things[controller])
+        return _is_user_code(self.things[controller])
 
     def make(self, controller: int, vehicle: str, values: Mapping[str, float]) -> Any:
         """Make a controller for one flight of a vehicle, which gives it some values."""
-        made = self._maker(controller, vehicle)()
-        return give_all(made, {**self.timing, **values})
+        made = self._make_factory(controller, vehicle)()
+        return set_parameters(made, {**self.timing, **values})
 
     def guide(self, plan: FlightPlan) -> FlightPlan:
         """Make a flight guided by the only controller and reference."""
@@ -111,10 +113,10 @@ class Guidance:
         """Raise `InputError` if a shipped controller cannot be made for one of some vehicles."""
         for vehicle in vehicles:
             for controller in range(len(self.things)):
-                self._maker(controller, vehicle)
+                self._make_factory(controller, vehicle)
 
 
-def labelled(kind: str, things: Named, one: type) -> List[Tuple[str, Any]]:
+def add_labels(kind: str, things: Named, one: type) -> List[Tuple[str, Any]]:
     """Give each thing a label."""
     if isinstance(things, Mapping):
         return [(str(label), thing) for label, thing in things.items()]
@@ -124,10 +126,10 @@ def labelled(kind: str, things: Named, one: type) -> List[Tuple[str, Any]]:
         raise InputError(
             f"{kind} is {brief(things)}; give a name, what is called, or several of these"
         )
-    return [(_label(thing), thing) for thing in things]
+    return [(_make_label(thing), thing) for thing in things]
 
 
-def shape(thing: Any) -> Any:
+def make_reference(thing: Any) -> Any:
     """Make a reference of its name; what is one already is given as it is."""
     if isinstance(thing, str):
         return references.parse(thing)
@@ -139,18 +141,22 @@ def shape(thing: Any) -> Any:
     return thing
 
 
-def names_own(thing: Any) -> bool:
+def names_user_code(thing: Any) -> bool:
     """Whether a text names a module of the user's own."""
     return (
         isinstance(thing, str) and ":" in thing and thing.partition(":")[0] not in controllers.NAMES
     )
 
 
-def _is_own(thing: Any) -> bool:
-    return names_own(thing) if isinstance(thing, str) else not isinstance(thing, BuiltInController)
+def _is_user_code(thing: Any) -> bool:
+    return (
+        names_user_code(thing)
+        if isinstance(thing, str)
+        else not isinstance(thing, BuiltInController)
+    )
 
 
-def give_all(controller: Any, values: Mapping[str, Any]) -> Any:
+def set_parameters(controller: Any, values: Mapping[str, Any]) -> Any:
     """Give a controller its rate, delay and parameters, as far as they are not None."""
     for name, value in values.items():
         if value is not None:
@@ -158,12 +164,12 @@ def give_all(controller: Any, values: Mapping[str, Any]) -> Any:
     return controller
 
 
-def _maker(thing: Any, vehicle: str) -> Callable[[], Any]:
+def _make_factory(thing: Any, vehicle: str) -> Callable[[], Any]:
     """Make what makes a controller for a flight; a module of the user's is imported then.
 
     An object is given as it is: flights that run user code have processes of their own.
     """
-    if names_own(thing):
+    if names_user_code(thing):
         return lambda: controllers.parse(thing, vehicle)
     if isinstance(thing, str):
         thing = controllers.parse(thing, vehicle)
@@ -171,7 +177,7 @@ def _maker(thing: Any, vehicle: str) -> Callable[[], Any]:
     return thing.copy if isinstance(thing, BuiltInController) else lambda: thing
 
 
-def _label(thing: Any) -> str:
+def _make_label(thing: Any) -> str:
     if isinstance(thing, str):
         return thing
     if isinstance(thing, (BuiltInController, references.Shape)):

@@ -14,10 +14,10 @@ from ...control import controllers
 from ...simulation.flight_plan import FlightPlan
 from ...support.user_code import describe_error
 from ...support.warning import suppress_warnings
-from ..flights import flown
-from ..guidance import give_all
+from ..control_setup import set_parameters
+from ..measured_flight import fly_and_measure
 from ..time_limit import time_limit
-from . import motion
+from . import motion_metrics
 
 Measures = Mapping[str, float]
 
@@ -26,7 +26,7 @@ REFUSED = "refused: "
 
 
 @dataclass(frozen=True)
-class Own:
+class UserController:
     """A controller of the user's own, made where it flies."""
 
     text: str
@@ -37,14 +37,14 @@ class Own:
     """Digest of its module's text; that of what it imports is not looked at."""
 
     @classmethod
-    def of(cls, text: str, values: Mapping[str, Any]) -> Own:
+    def of(cls, text: str, values: Mapping[str, Any]) -> UserController:
         """Look the module up, without running it."""
         given = tuple((name, value) for name, value in values.items() if value is not None)
-        return cls(text, given, digest(source_of(text.partition(":")[0])))
+        return cls(text, given, compute_digest(read_source(text.partition(":")[0])))
 
     def make(self, vehicle: str) -> Any:
         """Bring it in; raises `InputError`."""
-        return give_all(controllers.parse(self.text, vehicle), dict(self.values))
+        return set_parameters(controllers.parse(self.text, vehicle), dict(self.values))
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class Flight:
     """Its first columns."""
     plan: FlightPlan
     """Without its controller if that is `own`."""
-    own: Optional[Own]
+    own: Optional[UserController]
     limit: float
     """Of the wall clock, s."""
 
@@ -66,9 +66,9 @@ class Flight:
             known = self.plan.fingerprint()
         except InputError:  # a controller or a reference that is an object of one's own
             return ""
-        return known if self.own is None else digest(f"{known} {self.own}".encode())
+        return known if self.own is None else compute_digest(f"{known} {self.own}".encode())
 
-    def measured(self) -> Measures:
+    def measure(self) -> Measures:
         """Fly and measure it.
 
         Raises
@@ -78,19 +78,19 @@ class Flight:
         """
         if self.own is None and self.plan.controller is None:
             with time_limit(self.limit), suppress_warnings():
-                return motion.measure(self.plan.fly())
-        outcome = flown(self._guided, self.limit, timed=False)
+                return motion_metrics.measure(self.plan.fly())
+        outcome = fly_and_measure(self._plan_with_controller, self.limit, timed=False)
         if outcome.failure:
             raise FlightError(outcome.failure)
         return outcome.measures
 
-    def _guided(self) -> FlightPlan:
+    def _plan_with_controller(self) -> FlightPlan:
         if self.own is None:
             return self.plan
         return replace(self.plan, controller=self.own.make(self.plan.model.name))
 
 
-class Spec(Protocol):
+class RowSpec(Protocol):
     """One row, wherever it is flown."""
 
     @property
@@ -100,7 +100,7 @@ class Spec(Protocol):
     def fingerprint(self) -> str:
         """Digest of all that it depends on; "" if nobody can tell."""
 
-    def measured(self) -> Measures:
+    def measure(self) -> Measures:
         """Give what is measured; raises `QuadcoreError`."""
 
 
@@ -114,13 +114,13 @@ class Row(NamedTuple):
     fingerprint: str
 
 
-def done(spec: Spec) -> Row:
+def fly_row(spec: RowSpec) -> Row:
     """Fly a row, whatever becomes of it."""
     fingerprint = spec.fingerprint()
     try:
-        return Row(spec.row, "", spec.measured(), fingerprint)
+        return Row(spec.row, "", spec.measure(), fingerprint)
     except QuadcoreError as error:
-        failure = failure_of(error)
+        failure = describe_failure(error)
     except MemoryError:
         failure = "no memory left"
     except KeyboardInterrupt:
@@ -130,17 +130,17 @@ def done(spec: Spec) -> Row:
     return Row(spec.row, " ".join(failure.split()), None, fingerprint)
 
 
-def failure_of(error: QuadcoreError) -> str:
+def describe_failure(error: QuadcoreError) -> str:
     """Tell why a row has no measures."""
     return f"{REFUSED if isinstance(error, InputError) else ''}{error}"
 
 
-def digest(data: bytes) -> str:
+def compute_digest(data: bytes) -> str:
     """Hexadecimal SHA-256."""
     return hashlib.sha256(data).hexdigest()
 
 
-def source_of(module: str) -> bytes:
+def read_source(module: str) -> bytes:
     """Text of a module, which is not imported; empty if nobody can tell."""
     loaded = sys.modules.get(module)
     origin = getattr(loaded, "__file__", None)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Sequence
 
-from ..table import number_text
+from ..table import format_number
 
 if TYPE_CHECKING:
     from .evaluate import Evaluation
@@ -14,7 +14,7 @@ NAMES = ("controller", "reference", "engine", "model", "scenario")
 _SHOWN = ("rms_position", "max_position", "final_position")
 
 
-def rows_to_read(evaluation: Evaluation) -> List[Dict[str, str]]:
+def format_rows(evaluation: Evaluation) -> List[Dict[str, str]]:
     """Format a row per combination; the best controller of each group is marked."""
     best: Dict[Any, float] = {}
     for group in evaluation.groups:
@@ -29,10 +29,10 @@ def rows_to_read(evaluation: Evaluation) -> List[Dict[str, str]]:
         line["flown"] = f"{flown} of {group['flights']}"
         line["flown"] += f", {group['not_flown']} not" * (group["not_flown"] > 0)
         for name in _SHOWN:
-            line[name] = error_text(group[f"mean_{name}"]) + _interval(group, name)
-        line["cvar"] = error_text(group["cvar_final_position"])
-        line["difference"] = error_text(group["difference_final_position"])
-        line["difference"] += _interval(group, "final_position", "difference_")
+            line[name] = format_error(group[f"mean_{name}"]) + _format_interval(group, name)
+        line["cvar"] = format_error(group["cvar_final_position"])
+        line["difference"] = format_error(group["difference_final_position"])
+        line["difference"] += _format_interval(group, "final_position", "difference_")
         key = tuple(group[name] for name in NAMES[1:])
         is_best = group["failure_rate"] == 0 and group["mean_final_position"] == best.get(key)
         line["best"] = "*" if is_best else ""
@@ -40,7 +40,7 @@ def rows_to_read(evaluation: Evaluation) -> List[Dict[str, str]]:
     return lines
 
 
-def columns_to_read(lines: Sequence[Mapping[str, str]]) -> Dict[str, str]:
+def choose_columns(lines: Sequence[Mapping[str, str]]) -> Dict[str, str]:
     """Return the headings of the columns to show; names that all rows share are left out."""
     names = (name for name in NAMES if len({line[name] for line in lines}) > 1)
     shown = {"controller": "controller", **{name: name for name in names}, "flown": "flown"}
@@ -51,11 +51,11 @@ def columns_to_read(lines: Sequence[Mapping[str, str]]) -> Dict[str, str]:
     return shown
 
 
-def _interval(group: Mapping[str, Any], name: str, of: str = "") -> str:
+def _format_interval(group: Mapping[str, Any], name: str, of: str = "") -> str:
     low, high = group[f"{of}low_{name}"], group[f"{of}high_{name}"]
     return "" if math.isnan(low) else f" [{low:.3g}, {high:.3g}]"
 
 
-def error_text(value: float) -> str:
+def format_error(value: float) -> str:
     """Format an error; infinity stands for a failed flight."""
-    return "failed" if math.isinf(value) else number_text(value)
+    return "failed" if math.isinf(value) else format_number(value)

@@ -15,7 +15,7 @@ from .._core import InputError
 from ..support import interrupts
 from ..support.input_files import read_bytes
 from ..support.output_files import prepare_folder, unwritable
-from .table import json_bytes, save
+from .table import make_json, save_files
 
 _LOCK = ".quadcore.lock"
 _PATIENCE = 10.0  # s; for one that was killed a moment ago and has not let go yet
@@ -48,10 +48,10 @@ def output_folder(folder: Optional[Path], names: Iterable[str] = ()) -> Iterator
     real = os.path.realpath(folder)
     with _held_lock:
         if real in _held:
-            raise _taken(folder)
+            raise _make_conflict(folder)
         _held.add(real)
     try:
-        number = _locked(folder)
+        number = _lock(folder)
         try:
             yield
         finally:
@@ -63,7 +63,7 @@ def output_folder(folder: Optional[Path], names: Iterable[str] = ()) -> Iterator
         _held.discard(real)
 
 
-def _locked(folder: Path) -> int:
+def _lock(folder: Path) -> int:
     """Lock the folder's file; forked processes do not inherit such a lock."""
     path = folder / _LOCK
     end = time.monotonic() + _PATIENCE
@@ -78,15 +78,17 @@ def _locked(folder: Path) -> int:
                 return number
         os.close(number)
         if time.monotonic() > end:
-            raise _taken(folder)
+            raise _make_conflict(folder)
         time.sleep(0.1)
 
 
-def _taken(folder: Path) -> InputError:
+def _make_conflict(folder: Path) -> InputError:
     return InputError(f"{folder}: another study is writing there; wait, or name another folder")
 
 
-def remove_listed(folder: Path, document: str, key: str, is_ours: Callable[[str], Any]) -> None:
+def remove_listed_files(
+    folder: Path, document: str, key: str, is_ours: Callable[[str], Any]
+) -> None:
     """Remove files that an earlier study lists in its document, and no others.
 
     Parameters
@@ -110,19 +112,19 @@ def remove_listed(folder: Path, document: str, key: str, is_ours: Callable[[str]
                 (folder / name).unlink()
 
 
-def remove_pictures(folder: Path, document: str, is_picture: Callable[[str], bool]) -> None:
+def remove_plots(folder: Path, document: str, is_picture: Callable[[str], bool]) -> None:
     """Remove the pictures of an earlier study; `is_picture` takes a name without its suffix."""
 
     def is_ours(name: str) -> bool:
         return name.endswith(".png") and is_picture(name[: -len(".png")])
 
-    remove_listed(folder, document, "pictures", is_ours)
+    remove_listed_files(folder, document, "pictures", is_ours)
 
 
-def save_pictures(
+def save_plots(
     folder: Path, document: str, content: Mapping[str, Any], images: Mapping[str, bytes]
 ) -> List[Path]:
     """Write pictures, by name without suffix, and list them in the document of this content."""
     pictures = {f"{name}.png": data for name, data in images.items()}
-    save(folder, {document: json_bytes({**content, "pictures": list(pictures)})})
-    return save(folder, pictures)
+    save_files(folder, {document: make_json({**content, "pictures": list(pictures)})})
+    return save_files(folder, pictures)

@@ -7,15 +7,15 @@ from typing import Any, Dict, List, Mapping, Sequence, Tuple
 
 import numpy as np
 
-from ..flights import Outcome
-from ..measures import UNITS
-from .intervals import cvar, interval
+from ..measured_flight import Outcome
+from ..tracking_metrics import UNITS
+from .intervals import compute_cvar, compute_interval
 
 JUDGED = tuple(UNITS)
 """Measures that have a mean, an interval and a risk over the seeds."""
 
 
-def over_seeds(
+def summarise_seeds(
     groups: Sequence[Tuple[int, ...]],
     names: Sequence[Mapping[str, Any]],
     outcomes: Sequence[Outcome],
@@ -44,13 +44,13 @@ def over_seeds(
     return [
         {
             **{name: value for name, value in named[group].items() if name != "seed"},
-            **_sums(some, flights[(0, *group[1:])]),
+            **_summarise(some, flights[(0, *group[1:])]),
         }
         for group, some in flights.items()
     ]
 
 
-def _sums(flights: Sequence[Outcome], first: Sequence[Outcome]) -> Dict[str, Any]:
+def _summarise(flights: Sequence[Outcome], first: Sequence[Outcome]) -> Dict[str, Any]:
     """Sum the flights of one combination, and compare them with the first controller's."""
     took_place = [flight for flight in flights if flight.was_flown]
     flew = [flight for flight in took_place if flight.flew]
@@ -61,21 +61,21 @@ def _sums(flights: Sequence[Outcome], first: Sequence[Outcome]) -> Dict[str, Any
         "failure_rate": 1 - len(flew) / len(took_place) if took_place else math.nan,
     }
     for name in JUDGED:
-        values = _finite([flight.measures[name] for flight in flew])
+        values = _pick_finite([flight.measures[name] for flight in flew])
         row[f"mean_{name}"] = float(values.mean()) if len(values) else math.nan
-        row[f"low_{name}"], row[f"high_{name}"] = interval(values)
+        row[f"low_{name}"], row[f"high_{name}"] = compute_interval(values)
         # Who is lost did worse than anybody who is not.
         lost = np.full(len(took_place) - len(flew), math.inf)
-        row[f"cvar_{name}"] = cvar(np.concatenate([values, lost]))
-        apart = _finite([f.measures[name] - other.measures[name] for f, other in pairs])
+        row[f"cvar_{name}"] = compute_cvar(np.concatenate([values, lost]))
+        apart = _pick_finite([f.measures[name] - other.measures[name] for f, other in pairs])
         if flights is first:
             apart = apart[:0]
         row[f"difference_{name}"] = float(apart.mean()) if len(apart) else math.nan
-        row[f"difference_low_{name}"], row[f"difference_high_{name}"] = interval(apart)
+        row[f"difference_low_{name}"], row[f"difference_high_{name}"] = compute_interval(apart)
     return row
 
 
-def _finite(values: Sequence[float]) -> np.ndarray:
+def _pick_finite(values: Sequence[float]) -> np.ndarray:
     """Leave out what a flight does not have, such as the overshoot of no step."""
     array: np.ndarray = np.array([value for value in values if math.isfinite(value)], dtype=float)
     return array

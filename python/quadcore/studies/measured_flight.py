@@ -16,11 +16,11 @@ from ..simulation.flight_plan import FlightPlan
 from ..simulation.log import Log
 from ..simulation.simulation import Simulation
 from ..support.warning import suppress_warnings
-from .clock import Clocked, ClockedPilot, clocked, typical_and_slow
-from .measures import UNITS, loss, measure
+from .controller_timing import TimedController, TimedPilot, summarise_durations, time_controller
 from .step_response import step_response
 from .table import NOT_FLOWN
 from .time_limit import time_limit
+from .tracking_metrics import UNITS, describe_failure, measure
 
 NAN = dict.fromkeys(UNITS, float("nan"))
 
@@ -68,7 +68,7 @@ class Outcome(NamedTuple):
         return self.failure != NOT_FLOWN
 
 
-def flown(
+def fly_and_measure(
     described: Callable[[], FlightPlan], most: float, keep: bool = False, timed: bool = True
 ) -> Outcome:
     """Fly and measure.
@@ -94,14 +94,14 @@ def flown(
     with time_limit(most), suppress_warnings():
         flight = described()
         if timed:
-            flight = replace(flight, controller=clocked(flight.controller))
+            flight = replace(flight, controller=time_controller(flight.controller))
         simulation = flight.simulation()
         rotors = simulation.rotors
         pilot: Any = flight.pilot(simulation)
         clock = flight.controller
-        if timed and not isinstance(clock, Clocked):
-            clock = pilot = ClockedPilot(pilot)
-        topics = _watched(simulation) if keep else []
+        if timed and not isinstance(clock, TimedController):
+            clock = pilot = TimedPilot(pilot)
+        topics = _animated_topics(simulation) if keep else []
         rows = Rows(simulation, columns_of(simulation, topics, pilot))
         try:
             with controller_errors_as_failures(simulation):
@@ -117,7 +117,7 @@ def flown(
         except FlightError as error:
             failure = str(error)
     log = rows.log()
-    failure = loss(log) or failure
+    failure = describe_failure(log) or failure
     measures = NAN
     if not failure:
         share = pilot.saturated / max(1, pilot.updates)
@@ -127,7 +127,7 @@ def flown(
         measures,
         time.perf_counter() - started,
         pilot.updates,
-        *typical_and_slow(clock.seconds if timed else []),
+        *summarise_durations(clock.seconds if timed else []),
         pilot.rate,
         pilot.delay,
         list(simulation.warnings),
@@ -140,7 +140,7 @@ def flown(
     return outcome._replace(log=decimate(log), response=response, limit=limit, rotors=places)
 
 
-def _watched(simulation: Simulation) -> List[str]:
+def _animated_topics(simulation: Simulation) -> List[str]:
     from ..report.player import list_animated_topics  # not every flight should pay for jinja2
 
     return list_animated_topics(simulation)

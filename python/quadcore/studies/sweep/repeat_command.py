@@ -10,19 +10,19 @@ from ..axes import OF_CONTROLLER
 from .plan import AnyPlan, Plan
 
 
-def command(plan: AnyPlan, row: int) -> Optional[str]:
+def write_command(plan: AnyPlan, row: int) -> Optional[str]:
     """Write the command line of a row; None if it was an object of one's own that flew."""
     if not isinstance(plan, Plan):
         return None
     case = plan[row]
-    told, point = plan.told(), plan.design[case.point]
+    told, point = plan.describe(), plan.design[case.point]
     flags: Dict[str, Any] = {"engine": plan.engines[case.engine], "world": told["world"]}
-    if plan.guidance.is_given:
-        flown = plan.guidance.things[case.controller]
+    if plan.control.is_closed_loop:
+        flown = plan.control.things[case.controller]
         if not isinstance(flown, str):
             return None
-        flags["controller"] = _with_values(plan, row, flown, point)
-        flags["reference"] = plan.guidance.references[case.reference]
+        flags["controller"] = _write_controller(plan, row, flown, point)
+        flags["reference"] = plan.control.references[case.reference]
         flags["controller-rate"], flags["delay"] = told["controller_rate"], told["delay"]
         for name in ("rate", "delay"):
             given = point.get(f"{OF_CONTROLLER}{name}")
@@ -36,15 +36,17 @@ def command(plan: AnyPlan, row: int) -> Optional[str]:
     if told["spawn"] is not None:
         flags["spawn"] = ",".join(map(repr, told["spawn"]))
     words = ["quadcore", "run", plan.models[case.model]]
-    words += [f"--{name}={_text(value)}" for name, value in flags.items() if value is not None]
+    words += [f"--{name}={_format(value)}" for name, value in flags.items() if value is not None]
     words += [f"--xacro={name}:={value}" for name, value in told["xacro"].items()]
-    words += [f"--set={name}={value}" for name, value in _set(told["set"], point).items()]
+    words += [
+        f"--set={name}={value}" for name, value in _collect_parameters(told["set"], point).items()
+    ]
     words += [f"--ignore={name}" for name in told["ignore"]]
     words.append(f"--log-every={told['log_every']}")
     return " ".join(map(shlex.quote, words))
 
 
-def _set(common: Mapping[str, str], point: Mapping[str, str]) -> Dict[str, str]:
+def _collect_parameters(common: Mapping[str, str], point: Mapping[str, str]) -> Dict[str, str]:
     values = dict(common)
     for names, value in point.items():
         if names not in ("world", "scenario") and not names.startswith(OF_CONTROLLER):
@@ -52,16 +54,16 @@ def _set(common: Mapping[str, str], point: Mapping[str, str]) -> Dict[str, str]:
     return values
 
 
-def _with_values(plan: Plan, row: int, text: str, point: Mapping[str, str]) -> str:
+def _write_controller(plan: Plan, row: int, text: str, point: Mapping[str, str]) -> str:
     """Name a law with what the point gives it."""
     keys = [name[len(OF_CONTROLLER) :] for name in point if name.startswith(OF_CONTROLLER)]
     if not set(keys) - {"rate", "delay"}:
         return text
-    law: Any = plan.spec(row).plan.controller
+    law: Any = plan.make_spec(row).plan.controller
     assert isinstance(law, BuiltInController)  # else it was refused
     values: List[str] = [f"{name}={value!r}" for name, value in law.parameters.items()]
     return f"{law.name}:{','.join(values)}"
 
 
-def _text(value: Any) -> str:
+def _format(value: Any) -> str:
     return f"{value:.17g}" if isinstance(value, float) else str(value)

@@ -10,12 +10,12 @@ from ...model.description import read_both, xacro_arguments
 from ...model.overrides import XACRO, check_names, with_links, without_xacro
 from ...simulation.simulation import Simulation
 from ...support.values import text_of
-from .document import with_values
+from .model_text import write_values
 
 _PREFIX = f"{XACRO}."
 
 
-class Subject:
+class FittedModel:
     """A model, what is set of it, and what is free.
 
     Parameters
@@ -82,7 +82,7 @@ class Subject:
             "ignore": ignore,
         }
 
-    def with_values(self, values: Mapping[str, float]) -> Model:
+    def make_model(self, values: Mapping[str, float]) -> Model:
         """Read the model that has values of what is free, and what was set besides."""
         make = self.make
         of_xacro, others = without_xacro(values, make["xacro_args"])
@@ -95,4 +95,4 @@ class Subject:
         }
         names = {alias: name for name, alias in aliases.items()}
         fixed = {names.get(name, name): value for name, value in self.fixed.items()}
-        return with_values(read, {**fixed, **others}, aliases)
+        return write_values(read, {**fixed, **others}, aliases)

@@ -9,7 +9,7 @@ _MEASURE = "rms_position"
 _WHO = ("controller", "reference", "engine", "model")
 
 
-def losses(groups: Sequence[Mapping[str, Any]]) -> List[Dict[str, Any]]:
+def compute_scenario_effects(groups: Sequence[Mapping[str, Any]]) -> List[Dict[str, Any]]:
     """Compare each combination with the same in the first scenario.
 
     Parameters

@@ -35,7 +35,7 @@ class Combination(NamedTuple):
         return " + ".join(parts)
 
 
-class Identified(NamedTuple):
+class Identifiability(NamedTuple):
     """What is known of parameters."""
 
     deviations: Dict[str, float]
@@ -49,14 +49,14 @@ class Identified(NamedTuple):
     without_effect: List[str]
 
 
-def identify(
+def analyse(
     names: Sequence[str],
     values: np.ndarray,
     sizes: np.ndarray,
     derivative: np.ndarray,
     left: np.ndarray,
     freedom: int,
-) -> Identified:
+) -> Identifiability:
     """Look at the derivative of what is left over.
 
     Parameters
@@ -82,7 +82,7 @@ def identify(
     covariance = np.zeros((len(names), len(names)))
     covariance[np.ix_(active, active)] = inverse / np.outer(lengths[active], lengths[active])
     untold = rows[~told]
-    groups = _groups(untold)
+    groups = _group_parameters(untold)
     combinations = []
     deviations = dict(zip(names, np.sqrt(np.diag(covariance)).tolist()))
     for group in groups:
@@ -99,10 +99,10 @@ def identify(
         combinations.append(Combination(named, float(factors @ values[of]), deviation))
     without = [name for name, is_active in zip(names, acts) if not is_active]
     deviations.update(dict.fromkeys(without, float("nan")))
-    return Identified(deviations, covariance, singular.tolist(), combinations, without)
+    return Identifiability(deviations, covariance, singular.tolist(), combinations, without)
 
 
-def _groups(directions: np.ndarray) -> List[List[int]]:
+def _group_parameters(directions: np.ndarray) -> List[List[int]]:
     """Join parameters that some direction that nothing tells involves."""
     groups: List[List[int]] = []
     for direction in np.abs(directions) > _INVOLVED:

@@ -12,7 +12,7 @@ from ...model.overrides import with_links
 from ...support.values import Value, text_of
 
 
-def with_values(
+def write_values(
     model: Model, values: Mapping[str, Value], aliases: Optional[Mapping[str, str]] = None
 ) -> Model:
     """Write values of plugins' tags and links into a model's text, and read it.
@@ -34,7 +34,7 @@ def with_values(
     changed, tags = with_links(model, {name: text_of(value) for name, value in values.items()})
     text = changed.document.text.encode()
     names = {key: {key, (aliases or {}).get(key, key)} for key in tags}
-    edits = [(*_place(text, names[key]), key, escape(value)) for key, value in tags.items()]
+    edits = [(*_find_value(text, names[key]), key, escape(value)) for key, value in tags.items()]
     for begin, end, key, value in sorted(edits, reverse=True):
         tag = key.rpartition(".")[2]
         new = value if begin < end else f"<{tag}>{value}</{tag}>"
@@ -43,7 +43,7 @@ def with_values(
     return _core.read_model(document, list(model.passed_over.ignored))
 
 
-def _place(text: bytes, keys: Collection[str]) -> Tuple[int, int]:
+def _find_value(text: bytes, keys: Collection[str]) -> Tuple[int, int]:
     """Find the value of a plugin's tag, or where the tag may be put: begin and end in bytes."""
     plugin = next(iter(keys)).rpartition(".")[0]
     tags = [[key.rpartition(".")[2]] for key in keys]

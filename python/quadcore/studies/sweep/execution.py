@@ -20,11 +20,11 @@ from typing import (
 
 from ..._core import QuadcoreError
 from ...support import interrupts
-from ..executor import Died, each, usable_cores
+from ..executor import ProcessDied, count_cores, run_cases
 from .batches import fly_together
 from .plan import AnyPlan
-from .rows import fingerprint
-from .spec import Row, Spec, digest, done, failure_of
+from .row_file import compute_fingerprint
+from .row_spec import Row, RowSpec, compute_digest, describe_failure, fly_row
 
 if TYPE_CHECKING:
     import concurrent.futures
@@ -51,7 +51,7 @@ _PIECE = 2**16  # bytes; what a pipe holds
 _LOOK = 1.0  # s; between two looks at whether an executor still lives
 
 
-def fly_here(plan: AnyPlan, rows: Iterable[int], take: Take, processes: Optional[int]) -> None:
+def fly_locally(plan: AnyPlan, rows: Iterable[int], take: Take, processes: Optional[int]) -> None:
     """Fly rows in processes of this machine.
 
     Parameters
@@ -64,11 +64,11 @@ def fly_here(plan: AnyPlan, rows: Iterable[int], take: Take, processes: Optional
         How many; None takes one per core.
     """
     for attempt in range(1, 1 + _ATTEMPTS):
-        crew = _Attempt(plan, take, attempt)
-        crew.fly(rows, processes)
-        if not crew.again:
+        attempt_ = _Attempt(plan, take, attempt)
+        attempt_.fly(rows, processes)
+        if not attempt_.again:
             return
-        rows = sorted(crew.again)
+        rows = sorted(attempt_.again)
 
 
 class _Attempt:
@@ -77,36 +77,42 @@ class _Attempt:
     def __init__(self, plan: AnyPlan, take: Take, number: int) -> None:
         self.again: List[int] = []
         self._plan, self._take, self._number = plan, take, number
-        self._under_way: Dict[int, Sequence[int]] = {}
+        self._pending: Dict[int, Sequence[int]] = {}
 
     def fly(self, rows: Iterable[int], processes: Optional[int]) -> None:
         if self._number == 1:
-            tasks = _tasks(self._plan, rows, processes or usable_cores())
+            tasks = _share_out(self._plan, rows, processes or count_cores())
         else:  # what was killed for want of memory has all of it when it flies alone
-            tasks, processes = _several(rows, 1), 1
-        each(self._flown, self._noted(tasks), self._took, processes, apart=self._plan.apart)
+            tasks, processes = _split(rows, 1), 1
+        run_cases(
+            self._fly_task,
+            self._note_tasks(tasks),
+            self._take_outcome,
+            processes,
+            apart=self._plan.apart,
+        )
 
-    def _flown(self, numbers: Sequence[int]) -> List[Row]:
-        return _all_done([_spec(self._plan, number) for number in numbers])
+    def _fly_task(self, numbers: Sequence[int]) -> List[Row]:
+        return _fly_several([_make_spec(self._plan, number) for number in numbers])
 
-    def _noted(self, tasks: Iterable[Sequence[int]]) -> Iterator[Sequence[int]]:
+    def _note_tasks(self, tasks: Iterable[Sequence[int]]) -> Iterator[Sequence[int]]:
         for index, numbers in enumerate(tasks):
-            self._under_way[index] = numbers
+            self._pending[index] = numbers
             yield numbers
 
-    def _took(self, index: int, outcome: Union[List[Row], QuadcoreError]) -> None:
-        numbers = self._under_way.pop(index)
+    def _take_outcome(self, index: int, outcome: Union[List[Row], QuadcoreError]) -> None:
+        numbers = self._pending.pop(index)
         if not isinstance(outcome, QuadcoreError):
             for row in outcome:
                 self._take(row)
-        elif len(numbers) > 1 or (_may_be_chance(outcome) and self._number < _ATTEMPTS):
+        elif len(numbers) > 1 or (_may_be_random(outcome) and self._number < _ATTEMPTS):
             self.again.extend(numbers)
         else:
             told = f"{outcome}, {self._number} times" if self._number > 1 else str(outcome)
-            self._take(Row(numbers[0], told, None, fingerprint(self._plan, numbers[0])))
+            self._take(Row(numbers[0], told, None, compute_fingerprint(self._plan, numbers[0])))
 
 
-def fly_over(
+def fly_on_executor(
     executor: concurrent.futures.Executor,
     plan: AnyPlan,
     rows: Iterable[int],
@@ -129,31 +135,31 @@ def fly_over(
     QuadcoreError
         The executor failed; the rows that it gave were taken.
     """
-    waiting = _tasks(plan, rows, _WORKERS)
+    waiting = _share_out(plan, rows, _WORKERS)
     at_most = _AHEAD_OF_EACH * getattr(executor, "_max_workers", _AHEAD // _AHEAD_OF_EACH)
-    under_way: Dict[Any, Sequence[int]] = {}
+    pending: Dict[Any, Sequence[int]] = {}
     ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
 
     def hand_out(numbers: Sequence[int]) -> None:
-        specs = [_spec(plan, number) for number in numbers]
+        specs = [_make_spec(plan, number) for number in numbers]
         future = executor.submit(fly_all, specs, plan.apart)
-        under_way[future] = numbers
+        pending[future] = numbers
         future.add_done_callback(ended.put)
 
     try:
         for numbers in waiting:
             hand_out(numbers)
-            if len(under_way) >= at_most:
+            if len(pending) >= at_most:
                 break
-        while under_way:
+        while pending:
             try:
                 future = ended.get(timeout=_LOOK)
             except queue.Empty:
                 check()
                 continue
-            numbers = under_way.pop(future)
+            numbers = pending.pop(future)
             with interrupts.hold_signals():
-                for row in _outcome(plan, future, numbers):
+                for row in _collect(plan, future, numbers):
                     if isinstance(row, Row):
                         take(row)
                     else:
@@ -166,9 +172,9 @@ def fly_over(
     except Exception as error:
         _shut_down_broken(executor, error)
         check()
-        raise QuadcoreError(_gone(error)) from error
+        raise QuadcoreError(_describe_executor_failure(error)) from error
     finally:
-        for future in under_way:
+        for future in pending:
             future.cancel()
 
 
@@ -211,53 +217,53 @@ def _drain(calls: Any) -> None:
     threading.Thread(target=read_all, daemon=True).start()
 
 
-def fly_all(specs: Sequence[Union[Spec, Row]], apart: bool) -> List[Row]:
+def fly_all(specs: Sequence[Union[RowSpec, Row]], apart: bool) -> List[Row]:
     """Fly several rows where they were sent to."""
     flown: List[Row] = []
     if apart:  # what one's own controller remembers of a flight, no other knows
 
-        def took(index: int, outcome: Union[Row, QuadcoreError]) -> None:
+        def take_outcome(index: int, outcome: Union[Row, QuadcoreError]) -> None:
             if isinstance(outcome, QuadcoreError):
                 spec = specs[index]
-                outcome = Row(spec.row, str(outcome), None, _fingerprint(spec))
+                outcome = Row(spec.row, str(outcome), None, _get_fingerprint(spec))
             flown.append(outcome)
 
-        each(_done, specs, took, 1, apart=True)
+        run_cases(_fly_row, specs, take_outcome, 1, apart=True)
         return flown
-    return _all_done(specs)
+    return _fly_several(specs)
 
 
-def _all_done(specs: Sequence[Union[Spec, Row]]) -> List[Row]:
+def _fly_several(specs: Sequence[Union[RowSpec, Row]]) -> List[Row]:
     """Fly rows together if they can be, or else one by one."""
     if len(specs) > 1:
         together = fly_together([spec for spec in specs if not isinstance(spec, Row)])
         if together is not None and len(together) == len(specs):
             return together
-    return [_done(spec) for spec in specs]
+    return [_fly_row(spec) for spec in specs]
 
 
-def _done(spec: Union[Spec, Row]) -> Row:
-    return spec if isinstance(spec, Row) else done(spec)
+def _fly_row(spec: Union[RowSpec, Row]) -> Row:
+    return spec if isinstance(spec, Row) else fly_row(spec)
 
 
-def _fingerprint(spec: Union[Spec, Row]) -> str:
+def _get_fingerprint(spec: Union[RowSpec, Row]) -> str:
     return spec.fingerprint if isinstance(spec, Row) else spec.fingerprint()
 
 
-def _spec(plan: AnyPlan, number: int) -> Union[Spec, Row]:
+def _make_spec(plan: AnyPlan, number: int) -> Union[RowSpec, Row]:
     """Describe a row, or say why it cannot be flown."""
     try:
-        return plan.spec(number)
+        return plan.make_spec(number)
     except QuadcoreError as error:
-        return Row(number, failure_of(error), None, digest(str(error).encode()))
+        return Row(number, describe_failure(error), None, compute_digest(str(error).encode()))
 
 
-def _tasks(plan: AnyPlan, rows: Iterable[int], processes: int) -> Iterator[Sequence[int]]:
+def _share_out(plan: AnyPlan, rows: Iterable[int], processes: int) -> Iterator[Sequence[int]]:
     """Share rows out, so many to a task as its process flies at its best."""
-    return _several(rows, max(1, min(plan.at_once, len(plan) // (_SHARES * processes))))
+    return _split(rows, max(1, min(plan.at_once, len(plan) // (_SHARES * processes))))
 
 
-def _several(rows: Iterable[int], count: int) -> Iterator[Sequence[int]]:
+def _split(rows: Iterable[int], count: int) -> Iterator[Sequence[int]]:
     piece: List[int] = []
     for row in rows:
         piece.append(row)
@@ -268,12 +274,12 @@ def _several(rows: Iterable[int], count: int) -> Iterator[Sequence[int]]:
         yield piece
 
 
-def _may_be_chance(outcome: QuadcoreError) -> bool:
-    return isinstance(outcome, Died) and outcome.was_killed
+def _may_be_random(outcome: QuadcoreError) -> bool:
+    return isinstance(outcome, ProcessDied) and outcome.was_killed
 
 
-def _outcome(plan: AnyPlan, future: Any, numbers: Sequence[int]) -> Iterator[Union[Row, int]]:
-    """Give the rows of a task; of one that took its worker with it the numbers, each alone."""
+def _collect(plan: AnyPlan, future: Any, numbers: Sequence[int]) -> Iterator[Union[Row, int]]:
+    """Give the rows of a task; after a worker died, the numbers of the rows instead."""
     try:
         yield from future.result()
         return
@@ -285,10 +291,10 @@ def _outcome(plan: AnyPlan, future: Any, numbers: Sequence[int]) -> Iterator[Uni
         yield from numbers
     else:
         told = "its worker died, several times"
-        yield Row(numbers[0], told, None, fingerprint(plan, numbers[0]))
+        yield Row(numbers[0], told, None, compute_fingerprint(plan, numbers[0]))
 
 
-def _gone(error: Exception) -> str:
+def _describe_executor_failure(error: Exception) -> str:
     reason = " ".join(f"{type(error).__name__}: {error}".split())
     return (
         f"the executor failed ({reason[:200]}); the rows so far are kept, --resume flies the rest"

@@ -12,7 +12,7 @@ from ..control.controller import check_callable
 from ..simulation.controller_pilot import Guided
 
 
-class Clocked:
+class TimedController:
     """A controller of one's own, with the seconds that each call took; the rest is its own."""
 
     def __init__(self, controller: Any) -> None:
@@ -31,7 +31,7 @@ class Clocked:
         return answer
 
 
-class ClockedPilot:
+class TimedPilot:
     """A pilot of a law of quadcore, with the same; it reads odometry and reference on the way."""
 
     def __init__(self, pilot: Guided) -> None:
@@ -49,12 +49,12 @@ class ClockedPilot:
         return answer
 
 
-def clocked(controller: Any) -> Any:
+def time_controller(controller: Any) -> Any:
     """Make a controller that is timed; a law of quadcore is by its pilot."""
-    return controller if isinstance(controller, BuiltInController) else Clocked(controller)
+    return controller if isinstance(controller, BuiltInController) else TimedController(controller)
 
 
-def typical_and_slow(seconds: List[float]) -> Tuple[float, float]:
+def summarise_durations(seconds: List[float]) -> Tuple[float, float]:
     """Median, and what one call of a hundred exceeds, s; NaN without any."""
     if not seconds:
         return float("nan"), float("nan")
