@@ -77,7 +77,11 @@ def test_flights_of_such_plans_are_the_same_anywhere(model):
         ({"frame.mass": "heavy"}, "set frame.mass: 'heavy' is not a finite number"),
         ({"frame.mass": -1}, "set frame.mass: .*mass"),
         ({"fram.mass": 1}, "set fram.mass: the model has no plugin 'fram'"),
-        ({"frame.iyx": 1}, "set frame.iyx: the model has no plugin 'frame'"),
+        (
+            {"frame.mas": 1},
+            r"set frame.mas: link 'frame' has no value 'mas' \(did you mean 'mass'\)",
+        ),
+        ({"frame.size": 1}, "set frame.size: link 'frame' has no value 'size'. Set one of mass, "),
         ({"xacro.heavy": 1}, "takes no xacro arguments"),
     ],
 )

@@ -9,6 +9,7 @@ from xml.parsers import expat
 from .. import _core
 from .._core import Document, InputError, Model
 from ..support.arguments import OPTIONS, check
+from ..support.parameters import did_you_mean
 
 XACRO = "xacro"
 _LINK = "a link"
@@ -68,6 +69,7 @@ def with_links(model: Model, parameters: Mapping[str, str]) -> Tuple[Model, Dict
     InputError
         A link without that value, a value that the model cannot have, or a name that two go by.
     """
+    _check_link_names(model, parameters)
     if not any(_is_special(key) for key in parameters):
         return model, dict(parameters)
     check_names(model, parameters)
@@ -81,6 +83,18 @@ def with_links(model: Model, parameters: Mapping[str, str]) -> Tuple[Model, Dict
         is_of_link = _is_special(key) and kinds.get(owner) == [_LINK]
         (of_links if is_of_link else left)[key] = value
     return (_changed(model, of_links) if of_links else model), left
+
+
+def _check_link_names(model: Model, parameters: Iterable[str]) -> None:
+    """Raise `InputError` for a value that no link has, such as LINK.mas."""
+    links = [link.name for link in model.links]
+    for key in parameters:
+        owner, _, name = key.rpartition(".")
+        if owner in links and not _is_special(key) and _kinds(model.document)[owner] == [_LINK]:
+            near, known = did_you_mean(name, list(_PLACES)), ", ".join(_PLACES)
+            raise InputError(
+                f"set {key}: link '{owner}' has no value '{name}'{near}. Set one of {known}."
+            )
 
 
 def link_values(document: Document) -> Dict[str, str]:

@@ -124,13 +124,11 @@ def _draw_rotors(log: Trajectory) -> Figure:
     speeds = np.abs(log.rotor_velocity)
     count = speeds.shape[1]
     what = "Speed of the rotor joints"
-    if log.is_slow:
-        what += "; right axis: times the slowdown"
     low, high = _choose_speed_limits(speeds)
     if speeds.min(initial=low) < low:
-        what += f"; speeds below {low:.4g} rad/s are cut off"
+        what += f" (cut off below {low:.3g} rad/s)"
     figure, grid = panels(
-        _make_title(log, what), max(1, count), height=1.3, right=0.8 if log.is_slow else 0.1
+        _make_title(log, what), max(1, count), height=1.5, right=0.8 if log.is_slow else 0.1
     )
     for i, (axes, speed) in enumerate(zip(grid[:, 0], speeds.T)):
         axes.plot(log.time, speed, color=PALETTE[i % len(PALETTE)], linewidth=1)
@@ -145,7 +143,10 @@ def _choose_speed_limits(speeds: np.ndarray) -> Tuple[float, float]:
     """Choose limits in which the differences that steer, a hundredth of the speed, are visible."""
     if not speeds.size:
         return 0.0, 1.0
-    low, high = np.percentile(speeds, 5), speeds.max()
+    low, high = speeds.min(), speeds.max()
+    usual = np.percentile(speeds, 5)
+    if high - low > 5 * (high - usual):  # a short spin-up would set the scale
+        low = usual
     margin = 0.05 * (high - low) or 1.0
     return low - margin, high + margin
 

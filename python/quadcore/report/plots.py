@@ -57,7 +57,9 @@ def png(figure: Figure) -> bytes:
 def add_unslowed_axis(axes: Any, per_command: float) -> None:
     """Add an axis on the right that shows the joint speed times the slowdown."""
     conversions = (lambda rate: rate / per_command, lambda speed: speed * per_command)
-    axes.secondary_yaxis("right", functions=conversions).set_ylabel(r"$\times$ slowdown (rad/s)")
+    axes.secondary_yaxis("right", functions=conversions).set_ylabel(
+        r"$\times$ slowdown (rad/s)", fontsize="small"
+    )
 
 
 def space(figure: Figure, place: Any, paths: Sequence[np.ndarray]) -> Tuple[Any, np.ndarray]:

@@ -50,7 +50,7 @@ class Thinned:
 
     def log(self) -> Log:
         """Give what was picked; the title tells if that is not all."""
-        title = f"each {self.every}th row" if self.every > 1 else ""
+        title = f"every {_ordinal(self.every)} row" if self.every > 1 else ""
         table, wrenches = (
             np.concatenate([*pieces, *self._last[i : i + 1]])
             for i, pieces in enumerate(self._pieces)
@@ -59,6 +59,13 @@ class Thinned:
             {name: wrenches[:, i] for i, name in enumerate(self._terms)} if len(wrenches) else {}
         )
         return Log.of_rows(table, self._columns, named, title=title)
+
+
+def _ordinal(number: int) -> str:
+    """Write 1st, 2nd, 3rd, 4th and so on."""
+    suffixes = {1: "st", 2: "nd", 3: "rd"}
+    is_teen = 10 < number % 100 < 20
+    return f"{number}{'th' if is_teen else suffixes.get(number % 10, 'th')}"
 
 
 class Fastest:

@@ -6,7 +6,8 @@ function updateRow(flight, { position, reference, wind, carried }) {
   const state = !started(flight) ? " (not started)" : ended(flight) ? " (ended)" : "";
   flight.cells[0].textContent = position.map((value) => value.toFixed(3)).join(", ") + state;
   const away = reference ? 1000 * Math.hypot(...difference(position, reference)) : NaN;
-  flight.cells[1].textContent = reference ? String(Number(away.toPrecision(3))) : "";
+  const shown = away < 1e-6 ? 0 : away;  // less is rounding noise
+  flight.cells[1].textContent = reference ? String(Number(shown.toPrecision(3))) : "";
   const speed = wind ? Math.hypot(...wind) : NaN;
   flight.cells[2].textContent = Number.isFinite(speed) ? speed.toFixed(1) : "";
   const load = carried.reduce((sum, [mass]) => sum + (mass || 0), 0);

@@ -105,7 +105,6 @@ def _draw_rotors(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> F
     title = "Speed of the rotor joints"
     sizes = {curve.log.per_command for curve in curves}
     if len(sizes) == 1 and curves[0].log.is_slow:
-        title += "; right axis: times the slowdown"
         figure = _draw_panels(title, curves, styles, [(values, labels)], right=0.8)
         for axes in figure.axes:
             add_unslowed_axis(axes, curves[0].log.per_command)

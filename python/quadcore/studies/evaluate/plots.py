@@ -24,7 +24,7 @@ from .margins import RATES
 _ROTOR_PANELS = 12  # in one figure
 _BOXES = 40
 _FLOOR = 1e-7  # m; errors below are drawn here, as a logarithmic axis would enlarge rounding noise
-_ERROR = f"tracking error (m), at least {_FLOOR:g}"
+_ERROR = "tracking error (m), floor $10^{-7}$"
 _GROUP = ("controller", "reference", "engine", "model", "scenario")
 _MARGINS = {"left": 0.09, "right": 0.98, "bottom": 0.12}
 
@@ -150,7 +150,9 @@ def _draw_rotors(name: str, flights: Flights) -> Figure:
     title = f"Rotor speed: {name}"
     if len(drawn) < len(flights):
         title += f" ({len(drawn)} of {len(flights)} flights)"
-    figure, grid = panels(title, len(drawn), height=1.3, above=0.7)
+    count = max(outcome.log.rotor_velocity.shape[1] for _, outcome in drawn if outcome.log)
+    room = 0.15 + _header_height([("rotor 1", None)] * count)
+    figure, grid = panels(title, len(drawn), height=1.3, above=room)
     for axes, (label, outcome) in zip(grid[:, 0], drawn):
         assert outcome.log is not None
         rows = _rows_before_failure(outcome)
@@ -188,7 +190,7 @@ def _draw_boxes(evaluation: Evaluation) -> Figure:
     groups = [group for group in evaluation.groups if group["failure_rate"] < 1]
     drawn = [groups[i] for i in pick_evenly(len(groups), _BOXES)]
     height = 1.2 + 0.3 * len(drawn)
-    title = "Maximum tracking error in the last 10 s over the seeds"
+    title = "Maximum tracking error in the last 10 s: median, quartiles and range over the seeds"
     if len(drawn) < len(groups):
         title += f" ({len(drawn)} of {len(groups)} combinations)"
     figure = make_figure(title, 8, height)
@@ -213,7 +215,7 @@ def _draw_boxes(evaluation: Evaluation) -> Figure:
     axes.set_xlim(min(map(min, values)) / 1.2, max(map(max, values)) * 1.2)
     axes.set_yticks(range(len(labels)))
     axes.set_yticklabels(labels, fontsize="small")
-    axes.set_xlabel(f"{_ERROR}; line: median, box: quartiles, whiskers: range")
+    axes.set_xlabel(_ERROR)
     return figure
 
 
@@ -258,7 +260,7 @@ def _draw_rates(rows: Any) -> Figure:
 
 def _columns(labels: Sequence[str]) -> int:
     """Return the number of columns of a legend."""
-    return max(1, min(4, 90 // (6 + max(map(len, labels), default=1))))
+    return max(1, min(6, 90 // (6 + max(map(len, labels), default=1))))
 
 
 def _header_height(flights: Sequence[Tuple[str, Any]]) -> float:
