@@ -26,9 +26,7 @@ REWARDS: Dict[str, Reward] = {
     "alive": Reward("1", lambda s: np.ones(len(s.error))),
     "lost": Reward("-1 when the episode is terminated, else 0", lambda s: -1.0 * s.lost),
     "distance": Reward("negative distance to the goal, m", lambda s: -_norm(s.error)),
-    "near": Reward(
-        "1 / (1 + distance^2), distance in m", lambda s: 1 / (1 + _norm(s.error) ** 2)
-    ),
+    "near": Reward("1 / (1 + distance^2), distance in m", lambda s: 1 / (1 + _norm(s.error) ** 2)),
     "upright": Reward("cosine of the tilt", lambda s: s.R_WF[:, 2, 2]),
     "speed": Reward("negative speed, m/s", lambda s: -_norm(s.linear_velocity)),
     "turning": Reward("negative angular speed, rad/s", lambda s: -_norm(s.angular_velocity)),
