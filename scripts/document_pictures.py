@@ -84,6 +84,46 @@ def draw_flight() -> None:
     save("flight", png(figure))
 
 
+def draw_spiral() -> None:
+    """Draw the thesis' spiral with retuned gains, and with the printed ones until they diverge."""
+    flights = {
+        "pid": (spiral.COLOURS["gazebo11"], "PID, retuned gains"),
+        "pid_thesis": (spiral.COLOURS["eigen"], "PID, gains as printed in the thesis"),
+    }
+    study = qc.evaluate(list(flights), "spiral", "eigen", duration=20, xacro_args={"sim_slow": 1})
+    figure = Figure(figsize=(10, 4.2), dpi=150)
+    path = figure.add_axes((-0.02, 0.02, 0.46, 0.98), projection="3d")
+    panel = figure.add_axes((0.51, 0.14, 0.47, 0.78))
+    limit = 3.0  # m, where the figure ends a flight that diverges
+    for row, outcome in zip(study.table, study.outcomes):
+        colour, name = flights[row["controller"]]
+        log = outcome.log
+        error = np.linalg.norm([log.topics["error"][axis] for axis in "xyz"], axis=0)
+        end = int(np.argmax(error > limit)) or len(error)
+        lines = [
+            path.plot(*log.position[:end].T, color=colour, linewidth=2)[0],
+            panel.plot(log.time[:end], error[:end], color=colour, linewidth=2)[0],
+        ]
+        for line in lines if end < len(error) else []:
+            line.set(clip_on=False, marker="X", markersize=9, markevery=[end - 1])
+        at = (6.5, 2.6) if end < len(error) else (11, 0.15)
+        panel.text(*at, name, color=colour)
+    times = np.linspace(0, 20, 400)
+    wanted = np.array([qc.references.spiral()(time).position for time in times])
+    path.plot(*wanted.T, "--", color="0.2", linewidth=1, label="reference")
+    for axis, ticks in zip("xyz", ([-2, 0, 2], [-2, 0, 2], [10, 20, 30])):
+        getattr(path, f"set_{axis}label")(f"{axis} (m)")
+        getattr(path, f"set_{axis}ticks")(ticks)
+    path.set_box_aspect((1, 1, 1.5), zoom=0.84)
+    path.view_init(elev=15, azim=-60)
+    path.legend(frameon=False, loc="upper left", bbox_to_anchor=(0.12, 0.95))
+    panel.set_xlabel("time (s)")
+    panel.set_ylabel("tracking error (m)")
+    panel.set_ylim(0, limit)
+    dress(panel)
+    save("spiral", png(figure))
+
+
 def draw_wrenches() -> None:
     """Draw the wrenches of the same manoeuvre with the forces of chapter 2, as Log.plot does."""
     sim = qc.Simulation(
@@ -167,7 +207,7 @@ def draw_vehicle() -> None:
 
 
 if __name__ == "__main__":
-    save("spiral", png(spiral.picture(spiral.fly())))
+    draw_spiral()
     draw_flight()
     draw_wrenches()
     draw_contact()

@@ -2,7 +2,10 @@
 
 const HEADLESS = /^\W*(What|Whatever|Who|Whoever|Of (each|the|a|an|every|all)) .*[^?]$/s;
 
-/** Blank the markup, keep each position: code and formulas become one word, links their text. */
+/**
+ * Blank the markup, keep each position: code and formulas become one word, links their text.
+ * A word of code has capitals, so that a sentence may start with it.
+ */
 function readProse(node) {
   const start = node.range[0];
   const text = Array(node.range[1] - start).fill(" ");
@@ -11,14 +14,14 @@ function readProse(node) {
   };
   const read = (part) => {
     if (part.type === "Str") fill(part, (at) => part.raw[at]);
-    else if (part.type === "Code") fill(part, () => "c");
+    else if (part.type === "Code") fill(part, () => "C");
     else (part.children ?? []).forEach(read);
   };
   read(node);
   return text
     .join("")
     .replace(/\n/g, " ")
-    .replace(/\$[^$]+\$/g, (formula) => "x".repeat(formula.length));
+    .replace(/\$[^$]+\$/g, (formula) => "X".repeat(formula.length));
 }
 
 export default function (context, { limit }) {

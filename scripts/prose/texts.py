@@ -30,7 +30,8 @@ def read_pages() -> Iterator[Text]:
     list_files = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "*.md"]
     names = subprocess.check_output(list_files, cwd=ROOT, text=True)
     for name in names.splitlines():
-        yield Text(name, 1, (ROOT / name).read_text(encoding="utf-8"))
+        if (ROOT / name).exists():  # git lists deleted files, too
+            yield Text(name, 1, (ROOT / name).read_text(encoding="utf-8"))
 
 
 def read_python_docstrings() -> Iterator[Text]:

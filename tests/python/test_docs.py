@@ -112,9 +112,10 @@ def test_the_page_on_ros_has_the_kinds_that_the_node_carries_and_their_types():
     assert table == {kind.lower(): f"{package}/{name}" for kind, package, name in carried}
 
 
-def test_the_readme_has_a_row_for_each_plugin():
+def test_the_page_of_plugins_has_a_row_for_each():
+    page = ROOT / "docs" / "shipped_plugins.md"
     shipped = {file.name for folder in qc.plugin_folders() for file in Path(folder).glob("*.so")}
-    rows = re.findall(r"^\| \[`(lib\w+\.so)`\]", ROOT.joinpath("README.md").read_text(), re.M)
+    rows = re.findall(r"^\| \[`(lib\w+\.so)`\]", page.read_text(), re.M)
     assert sorted(rows) == sorted(name for name in shipped if name.endswith("_plugin.so"))
 
 
@@ -135,13 +136,11 @@ def test_the_reference_of_cpp_has_every_public_header_once():
     assert sorted(told) == sorted(header.name for header in headers)
 
 
-def test_the_example_of_the_readme_is_short_and_holds_its_height(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_the_readme_is_short():
+    text = (ROOT / "README.md").read_text()
+    assert len(text.splitlines()) <= 130
     (example,) = blocks(ROOT / "README.md", "python")
-    assert len([line for line in example.splitlines() if line]) <= 11  # ten and the import
-    names = {}
-    exec(example, names)
-    assert names["log"].position[-1] == pytest.approx([0, 0, 12], abs=0.05)
+    assert len(example.strip().splitlines()) <= 8  # six, the import and a blank line
 
 
 @pytest.mark.parametrize("engine", [name for name, _ in qc.engines()])

@@ -7,8 +7,8 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
+import yaml
 
 from quadcore.control import references
 
@@ -28,22 +28,29 @@ def program(monkeypatch):
     return load
 
 
-def test_the_picture_of_the_engines_is_drawn_of_flights_that_end_early_too(program):
+def test_the_spiral_is_drawn_and_logged(program, tmp_path, capsys):
     spiral = program("examples/spiral.py")
     spiral.SETTINGS["duration"] = 1
-    # The rotors turn more than half a turn per step once the vehicle is a kilometre off, which ends
-    # the flights of the engines with hinges.
-    spiral.SETTINGS["reference"] = "step:dx=1000,time=0.5"
-    spiral.SETTINGS["xacro"]["max_velocity"] = 1e6
     logs = spiral.fly()
-    assert len(logs) == 9
-    ends_early = {engine: logs["pid_thesis", engine].time[-1] < 0.99 for _, engine in logs}
-    assert ends_early == {"gazebo11": True, "ode": True, "eigen": False}
+    assert sorted({controller for controller, _ in logs}) == ["geometric", "pid"]
     figure = spiral.picture(logs)
     drawn = [line for axes in figure.axes for line in axes.lines if len(line.get_xdata()) > 1]
-    assert len(drawn) == 18
-    for line in drawn[9:]:
-        assert np.nanmax(line.get_ydata()) <= 5000  # mm; no longer drawn once it is lost
+    assert len(drawn) == 2 * len(logs) == 12
+    spiral.write(logs, tmp_path / "out")
+    names = [f"{controller}_{engine}.csv" for controller, engine in logs]
+    assert sorted(path.name for path in (tmp_path / "out/logs").iterdir()) == sorted(names)
+    assert (tmp_path / "out/engines.png").stat().st_size > 10_000
+    assert "6 logs" in capsys.readouterr().out
+
+
+def test_what_works_ends_well_and_the_printed_gains_differ_in_the_controller_only():
+    files = [ROOT / "config" / f"{name}.yaml" for name in ("spiral", "printed_gains")]
+    works, crashes = (yaml.safe_load(file.read_text()) for file in files)
+    assert (works.pop("controller"), crashes.pop("controller")) == (
+        ["pid", "geometric"],
+        ["pid_thesis"],
+    )
+    assert works == crashes
 
 
 def test_the_flights_of_the_laws_are_held_against_their_bars(program, monkeypatch, capsys):

@@ -100,7 +100,7 @@ def test_what_is_ready_may_be_released_and_tagged(ready, version):
     ("name", "old", "new", "complaint"),
     [
         *((name, "1.2.3", "1.2.2", f"{name}: does not have") for name in NAMED.split()),
-        ("README.md", "version 1.2.3", "version 1.2", "README.md: does not have"),
+        ("README.md", "{1.2.3}", "{1.2}", "README.md: does not have"),
         ("CHANGELOG.md", "2031-12-24", "soon", "CHANGELOG.md: has no heading '## [1.2.3] - YEAR"),
         ("README.md", ADDRESS, "REPOSITORY", "README.md: 'git clone REPO"),
         ("pyproject.toml", "[project.urls]\n", "", "pyproject.toml: has no [project.urls]"),
