@@ -62,10 +62,11 @@ show_compiling() {
   if [ -t 1 ]; then printf '\r\033[K'; fi
 }
 
-# Installs with pip, in the tested versions, and lists what it installed.
+# Installs with pip, in the tested versions, and lists what it installed. Python compiles a module at
+# its first import, so that pip need not compile all of them.
 pip_install() {
   local log=.venv/pip.log
-  .venv/bin/python -m pip install --verbose --constraint constraints.txt "$@" 2>&1 |
+  .venv/bin/python -m pip install --verbose --no-compile --constraint constraints.txt "$@" 2>&1 |
     tee $log | show_compiling ||
     { tail -n 40 $log >&2; say "pip could not install $*. The whole log is $log." >&2; exit 2; }
   { grep '^Successfully installed' $log || true; } | sed 's/^S/quadcore: pip s/'
@@ -102,6 +103,12 @@ install_quadcore() {
   fi
   echo "$sources $python_extras" > .venv/quadcore.sha256
 }
+
+# ccache, if it is installed, reuses what another build has compiled from the same text.
+if command -v ccache >/dev/null; then
+  export CMAKE_CXX_COMPILER_LAUNCHER="${CMAKE_CXX_COMPILER_LAUNCHER-ccache}"
+  export CCACHE_SLOPPINESS="${CCACHE_SLOPPINESS-pch_defines,time_macros}"  # for precompiled headers
+fi
 
 # The pages of docs/ as a site; fails on a warning.
 build_docs() {
