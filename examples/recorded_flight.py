@@ -1,4 +1,4 @@
-"""Fly the manoeuvre that real Gazebo 11 was recorded with, in every engine, and compare.
+"""Compare every engine with a recording of real Gazebo 11.
 
 Usage: recorded_flight.py OUT
 """
@@ -21,12 +21,12 @@ RECORDING = DATA / "S5_slow1_all.csv.gz"
 
 
 def main(out: Path) -> None:
-    """Fly, print the table, write logs and plots."""
+    """Simulate the manoeuvre, print a table, and write logs and plots."""
     recording = np.loadtxt(RECORDING, delimiter=",", skiprows=1)
     table = Table(title="10 s of commands_S5, the thesis' quadrotor, sim_slow 1")
     for heading in (
         "engine",
-        "from Gazebo 11: largest (m)",
+        "from Gazebo 11: maximum (m)",
         "at 10 s (m)",
         "steps/s",
         "x real time",
@@ -55,8 +55,8 @@ def main(out: Path) -> None:
     console = Console(width=None if sys.stdout.isatty() else 120)
     console.print(table)
     console.print(
-        "gazebo11 reproduces the recording, its artificial damping of roll and pitch included;\n"
-        "the other engines fly without that fault and so end elsewhere."
+        "gazebo11 reproduces the recording, including its artificial damping of roll and pitch.\n"
+        "The other engines do not have that bug, so their flights differ."
     )
     console.print(f"{len(written)} plots and {len(qc.engines())} logs are in {out}/")
 

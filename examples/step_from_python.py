@@ -1,4 +1,4 @@
-"""Hold a quadrotor's height from Python, the twin of examples/cpp/fly.cpp.
+"""Control the height of a quadrotor from Python, like examples/cpp/fly.cpp in C++.
 
 Usage: step_from_python.py [MODEL]
 """
@@ -13,7 +13,7 @@ HOVER, WANTED = 471, 10  # rad/s, m
 
 
 def main(model: str = "quadrotor") -> None:
-    """Fly for 4 s with a hundred commands per second."""
+    """Run for 4 s with 100 commands per second."""
     sim = qc.Simulation(model, spawn=(0, 0, 9))
     state = sim.state
     while sim.time < 4:

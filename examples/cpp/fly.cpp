@@ -1,4 +1,4 @@
-// Hold a quadrotor's height from C++, the twin of examples/step_from_python.py: fly MODEL.urdf
+// Control the height of a quadrotor from C++, like examples/step_from_python.py: fly MODEL.urdf
 #include <cstdio>
 #include <quadcore/simulation.hpp>
 #include <vector>

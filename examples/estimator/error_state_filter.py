@@ -1,7 +1,7 @@
 """An error-state Kalman filter of a vehicle's motion (Solà, arXiv:1711.02508, chapters 5 and 6).
 
-Unit, receiver, barometer and magnetometer sit at the origin of the frame and have its axes. World
-axes are x east, y north, z up.
+The inertial unit, the receiver, the barometer and the magnetometer are at the origin of the frame
+and aligned with its axes. World axes are x east, y north, z up.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from typing import Sequence
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-# Parts of the error: position, velocity (world axes), turn (frame axes), biases of the gyroscopes
-# and of the accelerometers.
+# Parts of the error state: position, velocity (world axes), rotation (frame axes), biases of the
+# gyroscopes and of the accelerometers.
 _P, _V, _TURN, _GYRO, _ACCELEROMETER = (slice(i, i + 3) for i in range(0, 15, 3))
 
 _ISA = (288.15, -0.0065, 101325.0)  # K, K/m, Pa
@@ -25,26 +25,26 @@ def _cross(v: np.ndarray) -> np.ndarray:
 
 
 class ErrorStateFilter:
-    """Sums up rates and accelerations to a motion, and corrects it by what else is sensed.
+    """Integrate rates and accelerations, and correct the result with other measurements.
 
     Parameters
     ----------
     position, velocity : array_like (3,)
-        At the start, world axes, m, m/s.
+        Initial values, world axes, m, m/s.
     orientation : array_like (4,)
-        The same, x, y, z, w.
+        Initial orientation of the frame in the world, x, y, z, w.
     deviations : sequence of 5 floats
-        Standard deviations of these three (m, m/s, rad) and of the biases of gyroscopes (rad/s) and
-        accelerometers (m/s^2), of each component.
+        Initial standard deviations of each component of position (m), velocity (m/s), orientation
+        (rad), gyroscope bias (rad/s) and accelerometer bias (m/s^2).
     walks : sequence of 2 floats
-        By how much these biases walk, rad/s/sqrt(s), m/s^2/sqrt(s).
+        Random walk of the two biases, rad/s/sqrt(s), m/s^2/sqrt(s).
     gravity, field : array_like (3,)
-        World axes, m/s^2, T.
+        Gravity (m/s^2) and magnetic field (T), world axes.
 
     Attributes
     ----------
     position, linear_velocity, orientation, angular_velocity : ndarray
-        The estimate, as a controller takes it; the last in frame axes.
+        The estimate, in the axes of `qc.Odometry`.
     """
 
     def __init__(
@@ -68,24 +68,24 @@ class ErrorStateFilter:
 
     @property
     def orientation(self) -> np.ndarray:
-        """Of the frame in the world, x, y, z, w."""
+        """Orientation of the frame in the world, x, y, z, w."""
         return self._R.as_quat()
 
     @property
     def deviations(self) -> np.ndarray:
-        """What it believes its errors to be, in the order of its parts, (15,)."""
+        """Standard deviations of the error state, (15,)."""
         return np.sqrt(np.diag(self._covariance))
 
     def predict(
         self, rates: np.ndarray, forces: np.ndarray, variances: Sequence[float], dt: float
     ) -> None:
-        """Go on by means over a time `dt` that the unit measured, with the variances of both."""
+        """Advance by `dt` with the mean rates and specific forces, and their variances."""
         self.angular_velocity = rates - self._gyro
         force = forces - self._accelerometer
         turn = Rotation.from_rotvec(self.angular_velocity * dt)
         half_way = self._R * Rotation.from_rotvec(self.angular_velocity * dt / 2)
         self._R = self._R * turn
-        R = half_way.as_matrix()  # the mean of turning axes, to second order
+        R = half_way.as_matrix()  # mean orientation over dt, to second order
         acceleration = R @ force + self._gravity
         self.position = self.position + dt * (self.linear_velocity + dt / 2 * acceleration)
         self.linear_velocity = self.linear_velocity + dt * acceleration
@@ -103,19 +103,19 @@ class ErrorStateFilter:
         self._covariance = F @ self._covariance @ F.T + np.diag(noise)
 
     def correct_place(self, place: np.ndarray, variances: Sequence[float]) -> None:
-        """Take in a position, m, m^2."""
+        """Correct with a position (m) and its variances (m^2)."""
         H = np.zeros((3, 15))
         H[:, _P] = np.eye(3)
         self._correct(place - self.position, H, variances)
 
     def correct_velocity(self, velocity: np.ndarray, variance: float) -> None:
-        """Take in a velocity, world axes, m/s, (m/s)^2."""
+        """Correct with a velocity in world axes (m/s) and its variance."""
         H = np.zeros((3, 15))
         H[:, _V] = np.eye(3)
         self._correct(velocity - self.linear_velocity, H, [variance] * 3)
 
     def correct_pressure(self, pressure: float, variance: float) -> None:
-        """Take in a pressure of the standard atmosphere, Pa, Pa^2."""
+        """Correct with a pressure of the standard atmosphere (Pa) and its variance."""
         temperature, gradient, ground = _ISA
         warmth = 1 + gradient * self.position[2] / temperature
         expected = ground * warmth**_ISA_EXPONENT
@@ -124,16 +124,16 @@ class ErrorStateFilter:
         self._correct(np.array([pressure - expected]), H, [variance])
 
     def correct_field(self, field: np.ndarray, variance: float) -> None:
-        """Take in a magnetic field, frame axes, T, T^2."""
+        """Correct with a magnetic field in frame axes (T) and its variance."""
         expected = self._R.inv().apply(self._field)
         H = np.zeros((3, 15))
         H[:, _TURN] = _cross(expected)
         self._correct(field - expected, H, [variance] * 3)
 
-    def _correct(self, surprise: np.ndarray, H: np.ndarray, variances: Sequence[float]) -> None:
+    def _correct(self, innovation: np.ndarray, H: np.ndarray, variances: Sequence[float]) -> None:
         noise = np.diag(variances)
         gain = np.linalg.solve(H @ self._covariance @ H.T + noise, H @ self._covariance).T
-        error = gain @ surprise
+        error = gain @ innovation
         rest = np.eye(15) - gain @ H
         self._covariance = rest @ self._covariance @ rest.T + gain @ noise @ gain.T
         self.position = self.position + error[_P]

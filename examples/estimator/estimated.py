@@ -1,4 +1,4 @@
-"""The geometric law on an estimate: no odometry, but an inertial unit and what corrects it."""
+"""Run the geometric controller on an estimate from inertial and other sensors."""
 
 from __future__ import annotations
 
@@ -9,35 +9,35 @@ from error_state_filter import ErrorStateFilter
 
 import quadcore as qc
 
-# What it believes of its sensors; the variances of white noise are in their messages.
+# Modelled deviations of the sensors; the variances of white noise are in their messages.
 _AT_START = (0.1, 0.1, 0.02, 5e-3, 0.05)  # m, m/s, rad, rad/s, m/s^2
 _WALKS = (1e-5, 1e-4)  # rad/s/sqrt(s), m/s^2/sqrt(s)
 
 
 class Geometric:
-    """Is told by the odometry where the flight begins, and takes nothing from it after that."""
+    """Use the odometry only for the initial state, and the estimate afterwards."""
 
-    rate = 250.0  # at least that of the inertial unit, or some of its messages are missed
+    rate = 250.0  # at least the rate of the inertial unit, so that no message is missed
 
     def reset(self, simulation: Any) -> None:
-        """Begin anew on a vehicle."""
+        """Prepare for a flight of this vehicle."""
         for topic, plugin in (("imu", "imu"), ("fix", "gps")):
             if topic not in simulation.topics:
                 raise qc.InputError(
-                    f"the estimate needs topic '{topic}'; add lib{plugin}_plugin.so, or fly with "
+                    f"the estimate needs topic '{topic}'; add lib{plugin}_plugin.so, or use "
                     "--scenario sensors.yaml"
                 )
-        self._law = qc.controllers.parse("geometric", simulation.model.name)
-        self._law.rate = self.rate
-        self._law.reset(simulation)
+        self._controller = qc.controllers.parse("geometric", simulation.model.name)
+        self._controller.rate = self.rate
+        self._controller.reset(simulation)
         self._world = simulation.world
-        self._topics = [name for name in _TAKEN if name in simulation.topics]
+        self._topics = [name for name in _CORRECTIONS if name in simulation.topics]
         self._seen: Dict[str, float] = {}
         self._time = 0.0
         self.estimate: Optional[ErrorStateFilter] = None
 
     def __call__(self, t: float, state: qc.Odometry, reference: Any) -> np.ndarray:
-        """Give the speeds of the rotors, rad/s."""
+        """Return the rotor speeds, rad/s."""
         if self.estimate is None:
             self.estimate = ErrorStateFilter(
                 state.position, state.linear_velocity, state.orientation, _AT_START,
@@ -51,13 +51,13 @@ class Geometric:
             new = message["count"] - self._seen[name]
             if new > 1:
                 raise qc.InputError(
-                    f"{new:g} messages on '{name}' since the last call; give the law a rate of at "
-                    "least theirs"
+                    f"{new:g} messages on '{name}' since the last call; "
+                    "increase the controller's rate to at least theirs"
                 )
             if new:
-                _TAKEN[name](self, message)
+                _CORRECTIONS[name](self, message)
                 self._seen[name] = message["count"]
-        return self._law(t, self.estimate, reference)
+        return self._controller(t, self.estimate, reference)
 
     def _take_imu(self, message: Dict[str, float]) -> None:
         self.estimate.predict(
@@ -80,8 +80,8 @@ class Geometric:
         self.estimate.correct_field(_vector(message, "x", "y", "z"), message["variance"])
 
 
-# By topic, in the order in which messages of one moment are taken: the inertial unit's first.
-_TAKEN = {
+# By topic, in the order of use at one time: the inertial unit comes first.
+_CORRECTIONS = {
     "imu": Geometric._take_imu,
     "fix": Geometric._take_fix,
     "pressure": Geometric._take_pressure,

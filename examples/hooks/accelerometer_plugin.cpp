@@ -9,12 +9,12 @@ using quadcore::TagSpec;
 using quadcore::Vector3d;
 namespace messages = quadcore::messages;
 
-/// What the sensor remembers of its last sample: the sample's number plus one, its time, the
-/// velocity it had then.
+/// State of the sensor after its last sample: the sample's number plus one, its time, and the
+/// velocity at that time.
 enum Memory { kSamples, kTime, kVelocity, kMemorySize = kVelocity + 3 };
 
-/// The specific force at the origin of a link, mean over the time since the last sample, in the
-/// link's axes as they stand now: ((v - v_last)/T - g), as Gazebo's sensor has it.
+/// Measures the specific force at the origin of a link, ((v - v_last)/T - g): the mean since the
+/// last sample, in the present axes of the link, like Gazebo's sensor.
 class AccelerometerPlugin final : public quadcore::Plugin {
  public:
   explicit AccelerometerPlugin(const quadcore::PluginSetup& setup)
@@ -43,15 +43,15 @@ class AccelerometerPlugin final : public quadcore::Plugin {
 
  private:
   double rate_;    ///< 1/s
-  Pose X_FS_;      ///< of the link in the frame
-  Matrix3d R_FS_;  ///< the same turn
+  Pose X_FS_;      ///< pose of the link in the frame
+  Matrix3d R_FS_;  ///< its rotation
   std::size_t topic_;
 };
 
 quadcore::PluginDescriptor describe() {
   return {
       "specific force at a link of the frame, on topic specific_force",
-      {TagSpec::link("link", "where it is mounted").must(),
+      {TagSpec::link("link", "link that carries the sensor").must(),
        TagSpec::number("rate", "1/s", "200", "samples per second; at most one per step").above(0)},
       {},
       quadcore::create<AccelerometerPlugin>,

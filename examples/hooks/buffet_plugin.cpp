@@ -5,10 +5,10 @@ namespace {
 using quadcore::TagSpec;
 using quadcore::Vector3d;
 
-/// What it remembers: how far its random numbers are drawn, and the force of this step.
+/// State: the position in the random sequence, and the force of this step.
 enum Memory { kDraws, kForce, kMemorySize = kForce + 3 };
 
-/// A random force at the centre of mass, another one in each step.
+/// Exerts a random force at the centre of mass, a new one in each step.
 class BuffetPlugin final : public quadcore::Plugin {
  public:
   explicit BuffetPlugin(const quadcore::PluginSetup& setup)
@@ -33,7 +33,7 @@ class BuffetPlugin final : public quadcore::Plugin {
 
 quadcore::PluginDescriptor describe() {
   return {
-      "a random force at the centre of mass",
+      "random force at the centre of mass",
       {TagSpec::number("deviation", "N", "", "standard deviation of each component").must()},
       {"buffet"},
       quadcore::create<BuffetPlugin>,

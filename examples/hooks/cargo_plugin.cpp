@@ -5,7 +5,7 @@ namespace {
 
 using quadcore::TagSpec;
 
-/// A ball under the frame that is let go in flight.
+/// Attaches a ball to the frame and releases it in flight.
 class CargoPlugin final : public quadcore::Plugin {
  public:
   explicit CargoPlugin(const quadcore::PluginSetup& setup)
@@ -39,12 +39,12 @@ class CargoPlugin final : public quadcore::Plugin {
 
 quadcore::PluginDescriptor describe() {
   return {
-      "a ball that rides on the frame until it is let go",
-      {TagSpec::number("mass", "kg", "", "its mass").must().above(0),
-       TagSpec::number("radius", "m", "", "its radius").must().above(0),
-       TagSpec::number("x", "m", "0", "place of its centre in the frame, along x"),
+      "ball that rides on the frame until its release",
+      {TagSpec::number("mass", "kg", "", "mass of the ball").must().above(0),
+       TagSpec::number("radius", "m", "", "radius of the ball").must().above(0),
+       TagSpec::number("x", "m", "0", "position of its centre in the frame, along x"),
        TagSpec::number("y", "m", "0", "along y"), TagSpec::number("z", "m", "0", "along z"),
-       TagSpec::number("release", "s", "", "when it is let go").or_absent("never")},
+       TagSpec::number("release", "s", "", "time of the release").or_absent("never")},
       {},
       quadcore::create<CargoPlugin>,
   };

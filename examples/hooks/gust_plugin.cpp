@@ -5,7 +5,7 @@ namespace {
 using quadcore::TagSpec;
 using quadcore::Vector3d;
 
-/// A gust V (1 - cos(2 pi (t - begin)/duration))/2, or a wind V if it has no duration.
+/// Adds a gust V (1 - cos(2 pi (t - begin)/duration))/2, or a steady wind V without a duration.
 class GustPlugin final : public quadcore::Plugin {
  public:
   explicit GustPlugin(const quadcore::PluginSetup& setup)
@@ -32,12 +32,14 @@ class GustPlugin final : public quadcore::Plugin {
 
 quadcore::PluginDescriptor describe() {
   return {
-      "a gust of the shape 1 - cos, or a steady wind",
-      {TagSpec::number("x", "m/s", "0", "velocity of the air at its largest, along the world's x"),
+      "gust of the shape 1 - cos, or a steady wind",
+      {TagSpec::number("x", "m/s", "0", "maximum velocity of the air along the world's x"),
        TagSpec::number("y", "m/s", "0", "along the world's y"),
        TagSpec::number("z", "m/s", "0", "along the world's z"),
-       TagSpec::number("begin", "s", "0", "when the gust begins"),
-       TagSpec::number("duration", "s", "", "how long it lasts").above(0).or_absent("a wind")},
+       TagSpec::number("begin", "s", "0", "start of the gust"),
+       TagSpec::number("duration", "s", "", "length of the gust")
+           .above(0)
+           .or_absent("a steady wind")},
       {},
       quadcore::create<GustPlugin>,
   };

@@ -4,8 +4,8 @@
 
 namespace {
 
-/// Commands the speed at which the rotors carry the vehicle, turning to and fro by turns, whatever
-/// the vehicle weighs and whichever plugin exerts their thrust.
+/// Commands the hover speed of the rotors, with alternating signs. It works for any mass and for
+/// any plugin that exerts the thrust.
 class HoverPlugin final : public quadcore::Plugin {
  public:
   explicit HoverPlugin(const quadcore::PluginSetup& setup) {
@@ -34,7 +34,7 @@ class HoverPlugin final : public quadcore::Plugin {
 };
 
 quadcore::PluginDescriptor describe() {
-  return {"commands the rotor speeds of a hover", {}, {}, quadcore::create<HoverPlugin>};
+  return {"command of the rotor speeds of a hover", {}, {}, quadcore::create<HoverPlugin>};
 }
 
 }  // namespace

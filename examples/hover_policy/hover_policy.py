@@ -1,11 +1,11 @@
-"""Trains a policy that hovers, by a search over its weights: a minute on one core.
+"""Train a policy that hovers, by a search over its weights: a minute on one core.
 
     python hover_policy.py [--generations N] [--out policy.npy]
 
-CMA-ES (Hansen, arXiv:1604.00772) samples policies around the best; each flies a few vehicles of one
-batch, from one start to goals of their own, and those that collect the most reward tell where to
-sample next. The policy is a matrix: an action is what it makes of the observation, within [-1, 1].
-Needs ``pip install 'quadcore[gym,tune]'``.
+CMA-ES (Hansen, arXiv:1604.00772) samples policies around the best. Each policy controls a few
+vehicles of one batch, from one start to different goals. The policies with the most reward guide
+the next sample. A policy is a matrix: its product with the observation, clipped to [-1, 1], is the
+action. Install the requirements with ``pip install 'quadcore[gym,tune]'``.
 """
 
 from __future__ import annotations
@@ -29,18 +29,18 @@ RULES = {
     "xacro_args": {"sim_slow": 1},
     "parameters": {"drone_plugin.dragModel": "chapter2"},
 }
-POLICIES, GOALS = 32, 8  # of a generation, and of each policy
+POLICIES, GOALS = 32, 8  # policies of a generation, goals of a policy
 
 
 def act(weights: np.ndarray, observations: np.ndarray) -> np.ndarray:
-    """Give the actions of policies (policies, rotors, width), whose vehicles lie together."""
+    """Return actions; weights are (policies, rotors, width), a policy's rows are adjacent."""
     rows = observations.reshape(len(weights), -1, WIDTH)
     actions = np.clip(np.einsum("prw,pgw->pgr", weights, rows), -1, 1)
     return actions.reshape(-1, ROTORS)
 
 
-def returns(envs: quadcore.gym.VectorEnv, weights: np.ndarray, seed: int) -> np.ndarray:
-    """Fly an episode of every vehicle; give the mean reward that each policy collects."""
+def fly_episodes(envs: quadcore.gym.VectorEnv, weights: np.ndarray, seed: int) -> np.ndarray:
+    """Run an episode of every vehicle; return the mean return of each policy."""
     observations, _ = envs.reset(seed=seed)
     total, flies = np.zeros(envs.num_envs), np.ones(envs.num_envs, bool)
     while flies.any():
@@ -51,23 +51,23 @@ def returns(envs: quadcore.gym.VectorEnv, weights: np.ndarray, seed: int) -> np.
 
 
 def train(
-    generations: int = 120, seed: int = 1, tell: Callable[[int, float], Any] = lambda *_: None
+    generations: int = 120, seed: int = 1, report: Callable[[int, float], Any] = lambda *_: None
 ) -> np.ndarray:
-    """Search for the weights of a policy; gives them, (rotors, width)."""
+    """Search for the weights of a policy; returns them, (rotors, width)."""
     envs = quadcore.gym.VectorEnv(POLICIES * GOALS, threads=1, **RULES)
     options = {"popsize": POLICIES, "seed": seed, "verbose": -9}
     search = cma.CMAEvolutionStrategy(np.zeros(ROTORS * WIDTH), 0.2, options)
     for generation in range(generations):
         tried = search.ask()
         weights = np.reshape(tried, (POLICIES, ROTORS, WIDTH))
-        rewards = returns(envs, weights, seed=1000 * generation)
+        rewards = fly_episodes(envs, weights, seed=1000 * generation)
         search.tell(tried, list(-rewards))
-        tell(generation, rewards.max())
+        report(generation, rewards.max())
     return np.reshape(search.mean, (ROTORS, WIDTH))
 
 
-def distances(weights: np.ndarray, vehicles: int = 100, seed: int = 10**6) -> np.ndarray:
-    """Give the distance from its goal, m, of each of some vehicles at the end of an episode."""
+def measure_distances(weights: np.ndarray, vehicles: int = 100, seed: int = 10**6) -> np.ndarray:
+    """Return the final distance of each vehicle from its goal, m; infinite if terminated."""
     envs = quadcore.gym.VectorEnv(vehicles, **RULES)
     observations, _ = envs.reset(seed=seed)
     lost = np.zeros(vehicles, bool)
@@ -80,22 +80,24 @@ def distances(weights: np.ndarray, vehicles: int = 100, seed: int = 10**6) -> np
 
 
 def main() -> None:
-    """Train, tell how well it hovers, and write the weights."""
+    """Train, report the final distances, and write the weights."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("--generations", type=int, default=120)
     parser.add_argument("--out", default="policy.npy")
     arguments = parser.parse_args()
 
-    def tell(generation: int, best: float) -> None:
+    def report(generation: int, best: float) -> None:
         if generation % 10 == 0:
-            print(f"generation {generation:4d}: reward of the best {best:8.1f}", flush=True)
+            print(f"generation {generation:4d}: best reward {best:8.1f}", flush=True)
 
     try:
-        weights = train(arguments.generations, tell=tell)
+        weights = train(arguments.generations, report=report)
     except qc.QuadcoreError as error:
         raise SystemExit(f"error: {error}") from None
-    away = distances(weights)
-    print(f"lost {np.isinf(away).sum()} of {len(away)}; median distance {np.median(away):.3f} m")
+    away = measure_distances(weights)
+    print(
+        f"terminated {np.isinf(away).sum()} of {len(away)}; median distance {np.median(away):.3f} m"
+    )
     np.save(arguments.out, weights)
     print(f"written {arguments.out}")
 

@@ -14,9 +14,9 @@ namespace messages = quadcore::messages;
 
 constexpr double rounding = 1e-6;  ///< of a period
 
-/// Points the thrust before it turns the nose (Brescianini, D'Andrea 2018, "Tilt-prioritized
-/// quadrocopter attitude control"): roll and pitch go the shortest way to the wanted thrust, and
-/// yaw follows by a slower loop of its own.
+/// Gives roll and pitch priority over yaw (Brescianini, D'Andrea 2018, "Tilt-prioritized
+/// quadrocopter attitude control"): roll and pitch turn the shortest way to the desired thrust, and
+/// a slower loop controls yaw.
 class TiltLawPlugin final : public quadcore::Plugin {
  public:
   explicit TiltLawPlugin(const quadcore::PluginSetup& setup) {
@@ -33,7 +33,7 @@ class TiltLawPlugin final : public quadcore::Plugin {
     command_ = setup.topics.publishes("vel_cmd", messages::speeds(setup.model.joints.size()));
   }
 
-  /// Steps flown, and calls of the law plus one.
+  /// Steps simulated, and calls of the controller plus one.
   std::size_t state_size() const override { return 2; }
 
   void prepare(const quadcore::VehicleDescription& vehicle) override {
@@ -43,7 +43,7 @@ class TiltLawPlugin final : public quadcore::Plugin {
 
   void update(const quadcore::Sample& sample, quadcore::PluginState state) const override {
     if (sample.topics[odometry_].count == 0 || sample.topics[reference_].count == 0) return;
-    // By the count of steps: the sum of their times would slip.
+    // Counts steps, because a sum of times accumulates rounding errors.
     const double due = std::floor(state[0] * rate_ * sample.dt + rounding) + 1;
     state[0] += 1;
     if (due <= state[1]) return;
@@ -64,7 +64,7 @@ class TiltLawPlugin final : public quadcore::Plugin {
     const Vector3d f_W =
         belief_->mass * (wanted.acceleration + kp_ * (wanted.position - now.position) +
                          kd_ * (wanted.velocity - now.linear_velocity) - gravity_W);
-    // The shortest turn that brings z of F to the wanted thrust, as a vector of the angle's size.
+    // The shortest rotation of the z axis of F to the desired thrust, as a rotation vector.
     const Vector3d z_wanted_F = R_WF.transpose() * f_W.normalized();
     const Vector3d across_F = Vector3d::UnitZ().cross(z_wanted_F);
     const double angle = quadcore::elementary::atan2(across_F.norm(), z_wanted_F.z());
@@ -86,15 +86,15 @@ class TiltLawPlugin final : public quadcore::Plugin {
 
 quadcore::PluginDescriptor describe() {
   using T = quadcore::TagSpec;
-  return {"points the thrust before it turns the nose",
+  return {"controller that gives roll and pitch priority over yaw",
           {
               T::number("rate", "1/s", "500", "calls per second").above(0),
-              T::number("kp", "1/s^2", "9", "of the position").at_least(0),
-              T::number("kd", "1/s", "5.4", "of the velocity").at_least(0),
-              T::number("kTilt", "1/s^2", "120", "of the angle to the wanted thrust").at_least(0),
-              T::number("kRate", "1/s", "22", "of the rates of roll and pitch").at_least(0),
-              T::number("kYaw", "1/s^2", "2", "of yaw").at_least(0),
-              T::number("kYawRate", "1/s", "3", "of its rate").at_least(0),
+              T::number("kp", "1/s^2", "9", "gain of the position error").at_least(0),
+              T::number("kd", "1/s", "5.4", "gain of the velocity error").at_least(0),
+              T::number("kTilt", "1/s^2", "120", "gain of the angle to the thrust").at_least(0),
+              T::number("kRate", "1/s", "22", "gain of the roll and pitch rates").at_least(0),
+              T::number("kYaw", "1/s^2", "2", "gain of yaw").at_least(0),
+              T::number("kYawRate", "1/s", "3", "gain of the yaw rate").at_least(0),
           },
           {},
           quadcore::create<TiltLawPlugin>};

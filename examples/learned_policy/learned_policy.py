@@ -1,8 +1,8 @@
 """The learned policy of `foundation-policy` as a controller.
 
 RAPTOR (Eschmann, Albani, Loianno: A Foundation Policy for Quadrotor Control, 2025,
-arXiv:2509.11481), trained on quadrotors of 0.03 to 2.4 kg; nobody told it of this one. Needs
-``pip install foundation-policy``.
+arXiv:2509.11481) was trained on quadrotors of 0.03 to 2.4 kg, without a model of this one.
+Install it with ``pip install foundation-policy``.
 """
 
 from __future__ import annotations
@@ -15,16 +15,16 @@ from scipy.spatial.transform import Rotation
 
 import quadcore as qc
 
-_THRUST_TO_WEIGHT = 2.5  # of the speed that an action of 1 asks for
+_THRUST_TO_WEIGHT = 2.5  # at the speed of action 1
 
-# The policy's frame P is F turned by 45 degrees about z: it has its rotors between its axes, in the
-# order front right, back right, back left, front left, as F has rotors 1, 2, 3, 4 on its axes.
+# The policy's frame P is F rotated by 45 degrees about z. Its rotors lie between its axes, in the
+# order front right, back right, back left, front left; they are rotors 1, 2, 3, 4 on the axes of F.
 _R_FP = Rotation.from_euler("z", 45, degrees=True).as_matrix()
 _SPINS = np.array([1.0, -1.0, 1.0, -1.0])
 
 
 class Policy:
-    """Flies quadrotors whose `reactionTorque` is ``opposing``, as that of the air is."""
+    """Control a quadrotor with `reactionTorque` ``opposing``."""
 
     rate = 100.0
 
@@ -32,11 +32,11 @@ class Policy:
         self._network = Raptor()
 
     def reset(self, simulation: Any) -> None:
-        """Begin anew on a vehicle."""
+        """Prepare for a flight of this vehicle."""
         tags = {tag.name: tag.value for plugin in simulation.plugins for tag in plugin.parameters}
         if simulation.rotor_count != 4 or tags.get("reactionTorque") != "opposing":
             raise qc.InputError(
-                "the learned policy flies four rotors whose reactionTorque is opposing; "
+                "the learned policy needs four rotors and reactionTorque opposing; "
                 "set drone_plugin.reactionTorque"
             )
         weight = simulation.mass * -simulation.world.gravity[2]
@@ -46,7 +46,7 @@ class Policy:
         self._action = np.zeros(4)
 
     def __call__(self, t: float, state: qc.Odometry, reference: Any) -> np.ndarray:
-        """Give the speeds of the rotors, rad/s."""
+        """Return the rotor speeds, rad/s."""
         R_WP = Rotation.from_quat(state.orientation).as_matrix() @ _R_FP
         observation = np.concatenate(
             [

@@ -21,8 +21,8 @@ class SideForcePlugin final : public quadcore::Plugin {
 
 quadcore::PluginDescriptor describe() {
   return {
-      "a constant force along the frame's y at the centre of mass",
-      {TagSpec::number("sideForce", "N", "", "the force, positive along y").must()},
+      "constant force along the frame's y at the centre of mass",
+      {TagSpec::number("sideForce", "N", "", "force, positive along y").must()},
       {"side_force"},
       quadcore::create<SideForcePlugin>,
   };

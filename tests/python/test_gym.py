@@ -238,10 +238,10 @@ def test_the_page_has_the_tables_that_hold():
 def test_the_example_learns_to_hover(monkeypatch):
     pytest.importorskip("cma")
     monkeypatch.syspath_prepend(str(ROOT / "examples" / "hover_policy"))
-    from hover_policy import distances, train
+    from hover_policy import measure_distances, train
 
-    untrained = distances(np.zeros((4, 12)), vehicles=20)
-    away = distances(train(generations=60), vehicles=20)
+    untrained = measure_distances(np.zeros((4, 12)), vehicles=20)
+    away = measure_distances(train(generations=60), vehicles=20)
     assert np.isinf(away).sum() <= 2
     assert np.median(away) < 0.5 * np.median(untrained)
     sys.modules.pop("hover_policy")
