@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Fly the commands of a recording again, one for each odometry message.
+"""Send the commands of a recording again, one for each odometry message.
 
-``rosrun quadcore bag_player.py flight.bag [_topic:=/quadrotor/vel_cmd]`` sends the first command
-in answer to the first message, and so on, whatever the time of either. Against a plant in lockstep
-that flies the recorded flight again, to the last digit.
+``rosrun quadcore bag_player.py flight.bag [_topic:=/quadrotor/vel_cmd]`` answers the first message
+with the first command, and so on, at any time of either. With a plant in lockstep, the flight is
+bit-identical to the recorded one.
 """
 
 import sys
@@ -22,14 +22,14 @@ class Player:
         self.commands = commands
         self.sent = 0
         self.finished = threading.Event()
-        self._answered = None  # stamp of the message that was answered last
+        self._answered = None  # stamp of the last answered message
         self._publisher = rospy.Publisher(
             topic, Float64MultiArray, queue_size=1000, tcp_nodelay=True
         )
         self._subscriber = rospy.Subscriber("odom", Odometry, self.answer, tcp_nodelay=True)
 
     def answer(self, message):
-        """Send a command; a message that is sent again gets the same one again."""
+        """Send the next command; a repeated message gets the same command again."""
         if message.header.stamp != self._answered:
             self._answered = message.header.stamp
             self.sent += 1
@@ -40,11 +40,11 @@ class Player:
 
 
 def main():
-    """Play a file."""
+    """Send the commands of a file."""
     arguments = rospy.myargv()[1:]
     if len(arguments) != 1:
         sys.exit(__doc__)
-    rospy.init_node("bag_player", disable_rostime=True)  # a paused flight's clock stands
+    rospy.init_node("bag_player", disable_rostime=True)  # the clock stops during a pause
     topic = rospy.get_param("~topic", "")
     try:
         topic, commands = read_commands(arguments[0], topic)

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Print a model as plain URDF: ``expand_model.py MODEL [ARG=VALUE ...]``.
 
-MODEL is a URDF or xacro file, or the name of a shipped model. ARG:=VALUE means the same, but in an
-argument of roslaunch it makes ROS print errors about a bad remapping. For launch files, which load
-the output as robot_description. With quadcore installed for Python its errors name file and line;
-without, the xacro of the ROS distribution does the work.
+MODEL is a URDF or xacro file, or the name of a built-in model. ARG:=VALUE means the same, but as an
+argument of roslaunch it makes ROS print errors about a bad remapping. Launch files load the output
+as robot_description. If quadcore is installed for Python, errors name file and line. Otherwise, the
+script uses the xacro of the ROS distribution.
 """
 
 import re
@@ -12,8 +12,8 @@ import sys
 from pathlib import Path
 
 
-def shipped(model):
-    """Path of a model: itself, or that of the shipped model of this name."""
+def find_model(model):
+    """Return the path of a model: a file, or the built-in model of this name."""
     if Path(model).is_file():
         return model
     import rospkg
@@ -22,11 +22,11 @@ def shipped(model):
     for name in (model, model + ".urdf.xacro", model + ".urdf"):
         if (folder / name).is_file():
             return str(folder / name)
-    sys.exit(f"error: {model}: no such file, and no shipped model of that name in {folder}")
+    sys.exit(f"error: {model}: does not exist. Name a file, or a built-in model in {folder}.")
 
 
 def expand(path, arguments):
-    """Text of the URDF."""
+    """Return the text of the URDF."""
     try:
         from quadcore import QuadcoreError
         from quadcore.model.description import load_description
@@ -43,8 +43,8 @@ def expand(path, arguments):
         import xacro
     except ImportError:
         sys.exit(
-            f"error: {path}: needs xacro to be expanded; install ros-noetic-xacro, "
-            "or where the distribution has none: pip install xacro"
+            f"error: {path}: needs xacro. Install ros-noetic-xacro, or run pip install xacro if "
+            "the distribution does not have it."
         )
     return xacro.process_file(path, mappings=arguments).toprettyxml(indent="  ")
 
@@ -52,4 +52,4 @@ def expand(path, arguments):
 if len(sys.argv) < 2 or any("=" not in argument for argument in sys.argv[2:]):
     sys.exit(__doc__)
 arguments = dict(re.split(":?=", word, maxsplit=1) for word in sys.argv[2:])
-print(expand(shipped(sys.argv[1]), arguments))
+print(expand(find_model(sys.argv[1]), arguments))

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Pause, step and reset a flight by the buttons of a joystick, where rviz has none for that.
+"""Pause, step and reset a flight with the buttons of a joystick, because rviz has no such buttons.
 
-``rosrun quadcore flight_buttons.py [_pause:=7] [_step:=0] [_reset:=6] [_steps:=100]`` takes buttons
-from topic ``joy``: one pauses a flight and lets it go on, one flies so many steps of a paused one,
-one begins it anew. `_paused:=true` if the flight is when this begins.
+``rosrun quadcore flight_buttons.py [_pause:=7] [_step:=0] [_reset:=6] [_steps:=100]`` reads buttons
+from topic ``joy``. One pauses and resumes the flight, one makes some steps of a paused flight, and
+one resets it. Set `_paused:=true` if the flight is paused when this node starts.
 """
 
 import rospy
@@ -13,7 +13,7 @@ from std_srvs.srv import Empty
 
 
 class Buttons:
-    """Calls a service when a button goes down."""
+    """Calls a service when a button is pressed."""
 
     def __init__(self):
         self._paused = bool(rospy.get_param("~paused", False))
@@ -27,7 +27,7 @@ class Buttons:
         self._subscriber = rospy.Subscriber("joy", Joy, self.take, queue_size=10)
 
     def take(self, message):
-        """Act on the buttons that were up before."""
+        """Act on the buttons that were released before."""
         down = {i for i, button in enumerate(message.buttons) if button}
         for button in sorted(down - self._down):
             act = self._acts.get(button)
@@ -44,7 +44,7 @@ class Buttons:
 
     def _step(self):
         answer = rospy.ServiceProxy("quadcore/step", Step)(self._steps)
-        self._paused = True  # as who steps finds it afterwards
+        self._paused = True  # a step pauses the flight
         if not answer.success:
             rospy.logwarn("%s", answer.message)
 

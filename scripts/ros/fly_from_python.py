@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""The simulation inside a rospy node, stepped from Python.
+"""Step the simulation inside a rospy node.
 
-A template for those who script: it speaks the topics of quadcore_node, in one process with
-whatever you add between two steps. ``rosrun quadcore fly_from_python.py``, and in another terminal
+This is a template for scripts. It has the topics of quadcore_node, in one process with the code
+that you add between two steps. Run ``rosrun quadcore fly_from_python.py``, and in another terminal
 ``roslaunch quadcore controller.launch reference:=hover reference_parameters:='{height: 1}'``.
 """
 
@@ -20,8 +20,8 @@ from tf2_msgs.msg import TFMessage
 import quadcore as qc
 from quadcore.model.description import load_description
 
-rospy.init_node("quadcore", disable_rostime=True)  # this node makes the time, it follows none
-# For who asks what flies: a controller, rviz.
+rospy.init_node("quadcore", disable_rostime=True)  # this node publishes the clock
+# Read by controllers and rviz.
 rospy.set_param("robot_description", load_description("quadrotor", {}).text)
 sim = qc.Simulation("quadrotor", world="default", spawn=(0, 0, rospy.get_param("~z", 0.1)))
 
@@ -29,7 +29,7 @@ clock = rospy.Publisher("/clock", Clock, queue_size=1000, tcp_nodelay=True)
 odom = rospy.Publisher("odom", Odometry, queue_size=1000, tcp_nodelay=True)
 tf = rospy.Publisher("/tf", TFMessage, queue_size=100, tcp_nodelay=True)
 joints = rospy.Publisher("joint_states", JointState, queue_size=100, tcp_nodelay=True)
-commands = []  # those that came since the last step, filled by rospy's thread
+commands = []  # received since the last step, in rospy's thread
 rospy.Subscriber(
     f"{sim.model.name}/vel_cmd",
     Float64MultiArray,
@@ -39,13 +39,13 @@ rospy.Subscriber(
 
 
 def covariance(translation, rotation):
-    """Diagonal of 6x6 numbers, never singular."""
+    """Return the 36 numbers of a diagonal covariance that is never singular."""
     return np.diag(np.maximum([translation] * 3 + [rotation] * 3, 1e-12)).ravel()
 
 
 def publish(sim):
-    """Send what quadcore_node sends after each step."""
-    now = rospy.Time(nsecs=round(sim.time * 1e9))  # from_sec cuts off instead
+    """Publish the topics that quadcore_node publishes after each step."""
+    now = rospy.Time(nsecs=round(sim.time * 1e9))  # from_sec would truncate
     clock.publish(now)
     m = sim.topic("odom")
     message = Odometry(child_frame_id="drone")
@@ -77,6 +77,6 @@ while not rospy.is_shutdown():
             sim.command(commands.pop(0))
     except qc.InputError as error:
         rospy.logwarn(error)
-    # Your own controller, sensor or failure goes here.
+    # Add your own controller, sensor or fault here.
     sim.step()
     time.sleep(max(0, start + sim.time - time.monotonic()))

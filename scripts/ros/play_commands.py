@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Fly rotor speeds from a file and keep what the odometry says: the thesis' figure 5.1 as a node.
+"""Send rotor speeds from a file and store the odometry: figure 5.1 of the thesis as a node.
 
 ``rosrun quadcore play_commands.py FILE [_topic:=/quadrotor/vel_cmd] [_rotors:=4]
 [_lockstep:=true] [_duration:=S] [_out:=odometry.mat]`` sends the rows (t, w1..wn; rad/s) of a .csv
-or .mat file or of a bag, each when the odometry has reached its time; against a plant in lockstep
-one in answer to each odometry message. It ends with the last row, or after the duration, and writes
-the odometry as a log without rotors, .mat, .csv or .bag.
+or .mat file or of a bag, each when the odometry has reached its time. With `_lockstep:=true`, it
+answers each odometry message with one row. It ends with the last row, or after the duration, and
+writes the odometry as a log without rotors, .mat, .csv or .bag.
 """
 
 import sys
@@ -24,12 +24,12 @@ from quadcore.simulation.log import check_log_path, log_file
 
 
 class Player:
-    """Answers odometry with the command that is due."""
+    """Answers odometry with the command of its time."""
 
     def __init__(self, table, topic, lockstep, end):
         self._table, self._lockstep, self._end = table, lockstep, end
         self._sent = -1
-        self.rows = {}  # by stamp: a message that is sent again is the same one
+        self.rows = {}  # by stamp, because a message may be repeated
         self.finished = threading.Event()
         self._publisher = rospy.Publisher(
             topic, Float64MultiArray, queue_size=1000, tcp_nodelay=True
@@ -37,37 +37,37 @@ class Player:
         self._subscriber = rospy.Subscriber("odom", Odometry, self.answer, tcp_nodelay=True)
 
     def answer(self, message):
-        """Keep what was said, and send what is due."""
+        """Store the odometry, and send the command of its time."""
         if self.finished.is_set():
             return
         time = message.header.stamp.to_sec()
-        self.rows[time] = row_of(time, message)
+        self.rows[time] = make_row(time, message)
         due = np.searchsorted(self._table[:, 0], time + 1e-9, side="right") - 1
-        heard = self._lockstep or self._publisher.get_num_connections() > 0
-        if due >= 0 and heard and (self._lockstep or due != self._sent):
+        has_reader = self._lockstep or self._publisher.get_num_connections() > 0
+        if due >= 0 and has_reader and (self._lockstep or due != self._sent):
             self._sent = due
             self._publisher.publish(data=self._table[due, 1:].tolist())
         if time >= self._end - 1e-9:
             self.finished.set()
 
-    def table(self):
-        """Give what came so far."""
+    def received_rows(self):
+        """Return the odometry so far, a row for each message."""
         return np.array([row for _, row in sorted(self.rows.items())])
 
 
-def row_of(time, message):
-    """Row of a log: t, pose, twist."""
+def make_row(time, message):
+    """Return the row of a log: t, pose, twist."""
     p, q = message.pose.pose.position, message.pose.pose.orientation
     v, w = message.twist.twist.linear, message.twist.twist.angular
     return [time, p.x, p.y, p.z, q.x, q.y, q.z, q.w, v.x, v.y, v.z, w.x, w.y, w.z]
 
 
 def main():
-    """Play a file."""
+    """Send the commands of a file."""
     arguments = rospy.myargv()[1:]
     if len(arguments) != 1:
         sys.exit(__doc__)
-    rospy.init_node("play_commands", disable_rostime=True)  # a paused flight's clock stands
+    rospy.init_node("play_commands", disable_rostime=True)  # the clock stops during a pause
     out = rospy.get_param("~out", "")
     log = None
     try:
@@ -86,7 +86,7 @@ def main():
     if log is None or not player.rows:
         return
     try:
-        log.receive(player.table(), np.empty((len(player.rows), 0, 6)))
+        log.receive(player.received_rows(), np.empty((len(player.rows), 0, 6)))
         log.close()
     except InputError as error:
         sys.exit(f"error: {error}")

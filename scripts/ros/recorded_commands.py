@@ -1,4 +1,4 @@
-"""Commands that were recorded in a file."""
+"""Read recorded commands from a file."""
 
 from pathlib import Path
 
@@ -16,35 +16,37 @@ def read_table(path, rotors):
         return read_file(path, rotors)
     from quadcore.simulation.commands import as_commands
 
-    _, times, commands = _recorded(path, "")
-    rows = dict(zip(times, commands))  # of those of one time the last counts
+    _, times, commands = _read_recorded(path, "")
+    rows = dict(zip(times, commands))  # the last one of each time
     if any(len(row) != rotors for row in commands):
-        raise ValueError(f"{path}: holds commands that are not for {rotors} rotors; set _rotors:=N")
+        raise ValueError(
+            f"{path}: contains commands that are not for {rotors} rotors. Set _rotors:=N."
+        )
     return as_commands([[time, *row] for time, row in sorted(rows.items())], rotors)
 
 
 def read_commands(path, topic=""):
     """Read a bag's commands in the order in which they were recorded.
 
-    Returns the topic's name and a list of rotor speeds (rad/s) for each command. Without `topic`,
-    the only topic that ends in ``vel_cmd``. Raises `ValueError` with one line if there is none.
+    Returns the topic's name and a list of rotor speeds (rad/s) for each command. `topic` is by
+    default the only topic that ends in ``vel_cmd``. Raises `ValueError` if it does not exist.
     """
-    name, _, commands = _recorded(path, topic)
+    name, _, commands = _read_recorded(path, topic)
     return name, commands
 
 
-def _recorded(path, topic):
-    """Give the topic's name, the time of each message (s), and what it holds."""
+def _read_recorded(path, topic):
+    """Return the topic's name, and the time (s) and the speeds of each message."""
     import rosbag
 
     if not Path(path).is_file():
-        raise ValueError(f"{path}: no such file; give a bag that holds the topic vel_cmd")
+        raise ValueError(f"{path}: does not exist. Name a bag with the topic vel_cmd.")
     try:
         bag = rosbag.Bag(path)
     except rosbag.ROSBagUnindexedException:
-        raise ValueError(f"{path}: was cut short; run: rosbag reindex {path}") from None
+        raise ValueError(f"{path}: is not complete. Run: rosbag reindex {path}") from None
     except rosbag.ROSBagException as error:
-        raise ValueError(f"{path}: is no bag that can be read: {error}") from None
+        raise ValueError(f"{path}: cannot be read as a bag: {error}") from None
     with bag:
         types = {name: info.msg_type for name, info in bag.get_type_and_topic_info().topics.items()}
         fitting = sorted(name for name, kind in types.items() if kind == TYPE)
@@ -52,14 +54,16 @@ def _recorded(path, topic):
             candidates = [name for name in fitting if name.endswith("vel_cmd")]
             if len(candidates) != 1:
                 found = ", ".join(candidates) or "none"
-                raise ValueError(f"{path}: topics of commands: {found}; name one as _topic:=NAME")
+                raise ValueError(
+                    f"{path}: topics of commands: {found}. Choose one with _topic:=NAME."
+                )
             topic = candidates[0]
         elif topic not in fitting:
             found = ", ".join(fitting) or "none"
-            raise ValueError(f"{path}: no topic {topic} of {TYPE}; there are: {found}")
+            raise ValueError(f"{path}: no topic {topic} of type {TYPE}. Choose one of: {found}.")
         found = [(t.to_nsec(), list(m.data)) for _, m, t in bag.read_messages(topics=[topic])]
     if not found:
-        raise ValueError(f"{path}: holds no message of {topic}")
-    # A bag has no message at time 0: the first may lie a nanosecond late.
+        raise ValueError(f"{path}: contains no message of {topic}. Choose another topic.")
+    # A bag has no message at time 0, so the first may be a nanosecond late.
     times = [(ns - (ns == 1)) / 1e9 for ns, _ in found]
     return topic, times, [speeds for _, speeds in found]

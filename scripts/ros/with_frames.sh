@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Runs rviz on the frames of this namespace: "with_frames.sh PROGRAM ...". In uav1 they begin with
-# uav1/, which rviz reads from its file only.
+# Runs rviz with the frames of this namespace: "with_frames.sh PROGRAM ...". In uav1, frames begin
+# with uav1/, which rviz only reads from its file.
 set -euo pipefail
 
 frames=${ROS_NAMESPACE:-}
 frames=${frames#/}
 [ -n "$frames" ] || exec "$@"
-# The links of RotorS' vehicles have the namespace in their names already.
+# The link names of RotorS' vehicles already contain the namespace.
 links=$frames
 if rosparam get -p robot_description | grep "<link name=\"$frames/" >/dev/null; then links=""; fi
 copy=$(mktemp --suffix .rviz)

@@ -191,10 +191,10 @@ class TestPlaying(unittest.TestCase):
         text = self.folder / "text.bag"
         text.write_text("t,w1\n")
         for path, arguments, message in (
-            (self.folder / "none.bag", (), "no such file; give a bag"),
-            (empty, (), "topics of commands: none; name one as _topic:=NAME"),
-            (other, ("_topic:=/odom",), "no topic /odom of std_msgs/Float64MultiArray"),
-            (text, (), "is no bag that can be read"),
+            (self.folder / "none.bag", (), "does not exist. Name a bag"),
+            (empty, (), "topics of commands: none. Choose one with _topic:=NAME."),
+            (other, ("_topic:=/odom",), "no topic /odom of type std_msgs/Float64MultiArray"),
+            (text, (), "cannot be read as a bag"),
         ):
             with Process("bag_player.py", str(path), *arguments) as player:
                 status, error = player.result()
