@@ -1,5 +1,5 @@
-# Headers of the messages in cpp/ros/packages, for the node alone: the packages of these names may be
-# there with more in them, or not at all.
+# Generates the headers of the messages in cpp/ros/packages, for the node alone. The system may have
+# larger packages of these names, or none.
 
 set(foreign_dir ${PROJECT_BINARY_DIR}/foreign)
 set(foreign_headers "")

@@ -1,35 +1,36 @@
-# The ROS 1 node, built by catkin's rules. Included by the top-level CMakeLists.txt rather than
-# added as a folder, because catkin takes the folder of the calling list file for the package's.
+# The ROS 1 node, built by catkin's rules. The top-level CMakeLists.txt includes this file instead of
+# adding a folder, because catkin uses the folder of the calling list file as the package's folder.
 
-# What needs others stands after them, for a package that lacks one of its own ends everything.
+# Packages come after their dependencies, because a missing dependency ends the configuration.
 set(ros_packages
   message_generation roscpp std_msgs std_srvs geometry_msgs sensor_msgs nav_msgs rosgraph_msgs
   diagnostic_msgs tf2_msgs trajectory_msgs visualization_msgs)
 
-# The first python3 on PATH may be one that ROS' packages were not made for, and catkin ends the
-# configuration over it even when asked quietly. Some packages load catkin, so this comes first.
+# The first python3 on PATH may not be the one of the ROS packages. catkin then ends the configuration,
+# even with QUIET. Some packages load catkin, so this check comes first.
 if(NOT PYTHON_EXECUTABLE)
   foreach(python python3 /usr/bin/python3)
     execute_process(COMMAND ${python} -c "import catkin_pkg, em, genmsg, sys; print(sys.executable)"
                     OUTPUT_VARIABLE found OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
     if(found)
-      set(PYTHON_EXECUTABLE ${found} CACHE FILEPATH "The Python that ROS' packages belong to")
+      set(PYTHON_EXECUTABLE ${found} CACHE FILEPATH "The Python of the ROS packages")
       break()
     endif()
   endforeach()
 endif()
 if(POLICY CMP0148)
-  cmake_policy(SET CMP0148 OLD)  # catkin asks FindPythonInterp
+  cmake_policy(SET CMP0148 OLD)  # catkin uses FindPythonInterp
 endif()
 
-# Who builds a catkin workspace wants its nodes. Asked before catkin is loaded, which sets the second.
+# A catkin workspace needs the node. Checked before catkin is loaded, because catkin sets the second
+# variable.
 if(CATKIN_TOPLEVEL OR CATKIN_DEVEL_PREFIX OR QUADCORE_WITH_ROS STREQUAL "ON")
   set(ros_wanted ON)
 else()
   set(ros_wanted OFF)
 endif()
 
-# need(WHAT DEBIAN_PACKAGE NOETIC_PACKAGE): notes what is not there, and how to install it.
+# need(WHAT DEBIAN_PACKAGE NOETIC_PACKAGE): records a missing package, and how to install it.
 set(ros_missing "")
 set(ros_to_install "")
 macro(need what debian noetic)
@@ -57,7 +58,7 @@ else()
     endif()
   endforeach()
 endif()
-# Debian packages them apart.
+# Debian has separate packages for .msg files.
 if(geometry_msgs_FOUND)
   include(${geometry_msgs_DIR}/geometry_msgs-msg-paths.cmake OPTIONAL)
   if(NOT EXISTS ${geometry_msgs_MSG_INCLUDE_DIRS}/Pose.msg)
@@ -94,7 +95,7 @@ find_package(catkin REQUIRED COMPONENTS ${ros_packages})
 
 include(cpp/ros/foreign_messages.cmake)
 
-# The Python package, the services in it.
+# The Python package, including the services.
 set(QUADCORE_PYTHONDIR ${PYTHON_INSTALL_DIR}/quadcore)
 add_subdirectory(cpp/bindings)
 set_target_properties(_core PROPERTIES
@@ -103,7 +104,7 @@ catkin_python_setup()
 add_message_files(FILES AttitudeThrust.msg RateThrust.msg)
 add_service_files(FILES ApplyWrench.srv Publish.srv SetState.srv Step.srv)
 generate_messages(DEPENDENCIES geometry_msgs std_msgs)
-# catkin warns of exported headers that lie in the build folder.
+# catkin warns about exported headers in the build folder.
 configure_file(${PROJECT_BINARY_DIR}/cpp/core/include/quadcore/plugin_interface.hpp
                ${CATKIN_DEVEL_PREFIX}/include/quadcore/plugin_interface.hpp COPYONLY)
 catkin_package(
@@ -115,7 +116,7 @@ catkin_package(
 export(TARGETS quadcore NAMESPACE quadcore::
        FILE ${CATKIN_DEVEL_PREFIX}/lib/cmake/quadcore/quadcore.cmake)
 
-# In the devel space as in the install space: the core and its plugins side by side in lib.
+# As in the install space, the core and its plugins are together in lib.
 get_property(plugins DIRECTORY cpp/plugins PROPERTY BUILDSYSTEM_TARGETS)
 set_target_properties(quadcore ${plugins} PROPERTIES
   LIBRARY_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/lib)
@@ -124,7 +125,7 @@ list(FILTER named_as_others INCLUDE REGEX "^rotors_")
 set_target_properties(${named_as_others} PROPERTIES
   LIBRARY_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/lib/quadcore)
 
-# What a file that includes messages is compiled with.
+# Settings to compile a file that includes messages.
 function(quadcore_use_ros target scope)
   target_include_directories(${target} SYSTEM ${scope} ${catkin_INCLUDE_DIRS}
                              ${CATKIN_DEVEL_PREFIX}/include ${foreign_dir})
@@ -134,14 +135,14 @@ function(quadcore_use_ros target scope)
 endfunction()
 
 # quadcore_add_ros_objects(NAME SOURCE...) makes a library of one folder of the nodes. As in the core,
-# it links what is below it.
+# it links the libraries of lower layers.
 function(quadcore_add_ros_objects name)
   add_library(${name} OBJECT ${ARGN})
   target_include_directories(${name} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
   quadcore_use_ros(${name} PUBLIC)
 endfunction()
 
-# quadcore_add_ros_node(NAME SOURCE... [LIBRARIES FOLDER...]) makes a program of sources and folders.
+# quadcore_add_ros_node(NAME SOURCE... [LIBRARIES FOLDER...]) makes a program from sources and folders.
 function(quadcore_add_ros_node name)
   cmake_parse_arguments(PARSE_ARGV 1 given "" "" LIBRARIES)
   add_executable(${name} ${given_UNPARSED_ARGUMENTS})
@@ -162,7 +163,7 @@ if(QUADCORE_BUILD_BENCHMARKS)
   install(TARGETS ros_probe RUNTIME DESTINATION lib/quadcore)
 endif()
 
-# Not catkin_install_python: it would fix the interpreter, and these want the one that has quadcore.
+# Not catkin_install_python, which would fix the interpreter: these scripts use the one with quadcore.
 install(PROGRAMS scripts/ros/bag_player.py scripts/ros/expand_model.py
                  scripts/ros/flight_buttons.py scripts/ros/fly_from_python.py
                  scripts/ros/play_commands.py scripts/ros/spawn_model scripts/ros/with_frames.sh

@@ -102,7 +102,7 @@ def test_what_is_quoted_is_so(page):
 def test_the_page_on_ros_has_the_kinds_that_the_node_carries_and_their_types():
     """The node's own table is in C++ and needs ROS to be asked."""
     source = (ROOT / "cpp/ros/messages/ros_types.cpp").read_text()
-    carried = re.findall(r"carriage<messages::(\w+), (\w+)::(\w+)>\(\)", source)
+    carried = re.findall(r"transport<messages::(\w+), (\w+)::(\w+)>\(\)", source)
     # A fix, which goes out as two messages, has that of its place.
     carried += re.findall(r"TypedOutlet<messages::(\w+), (\w+)::(\w+)> place_;", source)
     assert len(carried) > 7

@@ -118,14 +118,14 @@ class TestClock(unittest.TestCase):
                 status, error = second.result()
             rospy.delete_param("/b/quadcore")
         self.assertEqual(status, 2)
-        self.assertIn("error: parameter ~clock: is lead, but /a/quadcore publishes", error)
+        self.assertIn("error: parameter ~clock: is lead, but /a/quadcore already publishes", error)
 
     def test_a_follower_makes_no_steps_of_its_own(self):
         with flight("_clock:=follow", namespace="/b"):
             response = rospy.ServiceProxy("/b/quadcore/step", Step)(1)
         self.assertFalse(response.success)
         self.assertEqual(
-            response.message, "this vehicle follows /clock; step the node that leads it"
+            response.message, "This vehicle follows /clock. Step the node that leads it."
         )
 
     def test_a_leader_that_was_killed_leads_no_more(self):

@@ -148,14 +148,14 @@ class TestController(unittest.TestCase):
     def test_what_cannot_be_flown_is_refused_in_one_line(self):
         flown = with_controller(description(), {"law": "pd"}, CIRCLE)
         cases = [
-            ({"lew": "pd"}, "parameter ~lew: is not known (did you mean 'law'?)"),
+            ({"lew": "pd"}, "parameter ~lew: does not exist (did you mean 'law'?)"),
             ({"law": "geometrik"}, "parameter ~law: plugin 'controller_node': <law> 'geometrik'"),
             ({"kp_xy": -1}, "parameter ~kp_xy: plugin 'controller_node': <kp_xy> '-1' is out of"),
             ({"kp_xy": "much"}, "<kp_xy> 'much' is not a finite number"),
             ({"kp_rp": 1}, "law 'geometric' has no parameter 'kp_rp'"),
             ({"reference": "spirale"}, "parameter ~reference: plugin"),
             ({"reference": {"shape": "circle", "radios": 1}}, "parameter ~reference/radios: is"),
-            ({"urdf": description(rate="100"), "rate": 200}, "~rate: odometry comes 100 times a"),
+            ({"urdf": description(rate="100"), "rate": 200}, "~rate: odometry arrives 100 times a"),
             ({"urdf": flown}, "vel_cmd"),
             ({"urdf": description(twistFrame="body")}, "twistFrame"),
         ]

@@ -85,7 +85,7 @@ class TestControllerFaults(unittest.TestCase):
                 publisher.publish(message)
                 commands.wait_for_count(count)
             speeds = [np.array(m.data) for m in commands.messages]
-            self.wait_for_warning(told, "/odom: holds numbers that are not finite")
+            self.wait_for_warning(told, "/odom: contains numbers that are not finite")
         np.testing.assert_array_equal(speeds[1], speeds[0])
         np.testing.assert_array_equal(speeds[2], speeds[0])
         self.assertTrue(np.isfinite(speeds[3]).all())
@@ -96,19 +96,19 @@ class TestControllerFaults(unittest.TestCase):
         second = Process("controller_node", "__name:=second", "_law:=geometric")
         with flight("_engine:=eigen", "_real_time_factor:=0.2"), controller(), second:
             self.wait_for_warning(
-                told, "/quadrotor/vel_cmd: commands of /controller and of /second come in turn"
+                told, "/quadrotor/vel_cmd: both /controller and /second send commands"
             )
 
     def test_without_odometry_it_says_so(self):
         told = self.told()
         elsewhere = Process("controller_node", "odom:=elsewhere", "_law:=geometric")
         with flight("_paused:=true"), elsewhere:
-            self.wait_for_warning(told, "nobody publishes odometry on /elsewhere")
+            self.wait_for_warning(told, "No node publishes odometry on /elsewhere")
 
     def test_without_a_plant_it_says_so(self):
         told = self.told()
         with controller():
-            self.wait_for_warning(told, "nobody takes commands on /quadrotor/vel_cmd")
+            self.wait_for_warning(told, "No node receives commands on /quadrotor/vel_cmd")
 
     def test_odometry_that_comes_seldom_is_answered_each_time(self):
         topic = self.stack.enter_context(Recording("/odom", Odometry))

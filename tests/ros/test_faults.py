@@ -64,14 +64,14 @@ class TestFaults(unittest.TestCase):
             send(HOVER)
             diagnostic("rejected commands", lambda count: count == 1)
             node.end()
-        self.assertIn("the model takes no commands; add libmotorpid_plugin.so", node.error)
+        self.assertIn("The model takes no commands. Add libmotorpid_plugin.so.", node.error)
 
     def test_a_log_that_cannot_be_written_to_the_end(self):
         with flight("_log:=/dev/full") as node:
             diagnostic("steps", lambda count: count > 100)
             node.end()
         self.assertEqual(node.process.returncode, 2)
-        cut = "/dev/full: the log is cut short: No space left on device"
+        cut = "/dev/full: the log is incomplete: No space left on device"
         self.assertEqual(node.error.splitlines()[-1], f"error: {cut}")
         self.assertEqual(node.error.count(cut), 2)  # at once and at the end
 
@@ -91,7 +91,7 @@ class TestFaults(unittest.TestCase):
                 node.end()
             os.close(reader)
         self.assertEqual(node.process.returncode, 2)
-        self.assertIn("the flight could not be ended in time; its log may be cut", node.error)
+        self.assertIn("The flight did not end in time. Its log may be incomplete", node.error)
 
     def test_lockstep_without_a_controller_says_what_it_waits_for(self):
         with flight("_lockstep:=true") as node, Recording("/diagnostics", DiagnosticArray) as says:
@@ -165,7 +165,7 @@ class TestFaults(unittest.TestCase):
         for argument, message in (
             (
                 "_lockstp:=true",
-                "parameter ~lockstp: is not known (did you mean 'lockstep'?); it stays on the "
+                "parameter ~lockstp: does not exist (did you mean 'lockstep'?). It stays on the "
                 "parameter server until you run: rosparam delete /quadcore/lockstp",
             ),
             ("_paused:=1", "parameter ~paused: give true or false"),

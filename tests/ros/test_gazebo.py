@@ -103,10 +103,12 @@ class TestGazebo(unittest.TestCase):
             told = service("get_model_state", srv.GetModelState)("quadrotr", "")
             self.assertFalse(told.success)
             self.assertEqual(
-                told.status_message, "model 'quadrotr' does not exist; there is quadrotor"
+                told.status_message, "model 'quadrotr' does not exist. The model here is quadrotor."
             )
             told = service("get_link_state", srv.GetLinkState)("quadrotor::fram", "")
-            self.assertIn("'quadrotor::fram' does not exist; there are world", told.status_message)
+            self.assertIn(
+                "'quadrotor::fram' does not exist. Choose one of world", told.status_message
+            )
             push = service("apply_body_wrench", srv.ApplyBodyWrench)
             told = push(body_name="quadrotor::rotor_1", duration=rospy.Duration(1))
             self.assertFalse(told.success)
@@ -152,7 +154,7 @@ class TestGazebo(unittest.TestCase):
             told = change(0.002, 2000, now.gravity, now.ode_config)
             self.assertFalse(told.success)
             self.assertEqual(
-                told.status_message, "time_step cannot be changed in a flight; start with dt:="
+                told.status_message, "time_step cannot be changed during a flight. Start with dt:=."
             )
             world = service("get_world_properties", srv.GetWorldProperties)()
             self.assertEqual(world.model_names, ["ground_plane", "quadrotor"])

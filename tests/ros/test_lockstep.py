@@ -209,7 +209,7 @@ class TestLockstep(unittest.TestCase):
                     diagnostic("waiting commands", lambda count, sent=sent: count == sent)
             diagnostic("rejected commands", lambda count: count == 3)
             node.end()
-        self.assertIn("10000 commands wait for their odometry already", node.error)
+        self.assertIn("10000 commands already wait for odometry", node.error)
 
     def test_before_anyone_can_answer_the_start_is_seen(self):
         topics = Recording("/clock", Clock), Recording("/tf", TFMessage)

@@ -17,7 +17,7 @@ from test_lockstep import LOCKSTEP, altitude_controller
 STEPS = 1000
 NOISY = description(positionNoise="0.002")
 TOPICS = "_log_topics:=odom vel_cmd"
-CUT = "the log is cut short: File too large"
+CUT = "the log is incomplete: File too large"
 
 
 def fly(log, *arguments, act=lambda node: None):

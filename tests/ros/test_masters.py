@@ -85,7 +85,7 @@ class TestMasters(unittest.TestCase):
         uri = f"http://localhost:{free_port()}"
         status, error = outcome(ROS_MASTER_URI=uri)
         self.assertEqual(status, 2)
-        self.assertIn(f"error: no ROS master at {uri}; start roscore", error)
+        self.assertIn(f"error: no ROS master at {uri}. Start roscore", error)
 
     def test_a_mute_or_wrong_master(self):
         with socket.socket() as mute:
@@ -93,9 +93,9 @@ class TestMasters(unittest.TestCase):
             mute.listen()
             uri = f"http://localhost:{mute.getsockname()[1]}"
             for wrong, message in (
-                (uri, f"no answer within 5 s from a ROS master at {uri}; start roscore"),
-                ("nowhere", "ROS_MASTER_URI: 'nowhere' is no address; write http://HOST:PORT"),
-                ("", "ROS_MASTER_URI: '' is no address"),
+                (uri, f"no answer within 5 s from a ROS master at {uri}. Start roscore"),
+                ("nowhere", "ROS_MASTER_URI: 'nowhere' is not an address. Write http://HOST:PORT"),
+                ("", "ROS_MASTER_URI: '' is not an address"),
             ):
                 status, error = outcome(ROS_MASTER_URI=wrong)
                 self.assertEqual(status, 2)
@@ -169,7 +169,7 @@ class TestMasters(unittest.TestCase):
         with self.under_a_master_that_hangs("_log:=/dev/full") as node:
             node.end()
         self.assertEqual(node.process.returncode, 2)
-        cut = "error: /dev/full: the log is cut short: No space left on device"
+        cut = "error: /dev/full: the log is incomplete: No space left on device"
         self.assertEqual(node.error.splitlines()[-1], cut)
 
 

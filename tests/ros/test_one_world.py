@@ -78,7 +78,7 @@ class TestOneWorld(unittest.TestCase):
             self.assertEqual(status, 2)
             self.assertEqual(len(error.splitlines()), 1, error)
             self.assertIn(
-                "error: parameter ~name: /a/quadcore flies a model 'quadrotor' already. Give this",
+                "error: parameter ~name: /a/quadcore already simulates a model 'quadrotor'.",
                 error,
             )
             with flight("_name:=other", namespace="/b"):
@@ -95,7 +95,7 @@ class TestOneWorld(unittest.TestCase):
             (loser,) = self.ended(a, b)
             status, error = loser.result()
             self.assertEqual(status, 2)
-            self.assertIn("flies a model 'quadrotor' already", error)
+            self.assertIn("already simulates a model 'quadrotor'", error)
             winner = "/b" if loser is a else "/a"
             rospy.wait_for_service(f"{winner}/quadcore/set_state", LONG)
             self.assertEqual(model_names(), ["ground_plane", "quadrotor"])

@@ -71,9 +71,9 @@ class TestParameters(unittest.TestCase):
 
     def test_wrong_settings_are_told_as_on_the_command_line(self):
         for given, message in (
-            ("kp", "parameter ~set: 'kp' is not of the form PLUGIN.TAG=VALUE"),
-            ("motorpid_plugin.kp=", "is not of the form PLUGIN.TAG=VALUE"),
-            ("a.b=1 a.b=2", "parameter ~set: a.b is given twice; keep one"),
+            ("kp", "parameter ~set: 'kp' is not valid. Write PLUGIN.TAG=VALUE."),
+            ("motorpid_plugin.kp=", "is not valid. Write PLUGIN.TAG=VALUE."),
+            ("a.b=1 a.b=2", "parameter ~set: a.b is given twice. Keep one."),
             ("motorpid.kp=1", "set motorpid.kp: the model has no plugin 'motorpid'; it has drone_"),
             ("motorpid_plugin.kq=1", "kq"),
             ("motorpid_plugin.kp=-1", "kp"),
@@ -89,11 +89,11 @@ class TestParameters(unittest.TestCase):
 
     def test_wrong_drags_are_refused(self):
         error = refusal("_drag:=profil")
-        self.assertIn("parameter ~drag: 'profil' is no effect of this model (did you mean", error)
+        self.assertIn("parameter ~drag: 'profil' does not exist in this model (did you mean", error)
         for effect in ("none", "all", *EFFECTS):
-            self.assertIn(effect, error.split("give one of")[1])
+            self.assertIn(effect, error.split("Choose one of")[1])
         error = refusal("_drag:=none", "_set:=drone_plugin.profileDragCoeff=1")
-        self.assertIn("sets drone_plugin.profileDragCoeff to 0, and ~set gives it, too", error)
+        self.assertIn("sets drone_plugin.profileDragCoeff to 0, but ~set also sets it", error)
 
     def test_a_node_alone_has_a_ground(self):
         with flight("_z:=0.2", "_paused:=true"), Recording("/odom", Odometry) as odometry:
@@ -116,7 +116,7 @@ class TestParameters(unittest.TestCase):
 
     def test_what_cannot_be_changed_while_it_flies_is_told_once(self):
         messages = (
-            "parameter ~engine: has no effect on a flight under way, only paused and real_time_",
+            "parameter ~engine: has no effect during a flight; only paused and real_time_",
             "parameter ~paused: give true or false",
             "parameter ~real_time_factor: give a number >= 0",
         )

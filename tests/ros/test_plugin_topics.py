@@ -140,7 +140,7 @@ class TestPluginTopics(unittest.TestCase):
             status, error = harness.Process("quadcore_node", "_z:=10").result()
             self.assertEqual(status, 2)
             (name,) = tags.values()
-            self.assertIn(f"error: topic '{name}' of a plugin has the name of one of", error)
+            self.assertIn(f"error: topic '{name}' of a plugin has the name of a topic", error)
 
     def test_in_lockstep_what_is_sent_before_a_command_is_flown_as_in_process(self):
         offsets = np.random.default_rng(5).uniform(-20, 20, (STEPS + 1, 6))

@@ -40,8 +40,8 @@ class TestRefusals(unittest.TestCase):
                 (Wrench(Vector3(NAN, 0, 0), Vector3()), "not a finite number"),
                 (Wrench(Vector3(), Vector3(0, 0, INFINITE)), "not a finite number"),
                 (Wrench(Vector3(0, -1e300, 0), Vector3()), "The force of "),
-                (Wrench(Vector3(0, 1e9, 0), Vector3()), "The force of 1e+09 N is no physical one"),
-                (Wrench(Vector3(), Vector3(1e6, 0, 0)), "The torque of 1e+06 N m is no physical"),
+                (Wrench(Vector3(0, 1e9, 0), Vector3()), "The force of 1e+09 N is not physical"),
+                (Wrench(Vector3(), Vector3(1e6, 0, 0)), "The torque of 1e+06 N m is not physical"),
             ):
                 with self.subTest(wrench=wrench):
                     self.assert_refused(apply_wrench(wrench), why)
@@ -85,12 +85,12 @@ class TestRefusals(unittest.TestCase):
             change = rospy.ServiceProxy("/gazebo/set_physics_properties", srv.SetPhysicsProperties)
             for rate in (NAN, INFINITE, -1):
                 response = change(now.time_step, rate, now.gravity, now.ode_config)
-                self.assert_refused(response, "max_update_rate is no rate. Give a number >= 0;")
+                self.assert_refused(response, "max_update_rate is not valid. Give a number >= 0;")
 
     def test_parameters_out_of_range_are_errors_of_one_line(self):
         rospy.set_param("/robot_description", description())
         for argument, message in (
-            ("_dt:=0.5", "parameter ~dt: give a step from 1e-9 to 0.1 s, or 0 for that of the"),
+            ("_dt:=0.5", "parameter ~dt: give a step from 1e-9 to 0.1 s, or 0 for the step of"),
             ("_dt:=-0.001", "parameter ~dt: give a step from 1e-9 to 0.1 s"),
             ("_dt:=1e-12", "parameter ~dt: give a step from 1e-9 to 0.1 s"),
             ("_lockstep_timeout:=0", "parameter ~lockstep_timeout: give a number > 0"),

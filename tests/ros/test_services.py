@@ -65,7 +65,7 @@ class TestServices(unittest.TestCase):
             with Recording("/clock", Clock, act=lambda _: call("/gazebo/pause_physics")):
                 response = rospy.ServiceProxy("/quadcore/step", Step)(100000)
             self.assertFalse(response.success)
-            self.assertRegex(response.message, "stopped with [0-9]+ steps to go")
+            self.assertRegex(response.message, "Stopped [0-9]+ steps before the end.")
 
     def test_reset_simulation_is_the_start_again(self):
         with flight("_paused:=true"), Recording("/odom", Odometry) as odometry:
@@ -139,8 +139,8 @@ class TestServices(unittest.TestCase):
             odometry.wait_for_publisher()
             for wrong, why in (
                 ({"rotors": [1.0]}, "4 rotors"),
-                ({"pose": Pose(Point(), Quaternion())}, "a quaternion of length 0; give one of"),
-                ({"pose": Pose(Point(), Quaternion(0, 0, 0, 2))}, "a quaternion of length 2;"),
+                ({"pose": Pose(Point(), Quaternion())}, "a quaternion of length 0. Give one of"),
+                ({"pose": Pose(Point(), Quaternion(0, 0, 0, 2))}, "a quaternion of length 2."),
                 ({"pose": Pose(Point(0, 0, float("nan")), POSE.orientation)}, "not a finite"),
             ):
                 response = set_state(**wrong)
@@ -181,11 +181,11 @@ class TestServices(unittest.TestCase):
             for each in calls:
                 each.start()  # the first one waits for a command that nobody sends
             harness.wait_until(lambda: messages)
-            self.assertIn("another step is under way", messages[0])
+            self.assertIn("Another step is running", messages[0])
             call("/gazebo/pause_physics")
             for each in calls:
                 each.join(harness.LONG)
-            self.assertIn("stopped with 10 steps to go", messages[1])
+            self.assertIn("Stopped 10 steps before the end.", messages[1])
 
     def test_a_command_that_is_not_flown_yet_outlives_a_set_state_but_no_reset(self):
         for jump, climbs in ((set_state, True), (reset, False)):

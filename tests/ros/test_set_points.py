@@ -225,7 +225,7 @@ class TestSetPoints(unittest.TestCase):
         sideways = Vector3(1, 0, 5)
         cases = [
             ("/command/pose", pose(0, 0, 10, frame="map"), "frame_id is 'map'"),
-            ("/command/pose", PoseStamped(), "no quaternion of length 1"),
+            ("/command/pose", PoseStamped(), "is not a quaternion of length 1"),
             ("/command/pose", pose(float("nan"), 0, 10), "position holds a number"),
             ("/command/trajectory", MultiDOFJointTrajectory(), "a path without points"),
             ("/command/trajectory", MultiDOFJointTrajectory(points=[two]), "not one transform"),

@@ -40,17 +40,17 @@ class TestWaiting(unittest.TestCase):
         with flight(*ALONE) as node, Recording("/odom", Odometry) as odometry:
             odometry.wait_for_count(1)
             with Recording("/rosout", Log) as told:
-                told.wait(lambda logs: sum("nobody publishes" in log.msg for log in logs) >= 2)
+                told.wait(lambda logs: sum("no node publishes" in log.msg for log in logs) >= 2)
             self.assertEqual([tick(m) for m in odometry.messages], [0])
             node.end()
 
     def test_the_reason_is_said_again_and_again(self):
         with flight(*ALONE) as node, Recording("/rosout", Log) as told:
-            told.wait(lambda logs: sum("nobody publishes" in log.msg for log in logs) >= 2)
+            told.wait(lambda logs: sum("no node publishes" in log.msg for log in logs) >= 2)
             node.end()
         reason = (
-            "lockstep: nobody publishes on /quadrotor/vel_cmd, so the flight waits at "
-            "t = 0.000000 s. Start the node that commands it, or fly without lockstep."
+            "lockstep: no node publishes on /quadrotor/vel_cmd. The flight waits at "
+            "t = 0.000000 s. Start the controller, or run without lockstep."
         )
         self.assertGreaterEqual(node.error.count(reason), 2, node.error)
 

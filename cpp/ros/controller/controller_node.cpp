@@ -10,21 +10,21 @@
 #include <utility>
 #include <vector>
 
+#include "active_aim.hpp"
 #include "controller_settings.hpp"
-#include "guide.hpp"
 #include "master_check.hpp"
 #include "messages.hpp"
 #include "no_delay.hpp"
 #include "ros_types.hpp"
-#include "sayer.hpp"
 #include "set_points.hpp"
+#include "warning_limiter.hpp"
 
 namespace quadcore::node {
 namespace {
 
 constexpr double between_checks = 5;  ///< s
 
-bool makes_sense(const control::Odometry& now) {
+bool is_valid(const control::Odometry& now) {
   return now.position.allFinite() && is_unit(now.orientation) && now.linear_velocity.allFinite() &&
          now.angular_velocity.allFinite();
 }
@@ -39,79 +39,80 @@ class ControllerNode {
                     control::in_table(control::InnerLoop::table(), setup_.gains.values),
                     setup_.spins),
         schedule_(setup_.schedule(controller_.rotors())),
-        guide_(settings.reference),
-        set_points_(nh, settings.velocity_timeout, guide_),
+        active_aim_(settings.reference),
+        set_points_(nh, settings.velocity_timeout, active_aim_),
         plant_(std::move(settings.plant)),
         dt_(settings.dt) {
     ros::NodeHandle own("~");
     command_.data.resize(controller_.rotors());
-    set_frames(reference_, frame_prefix(nh) + vehicle_name);
+    set_frames(reference_, make_frame_prefix(nh) + vehicle_name);
     error_.header.frame_id = world_frame;
     reference_publisher_ = own.advertise<nav_msgs::Odometry>("reference", queue_size);
     error_publisher_ = own.advertise<geometry_msgs::Vector3Stamped>("error", queue_size);
     command_publisher_ =
         nh.advertise<std_msgs::Float64MultiArray>(settings.command_topic, queue_size);
-    // Free-running, what came before the last message is of no use any more.
+    // Without lockstep, only the last message is used.
     odometry_subscriber_ =
         nh.subscribe("odom", settings.lockstep ? queue_size : 1, &ControllerNode::control, this,
                      ros::TransportHints().tcpNoDelay());
     check_ = nh.createWallTimer(ros::WallDuration(between_checks), &ControllerNode::check, this);
   }
 
-  /// Whether the plant that is believed in has gone, and another one has come.
+  /// Whether the plant has other parameters than the controller's model.
   bool is_outdated() const { return is_outdated_; }
 
  private:
-  /// Says once what keeps it from flying, or spoils the flight.
+  /// Warns once about missing or conflicting connections.
   void check(const ros::WallTimerEvent&) {
     const std::string odometry = odometry_subscriber_.getTopic();
     const std::uint32_t sources = odometry_subscriber_.getNumPublishers();
     std::string what;
     if (command_publisher_.getNumSubscribers() == 0) {
-      what = "nobody takes commands on " + command_publisher_.getTopic() +
-             "; give the node that flies as _plant:=NAME";
+      what = "No node receives commands on " + command_publisher_.getTopic() +
+             ". Name the plant with _plant:=NAME.";
     } else if (sources == 0) {
-      what = "nobody publishes odometry on " + odometry + "; map it with odom:=TOPIC";
+      what = "No node publishes odometry on " + odometry + ". Remap it with odom:=TOPIC.";
     } else if (sources > 1) {
       what = std::to_string(sources) + " nodes publish odometry on " + odometry +
-             "; put each vehicle in a namespace of its own";
+             ". Put each vehicle in its own namespace.";
     }
-    if (!what.empty() && what != told_) ROS_WARN("%s", what.c_str());
-    told_ = what;
+    if (!what.empty() && what != last_warning_) ROS_WARN("%s", what.c_str());
+    last_warning_ = what;
   }
 
   void control(const nav_msgs::Odometry& message) {
-    // By the count of steps: a stamp is rounded.
+    // Counts steps, because a stamp is rounded.
     const double step = std::round(message.header.stamp.toSec() / dt_);
     if (schedule_state_.empty() || step < last_step_) {
       is_outdated_ = plant_.has_changed();
       if (is_outdated_) return;
-      if (step < last_step_) guide_.begin();
+      if (step < last_step_) active_aim_.begin();
       begin(step);
     }
     last_step_ = step;
     const control::Odometry now = setup_.in_world(from_ros(message));
-    if (!makes_sense(now)) {
-      sayer_.warn(odometry_subscriber_.getTopic() +
-                  ": holds numbers that are not finite, or a quaternion whose length is not 1; the "
-                  "last command is kept");
+    if (!is_valid(now)) {
+      limiter_.warn(
+          odometry_subscriber_.getTopic() +
+          ": contains numbers that are not finite, or a quaternion of another length than 1. "
+          "The last command is kept.");
       command_publisher_.publish(command_);
       return;
     }
-    const Aim aim = guide_.at(step * dt_, now);
+    const Aim aim = active_aim_.at(step * dt_, now);
     const auto ask = [&](double period, double* speeds) {
-      std::visit([&](const auto& wanted) { fly(period, now, wanted, speeds); }, aim);
+      std::visit([&](const auto& wanted) { compute_speeds(period, now, wanted, speeds); }, aim);
     };
     const double* const speeds =
         schedule_.update(step - first_step_, dt_, schedule_state_.data(), ask);
     if (speeds) std::copy_n(speeds, command_.data.size(), command_.data.begin());
     command_publisher_.publish(command_);
     if (const auto* const wanted = std::get_if<control::Reference>(&aim)) {
-      tell(message.header.stamp, now, *wanted);
+      publish_reference(message.header.stamp, now, *wanted);
     }
   }
 
-  /// At the first message, and when the time was set back.
+  /// Restarts at the first message, and when the time was set back.
   void begin(double step) {
     schedule_state_.assign(schedule_.state_size(), 0);
     state_.clear();
@@ -119,23 +120,24 @@ class ControllerNode {
     first_step_ = step;
   }
 
-  // Of the law and the inner loop, the one that is entered begins anew.
+  // The controller restarts after the inner loop was used, and vice versa.
 
-  void fly(double period, const control::Odometry& now, const control::Reference& wanted,
-           double* speeds) {
+  void compute_speeds(double period, const control::Odometry& now, const control::Reference& wanted,
+                      double* speeds) {
     inner_state_.clear();
     state_.resize(control::Controller::state_size(setup_.gains.law, controller_.rotors()));
     controller_.command(period, now, wanted, state_.data(), speeds);
   }
   template <class Wanted>
-  void fly(double period, const control::Odometry& now, const Wanted& wanted, double* speeds) {
+  void compute_speeds(double period, const control::Odometry& now, const Wanted& wanted,
+                      double* speeds) {
     state_.clear();
     inner_state_.resize(control::InnerLoop::state_size(inner_loop_.rotors()));
     inner_loop_.command(period, now, wanted, inner_state_.data(), speeds);
   }
 
-  void tell(const ros::Time& stamp, const control::Odometry& now,
-            const control::Reference& wanted) {
+  void publish_reference(const ros::Time& stamp, const control::Odometry& now,
+                         const control::Reference& wanted) {
     messages::Odometry where;
     where.position = wanted.position;
     where.orientation = Eigen::AngleAxisd(wanted.yaw, Vector3d::UnitZ());
@@ -154,15 +156,15 @@ class ControllerNode {
   control::Controller controller_;
   control::InnerLoop inner_loop_;
   control::Schedule schedule_;
-  Guide guide_;
+  ActiveAim active_aim_;
   SetPoints set_points_;
   PlantWatch plant_;
   double dt_;
-  std::vector<double> schedule_state_, state_, inner_state_;  ///< none before the flight
+  std::vector<double> schedule_state_, state_, inner_state_;  ///< empty before the first message
   double first_step_ = 0, last_step_ = 0;
   bool is_outdated_ = false;
-  std::string told_;  ///< by the last check
-  Sayer sayer_;
+  std::string last_warning_;  ///< of the last check
+  WarningLimiter limiter_;
 
   std_msgs::Float64MultiArray command_;
   nav_msgs::Odometry reference_;
@@ -177,7 +179,7 @@ void run() {
   send_without_delay();
   while (ros::ok()) {
     ControllerSettings settings = read_controller_settings(nh);
-    ROS_INFO("law %s commands %s", settings.setup.gains.law.c_str(),
+    ROS_INFO("controller %s commands %s", settings.setup.gains.law.c_str(),
              settings.command_topic.c_str());
     const ControllerNode node(nh, std::move(settings));
     while (ros::ok() && !node.is_outdated()) {

@@ -11,7 +11,7 @@ namespace {
 constexpr const char* reference_file = "libreference_plugin.so";
 constexpr const char* reference_topic = "reference";
 
-std::vector<PluginTag> reference_tags_of(PrivateParameters& own) {
+std::vector<PluginTag> read_reference_tags(PrivateParameters& own) {
   own.know("reference");
   PrivateParameters below("~reference");
   if (below.any()) {
@@ -24,31 +24,32 @@ std::vector<PluginTag> reference_tags_of(PrivateParameters& own) {
   return {{"shape", shape, "parameter ~reference"}};
 }
 
-const LoadedPlugin* writer_of(const Simulation& simulation, const std::string& topic) {
+const LoadedPlugin* find_writer(const Simulation& simulation, const std::string& topic) {
   const int index = simulation.topics().find(topic);
   if (index < 0) return nullptr;
   const int writer = simulation.topics()[static_cast<std::size_t>(index)].writer;
   return writer == the_caller ? nullptr : &simulation.plugins()[static_cast<std::size_t>(writer)];
 }
 
-/// Calls per second: a law cannot be called more often than it is told something.
-double rate_of(const control::Gains& gains, const Parameters& parameters, const Simulation& plant) {
-  const LoadedPlugin* const odometry = writer_of(plant, OdometryTopic::name);
+/// Returns the calls per second, which cannot exceed the rate of the odometry.
+double choose_rate(const control::Gains& gains, const Parameters& parameters,
+                   const Simulation& plant) {
+  const LoadedPlugin* const odometry = find_writer(plant, OdometryTopic::name);
   if (!odometry) {
     throw InputError(
-        "no plugin of the model publishes odometry on topic odom; add "
-        "libodometry_plugin.so");
+        "No plugin of the model publishes odometry on topic odom. Add "
+        "libodometry_plugin.so.");
   }
   for (const Parameter& parameter : odometry->parameters.all()) {
     if (parameter.spec.name != "rate") continue;
     const double sent = odometry->parameters.number("rate");
     if (sent >= gains.rate || sent * plant.dt() >= 1) break;
     if (parameters.has("rate") || parameters.has("gains")) {
-      throw InputError("parameter ~rate: odometry comes " + parameter.text +
-                       " times a second; give that at most, or let plugin '" + odometry->name +
-                       "' send more");
+      throw InputError("parameter ~rate: odometry arrives " + parameter.text +
+                       " times a second. Give at most this rate, or increase that of plugin '" +
+                       odometry->name + "'.");
     }
-    ROS_INFO("the law is called as often as odometry comes, %g times a second", sent);
+    ROS_INFO("the controller is called at the rate of the odometry, %g times a second", sent);
     return sent;
   }
   return gains.rate;
@@ -58,12 +59,12 @@ double rate_of(const control::Gains& gains, const Parameters& parameters, const 
 
 ControllerSettings read_controller_settings(const ros::NodeHandle& nh) {
   PrivateParameters own;
-  // As plugins of the model, they are checked as those are.
+  // Added as plugins of the model, they get the same checks.
   const std::string name = "controller_node";
   std::vector<PluginElement> guests = {{name, "libcontroller_plugin.so",
                                         own.tags(control::ControllerSetup::tags()),
                                         "controller_node"}};
-  const std::vector<PluginTag> reference = reference_tags_of(own);
+  const std::vector<PluginTag> reference = read_reference_tags(own);
   if (!reference.empty()) {
     guests.push_back({name + "_reference", reference_file, reference, "parameter ~reference"});
   }
@@ -77,21 +78,21 @@ ControllerSettings read_controller_settings(const ros::NodeHandle& nh) {
   read_description(nh, plant);
   Simulation simulation =
       make_simulation(plant, read_world_of(plant), [&guests](const Model&) { return guests; });
-  const LoadedPlugin* const shape = writer_of(simulation, reference_topic);
-  const LoadedPlugin* const controller = writer_of(simulation, Simulation::command_topic);
+  const LoadedPlugin* const shape = find_writer(simulation, reference_topic);
+  const LoadedPlugin* const controller = find_writer(simulation, Simulation::command_topic);
   ControllerSettings settings{control::ControllerSetup(controller->parameters),
                               nullptr,
                               velocity_timeout,
                               simulation.describe_vehicle(),
                               simulation.dt(),
                               flown.flag("lockstep", false),
-                              command_topic(nh, plant, simulation.model()),
+                              resolve_command_topic(nh, plant, simulation.model()),
                               watch};
   if (shape && shape->filename == reference_file) {
     settings.reference = control::reference_of(shape->parameters, simulation.model());
   }
   control::Gains& gains = settings.setup.gains;
-  gains.rate = rate_of(gains, controller->parameters, simulation);
+  gains.rate = choose_rate(gains, controller->parameters, simulation);
   return settings;
 }
 

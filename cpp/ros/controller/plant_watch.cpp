@@ -6,15 +6,15 @@
 
 namespace quadcore::node {
 
-PlantWatch::PlantWatch(std::string node) : node_(std::move(node)), first_(told()) {}
+PlantWatch::PlantWatch(std::string node) : node_(std::move(node)), first_(read_parameters()) {}
 
 bool PlantWatch::has_changed() const {
-  const std::string now = told();
+  const std::string now = read_parameters();
   return !now.empty() && now != first_;
 }
 
-/// Parameters of the node and its model, as text.
-std::string PlantWatch::told() const {
+/// Reads the parameters of the node and its model, as text.
+std::string PlantWatch::read_parameters() const {
   std::string all;
   XmlRpc::XmlRpcValue value;
   if (ros::param::get(node_, value)) all += value.toXml();

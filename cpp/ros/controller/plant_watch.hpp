@@ -4,17 +4,17 @@
 
 namespace quadcore::node {
 
-/// Whether a plant is still the one that was read: it may be started later, or anew.
+/// Detects changes of a plant's parameters, for example after a restart.
 class PlantWatch {
  public:
-  /// \param node  that flies it
+  /// \param node  node of the plant
   explicit PlantWatch(std::string node);
 
-  /// Asks the master. What cannot be asked for has not changed.
+  /// Asks the master. Without an answer, the plant counts as unchanged.
   bool has_changed() const;
 
  private:
-  std::string told() const;
+  std::string read_parameters() const;
 
   std::string node_, first_;
 };

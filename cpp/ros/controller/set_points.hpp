@@ -10,17 +10,16 @@
 #include <string>
 #include <vector>
 
-#include "guide.hpp"
-#include "sayer.hpp"
+#include "active_aim.hpp"
+#include "warning_limiter.hpp"
 
 namespace quadcore::node {
 
-/// Takes what a vehicle is asked for on topics `command/...`. A message that makes no sense is
-/// refused and reported.
+/// Receives set points on topics `command/...`. Invalid messages are rejected and reported.
 class SetPoints {
  public:
-  /// \param velocity_timeout  after which a velocity without another one ends in a hover [s]
-  SetPoints(ros::NodeHandle& nh, double velocity_timeout, Guide& guide);
+  /// \param velocity_timeout  time after which a velocity ends in a hover [s]
+  SetPoints(ros::NodeHandle& nh, double velocity_timeout, ActiveAim& active_aim);
 
  private:
   template <class Message>
@@ -34,8 +33,8 @@ class SetPoints {
   void rates(const RateThrust& message);
 
   double velocity_timeout_;
-  Guide& guide_;
-  Sayer sayer_;
+  ActiveAim& active_aim_;
+  WarningLimiter limiter_;
   std::vector<ros::Subscriber> subscribers_;
 };
 

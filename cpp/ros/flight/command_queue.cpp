@@ -10,20 +10,20 @@
 namespace quadcore::node {
 
 void CommandQueue::take(const Command& command) {
-  if (width_ == 0) throw InputError("the model takes no commands; add libmotorpid_plugin.so");
+  if (width_ == 0) throw InputError("The model takes no commands. Add libmotorpid_plugin.so.");
   check_command(command.speeds.data(), command.speeds.size(), width_, Simulation::max_rate);
   if (!lockstep_ || (owed_ == 0 && awaited_)) {
     awaited_ = false;
-    fly(command);
+    set_next(command);
   } else if (owed_ > 0) {
     --owed_;
     if (awaited_) set_aside_ = command;
-  } else if (waiting_.size() < most_waiting) {
+  } else if (waiting_.size() < max_waiting) {
     waiting_.push_back(command);
   } else {
-    throw InputError("lockstep: " + std::to_string(most_waiting) +
-                     " commands wait for their odometry already, and one more is dropped; send "
-                     "one for each message");
+    throw InputError("lockstep: " + std::to_string(max_waiting) +
+                     " commands already wait for odometry, and one more is dropped. Send one "
+                     "command for each message.");
   }
   ++taken_;
 }
@@ -33,7 +33,7 @@ void CommandQueue::message_sent() {
   set_aside_.reset();
   awaited_ = waiting_.empty();
   if (awaited_) return;
-  fly(std::move(waiting_.front()));
+  set_next(std::move(waiting_.front()));
   waiting_.pop_front();
 }
 
@@ -52,14 +52,14 @@ bool CommandQueue::settle() {
   if (!set_aside_) return false;
   owed_ = 0;
   awaited_ = false;
-  fly(std::move(*set_aside_));
+  set_next(std::move(*set_aside_));
   set_aside_.reset();
   return true;
 }
 
 void CommandQueue::begin() {
   begun_ = false;
-  if (lockstep_) give_up();  // what is on its way answers the state before
+  if (lockstep_) give_up();  // commands on their way answer the previous state
 }
 
 void CommandQueue::forget() {
@@ -71,7 +71,7 @@ std::optional<CommandQueue::Command> CommandQueue::next() {
   return std::exchange(next_, std::nullopt);
 }
 
-void CommandQueue::fly(Command command) {
+void CommandQueue::set_next(Command command) {
   next_ = std::move(command);
   begun_ = true;
 }

@@ -7,31 +7,30 @@
 #include "quadcore/plugin/error.hpp"
 
 /// \file
-/// What the flight's own thread does.
+/// The flight's own thread.
 
 namespace quadcore::node {
 namespace {
 
-/// The longest sleep, so that a slow simulation still hears at once what is asked of it.
+/// Maximum sleep, so that a slow simulation still responds quickly.
 constexpr auto longest_sleep = std::chrono::milliseconds(20);
-/// After this a connection that this side has is one that the other side has, too, on a busy
-/// machine as well.
+/// After this time, both sides have a new connection, also on a busy machine.
 constexpr auto time_to_connect = std::chrono::milliseconds(300);
-/// How long nobody may be there to send commands before it is said, and said again.
+/// Time without a commanding node before each reminder.
 constexpr auto time_between_reminders = std::chrono::seconds(5);
-/// No controller takes so long for its first answer: it must have been lost.
+/// After this time, the first answer counts as lost.
 constexpr auto time_to_begin = std::chrono::seconds(10);
-/// Part of a step by which two clocks may differ in rounding.
+/// Rounding difference of two clocks, as a part of a step.
 constexpr double rounding = 1e-3;
 
-/// In a catch block: why what was to be observed was not.
-std::string cannot_be_sent(const Simulation& simulation) {
+/// Call in a catch block. Describes why a state was not sent.
+std::string describe_send_failure(const Simulation& simulation) {
   char text[100];
-  std::snprintf(text, sizeof text, "the state of t = %g s cannot be sent: ", simulation.time());
+  std::snprintf(text, sizeof text, "cannot send the state at t = %g s: ", simulation.time());
   return text + what_was_thrown();
 }
 
-void fly_command(const CommandQueue::Command& command, Simulation& simulation) {
+void apply_command(const CommandQueue::Command& command, Simulation& simulation) {
   const std::vector<double>& speeds = command.speeds;
   if (command.topic == Simulation::command_topic) {
     simulation.command(speeds.data(), speeds.size());
@@ -42,8 +41,8 @@ void fly_command(const CommandQueue::Command& command, Simulation& simulation) {
 
 }  // namespace
 
-void FlightThread::fly() {
-  // The kernel may delay a sleeping thread by 50 us to save wake-ups; here they are the work.
+void FlightThread::run() {
+  // By default, the kernel may delay a sleeping thread by 50 us to save wake-ups.
   prctl(PR_SET_TIMERSLACK, 1000UL);
   if (!settings_.follows_clock) {
     Lock lock(mutex_);
@@ -52,19 +51,19 @@ void FlightThread::fly() {
   while (wait_until_due()) take_step();
 }
 
-/// Lets others in while `action` runs; a failure of it ends the flight, not the node.
+/// Releases the lock while `action` runs. A failure ends the flight, not the node.
 template <class Action>
 void FlightThread::unlocked(Lock& lock, const Action& action) {
   lock.unlock();
   try {
     action();
   } catch (...) {
-    fail(cannot_be_sent(simulation_));
+    fail(describe_send_failure(simulation_));
   }
   lock.lock();
 }
 
-/// Waits until the next step may begin; false at the end.
+/// Waits until the next step may begin. Returns false at the end.
 bool FlightThread::wait_until_due() {
   Lock lock(mutex_);
   for (;;) {
@@ -80,7 +79,7 @@ bool FlightThread::wait_until_due() {
       pacer_.restart();
     } else if (settings_.lockstep && !jump_observed_) {
       wait_for_commander(lock);
-    } else if (settings_.lockstep && commands_.awaited()) {
+    } else if (settings_.lockstep && commands_.is_awaited()) {
       wait_for_command(lock);
     } else if (settings_.follows_clock) {
       if (clock_ && step_end <= *clock_) return true;
@@ -104,8 +103,8 @@ void FlightThread::wait_for_pace(Lock& lock) {
   lock.lock();
 }
 
-/// Waits for a condition that a notice may bring about. Returns whether it holds. Not
-/// changed_.wait_for alone: before GCC 10 a jump of the wall clock would make a command late.
+/// Waits for a condition, and returns whether it holds. It does not use changed_.wait_for alone,
+/// because before GCC 10 a jump of the wall clock would make a command late.
 template <class Condition>
 bool FlightThread::wait(Lock& lock, std::chrono::duration<double> patience,
                         const Condition& condition) {
@@ -118,8 +117,8 @@ bool FlightThread::wait(Lock& lock, std::chrono::duration<double> patience,
   return true;
 }
 
-/// Brings the simulation to the clock's time: at the start, after a pause, and if the clock was set
-/// back. Of a flight under way only the time changes, so no bit of the motion does.
+/// Sets the simulation to the clock's time: at the start, after a pause, and if the clock was set
+/// back. During a flight, only the time changes, and the motion stays bit-identical.
 void FlightThread::join_clock(Lock& lock) {
   joined_ = true;
   const double time = *clock_;
@@ -129,7 +128,7 @@ void FlightThread::join_clock(Lock& lock) {
     if (starts) {
       VehicleState start = simulation_.state();
       start.time = time;
-      simulation_.set_state(start);  // sensors begin with it
+      simulation_.set_state(start);  // sensors start at this time
       observe_jump();
     } else {
       Snapshot snapshot = simulation_.snapshot();
@@ -139,15 +138,15 @@ void FlightThread::join_clock(Lock& lock) {
   });
 }
 
-/// Observes the start or a jump; in lockstep only once someone can answer. A controller that is
-/// still connecting would see the odometry, but its answer would be lost, and both would wait.
+/// Observes the start or a jump; in lockstep only when a node can answer. A controller that is
+/// still connecting might get the odometry while its answer is lost, and both would wait.
 void FlightThread::observe_jump() {
   const bool observe = !settings_.lockstep || listener_.has_commander();
   {
     const Lock lock(mutex_);
     commands_.begin();
     jump_observed_ = observe;
-    if (observe && asked() > 0) commands_.message_sent();
+    if (observe && count_odometry() > 0) commands_.message_sent();
   }
   if (observe) {
     listener_.observe(simulation_, true);
@@ -157,51 +156,51 @@ void FlightThread::observe_jump() {
 }
 
 void FlightThread::wait_for_commander(Lock& lock) {
-  const auto is_disturbed = [this] { return disturbed(); };
+  const auto must_stop = [this] { return is_interrupted(); };
   const Pacer::Clock::time_point now = Pacer::Clock::now();
   if (listener_.has_commander()) {
     reminded_.reset();
-    if (!wait(lock, time_to_connect, is_disturbed)) unlocked(lock, [this] { observe_jump(); });
+    if (!wait(lock, time_to_connect, must_stop)) unlocked(lock, [this] { observe_jump(); });
   } else if (!reminded_) {
     reminded_ = now;
   } else if (now - *reminded_ > time_between_reminders) {
     reminded_ = now;
     unlocked(lock, [this] { listener_.remind(simulation_); });
   } else {
-    wait(lock, longest_sleep, is_disturbed);
+    wait(lock, longest_sleep, must_stop);
   }
 }
 
 void FlightThread::wait_for_command(Lock& lock) {
-  const bool may_begin_late = !commands_.begun() && !commands_.unsettled();
+  const bool may_begin_late = !commands_.has_begun() && !commands_.is_unsettled();
   const std::chrono::duration<double> timeout(settings_.lockstep_timeout);
-  const std::int64_t taken = commands_.taken();
-  // Each command gives the controller the whole time for the next one.
-  const auto has_news = [&] { return commands_.taken() != taken || disturbed(); };
+  const std::int64_t taken = commands_.taken_count();
+  // After each command, the controller has the full timeout for the next one.
+  const auto has_news = [&] { return commands_.taken_count() != taken || is_interrupted(); };
   if (!wait(lock, may_begin_late ? time_to_begin : timeout, has_news) && !commands_.settle()) {
-    if (commands_.begun()) {
+    if (commands_.has_begun()) {
       commands_.give_up_late();
       char text[120];
       std::snprintf(text, sizeof text,
-                    "lockstep: no command within %g s after the odometry of t = %g s; the last "
-                    "one is kept",
+                    "lockstep: no command within %g s after the odometry of t = %g s. The last "
+                    "command is kept.",
                     settings_.lockstep_timeout, report_.time);
       unlocked(lock, [&] { listener_.warn(text); });
     } else {
       commands_.give_up();
       commands_.message_sent();
       unlocked(lock, [this] {
-        listener_.warn("lockstep: still no first command; the odometry is sent again");
+        listener_.warn("lockstep: no first command yet. The odometry is sent again.");
         listener_.repeat(simulation_);
       });
     }
   }
-  // A wait for the controller is not made up for by rushing.
+  // The flight does not catch up after a wait for the controller.
   if (pacer_.due() < Pacer::Clock::now()) pacer_.restart();
 }
 
 void FlightThread::run_changes(Lock& lock) {
-  if (clock_ && !may_step()) join_clock(lock);  // what stands has fallen behind
+  if (clock_ && !may_step()) join_clock(lock);  // a paused flight is behind the clock
   while (!changes_.empty()) {
     std::packaged_task<void()> change = std::move(changes_.front());
     changes_.pop_front();
@@ -221,7 +220,7 @@ void FlightThread::take_step() {
   if (steps_allowed_ == 0) changed_.notify_all();
 }
 
-/// Returns what went wrong; "" = nothing.
+/// Returns the error; "" = no error.
 std::string FlightThread::try_step() {
   std::optional<CommandQueue::Command> command;
   {
@@ -230,25 +229,25 @@ std::string FlightThread::try_step() {
     command = commands_.next();
   }
   try {
-    if (command) fly_command(*command, simulation_);
-  } catch (const InputError& error) {  // a plugin commands: it goes on
+    if (command) apply_command(*command, simulation_);
+  } catch (const InputError& error) {  // a plugin commands the rotors: the flight continues
     listener_.warn(error.what());
   }
-  const double asked_before = asked();
+  const double count_before = count_odometry();
   try {
     listener_.feed(simulation_);
     simulation_.step();
   } catch (...) {
     return what_was_thrown();
   }
-  if (asked() != asked_before) {
+  if (count_odometry() != count_before) {
     const Lock lock(mutex_);
-    commands_.message_sent();  // before it goes out: its answer may come at once
+    commands_.message_sent();  // before it is sent, because its answer may come at once
   }
   try {
     listener_.observe(simulation_, false);
   } catch (...) {
-    return cannot_be_sent(simulation_);
+    return describe_send_failure(simulation_);
   }
   return "";
 }
@@ -261,7 +260,7 @@ void FlightThread::fail(const std::string& why) {
     steps_allowed_ = 0;
     changed_.notify_all();
   }
-  listener_.warn(why + "; reset or set a state to go on");
+  listener_.warn(why + "; reset or set a state to continue");
 }
 
 }  // namespace quadcore::node

@@ -5,7 +5,7 @@
 namespace quadcore::node {
 namespace {
 
-/// Numbers of a command; 0 = the model takes none.
+/// Returns the numbers of a command; 0 = the model takes no commands.
 std::size_t command_width(const Simulation& simulation) {
   return simulation.topics().find(Simulation::command_topic) < 0 ? 0 : simulation.command_width();
 }
@@ -24,17 +24,17 @@ FlightThread::FlightThread(Simulation& simulation, const FlightSettings& setting
       pacer_(simulation.dt(), settings.follows_clock ? 0 : settings.real_time_factor) {
   if (settings.lockstep && !(simulation.takes_commands() && answered_ >= 0)) {
     throw InputError(
-        "lockstep needs a model that takes commands on topic vel_cmd and sends odometry on topic " +
+        "lockstep needs a model with commands on topic vel_cmd and odometry on topic " +
         settings.answered +
-        "; add libmotorpid_plugin.so and libodometry_plugin.so, or leave lockstep off");
+        ". Add libmotorpid_plugin.so and libodometry_plugin.so, or run without lockstep.");
   }
   report_.time = simulation.time();
-  thread_ = std::thread(&FlightThread::fly, this);
+  thread_ = std::thread(&FlightThread::run, this);
 }
 
 FlightThread::~FlightThread() { end(); }
 
-double FlightThread::asked() const {
+double FlightThread::count_odometry() const {
   return answered_ < 0 ? 0 : simulation_.topics()[static_cast<std::size_t>(answered_)].count;
 }
 
@@ -55,7 +55,7 @@ void FlightThread::command(const CommandQueue::Command& command) {
 
 void FlightThread::set_paused(bool paused) {
   const Lock lock(mutex_);
-  if (paused_ && !paused) joined_ = false;  // the clock that is followed has gone on
+  if (paused_ && !paused) joined_ = false;  // the followed clock has continued
   paused_ = paused;
   steps_allowed_ = 0;
   changed_.notify_all();
@@ -83,23 +83,23 @@ void FlightThread::hold(double time) {
 
 void FlightThread::step(std::int64_t n) {
   if (settings_.follows_clock) {
-    throw InputError("this vehicle follows /clock; step the node that leads it");
+    throw InputError("This vehicle follows /clock. Step the node that leads it.");
   }
   const Lock one_at_a_time(stepping_, std::try_to_lock);
-  if (!one_at_a_time) throw InputError("another step is under way; wait for it or pause");
+  if (!one_at_a_time) throw InputError("Another step is running. Wait for it, or pause.");
   Lock lock(mutex_);
-  paused_ = true;  // as Gazebo does, rather than refuse
+  paused_ = true;  // like Gazebo, instead of an error
   const std::int64_t goal = report_.steps + n;
   if (failure_.empty()) steps_allowed_ = n;
   changed_.notify_all();
   changed_.wait(lock, [this] { return steps_allowed_ == 0 || ending_; });
   if (!failure_.empty()) throw FlightError(report_.time, failure_);
   if (report_.steps >= goal) return;
-  throw InputError("stopped with " + std::to_string(goal - report_.steps) + " steps to go");
+  throw InputError("Stopped " + std::to_string(goal - report_.steps) + " steps before the end.");
 }
 
-void FlightThread::tell(const std::function<void(Simulation&)>& change) {
-  between_steps([&] { change(simulation_); });
+void FlightThread::run_between_steps(const std::function<void(Simulation&)>& change) {
+  run_in_flight([&] { change(simulation_); });
 }
 
 void FlightThread::change(const std::function<void(Simulation&)>& change) { jump(change, false); }
@@ -107,7 +107,7 @@ void FlightThread::change(const std::function<void(Simulation&)>& change) { jump
 void FlightThread::reset(const std::function<void(Simulation&)>& change) { jump(change, true); }
 
 void FlightThread::jump(const std::function<void(Simulation&)>& change, bool forget_commands) {
-  between_steps([&] {
+  run_in_flight([&] {
     change(simulation_);
     {
       const Lock lock(mutex_);
@@ -119,12 +119,12 @@ void FlightThread::jump(const std::function<void(Simulation&)>& change, bool for
   });
 }
 
-void FlightThread::between_steps(const std::function<void()>& action) {
+void FlightThread::run_in_flight(const std::function<void()>& action) {
   std::packaged_task<void()> task(action);
   std::future<void> done = task.get_future();
   {
     const Lock lock(mutex_);
-    if (ending_) throw InputError("the node is ending");
+    if (ending_) throw InputError("The node is shutting down.");
     changes_.push_back(std::move(task));
     changed_.notify_all();
   }
@@ -136,12 +136,12 @@ FlightReport FlightThread::report() const {
   FlightReport report = report_;
   const bool sets_the_pace = !settings_.lockstep && !settings_.follows_clock;
   report.real_time_factor = sets_the_pace ? real_time_factor_ : 0;
-  report.commands = commands_.taken();
-  report.waiting_commands = commands_.waiting();
-  report.late_commands = commands_.late();
+  report.commands = commands_.taken_count();
+  report.waiting_commands = commands_.waiting_count();
+  report.late_commands = commands_.late_count();
   report.paused = paused_;
   report.waits_for_clock = settings_.follows_clock && !clock_;
-  report.waits_for_command = settings_.lockstep && !commands_.begun() && may_step();
+  report.waits_for_command = settings_.lockstep && !commands_.has_begun() && may_step();
   report.failure = failure_;
   return report;
 }

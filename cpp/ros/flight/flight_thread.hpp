@@ -21,51 +21,51 @@ namespace quadcore::node {
 
 struct FlightSettings {
   double real_time_factor = 1;  ///< simulated seconds per second; 0 = as fast as possible
-  bool follows_clock = false;   ///< steps are due by clock() instead
-  bool paused = false;          ///< at the start
+  bool follows_clock = false;   ///< clock() determines when steps are due
+  bool paused = false;          ///< whether the flight starts paused
   bool lockstep = false;        ///< wait for one command per odometry message
-  double lockstep_timeout = 1;  ///< s; a command later than this is done without
+  double lockstep_timeout = 1;  ///< time to wait for a command [s]
   std::string answered = OdometryTopic::name;  ///< topic of the simulation that commands answer
 };
 
-/// Follows a flight. All calls come from the flight's own thread, which holds no lock then.
+/// Receives the events of a flight. The flight's thread makes all calls without holding a lock.
 class FlightListener {
  public:
   virtual ~FlightListener() = default;
-  /// A step is about to begin: what has come for the plugins may be published.
+  /// Called before a step: publishes received messages for the plugins.
   virtual void feed(Simulation& simulation) = 0;
-  /// The simulation has made a step or, `jumped`, was reset or given a state.
+  /// Called after a step or, with `jumped`, after a reset or a new state.
   virtual void observe(const Simulation& simulation, bool jumped) = 0;
-  /// The simulation waits at its start or at a jump for someone who can answer; it will be observed
-  /// then. Until then it may be looked at.
+  /// Called while the simulation waits at its start or after a jump for a node that can answer. It
+  /// is observed later; until then, this shows it.
   virtual void show(const Simulation& simulation) = 0;
-  /// For seconds nobody has come who can answer. Nodes that wait for odometry may be given one
-  /// message, which counts as none that a command answers.
+  /// Called if no node has connected for seconds. Nodes that wait for odometry may get one message,
+  /// which needs no answer.
   virtual void remind(const Simulation& simulation) = 0;
-  /// What was observed last is to be sent once more.
+  /// Sends the last observation again.
   virtual void repeat(const Simulation& simulation) = 0;
   virtual void warn(const std::string& what) = 0;
-  /// Whether anyone is there to send commands.
+  /// Whether a node is connected that can send commands.
   virtual bool has_commander() const = 0;
 };
 
-/// What has happened so far.
+/// Counts and state of a flight.
 struct FlightReport {
-  double time = 0;              ///< of the simulation [s]
-  double real_time_factor = 0;  ///< asked for; 0 = none: no limit, or others set the pace
+  double time = 0;              ///< simulation time [s]
+  double real_time_factor = 0;  ///< requested factor; 0 = no limit, or another node sets the pace
   std::int64_t steps = 0;
   std::int64_t commands = 0;         ///< accepted
-  std::size_t waiting_commands = 0;  ///< accepted, in lockstep, for messages to come
-  std::int64_t late_commands = 0;    ///< odometry messages not answered before the next one
+  std::size_t waiting_commands = 0;  ///< accepted, in lockstep, for future messages
+  std::int64_t late_commands = 0;    ///< odometry messages without an answer before the next one
   std::int64_t overruns = 0;         ///< steps that began more than one period late
   bool paused = false;
-  bool waits_for_clock = false;    ///< of somebody else, who has sent none yet
-  bool waits_for_command = false;  ///< in lockstep, the first since the start or the last jump
-  std::string failure;             ///< why the flight has ended; "" while it goes on
+  bool waits_for_clock = false;    ///< of another node that has not published it
+  bool waits_for_command = false;  ///< in lockstep, for the first since the start or the last jump
+  std::string failure;             ///< reason of the end; "" during the flight
 };
 
-/// Flies a simulation in a thread of its own. Every public member may be called from any thread;
-/// only the flight's own thread touches the simulation.
+/// Runs a simulation in its own thread. Every public member may be called from any thread; only the
+/// flight's thread accesses the simulation.
 class FlightThread {
  public:
   FlightThread(Simulation& simulation, const FlightSettings& settings, FlightListener& listener);
@@ -73,36 +73,38 @@ class FlightThread {
   FlightThread(const FlightThread&) = delete;
   FlightThread& operator=(const FlightThread&) = delete;
 
-  /// Rotor speeds for the next step and all later ones, in lockstep for those after the message
-  /// they answer. Throws what CommandQueue::take() throws; the last good command stays.
+  /// Sets the rotor speeds for the next step and all later ones, in lockstep for those after the
+  /// message that they answer. Throws like CommandQueue::take(); the last valid command then
+  /// remains.
   void command(const CommandQueue::Command& command);
-  /// Of a flight that follows the clock: its vehicle stands still, and goes on at the clock's time.
+  /// Pauses or resumes. A flight that follows a clock resumes at the clock's time.
   void set_paused(bool paused);
   void set_real_time_factor(double factor);
-  /// The clock that is followed has come to this time.
+  /// Sets the time of the followed clock.
   void clock(double time);
-  /// No step may begin later than this; for one who leads the clock of others.
+  /// Lets no step begin after this time, for a leader of the clock.
   void hold(double time);
-  /// Pauses, flies n steps and returns once the last is observed. Throws InputError if stopped
-  /// short, while another call steps or if the flight follows a clock, FlightError if it fails.
+  /// Pauses, makes n steps and returns after the last is observed. Throws InputError if it is
+  /// interrupted, if another call steps, or if the flight follows a clock. Throws FlightError if
+  /// the flight fails.
   void step(std::int64_t n);
-  /// Runs `change` between two steps; it leaves the motion as it is. Rethrows what it throws.
-  void tell(const std::function<void(Simulation&)>& change);
-  /// Runs `change` between two steps and returns once the result is observed. Rethrows what it
-  /// throws.
+  /// Runs `change` between two steps; it must not change the motion. Rethrows its exceptions.
+  void run_between_steps(const std::function<void(Simulation&)>& change);
+  /// Runs `change` between two steps and returns after the result is observed. Rethrows its
+  /// exceptions.
   void change(const std::function<void(Simulation&)>& change);
-  /// The same; besides, commands that have not been flown yet are forgotten.
+  /// Does the same, and discards waiting commands.
   void reset(const std::function<void(Simulation&)>& change);
   FlightReport report() const;
-  /// Ends the flight; callers that still wait for a step or a change are told so. To be called by
-  /// the owner alone.
+  /// Ends the flight; callers that wait for a step or a change get an error. Only the owner calls
+  /// it.
   void end();
 
  private:
   using Lock = std::unique_lock<std::mutex>;
 
-  // In flight_loop.cpp: the flight's own thread.
-  void fly();
+  // In flight_loop.cpp: the flight's thread.
+  void run();
   bool wait_until_due();
   void wait_for_pace(Lock& lock);
   void join_clock(Lock& lock);
@@ -118,30 +120,30 @@ class FlightThread {
   template <class Condition>
   bool wait(Lock& lock, std::chrono::duration<double> patience, const Condition& condition);
 
-  void between_steps(const std::function<void()>& action);
+  void run_in_flight(const std::function<void()>& action);
   void jump(const std::function<void(Simulation&)>& change, bool forget_commands);
   bool may_step() const { return failure_.empty() && (!paused_ || steps_allowed_ > 0); }
-  /// Messages so far that a command is to answer.
-  double asked() const;
-  bool disturbed() const { return ending_ || !changes_.empty() || !may_step(); }
+  /// Number of messages so far that need a command.
+  double count_odometry() const;
+  bool is_interrupted() const { return ending_ || !changes_.empty() || !may_step(); }
 
   Simulation& simulation_;
   const FlightSettings settings_;
   FlightListener& listener_;
   const int answered_;  ///< topic, or -1
 
-  mutable std::mutex mutex_;  // guards what follows
+  mutable std::mutex mutex_;  // guards the following members
   std::condition_variable changed_;
   bool ending_ = false;
   bool paused_;
-  std::int64_t steps_allowed_ = 0;  ///< by step(), while paused
+  std::int64_t steps_allowed_ = 0;  ///< by step(), during a pause
   std::deque<std::packaged_task<void()>> changes_;
   CommandQueue commands_;
-  bool jump_observed_ = false;  ///< the present start or jump has been observed
-  /// When somebody who can answer was last seen, or others were last reminded that nobody is there.
+  bool jump_observed_ = false;  ///< the last start or jump has been observed
+  /// Time at which a commanding node was last connected, or of the last reminder.
   std::optional<Pacer::Clock::time_point> reminded_;
-  std::optional<double> clock_;  ///< of somebody else [s]
-  bool joined_ = false;          ///< the simulation goes by clock_
+  std::optional<double> clock_;  ///< time of the followed clock [s]
+  bool joined_ = false;          ///< the simulation follows clock_
   double hold_ = std::numeric_limits<double>::infinity();
   double real_time_factor_;
   Pacer pacer_;

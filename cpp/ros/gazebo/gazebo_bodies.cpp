@@ -7,8 +7,8 @@
 namespace quadcore::node {
 namespace {
 
-/// Of what is fixed to a body: place and attitude in it.
-BodyMotion carried(const BodyMotion& body, const Vector3d& place, const Quaterniond& turn) {
+/// Returns the motion of a point fixed to a body, with its position and attitude there.
+BodyMotion attach(const BodyMotion& body, const Vector3d& place, const Quaterniond& turn) {
   BodyMotion motion = body;
   const Vector3d arm = body.orientation * place;
   motion.position += arm;
@@ -19,7 +19,7 @@ BodyMotion carried(const BodyMotion& body, const Vector3d& place, const Quaterni
 
 }  // namespace
 
-std::vector<BodyMotion> body_motions(const Simulation& simulation) {
+std::vector<BodyMotion> compute_body_motions(const Simulation& simulation) {
   const VehicleState& state = simulation.state();
   const Model& model = simulation.model();
   std::vector<BodyMotion> bodies = {{state.position, state.orientation, state.linear_velocity,
@@ -29,19 +29,19 @@ std::vector<BodyMotion> body_motions(const Simulation& simulation) {
     const auto row = static_cast<Eigen::Index>(i);
     const Quaterniond turn =
         joint.pose.rotation() * Quaterniond(Eigen::AngleAxisd(state.rotor_angle[row], joint.axis));
-    BodyMotion body = carried(bodies[joint.parent], joint.pose.xyz, turn);
+    BodyMotion body = attach(bodies[joint.parent], joint.pose.xyz, turn);
     body.angular_velocity += state.rotor_velocity[row] * (body.orientation * joint.axis);
     bodies.push_back(body);
   }
   return bodies;
 }
 
-BodyMotion motion_of(const Simulation& simulation, const std::string& model,
-                     const std::string& entity) {
+BodyMotion find_motion(const Simulation& simulation, const std::string& model,
+                       const std::string& entity) {
   const std::string ground = "ground_plane";
   if (entity.empty() || entity == "world" || entity == "map") return {};
   if (simulation.world().ground_plane && entity.rfind(ground, 0) == 0) return {};
-  const std::vector<BodyMotion> bodies = body_motions(simulation);
+  const std::vector<BodyMotion> bodies = compute_body_motions(simulation);
   if (entity == model) return bodies.front();
   const std::string scope = model + "::";
   const std::string link = entity.rfind(scope, 0) == 0 ? entity.substr(scope.size()) : entity;
@@ -49,13 +49,14 @@ BodyMotion motion_of(const Simulation& simulation, const std::string& model,
   if (body == simulation.model().body_of_link.end()) {
     std::vector<std::string> names = {model};
     for (const auto& known : simulation.model().body_of_link) names.push_back(scope + known.first);
-    throw InputError("'" + entity + "' does not exist; there are world, " + joined(names));
+    throw InputError("'" + entity + "' does not exist. Choose one of world, " + joined(names) +
+                     ".");
   }
   const Pose& place = simulation.model().pose_of_link.at(link);
-  return carried(bodies[body->second], place.xyz, place.rotation());
+  return attach(bodies[body->second], place.xyz, place.rotation());
 }
 
-BodyMotion seen_from(const BodyMotion& other, const BodyMotion& body) {
+BodyMotion express_in(const BodyMotion& other, const BodyMotion& body) {
   const Quaterniond back = other.orientation.conjugate();
   return {back * (body.position - other.position), back * body.orientation,
           back * (body.linear_velocity - other.linear_velocity),

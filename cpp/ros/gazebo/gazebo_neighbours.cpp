@@ -18,58 +18,58 @@ void add(const States& more, States& states) {
 
 }  // namespace
 
-void GazeboNeighbours::look(const std::vector<std::string>& spaces, bool listen) {
-  std::map<std::string, Told> gone;  // subscribers end without the lock that their callbacks take
+void GazeboNeighbours::update(const std::vector<std::string>& spaces, bool listen) {
+  std::map<std::string, Neighbour> gone;  // destroyed without the lock that their callbacks take
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     spaces_ = spaces;
     if (!listen) complete_ = false;
-    for (auto told = told_.begin(); told != told_.end();) {
-      const auto next = std::next(told);
-      const bool stays = std::count(spaces.begin(), spaces.end(), told->first) > 0;
-      if (!stays || !listen) gone.insert(told_.extract(told));
-      told = next;
+    for (auto neighbour = neighbours_.begin(); neighbour != neighbours_.end();) {
+      const auto next = std::next(neighbour);
+      const bool stays = std::count(spaces.begin(), spaces.end(), neighbour->first) > 0;
+      if (!stays || !listen) gone.insert(neighbours_.extract(neighbour));
+      neighbour = next;
     }
   }
   if (!listen) return;
   for (const std::string& space : spaces) {
     std::unique_lock<std::mutex> lock(mutex_);
-    if (told_.count(space) > 0) continue;
-    Told& told = told_[space];
+    if (neighbours_.count(space) > 0) continue;
+    Neighbour& neighbour = neighbours_[space];
     lock.unlock();
-    told.models_subscriber = subscribe(space + "/gazebo/model_states", told.models);
-    told.links_subscriber = subscribe(space + "/gazebo/link_states", told.links);
+    neighbour.models_subscriber = subscribe(space + "/gazebo/model_states", neighbour.models);
+    neighbour.links_subscriber = subscribe(space + "/gazebo/link_states", neighbour.links);
   }
   std::unique_lock<std::mutex> lock(mutex_);
-  if (!complete_) act_on_news(std::move(lock));  // who was waited for may have gone
+  if (!complete_) act_on_news(std::move(lock));  // a missing neighbour may have ended
 }
 
-bool GazeboNeighbours::all_heard() const {
+bool GazeboNeighbours::has_heard_all() const {
   return std::all_of(spaces_.begin(), spaces_.end(), [this](const std::string& space) {
-    const auto told = told_.find(space);
-    return told != told_.end() && !told->second.models.name.empty() &&
-           !told->second.links.name.empty();
+    const auto neighbour = neighbours_.find(space);
+    return neighbour != neighbours_.end() && !neighbour->second.models.name.empty() &&
+           !neighbour->second.links.name.empty();
   });
 }
 
-bool GazeboNeighbours::complete() const {
+bool GazeboNeighbours::is_complete() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return complete_ || all_heard();
+  return complete_ || has_heard_all();
 }
 
-/// The action takes locks of others, so it runs without this one's.
+/// The action takes other locks, so it runs without this one.
 void GazeboNeighbours::act_on_news(std::unique_lock<std::mutex> lock) {
-  const bool completes = !complete_ && all_heard();
+  const bool completes = !complete_ && has_heard_all();
   complete_ = complete_ || completes;
-  if (!complete_ || spaces_.empty() || !when_heard_) return;
-  const std::function<void(bool)> action = when_heard_;
+  if (!complete_ || spaces_.empty() || !on_message_) return;
+  const std::function<void(bool)> action = on_message_;
   lock.unlock();
   action(completes);
 }
 
-void GazeboNeighbours::when_heard(const std::function<void(bool)>& action) {
+void GazeboNeighbours::on_message(const std::function<void(bool)>& action) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  when_heard_ = action;
+  on_message_ = action;
 }
 
 template <class States>
@@ -90,12 +90,12 @@ std::vector<std::string> GazeboNeighbours::spaces() const {
 
 void GazeboNeighbours::add_to(gazebo_msgs::ModelStates& states) const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  for (const auto& [space, told] : told_) add(told.models, states);
+  for (const auto& [space, neighbour] : neighbours_) add(neighbour.models, states);
 }
 
 void GazeboNeighbours::add_to(gazebo_msgs::LinkStates& states) const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  for (const auto& [space, told] : told_) add(told.links, states);
+  for (const auto& [space, neighbour] : neighbours_) add(neighbour.links, states);
 }
 
 }  // namespace quadcore::node

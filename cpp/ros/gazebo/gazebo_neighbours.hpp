@@ -12,43 +12,44 @@
 
 namespace quadcore::node {
 
-/// The nodes that follow this one's clock, each of which tells of its own model in its namespace:
-/// to gazebo_ros' clients all are models of one world.
+/// The nodes that follow this node's clock. Each publishes its model in its namespace; for clients
+/// of gazebo_ros, all are models of one world.
 class GazeboNeighbours {
  public:
   explicit GazeboNeighbours(const ros::NodeHandle& nh) : nh_(nh) {}
 
-  /// What is done, in any thread, with each message of a neighbour from the moment on at which all
-  /// have been heard. The argument: whether this is that moment.
-  void when_heard(const std::function<void(bool)>& action);
+  /// Sets an action that runs, in any thread, for each message of a neighbour after all have sent
+  /// one. Its argument: whether this message completes the set.
+  void on_message(const std::function<void(bool)>& action);
 
-  /// Who they are now, by namespace.
-  /// \param listen  whether to hear where their models are
-  void look(const std::vector<std::string>& spaces, bool listen);
+  /// Sets the present neighbours by namespace.
+  /// \param listen  whether to subscribe to their states
+  void update(const std::vector<std::string>& spaces, bool listen);
   std::vector<std::string> spaces() const;
-  /// Whether each has been heard since somebody listens, so that no model is missing.
-  bool complete() const;
-  /// Adds what they told last.
+  /// Whether every neighbour has sent its state since listening began.
+  bool is_complete() const;
+  /// Adds their last states.
   void add_to(gazebo_msgs::ModelStates& states) const;
   void add_to(gazebo_msgs::LinkStates& states) const;
 
  private:
-  struct Told {
+  struct Neighbour {
     gazebo_msgs::ModelStates models;
     gazebo_msgs::LinkStates links;
-    ros::Subscriber models_subscriber, links_subscriber;  // which end before what they fill
+    ros::Subscriber models_subscriber,
+        links_subscriber;  // destroyed before the data that they fill
   };
   template <class States>
   ros::Subscriber subscribe(const std::string& topic, States& newest);
-  bool all_heard() const;
+  bool has_heard_all() const;
   void act_on_news(std::unique_lock<std::mutex> lock);
 
   ros::NodeHandle nh_;
   mutable std::mutex mutex_;
-  std::function<void(bool)> when_heard_;
+  std::function<void(bool)> on_message_;
   bool complete_ = false;
   std::vector<std::string> spaces_;
-  std::map<std::string, Told> told_;  ///< by namespace
+  std::map<std::string, Neighbour> neighbours_;  ///< by namespace
 };
 
 }  // namespace quadcore::node

@@ -6,16 +6,16 @@
 #include "flight_thread.hpp"
 
 /// \file
-/// What gazebo_ros tells of the physics.
+/// Physics properties of gazebo_ros.
 
 namespace quadcore::node {
 
 void describe_physics(const Simulation& simulation, const FlightReport& report,
                       gazebo_msgs::GetPhysicsProperties::Response& response);
-/// Throws InputError if anything but the rate is to change.
+/// Throws InputError if the request changes anything except the rate.
 void check_physics(const Simulation& simulation,
                    const gazebo_msgs::SetPhysicsProperties::Request& request);
-/// Simulated seconds per second that a rate of updates means.
-double real_time_factor_of(const gazebo_msgs::SetPhysicsProperties::Request& request);
+/// Returns the simulated seconds per second for an update rate.
+double compute_real_time_factor(const gazebo_msgs::SetPhysicsProperties::Request& request);
 
 }  // namespace quadcore::node

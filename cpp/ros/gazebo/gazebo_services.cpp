@@ -22,14 +22,14 @@ namespace {
 
 void check_model(const std::string& model, const std::string& asked) {
   if (asked != model) {
-    throw InputError("model '" + asked + "' does not exist; there is " + model);
+    throw InputError("model '" + asked + "' does not exist. The model here is " + model + ".");
   }
 }
 
 void set_model_state(Simulation& simulation, const std::string& model,
                      const gazebo_msgs::ModelState& wanted) {
   check_model(model, wanted.model_name);
-  const BodyMotion other = motion_of(simulation, model, wanted.reference_frame);
+  const BodyMotion other = find_motion(simulation, model, wanted.reference_frame);
   const BodyMotion motion = from_ros(other, wanted.pose, wanted.twist);
   VehicleState state = simulation.state();
   state.position = motion.position;
@@ -39,15 +39,15 @@ void set_model_state(Simulation& simulation, const std::string& model,
   simulation.set_state(state);
 }
 
-/// What a request means in the world, about the centre of mass.
-messages::Wrench wrench_of(const Simulation& simulation, const std::string& model,
+/// Converts a request to a wrench in the world, about the centre of mass.
+messages::Wrench to_wrench(const Simulation& simulation, const std::string& model,
                            const gazebo_msgs::ApplyBodyWrench::Request& request) {
-  const BodyMotion other = motion_of(simulation, model, request.reference_frame);
+  const BodyMotion other = find_motion(simulation, model, request.reference_frame);
   messages::Wrench wrench;
   wrench.force = other.orientation * vector_of(request.wrench.force);
   wrench.torque = other.orientation * vector_of(request.wrench.torque);
-  // As gazebo_ros has it: a lever from the body's origin, though the force acts at its centre of
-  // mass; and in the world's axes the point is no place but that lever itself.
+  // As in gazebo_ros, the lever starts at the body's origin, although the force acts at its centre
+  // of mass. In the world's axes, the point is not a position but the lever itself.
   Vector3d lever = other.orientation * vector_of(request.reference_point);
   const std::string& frame = request.reference_frame;
   if (!frame.empty() && frame != "world" && frame != "map") {
@@ -60,11 +60,12 @@ messages::Wrench wrench_of(const Simulation& simulation, const std::string& mode
 void check_frame(const Simulation& simulation, const std::string& model, const std::string& body) {
   const std::string& frame = simulation.model().links.front().name;
   if (body == frame || body == model + "::" + frame) return;
-  motion_of(simulation, model, body);
-  throw InputError("'" + body + "' cannot be pushed; push the frame, " + model + "::" + frame);
+  find_motion(simulation, model, body);
+  throw InputError("'" + body + "' cannot be pushed. Push the frame, " + model + "::" + frame +
+                   ".");
 }
 
-/// Whether a response has room for an error; if not, the call itself fails.
+/// Whether a response has a field for an error; otherwise the call itself fails.
 template <class Response>
 constexpr bool has_status = true;
 template <>
@@ -86,8 +87,8 @@ GazeboServices::GazeboServices(ros::NodeHandle& nh, const std::string& model, Fl
   offer_properties();
 }
 
-/// Offers a service of gazebo_ros. In /gazebo it also serves the neighbours' models: a node that
-/// does not know a model asks them.
+/// Offers a service of gazebo_ros. In /gazebo, it also serves the neighbours' models: for an
+/// unknown model, the node calls their services.
 template <class Service, class Act>
 void GazeboServices::offer(const std::string& name, const Act& act) {
   using Request = typename Service::Request;
@@ -132,21 +133,21 @@ void GazeboServices::offer(const std::string& name, const Act& act) {
 
 void GazeboServices::offer_states() {
   offer<gazebo_msgs::GetModelState>("get_model_state", [this](auto& request, auto& response) {
-    flight_.tell([&](const Simulation& simulation) {
+    flight_.run_between_steps([&](const Simulation& simulation) {
       if (request.model_name.rfind("ground_plane", 0) != 0) check_model(model_, request.model_name);
-      const BodyMotion model = motion_of(simulation, model_, request.model_name);
-      const BodyMotion other = motion_of(simulation, model_, request.relative_entity_name);
-      to_ros(seen_from(other, model), response.pose, response.twist);
+      const BodyMotion model = find_motion(simulation, model_, request.model_name);
+      const BodyMotion other = find_motion(simulation, model_, request.relative_entity_name);
+      to_ros(express_in(other, model), response.pose, response.twist);
       response.header.stamp = node::to_ros(simulation.time());
       response.header.frame_id = request.relative_entity_name;
     });
   });
   offer<gazebo_msgs::GetLinkState>("get_link_state", [this](auto& request, auto& response) {
-    flight_.tell([&](const Simulation& simulation) {
-      const BodyMotion link = motion_of(simulation, model_, request.link_name);
-      const BodyMotion other = motion_of(simulation, model_, request.reference_frame);
+    flight_.run_between_steps([&](const Simulation& simulation) {
+      const BodyMotion link = find_motion(simulation, model_, request.link_name);
+      const BodyMotion other = find_motion(simulation, model_, request.reference_frame);
       gazebo_msgs::LinkState& state = response.link_state;
-      to_ros(seen_from(other, link), state.pose, state.twist);
+      to_ros(express_in(other, link), state.pose, state.twist);
       state.link_name = request.link_name;
       state.reference_frame = request.reference_frame;
     });
@@ -159,33 +160,34 @@ void GazeboServices::offer_states() {
   if (!neighbours_ || nh_.getNamespace() != "/") take_states("gazebo/set_model_state");
 }
 
-/// The service of the same name without an answer.
+/// Subscribes to the topic with the function of the service of the same name.
 void GazeboServices::take_states(const std::string& topic) {
   const std::string service = nh_.resolveName(topic);
   const boost::function<void(const gazebo_msgs::ModelState::ConstPtr&)> take =
       [this, service](const gazebo_msgs::ModelState::ConstPtr& state) {
         gazebo_msgs::SetModelState call;
         call.request.model_state = *state;
-        if (!ros::service::call(service, call)) call.response.status_message = "the node is ending";
-        if (!call.response.success) sayer_.warn(service + ": " + call.response.status_message);
+        if (!ros::service::call(service, call))
+          call.response.status_message = "The node is shutting down.";
+        if (!call.response.success) limiter_.warn(service + ": " + call.response.status_message);
       };
   subscribers_.push_back(nh_.subscribe<gazebo_msgs::ModelState>(topic, 1, take));
 }
 
 void GazeboServices::offer_wrenches() {
   offer<gazebo_msgs::ApplyBodyWrench>("apply_body_wrench", [this](auto& request, auto&) {
-    flight_.tell([&](const Simulation& simulation) {
+    flight_.run_between_steps([&](const Simulation& simulation) {
       check_frame(simulation, model_, request.body_name);
-      const messages::Wrench wrench = wrench_of(simulation, model_, request);
+      const messages::Wrench wrench = to_wrench(simulation, model_, request);
       check_wrench(simulation, wrench);
       const double duration = request.duration.toSec();
-      if (duration == 0) return;  // as gazebo_ros
+      if (duration == 0) return;  // like gazebo_ros
       const double begin = std::max(request.start_time.toSec(), simulation.time());
       wrenches_.add(wrench, begin, duration < 0 ? INFINITY : begin + duration);
     });
   });
   offer<gazebo_msgs::BodyRequest>("clear_body_wrenches", [this](auto& request, auto&) {
-    flight_.tell([&](const Simulation& simulation) {
+    flight_.run_between_steps([&](const Simulation& simulation) {
       check_frame(simulation, model_, request.body_name);
       wrenches_.clear();
     });
@@ -194,16 +196,17 @@ void GazeboServices::offer_wrenches() {
 
 void GazeboServices::offer_properties() {
   offer<gazebo_msgs::GetPhysicsProperties>("get_physics_properties", [this](auto&, auto& response) {
-    flight_.tell([&](const Simulation& simulation) {
+    flight_.run_between_steps([&](const Simulation& simulation) {
       describe_physics(simulation, flight_.report(), response);
     });
   });
   offer<gazebo_msgs::SetPhysicsProperties>("set_physics_properties", [this](auto& request, auto&) {
-    flight_.tell([&](const Simulation& simulation) { check_physics(simulation, request); });
-    flight_.set_real_time_factor(real_time_factor_of(request));
+    flight_.run_between_steps(
+        [&](const Simulation& simulation) { check_physics(simulation, request); });
+    flight_.set_real_time_factor(compute_real_time_factor(request));
   });
   offer<gazebo_msgs::GetWorldProperties>("get_world_properties", [this](auto&, auto& response) {
-    flight_.tell([&](const Simulation& simulation) {
+    flight_.run_between_steps([&](const Simulation& simulation) {
       response.sim_time = simulation.time();
       if (simulation.world().ground_plane) response.model_names.push_back("ground_plane");
       response.model_names.push_back(model_);
@@ -219,7 +222,7 @@ void GazeboServices::offer_properties() {
   });
   offer<gazebo_msgs::GetModelProperties>(
       "get_model_properties", [this](auto& request, auto& response) {
-        flight_.tell([&](const Simulation& simulation) {
+        flight_.run_between_steps([&](const Simulation& simulation) {
           check_model(model_, request.model_name);
           for (const Link& link : simulation.model().links) {
             response.body_names.push_back(link.name);

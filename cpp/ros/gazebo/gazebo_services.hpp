@@ -8,18 +8,18 @@
 #include "flight_thread.hpp"
 #include "gazebo_neighbours.hpp"
 #include "gazebo_wrenches.hpp"
-#include "sayer.hpp"
+#include "warning_limiter.hpp"
 
 namespace quadcore::node {
 
-/// gazebo_ros' services about what flies, as far as they have a meaning here, and its topic
+/// The services of gazebo_ros about models, as far as they have a meaning here, and its topic
 /// set_model_state.
 class GazeboServices {
  public:
-  /// \param nh     of the queue that answers
-  /// \param model  its name
-  /// \param neighbours  others whose models are asked for in /gazebo, too; null = somebody else
-  ///                    answers there
+  /// \param nh     node handle with the services' queue
+  /// \param model  name of the model
+  /// \param neighbours  neighbours with models that are also served in /gazebo; null = another node
+  /// serves /gazebo
   GazeboServices(ros::NodeHandle& nh, const std::string& model, FlightThread& flight,
                  GazeboWrenches& wrenches, const GazeboNeighbours* neighbours);
 
@@ -38,7 +38,7 @@ class GazeboServices {
   FlightThread& flight_;
   GazeboWrenches& wrenches_;
   const GazeboNeighbours* const neighbours_;
-  Sayer sayer_;
+  WarningLimiter limiter_;
   std::vector<ros::ServiceServer> servers_;
   std::vector<ros::Subscriber> subscribers_;
 };

@@ -12,7 +12,7 @@ bool has_listener(const ros::Publisher& publisher) {
   return publisher && publisher.getNumSubscribers() > 0;
 }
 
-/// Writes the last so many.
+/// Writes the last `count` states.
 template <class States>
 void fill(const std::vector<BodyMotion>& bodies, std::size_t count, States& states) {
   const std::size_t before = states.name.size() - count;
@@ -21,7 +21,7 @@ void fill(const std::vector<BodyMotion>& bodies, std::size_t count, States& stat
   }
 }
 
-/// With room for all that is named.
+/// Resizes the states to the number of names.
 template <class States>
 void make_room(States& states) {
   states.pose.resize(states.name.size());
@@ -69,11 +69,11 @@ bool GazeboStates::asks_neighbours() const {
 }
 
 void GazeboStates::send(const Simulation& simulation) {
-  const auto wanted = [](const auto& sent) {
+  const auto is_wanted = [](const auto& sent) {
     return has_listener(sent.own) || has_listener(sent.of_all);
   };
-  if (!wanted(models_) && !wanted(links_)) return;
-  const std::vector<BodyMotion> bodies = body_motions(simulation);
+  if (!is_wanted(models_) && !is_wanted(links_)) return;
+  const std::vector<BodyMotion> bodies = compute_body_motions(simulation);
   fill(bodies, 1, models_.states);
   fill(bodies, bodies.size(), links_.states);
   publish(models_);
@@ -83,7 +83,7 @@ void GazeboStates::send(const Simulation& simulation) {
 template <class States>
 void GazeboStates::publish(Sent<States>& sent) {
   if (has_listener(sent.own)) sent.own.publish(sent.states);
-  if (!has_listener(sent.of_all) || !neighbours_->complete()) return;
+  if (!has_listener(sent.of_all) || !neighbours_->is_complete()) return;
   States all = sent.states;
   neighbours_->add_to(all);
   sent.of_all.publish(all);

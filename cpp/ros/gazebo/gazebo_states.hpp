@@ -13,25 +13,26 @@
 
 namespace quadcore::node {
 
-/// Sends where model and links are, each step, as gazebo_ros does; to nobody, no work is done.
+/// Publishes the states of model and links in each step, like gazebo_ros. Without subscribers, it
+/// computes nothing.
 class GazeboStates {
  public:
-  /// \param model  its name
-  /// \param neighbours  others whose models are of the same world, to be told of in /gazebo, too;
-  ///                    null = it is for somebody else to tell
+  /// \param model  name of the model
+  /// \param neighbours  neighbours with models that are also published in /gazebo; null = another
+  /// node publishes there
   GazeboStates(ros::NodeHandle& nh, const Simulation& simulation, const std::string& model,
                const GazeboNeighbours* neighbours);
   void send(const Simulation& simulation);
-  /// What is done when somebody subscribes, who may see a flight that is paused.
+  /// Sets an action for new subscribers, for example during a pause.
   void for_newcomers(const std::function<void()>& action);
-  /// Whether anyone wants to know of the neighbours.
+  /// Whether a subscriber needs the neighbours' states.
   bool asks_neighbours() const;
 
  private:
   template <class States>
   struct Sent {
     ros::Publisher own, of_all;
-    States states;  ///< the ground first, as Gazebo has it
+    States states;  ///< the ground first, as in Gazebo
   };
   template <class States>
   void advertise(ros::NodeHandle& nh, const std::string& name, Sent<States>& sent);

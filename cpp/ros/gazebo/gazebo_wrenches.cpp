@@ -10,21 +10,21 @@ namespace quadcore::node {
 namespace {
 
 constexpr double time_rounding = 1e-9;  ///< s
-/// By this much a wrench may change a motion in one step; a flight counts as diverged at 1000 times
+/// Maximum change of the motion by a wrench in one step; a flight counts as diverged at 1000 times
 /// as much.
-constexpr double most_speed = 1e3;  ///< m/s
-constexpr double most_rate = 1e3;   ///< rad/s
+constexpr double max_speed = 1e3;  ///< m/s
+constexpr double max_rate = 1e3;   ///< rad/s
 
-void refuse_beyond(double size, double most, const char* what, const char* unit) {
-  if (size <= most) return;
+void check_size(double size, double max, const char* what, const char* unit) {
+  if (size <= max) return;
   char text[200];
   std::snprintf(text, sizeof text,
-                "The %s of %g %s is no physical one for this vehicle. Give at most %.3g %s.", what,
-                size, unit, most, unit);
+                "The %s of %g %s is not physical for this vehicle. Give at most %.3g %s.", what,
+                size, unit, max, unit);
   throw InputError(text);
 }
 
-std::string written(const Vector3d& vector) {
+std::string format_vector(const Vector3d& vector) {
   std::string text;
   for (int i = 0; i < 3; ++i) {
     char number[40];
@@ -41,11 +41,10 @@ void check_wrench(const Simulation& simulation, const messages::Wrench& wrench) 
     throw InputError("A force or a torque is not a finite number. Give N and N m.");
   }
   const MassProperties vehicle = mass_properties(simulation.model());
-  const double least_inertia =
-      vehicle.inertia_Ccm_F.selfadjointView<Eigen::Lower>().eigenvalues()[0];
+  const double min_inertia = vehicle.inertia_Ccm_F.selfadjointView<Eigen::Lower>().eigenvalues()[0];
   const double dt = simulation.dt();
-  refuse_beyond(wrench.force.norm(), vehicle.mass * most_speed / dt, "force", "N");
-  refuse_beyond(wrench.torque.norm(), least_inertia * most_rate / dt, "torque", "N m");
+  check_size(wrench.force.norm(), vehicle.mass * max_speed / dt, "force", "N");
+  check_size(wrench.torque.norm(), min_inertia * max_rate / dt, "torque", "N m");
 }
 
 PluginElement GazeboWrenches::plugin(const Model& model) {
@@ -53,7 +52,7 @@ PluginElement GazeboWrenches::plugin(const Model& model) {
   const Vector3d& center = model.links.front().inertial.pose.xyz;
   return {who + "_wrench",
           "libpush_plugin.so",
-          {{"topic", topic, who}, {"xyz", written(center), who}},
+          {{"topic", topic, who}, {"xyz", format_vector(center), who}},
           who};
 }
 

@@ -8,22 +8,21 @@
 
 namespace quadcore::node {
 
-/// Throws InputError on a wrench that is not finite, or that would end the flight as diverged soon
-/// after it acts.
+/// Throws InputError if a wrench is not finite, or if the flight would diverge soon after it acts.
 void check_wrench(const Simulation& simulation, const messages::Wrench& wrench);
 
-/// Forces and torques that act on the frame for a time, as gazebo_ros' service applies them: on its
-/// centre of mass, in axes of the world.
+/// Forces and torques that act on the frame for a time, like those of gazebo_ros' service: on its
+/// centre of mass, in world axes.
 class GazeboWrenches {
  public:
   static constexpr const char* topic = "gazebo_wrench";
-  /// The plugin that lets them act.
+  /// Returns the plugin that applies them.
   static PluginElement plugin(const Model& model);
 
-  /// \param begin, end  when it acts [s]; it acts for a step at least
+  /// \param begin, end  time interval [s]; a wrench acts for at least one step
   void add(const messages::Wrench& wrench, double begin, double end);
   void clear();
-  /// Before a step: tells the plugin what acts in it.
+  /// Publishes the sum of the active wrenches to the plugin. Call before a step.
   void act(Simulation& simulation);
 
  private:
@@ -35,7 +34,7 @@ class GazeboWrenches {
 
   std::mutex mutex_;
   std::vector<Wrench> wrenches_;
-  bool acts_ = false;  ///< the plugin was told of one
+  bool acts_ = false;  ///< the plugin has an active wrench
 };
 
 }  // namespace quadcore::node

@@ -8,30 +8,30 @@
 namespace quadcore::node {
 namespace {
 
-// Kinds of records, by the numbers that the format has for them.
+// Kinds of records in the format.
 constexpr char message_data = 2, bag_header = 3, index_data = 4, chunk = 5, chunk_info = 6,
                connection = 7;
-constexpr std::size_t head_size = 4096;         ///< of the first record, without its two lengths
-constexpr std::size_t chunk_size = 768 * 1024;  ///< as rosbag has it
+constexpr std::size_t head_size = 4096;  ///< size of the first record, without its two lengths
+constexpr std::size_t chunk_size = 768 * 1024;  ///< like rosbag
 
 template <class Number>
-std::string raw(Number number) {
+std::string to_bytes(Number number) {
   std::string bytes(sizeof number, '\0');
   std::memcpy(&bytes[0], &number, sizeof number);
   return bytes;
 }
 
-std::string raw(const ros::Time& time) { return raw(time.sec) + raw(time.nsec); }
+std::string to_bytes(const ros::Time& time) { return to_bytes(time.sec) + to_bytes(time.nsec); }
 
-std::string sized(const std::string& bytes) {
-  return raw(static_cast<std::uint32_t>(bytes.size())) + bytes;
+std::string with_size(const std::string& bytes) {
+  return to_bytes(static_cast<std::uint32_t>(bytes.size())) + bytes;
 }
 
-std::string field(const char* name, const std::string& value) {
-  return sized(name + ("=" + value));
+std::string make_field(const char* name, const std::string& value) {
+  return with_size(name + ("=" + value));
 }
 
-std::string kind(char number) { return field("op", std::string(1, number)); }
+std::string make_kind(char number) { return make_field("op", std::string(1, number)); }
 
 }  // namespace
 
@@ -45,21 +45,23 @@ BagFile::BagFile(const std::string& path) : file_(std::fopen(path.c_str(), "w"))
 std::uint32_t BagFile::add(const std::string& topic, const char* type, const char* md5sum,
                            const char* definition) {
   const auto number = static_cast<std::uint32_t>(connections_.size());
-  connections_.push_back(
-      sized(field("conn", raw(number)) + kind(connection) + field("topic", topic)) +
-      sized(field("topic", topic) + field("type", type) + field("md5sum", md5sum) +
-            field("message_definition", definition)));
+  connections_.push_back(with_size(make_field("conn", to_bytes(number)) + make_kind(connection) +
+                                   make_field("topic", topic)) +
+                         with_size(make_field("topic", topic) + make_field("type", type) +
+                                   make_field("md5sum", md5sum) +
+                                   make_field("message_definition", definition)));
   entries_.emplace_back();
   return number;
 }
 
 void BagFile::write_bytes(std::uint32_t topic, const ros::Time& time) {
   if (!is_whole_) return;
-  // So that each chunk can be read without the others.
+  // Each chunk can be read without the others.
   if (entries_[topic].empty()) chunk_ += connections_[topic];
   entries_[topic].push_back({time, static_cast<std::uint32_t>(chunk_.size())});
-  chunk_ += sized(field("conn", raw(topic)) + kind(message_data) + field("time", raw(time)));
-  chunk_ += sized(bytes_);
+  chunk_ += with_size(make_field("conn", to_bytes(topic)) + make_kind(message_data) +
+                      make_field("time", to_bytes(time)));
+  chunk_ += with_size(bytes_);
   if (chunk_.size() >= chunk_size) write_chunk();
 }
 
@@ -68,24 +70,24 @@ void BagFile::write_chunk() {
   std::string index;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     std::vector<Entry>& entries = entries_[i];
-    // After a reset time begins anew.
+    // A reset sets the time back.
     std::stable_sort(entries.begin(), entries.end(),
                      [](const Entry& a, const Entry& b) { return a.time < b.time; });
     written.counts.push_back(static_cast<std::uint32_t>(entries.size()));
     if (entries.empty()) continue;
     written.first = std::min(written.first, entries.front().time);
     written.last = std::max(written.last, entries.back().time);
-    index += sized(field("conn", raw(static_cast<std::uint32_t>(i))) +
-                   field("count", raw(written.counts.back())) + kind(index_data) +
-                   field("ver", raw(std::uint32_t{1})));
+    index += with_size(make_field("conn", to_bytes(static_cast<std::uint32_t>(i))) +
+                       make_field("count", to_bytes(written.counts.back())) +
+                       make_kind(index_data) + make_field("ver", to_bytes(std::uint32_t{1})));
     std::string places;
-    for (const Entry& entry : entries) places += raw(entry.time) + raw(entry.offset);
-    index += sized(places);
+    for (const Entry& entry : entries) places += to_bytes(entry.time) + to_bytes(entry.offset);
+    index += with_size(places);
     entries.clear();
   }
-  const std::string head = field("compression", "none") + kind(chunk) +
-                           field("size", raw(static_cast<std::uint32_t>(chunk_.size())));
-  is_whole_ = put(sized(head)) && put(raw(static_cast<std::uint32_t>(chunk_.size()))) &&
+  const std::string head = make_field("compression", "none") + make_kind(chunk) +
+                           make_field("size", to_bytes(static_cast<std::uint32_t>(chunk_.size())));
+  is_whole_ = put(with_size(head)) && put(to_bytes(static_cast<std::uint32_t>(chunk_.size()))) &&
               put(chunk_) && put(index) && std::fflush(file_.get()) == 0;
   chunk_.clear();
   if (!is_whole_) return;
@@ -107,12 +109,14 @@ void BagFile::close() {
     for (std::size_t i = 0; i < written.counts.size(); ++i) {
       if (written.counts[i] == 0) continue;
       ++topics;
-      counts += raw(static_cast<std::uint32_t>(i)) + raw(written.counts[i]);
+      counts += to_bytes(static_cast<std::uint32_t>(i)) + to_bytes(written.counts[i]);
     }
-    index += sized(field("chunk_pos", raw(written.place)) + field("count", raw(topics)) +
-                   field("end_time", raw(written.last)) + kind(chunk_info) +
-                   field("start_time", raw(written.first)) + field("ver", raw(std::uint32_t{1})));
-    index += sized(counts);
+    index += with_size(make_field("chunk_pos", to_bytes(written.place)) +
+                       make_field("count", to_bytes(topics)) +
+                       make_field("end_time", to_bytes(written.last)) + make_kind(chunk_info) +
+                       make_field("start_time", to_bytes(written.first)) +
+                       make_field("ver", to_bytes(std::uint32_t{1})));
+    index += with_size(counts);
   }
   good = good && put(index) && std::fflush(file) == 0 &&
          std::fseek(file, static_cast<long>(std::strlen("#ROSBAG V2.0\n")), SEEK_SET) == 0;
@@ -124,10 +128,11 @@ void BagFile::close() {
 
 void BagFile::write_head(std::uint64_t index) {
   const std::string head =
-      field("chunk_count", raw(static_cast<std::uint32_t>(chunks_.size()))) +
-      field("conn_count", raw(static_cast<std::uint32_t>(index == 0 ? 0 : connections_.size()))) +
-      field("index_pos", raw(index)) + kind(bag_header);
-  put(sized(head) + sized(std::string(head_size - head.size(), ' ')));
+      make_field("chunk_count", to_bytes(static_cast<std::uint32_t>(chunks_.size()))) +
+      make_field("conn_count",
+                 to_bytes(static_cast<std::uint32_t>(index == 0 ? 0 : connections_.size()))) +
+      make_field("index_pos", to_bytes(index)) + make_kind(bag_header);
+  put(with_size(head) + with_size(std::string(head_size - head.size(), ' ')));
 }
 
 bool BagFile::put(const std::string& bytes) {

@@ -10,18 +10,18 @@
 #include "file.hpp"
 
 /// \file
-/// Bags of ROS 1 (wiki.ros.org/Bags/Format/2.0), not compressed. The library of rosbag brings
-/// plugins for encryption along, whose headers Debian 12 has for ROS 2 alone.
+/// Uncompressed bags of ROS 1 (wiki.ros.org/Bags/Format/2.0). The rosbag library needs headers of
+/// encryption plugins, which Debian 12 only has for ROS 2.
 
 namespace quadcore::node {
 
-/// A bag that grows by whole chunks. One that is not closed is one for `rosbag reindex`.
+/// A bag that grows by whole chunks. If it was not closed, `rosbag reindex` repairs it.
 class BagFile {
  public:
-  /// Makes a file; is_open() tells whether it could.
+  /// Creates a file; is_open() returns whether this succeeded.
   explicit BagFile(const std::string& path);
   bool is_open() const { return file_ != nullptr; }
-  /// A topic for messages of a type. Returns its number.
+  /// Adds a topic for messages of a type. Returns its number.
   template <class Message>
   std::uint32_t add(const std::string& topic) {
     namespace traits = ros::message_traits;
@@ -36,18 +36,18 @@ class BagFile {
     ros::serialization::serialize(stream, message);
     write_bytes(topic, time);
   }
-  /// Writes what waits, and the index. What has failed is cut off before.
+  /// Writes waiting messages and the index. Removes an incomplete chunk first.
   void close();
-  /// Whether all was written so far; errno has the reason.
+  /// Whether everything was written so far; errno has the reason of a failure.
   bool is_whole() const { return is_whole_; }
-  /// Whether what is there has its index.
+  /// Whether the file has its index.
   bool is_indexed() const { return is_indexed_; }
 
  private:
-  /// Where a message lies.
+  /// Position of a message.
   struct Entry {
     ros::Time time;
-    std::uint32_t offset;  ///< in its chunk
+    std::uint32_t offset;  ///< position in its chunk
   };
   struct Chunk {
     std::uint64_t place;
@@ -59,18 +59,18 @@ class BagFile {
                     const char* definition);
   void write_bytes(std::uint32_t topic, const ros::Time& time);
   void write_chunk();
-  /// The first record, which tells where the index begins; 0 = there is none.
+  /// Writes the first record with the position of the index; 0 = no index.
   void write_head(std::uint64_t index);
   bool put(const std::string& bytes);
 
   File file_;
   bool is_whole_ = true, is_indexed_ = false;
-  std::uint64_t end_ = 0;                    ///< of the whole chunks
+  std::uint64_t end_ = 0;                    ///< end of the complete chunks
   std::vector<std::string> connections_;     ///< records
-  std::vector<std::vector<Entry>> entries_;  ///< of the chunk that waits, by topic
+  std::vector<std::vector<Entry>> entries_;  ///< of the current chunk, by topic
   std::vector<Chunk> chunks_;
-  std::string chunk_;  ///< that waits
-  std::string bytes_;  ///< of a message, kept, so that it needs no new memory
+  std::string chunk_;  ///< current chunk
+  std::string bytes_;  ///< of a message, stored to reuse its memory
 };
 
 }  // namespace quadcore::node

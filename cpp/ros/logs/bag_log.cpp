@@ -15,18 +15,18 @@ namespace {
 
 constexpr double never = std::numeric_limits<double>::quiet_NaN();
 
-/// A bag has no message at time 0.
-ros::Time in_bag(const ros::Time& time) { return std::max(time, ros::TIME_MIN); }
+/// Returns the time in a bag, which has no message at time 0.
+ros::Time to_bag_time(const ros::Time& time) { return std::max(time, ros::TIME_MIN); }
 
 }  // namespace
 
 BagLog::BagLog(const std::string& path, const Simulation& simulation, LogRow row,
                const ros::NodeHandle& nh, const std::string& frame_prefix)
     : path_(path), active_(path + ".active"), row_(std::move(row)), bag_(active_) {
-  if (!bag_.is_open()) throw InputError(unwritable(path_));
+  if (!bag_.is_open()) throw InputError(describe_open_failure(path_));
   const std::string vehicle = frame_prefix + vehicle_name;
   set_frames(odometry_, vehicle);
-  tf_.transforms.push_back(same_place(world_frame, vehicle));
+  tf_.transforms.push_back(make_identity_transform(world_frame, vehicle));
   joints_.name = simulation.model().joint_names();
   clock_number_ = bag_.add<rosgraph_msgs::Clock>("/clock");
   truth_number_ = bag_.add<nav_msgs::Odometry>(nh.resolveName(truth_topic));
@@ -53,14 +53,14 @@ void BagLog::add(const Simulation& simulation) {
     const Topic& topic = simulation.topics()[logged.index];
     if (topic.count > 0 && topic.stamp != logged.stamp) add(topic, logged);
   }
-  whole_row_.data = row_.of(simulation);
-  bag_.write(row_number_, in_bag(time), whole_row_);
-  if (!bag_.is_whole() && error().empty()) fail(cut_short(path_));
+  whole_row_.data = row_.fill(simulation);
+  bag_.write(row_number_, to_bag_time(time), whole_row_);
+  if (!bag_.is_whole() && error().empty()) fail(describe_truncation(path_));
 }
 
 void BagLog::add_state(const VehicleState& state, const ros::Time& time) {
   clock_.clock = time;
-  bag_.write(clock_number_, in_bag(time), clock_);
+  bag_.write(clock_number_, to_bag_time(time), clock_);
   messages::Odometry truth;
   truth.position = state.position;
   truth.orientation = state.orientation;
@@ -68,13 +68,13 @@ void BagLog::add_state(const VehicleState& state, const ros::Time& time) {
   truth.angular_velocity = state.angular_velocity;
   odometry_.header.stamp = time;
   to_ros(truth, odometry_);
-  bag_.write(truth_number_, in_bag(time), odometry_);
+  bag_.write(truth_number_, to_bag_time(time), odometry_);
   tf_.transforms.front().header.stamp = time;
   to_ros(state, tf_.transforms.front().transform);
-  bag_.write(tf_number_, in_bag(time), tf_);
+  bag_.write(tf_number_, to_bag_time(time), tf_);
   joints_.header.stamp = time;
   to_ros(state, joints_);
-  bag_.write(joints_number_, in_bag(time), joints_);
+  bag_.write(joints_number_, to_bag_time(time), joints_);
 }
 
 void BagLog::add(const Topic& topic, Logged& logged) {
@@ -83,19 +83,19 @@ void BagLog::add(const Topic& topic, Logged& logged) {
   if (logged.is_odometry) {
     odometry_.header.stamp = stamp;
     to_ros(messages::read<messages::Odometry>(topic.values.data()), odometry_);
-    bag_.write(logged.number, in_bag(stamp), odometry_);
+    bag_.write(logged.number, to_bag_time(stamp), odometry_);
   } else {
     logged.array.data = topic.values;
-    bag_.write(logged.number, in_bag(stamp), logged.array);
+    bag_.write(logged.number, to_bag_time(stamp), logged.array);
   }
 }
 
 void BagLog::close() {
   bag_.close();
-  if (!bag_.is_whole()) fail(cut_short(path_));
-  // One that was cut short can be read as far as it goes, once it has its index.
+  if (!bag_.is_whole()) fail(describe_truncation(path_));
+  // An incomplete bag with an index can be read.
   if (bag_.is_indexed() && std::rename(active_.c_str(), path_.c_str()) != 0) {
-    fail(unwritable(path_));
+    fail(describe_open_failure(path_));
   }
 }
 

@@ -15,9 +15,9 @@
 
 namespace quadcore::node {
 
-/// A bag with a row of the log and the state in messages of ROS, after each step, and each message
-/// of the topics that are logged. It is called FILE.bag.active as long as it grows, as
-/// `rosbag record` does, so that an older one stays till then.
+/// A bag with a row of the log and the state in ROS messages after each step, and with each message
+/// of the logged topics. Like with `rosbag record`, it is called FILE.bag.active while it grows. An
+/// older file remains until then.
 class BagLog final : public FlightLog {
  public:
   /// Throws InputError if the file cannot be written.
@@ -29,10 +29,10 @@ class BagLog final : public FlightLog {
  private:
   /// A topic of the simulation.
   struct Logged {
-    std::size_t index;     ///< among those of the simulation
-    std::uint32_t number;  ///< in the bag
+    std::size_t index;     ///< index in the simulation
+    std::uint32_t number;  ///< number in the bag
     bool is_odometry;      ///< else an array
-    double stamp;          ///< of the last message
+    double stamp;          ///< stamp of the last message
     std_msgs::Float64MultiArray array;
   };
   void add_state(const VehicleState& state, const ros::Time& time);
@@ -43,7 +43,7 @@ class BagLog final : public FlightLog {
   BagFile bag_;
   std::uint32_t clock_number_, truth_number_, tf_number_, joints_number_, row_number_;
   std::vector<Logged> topics_;
-  // Kept, so that they need no new memory.
+  // Stored to reuse their memory.
   rosgraph_msgs::Clock clock_;
   nav_msgs::Odometry odometry_;
   tf2_msgs::TFMessage tf_;

@@ -9,13 +9,13 @@ namespace quadcore::node {
 
 CsvLog::CsvLog(const std::string& path, const Simulation& simulation, LogRow row)
     : path_(path), row_(std::move(row)), file_(std::fopen(path.c_str(), "w")) {
-  if (!file_) throw InputError(unwritable(path));
+  if (!file_) throw InputError(describe_open_failure(path));
   const std::string header = row_.header() + log_remark(simulation.ignored()) + "\n";
   std::fputs(header.c_str(), file_.get());
 }
 
 void CsvLog::add(const Simulation& simulation) {
-  const std::vector<double>& row = row_.of(simulation);
+  const std::vector<double>& row = row_.fill(simulation);
   line_.clear();
   append_csv(row.data(), row.size(), line_);
   std::fwrite(line_.data(), 1, line_.size(), file_.get());
@@ -27,7 +27,7 @@ void CsvLog::close() {
 }
 
 void CsvLog::check(bool written) {
-  if (!written) fail(cut_short(path_));
+  if (!written) fail(describe_truncation(path_));
 }
 
 }  // namespace quadcore::node

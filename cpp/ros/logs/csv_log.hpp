@@ -7,7 +7,7 @@
 
 namespace quadcore::node {
 
-/// A CSV, a row after each step.
+/// A CSV file with a row after each step.
 class CsvLog final : public FlightLog {
  public:
   /// Throws InputError if the file cannot be written.

@@ -42,7 +42,7 @@ std::string LogRow::header() const {
   return header;
 }
 
-const std::vector<double>& LogRow::of(const Simulation& simulation) {
+const std::vector<double>& LogRow::fill(const Simulation& simulation) {
   row_.clear();
   append_log_row(simulation.state(), row_);
   for (const std::size_t topic : topics_) append_log_row(simulation.topics()[topic], row_);
@@ -62,12 +62,12 @@ std::unique_ptr<LogPerFlight> open_log(const std::string& path, const Simulation
   return std::make_unique<LogPerFlight>(path, open);
 }
 
-std::string unwritable(const std::string& path) {
+std::string describe_open_failure(const std::string& path) {
   return path + ": cannot be written: " + std::strerror(errno);
 }
 
-std::string cut_short(const std::string& path) {
-  return path + ": the log is cut short: " + std::strerror(errno);
+std::string describe_truncation(const std::string& path) {
+  return path + ": the log is incomplete: " + std::strerror(errno);
 }
 
 }  // namespace quadcore::node

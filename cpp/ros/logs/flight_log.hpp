@@ -10,41 +10,41 @@
 
 namespace quadcore::node {
 
-/// What stands in a log of a flight.
+/// The columns and the current row of a log.
 class LogRow {
  public:
-  /// \param names  topics to log, too
-  /// Throws InputError if one is not declared.
+  /// \param names  additional topics to log
+  /// Throws InputError if a topic is not declared.
   LogRow(const Simulation& simulation, const std::vector<std::string>& names);
   /// Names of the numbers: those of the state, then TOPIC.FIELD.
   const std::vector<std::string>& columns() const { return columns_; }
-  /// The names in one line, with commas between.
+  /// Returns the names in one line, separated by commas.
   std::string header() const;
-  /// Of the simulation.
+  /// Indices of the logged topics.
   const std::vector<std::size_t>& topics() const { return topics_; }
-  /// The numbers of now.
-  const std::vector<double>& of(const Simulation& simulation);
+  /// Computes the current row.
+  const std::vector<double>& fill(const Simulation& simulation);
 
  private:
   const std::vector<std::size_t> topics_;
   std::vector<std::string> columns_;
-  std::vector<double> row_;  ///< kept, so that it needs no new memory
+  std::vector<double> row_;  ///< stored to reuse its memory
 };
 
-/// A file that holds a flight, as `quadcore run --log` writes it. A disk may fill up while it
-/// flies: that does not end the flight, but is told.
+/// A log of a flight, like that of `quadcore run --log`. A write error, such as a full disk, is
+/// reported and does not end the flight.
 class FlightLog {
  public:
   virtual ~FlightLog() = default;
-  /// A row, after the start and each step.
+  /// Adds a row, after the start and each step.
   virtual void add(const Simulation& simulation) = 0;
-  /// Writes what is left.
+  /// Writes the rest.
   virtual void close() = 0;
-  /// What went wrong in writing; "" = nothing.
+  /// Returns the write error; "" = no error.
   const std::string& error() const { return error_; }
 
  protected:
-  /// What goes wrong first counts.
+  /// Stores the first error.
   void fail(const std::string& what) {
     if (error_.empty()) error_ = what;
   }
@@ -55,21 +55,21 @@ class FlightLog {
 
 class LogPerFlight;
 
-/// Whether a name is one of a log: it ends in .csv, .mat or .bag, or belongs to a pipe or a device.
+/// Whether a path can be a log: it ends in .csv, .mat or .bag, or is a pipe or a device.
 bool is_log(const std::string& path);
 
-/// The log, a file per flight, of the format that a file's name asks for; CSV into a pipe.
-/// It refers to simulation and node.
-/// \param nh  whose names the topics of a bag have
-/// \param frame_prefix  of the vehicle's frames there
+/// Opens a log with one file per flight. The suffix determines the format; a pipe gets CSV. The log
+/// keeps references to simulation and node.
+/// \param nh  namespace of the topics in a bag
+/// \param frame_prefix  prefix of the vehicle's frames in a bag
 /// Throws InputError if the file cannot be written or a topic is not declared.
 std::unique_ptr<LogPerFlight> open_log(const std::string& path, const Simulation& simulation,
                                        const std::vector<std::string>& topics,
                                        const ros::NodeHandle& nh, const std::string& frame_prefix);
 
-/// How a file that cannot be written is told, for the reason that errno has.
-std::string unwritable(const std::string& path);
-/// The same of one that holds a part of the flight only.
-std::string cut_short(const std::string& path);
+/// Describes that a file cannot be written, with the reason in errno.
+std::string describe_open_failure(const std::string& path);
+/// Describes that a log is incomplete, with the reason in errno.
+std::string describe_truncation(const std::string& path);
 
 }  // namespace quadcore::node

@@ -9,32 +9,32 @@
 
 namespace quadcore::node {
 
-/// A log of the flight since the last jump: a reset, a state that was set, a clock that was set
-/// back. What was flown before a jump becomes a file of its own beside it, FILE.before_1.csv and so
-/// on, which replaces no other; unless it was moved away.
+/// A log of the flight since the last jump: a reset, a new state, or a clock that was set back. The
+/// previous log becomes FILE.before_1.csv and so on in the same folder, without replacing a file,
+/// unless it was moved.
 class LogPerFlight {
  public:
-  /// \param path  of the log
-  /// \param open  opens it anew
-  /// Throws what `open` throws.
+  /// \param path  path of the log
+  /// \param open  opens a new log
+  /// Rethrows exceptions of `open`.
   LogPerFlight(const std::string& path, std::function<std::unique_ptr<FlightLog>()> open);
-  /// A row, after the start, each step and, `jumped`, each jump.
+  /// Adds a row, after the start, each step and, with `jumped`, each jump.
   void add(const Simulation& simulation, bool jumped);
-  /// Writes what is left.
+  /// Writes the rest.
   void close();
-  /// What went wrong in writing; "" = nothing.
+  /// Returns the write error; "" = no error.
   const std::string& error() const { return error_; }
 
  private:
-  void begin_anew();
-  void keep();
+  void start_new_file();
+  void keep_previous();
   void fail(const std::string& what);
 
   const std::string path_;
   const std::function<std::unique_ptr<FlightLog>()> open_;
-  std::unique_ptr<FlightLog> log_;  ///< null once one could not be kept or opened
-  std::string error_;               ///< what went wrong first
-  double time_ = 0;                 ///< of the last row [s]
+  std::unique_ptr<FlightLog> log_;  ///< null after a log could not be kept or opened
+  std::string error_;               ///< the first error
+  double time_ = 0;                 ///< time of the last row [s]
   std::int64_t rows_ = 0;           ///< since the start or the last jump
 };
 

@@ -7,12 +7,11 @@
 #include <vector>
 
 /// \file
-/// Files of MATLAB, version 5 (MAT-File Format, MathWorks R2019b, chapter 1), little-endian and not
-/// compressed.
+/// MATLAB 5 files (MAT-File Format, MathWorks R2019b, chapter 1), little-endian and not compressed.
 
 namespace quadcore::node {
 
-/// A column of numbers: its name, and the number of a row.
+/// A column of numbers: its name, and a function that returns the number of a row.
 struct MatVector {
   std::string name;
   std::function<double(std::size_t)> at;
@@ -21,15 +20,15 @@ struct MatVector {
 /// Writes variables one after another.
 class MatFile {
  public:
-  /// Writes the head of a file. Failures are to be asked of the file.
+  /// Writes the header of a file. Check the file for errors.
   explicit MatFile(std::FILE* file);
-  /// A column vector of so many rows.
-  void vector(const MatVector& vector, std::size_t rows);
-  /// A struct of column vectors.
-  /// Throws InputError if it is larger than a file of this version can hold.
-  void structure(const std::string& name, const std::vector<MatVector>& fields, std::size_t rows);
-  /// A column cell array of texts.
-  void texts(const std::string& name, const std::vector<std::string>& texts);
+  /// Writes a column vector.
+  void write_vector(const MatVector& vector, std::size_t rows);
+  /// Writes a struct of column vectors. Throws InputError if it is too large for this version.
+  void write_structure(const std::string& name, const std::vector<MatVector>& fields,
+                       std::size_t rows);
+  /// Writes a column cell array of texts.
+  void write_texts(const std::string& name, const std::vector<std::string>& texts);
 
  private:
   void write(const std::string& bytes) { std::fwrite(bytes.data(), 1, bytes.size(), file_); }

@@ -14,23 +14,23 @@
 namespace quadcore::node {
 namespace {
 
-/// What a link leads to, for that is to be replaced.
-std::string target(const std::string& path) {
+/// Resolves a link, because its target is replaced.
+std::string resolve_link(const std::string& path) {
   std::error_code error;
   const std::filesystem::path found = std::filesystem::weakly_canonical(path, error);
   return error ? path : found.string();
 }
 
-/// A file beside another. In the same folder, because a name is given at once only within one file
-/// system.
-std::string beside(const std::string& path) {
+/// Returns the path of a temporary file in the same folder, because renaming is atomic within a
+/// file system.
+std::string make_part_path(const std::string& path) {
   const std::filesystem::path whole(path);
   return whole.parent_path() / ("." + whole.filename().string() + ".part");
 }
 
-/// A file without a name, in the folder of another.
-std::FILE* nameless(const std::string& path) {
-  std::string name = beside(path) + ".XXXXXX";
+/// Opens a file without a name in the same folder.
+std::FILE* open_unnamed_file(const std::string& path) {
+  std::string name = make_part_path(path) + ".XXXXXX";
   const int descriptor = mkstemp(name.data());
   if (descriptor < 0) return nullptr;
   unlink(name.c_str());
@@ -40,32 +40,33 @@ std::FILE* nameless(const std::string& path) {
 }  // namespace
 
 MatLog::MatLog(const std::string& path, const Simulation& simulation, LogRow row)
-    : path_(target(path)),
-      part_(beside(path_)),
+    : path_(resolve_link(path)),
+      part_(make_part_path(path_)),
       ignored_(simulation.ignored()),
       row_(std::move(row)),
-      rows_(nameless(path_)) {
+      rows_(open_unnamed_file(path_)) {
   const bool is_there = access(path_.c_str(), F_OK) == 0;
-  if (!rows_ || (is_there && access(path_.c_str(), W_OK) != 0)) throw InputError(unwritable(path_));
+  if (!rows_ || (is_there && access(path_.c_str(), W_OK) != 0))
+    throw InputError(describe_open_failure(path_));
 }
 
 void MatLog::add(const Simulation& simulation) {
-  const std::vector<double>& row = row_.of(simulation);
-  if (!error().empty()) return;  // a row that is there in part would shift all others
+  const std::vector<double>& row = row_.fill(simulation);
+  if (!error().empty()) return;  // an incomplete row would shift all others
   std::fwrite(row.data(), sizeof(double), row.size(), rows_.get());
-  if (std::ferror(rows_.get()) != 0) fail(cut_short(path_));
+  if (std::ferror(rows_.get()) != 0) fail(describe_truncation(path_));
 }
 
 void MatLog::close() {
   const int descriptor = fileno(rows_.get());
-  if (std::fflush(rows_.get()) != 0) fail(cut_short(path_));
+  if (std::fflush(rows_.get()) != 0) fail(describe_truncation(path_));
   struct stat now{};
   fstat(descriptor, &now);
   const std::size_t size = static_cast<std::size_t>(now.st_size);
   const std::size_t count = size / (sizeof(double) * row_.columns().size());
   if (count == 0) return;
   void* const rows = mmap(nullptr, size, PROT_READ, MAP_SHARED, descriptor, 0);
-  if (rows == MAP_FAILED) return fail(unwritable(path_));
+  if (rows == MAP_FAILED) return fail(describe_open_failure(path_));
   try {
     write(static_cast<const double*>(rows), count);
   } catch (const std::exception& error) {
@@ -77,9 +78,9 @@ void MatLog::close() {
 
 void MatLog::write(const double* rows, std::size_t count) const {
   File file(std::fopen(part_.c_str(), "w"));
-  if (!file) throw InputError(unwritable(path_));
+  if (!file) throw InputError(describe_open_failure(path_));
   MatFile mat(file.get());
-  std::vector<MatVector> fields;  // of one topic
+  std::vector<MatVector> fields;  // fields of one topic
   const std::vector<std::string>& names = row_.columns();
   const auto topic_of = [](const std::string& name) { return name.substr(0, name.find('.')); };
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -88,18 +89,18 @@ void MatLog::write(const double* rows, std::size_t count) const {
     };
     const std::string topic = topic_of(names[i]);
     if (topic == names[i]) {
-      mat.vector({names[i], at}, count);
+      mat.write_vector({names[i], at}, count);
       continue;
     }
     fields.push_back({names[i].substr(topic.size() + 1), at});
     if (i + 1 < names.size() && topic_of(names[i + 1]) == topic) continue;
-    mat.structure("topic_" + topic, std::exchange(fields, {}), count);
+    mat.write_structure("topic_" + topic, std::exchange(fields, {}), count);
   }
-  if (!ignored_.empty()) mat.texts("ignored", ignored_);
+  if (!ignored_.empty()) mat.write_texts("ignored", ignored_);
   const bool written = std::ferror(file.get()) == 0;
   if (std::fclose(file.release()) != 0 || !written ||
       std::rename(part_.c_str(), path_.c_str()) != 0) {
-    throw InputError(unwritable(path_));
+    throw InputError(describe_open_failure(path_));
   }
 }
 

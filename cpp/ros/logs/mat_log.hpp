@@ -8,8 +8,8 @@
 
 namespace quadcore::node {
 
-/// A MATLAB file. It holds columns, so rows wait in a file without name beside it until the flight
-/// ends: then the file appears whole, or not at all.
+/// A MATLAB file. It contains columns, so rows wait in an unnamed file until the flight ends. Then
+/// the complete file appears, or no file.
 class MatLog final : public FlightLog {
  public:
   /// Throws InputError if the file cannot be written.
@@ -18,7 +18,7 @@ class MatLog final : public FlightLog {
   void close() override;
 
  private:
-  /// Writes the rows, which lie there.
+  /// Writes the file from the rows.
   void write(const double* rows, std::size_t count) const;
 
   const std::string path_, part_;

@@ -8,7 +8,7 @@ namespace {
 
 using XmlRpc::XmlRpcValue;
 
-XmlRpcValue list(const XmlRpcValue& first, std::initializer_list<XmlRpcValue> others) {
+XmlRpcValue make_list(const XmlRpcValue& first, std::initializer_list<XmlRpcValue> others) {
   XmlRpcValue all;
   all[0] = first;
   int i = 1;
@@ -26,11 +26,11 @@ bool is_alive(const std::string& node) {
 
 bool call_master(const std::string& method, std::initializer_list<XmlRpcValue> arguments,
                  XmlRpcValue& result) {
-  // `rosnode kill` makes roscpp shut down, and unregister, in a thread of its own.
+  // After `rosnode kill`, roscpp shuts down and unregisters in another thread.
   if (ros::isShuttingDown()) return false;
   XmlRpcValue response;
-  return ros::master::execute(method, list(ros::this_node::getName(), arguments), response, result,
-                              false);
+  return ros::master::execute(method, make_list(ros::this_node::getName(), arguments), response,
+                              result, false);
 }
 
 bool call_node(const std::string& uri, const std::string& method,
@@ -42,16 +42,16 @@ bool call_node(const std::string& uri, const std::string& method,
       ros::XMLRPCManager::instance()->getXMLRPCClient(host, static_cast<int>(port), "/");
   XmlRpcValue response;
   const bool answered =
-      client->execute(method.c_str(), list(ros::this_node::getName(), arguments), response);
+      client->execute(method.c_str(), make_list(ros::this_node::getName(), arguments), response);
   ros::XMLRPCManager::instance()->releaseXMLRPCClient(client);
-  // A status, a remark, and what was asked for.
+  // A status, a message, and the result.
   if (!answered || response.getType() != XmlRpcValue::TypeArray || response.size() < 3)
     return false;
   result = response[2];
   return true;
 }
 
-std::string earlier_publisher(const std::string& topic) {
+std::string find_earlier_publisher(const std::string& topic) {
   XmlRpcValue state;
   if (!call_master("getSystemState", {}, state)) return "";
   XmlRpcValue& topics = state[0];

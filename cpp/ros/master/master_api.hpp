@@ -8,20 +8,20 @@
 #include <string>
 
 /// \file
-/// Calls of the ROS master's and of nodes' XML-RPC interfaces that roscpp has no names for.
+/// Calls of the XML-RPC interfaces of the ROS master and of nodes that roscpp does not provide.
 
 namespace quadcore::node {
 
-/// Calls the master, with this node's name before the arguments. Returns whether it answered with
-/// success; waits for no master that is gone.
+/// Calls the master, with this node's name as the first argument. Returns whether the call
+/// succeeded; does not wait for a missing master.
 bool call_master(const std::string& method, std::initializer_list<XmlRpc::XmlRpcValue> arguments,
                  XmlRpc::XmlRpcValue& result);
-/// Calls the node at `uri`, with this node's name before the arguments. Returns whether it
-/// answered; `result` is what it said.
+/// Calls the node at `uri`, with this node's name as the first argument. Returns whether it
+/// answered, and its result.
 bool call_node(const std::string& uri, const std::string& method,
                std::initializer_list<XmlRpc::XmlRpcValue> arguments, XmlRpc::XmlRpcValue& result);
-/// The first living node that has published a topic for longer than this one, by the order in which
-/// the master lists them; "" = none.
-std::string earlier_publisher(const std::string& topic);
+/// Returns the first live node that registered as a publisher of a topic before this one; "" = no
+/// such node.
+std::string find_earlier_publisher(const std::string& topic);
 
 }  // namespace quadcore::node

@@ -13,16 +13,16 @@ using XmlRpc::XmlRpcValue;
 
 namespace {
 
-/// Nodes look once a second each: after so many looks all are back at a new master.
-constexpr int looks_until_all_are_back = 3;
+/// Each node polls once a second: after this many polls, all have registered with a new master.
+constexpr int polls_until_all_are_back = 3;
 
-/// Publishers of a topic: those of a list, and those whom the node at `uri` is connected to.
-XmlRpcValue with_connected(const std::string& uri, const std::string& topic, XmlRpcValue& listed) {
+/// Returns the publishers of a topic: those in a list, and those connected to the node at `uri`.
+XmlRpcValue list_publishers(const std::string& uri, const std::string& topic, XmlRpcValue& listed) {
   std::set<std::string> all;
   for (int i = 0; i < listed.size(); ++i) all.insert(listed[i]);
   XmlRpcValue connections;
   if (!call_node(uri, "getBusInfo", {}, connections)) connections.setSize(0);
-  // Each with: number, who is there, direction, transport, topic, ...
+  // Each has: number, other node, direction, transport, topic, ...
   for (int i = 0; i < connections.size(); ++i) {
     XmlRpcValue& connection = connections[i];
     if (static_cast<std::string>(connection[2]) != "i") continue;
@@ -64,28 +64,28 @@ void MasterWatch::watch() {
   std::unique_lock<std::mutex> lock(mutex_);
   while (!ending_changed_.wait_for(lock, std::chrono::seconds(1), [this] { return ending_; })) {
     lock.unlock();
-    look();
+    poll();
     lock.lock();
   }
 }
 
-void MasterWatch::look() {
+void MasterWatch::poll() {
   XmlRpcValue result;
   const std::string& name = ros::this_node::getName();
   if (!ros::master::check()) {
-    if (!gone_) ROS_WARN("the ROS master is gone; flying on with those who are connected");
+    if (!gone_) ROS_WARN("The ROS master is gone. The flight continues with the connected nodes.");
     gone_ = true;
   } else if (!call_master("lookupNode", {name}, result)) {
     if (ros::isShuttingDown()) return;
     register_again();
-    ROS_WARN("there is a new ROS master; registered again");
+    ROS_WARN("There is a new ROS master. The node has registered again.");
     gone_ = false;
-    looks_to_register_again_ = looks_until_all_are_back;
+    polls_to_register_again_ = polls_until_all_are_back;
   } else {
-    if (gone_) ROS_INFO("the ROS master is back");
+    if (gone_) ROS_INFO("The ROS master is back.");
     gone_ = false;
-    if (looks_to_register_again_ > 0) {
-      --looks_to_register_again_;
+    if (polls_to_register_again_ > 0) {
+      --polls_to_register_again_;
       register_again();
     }
     while_known_();
@@ -95,12 +95,12 @@ void MasterWatch::look() {
 void MasterWatch::register_again() const {
   const std::string uri = ros::XMLRPCManager::instance()->getServerURI();
   XmlRpcValue result, topics;
-  // Parameters first: who starts next may ask for them at once.
+  // Parameters first, because a node that starts next may read them at once.
   for (const auto& [key, value] : parameters_) {
     const bool answered = call_master("hasParam", {key}, result);
     if (answered && !static_cast<bool>(result)) call_master("setParam", {key, value}, result);
   }
-  // This node tells everybody its topics, itself too: pairs of name and type.
+  // The node's own interface lists its topics: pairs of name and type.
   if (!call_node(uri, "getPublications", {}, topics)) topics.setSize(0);
   for (int i = 0; i < topics.size(); ++i) {
     call_master("registerPublisher", {topics[i][0], topics[i][1], uri}, result);
@@ -109,10 +109,10 @@ void MasterWatch::register_again() const {
   for (int i = 0; i < topics.size(); ++i) {
     XmlRpcValue publishers;
     if (!call_master("registerSubscriber", {topics[i][0], topics[i][1], uri}, publishers)) continue;
-    // As the master does for those who come later. roscpp cuts off whom such a list leaves out, and
-    // the others come back to a new master one by one.
-    call_node(uri, "publisherUpdate", {topics[i][0], with_connected(uri, topics[i][0], publishers)},
-              result);
+    // Like the master for later publishers. roscpp disconnects publishers that are not in the list,
+    // and nodes register with a new master one by one.
+    call_node(uri, "publisherUpdate",
+              {topics[i][0], list_publishers(uri, topics[i][0], publishers)}, result);
   }
   for (const std::string& service : services_) {
     call_master("registerService", {service, service_uri_, uri}, result);

@@ -12,28 +12,27 @@
 
 namespace quadcore::node {
 
-/// Looks once a second whether the ROS master still knows this node. One that was restarted does
-/// not, and roscpp leaves it at that; here topics, services and parameters are registered again, so
-/// that whoever starts afterwards finds them. Connections that stand go on without the master.
+/// Checks once a second whether this node is registered with the ROS master. After a restart of the
+/// master, roscpp does not register again. This class registers topics, services and parameters
+/// again for nodes that start later. Existing connections continue without the master.
 class MasterWatch {
  public:
   using Parameters = std::map<std::string, XmlRpc::XmlRpcValue>;
 
-  /// \param services  names to register again; topics are known to roscpp
-  /// \param parameters  to set again where a new master lacks them
-  /// \param while_known  called after each look at a master that knows this node
+  /// \param services  names to register again; roscpp lists the topics
+  /// \param parameters  to set again if a new master does not have them
+  /// \param while_known  called after each successful check
   MasterWatch(std::vector<std::string> services, Parameters parameters,
               std::function<void()> while_known);
   ~MasterWatch();
   MasterWatch(const MasterWatch&) = delete;
   MasterWatch& operator=(const MasterWatch&) = delete;
-  /// Looks no more. To be called before ros::shutdown(), after which the master does not know this
-  /// node either.
+  /// Ends the checks. Call before ros::shutdown(), which unregisters the node.
   void end();
 
  private:
   void watch();
-  void look();
+  void poll();
   void register_again() const;
 
   std::vector<std::string> services_;
@@ -41,7 +40,7 @@ class MasterWatch {
   const Parameters parameters_;
   const std::function<void()> while_known_;
   bool gone_ = false;
-  int looks_to_register_again_ = 0;
+  int polls_to_register_again_ = 0;
   std::mutex mutex_;
   std::condition_variable ending_changed_;
   bool ending_ = false;

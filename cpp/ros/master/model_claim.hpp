@@ -6,10 +6,10 @@
 
 namespace quadcore::node {
 
-/// Claims the name of a model in the one world of /gazebo, where each name belongs to one model. If
-/// several nodes start at once, the one that the master knew first gets it.
-/// \return what holds the claim as long as it lives
-/// Throws InputError if another node flies a model of that name.
+/// Claims the name of a model in the world of /gazebo, where names are unique. If several nodes
+/// start at once, the first registered one gets the name.
+/// \return object that holds the claim during its lifetime
+/// Throws InputError if another node simulates a model of that name.
 ros::Publisher claim_model(ros::NodeHandle& nh, const std::string& model);
 
 }  // namespace quadcore::node

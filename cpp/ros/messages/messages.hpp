@@ -11,26 +11,26 @@
 #include "quadcore/plugin/spatial.hpp"
 
 /// \file
-/// Between numbers and parts of messages.
+/// Conversions between numbers and parts of messages.
 
 namespace quadcore::node {
 
 constexpr const char* world_frame = "world";
 /// The thesis' name of the vehicle's frame.
 constexpr const char* vehicle_name = "drone";
-/// Messages of a topic that wait for who is slow.
+/// Queue size of a topic, for slow subscribers.
 constexpr std::uint32_t queue_size = 1000;
 
-/// A variance of zero stands for "unknown" to some filters and is singular to others. Without
-/// noise this is sent: a deviation of 1e-6.
-constexpr double least_variance = 1e-12;
+/// Minimum variance, a deviation of 1e-6. Some filters interpret zero as "unknown", others cannot
+/// invert it.
+constexpr double min_variance = 1e-12;
 
-/// A diagonal covariance, equal numbers for each three.
+/// Sets a diagonal covariance, with equal numbers for each three.
 template <class Matrix>
 void set_covariance(Matrix& matrix, std::initializer_list<double> variances) {
   const std::size_t side = 3 * variances.size();
   for (std::size_t i = 0; i < side; ++i) {
-    matrix[(side + 1) * i] = std::max(variances.begin()[i / 3], least_variance);
+    matrix[(side + 1) * i] = std::max(variances.begin()[i / 3], min_variance);
   }
 }
 
@@ -43,9 +43,9 @@ void set_vector(Vector& vector, const double* values) {
   vector.z = values[2];
 }
 
-/// Whether it turns and nothing else.
+/// Whether a quaternion has length 1.
 inline bool is_unit(const Quaterniond& q) {
-  constexpr double roundness = 1e-3;  // by which the length may differ from 1
+  constexpr double roundness = 1e-3;  // tolerance of the length
   return std::abs(q.norm() - 1) <= roundness;
 }
 

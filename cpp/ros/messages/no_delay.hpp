@@ -5,11 +5,10 @@
 
 namespace quadcore::node {
 
-/// Makes every connection of a subscriber to this node send at once. A subscriber may ask roscpp
-/// for that, but few do, and then a message can wait 40 ms for the acknowledgement of the one
-/// before: fatal in lockstep. roscpp offers the publisher no way to choose, so the socket that
-/// listens is set, from which Linux gives the choice to each that it accepts. Call before the first
-/// topic is advertised.
+/// Makes every connection of a subscriber to this node send at once. Otherwise, a message can wait
+/// 40 ms for the acknowledgement of the previous one, which is too slow in lockstep. In roscpp,
+/// only subscribers can request this. This function sets the option of the listening socket, and
+/// Linux copies it to each accepted connection. Call it before the first topic is advertised.
 inline void send_without_delay() {
   ros::ConnectionManager::instance()->getTCPServerTransport()->setNoDelay(true);
 }

@@ -4,23 +4,23 @@
 
 namespace quadcore::node {
 
-/// The simulation's topic `odom` and what the plugin that writes it asks for.
+/// The simulation's topic `odom` and the options of the plugin that publishes it.
 class OdometryTopic {
  public:
   static constexpr const char* name = "odom";
 
   explicit OdometryTopic(const Simulation& simulation);
 
-  /// Whether the simulation has the topic; nothing else may be asked where it has not.
+  /// Whether the simulation has the topic. Otherwise, do not call other members.
   bool exists() const { return index_ >= 0; }
   const Topic& in(const Simulation& simulation) const {
     return simulation.topics()[static_cast<std::size_t>(index_)];
   }
-  /// Messages so far.
+  /// Returns the number of messages so far.
   double count(const Simulation& simulation) const { return exists() ? in(simulation).count : 0; }
-  /// Whether its plugin asks for tf.
+  /// Whether its plugin publishes tf.
   bool publishes_tf() const { return publishes_tf_; }
-  /// What is true, in the same axes.
+  /// Returns the true state in the same axes.
   messages::Odometry truth(const VehicleState& state) const;
 
  private:

@@ -13,7 +13,7 @@
 
 namespace quadcore::node {
 
-/// Subscribers that have come since the last message; roscpp hands over what greets each.
+/// Subscribers that have connected since the last message, with roscpp's callback for each.
 class Newcomers final : public ros::CallbackQueueInterface {
  public:
   void addCallback(const ros::CallbackInterfacePtr& greeting, std::uint64_t) override {
@@ -27,8 +27,8 @@ class Newcomers final : public ros::CallbackQueueInterface {
     waiting_.clear();
   }
 
-  /// Greets those who have waited for some seconds, each once. Who has just come may be about to do
-  /// what brings a message about.
+  /// Calls the callbacks of subscribers that have waited for some seconds, each once. A subscriber
+  /// that has just connected may be about to send a command.
   void greet() {
     const std::lock_guard<std::mutex> lock(mutex_);
     while (!waiting_.empty() && Clock::now() - waiting_.front().first >= patience) {
@@ -45,8 +45,8 @@ class Newcomers final : public ros::CallbackQueueInterface {
   std::deque<std::pair<Clock::time_point, ros::CallbackInterfacePtr>> waiting_;
 };
 
-/// Publishes a topic whose messages somebody may answer, and keeps the last one for those who
-/// subscribe later. An empty one has none.
+/// Publishes a latched topic with messages that other nodes may answer. An empty publisher has no
+/// topic.
 template <class Message>
 class OfferingPublisher {
  public:
@@ -69,7 +69,7 @@ class OfferingPublisher {
     offering_->publisher.publish(message);
   }
 
-  /// Sends a message to those who have waited for one for some seconds, and keeps it for nobody.
+  /// Sends a message to subscribers that have waited for some seconds, without latching it.
   void offer(const Message& message) {
     offering_->offered = &message;
     offering_->newcomers.greet();

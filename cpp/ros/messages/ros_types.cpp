@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <type_traits>
 
-#include "kept_publisher.hpp"
+#include "latched_publisher.hpp"
 #include "messages.hpp"
 #include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
@@ -30,7 +30,8 @@ messages::Wrench from_ros(const geometry_msgs::WrenchStamped& message) {
   return {vector_of(message.wrench.force), vector_of(message.wrench.torque)};
 }
 
-void set_frames(geometry_msgs::Vector3Stamped&, const std::string&) {}  // the publisher's own
+void set_frames(geometry_msgs::Vector3Stamped&, const std::string&) {
+}  // the frame is that of the publisher
 void to_ros(const messages::Vector& vector, geometry_msgs::Vector3Stamped& message) {
   set_vector(message.vector, vector.value.data());
 }
@@ -38,8 +39,8 @@ messages::Vector from_ros(const geometry_msgs::Vector3Stamped& message) {
   return {vector_of(message.vector)};
 }
 
-/// What is measured carries the time of the measurement, however late it arrives; anything else
-/// that of the step that ends.
+/// Whether the stamp is the time of a measurement, also for delayed messages; otherwise it is the
+/// end of the step.
 template <class Message>
 constexpr bool is_measured =
     !std::is_same_v<Message, messages::Wrench> && !std::is_same_v<Message, messages::Vector>;
@@ -58,11 +59,11 @@ class TypedOutlet final : public Outlet {
   }
 
  private:
-  KeptPublisher<Ros> publisher_;
-  Ros message_;  // kept, so that sending it needs no new memory
+  LatchedPublisher<Ros> publisher_;
+  Ros message_;  // stored to reuse its memory
 };
 
-/// Of a fix: a type for the place and one, on NAME/velocity, for the velocity.
+/// Publishes a fix: the position on NAME, and the velocity on NAME/velocity.
 class FixOutlet final : public Outlet {
  public:
   FixOutlet(ros::NodeHandle& nh, const std::string& name, const std::string& frame)
@@ -77,7 +78,7 @@ class FixOutlet final : public Outlet {
   TypedOutlet<messages::Fix, geometry_msgs::TwistWithCovarianceStamped> velocity_;
 };
 
-/// Of a kind that has no type of its own: the numbers, with their names as the label.
+/// Publishes a kind without its own ROS type: the numbers, with their names as the label.
 class ArrayOutlet final : public Outlet {
  public:
   ArrayOutlet(ros::NodeHandle& nh, const Topic& topic) : publisher_(nh, topic.path, queue_size) {
@@ -89,7 +90,7 @@ class ArrayOutlet final : public Outlet {
   }
 
  private:
-  KeptPublisher<std_msgs::Float64MultiArray> publisher_;
+  LatchedPublisher<std_msgs::Float64MultiArray> publisher_;
   std_msgs::Float64MultiArray message_;
 };
 
@@ -101,16 +102,16 @@ ros::Subscriber subscribe(ros::NodeHandle& nh, const std::string& name, const Ac
                            ros::TransportHints().tcpNoDelay());
 }
 
-/// A kind of message and how it travels.
-struct Carriage {
+/// A kind of message and its ROS types.
+struct Transport {
   MessageKind kind;
   std::unique_ptr<Outlet> (*outlet)(ros::NodeHandle&, const std::string&, const std::string&);
   ros::Subscriber (*inlet)(ros::NodeHandle&, const std::string&, const Take&);
 };
 
-/// Of a kind that no one type holds all of: it goes out, and does not come in.
+/// Transport of a kind that no single ROS type contains completely: it can only be published.
 template <class Message, class Out>
-Carriage outward() {
+Transport outgoing() {
   return {messages::kind_of<Message>(),
           [](ros::NodeHandle& nh, const std::string& name, const std::string& frame)
               -> std::unique_ptr<Outlet> { return std::make_unique<Out>(nh, name, frame); },
@@ -118,8 +119,8 @@ Carriage outward() {
 }
 
 template <class Message, class Ros>
-Carriage carriage() {
-  Carriage both_ways = outward<Message, TypedOutlet<Message, Ros>>();
+Transport transport() {
+  Transport both_ways = outgoing<Message, TypedOutlet<Message, Ros>>();
   both_ways.inlet = [](ros::NodeHandle& nh, const std::string& name, const Take& take) {
     return subscribe<Ros>(nh, name, [take](const Ros& message) {
       std::vector<double> row(messages::kind_of<Message>().fields.size());
@@ -130,33 +131,33 @@ Carriage carriage() {
   return both_ways;
 }
 
-/// How a kind of message travels; null for an array of numbers.
-const Carriage* carriage_of(const MessageKind& kind) {
-  static const std::vector<Carriage> table = {
-      carriage<messages::Odometry, nav_msgs::Odometry>(),
-      carriage<messages::Imu, sensor_msgs::Imu>(),
-      carriage<messages::Pressure, sensor_msgs::FluidPressure>(),
-      carriage<messages::Field, sensor_msgs::MagneticField>(),
-      carriage<messages::Battery, sensor_msgs::BatteryState>(),
-      outward<messages::Fix, FixOutlet>(),
-      carriage<messages::Wrench, geometry_msgs::WrenchStamped>(),
-      carriage<messages::Vector, geometry_msgs::Vector3Stamped>(),
+/// Returns the transport of a kind of message; null for an array of numbers.
+const Transport* find_transport(const MessageKind& kind) {
+  static const std::vector<Transport> table = {
+      transport<messages::Odometry, nav_msgs::Odometry>(),
+      transport<messages::Imu, sensor_msgs::Imu>(),
+      transport<messages::Pressure, sensor_msgs::FluidPressure>(),
+      transport<messages::Field, sensor_msgs::MagneticField>(),
+      transport<messages::Battery, sensor_msgs::BatteryState>(),
+      outgoing<messages::Fix, FixOutlet>(),
+      transport<messages::Wrench, geometry_msgs::WrenchStamped>(),
+      transport<messages::Vector, geometry_msgs::Vector3Stamped>(),
   };
   const auto found = std::find_if(table.begin(), table.end(),
-                                  [&](const Carriage& entry) { return entry.kind == kind; });
+                                  [&](const Transport& entry) { return entry.kind == kind; });
   return found == table.end() ? nullptr : &*found;
 }
 
 }  // namespace
 
-void check_free(ros::NodeHandle& nh, const std::string& name) {
+void check_name_is_free(ros::NodeHandle& nh, const std::string& name) {
   std::vector<std::string> published, subscribed;
   ros::this_node::getAdvertisedTopics(published);
   ros::this_node::getSubscribedTopics(subscribed);
   for (const auto& taken : {published, subscribed}) {
     if (std::find(taken.begin(), taken.end(), nh.resolveName(name)) == taken.end()) continue;
-    throw InputError("topic '" + name + "' of a plugin has the name of one of the node's own; " +
-                     "give it another");
+    throw InputError("topic '" + name + "' of a plugin has the name of a topic of the node. " +
+                     "Give it another name.");
   }
 }
 
@@ -199,19 +200,19 @@ messages::Odometry from_ros(const nav_msgs::Odometry& message) {
 
 std::unique_ptr<Outlet> make_outlet(ros::NodeHandle& nh, const Topic& topic,
                                     const std::string& frame) {
-  const Carriage* const carriage = carriage_of(topic.kind);
-  if (carriage) return carriage->outlet(nh, topic.path, frame);
+  const Transport* const transport = find_transport(topic.kind);
+  if (transport) return transport->outlet(nh, topic.path, frame);
   return std::make_unique<ArrayOutlet>(nh, topic);
 }
 
 ros::Subscriber make_inlet(ros::NodeHandle& nh, const Topic& topic, const Take& take) {
-  check_free(nh, topic.path);
-  const Carriage* const carriage = carriage_of(topic.kind);
-  if (carriage && !carriage->inlet) {
-    throw InputError("topic '" + topic.path + "': no type of ROS holds all of a " +
-                     topic.kind.name + "; let a plugin publish it");
+  check_name_is_free(nh, topic.path);
+  const Transport* const transport = find_transport(topic.kind);
+  if (transport && !transport->inlet) {
+    throw InputError("topic '" + topic.path + "': no ROS type contains all of a " +
+                     topic.kind.name + ". Let a plugin publish it.");
   }
-  if (carriage) return carriage->inlet(nh, topic.path, take);
+  if (transport) return transport->inlet(nh, topic.path, take);
   return subscribe<std_msgs::Float64MultiArray>(
       nh, topic.path, [take](const std_msgs::Float64MultiArray& message) { take(message.data); });
 }

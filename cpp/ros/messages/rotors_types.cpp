@@ -9,7 +9,7 @@
 #include <std_msgs/Float32.h>
 #include <tf2_msgs/TFMessage.h>
 
-#include "kept_publisher.hpp"
+#include "latched_publisher.hpp"
 #include "messages.hpp"
 
 namespace quadcore::node {
@@ -19,7 +19,7 @@ constexpr const char* of_rotors = "librotors_gazebo_";
 constexpr const char* motor_file = "librotors_gazebo_motor_model.so";
 constexpr const char* odometry_file = "librotors_gazebo_odometry_plugin.so";
 
-/// Speeds of all rotors.
+/// Publishes the speeds of all rotors.
 class ActuatorsOutlet final : public Outlet {
  public:
   ActuatorsOutlet(ros::NodeHandle& nh, const std::string& name, const std::string& frame)
@@ -33,11 +33,11 @@ class ActuatorsOutlet final : public Outlet {
   }
 
  private:
-  KeptPublisher<mav_msgs::Actuators> publisher_;
+  LatchedPublisher<mav_msgs::Actuators> publisher_;
   mav_msgs::Actuators message_;
 };
 
-/// The rate of one joint.
+/// Publishes the rate of one joint.
 class RateOutlet final : public Outlet {
  public:
   RateOutlet(ros::NodeHandle& nh, const std::string& name) : publisher_(nh, name, queue_size) {}
@@ -47,11 +47,11 @@ class RateOutlet final : public Outlet {
   }
 
  private:
-  KeptPublisher<std_msgs::Float32> publisher_;
+  LatchedPublisher<std_msgs::Float32> publisher_;
   std_msgs::Float32 message_;
 };
 
-/// How a satellite receiver moves.
+/// Publishes the velocity of a satellite receiver.
 class GroundSpeedOutlet final : public Outlet {
  public:
   GroundSpeedOutlet(ros::NodeHandle& nh, const std::string& name)
@@ -65,7 +65,7 @@ class GroundSpeedOutlet final : public Outlet {
   }
 
  private:
-  KeptPublisher<geometry_msgs::TwistStamped> publisher_;
+  LatchedPublisher<geometry_msgs::TwistStamped> publisher_;
   geometry_msgs::TwistStamped message_;
 };
 
@@ -82,17 +82,17 @@ class WindOutlet final : public Outlet {
   }
 
  private:
-  KeptPublisher<rotors_comm::WindSpeed> publisher_;
+  LatchedPublisher<rotors_comm::WindSpeed> publisher_;
   rotors_comm::WindSpeed message_;
 };
 
-/// An odometry, and its pose once more in four types and on tf.
+/// Publishes an odometry, and its pose in four more types and on tf.
 class OdometryOutlet final : public Outlet {
  public:
   OdometryOutlet(ros::NodeHandle& nh, const Topic& topic, const LoadedPlugin& writer,
                  const std::string& frame, bool tf)
       : odometry_publisher_(nh, topic.path, queue_size) {
-    // What a namespace of the module's own puts before the names of its topics.
+    // The prefix of its topics, from the module's own namespace.
     const std::string& own = writer.parameters.text("odometryTopic");
     const std::string before = topic.path.substr(0, topic.path.size() - own.size());
     const auto name = [&](const char* tag) { return before + writer.parameters.text(tag); };
@@ -126,11 +126,11 @@ class OdometryOutlet final : public Outlet {
   }
 
  private:
-  KeptPublisher<nav_msgs::Odometry> odometry_publisher_;
-  KeptPublisher<geometry_msgs::Pose> pose_publisher_;
-  KeptPublisher<geometry_msgs::PoseWithCovarianceStamped> variance_publisher_;
-  KeptPublisher<geometry_msgs::PointStamped> position_publisher_;
-  KeptPublisher<geometry_msgs::TransformStamped> transform_publisher_;
+  LatchedPublisher<nav_msgs::Odometry> odometry_publisher_;
+  LatchedPublisher<geometry_msgs::Pose> pose_publisher_;
+  LatchedPublisher<geometry_msgs::PoseWithCovarianceStamped> variance_publisher_;
+  LatchedPublisher<geometry_msgs::PointStamped> position_publisher_;
+  LatchedPublisher<geometry_msgs::TransformStamped> transform_publisher_;
   ros::Publisher tf_publisher_;
   nav_msgs::Odometry odometry_;
   geometry_msgs::PoseWithCovarianceStamped with_variance_;

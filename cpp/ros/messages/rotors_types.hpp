@@ -10,19 +10,19 @@
 #include "ros_types.hpp"
 
 /// \file
-/// What RotorS' modules say, in the types that they say it in.
+/// Topics of RotorS' modules in their ROS types.
 
 namespace quadcore::node {
 
-/// Advertises a topic of one of RotorS' modules under its own name; null if it is none that goes in
-/// a type of its own.
-/// \param frame  tf's name of what its numbers are in, or of what an odometry is of
-/// \param root_frame  a frame that tf has anyway
+/// Advertises a topic of a RotorS module under its own name; null if the topic has no RotorS type.
+/// \param frame  tf frame of the numbers, or of the body of an odometry
+/// \param root_frame  a frame that is already in tf
 std::unique_ptr<Outlet> make_rotors_outlet(ros::NodeHandle& nh, const Topic& topic,
                                            const LoadedPlugin& writer, const std::string& frame,
                                            const std::string& root_frame);
 
-/// Where RotorS' motors take speeds directly; "" if the model has none.
+/// Returns the topic on which RotorS' motors receive speeds directly; "" if the model has no such
+/// motors.
 std::string direct_motor_topic(const Simulation& simulation);
 
 }  // namespace quadcore::node

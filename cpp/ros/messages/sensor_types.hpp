@@ -13,11 +13,11 @@
 #include "quadcore/plugin/messages.hpp"
 
 /// \file
-/// What sensors say, in types of ROS. `frame` is tf's name of the link that a sensor is mounted on.
+/// Sensor messages in ROS types. `frame` is the tf frame of the sensor's link.
 
 namespace quadcore::node {
 
-/// Of what a message has no room to leave out.
+/// Variance of numbers that a message cannot omit.
 constexpr double unknown_variance = 1e9;
 
 template <class Ros>
@@ -27,7 +27,7 @@ void set_frames(Ros& message, const std::string& frame) {
 
 inline void set_frames(sensor_msgs::Imu& message, const std::string& frame) {
   message.header.frame_id = frame;
-  message.orientation_covariance[0] = -1;  // none is given
+  message.orientation_covariance[0] = -1;  // no orientation
 }
 inline void to_ros(const messages::Imu& imu, sensor_msgs::Imu& message) {
   set_vector(message.angular_velocity, imu.angular_velocity.data());
@@ -46,7 +46,7 @@ inline messages::Imu from_ros(const sensor_msgs::Imu& message) {
 
 inline void to_ros(const messages::Pressure& pressure, sensor_msgs::FluidPressure& message) {
   message.fluid_pressure = pressure.pressure;
-  message.variance = std::max(pressure.variance, least_variance);
+  message.variance = std::max(pressure.variance, min_variance);
 }
 inline messages::Pressure from_ros(const sensor_msgs::FluidPressure& message) {
   return {message.fluid_pressure, message.variance};
@@ -54,7 +54,7 @@ inline messages::Pressure from_ros(const sensor_msgs::FluidPressure& message) {
 
 inline void to_ros(const messages::Field& field, sensor_msgs::MagneticField& message) {
   set_vector(message.magnetic_field, field.flux_density.data());
-  // In T^2 the least that others send would be a large one.
+  // The minimum variance would be large in T^2.
   for (const std::size_t i : {0, 4, 8}) message.magnetic_field_covariance[i] = field.variance;
 }
 inline messages::Field from_ros(const sensor_msgs::MagneticField& message) {
@@ -65,7 +65,8 @@ inline void to_ros(const messages::Battery& battery, sensor_msgs::BatteryState& 
   message.present = true;
   message.power_supply_status = sensor_msgs::BatteryState::POWER_SUPPLY_STATUS_DISCHARGING;
   message.voltage = static_cast<float>(battery.voltage);
-  message.current = -static_cast<float>(battery.current);  // of the type: drawn is negative
+  message.current =
+      -static_cast<float>(battery.current);  // in this type, a discharging current is negative
   message.charge = static_cast<float>(battery.charge);
   message.capacity = message.design_capacity = static_cast<float>(battery.capacity);
   message.percentage = static_cast<float>(battery.charge / battery.capacity);
@@ -80,9 +81,9 @@ inline void to_ros(const messages::Fix& fix, sensor_msgs::NavSatFix& message) {
   message.longitude = fix.longitude;
   message.altitude = fix.altitude;
   // East, north and up are the world's axes.
-  message.position_covariance[0] = std::max(fix.horizontal_variance, least_variance);
+  message.position_covariance[0] = std::max(fix.horizontal_variance, min_variance);
   message.position_covariance[4] = message.position_covariance[0];
-  message.position_covariance[8] = std::max(fix.vertical_variance, least_variance);
+  message.position_covariance[8] = std::max(fix.vertical_variance, min_variance);
   message.position_covariance_type = sensor_msgs::NavSatFix::COVARIANCE_TYPE_DIAGONAL_KNOWN;
 }
 

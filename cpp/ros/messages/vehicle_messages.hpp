@@ -9,16 +9,16 @@
 #include "quadcore/state.hpp"
 
 /// \file
-/// What tf and joint_states say of a vehicle.
+/// Messages of tf and joint_states for a vehicle.
 
 namespace quadcore::node {
 
 constexpr const char* truth_topic = "ground_truth/odometry";
 constexpr const char* joint_states_topic = "joint_states";
 
-/// A frame that lies in another as long as nothing else is said.
-inline geometry_msgs::TransformStamped same_place(const std::string& parent,
-                                                  const std::string& child) {
+/// Returns the transform of a frame that coincides with its parent.
+inline geometry_msgs::TransformStamped make_identity_transform(const std::string& parent,
+                                                               const std::string& child) {
   geometry_msgs::TransformStamped same;
   same.header.frame_id = parent;
   same.child_frame_id = child;
@@ -26,10 +26,10 @@ inline geometry_msgs::TransformStamped same_place(const std::string& parent,
   return same;
 }
 
-/// A frame at a pose in another.
-inline geometry_msgs::TransformStamped placed(const std::string& parent, const std::string& child,
-                                              const Pose& pose) {
-  geometry_msgs::TransformStamped placed = same_place(parent, child);
+/// Returns the transform of a frame at a pose in its parent.
+inline geometry_msgs::TransformStamped make_transform(const std::string& parent,
+                                                      const std::string& child, const Pose& pose) {
+  geometry_msgs::TransformStamped placed = make_identity_transform(parent, child);
   set_vector(placed.transform.translation, pose.xyz.data());
   const Quaterniond rotation = pose.rotation();
   set_quaternion(placed.transform.rotation, rotation.coeffs().data());

@@ -12,12 +12,12 @@
 
 namespace quadcore::node {
 
-/// Waits for SIGINT, SIGTERM and SIGHUP. Make one before any other thread starts, so that all of
-/// them leave these signals alone. A process whose flight has ended, but which has not ended by
-/// itself within most of a second after the signal, because a master or a name server hangs, is
-/// ended here with the flight's status. A flight whose step does not return, because nobody reads
-/// the pipe that its log goes to, is ended with status 2; a busy machine is no reason for that. A
-/// log that is being written is waited for, until a second signal.
+/// Waits for SIGINT, SIGTERM and SIGHUP. Construct it before any other thread starts, so that all
+/// threads block these signals. After a signal, the process has most of a second to end by itself.
+/// If a hanging master or name server prevents this after the end of the flight, this thread ends
+/// the process with the flight's status. If a step does not return, for example because a pipe of
+/// the log is not read, it ends the process with status 2. It waits for a log that is being
+/// written, until a second signal.
 class EndSignal {
  public:
   EndSignal() {
@@ -34,12 +34,12 @@ class EndSignal {
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
       }
       if (state->status == kFlying) {
-        give_up("the flight could not be ended in time; its log may be cut short");
+        give_up("The flight did not end in time. Its log may be incomplete.");
       }
       const timespec moment{0, 10'000'000};
       while (state->status == kWriting) {
         if (sigtimedwait(&signals, nullptr, &moment) >= 0) {
-          give_up("ended again while the log was being written, which is lost");
+          give_up("A second signal came while the log was written. The log is lost.");
         }
         begun = Clock::now();
       }
@@ -49,9 +49,9 @@ class EndSignal {
   }
 
   bool has_come() const { return state_->came; }
-  /// No step follows.
+  /// Call after the last step.
   void flight_is_being_written() const { state_->status = kWriting; }
-  /// What a flight leaves behind is written as far as it could be, and what is wrong was said.
+  /// Call after all output is written and errors are reported.
   void flight_ended_with(int status) const { state_->status = status; }
 
  private:
@@ -62,7 +62,7 @@ class EndSignal {
   static constexpr std::chrono::seconds longest_step{10};  // roslaunch kills after 15 s
   struct State {
     std::atomic<bool> came{false};
-    std::atomic<int> status{kFlying};  // with which to exit
+    std::atomic<int> status{kFlying};  // exit status
   };
 
   [[noreturn]] static void give_up(const char* why) {

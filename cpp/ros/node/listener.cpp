@@ -16,28 +16,28 @@ Listener::Listener(Broadcast& broadcast, TopicInlets& inlets, GazeboWrenches& wr
       command_topics_(std::move(command_topics)),
       log_(std::move(log)),
       follower_(follower),
-      warnings_told_(simulation.warnings().size()) {}
+      warnings_shown_(simulation.warnings().size()) {}
 
 void Listener::observe(const Simulation& simulation, bool jumped) {
   if (log_) log_->add(simulation, jumped);
   if (log_ && !log_->error().empty()) ROS_ERROR_ONCE("%s", log_->error().c_str());
   broadcast_.send(simulation, jumped);
   if (follower_) follower_->reached(simulation.time());
-  // A flight may bring warnings of its own; a reset takes them back.
-  warnings_told_ = std::min(warnings_told_, simulation.warnings().size());
-  for (; warnings_told_ < simulation.warnings().size(); ++warnings_told_) {
-    ROS_WARN("%s", simulation.warnings()[warnings_told_].c_str());
+  // Warnings may appear during a flight; a reset removes them.
+  warnings_shown_ = std::min(warnings_shown_, simulation.warnings().size());
+  for (; warnings_shown_ < simulation.warnings().size(); ++warnings_shown_) {
+    ROS_WARN("%s", simulation.warnings()[warnings_shown_].c_str());
   }
 }
 
 void Listener::remind(const Simulation& simulation) {
-  sayer_.warn("lockstep: nobody publishes on " + described(command_topics_) + ", so the flight " +
-              "waits at t = " + seconds(simulation.time()) +
-              ". Start the node that commands it, or fly without lockstep.");
+  limiter_.warn("lockstep: no node publishes on " + join_names(command_topics_) + ". The flight " +
+                "waits at t = " + seconds(simulation.time()) +
+                ". Start the controller, or run without lockstep.");
   broadcast_.offer(simulation);
 }
 
-bool Listener::has_commander() const { return commanders(command_topics_) > 0; }
+bool Listener::has_commander() const { return count_commanders(command_topics_) > 0; }
 
 std::string Listener::close_log() {
   if (!log_) return "";

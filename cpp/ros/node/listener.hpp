@@ -10,16 +10,16 @@
 #include "flight_thread.hpp"
 #include "gazebo_wrenches.hpp"
 #include "log_per_flight.hpp"
-#include "sayer.hpp"
 #include "topic_inlets.hpp"
+#include "warning_limiter.hpp"
 
 namespace quadcore::node {
 
-/// What the node does with a flight: sends it, logs it if asked to, and passes on what is wrong.
+/// Publishes a flight, logs it if requested, and passes on warnings.
 class Listener final : public FlightListener {
  public:
-  /// \param log       log to write; null = none
-  /// \param follower  to be told of each step; null = this node leads the clock
+  /// \param log       log to write; null = no log
+  /// \param follower  gets each step; null = this node leads the clock
   Listener(Broadcast& broadcast, TopicInlets& inlets, GazeboWrenches& wrenches,
            const Simulation& simulation, std::vector<CommandTopic> command_topics,
            std::unique_ptr<LogPerFlight> log, ClockFollower* follower);
@@ -32,9 +32,9 @@ class Listener final : public FlightListener {
   void show(const Simulation& simulation) override { broadcast_.show(simulation); }
   void remind(const Simulation& simulation) override;
   void repeat(const Simulation& simulation) override { broadcast_.send(simulation, true); }
-  void warn(const std::string& what) override { sayer_.warn(what); }
+  void warn(const std::string& what) override { limiter_.warn(what); }
   bool has_commander() const override;
-  /// Once the flight has ended. Returns what went wrong with the log; "" = nothing.
+  /// Call after the flight has ended. Returns the error of the log; "" = no error.
   std::string close_log();
 
  private:
@@ -44,8 +44,8 @@ class Listener final : public FlightListener {
   const std::vector<CommandTopic> command_topics_;
   const std::unique_ptr<LogPerFlight> log_;
   ClockFollower* const follower_;
-  std::size_t warnings_told_;  ///< of the simulation
-  Sayer sayer_;
+  std::size_t warnings_shown_;  ///< number of warnings already shown
+  WarningLimiter limiter_;
 };
 
 }  // namespace quadcore::node

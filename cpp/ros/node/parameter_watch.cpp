@@ -16,20 +16,20 @@ ParameterWatch::ParameterWatch(FlightThread& flight, bool follows_clock, Values 
 ParameterWatch::Values ParameterWatch::read() {
   Values values;
   XmlRpcValue all;
-  // Not ros::param::get, which waits for a master that is gone.
+  // Not ros::param::get, which waits for a missing master.
   if (!call_master("getParam", {ros::this_node::getName()}, all)) return values;
   if (all.getType() != XmlRpcValue::TypeStruct) return values;
   for (const auto& [name, value] : all) values.emplace(name, value);
   return values;
 }
 
-void ParameterWatch::look() {
+void ParameterWatch::poll() {
   Values now = read();
   for (const auto& [name, value] : now) {
     const auto before = last_.find(name);
     if (before != last_.end() && before->second == value) continue;
     try {
-      obey(name, value);
+      apply(name, value);
     } catch (const InputError& error) {
       ROS_WARN("%s", error.what());
     }
@@ -37,17 +37,19 @@ void ParameterWatch::look() {
   last_ = std::move(now);
 }
 
-void ParameterWatch::obey(const std::string& name, const XmlRpcValue& value) {
+void ParameterWatch::apply(const std::string& name, const XmlRpcValue& value) {
   if (name == "paused") {
     flight_.set_paused(to_flag(name, value));
   } else if (name == "real_time_factor" && follows_clock_) {
-    throw InputError("parameter ~real_time_factor: has no effect here; set it where /clock is led");
+    throw InputError(
+        "parameter ~real_time_factor: has no effect on a follower of /clock. Set it for the "
+        "leader.");
   } else if (name == "real_time_factor") {
-    flight_.set_real_time_factor(to_no_negative(name, value));
+    flight_.set_real_time_factor(to_non_negative(name, value));
   } else {
     throw InputError("parameter ~" + name +
-                     ": has no effect on a flight under way, only paused and real_time_factor "
-                     "have; start the node again");
+                     ": has no effect during a flight; only paused and real_time_factor have. "
+                     "Restart the node.");
   }
 }
 

@@ -9,22 +9,21 @@
 
 namespace quadcore::node {
 
-/// Obeys the private parameters that can act during a flight when somebody changes them, and says
-/// of the others that they cannot.
+/// Applies changes of the private parameters that can act during a flight, and warns about others.
 class ParameterWatch {
  public:
   using Values = std::map<std::string, XmlRpc::XmlRpcValue>;
 
-  /// \param follows_clock  whether somebody else sets the pace
-  /// \param known          what read() gave before the flight was set up
+  /// \param follows_clock  whether another node sets the pace
+  /// \param known          result of read() before the flight was set up
   ParameterWatch(FlightThread& flight, bool follows_clock, Values known);
-  /// The private parameters as they are now.
+  /// Reads the present private parameters.
   static Values read();
-  /// Asks the master once for all of them.
-  void look();
+  /// Asks the master once for all parameters, and applies changes.
+  void poll();
 
  private:
-  void obey(const std::string& name, const XmlRpc::XmlRpcValue& value);
+  void apply(const std::string& name, const XmlRpc::XmlRpcValue& value);
 
   FlightThread& flight_;
   const bool follows_clock_;

@@ -23,7 +23,7 @@
 namespace quadcore::node {
 namespace {
 
-void describe(const Simulation& simulation) {
+void log_description(const Simulation& simulation) {
   for (const std::string& warning : simulation.warnings()) ROS_WARN("%s", warning.c_str());
   for (const LoadedPlugin& plugin : simulation.plugins()) {
     ROS_DEBUG("plugin %s: %s", plugin.name.c_str(), plugin.path.c_str());
@@ -40,7 +40,7 @@ ros::NodeHandle start_node() {
   return nh;
 }
 
-/// Makes what is flown, and reports what it is made of.
+/// Makes the simulation and logs its description.
 Simulation make_vehicle(const Settings& settings, const World& world) {
   if (settings.verbose &&
       ros::console::set_logger_level(ROSCONSOLE_DEFAULT_NAME, ros::console::levels::Debug)) {
@@ -49,7 +49,7 @@ Simulation make_vehicle(const Settings& settings, const World& world) {
   Simulation simulation = make_simulation(settings.plant, world, [](const Model& model) {
     return std::vector<PluginElement>{GazeboWrenches::plugin(model)};
   });
-  describe(simulation);
+  log_description(simulation);
   return simulation;
 }
 
@@ -58,8 +58,8 @@ void say_error(const std::string& error) {
   std::fflush(stderr);
 }
 
-/// The node. Its members stand in the order in which they come to life, and end in reverse: what is
-/// flown, whose clock it follows, what it sends and takes, the flight, what others may call.
+/// The node. Its members are in the order of their construction: the simulation, the clock, topics,
+/// the flight, services.
 class Node {
  public:
   /// \return exit status
@@ -79,12 +79,13 @@ class Node {
   }
 
   std::vector<std::string> simulated_topics() const {
-    std::vector<std::string> topics = simulated(topics_);
+    std::vector<std::string> topics = list_simulated(topics_);
     topics.push_back(GazeboWrenches::topic);
     return topics;
   }
 
-  /// Parameters that other nodes read, to be set again after a restart of the master.
+  /// Returns the parameters that other nodes read. They are set again after a restart of the
+  /// master.
   MasterWatch::Parameters public_parameters() const {
     MasterWatch::Parameters parameters;
     for (const std::string& key : {std::string(use_sim_time), settings_.plant.description}) {
@@ -95,42 +96,42 @@ class Node {
 
   void send_gazebo_states() {
     try {
-      flight_.tell([this](const Simulation& now) { gazebo_states_.send(now); });
+      flight_.run_between_steps([this](const Simulation& now) { gazebo_states_.send(now); });
     } catch (const InputError&) {
-      // The flight ends; a new subscriber has nothing more to see.
+      // The flight ends; a new subscriber gets no message.
     }
   }
 
-  /// Lets others reach the node: callbacks first, then the services, because a node that has waited
-  /// for a service expects everything else to be there.
+  /// Connects the node: callbacks first, then the services, because a node that has waited for a
+  /// service expects all topics to exist.
   void connect() {
-    ROS_INFO("flying %s with engine %s, commands on %s%s", simulation_.model().name.c_str(),
-             simulation_.engine_name().c_str(), described(topics_).c_str(),
+    ROS_INFO("simulating %s with engine %s, commands on %s%s", simulation_.model().name.c_str(),
+             simulation_.engine_name().c_str(), join_names(topics_).c_str(),
              settings_.flight.lockstep ? ", one for each odometry message" : "");
     gazebo_states_.for_newcomers([this] { send_gazebo_states(); });
     if (neighbours_) {
-      neighbours_->when_heard([this](bool complete) {
-        // In flight the next step sends them.
+      neighbours_->on_message([this](bool complete) {
+        // During a flight, the next step sends them.
         if (complete || flight_.report().paused) send_gazebo_states();
       });
     }
     if (follower_) follower_->follow(flight_);
     spinner_.start();
     services_.emplace(nh_, simulation_, flight_, model_, wrenches_, neighbours_.get());
-    master_watch_.emplace(services_->names(), public_parameters(), [this] { parameters_.look(); });
+    master_watch_.emplace(services_->names(), public_parameters(), [this] { parameters_.poll(); });
   }
 
-  /// Until the signal to end.
+  /// Runs until the signal to end.
   void watch(const EndSignal& end_signal) {
     using Wall = std::chrono::steady_clock;
     Wall::time_point due = Wall::now() + std::chrono::seconds(1);
     while (ros::ok() && !end_signal.has_come()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
       if (leader_) {
-        leader_->look();
-        neighbours_->look(leader_->spaces(), gazebo_states_.asks_neighbours());
+        leader_->poll();
+        neighbours_->update(leader_->spaces(), gazebo_states_.asks_neighbours());
       }
-      if (follower_) follower_->tell(flight_.report());
+      if (follower_) follower_->report_progress(flight_.report());
       if (Wall::now() < due) continue;
       diagnostics_.send(flight_.report(), commands_.refusals());
       due += std::chrono::seconds(1);
@@ -140,7 +141,7 @@ class Node {
   int end(const EndSignal& end_signal) {
     flight_.end();
     end_signal.flight_is_being_written();
-    // Before anything that may take longer than there is time.
+    // Before anything that may take long.
     const std::string log_error = listener_.close_log();
     if (!log_error.empty()) say_error(log_error);
     const int status = log_error.empty() ? 0 : 2;
@@ -152,25 +153,26 @@ class Node {
   }
 
   ros::NodeHandle nh_ = start_node();
-  ParameterWatch::Values given_ = ParameterWatch::read();  // somebody may change them meanwhile
+  ParameterWatch::Values initial_parameters_ =
+      ParameterWatch::read();  // they may change during the set-up
   Settings settings_ = read_settings(nh_);
   World world_ = read_world_of(settings_.plant);
   Simulation simulation_ = make_vehicle(settings_, world_);
-  std::string model_ = model_name(settings_.plant, simulation_.model());
+  std::string model_ = choose_model_name(settings_.plant, simulation_.model());
   ros::Publisher claim_ = claim_model(nh_, model_);
 
-  // Either this node leads the clock, and neighbours follow it, or it follows.
-  KeptPublisher<rosgraph_msgs::Clock> clock_ = take_part_in_clock(nh_, settings_.clock);
+  // This node either leads the clock and has neighbours that follow it, or it follows.
+  LatchedPublisher<rosgraph_msgs::Clock> clock_ = take_part_in_clock(nh_, settings_.clock);
   std::unique_ptr<ClockFollower> follower_ =
       clock_ ? nullptr : std::make_unique<ClockFollower>(nh_, simulation_.dt());
   std::unique_ptr<GazeboNeighbours> neighbours_ =
       clock_ ? std::make_unique<GazeboNeighbours>(nh_) : nullptr;
 
-  std::string prefix_ = frame_prefix(nh_);
+  std::string prefix_ = make_frame_prefix(nh_);
   GazeboStates gazebo_states_{nh_, simulation_, model_, neighbours_.get()};
   VehicleMarkers markers_{nh_, simulation_, prefix_};
   Broadcast broadcast_{nh_, simulation_, clock_, prefix_, gazebo_states_, settings_.rotor_tf};
-  std::vector<CommandTopic> topics_ = command_topics(nh_, settings_.plant, simulation_);
+  std::vector<CommandTopic> topics_ = find_command_topics(nh_, settings_.plant, simulation_);
   TopicInlets inlets_{nh_, simulation_, simulated_topics(), settings_.flight.lockstep};
   GazeboWrenches wrenches_;
   Listener listener_{broadcast_,
@@ -187,8 +189,8 @@ class Node {
   std::unique_ptr<ClockLeader> leader_ =
       clock_ ? std::make_unique<ClockLeader>(nh_, flight_, clock_) : nullptr;
   CommandSubscriber commands_{nh_, topics_, settings_.flight.lockstep, flight_};
-  ParameterWatch parameters_{flight_, !clock_, given_};
-  Diagnostics diagnostics_{nh_, flight_.report(), described(topics_)};
+  ParameterWatch parameters_{flight_, !clock_, initial_parameters_};
+  Diagnostics diagnostics_{nh_, flight_.report(), join_names(topics_)};
 
   ros::AsyncSpinner spinner_{1};
   std::optional<Services> services_;
@@ -207,6 +209,6 @@ int main(int argc, char** argv) {
     return quadcore::node::Node().run(end_signal);
   } catch (const std::exception& error) {
     quadcore::node::say_error(error.what());
-    std::_Exit(2);  // a master that is mute may still be waited for
+    std::_Exit(2);  // a thread may still wait for an unresponsive master
   }
 }

@@ -7,7 +7,7 @@
 namespace quadcore::node {
 namespace {
 
-ClockRole clock_role(const std::string& text) {
+ClockRole parse_clock_role(const std::string& text) {
   if (text == "auto") return ClockRole::automatic;
   if (text == "lead") return ClockRole::lead;
   if (text == "follow") return ClockRole::follow;
@@ -20,18 +20,18 @@ Settings read_settings(const ros::NodeHandle& nh) {
   PrivateParameters p;
   Settings s;
   s.plant = read_plant(p);
-  s.log = path_from(s.plant.folder, p.text("log", ""));
+  s.log = resolve_path(s.plant.folder, p.text("log", ""));
   if (!s.log.empty() && !is_log(s.log)) {
     refuse_parameter("log", "a file that ends in .csv, .mat or .bag, not " + s.log);
   }
   s.log_topics = p.words("log_topics");
   if (s.log.empty() && !s.log_topics.empty()) {
-    throw InputError("parameter ~log_topics: names topics, but there is no log; set ~log");
+    throw InputError("parameter ~log_topics: has no effect without a log. Set ~log.");
   }
   s.verbose = p.flag("verbose", false);
   s.rotor_tf = p.flag("rotor_tf", false);
-  s.clock = clock_role(p.text("clock", "auto"));
-  s.real_time_factor = p.no_negative("real_time_factor", "; 0 is as fast as possible");
+  s.clock = parse_clock_role(p.text("clock", "auto"));
+  s.real_time_factor = p.non_negative("real_time_factor", "; 0 is as fast as possible");
   s.flight.paused = p.flag("paused", false);
   s.flight.lockstep = p.flag("lockstep", false);
   s.flight.lockstep_timeout = p.positive("lockstep_timeout").value_or(s.flight.lockstep_timeout);

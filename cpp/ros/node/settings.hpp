@@ -12,20 +12,21 @@
 
 namespace quadcore::node {
 
-/// What the node's private parameters say.
+/// Values of the node's private parameters.
 struct Settings {
   Plant plant;
-  std::string log;                      ///< path of a log; "" = none
-  std::vector<std::string> log_topics;  ///< topics in it
+  std::string log;                      ///< path of the log; "" = no log
+  std::vector<std::string> log_topics;  ///< topics in the log
   bool verbose = false;
-  bool rotor_tf = false;  ///< send the rotors' links, too
+  bool rotor_tf = false;  ///< also send the rotors' links
   ClockRole clock = ClockRole::automatic;
-  std::optional<double> real_time_factor;  ///< absent = what the world asks for
+  std::optional<double> real_time_factor;  ///< absent = the world's value
   FlightSettings flight;
 };
 
 /// Reads the parameters. Throws InputError on an unknown name or a value of the wrong kind.
-/// \param nh  where robot_description is looked for, then upwards; parameters are those of "~".
+/// \param nh  namespace in which the search for robot_description starts; parameters are those of
+/// "~".
 Settings read_settings(const ros::NodeHandle& nh);
 
 }  // namespace quadcore::node

@@ -11,8 +11,8 @@
 namespace quadcore::node {
 namespace {
 
-/// The effect whose coefficient a tag holds.
-std::optional<std::string> effect_of(const std::string& tag) {
+/// Returns the drag for which a tag gives the coefficient.
+std::optional<std::string> parse_effect(const std::string& tag) {
   const std::string suffix = "DragCoeff";
   if (tag.size() <= suffix.size()) return std::nullopt;
   const std::size_t end = tag.size() - suffix.size();
@@ -28,23 +28,22 @@ void choose_drag(const std::string& drag, const Model& model,
   std::vector<std::string> choices = {"none", "all"};
   for (const PluginElement& element : model.plugins) {
     const std::optional<std::string> path = find_plugin(element.filename);
-    if (!path) continue;  // the simulation says what is to be said of it
+    if (!path) continue;  // the simulation reports it
     for (const TagSpec& tag : open_plugin(element, *path).descriptor->tags) {
-      const std::optional<std::string> effect = effect_of(tag.name);
+      const std::optional<std::string> effect = parse_effect(tag.name);
       if (!effect) continue;
       choices.push_back(*effect);
       if (*effect == drag) continue;
       const std::string key = element.name + "." + tag.name;
       if (!parameters.emplace(key, "0").second) {
         throw InputError("parameter ~drag: " + drag + " sets " + key +
-                         " to 0, and ~set gives it, "
-                         "too; keep one");
+                         " to 0, but ~set also sets it. Keep one.");
       }
     }
   }
   if (std::find(choices.begin(), choices.end(), drag) != choices.end()) return;
-  throw InputError("parameter ~drag: '" + drag + "' is no effect of this model" +
-                   did_you_mean(drag, choices) + "; give one of " + joined(choices));
+  throw InputError("parameter ~drag: '" + drag + "' does not exist in this model" +
+                   did_you_mean(drag, choices) + ". Choose one of " + joined(choices) + ".");
 }
 
 }  // namespace quadcore::node

@@ -7,11 +7,10 @@
 
 namespace quadcore::node {
 
-/// Leaves one of the effects that drag at work, as the thesis switches them: each other plugin tag
-/// of the form EFFECTDragCoeff becomes 0.
-/// \param drag        an effect, "none", or "all": as the model has it
-/// \param parameters  "PLUGIN.TAG" -> value, as SimulationOptions has them; added to
-/// Throws InputError if the model has no such effect or a tag is in `parameters` already.
+/// Keeps one drag of the thesis active: every other plugin tag of the form NAMEDragCoeff becomes 0.
+/// \param drag        name of a drag, "none", or "all": no change
+/// \param parameters  "PLUGIN.TAG" -> value, as in SimulationOptions; extended
+/// Throws InputError if the model has no such drag, or if `parameters` already contains a tag.
 void choose_drag(const std::string& drag, const Model& model,
                  std::map<std::string, std::string>& parameters);
 

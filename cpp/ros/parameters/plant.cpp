@@ -10,21 +10,22 @@
 namespace quadcore::node {
 namespace {
 
-constexpr double longest_step = 0.1;  ///< s; no controller of a multirotor works at a longer one
+constexpr double max_step = 0.1;  ///< s; no controller of a multirotor works with a longer step
 
-/// The path of a world, or of the one of this name among the shipped ones.
-std::string world_path(const std::string& world, const std::string& shipped_worlds,
+/// Returns the path of a world, or of the built-in world of this name.
+std::string find_world(const std::string& world, const std::string& built_in_worlds,
                        const std::string& folder) {
-  const std::string shipped = shipped_worlds + "/" + world + ".world";
+  const std::string built_in = built_in_worlds + "/" + world + ".world";
   const bool is_name = world.find_first_of("/.") == std::string::npos;
   std::error_code ignored;
-  return is_name && std::filesystem::is_regular_file(shipped, ignored) ? shipped
-                                                                       : path_from(folder, world);
+  return is_name && std::filesystem::is_regular_file(built_in, ignored)
+             ? built_in
+             : resolve_path(folder, world);
 }
 
-/// "PLUGIN.TAG=VALUE" ... as the command line takes it.
-std::map<std::string, std::string> assignments(const std::string& parameter,
-                                               const std::vector<std::string>& words) {
+/// Parses "PLUGIN.TAG=VALUE" ... like the command line.
+std::map<std::string, std::string> parse_assignments(const std::string& parameter,
+                                                     const std::vector<std::string>& words) {
   std::map<std::string, std::string> values;
   for (const std::string& word : words) {
     const auto equals = word.find('=');
@@ -32,11 +33,11 @@ std::map<std::string, std::string> assignments(const std::string& parameter,
     if (equals == std::string::npos || equals + 1 == word.size() || dot == std::string::npos ||
         dot == 0 || dot + 1 == equals) {
       throw InputError("parameter ~" + parameter + ": '" + word +
-                       "' is not of the form PLUGIN.TAG=VALUE");
+                       "' is not valid. Write PLUGIN.TAG=VALUE.");
     }
     if (!values.emplace(word.substr(0, equals), word.substr(equals + 1)).second) {
       throw InputError("parameter ~" + parameter + ": " + word.substr(0, equals) +
-                       " is given twice; keep one");
+                       " is given twice. Keep one.");
     }
   }
   return values;
@@ -44,9 +45,9 @@ std::map<std::string, std::string> assignments(const std::string& parameter,
 
 }  // namespace
 
-// roslaunch starts nodes in a folder of its own, and the launch file tells with `pwd`, newline and
-// all, where it was started itself.
-std::string path_from(std::string folder, const std::string& path) {
+// roslaunch starts nodes in another folder. The launch file passes its own folder with `pwd`,
+// including a newline.
+std::string resolve_path(std::string folder, const std::string& path) {
   while (!folder.empty() && folder.back() == '\n') folder.pop_back();
   return folder.empty() || path.empty() || path.front() == '/' ? path : folder + "/" + path;
 }
@@ -55,23 +56,23 @@ Plant read_plant(PrivateParameters& p) {
   Plant plant;
   plant.model_path = p.text("model", "");
   plant.folder = p.text("folder", "");
-  const std::string shipped_worlds = p.text("shipped_worlds", "worlds");
-  plant.world = world_path(p.text("world", ""), shipped_worlds, plant.folder);
+  const std::string built_in_worlds = p.text("shipped_worlds", "worlds");
+  plant.world = find_world(p.text("world", ""), built_in_worlds, plant.folder);
   plant.name = p.text("name", "");
   plant.drag = p.text("drag", "all");
   plant.ignore = p.words("ignore");
 
   SimulationOptions& s = plant.simulation;
-  s.parameters = assignments("set", p.words("set"));
+  s.parameters = parse_assignments("set", p.words("set"));
   s.engine = p.text("engine", s.engine);
   const double dt = p.number("dt", 0);
-  if (dt != 0 && !(dt >= shortest_step && dt <= longest_step)) {
-    refuse_parameter("dt", "a step from 1e-9 to 0.1 s, or 0 for that of the world");
+  if (dt != 0 && !(dt >= shortest_step && dt <= max_step)) {
+    refuse_parameter("dt", "a step from 1e-9 to 0.1 s, or 0 for the step of the world");
   }
   if (dt > 0) s.dt = dt;
-  constexpr double greatest_seed = 9007199254740992;  // all whole numbers below are doubles
+  constexpr double max_seed = 9007199254740992;  // all smaller whole numbers are exact as doubles
   const double seed = p.number("seed", 0);
-  if (seed != std::floor(seed) || seed < 0 || seed > greatest_seed) {
+  if (seed != std::floor(seed) || seed < 0 || seed > max_seed) {
     refuse_parameter("seed", "a whole number from 0 to 9007199254740992");
   }
   s.seed = static_cast<std::uint64_t>(seed);
@@ -85,8 +86,8 @@ void read_description(const ros::NodeHandle& nh, Plant& plant) {
   if (!path.empty()) {
     if (path.size() > 6 && path.compare(path.size() - 6, 6, ".xacro") == 0) {
       throw InputError(path +
-                       ": is xacro; load it expanded as robot_description, as "
-                       "quadrotor.launch does");
+                       ": is a xacro file. Load its expansion as robot_description, as "
+                       "quadrotor.launch does.");
     }
     plant.model = Document::read(path);
     return;
@@ -95,13 +96,13 @@ void read_description(const ros::NodeHandle& nh, Plant& plant) {
   if (!nh.searchParam("robot_description", plant.description) ||
       !nh.getParam(plant.description, text)) {
     throw InputError(
-        "robot_description: is not on the parameter server; start with roslaunch quadcore "
-        "quadrotor.launch, or set ~model to a URDF file");
+        "robot_description: is not on the parameter server. Start with roslaunch quadcore "
+        "quadrotor.launch, or set ~model to a URDF file.");
   }
   plant.model = {"robot_description", text};
 }
 
-// gazebo_ros' empty world has a ground plane, too.
+// Like gazebo_ros' empty world, with a ground plane.
 World read_world_of(const Plant& plant) {
   if (!plant.world.empty()) return read_world(Document::read(plant.world), plant.ignore);
   World world;
@@ -118,25 +119,26 @@ Simulation make_simulation(const Plant& plant, const World& world, const Guests&
   return {std::move(model), world, options};
 }
 
-std::string model_name(const Plant& plant, const Model& model) {
+std::string choose_model_name(const Plant& plant, const Model& model) {
   const std::string& name = plant.name.empty() ? model.name : plant.name;
   std::string why;
   if (!ros::names::validate(name, why)) {
-    throw InputError("model name '" + name + "' cannot name a topic (" + why + "); set ~name");
+    throw InputError("model name '" + name + "' cannot name a topic (" + why + "). Set ~name.");
   }
   return name;
 }
 
-std::string command_topic(const ros::NodeHandle& nh, const Plant& plant, const Model& model) {
-  return nh.resolveName(model_name(plant, model) + "/" + Simulation::command_topic);
+std::string resolve_command_topic(const ros::NodeHandle& nh, const Plant& plant,
+                                  const Model& model) {
+  return nh.resolveName(choose_model_name(plant, model) + "/" + Simulation::command_topic);
 }
 
-std::string frame_prefix(const ros::NodeHandle& nh) {
+std::string make_frame_prefix(const ros::NodeHandle& nh) {
   const std::string space = nh.getNamespace().substr(1);
   return space.empty() ? "" : space + "/";
 }
 
-std::string frame_of(const std::string& prefix, const std::string& link) {
+std::string make_frame_name(const std::string& prefix, const std::string& link) {
   return link.rfind(prefix, 0) == 0 ? link : prefix + link;
 }
 

@@ -15,7 +15,7 @@ void refuse_parameter(const std::string& name, const std::string& wanted) {
   throw InputError("parameter " + (is_whole ? name : "~" + name) + ": give " + wanted);
 }
 
-// roscpp's conversions are members of values that may change.
+// roscpp's conversions are non-const members, so the functions copy a value first.
 
 bool to_flag(const std::string& name, const XmlRpcValue& value) {
   if (value.getType() != XmlRpcValue::TypeBoolean) refuse_parameter(name, "true or false");
@@ -35,7 +35,7 @@ double to_number(const std::string& name, const XmlRpcValue& value) {
   return number;
 }
 
-double to_no_negative(const std::string& name, const XmlRpcValue& value, const std::string& hint) {
+double to_non_negative(const std::string& name, const XmlRpcValue& value, const std::string& hint) {
   const double number = to_number(name, value);
   if (number < 0) refuse_parameter(name, "a number >= 0" + hint);
   return number;
@@ -43,14 +43,14 @@ double to_no_negative(const std::string& name, const XmlRpcValue& value, const s
 
 namespace {
 
-std::string written(double number) {
+std::string format_number(double number) {
   char text[32];
   std::snprintf(text, sizeof text, "%.17g", number);
   return text;
 }
 
-/// A value as the URDF would write it.
-std::string as_text(const std::string& name, const XmlRpcValue& value) {
+/// Writes a value as in a URDF.
+std::string format_value(const std::string& name, const XmlRpcValue& value) {
   XmlRpcValue v = value;
   switch (v.getType()) {
     case XmlRpcValue::TypeBoolean:
@@ -58,12 +58,12 @@ std::string as_text(const std::string& name, const XmlRpcValue& value) {
     case XmlRpcValue::TypeInt:
       return std::to_string(static_cast<int>(v));
     case XmlRpcValue::TypeDouble:
-      return written(static_cast<double>(v));
+      return format_number(static_cast<double>(v));
     case XmlRpcValue::TypeString:
       return static_cast<std::string>(v);
     case XmlRpcValue::TypeArray: {
       std::string row;
-      for (int i = 0; i < v.size(); ++i) row += (i > 0 ? " " : "") + as_text(name, v[i]);
+      for (int i = 0; i < v.size(); ++i) row += (i > 0 ? " " : "") + format_value(name, v[i]);
       return row;
     }
     default:
@@ -79,31 +79,31 @@ PrivateParameters::PrivateParameters(const std::string& space)
 std::string PrivateParameters::text(const std::string& name, const std::string& fallback) {
   XmlRpcValue value;
   if (!get(name, value)) return fallback;
-  if (value.getType() != XmlRpcValue::TypeString) refuse_parameter(called(name), "text");
+  if (value.getType() != XmlRpcValue::TypeString) refuse_parameter(full_name(name), "text");
   return static_cast<std::string>(value);
 }
 
 bool PrivateParameters::flag(const std::string& name, bool fallback) {
   XmlRpcValue value;
-  return get(name, value) ? to_flag(called(name), value) : fallback;
+  return get(name, value) ? to_flag(full_name(name), value) : fallback;
 }
 
 std::optional<double> PrivateParameters::number(const std::string& name) {
   XmlRpcValue value;
   if (!get(name, value)) return std::nullopt;
-  return to_number(called(name), value);
+  return to_number(full_name(name), value);
 }
 
-std::optional<double> PrivateParameters::no_negative(const std::string& name,
-                                                     const std::string& hint) {
+std::optional<double> PrivateParameters::non_negative(const std::string& name,
+                                                      const std::string& hint) {
   XmlRpcValue value;
   if (!get(name, value)) return std::nullopt;
-  return to_no_negative(called(name), value, hint);
+  return to_non_negative(full_name(name), value, hint);
 }
 
 std::optional<double> PrivateParameters::positive(const std::string& name) {
   const std::optional<double> value = number(name);
-  if (value && !(*value > 0)) refuse_parameter(called(name), "a number > 0");
+  if (value && !(*value > 0)) refuse_parameter(full_name(name), "a number > 0");
   return value;
 }
 
@@ -112,10 +112,10 @@ std::vector<std::string> PrivateParameters::words(const std::string& name) {
   if (!get(name, value)) return {};
   if (value.getType() == XmlRpcValue::TypeString) return split(static_cast<std::string>(value));
   const std::string wanted = "text, or a list of texts";
-  if (value.getType() != XmlRpcValue::TypeArray) refuse_parameter(called(name), wanted);
+  if (value.getType() != XmlRpcValue::TypeArray) refuse_parameter(full_name(name), wanted);
   std::vector<std::string> words;
   for (int i = 0; i < value.size(); ++i) {
-    if (value[i].getType() != XmlRpcValue::TypeString) refuse_parameter(called(name), wanted);
+    if (value[i].getType() != XmlRpcValue::TypeString) refuse_parameter(full_name(name), wanted);
     words.push_back(static_cast<std::string>(value[i]));
   }
   return words;
@@ -127,14 +127,14 @@ std::vector<PluginTag> PrivateParameters::tags(const std::vector<TagSpec>& table
     for (const std::string& name : {spec.name, spec.alias}) {
       XmlRpcValue value;
       if (name.empty() || !get(name, value)) continue;
-      const std::string text = as_text(called(name), value);
-      if (!text.empty()) given.push_back({spec.name, text, "parameter " + called(name)});
+      const std::string text = format_value(full_name(name), value);
+      if (!text.empty()) given.push_back({spec.name, text, "parameter " + full_name(name)});
     }
   }
   return given;
 }
 
-/// Names of those there are, without what lies below them.
+/// Returns the names of all existing parameters, without nested names.
 std::vector<std::string> PrivateParameters::all() const {
   std::vector<std::string> names, own;
   nh_.getParamNames(names);
@@ -149,9 +149,9 @@ std::vector<std::string> PrivateParameters::all() const {
 void PrivateParameters::check_all_known() const {
   for (const std::string& own : all()) {
     if (known_.count(own) > 0) continue;
-    throw InputError("parameter " + called(own) + ": is not known" +
+    throw InputError("parameter " + full_name(own) + ": does not exist" +
                      did_you_mean(own, {known_.begin(), known_.end()}) +
-                     "; it stays on the parameter server until you run: rosparam delete " +
+                     ". It stays on the parameter server until you run: rosparam delete " +
                      nh_.getNamespace() + "/" + own);
   }
 }

@@ -7,22 +7,22 @@
 #include <cmath>
 #include <cstdio>
 
-#include "answer.hpp"
 #include "quadcore/plugin/error.hpp"
+#include "respond.hpp"
 #include "topic_services.hpp"
 
 namespace quadcore::node {
 namespace {
 
-/// By so much a quaternion may miss unit length: typed with four digits, or in single precision.
+/// Tolerance of a quaternion's length, for numbers with four digits or single precision.
 constexpr double unit_tolerance = 1e-3;
 
-/// One more than of topics that are answered by a call of a service, of which there are two.
+/// One more than the two topics that are answered by a service call.
 constexpr std::uint32_t threads = 3;
 
 void reset_simulation(Simulation& simulation) { simulation.reset(); }
 
-/// Everything back to the start but time, which goes on.
+/// Resets everything except the time, which continues.
 void reset_world(Simulation& simulation) {
   const double now = simulation.time();
   simulation.reset();
@@ -43,7 +43,7 @@ void set_state(const SetState::Request& request, Simulation& simulation) {
   if (std::abs(length - 1) > unit_tolerance) {
     char text[100];
     std::snprintf(text, sizeof text, "state: the orientation is a quaternion of length %g", length);
-    throw InputError(std::string(text) + "; give one of length 1");
+    throw InputError(std::string(text) + ". Give one of length 1.");
   }
   state.linear_velocity = {v.x, v.y, v.z};
   state.angular_velocity = {w.x, w.y, w.z};
@@ -61,11 +61,11 @@ Services::Services(const ros::NodeHandle& nh, const Simulation& simulation, Flig
                    const GazeboNeighbours* neighbours)
     : nh_(nh), spinner_(threads, &queue_) {
   nh_.setCallbackQueue(&queue_);
-  // In a namespace the clock is not this vehicle's alone.
+  // In a namespace, other vehicles share the clock.
   const bool at_root = nh.getNamespace() == "/";
   const bool own_clock = neighbours && at_root;
   using Empty = std_srvs::Empty;
-  // std_srvs/Empty cannot say what went wrong: a call that returns false fails.
+  // std_srvs/Empty has no error message: a call that returns false fails.
   const auto offer = [&](const std::string& name, const std::function<void()>& action) {
     servers_.push_back(nh_.advertiseService<Empty::Request, Empty::Response>(
         name, [name, action](Empty::Request&, Empty::Response&) {
@@ -80,7 +80,7 @@ Services::Services(const ros::NodeHandle& nh, const Simulation& simulation, Flig
   };
   offer("gazebo/pause_physics", [&flight] { flight.set_paused(true); });
   offer("gazebo/unpause_physics", [&flight] { flight.set_paused(false); });
-  if (neighbours && !at_root) {  // the clock's leader stands for all who follow
+  if (neighbours && !at_root) {  // the leader of the clock serves all followers
     offer("/gazebo/pause_physics", [&flight] { flight.set_paused(true); });
     offer("/gazebo/unpause_physics", [&flight] { flight.set_paused(false); });
     for (const char* const reset : {"gazebo/reset_simulation", "gazebo/reset_world"}) {
@@ -89,7 +89,7 @@ Services::Services(const ros::NodeHandle& nh, const Simulation& simulation, Flig
         for (const std::string& space : neighbours->spaces()) {
           std_srvs::Empty empty;
           if (!ros::service::call(space + "/" + reset, empty)) {
-            throw InputError(space + " was not reset");
+            throw InputError(space + " was not reset. Reset it again.");
           }
         }
       });
@@ -104,16 +104,16 @@ Services::Services(const ros::NodeHandle& nh, const Simulation& simulation, Flig
   servers_.insert(servers_.end(), of_topics.begin(), of_topics.end());
   gazebo_.emplace(nh_, model, flight, wrenches, neighbours);
   servers_.insert(servers_.end(), gazebo_->servers().begin(), gazebo_->servers().end());
-  // Last: whoever has waited for one of quadcore's own finds every other service there.
+  // Last, so that a node that waits for one of them finds all other services.
   servers_.push_back(nh_.advertiseService<Step::Request, Step::Response>(
       "quadcore/step", [&flight](Step::Request& request, Step::Response& response) {
-        answer(response, [&] { flight.step(request.n); });
+        respond(response, [&] { flight.step(request.n); });
         response.stamp.fromSec(flight.report().time);
         return true;
       }));
   servers_.push_back(nh_.advertiseService<SetState::Request, SetState::Response>(
       "quadcore/set_state", [&flight](SetState::Request& request, SetState::Response& response) {
-        answer(response, [&] {
+        respond(response, [&] {
           flight.change([&](Simulation& simulation) { set_state(request, simulation); });
         });
         return true;

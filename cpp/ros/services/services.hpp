@@ -12,9 +12,9 @@
 
 namespace quadcore::node {
 
-/// Gazebo's services to pause and reset, quadcore's to step, to set the state, and to say something
-/// to plugins. They answer in threads of their own, so that one that takes long holds up neither
-/// commands nor the others.
+/// Gazebo's services to pause and reset, and quadcore's to step, to set the state, and to publish
+/// to plugins. They run in their own threads, so a long call delays neither commands nor other
+/// services.
 class Services {
  public:
   /// \param neighbours  who fly by this vehicle's clock, null = it follows itself: a leader answers
@@ -24,7 +24,7 @@ class Services {
   Services(const ros::NodeHandle& nh, const Simulation& simulation, FlightThread& flight,
            const std::string& model, GazeboWrenches& wrenches, const GazeboNeighbours* neighbours);
 
-  /// Resolved names.
+  /// Returns the resolved names of all services.
   std::vector<std::string> names() const;
 
  private:

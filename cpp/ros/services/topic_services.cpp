@@ -6,43 +6,43 @@
 
 #include <algorithm>
 
-#include "answer.hpp"
 #include "gazebo_wrenches.hpp"
 #include "messages.hpp"
 #include "quadcore/plugin/switch.hpp"
+#include "respond.hpp"
 
 namespace quadcore::node {
 namespace {
 
-std::vector<double> numbers(const std_srvs::SetBool::Request& request) {
+std::vector<double> to_row(const std_srvs::SetBool::Request& request) {
   return {request.data ? 1.0 : 0.0};
 }
-messages::Wrench wrench_of(const ApplyWrench::Request& request) {
+messages::Wrench to_wrench(const ApplyWrench::Request& request) {
   return {vector_of(request.wrench.force), vector_of(request.wrench.torque)};
 }
-std::vector<double> numbers(const ApplyWrench::Request& request) {
-  const messages::Wrench wrench = wrench_of(request);
+std::vector<double> to_row(const ApplyWrench::Request& request) {
+  const messages::Wrench wrench = to_wrench(request);
   std::vector<double> row(messages::kind_of<messages::Wrench>().fields.size());
   messages::write(wrench, row.data());
   return row;
 }
-std::vector<double> numbers(const Publish::Request& request) { return request.values; }
+std::vector<double> to_row(const Publish::Request& request) { return request.values; }
 
-/// What publishing does not check.
+/// Checks that publishing does not make.
 template <class Request>
-void check(const Simulation&, const Request&) {}
-void check(const Simulation& simulation, const ApplyWrench::Request& request) {
-  check_wrench(simulation, wrench_of(request));
+void check_request(const Simulation&, const Request&) {}
+void check_request(const Simulation& simulation, const ApplyWrench::Request& request) {
+  check_wrench(simulation, to_wrench(request));
 }
 
 template <class Service>
 ros::ServiceServer offer(ros::NodeHandle& nh, const std::string& name, FlightThread& flight) {
   const boost::function<bool(typename Service::Request&, typename Service::Response&)> callback =
       [name, &flight](typename Service::Request& request, typename Service::Response& response) {
-        answer(response, [&] {
-          const std::vector<double> row = numbers(request);
-          flight.tell([&](Simulation& simulation) {
-            check(simulation, request);
+        respond(response, [&] {
+          const std::vector<double> row = to_row(request);
+          flight.run_between_steps([&](Simulation& simulation) {
+            check_request(simulation, request);
             simulation.publish(name, row.data(), row.size());
           });
         });

@@ -9,9 +9,9 @@
 
 namespace quadcore::node {
 
-/// Offers each topic that plugins take and nobody in the simulation writes as a service of its
-/// name, in the type of its kind. It answers once the message is there for the next step.
-/// \param but  topics that somebody else takes
+/// Offers each topic that plugins read and no plugin publishes as a service of the same name, in
+/// the type of its kind. A service returns when the message is ready for the next step.
+/// \param but  topics to skip
 std::vector<ros::ServiceServer> offer_topics(ros::NodeHandle& nh, const Topics& topics,
                                              const std::vector<std::string>& but,
                                              FlightThread& flight);

@@ -8,12 +8,12 @@
 namespace quadcore::node {
 namespace {
 
-constexpr bool kept = true;  ///< the last message, for those who subscribe later
+constexpr bool kept = true;  ///< latched
 
 }  // namespace
 
 Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
-                     const KeptPublisher<rosgraph_msgs::Clock>& clock,
+                     const LatchedPublisher<rosgraph_msgs::Clock>& clock,
                      const std::string& frame_prefix, GazeboStates& gazebo_states, bool rotor_tf)
     : odometry_topic_(simulation),
       clock_publisher_(clock),
@@ -25,17 +25,19 @@ Broadcast::Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
   if (odometry_topic_.exists()) {
     advertise_odometry(nh, frame_prefix, simulation, rotor_tf);
   } else {
-    ROS_WARN("no plugin of the model publishes odometry on topic odom: odom and tf are not sent");
+    ROS_WARN(
+        "No plugin of the model publishes odometry on topic odom. The node publishes neither odom "
+        "nor tf.");
   }
   send_static_frames(nh, model, frame_prefix);
-  // Last, so that none takes the name of one of these.
+  // Last, so that no plugin takes the name of one of these topics.
   others_.emplace(nh, simulation, frame_prefix, OdometryTopic::name);
 }
 
 void Broadcast::advertise_odometry(ros::NodeHandle& nh, const std::string& frame_prefix,
                                    const Simulation& simulation, bool rotor_tf) {
   const Model& model = simulation.model();
-  const bool of_plugin = simulation.topics().find(truth_topic) >= 0;  // as RotorS' vehicles have it
+  const bool of_plugin = simulation.topics().find(truth_topic) >= 0;  // as for RotorS' vehicles
   odometry_publisher_ = {nh, OdometryTopic::name, 1000};
   if (!of_plugin) truth_publisher_ = nh.advertise<nav_msgs::Odometry>(truth_topic, 1000, kept);
   const std::string vehicle_frame = frame_prefix + vehicle_name;
@@ -43,24 +45,26 @@ void Broadcast::advertise_odometry(ros::NodeHandle& nh, const std::string& frame
   set_frames(truth_, vehicle_frame);
   if (!odometry_topic_.publishes_tf()) return;
   tf_publisher_ = nh.advertise<tf2_msgs::TFMessage>("/tf", 100, kept);
-  transforms_.transforms.push_back(same_place(world_frame, vehicle_frame));
+  transforms_.transforms.push_back(make_identity_transform(world_frame, vehicle_frame));
   if (rotor_tf) add_rotor_frames(model, frame_prefix);
 }
 
-/// Links whose joints do not move, which robot_state_publisher would not send without joint states.
+/// Publishes links on joints that do not move, which robot_state_publisher would not send without
+/// joint states.
 void Broadcast::send_static_frames(ros::NodeHandle& nh, const Model& model,
                                    const std::string& frame_prefix) {
   tf2_msgs::TFMessage message;
   const std::string vehicle_frame = frame_prefix + vehicle_name;
-  const std::string root_frame = frame_of(frame_prefix, model.links.front().name);
-  // The URDF begins at its root link, tf at the thesis' "drone".
+  const std::string root_frame = make_frame_name(frame_prefix, model.links.front().name);
+  // The root of the URDF is its root link; the root of tf is the thesis' "drone".
   if (tf_publisher_ && root_frame != vehicle_frame) {
-    message.transforms.push_back(same_place(vehicle_frame, root_frame));
+    message.transforms.push_back(make_identity_transform(vehicle_frame, root_frame));
   }
   for (const UrdfJoint& joint : model.urdf->joints) {
     if (!joint.fixed && !joint.locked) continue;
-    message.transforms.push_back(placed(frame_of(frame_prefix, joint.parent),
-                                        frame_of(frame_prefix, joint.child), joint.pose));
+    message.transforms.push_back(make_transform(make_frame_name(frame_prefix, joint.parent),
+                                                make_frame_name(frame_prefix, joint.child),
+                                                joint.pose));
   }
   if (message.transforms.empty()) return;
   static_tf_publisher_ = nh.advertise<tf2_msgs::TFMessage>("/tf_static", 100, kept);
@@ -106,7 +110,7 @@ void Broadcast::send_odometry(const Simulation& simulation, const Topic& topic) 
 }
 
 void Broadcast::fill_odometry(const Topic& topic) {
-  odometry_.header.stamp = to_ros(topic.stamp);  // earlier where it was delayed
+  odometry_.header.stamp = to_ros(topic.stamp);  // earlier for a delayed odometry
   to_ros(messages::read<messages::Odometry>(topic.values.data()), odometry_);
 }
 
@@ -120,9 +124,9 @@ void Broadcast::send_truth(const VehicleState& state) {
 void Broadcast::add_rotor_frames(const Model& model, const std::string& frame_prefix) {
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint& joint = model.joints[i];
-    transforms_.transforms.push_back(placed(frame_of(frame_prefix, model.links[joint.parent].name),
-                                            frame_of(frame_prefix, model.links[i + 1].name),
-                                            joint.pose));
+    transforms_.transforms.push_back(
+        make_transform(make_frame_name(frame_prefix, model.links[joint.parent].name),
+                       make_frame_name(frame_prefix, model.links[i + 1].name), joint.pose));
   }
 }
 

@@ -10,36 +10,36 @@
 #include <string>
 
 #include "gazebo_states.hpp"
-#include "kept_publisher.hpp"
+#include "latched_publisher.hpp"
+#include "message_rate.hpp"
 #include "odometry_topic.hpp"
 #include "offering_publisher.hpp"
 #include "path.hpp"
 #include "quadcore/simulation.hpp"
-#include "thinned.hpp"
 #include "topic_broadcast.hpp"
 
 namespace quadcore::node {
 
-/// Sends what the original package sends: /clock each step, then odom and tf world->drone with each
-/// message of the odometry plugin; besides, ground_truth/odometry, joint_states, path for rviz, and
-/// every other topic of the plugins, ahead of the odometry that somebody may answer.
-/// Stamps are simulation time, those of odom among the values of /clock. The last message of all is
-/// kept for those who subscribe later, so that a paused flight is seen, too.
+/// Publishes the topics of the original package: /clock each step, and odom and tf world->drone
+/// with each message of the odometry plugin. It also publishes ground_truth/odometry, joint_states,
+/// path for rviz, and every other topic of the plugins, before the odometry that a node may answer.
+/// Stamps are simulation time; those of odom are values of /clock. Topics are latched, so a paused
+/// flight is visible.
 class Broadcast {
  public:
-  /// \param clock  where the clock is sent; an empty publisher = somebody else sends it
-  /// \param frame_prefix  of the vehicle's frames, "" or such as "uav1/"
-  /// \param rotor_tf  whether tf holds the rotors' links, too. What robot_state_publisher sends of
-  ///                  them is not kept for those who come later.
+  /// \param clock  publisher of the clock; empty = another node publishes it
+  /// \param frame_prefix  prefix of the vehicle's frames, "" or for example "uav1/"
+  /// \param rotor_tf  whether tf also contains the rotors' links. Those of robot_state_publisher
+  /// are not latched.
   Broadcast(ros::NodeHandle& nh, const Simulation& simulation,
-            const KeptPublisher<rosgraph_msgs::Clock>& clock, const std::string& frame_prefix,
+            const LatchedPublisher<rosgraph_msgs::Clock>& clock, const std::string& frame_prefix,
             GazeboStates& gazebo_states, bool rotor_tf);
 
-  /// After a step; `jumped`: after the start, a reset or a new state.
+  /// Call after a step; `jumped`: after the start, a reset or a new state.
   void send(const Simulation& simulation, bool jumped);
-  /// Sends what is there to see, but nothing of the plugins, which somebody might answer.
+  /// Publishes the state, but no messages of plugins, which a node might answer.
   void show(const Simulation& simulation);
-  /// Sends the odometry of now to those who have waited for some for long.
+  /// Sends the present odometry to subscribers that have waited for some seconds.
   void offer(const Simulation& simulation);
 
  private:
@@ -54,10 +54,10 @@ class Broadcast {
   void send_joint_states(const VehicleState& state);
 
   const OdometryTopic odometry_topic_;
-  double sent_ = 0;  ///< count of the odometry message that was sent last
-  Thinned joint_states_due_{50};
+  double sent_ = 0;  ///< count of the last odometry message sent
+  MessageRate joint_states_due_{50};
 
-  KeptPublisher<rosgraph_msgs::Clock> clock_publisher_;
+  LatchedPublisher<rosgraph_msgs::Clock> clock_publisher_;
   OfferingPublisher<nav_msgs::Odometry> odometry_publisher_;
   ros::Publisher truth_publisher_;
   ros::Publisher tf_publisher_;
@@ -67,11 +67,11 @@ class Broadcast {
   GazeboStates& gazebo_states_;
   std::optional<TopicBroadcast> others_;
 
-  // Kept, so that sending them needs no new memory.
+  // Stored to reuse their memory.
   rosgraph_msgs::Clock clock_;
   nav_msgs::Odometry odometry_;
   nav_msgs::Odometry truth_;
-  tf2_msgs::TFMessage transforms_;  ///< world->drone, then those of the rotors
+  tf2_msgs::TFMessage transforms_;  ///< world->drone, then the rotors
   sensor_msgs::JointState joint_states_;
 };
 

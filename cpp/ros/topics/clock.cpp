@@ -13,29 +13,29 @@ namespace {
 
 using Wall = std::chrono::steady_clock;
 
-/// Followers tell how far they are at least so often, or they are not waited for.
+/// The leader does not wait for followers that are silent for longer.
 constexpr auto longest_silence = std::chrono::seconds(1);
-/// After this they have gone: on a busy machine a second of silence is no sign of that.
+/// After this time of silence, a follower counts as ended.
 constexpr auto longest_absence = std::chrono::seconds(5);
-/// By then a connection to the leader has been made, or has failed.
+/// By then, a connection to the leader exists or has failed.
 constexpr auto longest_connecting = std::chrono::seconds(5);
-/// They tell it after each such piece of time [s of simulation].
-constexpr double telling_period = longest_lead / 4;
+/// Interval of the followers' reports [s of simulation].
+constexpr double reporting_period = longest_lead / 4;
 
 }  // namespace
 
-KeptPublisher<rosgraph_msgs::Clock> take_part_in_clock(ros::NodeHandle& nh, ClockRole role) {
+LatchedPublisher<rosgraph_msgs::Clock> take_part_in_clock(ros::NodeHandle& nh, ClockRole role) {
   if (role == ClockRole::follow) return {};
-  KeptPublisher<rosgraph_msgs::Clock> publisher(nh, "/clock", 1000, Again::to_all);
-  const std::string leader = earlier_publisher("/clock");
+  LatchedPublisher<rosgraph_msgs::Clock> publisher(nh, "/clock", 1000, Resend::to_all);
+  const std::string leader = find_earlier_publisher("/clock");
   if (leader.empty()) {
-    // As gazebo_ros does; before there are services, so that whoever waits for one finds it.
+    // Like gazebo_ros; before the services exist, so that a node that waits for a service finds it.
     if (!nh.hasParam(use_sim_time)) nh.setParam(use_sim_time, true);
     return publisher;
   }
   if (role == ClockRole::lead) {
     throw InputError("parameter ~clock: is lead, but " + leader +
-                     " publishes /clock already; there can be one clock only, follow it");
+                     " already publishes /clock. Set it to follow.");
   }
   publisher.shutdown();
   ROS_INFO("following /clock of %s", leader.c_str());
@@ -43,7 +43,7 @@ KeptPublisher<rosgraph_msgs::Clock> take_part_in_clock(ros::NodeHandle& nh, Cloc
 }
 
 ClockLeader::ClockLeader(ros::NodeHandle& nh, FlightThread& flight,
-                         const KeptPublisher<rosgraph_msgs::Clock>& clock)
+                         const LatchedPublisher<rosgraph_msgs::Clock>& clock)
     : flight_(flight),
       clock_(clock),
       subscriber_(nh.subscribe(followers_topic, 1000, &ClockLeader::take, this,
@@ -56,7 +56,7 @@ void ClockLeader::take(const std_msgs::Header& needs) {
   hold();
 }
 
-void ClockLeader::look() {
+void ClockLeader::poll() {
   const std::lock_guard<std::mutex> lock(mutex_);
   const auto gone_since = Wall::now() - longest_absence;
   for (auto follower = followers_.begin(); follower != followers_.end();) {
@@ -103,25 +103,25 @@ void ClockFollower::subscribe() {
 }
 
 void ClockFollower::reached(double time) {
-  if (std::abs(time - told_) < telling_period) return;
-  told_ = time;
-  tell(ros::Time(time + dt_));
+  if (std::abs(time - reported_) < reporting_period) return;
+  reported_ = time;
+  report_progress(ros::Time(time + dt_));
 }
 
-void ClockFollower::tell(const FlightReport& report) {
+void ClockFollower::report_progress(const FlightReport& report) {
   if (report.waits_for_clock) {
-    // roscpp does not try a connection twice.
+    // roscpp does not repeat a failed connection.
     if (Wall::now() - subscribed_ > longest_connecting) subscribe();
-    // What a leader keeps for those who come may have come to roscpp's own subscription alone.
-    tell(ros::Time());
+    // The leader's latched message may have reached only roscpp's own subscription.
+    report_progress(ros::Time());
   } else if (report.paused || !report.failure.empty()) {
-    tell(ros::TIME_MAX);
+    report_progress(ros::TIME_MAX);
   } else {
-    tell(ros::Time(report.time + dt_));
+    report_progress(ros::Time(report.time + dt_));
   }
 }
 
-void ClockFollower::tell(const ros::Time& needs) {
+void ClockFollower::report_progress(const ros::Time& needs) {
   std_msgs::Header header;
   header.frame_id = ros::this_node::getName();
   header.stamp = needs;

@@ -12,79 +12,79 @@
 #include <vector>
 
 #include "flight_thread.hpp"
-#include "kept_publisher.hpp"
+#include "latched_publisher.hpp"
 
 namespace quadcore::node {
 
-/// Whose clock a node goes by.
+/// Role of a node in the shared clock.
 enum class ClockRole {
-  automatic,  ///< leads, unless somebody leads already
+  automatic,  ///< leads, unless another node already leads
   lead,
   follow
 };
 
-/// The parameter that makes nodes go by /clock.
+/// The parameter that makes nodes use /clock.
 constexpr char use_sim_time[] = "/use_sim_time";
 
-/// Takes this node's part in the one clock that all have: whoever leads publishes /clock and says
-/// so by /use_sim_time unless that is set, the others make their steps by it. If several start at
-/// once, the one that the master knew first leads.
-/// \return the publisher of /clock; empty if this node follows.
-/// Throws InputError if another node leads though this one is to.
-KeptPublisher<rosgraph_msgs::Clock> take_part_in_clock(ros::NodeHandle& nh, ClockRole role);
+/// Takes this node's role in the shared clock. The leader publishes /clock and sets /use_sim_time
+/// unless it is set; the others make their steps by it. If several nodes start at once, the first
+/// registered one leads.
+/// \return publisher of /clock; empty if this node follows
+/// Throws InputError if this node must lead, but another node already leads.
+LatchedPublisher<rosgraph_msgs::Clock> take_part_in_clock(ros::NodeHandle& nh, ClockRole role);
 
-/// Followers tell the leader up to where they need the clock for their next step, so that it does
-/// not run away from them; a time of zero asks for the clock, which may stand.
+/// Followers publish the time of the clock that they need for their next step, and the leader waits
+/// for it. A time of zero requests the clock, which may be paused.
 constexpr const char* followers_topic = "/clock_followers";
-/// The leader is ahead of that by at most this [s of simulation].
+/// Maximum lead over that time [s of simulation].
 constexpr double longest_lead = 0.02;
 
-/// The leader's side: holds the flight back for those who follow.
+/// The leader's side: delays the flight for followers.
 class ClockLeader {
  public:
   ClockLeader(ros::NodeHandle& nh, FlightThread& flight,
-              const KeptPublisher<rosgraph_msgs::Clock>& clock);
-  /// Waits no longer for followers that are silent, and forgets those that have gone. To be called
-  /// now and then.
-  void look();
-  /// Namespaces of the nodes that follow now.
+              const LatchedPublisher<rosgraph_msgs::Clock>& clock);
+  /// Stops waiting for silent followers, and removes those that have ended. Call it periodically.
+  void poll();
+  /// Returns the namespaces of the present followers.
   std::vector<std::string> spaces() const;
 
  private:
   struct Follower {
-    double needs = 0;  ///< the clock to come to this [s]
+    double needs = 0;  ///< time of the clock that it needs [s]
     std::chrono::steady_clock::time_point heard;
   };
   void take(const std_msgs::Header& needs);
   void hold();
 
   FlightThread& flight_;
-  KeptPublisher<rosgraph_msgs::Clock> clock_;
+  LatchedPublisher<rosgraph_msgs::Clock> clock_;
   mutable std::mutex mutex_;
   std::map<std::string, Follower> followers_;
-  double slowest_ = std::numeric_limits<double>::infinity();  ///< of what they need [s]
+  double slowest_ =
+      std::numeric_limits<double>::infinity();  ///< minimum of the times that they need [s]
   ros::Subscriber subscriber_;
 };
 
-/// The follower's side: hands the clock to the flight, and tells the leader how far that has come.
+/// The follower's side: passes the clock to the flight, and reports its progress to the leader.
 class ClockFollower {
  public:
-  /// \param dt  length of the flight's steps [s]
+  /// \param dt  step of the flight [s]
   ClockFollower(ros::NodeHandle& nh, double dt);
   void follow(FlightThread& flight);
-  /// A step has ended. From the flight's thread.
+  /// Call after a step, in the flight's thread.
   void reached(double time);
-  /// To be called now and then, or the leader takes this node for gone.
-  void tell(const FlightReport& report);
+  /// Call it periodically; otherwise the leader treats this node as ended.
+  void report_progress(const FlightReport& report);
 
  private:
-  void tell(const ros::Time& needs);
+  void report_progress(const ros::Time& needs);
   void subscribe();
 
   ros::NodeHandle& nh_;
   const double dt_;
   FlightThread* flight_ = nullptr;
-  double told_ = -1;
+  double reported_ = -1;
   std::chrono::steady_clock::time_point subscribed_;
   ros::Publisher publisher_;
   ros::Subscriber subscriber_;

@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::uint32_t queue_of_original = 1000;
 
-const std::vector<double>& speeds_of(const std_msgs::Float64MultiArray& message) {
+const std::vector<double>& get_speeds(const std_msgs::Float64MultiArray& message) {
   return message.data;
 }
-const std::vector<double>& speeds_of(const mav_msgs::Actuators& message) {
+const std::vector<double>& get_speeds(const mav_msgs::Actuators& message) {
   return message.angular_velocities;
 }
 
@@ -24,9 +24,9 @@ ros::Subscriber subscribe(ros::NodeHandle& nh, const std::string& topic, std::ui
                           const Take& take) {
   const boost::function<void(const ros::MessageEvent<Message const>&)> callback =
       [take](const ros::MessageEvent<Message const>& event) {
-        take(event.getPublisherName(), speeds_of(*event.getConstMessage()));
+        take(event.getPublisherName(), get_speeds(*event.getConstMessage()));
       };
-  // No delay, lest a command waits for the next one.
+  // Without delay, so that a command does not wait for the next one.
   return nh.subscribe<Message>(topic, queue, callback, ros::VoidConstPtr(),
                                ros::TransportHints().tcpNoDelay());
 }
@@ -36,8 +36,8 @@ ros::Subscriber subscribe(ros::NodeHandle& nh, const std::string& topic, std::ui
 CommandSubscriber::CommandSubscriber(ros::NodeHandle& nh, const std::vector<CommandTopic>& topics,
                                      bool lockstep, FlightThread& flight)
     : flight_(flight), topics_(topics) {
-  // In lockstep roscpp's queue, which drops in silence, must not be the shorter one.
-  const std::uint32_t queue = lockstep ? CommandQueue::most_waiting : queue_of_original;
+  // In lockstep, roscpp's queue, which drops messages without a warning, must not be shorter.
+  const std::uint32_t queue = lockstep ? CommandQueue::max_waiting : queue_of_original;
   for (const CommandTopic& topic : topics_) {
     const auto take_from = [this, &topic](const std::string& who, const std::vector<double>& w) {
       take(topic, who, w);
@@ -55,11 +55,11 @@ Refusals CommandSubscriber::refusals() const {
 
 void CommandSubscriber::take(const CommandTopic& topic, const std::string& commander,
                              const std::vector<double>& speeds) {
-  if (commander == ros::this_node::getName()) return;  // what a plugin forwards
-  if (commander != commander_ && !commander_.empty() && commanders(topics_) > 1) {
+  if (commander == ros::this_node::getName()) return;  // forwarded by a plugin
+  if (commander != commander_ && !commander_.empty() && count_commanders(topics_) > 1) {
     const auto [one, other] = std::minmax(commander, commander_);
-    sayer_.warn(topic.name + ": commands of " + one + " and of " + other +
-                " come in turn; end one of them");
+    limiter_.warn(topic.name + ": both " + one + " and " + other +
+                  " send commands. End one of them.");
   }
   commander_ = commander;
   try {
@@ -70,7 +70,7 @@ void CommandSubscriber::take(const CommandTopic& topic, const std::string& comma
       ++refusals_.count;
       refusals_.last = error.what();
     }
-    sayer_.warn(topic.name + ": " + error.what());
+    limiter_.warn(topic.name + ": " + error.what());
   }
 }
 

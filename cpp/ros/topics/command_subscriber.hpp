@@ -9,12 +9,12 @@
 #include "command_topics.hpp"
 #include "diagnostics.hpp"
 #include "flight_thread.hpp"
-#include "sayer.hpp"
+#include "warning_limiter.hpp"
 
 namespace quadcore::node {
 
-/// Takes commands from topics, on the callback thread; those that are refused are counted and
-/// told, and so are those of two who command at once.
+/// Receives commands from topics, in the callback thread. It counts and reports rejected commands,
+/// and warns if two nodes send commands.
 class CommandSubscriber {
  public:
   CommandSubscriber(ros::NodeHandle& nh, const std::vector<CommandTopic>& topics, bool lockstep,
@@ -30,8 +30,8 @@ class CommandSubscriber {
   std::vector<ros::Subscriber> subscribers_;
   mutable std::mutex mutex_;
   Refusals refusals_;
-  std::string commander_;  ///< who sent the last command
-  Sayer sayer_;
+  std::string commander_;  ///< sender of the last command
+  WarningLimiter limiter_;
 };
 
 }  // namespace quadcore::node

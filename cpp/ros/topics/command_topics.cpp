@@ -8,13 +8,14 @@
 
 namespace quadcore::node {
 
-std::vector<CommandTopic> command_topics(const ros::NodeHandle& nh, const Plant& plant,
-                                         const Simulation& simulation) {
+std::vector<CommandTopic> find_command_topics(const ros::NodeHandle& nh, const Plant& plant,
+                                              const Simulation& simulation) {
   const char* const direct = Simulation::command_topic;
-  std::vector<CommandTopic> topics = {{command_topic(nh, plant, simulation.model()), direct}};
+  std::vector<CommandTopic> topics = {
+      {resolve_command_topic(nh, plant, simulation.model()), direct}};
   const std::string motors = direct_motor_topic(simulation);
   if (!motors.empty()) topics.push_back({nh.resolveName(motors), direct, true});
-  // What else takes speeds forwards them to motors.
+  // Other readers of speeds forward them to motors.
   const Topics& all = simulation.topics();
   for (const std::string& name : all.names()) {
     const Topic& topic = all[all.at(name)];
@@ -30,7 +31,7 @@ std::vector<CommandTopic> command_topics(const ros::NodeHandle& nh, const Plant&
   return topics;
 }
 
-std::size_t commanders(const std::vector<CommandTopic>& topics) {
+std::size_t count_commanders(const std::vector<CommandTopic>& topics) {
   std::size_t count = 0;
   for (const CommandTopic& topic : topics) {
     const std::size_t known = ros::TopicManager::instance()->getNumPublishers(topic.name);
@@ -39,13 +40,13 @@ std::size_t commanders(const std::vector<CommandTopic>& topics) {
   return count;
 }
 
-std::vector<std::string> simulated(const std::vector<CommandTopic>& topics) {
+std::vector<std::string> list_simulated(const std::vector<CommandTopic>& topics) {
   std::vector<std::string> names;
   for (const CommandTopic& topic : topics) names.push_back(topic.simulated);
   return names;
 }
 
-std::string described(const std::vector<CommandTopic>& topics) {
+std::string join_names(const std::vector<CommandTopic>& topics) {
   std::string names;
   for (const CommandTopic& topic : topics) names += (names.empty() ? "" : " or ") + topic.name;
   return names;

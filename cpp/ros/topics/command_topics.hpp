@@ -9,23 +9,23 @@
 
 namespace quadcore::node {
 
-/// A topic of ROS on which commands come, each of them rotor speeds.
+/// A ROS topic for commands, which are rotor speeds.
 struct CommandTopic {
   std::string name;        ///< resolved
-  std::string simulated;   ///< the simulation's topic that they go to
-  bool actuators = false;  ///< in RotorS' mav_msgs/Actuators; else in the thesis' type
-  bool sent_too = false;   ///< this node publishes it, too
+  std::string simulated;   ///< topic of the simulation
+  bool actuators = false;  ///< type mav_msgs/Actuators of RotorS; otherwise the thesis' type
+  bool sent_too = false;   ///< this node also publishes it
 };
 
-/// Where commands for a vehicle come in, the thesis' topic first. Call once all that the node
-/// publishes is advertised.
-std::vector<CommandTopic> command_topics(const ros::NodeHandle& nh, const Plant& plant,
-                                         const Simulation& simulation);
-/// Of how many nodes commands may come.
-std::size_t commanders(const std::vector<CommandTopic>& topics);
-/// What of the simulation commands go to.
-std::vector<std::string> simulated(const std::vector<CommandTopic>& topics);
-/// Their names, for a person.
-std::string described(const std::vector<CommandTopic>& topics);
+/// Returns the topics for commands to a vehicle, the thesis' topic first. Call after the node has
+/// advertised all topics.
+std::vector<CommandTopic> find_command_topics(const ros::NodeHandle& nh, const Plant& plant,
+                                              const Simulation& simulation);
+/// Returns the number of nodes that may send commands.
+std::size_t count_commanders(const std::vector<CommandTopic>& topics);
+/// Returns the topics of the simulation that receive commands.
+std::vector<std::string> list_simulated(const std::vector<CommandTopic>& topics);
+/// Joins the names of the topics for messages.
+std::string join_names(const std::vector<CommandTopic>& topics);
 
 }  // namespace quadcore::node

@@ -5,7 +5,7 @@
 namespace quadcore::node {
 namespace {
 
-/// A second in which less than this part of the wanted factor was reached is worth a warning.
+/// Minimum part of the requested factor without a warning.
 constexpr double fair_share = 0.95;
 
 std::string to_text(double value) {
@@ -31,13 +31,13 @@ void Diagnostics::send(const FlightReport& report, const Refusals& refusals) {
   status.name = ros::this_node::getName().substr(1) + ": flight";
   status.hardware_id = "quadcore";
   status.level = diagnostic_msgs::DiagnosticStatus::OK;
-  status.message = report.paused ? "paused" : "flying";
+  status.message = report.paused ? "paused" : "running";
   if (!report.failure.empty()) {
     status.level = diagnostic_msgs::DiagnosticStatus::ERROR;
     status.message = report.failure;
   } else if (report.waits_for_clock) {
     status.level = diagnostic_msgs::DiagnosticStatus::WARN;
-    status.message = "waiting for somebody to publish /clock";
+    status.message = "waiting for a publisher of /clock";
     ROS_WARN_ONCE("%s", status.message.c_str());
   } else if (report.waits_for_command && report.steps == last_.steps) {
     status.level = diagnostic_msgs::DiagnosticStatus::WARN;

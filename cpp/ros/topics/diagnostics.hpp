@@ -10,13 +10,13 @@
 
 namespace quadcore::node {
 
-/// Commands that were refused.
+/// Rejected commands.
 struct Refusals {
   std::int64_t count = 0;
-  std::string last;  ///< why
+  std::string last;  ///< reason
 };
 
-/// Sends, once a second of wall time, how the flight keeps up.
+/// Publishes the progress of the flight once a second of wall time.
 class Diagnostics {
  public:
   Diagnostics(ros::NodeHandle& nh, const FlightReport& start, const std::string& command_topic);

@@ -6,7 +6,7 @@ namespace quadcore::node {
 namespace {
 
 constexpr std::size_t longest_path = 2000;  // poses
-/// Dropped together once the path is full, since the rest has to move up.
+/// Removed at once when the path is full, because the rest must be moved.
 constexpr std::ptrdiff_t oldest_poses = 200;
 
 }  // namespace

@@ -3,21 +3,21 @@
 #include <nav_msgs/Path.h>
 #include <ros/ros.h>
 
+#include "message_rate.hpp"
 #include "quadcore/state.hpp"
-#include "thinned.hpp"
 
 namespace quadcore::node {
 
-/// Where the vehicle has been, for rviz.
+/// Publishes the path of the vehicle for rviz.
 class PathTopic {
  public:
   explicit PathTopic(ros::NodeHandle& nh);
 
-  /// A step has ended at `stamp`; a jump begins a new path.
+  /// Call after a step that ended at `stamp`; a jump begins a new path.
   void add(const VehicleState& state, const ros::Time& stamp, bool jumped);
 
  private:
-  Thinned due_{10};
+  MessageRate due_{10};
   ros::Publisher publisher_;
   nav_msgs::Path path_;
 };

@@ -11,22 +11,22 @@
 
 namespace quadcore::node {
 
-/// Sends what plugins publish, each topic under its own name in the type of its kind.
+/// Publishes the topics of plugins, each under its own name in the type of its kind.
 class TopicBroadcast {
  public:
-  /// \param frame_prefix  before tf's names of links
-  /// \param but  a topic that somebody else sends
+  /// \param frame_prefix  prefix of the tf frames of links
+  /// \param but  a topic to skip
   TopicBroadcast(ros::NodeHandle& nh, const Simulation& simulation, const std::string& frame_prefix,
                  const std::string& but);
 
-  /// Sends what is new since the last call; after a jump everything.
+  /// Sends messages that are new since the last call; after a jump, all.
   void send(const Simulation& simulation, const ros::Time& stamp, bool jumped);
 
  private:
   struct Sent {
     std::size_t topic;
     std::unique_ptr<Outlet> outlet;
-    double count = 0;  ///< of the message that was sent last
+    double count = 0;  ///< count of the last message sent
   };
   std::vector<Sent> topics_;
 };

@@ -22,7 +22,7 @@ TopicInlets::TopicInlets(ros::NodeHandle nh, const Simulation& simulation,
       try {
         simulation_->publish(name, values.data(), values.size());
       } catch (const InputError& error) {
-        sayer_.warn(error.what());
+        limiter_.warn(error.what());
       }
     }));
   }
@@ -43,8 +43,8 @@ void TopicInlets::take(Simulation& simulation) {
   queue_.callAvailable();
 }
 
-/// roscpp looks at its sockets in turns and may have read a command before something that was sent
-/// sooner on another socket. It has read that, too, by the end of a turn that begins now.
+/// roscpp reads its sockets in turns, and may read a command before an earlier message on another
+/// socket. After the end of a turn that begins now, it has read that message.
 void TopicInlets::wait_for_sockets() {
   std::unique_lock<std::mutex> lock(mutex_);
   const std::int64_t next = turns_ + 1;

@@ -11,24 +11,24 @@
 
 #include "quadcore/simulation.hpp"
 #include "ros_types.hpp"
-#include "sayer.hpp"
+#include "warning_limiter.hpp"
 
 namespace quadcore::node {
 
-/// Takes what others publish for plugins, each topic under its own name in the type of its kind.
-/// Messages wait in a queue of their own until the flight takes them.
+/// Subscribes to topics for plugins, each under its own name in the type of its kind. Messages wait
+/// in a separate queue until the flight takes them.
 class TopicInlets {
  public:
-  /// \param but  topics that somebody else takes
-  /// \param lockstep  whether the flight waits for commands: then what was sent before a command
-  ///                  is there before its step
+  /// \param but  topics to skip
+  /// \param lockstep  whether the flight waits for commands: then messages sent before a command
+  /// arrive before its step
   TopicInlets(ros::NodeHandle nh, const Simulation& simulation, const std::vector<std::string>& but,
               bool lockstep);
   ~TopicInlets();
   TopicInlets(const TopicInlets&) = delete;
   TopicInlets& operator=(const TopicInlets&) = delete;
 
-  /// Publishes in the simulation what has come; to be called before a step, in its thread.
+  /// Publishes received messages in the simulation; call before a step, in the flight's thread.
   void take(Simulation& simulation);
 
  private:
@@ -36,13 +36,13 @@ class TopicInlets {
 
   ros::CallbackQueue queue_;
   std::vector<ros::Subscriber> subscribers_;
-  Simulation* simulation_ = nullptr;  ///< while it takes
-  Sayer sayer_;
+  Simulation* simulation_ = nullptr;  ///< during take()
+  WarningLimiter limiter_;
 
   const bool lockstep_;
   std::mutex mutex_;
   std::condition_variable turned_;
-  std::int64_t turns_ = 0;  ///< that roscpp has begun to look at all sockets
+  std::int64_t turns_ = 0;  ///< turns in which roscpp reads all sockets
   boost::signals2::connection poll_;
 };
 

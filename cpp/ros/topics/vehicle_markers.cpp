@@ -22,8 +22,9 @@ struct Colour {
 constexpr Colour ahead = {0.0f, 0.45f, 0.70f}, back = {0.84f, 0.37f, 0.0f};
 constexpr Colour still = {0.6f, 0.6f, 0.6f}, dark = {0.15f, 0.15f, 0.15f};
 
-/// Rates of the joints in a hover [rad/s]; zeros where nothing drives them or they cannot hold it.
-VectorXd hover_rates(Simulation& simulation) {
+/// Returns the rates of the joints in a hover [rad/s]; zeros if no plugin drives them or if they
+/// cannot hover.
+VectorXd find_hover_rates(Simulation& simulation) {
   try {
     return control::start_on({}, simulation.describe_vehicle()).rotor_velocity;
   } catch (const InputError&) {
@@ -31,11 +32,12 @@ VectorXd hover_rates(Simulation& simulation) {
   }
 }
 
-/// Of the sense in which a rotor turns, seen from above.
-Colour colour_of(double turn) { return turn > 0 ? ahead : turn < 0 ? back : still; }
+/// Returns the colour of a rotor's sense of rotation, seen from above.
+Colour choose_colour(double turn) { return turn > 0 ? ahead : turn < 0 ? back : still; }
 
-Marker marker(const std::string& frame, const std::string& group, std::size_t id, int type,
-              const Vector3d& place, const Vector3d& scale, const Colour& colour, float alpha) {
+Marker make_marker(const std::string& frame, const std::string& group, std::size_t id, int type,
+                   const Vector3d& place, const Vector3d& scale, const Colour& colour,
+                   float alpha) {
   Marker made;
   made.header.frame_id = frame;
   made.frame_locked = true;  // moves with its frame
@@ -52,15 +54,16 @@ Marker marker(const std::string& frame, const std::string& group, std::size_t id
   return made;
 }
 
-Marker text(const std::string& frame, const std::string& group, std::size_t id,
-            const std::string& words, const Vector3d& place, double height, const Colour& colour) {
+Marker make_text(const std::string& frame, const std::string& group, std::size_t id,
+                 const std::string& words, const Vector3d& place, double height,
+                 const Colour& colour) {
   Marker made =
-      marker(frame, group, id, Marker::TEXT_VIEW_FACING, place, {0, 0, height}, colour, 1);
+      make_marker(frame, group, id, Marker::TEXT_VIEW_FACING, place, {0, 0, height}, colour, 1);
   made.text = words;
   return made;
 }
 
-/// A line around the place along an arc that begins at x, then the two sides of a tip.
+/// Adds a line along an arc that begins at x, then the two sides of a tip.
 void add_arrow(Marker& line, double radius, double sense) {
   constexpr int parts = 30;
   const double arc = 1.5 * M_PI;
@@ -86,48 +89,48 @@ VehicleMarkers::VehicleMarkers(ros::NodeHandle& nh, Simulation& simulation,
     : publisher_(nh.advertise<visualization_msgs::MarkerArray>("vehicle_markers", 1, true)) {
   const Model& model = simulation.model();
   const double radius = drawn_disc_radius(model);
-  const VectorXd rates = hover_rates(simulation);
+  const VectorXd rates = find_hover_rates(simulation);
   const std::vector<Eigen::Isometry3d> poses = link_poses(model);
-  const std::string root = frame_of(frame_prefix, model.links.front().name);
+  const std::string root = make_frame_name(frame_prefix, model.links.front().name);
   visualization_msgs::MarkerArray all;
   const auto add = [&all](const Marker& made) { all.markers.push_back(made); };
 
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     const Link& link = model.links[i];
-    const std::string frame = frame_of(frame_prefix, link.name);
+    const std::string frame = make_frame_name(frame_prefix, link.name);
     const InertiaBox box = inertia_box(link.inertial);
     Vector3d axis = Vector3d::UnitZ();
     if (i > 0) axis = poses[i].linear() * model.joints[i - 1].axis;
     const double rate = i == 0 ? 0 : rates[static_cast<Eigen::Index>(i - 1)];
-    const Colour colour = i == 0 ? dark : colour_of(rate * axis.z());
-    // A flat one gets the edge of a sheet, for rviz warns of none.
+    const Colour colour = i == 0 ? dark : choose_colour(rate * axis.z());
+    // A flat box gets a small thickness, because rviz warns about zero.
     const Vector3d edges = box.edges.cwiseMax(1e-4);
-    Marker cube = marker(frame, "boxes", i, Marker::CUBE, box.center, edges, colour, 0.35f);
+    Marker cube = make_marker(frame, "boxes", i, Marker::CUBE, box.center, edges, colour, 0.35f);
     set_quaternion(cube.pose.orientation, box.orientation.coeffs().data());
     add(cube);
     std::string mass;
     append_shortest(with_digits(link.inertial.mass, 4), mass);
-    add(text(frame, "masses", i, mass + " kg", box.center - 0.3 * radius * Vector3d::UnitZ(),
-             0.25 * radius, dark));
+    add(make_text(frame, "masses", i, mass + " kg", box.center - 0.3 * radius * Vector3d::UnitZ(),
+                  0.25 * radius, dark));
     if (i == 0) continue;
-    // In the root's axes, which do not spin.
+    // In the root's axes, because these do not spin.
     const Vector3d place = poses[i].translation();
     const Quaterniond along = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), axis);
-    Marker disc = marker(root, "discs", i, Marker::CYLINDER, place,
-                         {2 * radius, 2 * radius, 0.01 * radius}, colour, 0.25f);
+    Marker disc = make_marker(root, "discs", i, Marker::CYLINDER, place,
+                              {2 * radius, 2 * radius, 0.01 * radius}, colour, 0.25f);
     set_quaternion(disc.pose.orientation, along.coeffs().data());
     add(disc);
-    add(text(root, "numbers", i, std::to_string(i), place + 0.35 * radius * axis, 0.5 * radius,
-             colour));
+    add(make_text(root, "numbers", i, std::to_string(i), place + 0.35 * radius * axis, 0.5 * radius,
+                  colour));
     if (rate == 0) continue;
-    Marker spin = marker(root, "spins", i, Marker::LINE_LIST, place + 0.05 * radius * axis,
-                         {0.06 * radius, 0, 0}, colour, 1);
+    Marker spin = make_marker(root, "spins", i, Marker::LINE_LIST, place + 0.05 * radius * axis,
+                              {0.06 * radius, 0, 0}, colour, 1);
     set_quaternion(spin.pose.orientation, along.coeffs().data());
     add_arrow(spin, 0.75 * radius, rate > 0 ? 1 : -1);
     add(spin);
   }
-  add(marker(root, "centre_of_mass", 0, Marker::SPHERE, mass_properties(model).p_FCcm,
-             Vector3d::Constant(0.12 * radius), dark, 1));
+  add(make_marker(root, "centre_of_mass", 0, Marker::SPHERE, mass_properties(model).p_FCcm,
+                  Vector3d::Constant(0.12 * radius), dark, 1));
   publisher_.publish(all);
 }
 

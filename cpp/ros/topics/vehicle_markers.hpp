@@ -8,12 +8,12 @@
 
 namespace quadcore::node {
 
-/// Sends vehicle_markers once, for who comes later, too: what `quadcore info --picture` draws, in
-/// the frames of tf. Namespaces are `discs`, `spins` (in hover; none where nothing drives a rotor),
-/// `numbers`, `boxes` and `masses`, of links and rotors, and `centre_of_mass`.
+/// Publishes vehicle_markers once, latched: the drawing of `quadcore info --picture` in the frames
+/// of tf. Namespaces are `discs`, `spins` (in hover, for rotors that a plugin drives), `numbers`,
+/// `boxes` and `masses`, of links and rotors, and `centre_of_mass`.
 class VehicleMarkers {
  public:
-  /// \param frame_prefix  of the vehicle's frames, "" or such as "uav1/"
+  /// \param frame_prefix  prefix of the vehicle's frames, "" or for example "uav1/"
   VehicleMarkers(ros::NodeHandle& nh, Simulation& simulation, const std::string& frame_prefix);
 
  private:

@@ -1,11 +1,11 @@
-#include "guide.hpp"
+#include "active_aim.hpp"
 
 #include "references/set_points.hpp"
 
 namespace quadcore::node {
 namespace {
 
-control::Reference place_of(const control::Odometry& now) {
+control::Reference make_hold(const control::Odometry& now) {
   control::Reference place;
   place.position = now.position;
   place.yaw = rpy_from_quaternion(now.orientation).z();
@@ -14,24 +14,24 @@ control::Reference place_of(const control::Odometry& now) {
 
 }  // namespace
 
-Guide::Guide(Shape shape) : first_(std::move(shape)) { begin(); }
+ActiveAim::ActiveAim(Shape shape) : first_(std::move(shape)) { begin(); }
 
-void Guide::begin() {
+void ActiveAim::begin() {
   shape_ = first_;
   begun_ = 0;
   next_ = nullptr;
   if (!shape_) follow([](const control::Reference& from) { return control::hold(from); });
 }
 
-void Guide::hold(const Aim& aim) {
+void ActiveAim::hold(const Aim& aim) {
   shape_ = nullptr;
   next_ = nullptr;
   held_ = aim;
 }
 
-Aim Guide::at(double t, const control::Odometry& now) {
+Aim ActiveAim::at(double t, const control::Odometry& now) {
   if (next_) {
-    shape_ = next_(shape_ ? shape_->at(t - begun_) : place_of(now));
+    shape_ = next_(shape_ ? shape_->at(t - begun_) : make_hold(now));
     begun_ = t;
     next_ = nullptr;
   }

@@ -10,34 +10,34 @@
 
 namespace quadcore::node {
 
-/// What a vehicle is to do.
+/// Set point of a vehicle.
 using Aim = std::variant<control::Reference, control::AttitudeThrust, control::RatesThrust>;
 
-/// What a vehicle is to do at any time: at first a shape, or, without one, to stay at the place at
-/// which it is first seen; then whatever was asked for last.
-class Guide {
+/// The set point at any time: first a shape, or without one the place at which the vehicle is first
+/// observed; then the last request.
+class ActiveAim {
  public:
   using Shape = std::shared_ptr<const control::ReferenceShape>;
-  /// Makes a shape that begins where another ends.
+  /// Makes a shape that begins at the end of another.
   using Begin = std::function<Shape(const control::Reference& from)>;
 
-  explicit Guide(Shape shape);
+  explicit ActiveAim(Shape shape);
 
-  /// Whatever was asked for is forgotten.
+  /// Discards all requests.
   void begin();
-  /// From the next call of at() on.
+  /// Follows a new shape from the next call of at() on.
   void follow(Begin begin) { next_ = std::move(begin); }
   void hold(const Aim& aim);
 
   /// \param t    time of the plant [s]
-  /// \param now  where the vehicle is
+  /// \param now  present state of the vehicle
   Aim at(double t, const control::Odometry& now);
 
  private:
   Shape first_, shape_;
   double begun_ = 0;  ///< time of the shape's beginning [s]
   Begin next_;
-  Aim held_;  ///< where there is no shape
+  Aim held_;  ///< used without a shape
 };
 
 }  // namespace quadcore::node

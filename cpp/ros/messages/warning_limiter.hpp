@@ -10,9 +10,9 @@
 
 namespace quadcore::node {
 
-/// Says each thing at most once a second, however often it happens, so that no fault hides another.
-/// Not ROS_WARN_THROTTLE: that goes by simulation time, which may stand still.
-class Sayer {
+/// Logs each warning at most once a second, so that no warning hides another. It does not use
+/// ROS_WARN_THROTTLE, which depends on simulation time and may stop during a pause.
+class WarningLimiter {
  public:
   void warn(const std::string& what) {
     {
@@ -29,7 +29,7 @@ class Sayer {
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::size_t most_at_once = 20;  ///< different things a second
+  static constexpr std::size_t most_at_once = 20;  ///< different warnings a second
 
   std::mutex mutex_;
   std::map<std::string, Clock::time_point> quiet_until_;

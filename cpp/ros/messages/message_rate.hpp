@@ -4,13 +4,13 @@
 
 namespace quadcore::node {
 
-/// The rhythm of something that is worth sending less often than each step.
-class Thinned {
+/// Determines when to send a message that is sent less often than each step.
+class MessageRate {
  public:
   /// \param rate  messages per second of simulation time
-  explicit Thinned(double rate) : rate_(rate) {}
+  explicit MessageRate(double rate) : rate_(rate) {}
 
-  /// Whether a message is due at `time` [s], the first after a jump at once.
+  /// Whether a message is due at `time` [s]; after a jump, one is always due.
   bool due(double time, bool jumped) {
     const double count = std::floor(time * rate_ + 1e-6);
     if (count == last_ && !jumped) return false;

@@ -9,20 +9,20 @@
 
 namespace quadcore::node {
 
-/// Who is sent the last message when somebody subscribes.
-enum class Again {
-  to_newcomer,  ///< he alone, who may see earlier ones that are on their way to all after it
-  to_all        ///< everybody, in order: what steps back for nobody and may come twice, as a clock
+/// Recipients of the last message when a node subscribes.
+enum class Resend {
+  to_newcomer,  ///< only the new subscriber; it may get earlier messages after this one
+  to_all        ///< all, in order, for messages that may be repeated, such as a clock
 };
 
-/// Publishes a topic and keeps the last message for those who subscribe later. Unlike roscpp's
-/// latch it says who else gets that one. Copies share the topic; an empty one has none.
+/// Publishes a latched topic. Unlike with roscpp's latch, the recipients of a resent message are
+/// defined. Copies share the topic; an empty publisher has no topic.
 template <class Message>
-class KeptPublisher {
+class LatchedPublisher {
  public:
-  KeptPublisher() = default;
-  KeptPublisher(ros::NodeHandle& nh, const std::string& topic, std::uint32_t queue_size,
-                Again again = Again::to_newcomer)
+  LatchedPublisher() = default;
+  LatchedPublisher(ros::NodeHandle& nh, const std::string& topic, std::uint32_t queue_size,
+                   Resend again = Resend::to_newcomer)
       : kept_(std::make_shared<Kept>()) {
     const auto send_again =
         [again, weak = std::weak_ptr<Kept>(kept_)](const ros::SingleSubscriberPublisher& newcomer) {
@@ -30,7 +30,7 @@ class KeptPublisher {
           if (!kept) return;
           const std::lock_guard<std::mutex> lock(kept->mutex);
           if (!kept->any) return;
-          if (again == Again::to_all) {
+          if (again == Resend::to_all) {
             kept->publisher.publish(kept->last);
           } else {
             newcomer.publish(kept->last);
@@ -49,7 +49,7 @@ class KeptPublisher {
     kept_->publisher.publish(message);
   }
 
-  /// Sends the last message again, to all.
+  /// Sends the last message again to all.
   void repeat() {
     const std::lock_guard<std::mutex> lock(kept_->mutex);
     if (kept_->any) kept_->publisher.publish(kept_->last);

@@ -4,7 +4,7 @@
 
 namespace quadcore::node {
 
-/// Does what a request asks for; the response says whether it went well.
+/// Runs the action of a request, and stores success or the error in the response.
 template <class Response, class Action>
 void answer(Response& response, const Action& action) {
   try {
