@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Write docs/tags.md from what quadcore itself says of its plugins, worlds and logs.
+"""Write docs/tags.md from quadcore's own tables of plugins, worlds and logs.
 
-``scripts/document`` runs it. With --print the page goes to standard output instead.
+``scripts/document`` runs it. With --print, it writes the page to standard output.
 """
 
 from __future__ import annotations
@@ -25,16 +25,18 @@ INTRODUCTION = """\
 <!-- Written by scripts/document from the package's own tables: change those, not this file. -->
 # Tags, worlds, engines, logs
 
-`quadcore info MODEL` prints the tables of a model's own plugins with the values in effect and where
-each was set. The force laws behind the tags, with their signs, frames and points of application,
-are in [physics.md](physics.md). Equation numbers and A.4-A.6 are those of the thesis.
+This page lists all tags of plugins, elements of worlds, engines, columns of logs and topics.
+`quadcore info MODEL` prints the tables of a model's plugins with their values and the line that
+set each. [physics.md](physics.md) has the force laws of the tags, with their signs, frames and
+points of application. Equation numbers and A.4-A.6 are those of the thesis.
 
-A tag that a plugin does not know, a repeated tag, a missing required tag, a value that is no finite
-number or lies outside its range is an error that names file, line, plugin, tag and the nearest
-known tag. `--set PLUGIN.TAG=VALUE` (Python: `parameters={"PLUGIN.TAG": value}`) overrides the URDF;
-PLUGIN is the `name` attribute of the plugin tag. In the same place `LINK.mass`, `LINK.ixx`, `ixy`,
-`ixz`, `iyy`, `iyz` and `izz` are what the link's `<inertial>` says (kg, kg m^2), and `xacro.ARG` an
-argument of a xacro model; a name that two of these go by is an error.
+These are errors with file, line, plugin, tag and the nearest known tag: an unknown or repeated
+tag, a missing required tag, a value that is not a finite number, and a value outside its range.
+
+`--set PLUGIN.TAG=VALUE` (Python: `parameters={"PLUGIN.TAG": value}`) overrides the URDF. PLUGIN is
+the `name` attribute of the plugin tag. `--set` also takes `LINK.mass`, `LINK.ixx`, `ixy`, `ixz`,
+`iyy`, `iyz` and `izz`, the values of the link's `<inertial>` (kg, kg m^2), and `xacro.ARG`, an
+argument of a xacro model. A name that fits two of these is an error.
 """
 
 LOG = {
@@ -47,20 +49,20 @@ LOG = {
 }
 
 WORLDS = {
-    "empty": "Gazebo's defaults without ground; what there is unless another is named",
-    "default": "the thesis': Gazebo's defaults with ground",
-    "basic": "RotorS': ground, steps of 10 ms, a thousand sweeps of the solver",
+    "empty": "Gazebo's defaults without ground; the default world",
+    "default": "the thesis' world: Gazebo's defaults with ground",
+    "basic": "RotorS' world: ground, steps of 10 ms, a thousand sweeps of the solver",
 }
 
 
-def plugin_sections(*simulations: qc.Simulation) -> Iterator[str]:
-    """One section for each module of the simulations' plugins."""
-    told = set()
+def write_plugin_sections(*simulations: qc.Simulation) -> Iterator[str]:
+    """Write one section for each module of the simulations' plugins."""
+    written = set()
     plugins = (plugin for simulation in simulations for plugin in simulation.plugins)
     for plugin in sorted(plugins, key=lambda plugin: plugin.name):
-        if plugin.filename in told:
+        if plugin.filename in written:
             continue
-        told.add(plugin.filename)
+        written.add(plugin.filename)
         yield f"\n## {plugin.filename}\n\n{_sentence(plugin.summary)}\n\n"
         yield table(
             ("tag", "unit", "default", "range", "meaning", "equation"),
@@ -82,8 +84,8 @@ def _sentence(text: str) -> str:
     return text[0].upper() + text[1:] + "."
 
 
-def unfelt_section() -> str:
-    """Tabulate what is passed over."""
+def write_ignored_section() -> str:
+    """Tabulate ignored elements and modules."""
     everything = _core.everything_unfelt()
     elements = ((f"`<{u.name}>`", f"`<{u.parent}>`", u.what) for u in everything if u.parent)
     modules: dict[str, list[str]] = {}
@@ -92,17 +94,16 @@ def unfelt_section() -> str:
             modules.setdefault(unfelt.what, []).append(f"`{unfelt.name}`")
     return (
         "\n## Seen or sensed\n\n"
-        "What no vehicle feels is passed over with one warning that names all of it, see\n"
-        "[models.md](models.md#models-made-for-gazebo). Elements, by the document and the element\n"
-        "that they stand in:\n\n"
+        "quadcore ignores elements without effect on the motion, with one warning that lists\n"
+        "them, see [models.md](models.md#models-made-for-gazebo). Elements, with their parent:\n\n"
         + table(("element", "in", "what it is"), elements)
-        + "\nModules of Gazebo, where no library of that name lies in a plugin folder:\n\n"
-        + table(("what it tells", "modules"), ((k, ", ".join(v)) for k, v in modules.items()))
+        + "\nModules of Gazebo, unless a plugin folder contains a library of that name:\n\n"
+        + table(("output", "modules"), ((k, ", ".join(v)) for k, v in modules.items()))
     )
 
 
-def reference_section() -> str:
-    """Tabulate what a <gazebo reference> may hold."""
+def write_reference_section() -> str:
+    """Tabulate the tags of a <gazebo reference>."""
     tags = _core.gazebo_tags()
     felt = (
         (f"`{tag.name}`", tag.of, tag.unit, tag.default, tag.range, tag.meaning)
@@ -112,43 +113,43 @@ def reference_section() -> str:
     unfelt = ((f"`{tag.name}`", tag.of, tag.range, tag.meaning) for tag in tags if not tag.felt_by)
     return (
         "\n## Tags of `<gazebo reference>`\n\n"
-        "Felt by the engines `gazebo11` and `ode`. Of the first eight, those of contact, `eigen`\n"
-        "feels `mu1`, `mu2`, `fdir1` and a `kp` that is softer than its springs; of the others it\n"
-        "warns. It refuses `dampingFactor` and `turnGravityOff`. A value is the element's text or\n"
-        "its attribute `value`. What a reference to a lumped link does:\n"
-        "[models.md](models.md#lumping).\n\n"
+        "These tags have an effect in the engines `gazebo11` and `ode`. The first eight are for\n"
+        "contact. Of these, `eigen` uses `mu1`, `mu2`, `fdir1` and a `kp` that is softer than its\n"
+        "springs, and warns about the others. It refuses `dampingFactor` and `turnGravityOff`. A\n"
+        "value is the element's text or its attribute `value`. For references to a lumped link,\n"
+        "see [models.md](models.md#lumping).\n\n"
         + table(("tag", "of a", "unit", "default", "range", "meaning"), felt)
-        + "\nWithout effect, as in Gazebo, within the range given:\n\n"
+        + "\nThese tags have no effect, as in Gazebo, within the given range:\n\n"
         + table(("tag", "of a", "range", "why"), unfelt)
     )
 
 
-def world_section() -> str:
-    """Tabulate what a world may hold, and the shipped worlds."""
+def write_world_section() -> str:
+    """Tabulate the elements of a world, and the built-in worlds."""
     if set(WORLDS) != set(resources.shipped("worlds")):
         sys.exit(f"worlds: described are {list(WORLDS)}")
     rows = ((f"`{e.name}`", e.unit, e.default, e.range, e.meaning) for e in _core.world_elements())
     return (
         "\n## Worlds\n\n"
-        "An SDF file with one `<world>`. Of it these elements are read; any other is an error\n"
-        "that names it, unless [nothing feels it](#seen-or-sensed).\n\n"
+        "A world is an SDF file with one `<world>`. These elements are supported; any other is an\n"
+        "error that names it, unless it [has no effect on the motion](#seen-or-sensed).\n\n"
         + table(("element", "unit", "default", "range", "meaning"), rows)
-        + "\nShipped, and known by name:\n\n"
-        + table(("world", "what it is"), ((f"`{name}`", what) for name, what in WORLDS.items()))
+        + "\nBuilt-in worlds:\n\n"
+        + table(("world", "content"), ((f"`{name}`", what) for name, what in WORLDS.items()))
     )
 
 
-def engine_section() -> str:
+def write_engine_section() -> str:
     """Tabulate the engines, the default first."""
     rows = ((f"`{name}`", summary) for name, summary in qc.engines())
     return (
         "\n## Engines\n\n"
-        "Chosen by `--engine` (Python: `engine=`); the first is the default. How they work:\n"
-        "[engines.md](engines.md).\n\n" + table(("engine", "what it is"), rows)
+        "Choose one with `--engine` (Python: `engine=`). [engines.md](engines.md) describes\n"
+        "them and their default for each command.\n\n" + table(("engine", "method"), rows)
     )
 
 
-def log_section(simulation: qc.Simulation) -> str:
+def write_log_section(simulation: qc.Simulation) -> str:
     """Tabulate the columns of a log and the wrench terms."""
     named = [name for group in LOG for name in group.split()]
     named = named[: named.index("j1")] + [f"j{i}" for i in range(1, 1 + simulation.rotor_count)]
@@ -157,37 +158,40 @@ def log_section(simulation: qc.Simulation) -> str:
     terms = ", ".join(f"`{term}`" for term in simulation.wrench_terms)
     return (
         "\n## Logs\n\n"
-        "CSV with the fewest digits that restore every bit; `.mat` holds vectors of the\n"
-        "same names.\n\n"
+        "A CSV file has the fewest digits that read back exactly. A `.mat` file has vectors of\n"
+        "the same names.\n\n"
         + table(("columns", "unit", "meaning"), ((f"`{k}`", *v) for k, v in LOG.items()))
-        + "\nTopics that were asked for follow (`--log-topics`, `sim.run(topics=...)`;\n"
-        "`log.topics` in Python): `TOPIC.stamp` and `TOPIC.FIELD`, in `.mat` the fields of a\n"
-        "struct `topic_TOPIC`; the last message at that time, NaN before the first.\n"
-        "\nWrenches, too, if they were asked for (`--wrenches`, `sim.run(wrenches=True)`;\n"
-        "`log.wrenches` in Python): `wrench_NAME.fx` to `wrench_NAME.tz`, in `.mat` the rows of\n"
-        "`wrench_NAME`; force (N), then torque (N m) about the vehicle's centre of mass, frame\n"
-        f"axes, as they act from the logged state on. Those of the shipped plugins:\n{terms}.\n"
+        + "\nLogged topics follow (`--log-topics`, `sim.run(topics=...)`; `log.topics` in Python)\n"
+        "in the columns `TOPIC.stamp` and `TOPIC.FIELD`, in `.mat` files in the fields of a\n"
+        "struct `topic_TOPIC`. A row has the last message at its time, and NaN before the\n"
+        "first one.\n"
+        "\nLogged wrenches follow (`--wrenches`, `sim.run(wrenches=True)`; `log.wrenches` in\n"
+        "Python) in the columns `wrench_NAME.fx` to `wrench_NAME.tz`, in `.mat` files in the\n"
+        "rows of `wrench_NAME`. They are the force (N), then the torque (N m) about the\n"
+        "vehicle's centre of mass, in frame axes, as they act from the logged state on. The\n"
+        "built-in plugins have these wrenches:\n"
+        f"{terms}.\n"
     )
 
 
-def topic_section(simulation: qc.Simulation) -> str:
+def write_topic_section(simulation: qc.Simulation) -> str:
     """Tabulate the topics inside the core."""
     files = {plugin.name: f"`{plugin.filename}`" for plugin in simulation.plugins}
     rows = []
     for name, topic in simulation.topics.items():
         plugins = [f"published by {files[topic.writer]}"] if topic.writer else []
-        plugins += [f"taken by {files[reader]}" for reader in topic.readers]
+        plugins += [f"read by {files[reader]}" for reader in topic.readers]
         fields = " ".join(f"`{field}`" for field in topic.fields)
         rows.append((f"`{name}`", f"`{topic.kind}`", fields, ", ".join(plugins), topic.meaning))
     return (
         "\n## Topics\n\nMessages between plugins, and between them and Python or ROS; "
         "see [plugins.md](plugins.md#topics).\n"
-        "Those of the shipped quadrotor with every plugin that ships:\n\n"
+        "These are the topics of the built-in quadrotor with every built-in plugin:\n\n"
         + table(("topic", "kind", "fields", "plugins", "meaning"), rows)
     )
 
 
-# Plugins that the shipped quadrotor does not have, and the tags that they need.
+# Plugins that the built-in quadrotor does not have, and their required tags.
 FURTHER = {
     "barometer": "",
     "battery": "<fullVoltage>12.6</fullVoltage><emptyVoltage>9.9</emptyVoltage>"
@@ -206,8 +210,8 @@ FURTHER = {
 }
 
 
-def vehicle_with(name: str, prefix: str, further: dict[str, str]) -> qc.Simulation:
-    """Make a shipped vehicle with further plugins."""
+def make_vehicle(name: str, prefix: str, further: dict[str, str]) -> qc.Simulation:
+    """Make a built-in vehicle with further plugins."""
     document = load_description(name, {})
     plugins = "".join(
         f'<gazebo><plugin name="{plugin}" filename="{prefix}{plugin}_plugin.so">{tags}</plugin>'
@@ -218,34 +222,34 @@ def vehicle_with(name: str, prefix: str, further: dict[str, str]) -> qc.Simulati
     return qc.Simulation(_core.read_model(_core.Document(document.name, text, document.lines), []))
 
 
-def rotors_sections() -> Iterator[str]:
-    """Sections of the modules that do what RotorS' do."""
+def write_rotors_sections() -> Iterator[str]:
+    """Write the sections of RotorS' modules."""
     yield (
-        "\n# Modules of RotorS\n\nThey have the names and the tags of RotorS' own:\n"
+        "\n# Modules of RotorS\n\nThese modules have the names and tags of RotorS' modules, see\n"
         "[rotors.md](rotors.md).\n"
     )
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # its frame has an inertia that no body can have
+        warnings.simplefilter("ignore")  # warns about the frame's inertia
         link = "<linkName>firefly/base_link</linkName>"
         further = {"gps": link, "magnetometer": link, "pressure": link, "wind": link}
-        yield from plugin_sections(vehicle_with("firefly", "librotors_gazebo_", further))
+        yield from write_plugin_sections(make_vehicle("firefly", "librotors_gazebo_", further))
 
 
-def page() -> str:
-    """Write out the whole page."""
-    simulation = vehicle_with("quadrotor", "lib", FURTHER)
+def make_page() -> str:
+    """Return the text of the page."""
+    simulation = make_vehicle("quadrotor", "lib", FURTHER)
     other_motors = qc.Simulation("quadrotor", xacro_args={"motor": "first_order"})
     return "".join(
         [
             INTRODUCTION,
-            *plugin_sections(simulation, other_motors),
-            *rotors_sections(),
-            reference_section(),
-            world_section(),
-            unfelt_section(),
-            engine_section(),
-            log_section(simulation),
-            topic_section(simulation),
+            *write_plugin_sections(simulation, other_motors),
+            *write_rotors_sections(),
+            write_reference_section(),
+            write_world_section(),
+            write_ignored_section(),
+            write_engine_section(),
+            write_log_section(simulation),
+            write_topic_section(simulation),
         ]
     )
 
@@ -253,11 +257,11 @@ def page() -> str:
 def main() -> None:
     """Write the page."""
     if sys.argv[1:] == ["--print"]:
-        sys.stdout.write(page())
+        sys.stdout.write(make_page())
     elif sys.argv[1:]:
         sys.exit(__doc__)
     else:
-        PAGE.write_text(page(), encoding="utf-8")
+        PAGE.write_text(make_page(), encoding="utf-8")
         print(PAGE.relative_to(ROOT))
 
 

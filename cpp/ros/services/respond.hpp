@@ -6,7 +6,7 @@ namespace quadcore::node {
 
 /// Runs the action of a request, and stores success or the error in the response.
 template <class Response, class Action>
-void answer(Response& response, const Action& action) {
+void respond(Response& response, const Action& action) {
   try {
     action();
     response.success = true;
