@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Measure how far the engines are from exact: ``scripts/document`` runs it.
+"""Measure the accuracy of the engines: ``scripts/document`` runs it.
 
-It writes the tables of docs/engines.md and docs/gazebo.md that stand between marks.
+It writes the tables between marks of docs/engines.md and docs/gazebo.md.
 """
 
 from __future__ import annotations
@@ -23,19 +23,19 @@ CASES = DATA / "gazebo11" / "cases"
 HOVER = 471.0  # rad/s
 SPIN = np.array([1, -1, 1, -1])
 ENGINES = [engine for engine, _ in qc.engines()]
-LATER = ("gazebo11", "ode")  # those that lose more while their hinges settle
-# What real Gazebo 11.1.0 did; recorded by plugins made for it.
+LATER = ("gazebo11", "ode")  # engines with a larger decay while their hinges settle
+# Recorded in real Gazebo 11.1.0.
 GAZEBO_DECAY = {1: 0.812, 8: 0.0128, 10: 0.0082, 18: 0.0025}
 GAZEBO_SWEEPS = {20: 4e-10, 15: 5e-7, 10: 2e-4, 7: 7e-3, 5: 0.06, 3: 0.42}
 
 
 def distance(a: Any, b: Any) -> float:
-    """Largest distance between two flights that were logged at the same times (m)."""
+    """Return the maximum distance between two flights logged at the same times (m)."""
     return float(np.linalg.norm(a.position - b.position, axis=1).max())
 
 
 def doublet(engine: str, dt: float, world: Path, case: Any) -> float:
-    """Distance from the exact end of the doublet (m)."""
+    """Return the distance from the exact end of the doublet (m)."""
     simulation = qc.Simulation(
         "quadrotor",
         engine,
@@ -68,7 +68,7 @@ def exactness(folder: Path) -> Iterator[Any]:
 
 
 def tumbling(rate: float, dt: float) -> Any:
-    """Fly two seconds at hover speeds from a rate about an axis that is none of the vehicle's."""
+    """Simulate two seconds at hover speeds from a rate about no principal axis of the vehicle."""
     simulation = qc.Simulation(
         "quadrotor",
         "eigen",
@@ -86,7 +86,7 @@ def tumbling(rate: float, dt: float) -> Any:
 
 
 def fourth_order() -> Iterator[Any]:
-    """Compare `eigen` with itself at an eighth of a ms, for ever faster attitudes."""
+    """Compare `eigen` with itself at a sixteenth of a ms, for increasing rates."""
     for rate in (5, 10, 20, 40):
         exact = tumbling(rate, 6.25e-5)
         apart = [distance(tumbling(rate, dt), exact) for dt in (2e-3, 1e-3, 5e-4)]
@@ -94,12 +94,12 @@ def fourth_order() -> Iterator[Any]:
 
 
 def decay(value: float) -> str:
-    """Write a decay, or that it is none."""
+    """Format a decay, or that it is negligible."""
     return figures(value, 3) if abs(value) > 1e-9 else "below 1e-9"
 
 
 def decays() -> Iterator[Any]:
-    """Tabulate the loss of a pitch rate in its first second, and of some in its second."""
+    """Tabulate the decay of a pitch rate in the first second, and for some in the next one."""
     experiment = Experiment.of(commands=[[0, *HOVER * SPIN]])
     for slow, recorded in GAZEBO_DECAY.items():
         first = measure(experiment, ENGINES, slow, (0, 1))
@@ -110,7 +110,7 @@ def decays() -> Iterator[Any]:
 
 
 def sweeps(folder: Path) -> Iterator[Any]:
-    """Tabulate what fewer sweeps change in a flight at full speed."""
+    """Tabulate the effect of fewer sweeps in a flight at full speed."""
     case = CASES / "A7_multisine_slow1"
     text = (case / "case.world").read_text()
 
@@ -126,7 +126,7 @@ def sweeps(folder: Path) -> Iterator[Any]:
 
 
 def main() -> None:
-    """Measure, and write the tables."""
+    """Measure and write the tables."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         put("engines.md", "exact", ("step", "`ode`", "`eigen`"), exactness(folder))

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draw the pictures of docs/comparing.md into docs/images: ``scripts/document`` runs it."""
+"""Draw the figures of docs/comparing.md into docs/images: ``scripts/document`` runs it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ DRAGS = {"induced": 0.01, "profile": 0.005, "translational": 0.0025, "parasitic"
 
 
 def fly(vary: Any, engine: str = "eigen", **options: Any) -> qc.Comparison:
-    """Fly what the page flies."""
+    """Simulate the comparison of the page."""
     return qc.compare("quadrotor", vary, COMMANDS, engine=engine, log_every=5, **options)
 
 

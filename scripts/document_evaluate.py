@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draw the pictures of docs/evaluate.md into docs/images: ``scripts/document`` runs it."""
+"""Draw the figures of docs/evaluate.md into docs/images: ``scripts/document`` runs it."""
 
 from __future__ import annotations
 

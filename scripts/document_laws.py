@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measure what docs/control.md tells of the laws: ``scripts/document`` runs it. Takes a minute."""
+"""Measure the tracking errors of the controllers: ``scripts/document`` runs it. Takes a minute."""
 
 from __future__ import annotations
 

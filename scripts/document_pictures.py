@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Draw the pictures of the README and the docs into docs/images: ``scripts/document`` runs it.
+"""Draw the figures of the README and the docs into docs/images: ``scripts/document`` runs it.
 
-Every flight is flown here; the recordings of real Gazebo 11 lie in tests/data/gazebo11.
+The script simulates every flight; the recordings of real Gazebo 11 are in tests/data/gazebo11.
 """
 
 from __future__ import annotations
@@ -28,23 +28,23 @@ sys.path.insert(0, str(ROOT / "examples"))
 import spiral  # noqa: E402  (an example, no package)
 
 COLOURS = spiral.COLOURS
-WIDTHS = {"gazebo11": 1.6, "ode": 3.5, "eigen": 1.6}  # ode and eigen lie upon each other
+WIDTHS = {"gazebo11": 1.6, "ode": 3.5, "eigen": 1.6}  # ode and eigen coincide
 RECORDED = {"color": "black", "label": "real Gazebo 11 (recorded)", "linestyle": "none"}
 
 
 def recording(path: Path) -> np.ndarray:
-    """Rows of a recording, columns as in a log."""
+    """Return the rows of a recording, with the columns of a log."""
     return np.loadtxt(path, delimiter=",", skiprows=1)
 
 
 def distance(log: qc.Log, rows: np.ndarray) -> np.ndarray:
-    """Distance from the recording at each of its rows (m)."""
+    """Return the distance from the recording at each of its rows (m)."""
     at = np.searchsorted(log.time, rows[:, 0] - 1e-6)
     return np.linalg.norm(log.position[at] - rows[:, 1:4], axis=1)
 
 
 def draw_flight() -> None:
-    """Draw one open-loop manoeuvre in every engine and as real Gazebo flew it."""
+    """Draw one open-loop manoeuvre in every engine and in real Gazebo."""
     rows = recording(DATA / "S5_slow1_all.csv.gz")
     logs = {
         engine: qc.Simulation("quadrotor", engine=engine, xacro_args={"sim_slow": 1}).run(
@@ -139,7 +139,7 @@ def draw_wrenches() -> None:
 
 
 def draw_contact() -> None:
-    """Draw take-off and landing beside the recording."""
+    """Draw take-off and landing next to the recording."""
     case = DATA / "cases" / "C2_takeoff_land"
     rows = recording(case / "record.csv.gz")
     log = qc.Simulation(case / "model.urdf", world=case / "case.world", spawn=(0, 0, 0.1)).run(
@@ -182,7 +182,7 @@ def draw_rotors() -> None:
         "eigen at 10 ms": ("eigen", 0.01, "-"),
     }
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # its frame has an inertia that no body can have
+        warnings.simplefilter("ignore")  # the frame's inertia is not physical
         limit = flown("eigen", 0.000625)
         paths = {name: flown(engine, dt) for name, (engine, dt, _) in flights.items()}
     figure = Figure(figsize=(8, 3.6), dpi=120)
@@ -201,7 +201,7 @@ def draw_rotors() -> None:
 
 
 def draw_vehicle() -> None:
-    """Draw the shipped quadrotor as ``quadcore info --picture`` does."""
+    """Draw the built-in quadrotor as ``quadcore info --picture`` does."""
     figure = vehicle_plot.draw(qc.Simulation("quadrotor", xacro_args={"sim_slow": 1}))
     save_in_few_colours("vehicle", Image.open(io.BytesIO(png(figure))))
 

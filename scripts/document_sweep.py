@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draw the picture of docs/sweep.md and of its tutorial into docs/images.
+"""Draw the figure of docs/sweep.md and of its tutorial into docs/images.
 
 ``scripts/document`` runs it.
 """
@@ -19,7 +19,7 @@ from quadcore.studies.sweep.sensitivity import compute_sensitivities
 from quadcore.studies.sweep.sweep import fly_plan
 from quadcore.studies.sweep.table import make_table
 
-# Those of the tutorial: what the law believes over what is so.
+# The axes of the tutorial: the controller's modelled value over the true value.
 AXES = {
     "controller.believed_mass": "normal:1:0.05",
     "controller.believed_thrust": "uniform:0.95:1.05",
@@ -27,7 +27,7 @@ AXES = {
 
 
 def main() -> None:
-    """Fly a law that is wrong about its vehicle, and draw what that costs."""
+    """Run a sweep of a controller with model errors, and draw the tracking error."""
     design = Design(AXES, None, "latin", 500)
     options = SweepOptions(duration=5.0, xacro_args={"sim_slow": 1})
     plan = Plan(design, "geometric", "circle", ["eigen"], ["quadrotor"], options)

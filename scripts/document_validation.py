@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fly what docs/validation.md shows: its pictures and tables. ``scripts/document`` runs it."""
+"""Write the figures and tables of docs/validation.md: ``scripts/document`` runs it."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def draw_gains() -> bytes:
 
 
 def distances(study: Study) -> Iterator[Any]:
-    """Tabulate the largest distance of every engine from the model."""
+    """Tabulate the maximum distance of every engine from the model."""
     rows = {row.case: row.difference for row in study.rows}
     for engine in study.engines:
         for slow in study.sim_slow:
@@ -68,7 +68,7 @@ def shares(study: Study) -> Iterator[Any]:
 
 
 def numbers(study: Study) -> Iterator[Any]:
-    """Tabulate which figures of the thesis the pictures correspond to."""
+    """Tabulate the figures of the thesis that correspond to the plots."""
     for drag in study.drags:
         found = [thesis_figures(drag, kind, study.sim_slow) for kind in KINDS]
         if any(found):
@@ -84,12 +84,12 @@ def decays(study: Study) -> Iterator[Any]:
 
 
 def hover(experiment: Experiment) -> float:
-    """Speed of the rotors at which the flights begin (rad/s)."""
+    """Return the rotor speed at the start of the flights (rad/s)."""
     return float(np.abs(experiment.commands[0, 1:]).mean())
 
 
 def slowed(study: Study) -> Iterator[Any]:
-    """Tabulate what slowing down changes in itself."""
+    """Tabulate the effect of the slowdown alone."""
     for drag in ("none", "all"):
         for row in study.slowed:
             if row.case.drag == drag and row.difference:
@@ -99,7 +99,7 @@ def slowed(study: Study) -> Iterator[Any]:
 
 
 def steps() -> Iterator[Any]:
-    """Tabulate how the step of ODE matters with all drags, at several slow-downs."""
+    """Tabulate the effect of ODE's step with all drags, at several slowdowns."""
     for dt in (1e-3, 5e-4, 2.5e-4, 1.25e-4):
         experiment = Experiment.of(dt=dt, log_every=round(1e-2 / dt))
         found = []
@@ -110,7 +110,7 @@ def steps() -> Iterator[Any]:
         yield f"{figures(dt * 1e3, 3)} ms", *found
 
 
-# Terms that chapter 2 leaves out: what they are, and where the thesis has them.
+# Terms that chapter 2 omits, and their place in the thesis.
 LEFT_OUT = {
     NO_LAG: (
         "lag of the motors, $`I_R\\dot\\omega_i = k_p(u_i-\\omega_i)`$",
@@ -129,7 +129,7 @@ LEFT_OUT = {
 
 
 def left_out(study: Study) -> Iterator[Any]:
-    """Tabulate what the terms move that chapter 2 leaves out."""
+    """Tabulate the effect of the terms that chapter 2 omits."""
     rows = {row.case.variant: row.difference for row in study.left_out}
     for variant, texts in LEFT_OUT.items():
         difference = rows[variant]
@@ -137,7 +137,7 @@ def left_out(study: Study) -> Iterator[Any]:
 
 
 def hexarotor() -> Iterator[Any]:
-    """Fly the hexarotor of docs/models.md with all drags."""
+    """Simulate the hexarotor of docs/models.md with all drags."""
     text = re.findall(r"```xml\n(<\?xml.*?)```", (DOCS / "models.md").read_text(), re.DOTALL)[0]
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "hexarotor.urdf.xacro"
@@ -150,7 +150,7 @@ def hexarotor() -> Iterator[Any]:
 
 
 def write_tables(study: Study) -> None:
-    """Write the tables that stand between marks."""
+    """Write the tables between marks."""
     slow = [f"{n:g}" for n in study.sim_slow]
     page = "validation.md"
     put(page, "distances", ("engine", "sim_slow", *study.drags), distances(study))
@@ -170,7 +170,7 @@ def write_tables(study: Study) -> None:
 
 
 def main() -> None:
-    """Fly the experiment as ``quadcore validate`` does; write and draw."""
+    """Run the experiment of ``quadcore validate``; write tables and figures."""
     study = conduct(Experiment.of())
     write_tables(study)
     drawn = {"gains": draw_gains()}

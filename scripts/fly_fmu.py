@@ -1,4 +1,4 @@
-"""Flies an FMU for 0.1 s with the standard library alone, and prints the height that it comes to.
+"""Simulates an FMU for 0.1 s with the standard library alone, and prints the final height.
 
 python3 fly_fmu.py FILE.fmu
 """
@@ -16,14 +16,14 @@ Logger = ctypes.CFUNCTYPE(
 
 
 class Callbacks(ctypes.Structure):
-    """The importer's functions, of which quadcore asks for the logger."""
+    """The importer's functions; quadcore only uses the logger."""
 
     _fields_ = (("logger", Logger), ("others", ctypes.c_void_p * 4))
 
 
 @Logger
 def say(_environment, _instance, _status, _category, message):
-    """Tell what the FMU says."""
+    """Print a message of the FMU."""
     print(message.decode(), file=sys.stderr)
 
 
@@ -58,5 +58,5 @@ with tempfile.TemporaryDirectory() as name:
             ),
         )
     ):
-        sys.exit(f"{sys.argv[1]}: does not fly")
+        sys.exit(f"{sys.argv[1]}: the simulation failed. See the messages above.")
     print(repr(z.value))

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Fly much of what docs/control.md tells of the laws, and hold the errors against bars.
+"""Check the tracking errors of docs/tracking_errors.md against limits.
 
-Prints a row per case: the largest error of all its flights [mm], and the bar. Exit status 1 if one
-is missed. Takes some minutes.
+Prints a row per case: the maximum error of all its flights [mm], and the limit. Exit status 1 if an
+error exceeds its limit. Takes some minutes.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from quadcore.studies.executor import run_cases
 from quadcore.support.warning import suppress_warnings
 
 WAYPOINTS = Path(__file__).resolve().parents[1] / "config" / "waypoints.yaml"
-LOST = 5.0  # m
+DIVERGED = 5.0  # m
 
 
 @dataclass
@@ -34,7 +34,7 @@ class Case:
     sim_slow: int
     law: Callable[[], BuiltInController]
     reference: Callable[[], references.Shape]
-    bar: float  # mm; negative: the vehicle is to be lost
+    limit: float  # mm; negative: the flight is expected to fail
     duration: float = 30.0
     last: float = 10.0  # s of the flight that count
     noise: Mapping[str, float] = field(default_factory=dict)
@@ -42,7 +42,7 @@ class Case:
 
 
 def cases() -> List[Case]:
-    """List all that is flown."""
+    """List all cases."""
     plants = [("eigen", 1), ("ode", 1), ("gazebo11", 1), ("gazebo11", 10)]
     spiral, geometric = references.spiral, controllers.geometric
     found = []
@@ -52,7 +52,7 @@ def cases() -> List[Case]:
         name = "spiral, geometric, the thesis' noise"
         found.append(Case(name, *plant, geometric, spiral, bar, noise=THESIS, seeds=20))
     for plant in plants:
-        name = "spiral, geometric, noise of velocities besides"
+        name = "spiral, geometric, noise also of velocities"
         found.append(Case(name, *plant, geometric, spiral, 1, noise=NOISY, seeds=20))
     for plant, bar in zip(plants, (0.5, 0.5, 2)):
         found.append(
@@ -67,7 +67,7 @@ def cases() -> List[Case]:
         for (name, shape), bar in zip(shapes.items(), bars):
             times = (12, 12) if name == "waypoints" else (30, 10)
             found.append(Case(f"{name}, geometric", *plant, geometric, shape, bar, *times))
-    damped = "circle, geometric, Gazebo's damping believed"
+    damped = "circle, geometric, with Gazebo's damping in its model"
     found.append(
         Case(damped, *plants[2], lambda: geometric(rate_damping=0.81), references.circle, 4)
     )
@@ -81,7 +81,7 @@ def cases() -> List[Case]:
 
 
 def fly(flight: Tuple[Case, int]) -> float:
-    """Fly once; returns the largest error [mm]."""
+    """Simulate one flight; returns the maximum error [mm]."""
     case, seed = flight
     reference = case.reference()
     parameters = {**case.noise, "xacro.sim_slow": case.sim_slow}
@@ -99,18 +99,18 @@ def fly(flight: Tuple[Case, int]) -> float:
             log = error.log  # type: ignore[attr-defined]
     wanted = np.array([reference(t).position for t in log.time])
     errors = np.linalg.norm(log.position - wanted, axis=1)
-    if errors.max() > LOST or log.time[-1] < case.duration - 0.1:
+    if errors.max() > DIVERGED or log.time[-1] < case.duration - 0.1:
         return float("inf")
     return 1e3 * float(errors[log.time >= case.duration - case.last].max())
 
 
 def is_met(case: Case, error: float) -> bool:
-    """Whether the largest error [mm] of a case's flights is what it is to be."""
-    return np.isinf(error) if case.bar < 0 else error <= case.bar
+    """Whether the maximum error [mm] of a case's flights is within its limit."""
+    return np.isinf(error) if case.limit < 0 else error <= case.limit
 
 
 def main() -> int:
-    """Fly all, print a row as each case is through, and tell whether every bar was met."""
+    """Simulate all cases and print their rows; returns 1 if a limit is exceeded."""
     flights = [(case, seed) for case in cases() for seed in range(case.seeds)]
     errors: Dict[str, List[float]] = {}
     missed = []
@@ -124,12 +124,12 @@ def main() -> int:
         flown.append(error)
         if len(flown) < case.seeds:
             return
-        bar = "lost" if case.bar < 0 else f"<= {case.bar:g}"
+        limit = "fails" if case.limit < 0 else f"<= {case.limit:g}"
         met = is_met(case, max(flown))
         missed.extend([] if met else [row])
-        print(f"{row} {max(flown):9.4f}  {bar:8}{'' if met else ' missed'}", flush=True)
+        print(f"{row} {max(flown):9.4f}  {limit:8}{'' if met else ' missed'}", flush=True)
 
-    print(f"{'':48} {'engine':8} slow largest error and bar [mm]")
+    print(f"{'':48} {'engine':8} slow  max error and limit [mm]")
     run_cases(lambda i: fly(flights[i]), range(len(flights)), take)
     return int(bool(missed))
 

@@ -1,4 +1,4 @@
-"""A hover, to see that an installed quadcore flies."""
+"""Simulate a hover to check an installed quadcore."""
 
 import quadcore as qc
 

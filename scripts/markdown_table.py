@@ -1,4 +1,4 @@
-"""Tables as the docs have them."""
+"""Markdown tables of the docs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Noise of the odometry: the thesis', as config/spiral.yaml has it, and of velocities besides."""
+"""Noise of the odometry: the thesis' from config/spiral.yaml, and noise also of velocities."""
 
 from __future__ import annotations
 

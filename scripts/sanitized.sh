@@ -1,5 +1,4 @@
-# Sourced by sanitize and fuzz after setup.sh: builds with sanitizers, and runs Python over the bindings
-# that were built so.
+# Sourced by sanitize and fuzz after setup.sh: builds with sanitizers, and runs Python with these bindings.
 
 sanitizers=address,undefined,float-cast-overflow
 export LSAN_OPTIONS="suppressions=$PWD/scripts/leaks.supp:print_suppressions=0"
@@ -22,8 +21,8 @@ bindings() {
 }
 
 # sanitized_python FOLDER COMPILER RUNTIME ARGUMENT...: runs Python with the package of a build. The
-# interpreter is not built with sanitizers, so the compiler's runtime is loaded before it; leaks are
-# not looked for, because the interpreter frees little at its end.
+# interpreter is not built with sanitizers, so the compiler's runtime is loaded before it. Leaks are not
+# checked, because the interpreter frees little at its end.
 sanitized_python() {
   local folder=$1 compiler=$2 runtime=$3
   shift 3

@@ -1,4 +1,4 @@
-// Prints what libsdformat makes of each URDF named on the command line, one after the other.
+// Prints libsdformat's conversion of each URDF on the command line.
 #include <iostream>
 #include <sdf/sdf.hh>
 

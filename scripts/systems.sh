@@ -1,8 +1,8 @@
-# Sourced by wheels and try_wheels: bare Debians in folders, in which commands are run. Needs root.
+# Sourced by wheels and try_wheels: runs commands in bare Debians in folders. Needs root.
 
 systems=${QUADCORE_SYSTEMS:-build/systems}
 mirror=http://deb.debian.org/debian
-# Each with its own Python: 3.9, 3.11, 3.13.
+# Their Pythons: 3.9, 3.11, 3.13.
 suites="bullseye bookworm trixie"
 
 say() { echo "quadcore: $*"; }
@@ -13,7 +13,7 @@ need_root() {
     { say "there is no debootstrap; run apt-get install debootstrap" >&2; exit 2; }
 }
 
-# A Debian with Python's venv and nothing else; kept for the next time.
+# Makes a Debian with Python's venv only, and keeps it for the next run.
 make_system() {
   local suite=$1 root=$systems/$1
   [ -e "$root/complete" ] && return
@@ -25,12 +25,12 @@ make_system() {
   touch "$root/complete"
 }
 
-# Runs a command in a system, with this one's way into the network.
+# Runs a command in a system, with the host's network settings.
 inside() {
   local root=$systems/$1
   shift
   cp /etc/resolv.conf "$root/etc/resolv.conf"
-  # Those of a proxy, too.
+  # Includes certificates of a proxy.
   cp -L /etc/ssl/certs/ca-certificates.crt "$root/etc/ssl/certs/ca-certificates.crt"
   mountpoint -q "$root/proc" || mount -t proc proc "$root/proc"
   env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
@@ -40,7 +40,7 @@ inside() {
     chroot "$root" "$@"
 }
 
-# The same, in which nothing is compiled twice: but for the bindings, it is the same for all Pythons.
+# Does the same with ccache: except for the bindings, all Pythons need the same objects.
 compiled_once() {
   local system=$1
   shift

@@ -1,4 +1,4 @@
-"""Which tests know a file: those that import it, name it, or are listed for mutants of it."""
+"""List the tests of a file: those that import it, name it, or are listed for its mutants."""
 
 from __future__ import annotations
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Thin recordings of Gazebo 11 to what the tests need: ``scripts/thin_recordings.py SOURCE``.
+"""Reduce recordings of Gazebo 11 to the rows that the tests need.
 
-SOURCE holds flights ``S*.csv.gz`` of the shipped quadrotor with their ``commands_S*.csv``, and a
-folder ``cases/NAME`` for each flight of another model or world: ``model.urdf``, ``case.world``,
-``commands.csv``, ``params.txt``, ``record.csv.gz`` and Gazebo's conversion ``model.sdf``, and
-``random/NAME`` likewise for vehicles made by chance. All of it goes to ``tests/data/gazebo11``,
-laid out alike, the recordings with a few of their rows, each as it was recorded. Running it again
-writes the same bytes.
+``scripts/thin_recordings.py SOURCE``: SOURCE holds flights ``S*.csv.gz`` of the built-in
+quadrotor with their ``commands_S*.csv``, a folder ``cases/NAME`` for each flight of another model
+or world, and ``random/NAME`` for random vehicles. A folder has ``model.urdf``, ``case.world``,
+``commands.csv``, ``params.txt``, ``record.csv.gz`` and Gazebo's conversion ``model.sdf``. The
+script copies all of it to ``tests/data/gazebo11``, with only some rows of the recordings. The
+output is bit-identical each time.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from pathlib import Path
 TARGET = Path(__file__).resolve().parents[1] / "tests" / "data" / "gazebo11"
 
 STRIDE = 25  # of the recorded rows
-FIRST = range(1, 5)  # rows kept besides: the first steps show what every later one builds upon
+FIRST = range(1, 5)  # further rows, because all later steps depend on the first
 
-# Where a contact makes or breaks, s; every row that near is kept.
+# Times at which a contact begins or ends, s; all rows near them are kept.
 EVENTS = {
     "C1_drop": (0.135,),
     "C2_takeoff_land": (0.135, 2.204, 5.021, 6.674),
@@ -39,7 +39,7 @@ def thin(source: Path, target: Path, events: tuple[float, ...] = ()) -> None:
         event = any(abs(time - at) < NEAR for at in events)
         if i % STRIDE == 0 or i in FIRST or i == len(rows) - 1 or event:
             kept.append(row)
-    # Without name and time in its header, the file depends on nothing but the rows.
+    # Without name and time in its header, the file depends only on the rows.
     with target.open("wb") as raw, gzip.GzipFile("", "wb", 9, raw, mtime=0) as stream:
         stream.write("".join(row + "\n" for row in kept).encode())
 

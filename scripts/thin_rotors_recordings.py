@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Thin recordings of RotorS' motors: ``scripts/thin_rotors_recordings.py SOURCE``.
+"""Reduce recordings of RotorS' motors: ``scripts/thin_rotors_recordings.py SOURCE``.
 
-SOURCE holds a folder for each flight of a vehicle of RotorS in Gazebo 11: ``params.txt``,
-``commands.csv`` and ``record.csv.gz``. The vehicles are those of ``urdf``, which have the same
-numbers. Their first seconds go to ``tests/data/rotors``, some rows of each, as they were recorded;
-of ``IMU_firefly_base_world`` the errors of the unit. Running it again writes the same bytes.
+SOURCE holds a folder for each flight of a RotorS vehicle in Gazebo 11: ``params.txt``,
+``commands.csv`` and ``record.csv.gz``. The vehicles are those of ``urdf``, with the same numbers.
+The script writes some rows of the first seconds to ``tests/data/rotors``, and for
+``IMU_firefly_base_world`` the errors of the IMU. The output is bit-identical each time.
 """
 
 from __future__ import annotations
@@ -19,22 +19,22 @@ import numpy as np
 TARGET = Path(__file__).resolve().parents[1] / "tests" / "data" / "rotors"
 
 STRIDE = 20  # of the recorded rows
-FIRST = 4  # rows kept besides: the first steps show what every later one builds upon
-DURATION = 3.0  # s, but of flights from the ground, whose landing is theirs
+FIRST = 4  # further rows, because all later steps depend on the first
+DURATION = 3.0  # s, except for flights with a landing
 WHOLE = ("G1_firefly_takeoff_rotorsworld", "G4_iris_takeoff_plain")
-DRAWN = "F3_firefly_multisine"  # whose commands a picture of the docs flies to their end
+DRAWN = "F3_firefly_multisine"  # a figure of the docs uses all its commands
 UNIT = "IMU_firefly_base_world"
-SAMPLES = 200  # of the unit, from its first on
+SAMPLES = 200  # of the IMU, from the first on
 
 
 def cut(text: str, end: float) -> list[str]:
-    """Give the header and the rows up to a time."""
+    """Return the header and the rows up to a time."""
     header, *rows = text.splitlines()
     return [header, *(row for row in rows if float(row.split(",", 1)[0]) <= end + 1e-9)]
 
 
 def write(path: Path, text: str) -> None:
-    """Write a file compressed, the same bytes each time."""
+    """Write a compressed file, bit-identical each time."""
     with open(path, "wb") as raw, gzip.GzipFile("", "wb", 9, raw, mtime=0) as packed:
         packed.write(text.encode())
 
@@ -53,7 +53,7 @@ def thin(source: Path, target: Path) -> None:
 
 
 def thin_unit(source: Path, target: Path) -> None:
-    """Keep the errors of the inertial measurement unit: what it told less what was so."""
+    """Keep the errors of the IMU: measured minus true values."""
     rows = np.loadtxt(source / "imu.csv.gz", delimiter=",", skiprows=1)[:SAMPLES]
     errors = rows[:, 1:7] - rows[:, 7:13]
     lines = ["t,ax,ay,az,gx,gy,gz"]
@@ -62,7 +62,7 @@ def thin_unit(source: Path, target: Path) -> None:
 
 
 def main() -> None:
-    """Thin all there are."""
+    """Reduce all recordings."""
     (source,) = map(Path, sys.argv[1:])
     for case in sorted(source.iterdir()):
         if (case / "record.csv.gz").is_file():

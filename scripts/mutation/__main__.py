@@ -1,9 +1,9 @@
-"""Changes one line of the core at a time and sees whether a test notices.
+"""Runs mutation tests: changes one line of the core at a time and runs the tests.
 
     scripts/mutate [--count N] [--seed N] [PART ...]
 
-Mutants are drawn by the seed from all there are. Verdicts are kept in build/mutation/results.csv:
-a run goes on where the last one stopped, and tries survivors again once a test has changed.
+The seed selects mutants from all possible ones. Verdicts are in build/mutation/results.csv: a run
+continues the last one, and repeats survivors after a test has changed.
 """
 
 from __future__ import annotations
@@ -25,16 +25,18 @@ REASONS = Path(__file__).with_name("survivors.txt")
 
 
 def main() -> int:
-    """Run; 1 if a mutant survives without a reason, 130 if interrupted."""
+    """Run; returns 1 if a mutant survives without a reason, 130 if interrupted."""
     names = [part.name for part in PARTS]
     parser = argparse.ArgumentParser(prog="scripts/mutate", description=__doc__.split("\n")[0])
-    parser.add_argument("parts", nargs="*", metavar="PART", help=f"of {', '.join(names)}")
-    parser.add_argument("--count", type=int, default=600, help="mutants to draw (default 600)")
-    parser.add_argument("--seed", type=int, default=1, help="of the draw (default 1)")
+    parser.add_argument(
+        "parts", nargs="*", metavar="PART", help=f"part (default: all): {', '.join(names)}"
+    )
+    parser.add_argument("--count", type=int, default=600, help="number of mutants (default: 600)")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the selection (default: 1)")
     options = parser.parse_args()
     unknown = set(options.parts) - set(names)
     if unknown:
-        parser.error(f"no part is named {', '.join(sorted(unknown))}; choose of {', '.join(names)}")
+        parser.error(f"unknown part {', '.join(sorted(unknown))}. Choose from {', '.join(names)}.")
 
     drawn = [
         (part, mutant)

@@ -1,4 +1,4 @@
-"""One-line mutants of C++ text: what a slip of the pen would have made of it."""
+"""One-line mutants of C++ text: plausible mistakes."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Callable, Iterator, List, NamedTuple, Tuple, Union
 
 
 class Mutant(NamedTuple):
-    """A line of a file, and what is written in its place."""
+    """A line of a file, and its replacement."""
 
     file: str
     line: int
@@ -29,8 +29,8 @@ def _other_number(match: re.Match[str]) -> str:
 
 _WORD = r"\b{}\b"
 _CALL = r"(?<=[\w)\]])\.{}\(\)"
-# A pattern, and what to write for each place where it is found. Binary operators stand between
-# spaces, as clang-format sets them; templates and pointers do not.
+# Patterns and their replacements. Binary operators are between spaces, as clang-format writes them;
+# templates and pointers are not.
 _SLIPS: List[Tuple[str, Replacement]] = [
     *_swap("+", "-"),
     *_swap("*", "/"),
@@ -66,7 +66,7 @@ _KEPT = re.compile(r"^\s*(?:return|throw|using|const|static|namespace|template)\
 
 
 def mutants_of(file: str, text: str) -> Iterator[Mutant]:
-    """Every mutant of a file, in its order."""
+    """Yield every mutant of a file, in order."""
     lines = text.splitlines()
     complete = True  # the line begins a statement
     for number, line in enumerate(lines, 1):
@@ -81,13 +81,13 @@ def mutants_of(file: str, text: str) -> Iterator[Mutant]:
 
 
 def code_of(line: str) -> str:
-    """Blank comments and the insides of strings; the length stays."""
+    """Blank comments and the contents of strings without changing the length."""
     blank = re.sub(r'"(?:\\.|[^"\\])*"', lambda m: '"' + "_" * (len(m[0]) - 2) + '"', line)
     return re.sub(r"//.*", lambda m: " " * len(m[0]), blank)
 
 
 def begins_statement(line: str, complete: bool) -> bool:
-    """Whether the next line begins a statement, if this one did so or not."""
+    """Whether the next line begins a statement."""
     code = code_of(line).rstrip()
     return code[-1] in "{};:" if code else complete
 
@@ -107,7 +107,7 @@ def _variants(code: str, line: str, complete: bool) -> Iterator[str]:
 
 
 def balanced(text: str) -> bool:
-    """Whether each parenthesis has its other."""
+    """Whether all parentheses are balanced."""
     depth = 0
     for letter in text:
         depth += (letter == "(") - (letter == ")")

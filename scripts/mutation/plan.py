@@ -1,4 +1,4 @@
-"""What is mutated, what is built of it, and which tests should notice."""
+"""The mutated sources, their targets, and the tests that should detect mutants."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from typing import List, NamedTuple, Sequence
 
 
 class Part(NamedTuple):
-    """Sources of one target, and the tests to try on their mutants, likely killers first."""
+    """Sources of one target, and the tests for their mutants, most effective first."""
 
     name: str
     target: str
     library: str
-    """What the target builds, beside the core."""
+    """File that the target builds, in the folder of the core."""
     sources: List[str]
     tests: List[str]
-    """Of tests/python; the C++ tests come before them."""
+    """Files in tests/python; the C++ tests run first."""
 
 
 def _core(name: str, sources: List[str], tests: List[str]) -> Part:

@@ -1,4 +1,4 @@
-"""What became of the mutants: kept in a table from run to run, and summed up."""
+"""Verdicts on mutants: a table that all runs share, and its summary."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Result(NamedTuple):
 
 
 class Results:
-    """Verdicts in a CSV file, each written at once, so that an interrupted run loses none."""
+    """Verdicts in a CSV file, each written at once, so that an interrupted run keeps them."""
 
     def __init__(self, path: Path, sources: Path) -> None:
         self._path = path
@@ -47,14 +47,14 @@ class Results:
                 csv.writer(stream).writerow(Result._fields)
 
     def known(self, mutant: Mutant) -> Optional[str]:
-        """Verdict on a mutant that still holds: a survivor is tried again when tests changed."""
+        """Return the valid verdict on a mutant; a survivor has none after tests changed."""
         row = self._rows.get((mutant.file, self._source(mutant.file), mutant.line, mutant.after))
         if row is None or (row.verdict == "survived" and row.tests != self._tests):
             return None
         return row.verdict
 
     def add(self, part: str, mutant: Mutant, verdict: str) -> None:
-        """Keep a verdict."""
+        """Store a verdict."""
         row = Result(part, *mutant, verdict, self._source(mutant.file), self._tests)
         self._keep(row)
         with self._path.open("a", newline="", encoding="utf-8") as stream:
@@ -73,7 +73,7 @@ Pair = Tuple[str, str, str]  # file, before, after
 
 
 def explained(path: Path) -> Set[Pair]:
-    """Mutants that nothing can or need notice, from a file of entries apart by empty lines.
+    """Read the mutants without a relevant effect, from a file of entries separated by empty lines.
 
     An entry is a line ``FILE``, pairs of lines ``- BEFORE`` and ``+ AFTER``, and the reason.
     """
@@ -90,14 +90,14 @@ def explained(path: Path) -> Set[Pair]:
                 found.add((file, before, line[2:].strip()))
                 pairs += 1
         if not pairs or not lines[-1].startswith("  "):
-            raise SystemExit(f"{path}: the entry of {file} lacks a mutant or a reason")
+            raise SystemExit(f"{path}: the entry of {file} has no mutant or no reason. Add it.")
     return found
 
 
 def sorted_out(
     verdicts: List[Tuple[str, Mutant, str]], reasons: Set[Pair]
 ) -> Tuple[str, List[Mutant]]:
-    """Return a table of counts part by part, and the survivors that have no reason."""
+    """Return a table of counts for each part, and the survivors without a reason."""
     counts: Dict[str, Counter] = {}
     total: Counter = Counter()
     unexplained = []

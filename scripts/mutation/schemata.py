@@ -1,8 +1,8 @@
-"""Many mutants of a file in one text, of which an environment variable chooses one at run time.
+"""Many mutants of a file in one text; an environment variable selects one at run time.
 
-That saves a build for each (R. H. Untch, A. J. Offutt, M. J. Harrold, "Mutation analysis using
-mutant schemata", ISSTA 1993). It is done for statements, declarations, conditions, loops and short
-functions that stand on one line; other mutants must be built alone.
+This avoids a build for each mutant (R. H. Untch, A. J. Offutt, M. J. Harrold, "Mutation analysis
+using mutant schemata", ISSTA 1993). It works for statements, declarations, conditions, loops and
+short functions on one line; other mutants must be built alone.
 """
 
 from __future__ import annotations
@@ -32,19 +32,19 @@ _NO_STATEMENT = re.compile(
 
 
 class Schema(NamedTuple):
-    """A file with many mutants in it."""
+    """A file with many mutants."""
 
     text: str
     source_lines: List[int]
-    """Of each line of the text, the line of the file that it came from; 0 for none."""
+    """For each line of the text, its line in the file; 0 for an added line."""
     mutant_at: Dict[int, int]
-    """Line of the text, counted from 1 -> number of the mutant that stands there."""
+    """Line of the text, counted from 1 -> number of its mutant."""
     left_out: List[int]
     """Numbers of the mutants that must be built alone."""
 
 
 class _Choice(NamedTuple):
-    """A line apart: what comes before the mutants, one of them, the original with what follows."""
+    """Parts of a line: before the mutants, one mutant, the original with the rest."""
 
     head: str
     mutant: str

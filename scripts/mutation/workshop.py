@@ -1,4 +1,4 @@
-"""A copy of the sources in which mutants are written, built and tested."""
+"""A copy of the sources to write, build and test mutants."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from schemata import CHOICE, HEADER, Schema, schema
 
 _MUTATED = [source for part in PARTS for source in part.sources]
 _COMPILED = ["CMakeLists.txt", "cpp", "tests", "examples", "urdf", "worlds", "config", "launch"]
-# Half of the time of a small file goes into these headers.
+# A small file spends half of its compile time on these headers.
 _PRECOMPILED = ["Eigen/Geometry", "Eigen/LU", "map", "string", "vector", "cmath", "sstream"]
 _TESTS = "quadcore_tests"  # with the plugins they need
-_UNTOUCHED = "*test_elementary.cpp,*test_random.cpp"  # no part is of them
+_UNTOUCHED = "*test_elementary.cpp,*test_random.cpp"  # no part contains them
 _MEMORY = 4 << 30  # bytes
-_PATIENCE = 10  # processor time of a mutant's tests, in that of the sources'
+_PATIENCE = 10  # processor time of a mutant's tests, relative to the original's
 
 
 class Workshop:
-    """The user's own files are only read."""
+    """Works on a copy; the user's files are only read."""
 
     def __init__(self, sources: Path, folder: Path) -> None:
         self.sources = sources
@@ -38,9 +38,9 @@ class Workshop:
         self._configure()
 
     def build_together(self, mutants: Dict[int, Mutant]) -> Set[int]:
-        """Build as many mutants as go into one build; returns their numbers.
+        """Build as many mutants as possible together; returns their numbers.
 
-        The others do not go with `schema`, or the compiler refuses them there.
+        For the others, `schema` is not possible, or the compiler refuses them.
         """
         left = dict(mutants)
         while True:
@@ -55,26 +55,26 @@ class Workshop:
                 return set(left)
             refused = {n for file, s in schemas.items() for n in self._refused(file, s)}
             if not refused & set(left):
-                raise SystemExit(f"the mutants do not build; see {self.log}")
+                raise SystemExit(f"the mutants do not build. See {self.log}.")
             for number in refused & set(left):
                 del left[number]
 
     def build_originals(self) -> None:
-        """Build the sources as they are."""
+        """Build the original sources."""
         for file in _MUTATED:
             self._write(file, self._original(file))
         if not self._built(_TESTS):
-            raise SystemExit(f"the copy of the sources does not build; see {self.log}")
+            raise SystemExit(f"the copy of the sources does not build. See {self.log}.")
 
     def prepare(self, part: Part) -> None:
-        """See that the tests pass with no mutant chosen; they say how long they may take."""
+        """Check that the tests pass without a mutant, and set their time limits."""
         for test in self._tests(part):
             if test in self._limits:
                 continue
             self._limits[test] = 3600
             before = _processor_time()
             if not self._passes(test, 0):
-                raise SystemExit(f"{test} fails before anything is changed; see {self.log}")
+                raise SystemExit(f"{test} fails without a mutant. See {self.log}.")
             self._limits[test] = 10 + int(_PATIENCE * (_processor_time() - before))
 
     def chosen(self, part: Part, number: int) -> str:
@@ -140,7 +140,7 @@ class Workshop:
         configure += ["-DCMAKE_BUILD_TYPE=Debug", f"-DCMAKE_CXX_FLAGS_DEBUG={flags}"]
         configure += ["-DQUADCORE_BUILD_TESTS=ON", "-DQUADCORE_WITH_ROS=OFF"]
         if not self._ran(configure):
-            raise SystemExit(f"CMake fails; see {self.log}")
+            raise SystemExit(f"CMake fails. See {self.log}.")
         shutil.rmtree(self.site, ignore_errors=True)
 
     def _built(self, target: str) -> bool:
