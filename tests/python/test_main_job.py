@@ -59,7 +59,9 @@ def test_the_flights_of_the_laws_are_held_against_their_bars(program, monkeypatc
     assert len(names) == len(told.cases())
     one = replace(told.cases()[0], duration=0.2, seeds=2)
     circle = replace(one, name="circle", reference=lambda: references.circle())
-    monkeypatch.setattr(told, "cases", lambda: [one, circle, replace(circle, limit=-1, name="fails")])
+    monkeypatch.setattr(
+        told, "cases", lambda: [one, circle, replace(circle, limit=-1, name="fails")]
+    )
     assert told.main() == 1
     rows = capsys.readouterr().out.splitlines()[1:]
     assert [row.endswith(" missed") for row in sorted(rows)] == [False, True, False]
