@@ -52,7 +52,7 @@ def row_against_flight() -> None:
         / taken(fly, time.process_time)
         for row in range(ROUNDS * 4)
     ]
-    print(f"a row : sim.run() of its flight   {statistics.median(ratios):.2f}   (bar 1.3)")
+    print(f"a row : sim.run() of its flight   {statistics.median(ratios):.2f}   (limit 1.3)")
 
 
 def two_against_one() -> None:
@@ -68,7 +68,7 @@ def two_against_one() -> None:
 
     wall, undisturbed = np.median([seconds(1) / seconds(2) for _ in range(ROUNDS)], axis=0)
     print(
-        f"two processes : one, {ROWS} rows   {wall:.2f}, undisturbed {undisturbed:.2f}   (bar 1.9)"
+        f"two processes : one, {ROWS} rows   {wall:.2f}, undisturbed {undisturbed:.2f}   (limit 1.9)"
     )
 
 
