@@ -33,10 +33,11 @@ from ._core import (
 from .control import controllers, gains, references
 from .control.controller import Controller, Odometry
 from .control.inner_loop import AttitudeThrust, InnerLoop, RatesThrust
+from .control.keywords import ControllerName, ReferenceName
 from .model.description import read_model, read_world
 from .model.resources import cmake_prefix
 from .simulation.batch import BatchSimulation, BatchState
-from .simulation.engines import AddedEngine, add_engine
+from .simulation.engines import AddedEngine, EngineName, add_engine
 from .simulation.log import Log
 from .simulation.simulation import Simulation
 from .simulation.state import State
@@ -62,6 +63,8 @@ __all__ = [
     "BatchState",
     "Comparison",
     "Controller",
+    "ControllerName",
+    "EngineName",
     "Evaluation",
     "Fit",
     "FlightError",
@@ -75,6 +78,7 @@ __all__ = [
     "QuadcoreWarning",
     "RatesThrust",
     "Reference",
+    "ReferenceName",
     "Rotor",
     "Simulation",
     "Snapshot",
@@ -129,13 +133,15 @@ def _make_plant(**options: Any) -> Simulation:
 add_engine(LAGRANGE, AddedEngine(LAGRANGE_SUMMARY, _make_plant))
 
 
-def __getattr__(name: str) -> Any:
-    if name not in _LATE:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    with LOCK:
-        value = getattr(import_module(f"{__name__}.{_LATE[name]}"), name)
-    globals()[name] = value
-    return value
+if not TYPE_CHECKING:  # checkers would accept any name
+
+    def __getattr__(name: str) -> Any:
+        if name not in _LATE:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        with LOCK:
+            value = getattr(import_module(f"{__name__}.{_LATE[name]}"), name)
+        globals()[name] = value
+        return value
 
 
 def __dir__() -> List[str]:

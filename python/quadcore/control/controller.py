@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Callable, Dict, Protocol, Union
 
 import numpy as np
 
@@ -11,9 +11,25 @@ from .. import _core
 from .._core import InputError, odometry_parts
 from ..support.arguments import brief
 from .built_in import BuiltInController
+from .inner_loop import AttitudeThrust, RatesThrust
+from .keywords import ControllerName
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from ..support.values import FloatArray
 
 SENSED = "odom"
 """Topic on which the odometry stands."""
+
+
+class ControllerFunction(Protocol):
+    """A controller that is a function."""
+
+    def __call__(
+        self, t: float, state: Odometry, reference: Any, /
+    ) -> Union[npt.ArrayLike, AttitudeThrust, RatesThrust]:
+        """Return the rotor speeds, as `Controller` does."""
 
 
 class Controller(Protocol):
@@ -31,7 +47,7 @@ class Controller(Protocol):
         the attribute.
     """
 
-    def reset(self, simulation: Any) -> None:
+    def reset(self, simulation: Any, /) -> None:
         """Begin anew.
 
         Parameters
@@ -40,7 +56,9 @@ class Controller(Protocol):
             Which flies; called with it before the first step of each run.
         """
 
-    def __call__(self, t: float, state: Odometry, reference: Any) -> Any:
+    def __call__(
+        self, t: float, state: Odometry, reference: Any, /
+    ) -> Union[npt.ArrayLike, AttitudeThrust, RatesThrust]:
         """Give the speeds for the steps until the next call.
 
         It may read the simulation that flies, and publish; to move or command it is refused.
@@ -61,6 +79,10 @@ class Controller(Protocol):
             Rotor speeds, rad/s, signed, as `Simulation.command` takes them; or what an inner loop
             is to make of them.
         """
+
+
+ControllerLike = Union[Controller, ControllerFunction, ControllerName]
+"""A controller as `Simulation.run` accepts it, for type checkers."""
 
 
 class Odometry:
@@ -96,6 +118,13 @@ class Odometry:
         "time",
         "topic",
     )
+
+    time: float
+    position: FloatArray
+    orientation: FloatArray
+    linear_velocity: FloatArray
+    angular_velocity: FloatArray
+    topic: Callable[[str], Dict[str, float]]
 
     def __init__(self, simulation: _core.Simulation) -> None:
         self.topic = simulation.topic

@@ -6,15 +6,16 @@ parameters. ``NAMES`` holds them all. `of_file` makes one of a gains file.
 
 from __future__ import annotations
 
-from typing import Any, Callable, List, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Callable, List, Optional, Sequence, Tuple
 
 from .. import _core
-from ..support.parameters import did_you_mean, docstring, read_values
+from ..support.parameters import did_you_mean, docstring, keyword_signature, read_values
 from ..support.user_code import import_controller
 from ..support.warning import warn
 from . import gains
 from .built_in import BuiltInController
 from .gains import law_for, of_file
+from .keywords import ControllerName
 from .rate_and_delay import DELAY, RATE
 
 
@@ -87,16 +88,43 @@ def _function(
 
     make.__name__ = make.__qualname__ = name
     make.__doc__ = docstring(summary, table, _COMMON)
+    make.__signature__ = keyword_signature(make, table)  # type: ignore[attr-defined]
     return make
 
 
 _MAKERS = {entry[0]: _function(*entry) for entry in _core.controllers()}
-NAMES = tuple(_MAKERS)
-__all__ = ["NAMES", "BuiltInController", "of_file", "parse", *NAMES]
+NAMES: Tuple[ControllerName, ...] = tuple(_MAKERS)
+__all__ = [
+    "NAMES",
+    "BuiltInController",
+    "geometric",
+    "indi",
+    "lqr",
+    "of_file",
+    "parse",
+    "pd",
+    "pd_compensated",
+    "pid",
+    "pid_thesis",
+]  # fmt: skip
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
-def __getattr__(name: str) -> Callable[..., BuiltInController]:
-    try:
-        return _MAKERS[name]
-    except KeyError:
-        raise AttributeError(f"there is no law '{name}'; there are {', '.join(NAMES)}") from None
+    from .keywords import Cascade, Geometric, Indi, Lqr
+
+    def pd(**parameters: Unpack[Cascade]) -> BuiltInController: ...
+    def pd_compensated(**parameters: Unpack[Cascade]) -> BuiltInController: ...
+    def pid_thesis(**parameters: Unpack[Cascade]) -> BuiltInController: ...
+    def pid(**parameters: Unpack[Cascade]) -> BuiltInController: ...
+    def geometric(**parameters: Unpack[Geometric]) -> BuiltInController: ...
+    def indi(**parameters: Unpack[Indi]) -> BuiltInController: ...
+    def lqr(**parameters: Unpack[Lqr]) -> BuiltInController: ...
+else:
+
+    def __getattr__(name: str) -> Callable[..., BuiltInController]:
+        try:
+            return _MAKERS[name]
+        except KeyError:
+            known = ", ".join(NAMES)
+            raise AttributeError(f"there is no law '{name}'; there are {known}") from None

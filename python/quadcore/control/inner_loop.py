@@ -14,6 +14,9 @@ from ..support.parameters import docstring, values
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+    from typing_extensions import Unpack
+
+    from .keywords import InnerLoopGains
 
 _ROUNDNESS = 1e-3
 """By which the length of a quaternion may differ from 1."""
@@ -56,7 +59,7 @@ class InnerLoop:
         self,
         spins: Sequence[float] = (),
         belief: Optional[_core.Simulation] = None,
-        **parameters: float,
+        **parameters: Unpack[InnerLoopGains],
     ) -> None:
         self.spins = list(spins)
         self.belief = belief

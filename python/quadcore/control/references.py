@@ -7,7 +7,18 @@ parameters. ``NAMES`` holds them all.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Protocol, Sequence, Union
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Callable,
+    Dict,
+    List,
+    Optional,
+    Protocol,
+    Sequence,
+    Tuple,
+    Union,
+)
 
 import numpy as np
 
@@ -15,7 +26,14 @@ from .. import _core
 from ..formats import bag, mat
 from ..model import resources
 from ..support.arguments import brief
-from ..support.parameters import did_you_mean, docstring, read_values, values
+from ..support.parameters import (
+    did_you_mean,
+    docstring,
+    keyword_signature,
+    read_values,
+    values,
+)
+from .keywords import ReferenceName
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -25,11 +43,38 @@ if TYPE_CHECKING:
 Reference = _core.Reference
 
 
-class ReferenceLike(Protocol):
-    """What may guide a flight: a function of time that gives a `Reference`."""
+class ReferencePoint(Protocol):
+    """Members of a `Reference`, for type checkers."""
 
-    def __call__(self, t: float) -> Any:
-        """Give position, velocity, acceleration, jerk, snap, yaw, yaw_rate, yaw_acceleration."""
+    @property
+    def position(self) -> npt.ArrayLike: ...
+    @property
+    def velocity(self) -> npt.ArrayLike: ...
+    @property
+    def acceleration(self) -> npt.ArrayLike: ...
+    @property
+    def jerk(self) -> npt.ArrayLike: ...
+    @property
+    def snap(self) -> npt.ArrayLike: ...
+    @property
+    def yaw(self) -> float: ...
+    @property
+    def yaw_rate(self) -> float: ...
+    @property
+    def yaw_acceleration(self) -> float: ...
+
+
+class ReferenceLike(Protocol):
+    """A function of time that returns a `Reference`, or an object with the same members."""
+
+    def __call__(self, t: float, /) -> ReferencePoint:
+        """Return the reference at a time.
+
+        Parameters
+        ----------
+        t : float
+            Simulation time, s.
+        """
 
 
 class Shape:
@@ -237,19 +282,52 @@ def _function(
         "    t, x, y, z[, yaw] in s, m, rad."
     )
     make.__doc__ = docstring(summary, table, rows if takes_rows else "")
+    make.__signature__ = keyword_signature(make, table)  # type: ignore[attr-defined]
     return make
 
 
 _MAKERS = {entry[0]: _function(*entry) for entry in _core.references()}
-NAMES = tuple(_MAKERS)
+NAMES: Tuple[ReferenceName, ...] = tuple(_MAKERS)
 _OF_ROWS = tuple(entry[0] for entry in _core.references() if entry[3])
-__all__ = ["NAMES", "Reference", "ReferenceLike", "Shape", "parse", "start", *NAMES]
+__all__ = [
+    "NAMES",
+    "Reference",
+    "ReferenceLike",
+    "Shape",
+    "circle",
+    "eight",
+    "hover",
+    "parse",
+    "ramp",
+    "series",
+    "spiral",
+    "start",
+    "step",
+    "takeoff_land",
+    "waypoints",
+]  # fmt: skip
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
-def __getattr__(name: str) -> Callable[..., Shape]:
-    try:
-        return _MAKERS[name]
-    except KeyError:
-        raise AttributeError(
-            f"there is no reference '{name}'; there are {', '.join(NAMES)}"
-        ) from None
+    from .keywords import Circle, Eight, Hover, Ramp, Series, Step, TakeoffLand, Waypoints
+
+    Rows = Union[npt.ArrayLike, str, Path]
+
+    def hover(**parameters: Unpack[Hover]) -> Shape: ...
+    def step(**parameters: Unpack[Step]) -> Shape: ...
+    def ramp(**parameters: Unpack[Ramp]) -> Shape: ...
+    def spiral(**parameters: Unpack[Circle]) -> Shape: ...
+    def circle(**parameters: Unpack[Circle]) -> Shape: ...
+    def eight(**parameters: Unpack[Eight]) -> Shape: ...
+    def waypoints(rows: Rows, **parameters: Unpack[Waypoints]) -> Shape: ...
+    def series(rows: Rows, **parameters: Unpack[Series]) -> Shape: ...
+    def takeoff_land(**parameters: Unpack[TakeoffLand]) -> Shape: ...
+else:
+
+    def __getattr__(name: str) -> Callable[..., Shape]:
+        try:
+            return _MAKERS[name]
+        except KeyError:
+            known = ", ".join(NAMES)
+            raise AttributeError(f"there is no reference '{name}'; there are {known}") from None

@@ -8,32 +8,61 @@ import re
 import uuid
 import zipfile
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Tuple, Union
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Dict,
+    Iterator,
+    List,
+    Mapping,
+    Optional,
+    Sequence,
+    Tuple,
+    TypedDict,
+    Union,
+)
 
 import yaml
 
 from .. import __version__, _core
 from .._core import Document, InputError
+from ..simulation.engines import EngineName
 from ..simulation.flight_plan import FlightPlan
+from ..simulation.scenarios import Scenario
 from ..simulation.simulation import Simulation
 from ..support.input_files import read_bytes
 from ..support.output_files import atomic_write
+from ..support.values import Number, Value
 from .description import make_description
 from .libraries import Libraries
 from .variables import Variable, list_start_variables, list_variables
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
 _VERSION = 2  # of flight.yaml, which cpp/fmu/flight_file.cpp reads
-_OPTIONS = (
-    "engine", "world", "dt", "seed", "parameters", "xacro_args", "spawn", "ignore", "scenario",
-)  # fmt: skip
 _LARGEST = 10**8  # bytes of a file that a tag names, as in the core
 _LONG_AGO = (1980, 1, 1, 0, 0, 0)  # the same FMU, the same bytes
+
+
+class _Options(TypedDict, total=False):
+    """Keyword arguments of `export_fmu`."""
+
+    engine: EngineName
+    world: Union[str, Path, _core.World, None]
+    dt: Optional[float]
+    seed: int
+    parameters: Optional[Mapping[str, Value]]
+    xacro_args: Optional[Mapping[str, object]]
+    spawn: Sequence[Number]
+    ignore: Sequence[str]
+    scenario: Union[str, Path, Scenario, None]
 
 
 def export_fmu(
     path: Union[str, Path],
     model: Union[str, Path, _core.Model] = "quadrotor",
-    **options: Any,
+    **options: Unpack[_Options],
 ) -> None:
     """Write a vehicle in its world as an FMU for co-simulation, FMI 2.0.
 
@@ -58,10 +87,10 @@ def export_fmu(
     if file.suffix.lower() != ".fmu":
         raise InputError(f"{path}: name a file that ends in .fmu, which it would hold")
     for name in options:
-        if name not in _OPTIONS:
+        if name not in _Options.__annotations__:
             raise InputError(
                 f"an FMU carries no {name}, for it begins at rest and its importer commands it; "
-                f"leave it out, or give one of {', '.join(_OPTIONS)}"
+                f"leave it out, or give one of {', '.join(_Options.__annotations__)}"
             )
     write_fmu(file, FlightPlan.of(model, duration=math.inf, **options))
 

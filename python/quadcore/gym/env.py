@@ -10,6 +10,7 @@ import numpy as np
 
 from .._core import FlightError, InputError, Model
 from ..simulation.batch import BatchState
+from ..simulation.engines import EngineName
 from ..simulation.simulation import Simulation
 from .episodes import Episodes
 from .task import Task, split_options
@@ -51,7 +52,10 @@ class Env(gymnasium.Env):
     metadata = {"render_modes": []}  # noqa: RUF012  (as Gymnasium has it)
 
     def __init__(
-        self, model: Union[str, Path, Model] = "quadrotor", engine: str = "eigen", **options: Any
+        self,
+        model: Union[str, Path, Model] = "quadrotor",
+        engine: EngineName = "eigen",
+        **options: Any,
     ) -> None:
         rules, others = split_options(options)
         self.simulation = Simulation(model, engine, **others)

@@ -12,6 +12,7 @@ from gymnasium.vector.utils import batch_space
 
 from .._core import InputError, Model
 from ..simulation.batch import BatchSimulation, BatchState
+from ..simulation.engines import EngineName
 from ..simulation.simulation import Simulation
 from ..support.warning import suppress_warnings
 from .env import check_no_options
@@ -60,7 +61,7 @@ class VectorEnv(_VectorEnv):
         self,
         num_envs: int = 1,
         model: Union[str, Path, Model] = "quadrotor",
-        engine: str = "eigen",
+        engine: EngineName = "eigen",
         **options: Any,
     ) -> None:
         rules, others = split_options(options)

@@ -22,7 +22,7 @@ from ..support.values import SPAWN, Value, poses, seeds, whole
 from ..support.warning import warn
 from .batch_state import BatchState as BatchState
 from .batch_vehicles import refusal, vehicle_count, vehicles
-from .engines import check_engine_and_step
+from .engines import EngineName, check_engine_and_step
 from .flight import check_logged, steps_within
 from .log import Log
 
@@ -81,7 +81,7 @@ class BatchSimulation(_core.Batch):
         self,
         model: Union[str, Path, _core.Model] = "quadrotor",
         n: int = 1,
-        engine: str = "eigen",
+        engine: EngineName = "eigen",
         parameters: Optional[Mapping[str, Union[Value, np.ndarray]]] = None,
         spawn: npt.ArrayLike = SPAWN,
         seed: Union[int, npt.ArrayLike] = 0,

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from ..support.values import FloatArray
 
 
 class BatchState(NamedTuple):
@@ -26,12 +29,12 @@ class BatchState(NamedTuple):
         Joint angles in (-pi, pi], rad.
     """
 
-    position: np.ndarray
-    orientation: np.ndarray
-    linear_velocity: np.ndarray
-    angular_velocity: np.ndarray
-    rotor_velocity: np.ndarray
-    rotor_angle: np.ndarray
+    position: FloatArray
+    orientation: FloatArray
+    linear_velocity: FloatArray
+    angular_velocity: FloatArray
+    rotor_velocity: FloatArray
+    rotor_angle: FloatArray
 
     @classmethod
     def of(cls, rows: np.ndarray) -> BatchState:

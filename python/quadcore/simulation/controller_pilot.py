@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager, suppress
-from typing import Any, Callable, Iterator, Union
+from typing import Any, Iterator, Union
 
 import numpy as np
 
@@ -11,8 +11,9 @@ from .. import _core
 from .._core import FlightError, InputError, QuadcoreError
 from ..control import controllers, references
 from ..control.built_in import BuiltInController
-from ..control.controller import SENSED, Controller, Odometry, check_callable
+from ..control.controller import SENSED, ControllerLike, Odometry, check_callable
 from ..control.inner_loop import AttitudeThrust, InnerLoop, RatesThrust
+from ..control.keywords import ReferenceName
 from ..control.rate_and_delay import DELAY, RATE, check_rate_or_delay
 from ..support.arguments import brief
 from ..support.user_code import describe_error
@@ -40,9 +41,9 @@ class Guided(Pilot):
 
     def __init__(
         self,
-        controller: Union[Controller, Callable[..., Any], str],
+        controller: ControllerLike,
         simulation: _core.Simulation,
-        reference: Union[references.ReferenceLike, str, None] = None,
+        reference: Union[references.ReferenceLike, ReferenceName, None] = None,
     ) -> None:
         if isinstance(controller, str):
             controller = controllers.parse(controller, simulation.model.name)

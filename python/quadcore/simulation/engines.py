@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Callable, Dict, List, NamedTuple, Optional, Tuple
+from typing import TYPE_CHECKING, Callable, Dict, List, Literal, NamedTuple, Optional, Tuple, Union
 
 from .._core import InputError, engines
 from ..support.arguments import brief
@@ -10,11 +10,17 @@ from ..support.arguments import brief
 if TYPE_CHECKING:
     from .simulation import Simulation
 
-ENGINE = engines()[0][0]
-"""The default of a single flight."""
+EngineName = Literal["gazebo11", "ode", "eigen"]
+"""Names of the core's engines, for type checkers; a test compares them with the core's table."""
 
-STUDIED = "eigen"
-"""The default of a study, which has many flights."""
+AnyEngineName = Union[EngineName, Literal["lagrange"]]
+"""Names of all engines that flight plans and studies accept."""
+
+ENGINE: EngineName = engines()[0][0]
+"""Default engine of a single flight."""
+
+STUDIED: EngineName = "eigen"
+"""Default engine of a study."""
 
 
 class AddedEngine(NamedTuple):
@@ -66,7 +72,7 @@ def check_wrenches(engine: str) -> None:
         )
 
 
-def check_engine_and_step(engine: object, dt: object) -> Tuple[str, Optional[float]]:
+def check_engine_and_step(engine: EngineName, dt: object) -> Tuple[EngineName, Optional[float]]:
     """Check the name of an engine, known or not, and the length of a step or None."""
     known = ", ".join(name for name, _ in engines())
     if not (isinstance(engine, str) and engine.isprintable()):

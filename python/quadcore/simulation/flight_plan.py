@@ -6,7 +6,7 @@ import hashlib
 import json
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
-from typing import Any, Dict, Mapping, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Dict, Mapping, Optional, Sequence, Tuple, TypedDict, Union
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from .. import _core
 from .._core import Model, World
 from ..control import references
 from ..control.built_in import BuiltInController
+from ..control.controller import ControllerLike
 from ..control.references import ReferenceLike
 from ..model.description import read_both
 from ..model.overrides import check_names, with_links, without_xacro
@@ -21,14 +22,32 @@ from ..support.values import SPAWN, Number, Value, pose, text_of, whole
 from ..support.warning import suppress_warnings, warn
 from .commands import CommandsLike, as_commands
 from .controller_pilot import Guided
-from .engines import ENGINE
+from .engines import ENGINE, AnyEngineName
 from .flight import Progress
 from .log import Log
 from .scenarios import Scenario
 from .scenarios import read as read_scenario
 from .simulation import Simulation, make_simulation
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
 _VERSION = 1  # of what a fingerprint stands for
+
+
+class _Others(TypedDict, total=False):
+    """Keyword arguments that `FlightPlan.of` takes as they are."""
+
+    engine: AnyEngineName
+    dt: Optional[float]
+    rotor_velocity: Optional[Tuple[float, ...]]
+    duration: float
+    controller: Optional[ControllerLike]
+    reference: Optional[ReferenceLike]
+    on_reference: bool
+    log_every: int
+    wrenches: bool
+    topics: Tuple[str, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +132,7 @@ class FlightPlan:
         seed: int = 0,
         commands: Optional[CommandsLike] = None,
         scenario: Union[str, Path, Scenario, None] = None,
-        **others: Any,
+        **others: Unpack[_Others],
     ) -> FlightPlan:
         """Read what a flight needs.
 

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable, Mapping, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
 from .. import _core
 from ..control import references
 from ..control.built_in import BuiltInController
-from ..control.controller import Controller
+from ..control.controller import ControllerLike
+from ..control.keywords import ReferenceName
 from ..control.references import ReferenceLike
 from ..model.description import list_of_names, read_both
 from ..model.overrides import check_names, with_links, without_xacro
@@ -20,7 +21,7 @@ from ..support.rotation import roll_pitch_yaw
 from ..support.values import SPAWN, Number, Value, pose, text_of, whole
 from ..support.warning import warn
 from .controller_pilot import Guided
-from .engines import ENGINE, added_engine, check_engine_and_step
+from .engines import ENGINE, EngineName, added_engine, check_engine_and_step
 from .flight import Progress, Rows, columns_of, fly
 from .log import Log
 from .state import LiveState
@@ -77,7 +78,7 @@ class Simulation(_core.Simulation):
     def __init__(
         self,
         model: Union[str, Path, _core.Model] = "quadrotor",
-        engine: str = ENGINE,
+        engine: EngineName = ENGINE,
         world: Union[str, Path, _core.World, None] = None,
         dt: Optional[float] = None,
         seed: int = 0,
@@ -104,11 +105,18 @@ class Simulation(_core.Simulation):
         for warning in self.warnings:
             warn(warning)
 
-    # attrgetter, not a function: reading the state is part of every step of a Python loop.
-    state: LiveState = property(  # type: ignore[assignment]
-        attrgetter("_live"),
-        doc="The state now, as live read-only views; `state.copy()` is free.",
-    )
+    if TYPE_CHECKING:
+
+        @property
+        def state(self) -> LiveState:
+            """Declare what type checkers read."""
+
+    else:
+        # attrgetter, not a function: reading the state is part of every step of a Python loop.
+        state = property(
+            attrgetter("_live"),
+            doc="The state now, as live read-only views; `state.copy()` is free.",
+        )
 
     @property
     def hover_speed(self) -> np.ndarray:
@@ -180,8 +188,8 @@ class Simulation(_core.Simulation):
         wrenches: bool = False,
         topics: Sequence[str] = (),
         *,
-        controller: Union[Controller, Callable[..., Any], str, None] = None,
-        reference: Union[ReferenceLike, str, None] = None,
+        controller: Optional[ControllerLike] = None,
+        reference: Union[ReferenceLike, ReferenceName, None] = None,
         on_reference: bool = False,
     ) -> Log:
         """Fly for a while and log it.
@@ -288,7 +296,9 @@ class Simulation(_core.Simulation):
 def make_simulation(engine: str, **options: Any) -> Simulation:
     """Make a simulation in any engine of `list_engines`; `options` are those of `Simulation`."""
     added = added_engine(engine)
-    return Simulation(engine=engine, **options) if added is None else added.make(**options)
+    if added is None:
+        return Simulation(engine=engine, **options)  # type: ignore[arg-type]
+    return added.make(**options)
 
 
 def _in_words(values: np.ndarray) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from .. import _core
+    from ..support.values import FloatArray
 
 _VECTORS = (
     "position",
@@ -43,12 +44,12 @@ class State:
     __slots__ = ("time", *_VECTORS)
 
     time: float
-    position: np.ndarray
-    orientation: np.ndarray
-    linear_velocity: np.ndarray
-    angular_velocity: np.ndarray
-    rotor_velocity: np.ndarray
-    rotor_angle: np.ndarray
+    position: FloatArray
+    orientation: FloatArray
+    linear_velocity: FloatArray
+    angular_velocity: FloatArray
+    rotor_velocity: FloatArray
+    rotor_angle: FloatArray
 
     def copy(self) -> State:
         """Make a free copy of this state."""
@@ -74,14 +75,14 @@ class LiveState:
 
     __slots__ = ("_clock", "_copy", *_VECTORS)
 
-    _clock: np.ndarray
+    _clock: FloatArray
     _copy: Callable[[], Dict[str, Any]]
-    position: np.ndarray
-    orientation: np.ndarray
-    linear_velocity: np.ndarray
-    angular_velocity: np.ndarray
-    rotor_velocity: np.ndarray
-    rotor_angle: np.ndarray
+    position: FloatArray
+    orientation: FloatArray
+    linear_velocity: FloatArray
+    angular_velocity: FloatArray
+    rotor_velocity: FloatArray
+    rotor_angle: FloatArray
 
     def __init__(self, simulation: _core.Simulation) -> None:
         views = simulation._views()

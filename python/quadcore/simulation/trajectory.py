@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, Mapping, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Dict, Mapping, Optional, Sequence
 
 import numpy as np
 
 from .._core import InputError, Simulation, log_columns
 from ..support.arguments import brief
 from ..support.rotation import roll_pitch_yaw
+
+if TYPE_CHECKING:
+    from ..support.values import FloatArray
 
 _STATE_SIZE = len(log_columns(0))
 
@@ -24,7 +27,7 @@ def is_slow(size: float) -> bool:
     return size not in (0.0, 1.0)
 
 
-def _states(table: Any) -> np.ndarray:
+def _states(table: Any) -> FloatArray:
     if isinstance(table, np.ndarray) and table.ndim == 2 and table.shape[1] >= _STATE_SIZE:
         return table
     given = f"an array {table.shape}" if isinstance(table, np.ndarray) else brief(table)
@@ -37,7 +40,7 @@ def _states(table: Any) -> np.ndarray:
 class Wrenches(Dict[str, np.ndarray]):
     """Of each term, by name."""
 
-    def __missing__(self, name: str) -> np.ndarray:
+    def __missing__(self, name: str) -> FloatArray:
         if self:
             raise InputError(f"log.wrenches: '{name}' is none of {', '.join(self)}; name one")
         raise InputError("log.wrenches: the log holds none; ask for them: wrenches=True")
@@ -103,36 +106,36 @@ class Trajectory:
         return log_columns(self.table.shape[1] - _STATE_SIZE)
 
     @property
-    def time(self) -> np.ndarray:
+    def time(self) -> FloatArray:
         """Time since the start, s; shape (rows,)."""
         return self.table[:, 0]
 
     @property
-    def position(self) -> np.ndarray:
+    def position(self) -> FloatArray:
         """Origin of the frame link in the world, m; shape (rows, 3)."""
         return self.table[:, 1:4]
 
     @property
-    def orientation(self) -> np.ndarray:
+    def orientation(self) -> FloatArray:
         """Orientation of the frame link in the world, unit quaternion x, y, z, w; (rows, 4)."""
         return self.table[:, 4:8]
 
     @property
-    def rpy(self) -> np.ndarray:
+    def rpy(self) -> FloatArray:
         """Roll, pitch, yaw of the frame link, R = Rz(yaw) Ry(pitch) Rx(roll), rad; (rows, 3)."""
         return roll_pitch_yaw(self.orientation)
 
     @property
-    def linear_velocity(self) -> np.ndarray:
+    def linear_velocity(self) -> FloatArray:
         """Velocity of the frame link's origin, world axes, m/s; shape (rows, 3)."""
         return self.table[:, 8:11]
 
     @property
-    def angular_velocity(self) -> np.ndarray:
+    def angular_velocity(self) -> FloatArray:
         """Angular velocity of the frame link, body axes, rad/s; shape (rows, 3)."""
         return self.table[:, 11:14]
 
     @property
-    def rotor_velocity(self) -> np.ndarray:
+    def rotor_velocity(self) -> FloatArray:
         """Velocity of the rotor joints, rad/s; shape (rows, n)."""
         return self.table[:, _STATE_SIZE:]

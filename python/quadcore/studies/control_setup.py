@@ -9,13 +9,19 @@ from typing import Any, Callable, Iterable, List, Mapping, Optional, Sequence, T
 from .._core import InputError
 from ..control import controllers, references
 from ..control.built_in import BuiltInController
-from ..control.controller import check_callable, set_parameter
+from ..control.controller import ControllerLike, check_callable, set_parameter
+from ..control.keywords import ReferenceName
+from ..control.references import ReferenceLike
 from ..simulation.flight_plan import FlightPlan
 from ..support.arguments import brief
 from ..support.values import SPAWN, pose
 
-Named = Union[str, Any, Mapping[str, Any], Sequence[Any]]
-"""A name, an object, several of these, or a mapping of labels to them."""
+Controllers = Union[ControllerLike, Mapping[str, ControllerLike], Sequence[ControllerLike]]
+"""One or several controllers, or a mapping of labels to controllers."""
+
+_Reference = Union[ReferenceLike, ReferenceName]
+References = Union[_Reference, Mapping[str, _Reference], Sequence[_Reference]]
+"""One or several references, or a mapping of labels to references."""
 
 
 class ControlSetup:
@@ -116,7 +122,7 @@ class ControlSetup:
                 self._make_factory(controller, vehicle)
 
 
-def add_labels(kind: str, things: Named, one: type) -> List[Tuple[str, Any]]:
+def add_labels(kind: str, things: Any, one: type) -> List[Tuple[str, Any]]:
     """Give each thing a label."""
     if isinstance(things, Mapping):
         return [(str(label), thing) for label, thing in things.items()]

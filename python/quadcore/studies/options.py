@@ -15,6 +15,7 @@ from typing import (
     Any,
     Callable,
     Dict,
+    List,
     Mapping,
     NamedTuple,
     Optional,
@@ -26,7 +27,9 @@ from typing import (
     get_type_hints,
 )
 
+from .._core import InputError
 from ..model import resources
+from ..simulation.engines import STUDIED
 from ..simulation.scenarios import NONE
 from ..support import arguments, parse
 from ..support.arguments import Kind
@@ -213,6 +216,15 @@ class SweepOptions(Options):
         default=None,
         metadata=change_option("spawn", without=f"on the reference; with --commands {SPAWNED}"),
     )
+
+
+def choose_engines(engine: Optional[str], engines: Union[str, Sequence[str], None]) -> List[str]:
+    """List the engines of a study, which takes `engine` for one and `engines` for several."""
+    if engine is not None and engines is not None:
+        raise InputError("engine and engines are both given. Keep one.")
+    if engine is not None:
+        return [engine]
+    return arguments.several(STUDIED if engines is None else engines)
 
 
 def list_kinds(kind: Type[Options]) -> Dict[str, Kind]:

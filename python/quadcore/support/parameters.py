@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import difflib
+import inspect
 from numbers import Real
-from typing import Any, Dict, Iterable, Mapping, Sequence
+from typing import Any, Callable, Dict, Iterable, Mapping, Sequence
 
 from .. import _core
 
@@ -55,6 +56,24 @@ def docstring(summary: str, table: Iterable[_core.ParameterSpec], more: str = ""
             f"    {spec.meaning}{unit}{source}.",
         ]
     return "\n".join(lines)
+
+
+def keyword_signature(
+    function: Callable[..., Any], table: Iterable[_core.ParameterSpec]
+) -> inspect.Signature:
+    """Return the signature of a function, with the parameters of a table for ``**parameters``."""
+    signature = inspect.signature(function)
+    own = [each for each in signature.parameters.values() if each.kind is not each.VAR_KEYWORD]
+    named = [
+        inspect.Parameter(
+            spec.name,
+            inspect.Parameter.KEYWORD_ONLY,
+            default=spec.default == "true" if spec.is_flag else _core.parse_number(spec.default),
+            annotation=bool if spec.is_flag else float,
+        )
+        for spec in table
+    ]
+    return signature.replace(parameters=[*own, *named])
 
 
 def did_you_mean(name: str, known: Sequence[str]) -> str:

@@ -13,6 +13,8 @@ from .arguments import brief
 if TYPE_CHECKING:
     import numpy.typing as npt
 
+    FloatArray = npt.NDArray[np.float64]
+
 Number = Union[float, str]
 Value = Union[float, str, bool, Path, Sequence[str], Sequence[float], np.ndarray]
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import (
     TYPE_CHECKING,
     Any,
-    Callable,
     List,
     Mapping,
     Optional,
@@ -13,10 +12,11 @@ from typing import (
 )
 
 from ..._core import FlightError, InputError, QuadcoreError
-from ...control.controller import Controller
+from ...control.controller import ControllerLike
+from ...control.keywords import ReferenceName
 from ...control.references import ReferenceLike
 from ...simulation.commands import CommandsLike
-from ...simulation.engines import ENGINE
+from ...simulation.engines import ENGINE, AnyEngineName
 from ...simulation.log import Log
 from ...support import arguments, interrupts
 from ..axes import Values
@@ -51,9 +51,9 @@ def compare(
     vary: Optional[Mapping[str, Values]] = None,
     commands: Optional[CommandsLike] = None,
     *,
-    controller: Union[Controller, Callable[..., Any], str, None] = None,
-    reference: Union[ReferenceLike, str, None] = None,
-    engine: str = ENGINE,
+    controller: Optional[ControllerLike] = None,
+    reference: Union[ReferenceLike, ReferenceName, None] = None,
+    engine: AnyEngineName = ENGINE,
     against: Optional[int] = None,
     logs: bool = True,
     wrenches: bool = False,

@@ -23,15 +23,15 @@ from typing import (
 from ..._core import InputError, QuadcoreError
 from ...report.decimation import pick_evenly
 from ...report.html_table import SHOWN_ROWS, html_table, html_title
-from ...simulation.engines import STUDIED
+from ...simulation.engines import AnyEngineName
 from ...simulation.flight_plan import FlightPlan
 from ...support import arguments
 from ...support.warning import warn
 from ..axes import Values
-from ..control_setup import Named
+from ..control_setup import Controllers, References
 from ..executor import run_contained
 from ..measured_flight import Outcome, fly_and_measure
-from ..options import EvaluateOptions, Keywords, Names, Progress, accept_options
+from ..options import EvaluateOptions, Keywords, Names, Progress, accept_options, choose_engines
 from ..table import count_outcomes
 from .margins import MarginSearch
 from .plan import Plan
@@ -91,17 +91,19 @@ class Evaluation(NamedTuple):
 
 @accept_options(
     EvaluateOptions,
-    engines=arguments.SOME,
+    engines=arguments.or_none(arguments.SOME),
+    engine=arguments.or_none(arguments.NAME),
     models=arguments.SOME,
     vary=arguments.or_none(arguments.AXES),
     margins=arguments.FLAG,
 )
 def evaluate(
-    controllers: Named,
-    references: Named,
-    engines: Union[str, Sequence[str]] = STUDIED,
+    controllers: Controllers,
+    references: References,
+    engines: Union[AnyEngineName, Sequence[AnyEngineName], None] = None,
     models: Names = "quadrotor",
     *,
+    engine: Optional[AnyEngineName] = None,
     vary: Optional[Mapping[str, Values]] = None,
     margins: bool = False,
     **options: Unpack[Keywords],
@@ -116,7 +118,9 @@ def evaluate(
     references
         Names as on the command line, or of `quadcore.references`; or a mapping of labels.
     engines, models
-        Names of one or several.
+        Names of one or several; default: "eigen" and "quadrotor".
+    engine
+        One engine, instead of `engines`.
     vary
         Values by ``"PLUGIN.TAG"``, ``"world"``, ``"scenario"`` or ``"controller.KEY"``, KEY being
         ``rate``, ``delay`` or a parameter of a law: conditions, of which all combinations fly.
@@ -139,7 +143,7 @@ def evaluate(
         With the attribute `evaluation`, whose missing rows say so.
     """
     shared = EvaluateOptions(**options)
-    names = arguments.several(engines), arguments.several(models)
+    names = choose_engines(engine, engines), arguments.several(models)
     plan = Plan(controllers, references, *names, vary or {}, shared)
     return fly_plan(plan, shared.progress, margins)
 

@@ -12,7 +12,7 @@ from ...simulation.flight_plan import FlightPlan
 from ...simulation.scenario_events import Event
 from ..axes import Values
 from ..cases import Case, Cases, check_models, label_point, make_scenario_axis
-from ..control_setup import ControlSetup, Named, add_labels
+from ..control_setup import Controllers, ControlSetup, References, add_labels
 from ..design import Design
 from ..options import EvaluateOptions
 from . import margins, trial
@@ -35,8 +35,8 @@ class Plan(Cases):
 
     def __init__(
         self,
-        controllers: Named,
-        references_: Named,
+        controllers: Controllers,
+        references_: References,
         engines: Sequence[str],
         models: Sequence[Union[str, Path]],
         vary: Mapping[str, Values],

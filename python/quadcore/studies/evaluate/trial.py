@@ -86,7 +86,8 @@ class _NominalModelController:
         if own is None:
             self.inner_loop = InnerLoop(belief=vehicle)
         elif isinstance(own, InnerLoop) and own.belief is None:
-            self.inner_loop = InnerLoop(own.spins, vehicle, **own.parameters)
+            parameters: Dict[str, Any] = own.parameters
+            self.inner_loop = InnerLoop(own.spins, vehicle, **parameters)
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._controller, name)

@@ -8,6 +8,7 @@ from typing import Any, Dict, Mapping, Optional, Sequence, Union
 from ..._core import InputError, Model, World
 from ...model.description import read_both, xacro_arguments
 from ...model.overrides import XACRO, check_names, with_links, without_xacro
+from ...simulation.engines import EngineName
 from ...simulation.simulation import Simulation
 from ...support.values import text_of
 from .model_text import write_values
@@ -48,7 +49,7 @@ class FittedModel:
         self,
         free: Sequence[str],
         model: Union[str, Path, Model],
-        engine: str,
+        engine: EngineName,
         world: Union[str, Path, World, None],
         dt: Optional[float],
         parameters: Optional[Mapping[str, Any]],

@@ -22,9 +22,10 @@ import numpy as np
 
 from ..._core import InputError
 from ...simulation.commands import CommandsLike
-from ...simulation.engines import STUDIED
+from ...simulation.engines import AnyEngineName
 from ...support import arguments, interrupts
-from ..options import Keywords, Names, Progress, SweepOptions, accept_options
+from ..control_setup import Controllers, References
+from ..options import Keywords, Names, Progress, SweepOptions, accept_options, choose_engines
 from ..output_folder import output_folder
 from ..table import count_outcomes
 from .dask import connect_cluster
@@ -65,7 +66,8 @@ class Sweep(NamedTuple):
 
 @accept_options(
     SweepOptions,
-    engines=arguments.NAMES,
+    engines=arguments.or_none(arguments.NAMES),
+    engine=arguments.or_none(arguments.NAME),
     models=arguments.NAMES,
     vary=arguments.or_none(arguments.VALUES),
     points=arguments.or_none(arguments.NAME),
@@ -79,8 +81,8 @@ class Sweep(NamedTuple):
     parquet=arguments.FLAG,
 )
 def sweep(
-    controllers: Any = None,
-    references: Any = None,
+    controllers: Optional[Controllers] = None,
+    references: Optional[References] = None,
     vary: Optional[Mapping[str, Any]] = None,
     *,
     commands: Optional[CommandsLike] = None,
@@ -89,7 +91,8 @@ def sweep(
     points: Optional[Union[str, Path]] = None,
     design: str = "latin",
     samples: Optional[int] = None,
-    engines: Union[str, Sequence[str]] = STUDIED,
+    engines: Union[AnyEngineName, Sequence[AnyEngineName], None] = None,
+    engine: Optional[AnyEngineName] = None,
     models: Names = "quadrotor",
     out: Optional[Union[str, Path]] = None,
     parquet: bool = False,
@@ -118,7 +121,7 @@ def sweep(
     design, samples
         How axes with a distribution are drawn: "latin", "sobol", "random" or "saltelli"; and how
         many points, from `seed` on.
-    engines, models
+    engines, engine, models
         As for `evaluate`.
     out
         A folder in which ``table.csv`` grows by whole rows, in order once all are there.
@@ -154,7 +157,7 @@ def sweep(
             raise InputError("a function is called in the place of flights; give it, or these")
         plan = Calls(made, function, arguments.several(measures), shared.time_limit)
     else:
-        names = arguments.several(engines), arguments.several(models)
+        names = choose_engines(engine, engines), arguments.several(models)
         plan = Plan(made, controllers, references, *names, shared, commands)
     with ExitStack() as stack:
         if out is None:

@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Union
 
 from ..._core import FlightError
 from ...control.built_in import BuiltInController
-from ...simulation.engines import STUDIED
+from ...control.keywords import ControllerName
+from ...simulation.engines import STUDIED, AnyEngineName
 from ...support import arguments
 from ...support.arguments import several
 from ...support.optional_packages import require_package
 from ..axes import Values
+from ..control_setup import References
 from ..options import Keywords, Names, Options, Progress, accept_options
 from .problem import Problem
 from .search import Search, Tuning
@@ -33,14 +35,14 @@ _INTERRUPTED = "interrupted"
     budget=arguments.WHOLE,
 )
 def tune(
-    law: Union[str, BuiltInController],
+    law: Union[ControllerName, BuiltInController],
     model: Names = "quadrotor",
-    references: Sequence[Any] = ("spiral", "step"),
-    held_out: Sequence[Any] = ("circle", "eight"),
+    references: References = ("spiral", "step"),
+    held_out: References = ("circle", "eight"),
     held_out_models: Names = (),
     only: Optional[Sequence[str]] = None,
     *,
-    engine: str = STUDIED,
+    engine: AnyEngineName = STUDIED,
     vary: Optional[Mapping[str, Values]] = None,
     budget: int = 300,
     **options: Unpack[Keywords],

@@ -1,0 +1,3 @@
+"""Public name of quadcore.control.controllers, for type checkers."""
+
+from .control.controllers import *

@@ -1,0 +1,3 @@
+"""Public name of quadcore.control.gains, for type checkers."""
+
+from .control.gains import *

@@ -1,0 +1,3 @@
+"""Public name of quadcore.control.references, for type checkers."""
+
+from .control.references import *
