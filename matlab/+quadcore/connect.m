@@ -1,11 +1,11 @@
 function client = connect(port)
-% CONNECT  Drive a flight that `quadcore serve` holds ready on this machine.
+% CONNECT  Connect to a vehicle of `quadcore serve` on this computer.
 %
 %   client = quadcore.connect(5005)
 %
-% client.dt is the length of a step (s), client.rotors how many numbers a command has, and
-% client.columns a cell array of the names of a row's numbers. Octave needs its package
-% instrument-control, MATLAB nothing. `clear client` ends the flight.
+% client.dt is the length of a step (s). client.rotors is the number of speeds in a command.
+% client.columns is a cell array with the column names of a row. `clear client` ends the flight.
+% Octave needs its package instrument-control; MATLAB needs no toolbox.
   if exist('OCTAVE_VERSION', 'builtin')
     pkg('load', 'instrument-control');
   end

@@ -1,11 +1,12 @@
 function dy = derivative(v, y, command)
-% DERIVATIVE  The mathematical model of chapter 2, eq. (2.38), with motors that lag.
+% DERIVATIVE  Return the derivative of the state in the mathematical model of chapter 2, eq. (2.38).
 %
 %   [t, y] = ode45(@(t, y) quadcore.derivative(v, y, command), [0 5], y0)
 %
-% v: a vehicle, as `quadcore info MODEL --vehicle v.mat` writes it. y: position of the centre of
-% mass (m), roll, pitch, yaw (rad), the rates of these six, rotor speeds (rad/s) as the forces feel
-% them. command: what the motors are to reach, rad/s. docs/physics.md has the equations.
+% v: vehicle, from `quadcore info MODEL --vehicle v.mat`. y: position of the centre of mass (m), roll,
+% pitch, yaw (rad), the rates of these six, and rotor speeds (rad/s) before the division by sim_slow.
+% command: desired rotor speeds (rad/s); the motors follow with a lag. For the equations, see
+% docs/physics.md.
   q = y(1:6); qdot = y(7:12); omega = y(13:end);
   omegadot = (v.motor_gain * (command(:) - omega) - v.joint_damping(:) .* omega) ...
              ./ v.rotor_inertia(:);
@@ -67,7 +68,7 @@ function gradient = gradient_of_J(v, eta, W)
 end
 
 function drag_F = flapping(v, omega, axis_F, disc, lever)
-% (2.25)-(2.27), which print without the sign of the spin in A_1s and B_2.
+% (2.25)-(2.27). The thesis omits the sign of the spin in A_1s and B_2.
   s = 1 - 2 * (omega < 0);
   quarter = skew(axis_F);
   A = -(v.A_1c * disc + s * v.A_1s * quarter) / v.r;

@@ -1,9 +1,9 @@
 function figures(log, folder)
-% FIGURES  Draw a flight as chapter 6 of the thesis does, into PNG files.
+% FIGURES  Draw a flight into PNG files, like the figures of thesis chapter 6.
 %
 %   quadcore.figures(quadcore.read_log('flight.mat'), 'figures')
 %
-% path.png, position.png, attitude.png, rotors.png and, of a guided flight, error.png.
+% Writes path.png, position.png, attitude.png and rotors.png and, for a closed-loop flight, error.png.
   if ~exist(folder, 'dir')
     mkdir(folder);
   end
@@ -14,30 +14,31 @@ function figures(log, folder)
     wanted = [r.x(:), r.y(:), r.z(:)];
   end
 
-  h = begin();
+  h = open_figure();
   plot3(p(:, 1), p(:, 2), p(:, 3));
   if ~isempty(wanted)
     hold on
     plot3(wanted(:, 1), wanted(:, 2), wanted(:, 3), '--');
-    legend('flown', 'reference');
+    legend('flight', 'reference');
   end
   grid on
   xlabel('x (m)'); ylabel('y (m)'); zlabel('z (m)');
-  finish(h, folder, 'path');
+  save_figure(h, folder, 'path');
 
-  curves(folder, 'position', log.t, p, wanted, {'x (m)', 'y (m)', 'z (m)'});
+  draw_curves(folder, 'position', log.t, p, wanted, {'x (m)', 'y (m)', 'z (m)'});
   rpy = quadcore.roll_pitch_yaw([log.qx(:), log.qy(:), log.qz(:), log.qw(:)]);
-  curves(folder, 'attitude', log.t, rpy * 180 / pi, [], {'roll (deg)', 'pitch (deg)', 'yaw (deg)'});
+  names = {'roll (deg)', 'pitch (deg)', 'yaw (deg)'};
+  draw_curves(folder, 'attitude', log.t, rpy * 180 / pi, [], names);
   names = arrayfun(@(i) sprintf('joint %d (rad/s)', i), 1:size(log.j, 2), 'UniformOutput', false);
-  curves(folder, 'rotors', log.t, log.j, [], names);
+  draw_curves(folder, 'rotors', log.t, log.j, [], names);
   if ~isempty(wanted)
-    names = {'error of x (m)', 'of y (m)', 'of z (m)'};
-    curves(folder, 'error', log.t, p - wanted, [], names);
+    names = {'x error (m)', 'y error (m)', 'z error (m)'};
+    draw_curves(folder, 'error', log.t, p - wanted, [], names);
   end
 end
 
-function curves(folder, name, t, columns, wanted, names)
-  h = begin();
+function draw_curves(folder, name, t, columns, wanted, names)
+  h = open_figure();
   n = size(columns, 2);
   for i = 1:n
     subplot(n, 1, i);
@@ -50,14 +51,14 @@ function curves(folder, name, t, columns, wanted, names)
     ylabel(names{i});
   end
   xlabel('t (s)');
-  finish(h, folder, name);
+  save_figure(h, folder, name);
 end
 
-function h = begin()
+function h = open_figure()
   h = figure('visible', 'off');
 end
 
-function finish(h, folder, name)
+function save_figure(h, folder, name)
   print(h, fullfile(folder, [name, '.png']), '-dpng', '-r100');
   close(h);
 end

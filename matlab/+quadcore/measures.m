@@ -1,10 +1,10 @@
 function m = measures(log)
-% MEASURES  What `quadcore evaluate` measures of a flight, as far as its log says it.
+% MEASURES  Return the metrics of `quadcore evaluate` for the log of a closed-loop flight.
 %
 %   m = quadcore.measures(quadcore.read_log('flight.mat'))
 %
-% The log has the topics reference and error, as logs of guided flights do. Fields as in
-% docs/evaluate.md: m, rad, s; NaN for what the flight does not have, such as a step.
+% The log must contain the topics reference and error. For the fields, see docs/evaluate.md (m, rad, s).
+% A metric that does not apply is NaN, for example the rise time without a step.
   t = log.t(:) - log.t(1);
   wanted = log.topic_reference;
   errors = [log.topic_error.x(:), log.topic_error.y(:), log.topic_error.z(:)];
@@ -20,10 +20,10 @@ function m = measures(log)
   m.iae_position = trapz(t, away);
   m.itae_position = trapz(t, away .* t);
   m.max_yaw = max(abs(mod(yaw + pi, 2 * pi) - pi));
-  [m.rise_time, m.overshoot, m.settling_time] = of_step(log, t, wanted, away);
+  [m.rise_time, m.overshoot, m.settling_time] = measure_step(log, t, wanted, away);
 end
 
-function [rise, overshoot, settling] = of_step(log, t, wanted, away)
+function [rise, overshoot, settling] = measure_step(log, t, wanted, away)
   rise = NaN; overshoot = NaN; settling = NaN;
   place = [wanted.x(:), wanted.y(:), wanted.z(:)];
   moved = sqrt(sum(diff(place) .^ 2, 2));

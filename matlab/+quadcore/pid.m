@@ -1,12 +1,13 @@
 function [speeds, memory] = pid(v, gains, period, row, wanted, memory)
-% PID  The cascade of thesis section 6.2: rotor speeds (rad/s) that follow a reference.
+% PID  Return the rotor speeds (rad/s) of the cascade of thesis section 6.2.
 %
 %   gains = quadcore.pid_gains();
 %   [speeds, memory] = quadcore.pid(v, gains, client.dt, row, wanted, memory)
 %
-% v: a vehicle, as `quadcore info MODEL --vehicle v.mat` writes it. row: t, x, y, z, qx, qy, qz, qw,
-% vx, vy, vz, wx, wy, wz, as rows of a served flight begin. wanted: a struct of position, velocity,
-% acceleration (3 x 1, world axes), yaw and yaw_rate. memory: [] at the start, then what came before.
+% v: vehicle, from `quadcore info MODEL --vehicle v.mat`, with the field spins (1 or -1 per rotor).
+% gains: from quadcore.pid_gains. row: t, x, y, z, qx, qy, qz, qw, vx, vy, vz, wx, wy, wz, the first
+% columns of a served row. wanted: the reference, a struct with position, velocity, acceleration
+% (3 x 1, world axes), yaw and yaw_rate. memory: [] in the first call, then the last result.
   if isempty(memory)
     memory = struct('position', zeros(3, 1), 'angles', zeros(3, 1));
   end
@@ -14,7 +15,7 @@ function [speeds, memory] = pid(v, gains, period, row, wanted, memory)
   rpy = quadcore.roll_pitch_yaw(row(5:8)')';
   rates_F = row(12:14);
 
-  % (2.43) with an integral: acceleration of the frame in the world.
+  % (2.43) with an integral: desired acceleration of the frame in the world.
   e = wanted.position - row(2:4);
   memory.position = memory.position + period * e;
   a_W = gains.kp(1:3) .* e + gains.ki(1:3) .* memory.position ...
@@ -28,7 +29,7 @@ function [speeds, memory] = pid(v, gains, period, row, wanted, memory)
   R_WF = quadcore.rotation(rpy);
   thrust = v.mass * (lift_W' * R_WF(:, 3));
 
-  % (2.50): Euler angles, linearised by feedback.
+  % (2.50): feedback linearisation of the Euler angles.
   W = quadcore.euler_rates(rpy);
   rates = W \ rates_F;
   error = [roll; pitch; wanted.yaw] - rpy;
@@ -39,7 +40,7 @@ function [speeds, memory] = pid(v, gains, period, row, wanted, memory)
   [~, dW] = quadcore.euler_rates(rpy, rates);
   torque_F = v.inertia * (W * y + dW * rates) + cross(rates_F, v.inertia * rates_F);
 
-  % (2.51): squared speeds that exert them.
+  % (2.51): squared rotor speeds for this thrust and torque.
   n = numel(v.spins);
   exerted = zeros(4, n);
   for i = 1:n

@@ -1,12 +1,12 @@
 function log = read_log(file)
-% READ_LOG  Read a log of quadcore, .mat or .csv.
+% READ_LOG  Read a log of quadcore, .mat or .csv, into a struct.
 %
 %   log = quadcore.read_log('flight.mat')
 %
-% A struct of column vectors: t (s), x, y, z (m), qx, qy, qz, qw (of the frame in the world), vx,
-% vy, vz (world axes, m/s), wx, wy, wz (body axes, rad/s), and j, the joint velocities (rad/s), a
-% column for each rotor. Of a .mat file also the wrenches, as it has them. Topics are structs:
-% log.topic_reference.x and so on.
+% The fields are column vectors: t (s), x, y, z (m), qx, qy, qz, qw (orientation of the frame in the
+% world), vx, vy, vz (world axes, m/s), wx, wy, wz (body axes, rad/s). Field j contains the joint
+% velocities (rad/s), one column for each rotor. Topics are structs, such as log.topic_reference.x.
+% A .mat log also contains its wrenches.
   [~, ~, kind] = fileparts(file);
   switch lower(kind)
     case '.mat'
@@ -14,7 +14,7 @@ function log = read_log(file)
     case '.csv'
       log = read_csv(file);
     otherwise
-      error('quadcore:log', '%s: a log is a .mat or a .csv file', file);
+      error('quadcore:log', '%s: not a .mat or .csv file. Give a log of quadcore.', file);
   end
   log.j = [];
   rotor = 1;
@@ -29,7 +29,7 @@ end
 function log = read_csv(file)
   stream = fopen(file);
   if stream < 0
-    error('quadcore:log', '%s: cannot be read', file);
+    error('quadcore:log', '%s: cannot be opened. Check the path.', file);
   end
   names = strsplit(strtrim(fgetl(stream)), ',');
   rows = textscan(stream, repmat('%f', 1, numel(names)), 'Delimiter', ',', 'CommentStyle', '#');

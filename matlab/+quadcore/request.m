@@ -1,7 +1,7 @@
 function numbers = request(client, kind, numbers)
-% REQUEST  Send a message of the protocol (docs/serve.md) and return the numbers of its answer.
+% REQUEST  Send a message of the protocol (docs/serve.md) and return the numbers of the answer.
 %
-% What the server refuses, and a flight that has failed, is an error with the reason.
+% Raises an error with the reason if the server refuses the request or the flight has failed.
   message = [kind, numel(numbers), numbers(:)'];
   write(client.socket, typecast(double(message), 'uint8'));
   head = receive(client.socket, 2);
@@ -16,7 +16,7 @@ function numbers = receive(socket, count)
   while numel(bytes) < 8 * count
     piece = read(socket, 8 * count - numel(bytes));
     if isempty(piece)
-      error('quadcore:server', 'the server has gone');
+      error('quadcore:server', 'The server closed the connection. Start `quadcore serve` again.');
     end
     bytes = [bytes, uint8(piece(:)')]; %#ok<AGROW>
   end

@@ -1,5 +1,8 @@
 function row = restart(client, seed)
-% RESTART  Begin the flight anew, perhaps with another seed; returns its first row.
+% RESTART  Restart the flight and return its first row.
+%
+%   row = quadcore.restart(client)
+%   row = quadcore.restart(client, seed)
   if nargin < 2
     seed = [];
   end

@@ -1,11 +1,11 @@
 function row = step(client, speeds, steps)
-% STEP  Let the vehicle fly on; returns the row at the end.
+% STEP  Advance the flight and return its last row.
 %
 %   row = quadcore.step(client, speeds)         one step
 %   row = quadcore.step(client, speeds, steps)
-%   row = quadcore.step(client, [], 0)          the row that is
+%   row = quadcore.step(client, [], 0)          the current row
 %
-% speeds: signed rotor speeds before the division by sim_slow, rad/s; [] keeps those before.
+% speeds: signed rotor speeds (rad/s), before the division by sim_slow; [] keeps the last command.
   if nargin < 3
     steps = 1;
   end

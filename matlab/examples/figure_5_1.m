@@ -1,13 +1,13 @@
-% FIGURE_5_1  Build the thesis' figure 5.1: rotor speeds out, odometry in, kept in a .mat file.
+% FIGURE_5_1  Build the model of the thesis' figure 5.1: send rotor speeds, record odometry.
 %
-% Needs Simulink and ROS Toolbox, where it is untried. Beside it flies
+% This script needs Simulink and ROS Toolbox and is untested. Start the vehicle with
 %
 %   roslaunch quadcore quadrotor.launch gui:=false world:=empty z:=10 lockstep:=true
 %
-% The workspace's `commands` ([t w1 w2 w3 w4], rad/s) is sent step by step; `odometry.mat` then holds
-% the messages.
+% The model sends the workspace variable `commands` ([t w1 w2 w3 w4], rad/s) step by step, and writes
+% the messages into `odometry.mat`.
 model = 'figure_5_1';
-step = 1e-3;  % s, of the plant
+step = 1e-3;  % s, step of the plant
 if ~exist('commands', 'var')
   commands = [0, 480, -480, 480, -480];
 end

@@ -1,21 +1,21 @@
-% FIGURE_6_36  Build the thesis' figure 6.36: the cascade of section 6.2 around the plant on ROS.
+% FIGURE_6_36  Build the model of the thesis' figure 6.36: the cascade of section 6.2 with ROS.
 %
-% Needs Simulink and ROS Toolbox, where it is untried; `quadcore info quadrotor --vehicle vehicle.mat`
-% writes what the law knows of the vehicle. The plant waits for each command:
+% This script needs Simulink and ROS Toolbox and is untested. Write the vehicle's parameters with
+% `quadcore info quadrotor --vehicle vehicle.mat`. Start the vehicle, which waits for each command:
 %
 %   roslaunch quadcore quadrotor.launch gui:=false world:=empty x:=2 z:=10 lockstep:=true
 figure_5_1
 model = 'figure_6_36';
 save_system('figure_5_1', model);
 
-% The law in the place of the speeds from the workspace.
+% Replace the speeds from the workspace by the controller.
 delete_line(model, 'speeds/1', 'message/2');
 delete_block([model, '/speeds']);
-block = [model, '/law'];
+block = [model, '/controller'];
 add_block('simulink/User-Defined Functions/MATLAB Function', block);
 chart = find(slroot, '-isa', 'Stateflow.EMChart', 'Path', block);
 chart.Script = sprintf('%s\n', ...
-  'function speeds = law(t, message)', ...
+  'function speeds = controller(t, message)', ...
   'coder.extrinsic(''load'', ''quadcore.pid'', ''quadcore.pid_gains'');', ...
   'persistent v memory', ...
   'speeds = zeros(4, 1);', ...
@@ -29,7 +29,7 @@ chart.Script = sprintf('%s\n', ...
   '                ''acceleration'', [-0.5 * c; -0.5 * s; 0], ''yaw'', 0, ''yaw_rate'', 0);', ...
   '[speeds, memory] = quadcore.pid(v, quadcore.pid_gains(), 1e-3, row, wanted, memory);');
 add_block('simulink/Sources/Digital Clock', [model, '/clock'], 'SampleTime', '1e-3');
-add_line(model, 'clock/1', 'law/1');
-add_line(model, 'odom/2', 'law/2');
-add_line(model, 'law/1', 'message/2');
+add_line(model, 'clock/1', 'controller/1');
+add_line(model, 'odom/2', 'controller/2');
+add_line(model, 'controller/1', 'message/2');
 save_system(model);

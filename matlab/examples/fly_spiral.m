@@ -1,9 +1,11 @@
-% The spiral of thesis eq. (6.1), flown by the PID of section 6.2 in lockstep. Beforehand, in a shell:
+% FLY_SPIRAL  Follow the spiral of thesis eq. (6.1) with the PID cascade of section 6.2, in lockstep.
+%
+% Start the server in a shell first:
 %
 %   quadcore info quadrotor --vehicle vehicle.mat
 %   quadcore serve quadrotor --spawn 2,0,10 --port 5005
 %
-% port, seconds and vehicle (the file) may be set before; log holds the rows afterwards.
+% You may set port, seconds and vehicle (the file) before. Afterwards, log contains the rows.
 addpath(fullfile(fileparts(mfilename('fullpath')), '..'));
 if ~exist('port', 'var'), port = 5005; end
 if ~exist('seconds', 'var'), seconds = 30; end
