@@ -35,6 +35,21 @@ void check_shape(const py::array& array, const Shape& shape, const char* what);
 /// written. Throws InputError unless it is a writable, contiguous array of doubles of this shape.
 double* writable(const py::object& object, const Shape& shape, const char* what);
 
+/// Any object; signatures in docstrings name it by `type`.
+template <const auto& type>
+class Annotated : public py::object {
+ public:
+  PYBIND11_OBJECT_DEFAULT(Annotated, py::object, is_any)
+
+ private:
+  static bool is_any(PyObject*) { return true; }
+};
+
+inline constexpr char array_like[] = "numpy.typing.ArrayLike";
+inline constexpr char state_type[] = "quadcore.State";
+using ArrayLike = Annotated<array_like>;
+using StateLike = Annotated<state_type>;
+
 /// A whole number or a name that is refused in one line of quadcore's own if it is none; `what`
 /// names it there.
 template <class T, const char* what>
@@ -53,6 +68,11 @@ py::str file_name(const std::string& path);
 }  // namespace quadcore::bindings
 
 namespace pybind11::detail {
+
+template <const auto& type>
+struct handle_type_name<quadcore::bindings::Annotated<type>> {
+  static constexpr auto name = const_name(type);
+};
 
 template <class T, const char* what>
 struct type_caster<quadcore::bindings::Given<T, what>> {

@@ -70,7 +70,7 @@ void advance(BoundFlight& bound, std::int64_t n) {
   raising_warnings(*bound.guarded, [&] { without_gil([&] { bound.flight.advance(n); }); });
 }
 
-void command(const BoundFlight& bound, const py::object& speeds) {
+void command(const BoundFlight& bound, const ArrayLike& speeds) {
   const Numbers array = numbers(speeds, 1, "command");
   const Lock lock(*bound.guarded);
   bound.guarded->simulation.command(array.data(), static_cast<std::size_t>(array.size()));

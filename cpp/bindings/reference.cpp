@@ -38,10 +38,10 @@ Reference read_members(const Get& get) {
   return read;
 }
 
-Reference reference_of(const py::object& position, const py::object& velocity,
-                       const py::object& acceleration, const py::object& jerk,
-                       const py::object& snap, const py::object& yaw, const py::object& yaw_rate,
-                       const py::object& yaw_acceleration) {
+Reference reference_of(const ArrayLike& position, const ArrayLike& velocity,
+                       const ArrayLike& acceleration, const ArrayLike& jerk, const ArrayLike& snap,
+                       const ArrayLike& yaw, const ArrayLike& yaw_rate,
+                       const ArrayLike& yaw_acceleration) {
   const py::object* member[] = {&position, &velocity, &acceleration, &jerk,
                                 &snap,     &yaw,      &yaw_rate,     &yaw_acceleration};
   const py::object** next = member;

@@ -30,7 +30,7 @@ std::shared_ptr<Guarded> create_simulation(const Built<Model>& model, const Buil
   return std::make_shared<Guarded>(*model, *world, options);
 }
 
-void set_command(const Self& self, const py::object& speeds) {
+void set_command(const Self& self, const ArrayLike& speeds) {
   const Numbers array = numbers(speeds, 1, "command");
   const Lock lock(*self, "command()");
   self->command(array.data(), static_cast<std::size_t>(array.size()));
@@ -124,7 +124,7 @@ InputError
     Another thread is stepping this simulation, or a run flies it.)")
       .def(
           "set_state",
-          [](const Self& self, const py::object& object) {
+          [](const Self& self, const StateLike& object) {
             const VehicleState state = to_state(object);
             const Lock lock(*self, "set_state()");
             raising_warnings(*self, [&] { self->set_state(state); });

@@ -52,7 +52,7 @@ py::dict topic(const Self& self, const Given<std::string, topic_name>& name) {
 }
 
 void publish(const Self& self, const Given<std::string, topic_name>& given,
-             const py::object& values) {
+             const ArrayLike& values) {
   const std::string& name = given.value;
   const Numbers array = numbers(values, 1, ("publish: topic '" + name + "'").c_str());
   if (name == Simulation::command_topic) refuse_in_flight(*self, "publish()");

@@ -114,5 +114,7 @@ def test_typed_keywords_of_the_inner_loop_and_of_a_plan():
 
 
 def test_help_begins_with_typed_signatures():
+    first = inspect.getdoc(qc.Simulation.command).splitlines()[0]
+    assert first.endswith("speeds: numpy.typing.ArrayLike) -> None")
     assert "kp_xy: float = " in str(inspect.signature(qc.controllers.geometric))
     assert "radius: float = " in str(inspect.signature(qc.references.spiral))
