@@ -9,7 +9,9 @@ const require = createRequire(import.meta.url);
 const { TextlintKernel } = require("@textlint/kernel");
 const markdown = require("@textlint/textlint-plugin-markdown").default;
 
-const terms = JSON.parse(readFileSync(new URL("words.json", import.meta.url), "utf8"));
+// The rule looks for whole words, unless a pattern says what may stand around it.
+const words = JSON.parse(readFileSync(new URL("words.json", import.meta.url), "utf8"));
+const terms = words.map(([word, better]) => [word.startsWith("(?<") ? word : `(?:${word})`, better]);
 const options = {
   ext: ".md",
   plugins: [{ pluginId: "markdown", plugin: markdown }],
