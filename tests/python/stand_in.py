@@ -15,9 +15,9 @@ SHORT = {"--duration": "1", "--seeds": "1", "--budget": "2", "--no-plots": None,
 
 def quadcore(words):
     """As typed; but sweeps are of few, all is short if it is to be, and a server goes on."""
-    from quadcore.cli import _parser
+    from quadcore.cli import make_parser
 
-    parser = _parser()
+    parser = make_parser()
     given = parser.parse_args(words)
     known = parser._subparsers._group_actions[0].choices[words[0]]._option_string_actions
     for option, value in (SHORT if os.environ["QUADCORE_SHORT"] else FEW).items():

@@ -19,6 +19,7 @@ from quadcore.formats import mat
 from quadcore.model import resources
 
 FALL = ["run", "quadrotor", "--duration", "0.05"]
+RUN = ["log.csv", "model.urdf", "run.json"]
 
 
 @pytest.fixture(autouse=True)
@@ -67,7 +68,7 @@ def test_info_puts_every_parameter_on_one_line_with_all_that_is_known_of_it(caps
 
 def test_info_tells_all_of_a_parameter_in_80_columns():
     for plugin in qc.Simulation("quadrotor").plugins:
-        lines = info._told(plugin, 80).splitlines()
+        lines = info._explain(plugin, 80).splitlines()
         assert max(map(len, lines)) <= 80
         words = " ".join(" ".join(lines).split())
         for parameter in plugin.parameters:
@@ -78,7 +79,8 @@ def test_info_tells_all_of_a_parameter_in_80_columns():
 def test_run_prints_a_summary_and_writes_nothing_unasked(capsys):
     assert main(FALL) == 0
     out = capsys.readouterr().out
-    assert "quadrotor, gazebo11" in out
+    rows = dict(line.split(maxsplit=1) for line in out.splitlines())
+    assert (rows["model"].strip(), rows["engine"].strip()) == ("quadrotor", "gazebo11")
     assert "9.98" in out  # 5 cm s of free fall from 10 m
     assert written() == []
 
@@ -102,7 +104,7 @@ def test_quiet_prints_nothing(capsys):
 def test_out_holds_the_log_and_the_plots(capsys):
     assert main([*FALL, "--out", "a/b", "--log", "log.mat"]) == 0
     plots = ["attitude", "path", "position", "rates", "rotors"]
-    assert written() == sorted(["log.csv", "log.mat"] + [f"{name}.png" for name in plots])
+    assert written() == sorted([*RUN, "log.mat", "report.html", *(f"{name}.png" for name in plots)])
     out = capsys.readouterr().out
     assert all(name in out for name in written())
     rows = np.loadtxt("a/b/log.csv", delimiter=",", skiprows=1)
@@ -128,7 +130,7 @@ def test_options_reach_the_flight():
     options = "--engine ode --dt 0.002 --log-every 5 --spawn -1,0,3 --commands c.csv --no-plots"
     sim_slow = ["--xacro", "sim_slow:=1"]
     assert main([*FALL, *options.split(), *sim_slow, "--out", "."]) == 0
-    assert written() == ["c.csv", "log.csv"]
+    assert written() == sorted(["c.csv", *RUN, "report.html"])
     rows = np.loadtxt("log.csv", delimiter=",", skiprows=1)
     assert rows[:, 0] == pytest.approx(np.arange(0, 0.051, 0.01))
     assert rows[0, 1:4] == pytest.approx([-1, 0, 3])
@@ -210,7 +212,7 @@ def test_an_interrupted_run_keeps_its_log_and_is_status_130(capsys, monkeypatch)
     def interrupting(quiet):
         yield lambda done, total: signal.raise_signal(signal.SIGINT)
 
-    monkeypatch.setattr(terminal, "progress", interrupting)
+    monkeypatch.setattr(terminal, "show_progress", interrupting)
     assert main(["run", "quadrotor", "--duration", "3600", "--log", "log.csv"]) == 130
     err = capsys.readouterr().err
     assert "log until t = " in err
@@ -265,10 +267,10 @@ def test_help_names_what_is_shipped_and_where_a_flight_begins(capsys):
         main(["run", "--help"])
     told = " ".join(capsys.readouterr().out.split())
     models, worlds = (", ".join(resources.shipped(folder)) for folder in ("urdf", "worlds"))
-    assert "quadrotor" in models and f"or a shipped model: {models} " in told
-    assert "default" in worlds and f"or a shipped world: {worlds} (empty) " in told
+    assert "quadrotor" in models and f"or a built-in model: {models} " in told
+    assert "default" in worlds and f"or a built-in world: {worlds} (default: empty) " in told
     x, y, z = qc.FlightPlan.of().spawn[:3]
-    assert f"in m and rad ({x:g},{y:g},{z:g})" in told
+    assert f"in m and rad (default: {x:g},{y:g},{z:g})" in told
 
 
 def test_a_reader_that_stops_early_is_no_error():

@@ -266,7 +266,7 @@ def test_any_flight_can_be_what_the_others_are_compared_with(processes):
 def test_a_flight_to_compare_with_that_is_none_or_fails_is_said(capsys):
     vary = ["--vary", "motor.kp=1e-4,-1"]
     assert main(["compare", "toy.urdf", *FLIGHT, *vary, "--against", "3"]) == 2
-    assert capsys.readouterr().err == "error: --against 3: there are 2 flights\n"
+    assert capsys.readouterr().err == "error: --against 3: there are only 2 flights\n"
     assert main(["compare", "toy.urdf", *FLIGHT, *vary, "--against", "2"]) == 2
     assert "error: no. 2, to compare the others with, is refused: " in capsys.readouterr().err
     assert main(["compare", "toy.urdf", *FLIGHT, *vary, "--against", "1", "--out", "out"]) == 3

@@ -79,7 +79,7 @@ def test_distances_to_the_reference_are_told_in_table_page_and_terminal(capsys):
     guided = [*SPIRAL, "--engine", "eigen", *vary]
     assert main(["compare", "quadrotor", *arguments, *guided, "--out", "out"]) == 0
     shown, page = capsys.readouterr().out, Path("out/report.html").read_text()
-    assert "to the reference (m), RMS / max" in shown
+    assert "tracking error (m), RMS / max" in shown
     assert "<h2>Tracking error</h2>" in page
     for number, row in enumerate(rows(), start=1):
         log = log_of(number)
@@ -173,7 +173,7 @@ def test_a_controller_that_raises_is_a_row_with_the_time():
         ("--commands c.csv --controller pd", "--commands or a --controller; give one of them"),
         ("--reference spiral", "--reference needs a --controller; name one"),
         ("--delay 0.1", "--delay needs a --controller; name one"),
-        ("--controller pdd", "there is no law 'pdd'"),
+        ("--controller pdd", "there is no controller 'pdd'"),
         ("--controller pd --reference spirl", "there is no reference 'spirl'"),
         ("--controller geometric:kp=3", "law 'geometric' has no parameter 'kp'"),
         ("--controller pd --controller-rate 0", "--controller-rate: 0 is not greater than 0"),

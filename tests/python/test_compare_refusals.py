@@ -15,7 +15,7 @@ from quadcore.cli import main
 @pytest.mark.parametrize(
     ("arguments", "reason"),
     [
-        ("toy.urdf", "nothing varied"),
+        ("toy.urdf", "nothing is varied"),
         ("toy.urdf nope.urdf", "nope.urdf: no such file"),
         (
             "toy.urdf --vary motor.kq=1",

@@ -242,5 +242,5 @@ def test_parameters_are_documented_where_they_are_given():
     assert "kp_xy : float, default 2.4" in controllers.pd.__doc__
     assert "kd_xy : float, default 0.125" in controllers.pid_thesis.__doc__
     assert "rate : float, default 1.5" in references.circle.__doc__
-    with pytest.raises(AttributeError, match="there is no law 'pdd'"):
+    with pytest.raises(AttributeError, match="there is no controller 'pdd'"):
         controllers.pdd  # noqa: B018

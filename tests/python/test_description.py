@@ -162,12 +162,11 @@ def test_a_doctype_in_an_included_file_is_refused(write, robot):
     assert refusal(robot('<xacro:include filename="part.xacro"/>')).startswith("part.xacro:1: ")
 
 
-def test_a_surplus_xacro_argument_warns_and_names_the_nearest_known(robot):
+def test_an_unknown_xacro_argument_is_refused_with_the_known_ones(robot):
     file = robot('<xacro:arg name="sim_slow" default="1"/>', '<xacro:arg name="kp" default="1"/>')
-    with pytest.warns(qc.QuadcoreWarning, match="'sim_slwo'; the nearest is 'sim_slow': it has no"):
-        load_description(file, {"sim_slwo": "2"})
-    with pytest.warns(qc.QuadcoreWarning, match="'kp', nor any other: it has no effect"):
-        load_description(robot("<a/>"), {"kp": "2"})
+    message = refusal(file, {"sim_slwo": "2"})
+    assert "has no xacro argument 'sim_slwo' (did you mean 'sim_slow'). Use one of " in message
+    assert "has no xacro argument 'kp'. Leave it out." in refusal(robot("<a/>"), {"kp": "2"})
 
 
 def test_a_plain_urdf_is_read_as_it_is_and_takes_no_xacro_arguments(write):

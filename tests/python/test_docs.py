@@ -16,13 +16,13 @@ from pathlib import Path
 import pytest
 
 import quadcore as qc
-from quadcore.cli import _parser
+from quadcore.cli import make_parser
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
 COMMANDS = next(
     action.choices
-    for action in _parser()._actions
+    for action in make_parser()._actions
     if isinstance(action, argparse._SubParsersAction)
 )
 

@@ -9,7 +9,7 @@ import pytest
 from evaluations import FLY, rows
 
 import quadcore as qc
-from quadcore.cli import _parser, main
+from quadcore.cli import main, make_parser
 from quadcore.cli.options_file import OptionsFile
 from quadcore.support.parse import several_calls
 
@@ -44,9 +44,9 @@ def test_the_command_line_wins_key_by_key_and_lists_hold_what_both_say():
         "no-plots: yes\nmargins: false\n"
     )
     given = ["--set", "odometry.positionNoise=0", "--xacro", "sim_slow:=1", "--ignore", "neither"]
-    arguments = _parser().parse_args(["evaluate", "fly.yaml", *given, "--vary", "frame.mass=1"])
+    arguments = make_parser().parse_args(["evaluate", "fly.yaml", *given, "--vary", "frame.mass=1"])
     arguments.words = ["evaluate", "fly.yaml", *given, "--vary", "frame.mass=1"]
-    both = OptionsFile(Path("fly.yaml"), arguments.parser).beneath(arguments)
+    both = OptionsFile(Path("fly.yaml"), arguments.parser).put_beneath(arguments)
     assert dict(both.set) == {"odometry.positionNoise": "0", "odometry.orientationNoise": "0.002"}
     assert (both.xacro, both.vary) == ([("sim_slow", "1")], [("frame.mass", "1")])
     assert both.ignore == ["nobody", "neither"]
@@ -83,7 +83,7 @@ def test_the_file_of_the_eight_readings_is_one(capsys):
         ("set:\n  a.b: 1\n  ab: 2\n", "fly.yaml:3: argument --set"),
         (
             "controller:\n  - pd\n  - pdd\nreference: hover\n",
-            "fly.yaml:3: there is no law 'pdd'",
+            "fly.yaml:3: there is no controller 'pdd'",
         ),
         (
             "controller: pd\nreference: hover\nvary:\n  controller.kp: [1]\n",
@@ -106,9 +106,9 @@ def test_a_file_that_is_wrong_is_one_line(capsys, text, says):
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        ("--reference spiral", "nothing to fly: name --controller"),
-        ("--controller pd", "nothing to fly: name --reference"),
-        ("--controller pdd --reference spiral", "there is no law 'pdd'"),
+        ("--reference spiral", "no controller is named. Name some with --controller."),
+        ("--controller pd", "no reference is named. Name some with --reference."),
+        ("--controller pdd --reference spiral", "there is no controller 'pdd'"),
         ("--controller pd,pd --reference spiral", "controller 'pd' is named twice"),
         ("--controller pd --reference spirl", "there is no reference 'spirl'"),
         ("--controller pd --reference spiral --engine bullet", "'bullet' is none of"),

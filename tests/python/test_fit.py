@@ -260,7 +260,7 @@ def test_the_command_writes_the_model_and_tells_what_is_known(flown, in_empty_fo
         (["--free", "drone_plugin.k"], "free drone_plugin.k: model quadrotor has none"),
         (["--free", "drone_plugin.dragModel"], "'appendix' is no number; only numbers are fitted"),
         ([*free, "--bound", "frame.mass=2:3"], "bound frame.mass: begins at 1, not within 2 and 3"),
-        ([*free, "--bound", "frame.mass=2"], "'2' is no range; write LOW:HIGH"),
+        ([*free, "--bound", "frame.mass=2"], "'2' is not a range; write LOW:HIGH"),
         ([*free, "--bound", "frame.ixx=0:3"], "bound frame.ixx: it is not free"),
         ([*free, "--horizon", "99"], "the log is shorter than a horizon"),
         ([*free, "--sensed", "gps"], "no topic 'gps' with a pose and velocities; its topics: odom"),

@@ -95,7 +95,7 @@ def test_the_summary_tells_largest_rms_and_late_errors(capsys):
     log = columns("l.csv")
     away = np.linalg.norm([log[f"error.{axis}"] for axis in "xyz"], axis=0)
     late = away[log["t"] > log["t"][-1] - 10].max()
-    assert said["max error"] == f"{away.max():.4g} m, of the last 10 s {late:.4g} m"
+    assert said["max error"] == f"{away.max():.4g} m (whole flight), {late:.4g} m (last 10 s)"
     assert said["RMS error"] == f"{np.sqrt(np.mean(away**2)):.4g} m"
     assert said["controller"] == "pd, 500 Hz, delay 0 s"
     assert said["saturated updates"] == "0 of 6000"
@@ -172,7 +172,11 @@ def test_updates_that_reach_the_limit_of_the_motors_are_counted(capsys):
         ("--controller own:Raises", 3, "t = 0.000000 s: controller: ValueError: no idea (/"),
         ("--controller own:Nan", 3, "command for rotor 1 is not a finite number; return 4"),
         ("--controller own:Short", 3, "holds 2 rotor speeds; return 4"),
-        ("--controller geometrc", 2, "there is no law 'geometrc' (did you mean 'geometric')"),
+        (
+            "--controller geometrc",
+            2,
+            "there is no controller 'geometrc' (did you mean 'geometric')",
+        ),
         ("--controller pd:kp=1", 2, "has no parameter 'kp'"),
         ("--controller pd:kp_xy=x", 2, "'kp_xy=x' is not one KEY=NUMBER"),
         ("--controller nope.yaml", 2, "nope.yaml: cannot be read"),

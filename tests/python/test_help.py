@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import argparse
-import inspect
+import shlex
 
 import pytest
 from processes import refused
 
-import quadcore as qc
-from quadcore.cli import _COMMANDS, _parser, main
+from quadcore.cli import main, make_parser
+from quadcore.simulation.engines import ENGINE, STUDIED
 
-COMMANDS = [command.__name__.split(".")[-1].replace("_", "-") for command in _COMMANDS]
+PARSERS = next(iter(make_parser()._subparsers._group_actions)).choices
 NOTHING = (None, False, [], argparse.SUPPRESS)
 """Defaults without which nothing is done."""
 
@@ -22,28 +22,53 @@ def told(capsys, command):
     return " ".join(capsys.readouterr().out.split())
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", PARSERS)
 def test_help_tells_the_default_of_every_option(command):
-    parsers = next(iter(_parser()._subparsers._group_actions)).choices
-    for action in parsers[command]._actions:
+    for action in PARSERS[command]._actions:
         if action.required or action.default in NOTHING or action.dest == "port":
             continue
         values = action.default if isinstance(action.default, list) else [action.default]
         written = ",".join(f"{x:g}" if isinstance(x, float) else str(x) for x in values)
-        assert f"({written})" in action.help, action.dest
+        assert f"(default: {written}" in action.help, action.dest
 
 
 def test_help_tells_what_studies_fly_where_from_and_where_to(capsys):
-    functions = {"evaluate": qc.evaluate, "sweep": qc.sweep, "tune": qc.tune, "fit": qc.fit}
-    for command, function in functions.items():
-        parameters = inspect.signature(function).parameters
-        engine = parameters.get("engines", parameters.get("engine")).default
-        assert f"({engine}) --world" in told(capsys, command)
-    assert "(gazebo11) --world" in told(capsys, "run")
+    for command in ("evaluate", "sweep", "tune", "fit"):
+        assert f"(default: {STUDIED}) --" in told(capsys, command)
+    assert f"(default: {ENGINE}) --dt" in told(capsys, "run")
     for command in ("evaluate", "tune"):
-        assert "pose of the frame in m and rad (on the reference)" in told(capsys, command)
-    assert "(on the reference; with --commands 0,0,10)" in told(capsys, "sweep")
-    assert "a page here (out/sweep)" in told(capsys, "sweep")
+        assert "pose of the frame link in m and rad (default: on the reference)" in told(
+            capsys, command
+        )
+    assert "(default: on the reference, or 0,0,10 with --commands)" in told(capsys, "sweep")
+    assert "summary and plots (default: out/sweep)" in told(capsys, "sweep")
+
+
+@pytest.mark.parametrize("command", PARSERS)
+def test_help_is_grouped_and_ends_with_an_example_that_the_command_reads(command):
+    parser = PARSERS[command]
+    heading, *lines = parser.epilog.replace("\\\n", "").splitlines()
+    assert heading in ("example:", "examples:") and lines
+    for line in lines:
+        program, *words = shlex.split(line.partition(">")[0])
+        assert program == "quadcore" and words[0] == command
+        make_parser().parse_args(words)
+    shared = {action.dest for action in parser._optionals._group_actions}
+    assert shared <= {"help", "port", "socket", "timeout", "output"}
+
+
+def test_help_of_the_program_says_what_it_is_and_which_engine_is_the_default(capsys):
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    help_text = capsys.readouterr().out
+    assert "\n\nMultirotor simulator and controller test bench.\n\n" in help_text
+    assert "run, compare, serve and export-fmu use the engine gazebo11" in help_text
+    assert "quadcore run quadrotor" in help_text.splitlines()[-1]
+
+
+def test_only_close_options_are_suggested(in_empty_folder):
+    assert "--realtime; see" in refused("run", "quadrotor", "--realtime")
+    assert "(did you mean '--json')" in refused("run", "quadrotor", "--jsn")
 
 
 @pytest.mark.parametrize(

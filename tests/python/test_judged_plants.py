@@ -42,7 +42,7 @@ def largest(out):
 def test_a_recording_is_nearest_to_the_engine_that_flew_it(suffix, recording, tmp_path):
     done = ran("validate", "--plant", str(recording / f"flight.{suffix}"), "--out", str(tmp_path))
     assert done.returncode == 0, done.stderr
-    assert "largest difference from" in done.stdout and "chapter 2" in done.stdout
+    assert "maximum difference from" in done.stdout and "chapter 2" in done.stdout
     apart = largest(tmp_path)
     # The start's orientation is normalised anew, no more.
     assert apart["gazebo11", "position"] < 1e-12 < apart["eigen", "position"] < 0.1
@@ -83,4 +83,4 @@ def test_what_cannot_be_judged_is_one_line(recording):
     found = refused("validate", "hexarotor", "--plant", str(recording / "flight.csv"))
     assert "has 4 rotors, the model has 6" in found
     found = refused("validate", "--plant", bare, "--sim-slow", "8")
-    assert "--plant is one flight; give its --sim-slow by --set" in found
+    assert "--plant is one flight; give its --sim-slow with --set" in found

@@ -101,9 +101,9 @@ def test_what_may_be_another_each_time_or_warns_is_not_kept(expanded):
             expanded()
 
 
-def test_an_argument_without_effect_is_told_each_time(expanded):
+def test_an_unknown_argument_is_refused_each_time(expanded):
     for _ in range(2):
-        with pytest.warns(qc.QuadcoreWarning, match="no xacro argument 'kk'; the nearest is 'k'"):
+        with pytest.raises(qc.InputError, match=r"no xacro argument 'kk'.*Use one of k"):
             expanded(kk="1")
     assert expanded.count == 1
 

@@ -50,7 +50,7 @@ def test_flights_compared_without_commands_are_told_of(capsys):
     flight = ["compare", "quadrotor", "--engine", "eigen", "--duration", "0.01", "--no-plots"]
     assert main([*flight, "--vary", "motorpid_plugin.kp=0.0005,0.001"]) == 0
     told = capsys.readouterr().err
-    assert "nothing commands the rotors" in told and "--controller geometric" in told
+    assert "no rotor command is given" in told and "--controller geometric" in told
 
 
 def test_an_interrupt_inside_an_argument_is_one():

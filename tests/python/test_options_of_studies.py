@@ -12,7 +12,7 @@ import pytest
 import yaml
 
 import quadcore as qc
-from quadcore.cli import _parser, main
+from quadcore.cli import main, make_parser
 from quadcore.studies import options
 
 STUDIES = {
@@ -50,7 +50,7 @@ def test_type_checkers_see_the_options_that_there_are():
 def test_signature_docstring_and_parser_have_every_option_with_its_default(study):
     function, kind = STUDIES[study]
     parameters, told = inspect.signature(function).parameters, inspect.getdoc(function)
-    actions = next(iter(_parser()._subparsers._group_actions)).choices[study]._actions
+    actions = next(iter(make_parser()._subparsers._group_actions)).choices[study]._actions
     by_flag = {flag: action for action in actions for flag in action.option_strings}
     for each in fields(kind):
         assert parameters[each.name].default == each.default

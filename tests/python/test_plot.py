@@ -44,7 +44,7 @@ def test_one_log_gives_the_pictures_of_its_flight():
 def test_pictures_go_to_a_folder_that_the_help_names(capsys):
     with pytest.raises(SystemExit):
         main(["plot", "--help"])
-    assert "(out/plot)" in capsys.readouterr().out
+    assert "(default: out/plot)" in capsys.readouterr().out
     for log in ("fall.csv", "climb.csv"):  # of which the second overwrites
         assert main(["plot", log]) == 0
         assert capsys.readouterr().out.count("written out/plot/") == len(ONE)
@@ -64,7 +64,7 @@ def test_what_is_no_log_and_too_few_names_are_refused(capsys):
     assert main(["plot", "none.csv", "--out", "a"]) == 2
     assert "none.csv" in capsys.readouterr().err
     assert main(["plot", "fall.csv", "climb.csv", "--names", "one", "--out", "a"]) == 2
-    assert "--names: 1 for 2 logs" in capsys.readouterr().err
+    assert "--names: 1 names for 2 logs" in capsys.readouterr().err
     assert not Path("a").exists()
 
 
@@ -144,8 +144,8 @@ def test_a_run_that_can_hardly_be_meant_is_said_and_flown(capsys):
     Path("one_way.csv").write_text("t,w1,w2,w3,w4\n0,471,471,471,471\n")
     Path("hover.csv").write_text("t,w1,w2,w3,w4\n0,471,-471,471,-471\n")
     for more, told in (
-        ([], "warning: nothing commands the rotors"),
-        (["--commands", "one_way.csv"], "it hovers at 471, -471, 471, -471 rad/s"),
+        ([], "warning: no rotor command is given"),
+        (["--commands", "one_way.csv"], "the vehicle hovers at 471, -471, 471, -471 rad/s"),
         (["--commands", "hover.csv"], ""),
         (["--controller", "geometric"], ""),
     ):
@@ -157,14 +157,14 @@ def test_a_run_that_can_hardly_be_meant_is_said_and_flown(capsys):
     assert capsys.readouterr().err == ""
 
 
-def test_the_summary_has_the_fastest_rotor_as_it_was_commanded(capsys):
+def test_the_summary_has_the_maximum_rotor_speed_as_it_was_commanded(capsys):
     Path("hover.csv").write_text("t,w1,w2,w3,w4\n0,471,-471,471,-471\n")
     run = ["run", "quadrotor", "--duration", "2", "--commands", "hover.csv"]
     for more, told in ([], "47.1"), (["--xacro", "sim_slow:=1"], "471.0"):
         assert main([*run, *more]) == 0
-        (line,) = (row for row in capsys.readouterr().out.splitlines() if "fastest" in row)
+        (line,) = (row for row in capsys.readouterr().out.splitlines() if "max rotor" in row)
         assert told in line
-        assert ("as commanded 471.0" in line) == (not more)
+        assert ("(commanded 471.0 rad/s)" in line) == (not more)
 
 
 def test_threads_draw_the_same_and_leave_settings_alone(tmp_path):

@@ -284,7 +284,7 @@ def test_ctrl_c_keeps_the_rows_and_says_how_to_go_on():
     process.send_signal(signal.SIGINT)
     _, error = process.communicate(timeout=LONG)
     assert process.returncode == 130
-    assert "rows so far: out/table.csv; --resume flies the rest" in error
+    assert "rows so far: out/table.csv. Add --resume to continue." in error
     assert Path("out/table.csv").read_bytes().endswith(b"\n")
 
 

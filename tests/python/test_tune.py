@@ -117,7 +117,7 @@ def test_other_models_judge_too(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"law": "pidd"}, "there is no law 'pidd'"),
+        ({"law": "pidd"}, "there is no controller 'pidd'"),
         ({"law": "controllers:Mine"}, "controllers"),
         ({"law": "pd:spins=1"}, "law 'pd' has no parameter 'spins'"),
         ({"only": ["kp_xz"]}, "law 'pd' has no number 'kp_xz'; tune some of scale, kp_xy"),
@@ -170,7 +170,7 @@ class TestCommand:
 
         monkeypatch.setattr(terminal, "progress", interrupting)
         assert main(["tune", "pd", "-o", "pd.yaml", "--budget", "500", *FLIGHT]) == 130
-        assert "the best so far: pd.yaml" in capsys.readouterr().err
+        assert "best gains so far: pd.yaml" in capsys.readouterr().err
         history = yaml.safe_load(Path("pd.yaml").read_text())["history"]
         assert history["ended"] == "interrupted" and 1 < len(history["evaluations"]) < 50
 
@@ -185,7 +185,7 @@ class TestCommand:
         [
             (["pd", "-o", "pd.txt"], "pd.txt: name a file that ends in .yaml"),
             (["pd", "-o", "no/pd.yaml"], "there is no folder no"),
-            (["nothing", "-o", "pd.yaml"], "there is no law 'nothing'"),
+            (["nothing", "-o", "pd.yaml"], "there is no controller 'nothing'"),
             (["pd", "no.urdf", "-o", "pd.yaml"], "no.urdf: no such file"),
             (["pd", "-o", "pd.yaml", "--hold-out", "step"], "tuned on and held out"),
         ],

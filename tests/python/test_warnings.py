@@ -168,12 +168,11 @@ INCOMPLETE = """<robot name="incomplete" xmlns:xacro="http://www.ros.org/wiki/xa
 <xacro:include filename="nothing_*.xacro"/>
 </robot>"""
 DOUBTS = {
-    "an argument of a simulation": lambda: qc.Simulation(xacro_args={"simslow": 1}),
-    "of a batch": lambda: qc.BatchSimulation(n=2, xacro_args={"simslow": 1}),
-    "of a model that is read": lambda: qc.read_model("quadrotor", {"simslow": 1}),
-    "of a flight that is described": lambda: qc.FlightPlan.of(xacro_args={"simslow": 1}),
-    "of a study": lambda: qc.evaluate("pd", "hover", duration=0.02, xacro_args={"simslow": 1}),
     "a tag": lambda: qc.Simulation(parameters={"motorpid_plugin.ki": 1}),
+    "of a batch": lambda: qc.BatchSimulation("incomplete.xacro", 2),
+    "of a model that is read": lambda: qc.read_model("incomplete.xacro"),
+    "of a flight that is described": lambda: qc.FlightPlan.of("incomplete.xacro"),
+    "of a study": lambda: qc.evaluate("pd", "hover", duration=0.02, models="incomplete.xacro"),
     "a flight": lambda: qc.Simulation(spawn=UPSIDE_DOWN).run(0.1),
     "a step": lambda: qc.Simulation(spawn=UPSIDE_DOWN).step(),
     "a plan that is flown": lambda: qc.FlightPlan.of(spawn=UPSIDE_DOWN, duration=0.1).fly(),
@@ -196,7 +195,7 @@ def test_a_warning_shows_the_line_that_called_quadcore(doubt, tmp_path, monkeypa
 
 def test_a_warning_within_a_controller_shows_its_line():
     def controller(t, state, reference):
-        qc.Simulation(xacro_args={"simslow": 1})
+        qc.Simulation(parameters={"motorpid_plugin.ki": 1})
         return [471, -471, 471, -471]
 
     with pytest.warns(qc.QuadcoreWarning) as shown:

@@ -3,21 +3,27 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
-from typing import Any, NoReturn, Sequence
+import textwrap
+from typing import Sequence
 
 from .. import __version__
-from .._core import FlightError, InputError, QuadcoreError
+from .._core import FlightError, QuadcoreError
+from ..simulation.engines import ENGINE, STUDIED
 from ..support import interrupts
 from ..support.output_files import shown
-from ..support.parameters import did_you_mean
 from . import (
     compare,
+    completion,
     convert,
+    doctor,
     evaluate,
+    examples,
     export_fmu,
     fit,
     info,
+    list_names,
     play,
     plot,
     run,
@@ -27,6 +33,7 @@ from . import (
     tune,
     validate,
 )
+from .parser import Parser
 
 _COMMANDS = (
     info,
@@ -42,33 +49,23 @@ _COMMANDS = (
     convert,
     serve,
     export_fmu,
+    list_names,
+    examples,
+    doctor,
+    completion,
 )
 
+_DESCRIPTION = (
+    "Multirotor simulator and controller test bench.",
+    f"By default run, compare, serve and export-fmu use the engine {ENGINE}; evaluate, sweep, tune "
+    f"and fit use {STUDIED}; validate compares all engines.",
+)
 
-class _Parser(argparse.ArgumentParser):
-    """Reports a wrong option like any other wrong input."""
+_EPILOG = """\
+Each command prints its options and an example with --help.
 
-    def error(self, message: str) -> NoReturn:
-        raise InputError(f"{message}; see {self.prog} --help")
-
-    def parse_known_args(self, *given: Any, **named: Any) -> Any:  # type: ignore[override]
-        read, unknown = super().parse_known_args(*given, **named)
-        if unknown:  # told by the command that does not know them
-            options = [word.partition("=")[0] for word in unknown if word.startswith("-")]
-            near = did_you_mean(options[0], list(self._option_string_actions)) if options else ""
-            self.error(f"unrecognized arguments: {' '.join(unknown)}{near}")
-        return read, unknown
-
-    def _check_value(self, action: argparse.Action, value: Any) -> None:
-        try:
-            super()._check_value(action, value)
-        except argparse.ArgumentError as error:
-            near = did_you_mean(str(value), [str(choice) for choice in action.choices or ()])
-            raise argparse.ArgumentError(action, f"{error.message}{near}") from None
-
-    def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
-        sys.stdout.flush()  # while a full disk can still be told
-        super().exit(status, message)
+example:
+  quadcore run quadrotor --controller geometric --reference spiral --out out/spiral"""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -77,28 +74,30 @@ def main(argv: Sequence[str] | None = None) -> int:
     Parameters
     ----------
     argv
-        Arguments after the command's name; by default those of the process.
+        Arguments after the command's name (default: those of the process).
 
     Returns
     -------
     int
-        0 done; 2 bad input and 3 a flight that failed, each with one line ``error: ...`` on
-        standard error; 130, 143, 129 ended by SIGINT, SIGTERM, SIGHUP, what was flown being kept.
+        0 done; 2 bad input and 3 a failed flight, each with one line ``error: ...`` on standard
+        error; 130, 143, 129 ended by SIGINT, SIGTERM, SIGHUP, with the data so far kept.
     """
-    terminal.prepare()
+    terminal.prepare_streams()
     try:
-        status = _act(argv)
+        status = _run_command(argv)
     except KeyboardInterrupt as stop:
-        terminal.say("interrupted")
+        terminal.print_message("interrupted")
         status = interrupts.exit_status(stop)
     return status
 
 
-def _act(argv: Sequence[str] | None) -> int:
+def _run_command(argv: Sequence[str] | None) -> int:
     try:
-        with interrupts.raise_on_signals(), terminal.warnings_as_lines():
+        with interrupts.raise_on_signals(), terminal.print_warnings():
             words = list(sys.argv[1:] if argv is None else argv)
-            parser = _parser()
+            parser = make_parser()
+            if "_ARGCOMPLETE" in os.environ:
+                completion.complete(parser)
             if not words:
                 parser.print_help()
             arguments = parser.parse_args(words)
@@ -108,26 +107,29 @@ def _act(argv: Sequence[str] | None) -> int:
             arguments.action(arguments)
             sys.stdout.flush()
     except QuadcoreError as error:
-        terminal.say(f"error: {error}")
+        terminal.print_message(f"error: {error}")
         return 3 if isinstance(error, FlightError) else 2
     except MemoryError:
-        terminal.say("error: no memory left; make the log shorter by --log-every")
+        terminal.print_message("error: out of memory. Shorten the log with --log-every.")
         return 2
     except BrokenPipeError:
-        # The reader, such as `head`, has seen enough.
-        terminal.forget_output()
+        # The reader, such as `head`, needs no more.
+        terminal.discard_output()
     except OSError as error:
-        terminal.forget_output()
+        terminal.discard_output()
         where = shown(error.filename) if error.filename else "standard output"
-        terminal.say(f"error: {where}: {error.strerror or error}")
+        terminal.print_message(f"error: {where}: {error.strerror or error}")
         return 2
     return 0
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
+def make_parser() -> argparse.ArgumentParser:
+    """Make the parser of all commands."""
+    parser = Parser(
         prog="quadcore",
-        description="A multirotor from its URDF, in flight.",
+        description="\n\n".join(textwrap.fill(part, 78) for part in _DESCRIPTION),
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
     parser.add_argument("--version", action="version", version=f"quadcore {__version__}")

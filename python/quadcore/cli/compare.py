@@ -1,4 +1,4 @@
-"""``quadcore compare``: the same flight with several models or parameters."""
+"""``quadcore compare``: repeat one flight with several models or parameters."""
 
 from __future__ import annotations
 
@@ -22,49 +22,59 @@ from ..studies.compare.output import (
 )
 from ..studies.compare.plan import Plan
 from ..studies.compare.result import Comparison
-from ..studies.options import CompareOptions
+from ..studies.options import OUTPUT, STUDY, CompareOptions
 from ..studies.output_folder import output_folder
 from ..studies.table import choose_display_unit, format_number
 from ..support import parse
 from ..support.output_files import make_folder
 from ..support.values import SPAWN
-from . import options, terminal
+from . import options, reading, terminal
 from .command_checks import warn_of_commands
 from .failed_flights import report_failures
 from .interrupted_output import keep_partial_output
-from .options_file import planned
+from .options_file import make_plan
+from .parser import add_command, find_group
 
 _ROWS = 40  # on the terminal
-_FEW = 20  # logs that --out writes unasked
+_FEW = 20  # logs that --out writes without --logs
 
 
 def register(commands: Any) -> None:
     """Add the command to the command line."""
-    parser = options.subparser(
-        commands, "compare", "Fly the same with several models or parameters.", compare
+    parser = add_command(
+        commands,
+        "compare",
+        "Repeat one flight with several models or parameters, and compare the flights.",
+        compare_models,
+        """
+        quadcore compare quadrotor hexarotor --controller geometric --reference spiral
+        quadcore compare quadrotor --vary engine=gazebo11,eigen --out out/engines
+        """,
     )
     options.add_model(parser, nargs="+", changes=False)
-    options.add_vary(parser, f", engine{options.CONTROLLER_KEYS}")
+    options.add_vary(parser, f", scenario, engine{options.CONTROLLER_KEYS}")
     options.add_study(parser, CompareOptions, ENGINE)
     options.add_commands(parser)
     options.add_controller(parser)
-    parser.add_argument(
+    find_group(parser, STUDY).add_argument(
         "--against",
         metavar="N",
         type=parse.integer(1),
-        help="number of the flight that the others are compared with (the first that flies)",
+        help="number of the baseline flight (default: the first that does not fail)",
     )
-    options.add_out(parser, f"report, table, plots and, of up to {_FEW} flights, logs")
+    options.add_out(parser, f"page, table, plots and, for up to {_FEW} flights, logs")
     options.add_wrenches(parser)
-    parser.add_argument("--logs", action="store_true", help="every log in --out, however many")
+    find_group(parser, OUTPUT).add_argument(
+        "--logs", action="store_true", help=f"write all logs, also of more than {_FEW} flights"
+    )
 
 
-def compare(arguments: argparse.Namespace) -> None:
-    """Print how the models differ, fly them, and print how the flights differ."""
-    arguments, plan = planned(arguments, _plan)
+def compare_models(arguments: argparse.Namespace) -> None:
+    """Print how the models differ, simulate them, and print how the flights differ."""
+    arguments, plan = make_plan(arguments, _make_plan)
     if arguments.against is not None and arguments.against > len(plan):
-        raise InputError(f"--against {arguments.against}: there are {len(plan)} flights")
-    with output_folder(arguments.out, FILES):  # after the flights would be too late
+        raise InputError(f"--against {arguments.against}: there are only {len(plan)} flights")
+    with output_folder(arguments.out, FILES, "comparison.json"):
         _compare(arguments, plan)
 
 
@@ -74,22 +84,22 @@ def _compare(arguments: argparse.Namespace, plan: Plan) -> None:
     if not arguments.quiet:
         _show_models(plan)
 
-    def put(flown: Comparison, plots: bool = False) -> list[Path]:
+    def write_files(flown: Comparison, plots: bool = False) -> list[Path]:
         if out is None:
             return []
-        flight = _flight(arguments, plan)
-        return write(flown, plan, flight, out, plots, _has_logs(arguments, plan))
+        flight = _describe_flight(arguments, plan)
+        return write(flown, plan, flight, out, plots, _writes_logs(arguments, plan))
 
-    with keep_partial_output("comparison", out, put), terminal.progress(
+    with keep_partial_output("comparison", out, write_files), terminal.show_progress(
         arguments.quiet
     ) as progress:
         comparison = fly_plan(
             plan,
-            _keeper(arguments, plan),
+            _make_keeper(arguments, plan),
             progress,
             None if arguments.against is None else arguments.against - 1,
         )
-    files = put(comparison, not arguments.no_plots)
+    files = write_files(comparison, not arguments.no_plots)
     if not arguments.quiet:
         _show_flights(plan, comparison, files)
     report_failures(
@@ -99,28 +109,30 @@ def _compare(arguments: argparse.Namespace, plan: Plan) -> None:
     )
 
 
-def _plan(arguments: argparse.Namespace) -> Plan:
+def _make_plan(arguments: argparse.Namespace) -> Plan:
     if arguments.reference is not None and arguments.reference.isdigit():
         number = arguments.reference
         raise InputError(
-            f"--reference {number}: names where to fly; the number of the flight that the others "
-            f"are compared with is --against {number}"
+            f"--reference {number}: is not a reference. To choose the baseline flight, use "
+            f"--against {number}."
         )
     if arguments.logs and arguments.out is None:
         raise InputError("--logs needs --out")
     if arguments.wrenches and arguments.out is None:
-        raise InputError("--wrenches needs --out, where the logs are")
+        raise InputError("--wrenches needs --out")
     plan = Plan(
         arguments.model,
-        options.varied(arguments),
+        reading.read_axes(arguments),
         arguments.engine,
-        options.guidance_of(arguments),
-        options.read(arguments, CompareOptions),
+        reading.read_control(arguments),
+        reading.read_options(arguments, CompareOptions),
         arguments.commands,
         arguments.wrenches,
     )
     if len(plan) == 1 and not plan.axes:
-        raise InputError("one model and nothing varied; name another model, or use --vary")
+        raise InputError(
+            "there is one model and nothing is varied; name another model, or use --vary"
+        )
     return plan
 
 
@@ -130,22 +142,22 @@ def _warn_of_commands(plan: Plan) -> None:
     first = plan.make_plan(plan[0])
     try:
         simulation = first.simulation()
-    except QuadcoreError:  # a row of the table, with its reason
+    except QuadcoreError:  # the table gives the reason
         return
     warn_of_commands(simulation, first)
 
 
-def _has_logs(arguments: argparse.Namespace, plan: Plan) -> bool:
+def _writes_logs(arguments: argparse.Namespace, plan: Plan) -> bool:
     return arguments.logs or len(plan) <= _FEW
 
 
-def _keeper(arguments: argparse.Namespace, plan: Plan) -> Any:
-    """Make what is done with each log: write it, and keep enough of some to draw."""
+def _make_keeper(arguments: argparse.Namespace, plan: Plan) -> Any:
+    """Make the function that writes each log and keeps some of them for plots."""
     out = arguments.out
     if out is None:
         return None
     to_draw = set() if arguments.no_plots else set(pick_drawn(len(plan)))
-    has_logs = _has_logs(arguments, plan)
+    has_logs = _writes_logs(arguments, plan)
     remove_logs(out)
     if has_logs:
         make_folder(out / "logs")
@@ -158,20 +170,21 @@ def _keeper(arguments: argparse.Namespace, plan: Plan) -> Any:
     return keep
 
 
-def _flight(arguments: argparse.Namespace, plan: Plan) -> dict[str, str]:
-    """Describe what all flights share."""
+def _describe_flight(arguments: argparse.Namespace, plan: Plan) -> dict[str, str]:
+    """Describe the settings that all flights share."""
     guided = plan.control.is_closed_loop
     shared = plan.options
     begins = "on the reference"
     if not plan.control.on_reference:
         begins = ", ".join(f"{part:g}" for part in shared.spawn or SPAWN)
-    told = {
+    settings = {
         "commands": None if guided else arguments.commands or "none",
         "controller": arguments.controller,
         "reference": arguments.reference,
         "controller_rate": shared.controller_rate,
         "delay": shared.delay,
         "scenario": shared.scenario,
+        "wind": None if shared.wind is None else ",".join(f"{v:g}" for v in shared.wind),
         "duration": f"{shared.duration:g} s",
         "engine": arguments.engine,
         "world": shared.world,
@@ -183,23 +196,23 @@ def _flight(arguments: argparse.Namespace, plan: Plan) -> dict[str, str]:
     return {
         **{
             name: str(value)
-            for name, value in told.items()
+            for name, value in settings.items()
             if value not in (None, 0) and name not in plan.design.names
         },
-        **options.changes_told(arguments),
+        **reading.describe_changes(arguments),
     }
 
 
 def _show_models(plan: Plan) -> None:
-    console = terminal.console()
+    console = terminal.make_console()
     for model, found in plan.compare_models().items():
-        console.print(f"{model} differs from {plan.models[0]} in")
-        table = terminal.table("  what", "from", "to", "at", "and at")
+        console.print(f"{model} differs from {plan.models[0]}")
+        table = terminal.make_table("  what", "from", "to", "at", "and at")
         for d in found:
             table.add_row(f"  {d.what}", d.before, d.after, d.before_at or "-", d.after_at or "-")
-        console.print(table if found else "  nothing that flies", "")
+        console.print(table if found else "  in nothing that is simulated", "")
     if plan.axes:
-        table = terminal.table("varied", "values", "as written")
+        table = terminal.make_table("varied", "values", "as written")
         for axis in plan.axes:
             table.add_row(
                 axis.name, format_values(axis.values), plan.format_written_value(axis) or "-"
@@ -208,15 +221,15 @@ def _show_models(plan: Plan) -> None:
 
 
 def _show_flights(plan: Plan, comparison: Comparison, files: list[Path]) -> None:
-    console = terminal.console()
+    console = terminal.make_console()
     whole = list(comparison.states)[:4]
     if comparison.against is not None:
-        console.print(f"differences from no. {comparison.against + 1}, final / max")
+        console.print(f"difference from no. {comparison.against + 1}, final / max")
     units = {state: choose_display_unit(comparison.states[state]) for state in whole}
     headings = [f"{state} ({unit})" for state, (unit, _) in units.items()]
     if plan.control.is_closed_loop:
-        headings.insert(0, "to the reference (m), RMS / max")
-    table, failures = terminal.table("no.", "variant", *headings), []
+        headings.insert(0, "tracking error (m), RMS / max")
+    table, failures = terminal.make_table("no.", "variant", *headings), []
     for number, (row, variant) in enumerate(zip(comparison.table, plan), start=1):
         if number > _ROWS:
             table.add_row("...", f"{len(plan) - _ROWS} more")
@@ -233,5 +246,4 @@ def _show_flights(plan: Plan, comparison: Comparison, files: list[Path]) -> None
             failures.append(f"no. {number} ({plan.make_label(variant)}): {row['failure']}")
         table.add_row(str(number), plan.make_label(variant), *cells)
     console.print(table, "", *failures, summarise(comparison), sep="\n")
-    for file in files:
-        console.print(f"written {file}")
+    terminal.print_written(files)

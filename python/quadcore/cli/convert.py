@@ -1,4 +1,4 @@
-"""``quadcore convert``: a log in another format."""
+"""``quadcore convert``: write a log in another format."""
 
 from __future__ import annotations
 
@@ -8,21 +8,26 @@ from typing import Any
 
 from ..simulation.log import Log, check_log_path
 from ..support.output_files import remove_left
-from . import options
+from .parser import add_command
+
+_FORMATS = ".csv, .mat or .bag"
 
 
 def register(commands: Any) -> None:
     """Add the command to the command line."""
-    parser = options.subparser(
-        commands, "convert", "Write a log in another format, every bit kept.", convert
+    parser = add_command(
+        commands,
+        "convert",
+        "Write a log in another format; every bit is kept.",
+        convert_log,
+        "quadcore convert out/spiral/log.csv spiral.mat",
     )
-    formats = ".csv, .mat or .bag"
-    parser.add_argument("source", metavar="A", type=Path, help=f"a log: {formats}")
-    parser.add_argument("target", metavar="B", type=Path, help=f"file to write: {formats}")
+    parser.add_argument("source", metavar="A", type=Path, help=f"log to read: {_FORMATS}")
+    parser.add_argument("target", metavar="B", type=Path, help=f"log to write: {_FORMATS}")
 
 
-def convert(arguments: argparse.Namespace) -> None:
-    """Read one, write the other."""
+def convert_log(arguments: argparse.Namespace) -> None:
+    """Read one log, write the other."""
     check_log_path(arguments.target)
     remove_left(arguments.target)
     Log.of_file(arguments.source).to_file(arguments.target)

@@ -1,4 +1,4 @@
-"""``quadcore evaluate``: how well controllers fly."""
+"""``quadcore evaluate``: measure controllers on references."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 from .._core import InputError
 from ..simulation.engines import STUDIED
-from ..studies.options import EvaluateOptions
+from ..studies.options import STUDY, EvaluateOptions
 from ..studies.output_folder import output_folder
-from . import options, terminal
+from . import options, reading, terminal
 from .failed_flights import report_failures
 from .interrupted_output import keep_partial_output
-from .options_file import planned
+from .options_file import make_plan
+from .parser import add_command, find_group
 
 if TYPE_CHECKING:
     from ..studies.evaluate.evaluate import Evaluation
@@ -24,24 +25,31 @@ _ROWS = 40  # on the terminal
 
 def register(commands: Any) -> None:
     """Add the command to the command line."""
-    parser = options.subparser(
-        commands, "evaluate", "Fly controllers along references, and measure them.", evaluate
+    parser = add_command(
+        commands,
+        "evaluate",
+        "Simulate controllers on references, and measure their tracking errors.",
+        evaluate_controllers,
+        """
+        quadcore evaluate --controller pd,geometric --reference spiral,circle --out out/controllers
+        quadcore evaluate --controller mine.py,geometric --reference step --scenario none,gusty
+        """,
     )
     options.add_combined(parser)
-    options.add_vary(parser, options.CONTROLLER_KEYS)
+    options.add_vary(parser, f", scenario{options.CONTROLLER_KEYS}")
     options.add_study(parser, EvaluateOptions, [STUDIED])
-    parser.add_argument(
-        "--margins", action="store_true", help="search for gain and delay margins, too"
+    find_group(parser, STUDY).add_argument(
+        "--margins", action="store_true", help="also search for gain and delay margins"
     )
-    options.add_out(parser, "tables, pictures and a page", "pictures")
+    options.add_out(parser, "page, tables and plots")
 
 
-def evaluate(arguments: argparse.Namespace) -> None:
-    """Fly everything, print how well, and write it."""
+def evaluate_controllers(arguments: argparse.Namespace) -> None:
+    """Simulate all combinations, print their errors, and write the results."""
     from ..studies.evaluate.output import FILES
 
-    arguments, plan = planned(arguments, _plan)
-    with output_folder(arguments.out, FILES):  # after the flights would be too late
+    arguments, plan = make_plan(arguments, _make_plan)
+    with output_folder(arguments.out, FILES, "evaluation.json"):
         _evaluate(arguments, plan)
 
 
@@ -51,36 +59,36 @@ def _evaluate(arguments: argparse.Namespace, plan: Plan) -> None:
 
     out = arguments.out
 
-    def put(flown: Evaluation, plots: bool = False) -> list[Path]:
+    def write_files(flown: Evaluation, plots: bool = False) -> list[Path]:
         return write(flown, plan, out, plots) if out is not None else []
 
-    with keep_partial_output("evaluation", out, put), terminal.progress(
+    with keep_partial_output("evaluation", out, write_files), terminal.show_progress(
         arguments.quiet
     ) as progress:
         evaluation = fly_plan(plan, progress, arguments.margins)
-    files = put(evaluation, not arguments.no_plots)
+    files = write_files(evaluation, not arguments.no_plots)
     if not arguments.quiet:
         _show(evaluation, files)
     report_failures(
         [row["failure"] for row in evaluation.table],
         sum(outcome.refused for outcome in evaluation.outcomes),
-        lambda i: _name(evaluation.table[i]),
+        lambda i: _name_flight(evaluation.table[i]),
     )
 
 
-def _plan(arguments: argparse.Namespace) -> Plan:
+def _make_plan(arguments: argparse.Namespace) -> Plan:
     from ..studies.evaluate.plan import Plan
 
     for name in ("controller", "reference"):
         if getattr(arguments, name) is None:
-            raise InputError(f"nothing to fly: name --{name}")
+            raise InputError(f"no {name} is named. Name some with --{name}.")
     return Plan(
         arguments.controller,
         arguments.reference,
         arguments.engine,
         arguments.model,
-        options.varied(arguments),
-        options.read(arguments, EvaluateOptions),
+        reading.read_axes(arguments),
+        reading.read_options(arguments, EvaluateOptions),
     )
 
 
@@ -88,28 +96,27 @@ def _show(evaluation: Evaluation, files: list[Path]) -> None:
     from ..studies.evaluate.output import list_unstable_axes, summarise
     from ..studies.evaluate.summary_table import choose_columns, format_rows
 
-    console = terminal.console()
+    console = terminal.make_console()
     lines = format_rows(evaluation)
     shown = choose_columns(lines)
-    table = terminal.table(*shown.values(), "")
+    table = terminal.make_table(*shown.values(), "")
     for line in lines[:_ROWS]:
         table.add_row(*(line[name] for name in shown), line["best"])
     console.print(table)
     if evaluation.margins:
-        console.print("", _margins(evaluation))
+        console.print("", _make_margin_table(evaluation))
     if len(lines) > _ROWS:
         console.print(f"{len(lines) - _ROWS} more combinations")
     for cause in list_unstable_axes(evaluation):
         console.print(f"unstable: {cause}")
     console.print(summarise(evaluation))
-    for file in files:
-        console.print(f"written {file}")
+    terminal.print_written(files)
 
 
-def _margins(evaluation: Evaluation) -> Any:
+def _make_margin_table(evaluation: Evaluation) -> Any:
     from ..studies.evaluate.output import format_margins
 
-    table = terminal.table("controller", "gain", "delay (s)", "box, median / worst (m)")
+    table = terminal.make_table("controller", "gain", "delay (s)", "box, median / worst (m)")
     for row in format_margins(evaluation):
         if row["failure"]:
             table.add_row(row["controller"], row["failure"])
@@ -122,5 +129,5 @@ def _margins(evaluation: Evaluation) -> Any:
     return table
 
 
-def _name(row: dict[str, Any]) -> str:
+def _name_flight(row: dict[str, Any]) -> str:
     return f"{row['controller']} on {row['reference']} in {row['engine']}, seed {row['seed']}"

@@ -1,4 +1,4 @@
-"""How a command ends when flights failed."""
+"""The error with which a command ends when flights failed."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from .._core import FlightError, InputError
 
 
 def report_failures(failures: Sequence[str], refused: int, name: Callable[[int], str]) -> None:
-    """Raise the error to end with if flights failed: bad input if none of them began.
+    """Raise `FlightError` if flights failed, or `InputError` if every flight was refused.
 
     Parameters
     ----------
     failures
-        Reason of each flight, "" if it flew.
+        Reason of each failed flight, "" for the others.
     refused
-        How many of them were bad input.
+        Number of flights that bad input prevented.
     name
         Names a flight, by its position.
     """

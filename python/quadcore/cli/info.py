@@ -1,4 +1,4 @@
-"""``quadcore info``: what a model is made of."""
+"""``quadcore info``: show a model."""
 
 from __future__ import annotations
 
@@ -6,49 +6,100 @@ import argparse
 import os
 import textwrap
 from pathlib import Path
-from typing import Any
+from typing import Any, Dict
 
 from rich.table import Table
 
 from .._core import InputError, parse_number
 from ..model import resources
 from ..simulation.simulation import Simulation
+from ..studies.options import OUTPUT
 from ..support.output_files import atomic_write
 from ..thesis.chapter2.vehicle import Vehicle
-from . import options, terminal
+from . import options, reading, terminal
+from .list_names import list_entries, print_entries
+from .parser import add_command, find_group
 
-_LONGEST = 100  # columns of a line that is read
+_LONGEST = 100  # characters of a line
+
+_FACTS = ("value", "unit", "default", "origin", "range", "meaning", "equation")
+"""Attributes of a parameter."""
 
 
 def register(commands: Any) -> None:
     """Add the command to the command line."""
-    parser = options.subparser(
-        commands, "info", "Show a model's links, rotors, plugins and every parameter.", info
+    parser = add_command(
+        commands,
+        "info",
+        "Show links, rotors, plugins and all parameters of a model; without MODEL, list models.",
+        show_model,
+        """
+        quadcore info hummingbird
+        quadcore info quadrotor --xacro sim_slow:=1 --picture quadrotor.png
+        """,
     )
-    options.add_model(parser)
-    parser.add_argument(
+    options.add_model(parser, nargs="?")
+    group = find_group(parser, OUTPUT)
+    group.add_argument(
         "--picture",
         metavar="FILE.png",
         type=Path,
-        help="also draw frames, masses, boxes of inertia, and rotors with number and spin",
+        help="drawing of frames, masses, equivalent inertia boxes, and rotors with their numbers "
+        "and senses of rotation",
     )
-    parser.add_argument(
+    group.add_argument(
         "--vehicle",
         metavar="FILE.mat",
         type=Path,
-        help="also write what the mathematical model and the functions in matlab/ know of it",
+        help="parameters of the mathematical model, for the functions in matlab/",
     )
+    options.add_json(parser)
 
 
-def info(arguments: argparse.Namespace) -> None:
-    """Print the model as it would fly."""
-    simulation = Simulation(**options.model_arguments(arguments))
-    console = terminal.console()
+def show_model(arguments: argparse.Namespace) -> None:
+    """Print the model with all changes that the options make."""
+    if arguments.model is None:
+        return _show_models(arguments)
+    simulation = Simulation(**reading.read_model_arguments(arguments))
+    if arguments.json:
+        terminal.print_json(_describe(simulation))
+    else:
+        _print(simulation)
+    written = []
+    if arguments.picture is not None:
+        _draw(simulation, arguments.picture)
+        written.append(arguments.picture)
+    if arguments.vehicle is not None:
+        if arguments.vehicle.suffix.lower() != ".mat":
+            raise InputError(f"--vehicle {arguments.vehicle}: name a .mat file")
+        Vehicle.of(simulation).to_mat(arguments.vehicle)
+        written.append(arguments.vehicle)
+    if not arguments.json:
+        terminal.print_written(written)
+
+
+def _show_models(arguments: argparse.Namespace) -> None:
+    for option in ("set", "xacro", "ignore", "picture", "vehicle"):
+        if getattr(arguments, option):
+            raise InputError(f"--{option} needs a MODEL; name one")
+    entries = list_entries("models")
+    if arguments.json:
+        terminal.print_json(entries)
+    else:
+        print_entries(entries)
+
+
+def _print(simulation: Simulation) -> None:
+    console = terminal.make_console()
     console.print(f"model {simulation.model.name}")
     console.print(f"engine {simulation.engine}: {simulation.method}\n")
     if simulation.ignored:
         console.print(f"ignored: {', '.join(simulation.ignored)}\n")
-    for table in (_links(simulation), _body(simulation), _rotors(simulation)):
+    for table in (
+        _make_link_table(simulation),
+        _make_body_table(simulation),
+        _make_rotor_table(simulation),
+    ):
         console.print(table, "")
     for plugin in simulation.plugins:
         console.print(f"plugin {plugin.name}: {plugin.summary}")
@@ -58,19 +109,52 @@ def info(arguments: argparse.Namespace) -> None:
             if topic.writer == plugin.name:
                 console.print(f"  publishes topic {name}, {meaning}", soft_wrap=True)
             if plugin.name in topic.readers:
-                console.print(f"  takes topic {name}, {meaning}", soft_wrap=True)
+                console.print(f"  reads topic {name}, {meaning}", soft_wrap=True)
         if console.is_terminal:
-            console.print(_told(plugin, min(console.width, _LONGEST)), "", soft_wrap=True, sep="\n")
-        else:  # to be searched: a line has all that is known of a parameter
-            console.print(_parameters(plugin), "")
-    if arguments.picture is not None:
-        _draw(simulation, arguments.picture)
-        console.print(f"written {arguments.picture}")
-    if arguments.vehicle is not None:
-        if arguments.vehicle.suffix.lower() != ".mat":
-            raise InputError(f"--vehicle {arguments.vehicle}: name a .mat file")
-        Vehicle.of(simulation).to_mat(arguments.vehicle)
-        console.print(f"written {arguments.vehicle}")
+            text = _explain(plugin, min(console.width, _LONGEST))
+            console.print(text, "", soft_wrap=True, sep="\n")
+        else:  # a line for each parameter, which `grep` finds
+            console.print(_make_parameter_table(plugin), "")
+
+
+def _describe(simulation: Simulation) -> Dict[str, Any]:
+    """Describe the model in plain values."""
+    model = simulation.model
+    return {
+        "model": model.name,
+        "ignored": list(simulation.ignored),
+        "links": [{"name": link.name, "mass": link.mass} for link in model.links],
+        "mass": simulation.mass,
+        "center_of_mass": simulation.center_of_mass.tolist(),
+        "inertia": simulation.inertia.tolist(),
+        "joints": [
+            {"name": joint.name, "position": list(joint.xyz), "axis": list(joint.axis)}
+            for joint in model.joints
+        ],
+        "plugins": [
+            {
+                "name": plugin.name,
+                "summary": plugin.summary,
+                "filename": plugin.filename,
+                "path": plugin.path,
+                "parameters": [
+                    {"name": each.name, **{fact: getattr(each, fact) for fact in _FACTS}}
+                    for each in plugin.parameters
+                ],
+            }
+            for plugin in simulation.plugins
+        ],
+        "topics": [
+            {
+                "name": name,
+                "kind": topic.kind,
+                "meaning": topic.meaning,
+                "writer": topic.writer,
+                "readers": list(topic.readers),
+            }
+            for name, topic in simulation.topics.items()
+        ],
+    }
 
 
 def _draw(simulation: Simulation, file: Path) -> None:
@@ -79,41 +163,41 @@ def _draw(simulation: Simulation, file: Path) -> None:
     from ..report.vehicle_plot import draw
 
     if file.suffix.lower() != ".png":
-        raise InputError(f"--picture {file}: name a file that ends in .png, which it would hold")
+        raise InputError(f"--picture {file}: is not a PNG file. Name a file that ends in .png.")
     picture = png(draw(simulation))
     with atomic_write(file) as stream:
         stream.write(picture)
 
 
-def _links(simulation: Simulation) -> Table:
-    table = terminal.table("link", "mass (kg)")
+def _make_link_table(simulation: Simulation) -> Table:
+    table = terminal.make_table("link", "mass (kg)")
     for link in simulation.model.links:
         table.add_row(link.name, f"{link.mass:.9g}")
     return table
 
 
-def _body(simulation: Simulation) -> Table:
-    table = terminal.table("whole vehicle", "")
+def _make_body_table(simulation: Simulation) -> Table:
+    table = terminal.make_table("whole vehicle", "")
     table.add_row("mass (kg)", f"{simulation.mass:.9g}")
-    table.add_row("centre of mass (m, frame axes)", _numbers(simulation.center_of_mass))
+    table.add_row("centre of mass (m, frame axes)", _join_numbers(simulation.center_of_mass))
     for i, row in enumerate(simulation.inertia):
         name = "inertia about it (kg m^2)" if i == 0 else ""
-        table.add_row(name, _numbers(row))
+        table.add_row(name, _join_numbers(row))
     return table
 
 
-def _rotors(simulation: Simulation) -> Table:
-    table = terminal.table("rotor", "position in its parent link (m)", "axis")
+def _make_rotor_table(simulation: Simulation) -> Table:
+    table = terminal.make_table("rotor", "position in its parent link (m)", "axis")
     for joint in simulation.model.joints:
-        table.add_row(joint.name, _numbers(joint.xyz), _numbers(joint.axis))
+        table.add_row(joint.name, _join_numbers(joint.xyz), _join_numbers(joint.axis))
     return table
 
 
-def _told(plugin: Any, width: int) -> str:
-    """All of each parameter in a few lines, for a terminal; paths stay whole."""
+def _explain(plugin: Any, width: int) -> str:
+    """Explain each parameter in a few lines for a terminal; paths stay whole."""
     lines = []
     for parameter in plugin.parameters:
-        # A unit belongs to a number: not to "off", but to what may be given instead.
+        # A unit belongs to a number: not to "off", but to the numbers that are allowed.
         is_number = parse_number(parameter.value.partition(" ")[0]) is not None
         value, allowed = f"{parameter.value} {parameter.unit}", parameter.range
         if not is_number:
@@ -121,37 +205,37 @@ def _told(plugin: Any, width: int) -> str:
         default = "required" if parameter.default is None else f"default {parameter.default}"
         facts = (parameter.meaning, allowed.rstrip(), default, parameter.equation)
         lines.append(f"  {parameter.name}  {value}".rstrip())
-        origin = "" if parameter.origin == "default" else _origin(parameter.origin)
-        told = "; ".join(filter(None, (*facts, origin)))
+        origin = "" if parameter.origin == "default" else _shorten_origin(parameter.origin)
         indent = " " * 6
         lines += textwrap.wrap(
-            told, width, initial_indent=indent, subsequent_indent=indent,
+            "; ".join(filter(None, (*facts, origin))),
+            width, initial_indent=indent, subsequent_indent=indent,
             break_long_words=False, break_on_hyphens=False,
         )  # fmt: skip
     return "\n".join(lines)
 
 
-def _parameters(plugin: Any) -> Table:
+def _make_parameter_table(plugin: Any) -> Table:
     explained = ("range", "meaning", "equation")
-    table = terminal.table("parameter", "value", "unit", "default", "from", *explained)
+    table = terminal.make_table("parameter", "value", "unit", "default", "from", *explained)
     for parameter in plugin.parameters:
         table.add_row(
             f"{plugin.name}.{parameter.name}",
             parameter.value,
             parameter.unit,
             "required" if parameter.default is None else parameter.default,
-            _origin(parameter.origin),
+            _shorten_origin(parameter.origin),
             *(getattr(parameter, name) for name in explained),
         )
     return table
 
 
-def _origin(origin: str) -> str:
+def _shorten_origin(origin: str) -> str:
     if origin == "set":
         return "--set"
-    shipped = f"{resources.root()}{os.sep}"
-    return origin[len(shipped) :] if origin.startswith(shipped) else origin
+    built_in = f"{resources.root()}{os.sep}"
+    return origin[len(built_in) :] if origin.startswith(built_in) else origin
 
 
-def _numbers(values: Any) -> str:
+def _join_numbers(values: Any) -> str:
     return " ".join(f"{value + 0.0:.9g}" for value in values)  # -0 is 0

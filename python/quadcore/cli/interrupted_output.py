@@ -1,4 +1,4 @@
-"""What was flown is kept when a command is interrupted."""
+"""Keeps the results of an interrupted command."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from . import terminal
 
 @contextmanager
 def keep_partial_output(
-    what: str, out: Path | None, write: Callable[[Any], Any], told: str = "what was flown"
+    attribute: str, out: Path | None, write: Callable[[Any], Any], what: str = "results so far"
 ) -> Iterator[None]:
-    """Write what an interrupt of the block carries, wholly, and say where it is.
+    """Write the results that an interrupt of the block carries, and print where they are.
 
     Parameters
     ----------
-    what
-        Attribute of the KeyboardInterrupt that holds it; without it, nothing is written.
+    attribute
+        Attribute of the KeyboardInterrupt that holds the results. Without it nothing is written.
     out
-        Where it goes; None: nowhere.
+        Where the results are written; None: nowhere.
     write
-        Called with it.
-    told
-        What it is.
+        Writes the results.
+    what
+        Names the results in the message.
     """
     try:
         yield
     except KeyboardInterrupt as stop:
-        partial = getattr(stop, what, None)
+        partial = getattr(stop, attribute, None)
         if out is not None and partial is not None:
             with interrupts.hold_signals():
                 write(partial)
-            terminal.say(f"{told}: {out}")
+            terminal.print_message(f"{what}: {out}")
         raise

@@ -1,4 +1,4 @@
-"""Options of a command, written in a YAML file by their names."""
+"""Options of a command, read from a YAML file."""
 
 from __future__ import annotations
 
@@ -14,40 +14,40 @@ from .._core import InputError
 from ..support.yaml_nodes import line_of, pairs, root, scalar
 
 _SIGNS = {"set": "=", "vary": "=", "xacro": ":="}
-"""Options that give values to keys, with the sign between."""
+"""Options that give values to keys, with the sign between them."""
 
 _PAIRS = "options as KEY: VALUE"
 
 Plan = TypeVar("Plan")
 
 
-def planned(
+def make_plan(
     arguments: argparse.Namespace, plan: Callable[[argparse.Namespace], Plan]
 ) -> tuple[argparse.Namespace, Plan]:
-    """Make a plan of arguments, with those of a file of options beneath them if they name one."""
+    """Make a plan of arguments and, beneath them, the options of the file that they name."""
     path = getattr(arguments, "file", None) or arguments.options
     if path is None:
         return arguments, plan(arguments)
     file = OptionsFile(path, arguments.parser)
-    arguments = file.beneath(arguments)
-    with file.blamed():
+    arguments = file.put_beneath(arguments)
+    with file.locate_errors():
         return arguments, plan(arguments)
 
 
 class OptionsFile:
-    """The options in a file.
+    """The options of a file.
 
     Parameters
     ----------
     path
-        Of the file.
+        The file.
     parser
-        Of the command.
+        The parser of the command.
 
     Raises
     ------
     InputError
-        Something wrong in the file, with its line.
+        If the file is wrong, with the line.
     """
 
     def __init__(self, path: Path, parser: argparse.ArgumentParser) -> None:
@@ -62,14 +62,14 @@ class OptionsFile:
                 raise InputError(
                     f"{path}:{line_of(key)}: there is no option '{name}'; see {parser.prog} -h"
                 )
-            for text, line in self._texts(name, action, node):
-                self._take(action, text, line)
+            for text, line in self._write_values(name, action, node):
+                self._store(action, text, line)
 
-    def beneath(self, arguments: argparse.Namespace) -> argparse.Namespace:
+    def put_beneath(self, arguments: argparse.Namespace) -> argparse.Namespace:
         """Put the file's options beneath those of the command line, which win.
 
-        Of options that give values to keys, key by key; others that may be repeated, such as
-        --ignore, hold what both say.
+        Options with keys are merged key by key. Of other options that may be repeated, such as
+        --ignore, all values are kept.
         """
         for name in _SIGNS:
             mine = {key for key, _ in getattr(arguments, name)}
@@ -79,8 +79,8 @@ class OptionsFile:
         return both
 
     @contextmanager
-    def blamed(self) -> Iterator[None]:
-        """Name file and line in an error of the block that names what stands there."""
+    def locate_errors(self) -> Iterator[None]:
+        """Add file and line to an error of the block that names a value of the file."""
         try:
             yield
         except InputError as error:
@@ -96,46 +96,46 @@ class OptionsFile:
             line = self._lines[max(named, key=len)]
             raise InputError(f"{self._path}:{line}: {text}") from error
 
-    def _take(self, action: argparse.Action, text: str, line: int) -> None:
+    def _store(self, action: argparse.Action, text: str, line: int) -> None:
         try:
             read = True if action.nargs == 0 else self._parser._get_values(action, [text])
         except argparse.ArgumentError as error:
             where = f"{self._path}:{line}"
             raise InputError(f"{where}: {error}; see {self._parser.prog} --help") from None
         before = getattr(self._read, action.dest, [])
-        setattr(self._read, action.dest, [*before, read] if _repeats(action) else read)
+        setattr(self._read, action.dest, [*before, read] if _may_repeat(action) else read)
 
-    def _texts(
+    def _write_values(
         self, name: str, action: argparse.Action, node: yaml.Node
     ) -> Iterator[tuple[str, int]]:
-        """Write each value of an option as a command line does, with the line that it stands on."""
+        """Write each value of an option as on the command line, with its line in the file."""
         if action.nargs == 0:
-            if self._text(name, node) not in ("true", "false"):
+            if self._write_value(name, node) not in ("true", "false"):
                 raise InputError(f"{self._path}:{line_of(node)}: {name}: write true or false")
-            if self._text(name, node) == "true":
+            if self._write_value(name, node) == "true":
                 yield "", line_of(node)
         elif name in _SIGNS and isinstance(node, yaml.MappingNode):
             for key, value in pairs(self._path, node, _PAIRS):
                 self._lines[key.value] = line_of(key)
-                yield f"{key.value}{_SIGNS[name]}{self._list(name, value)}", line_of(key)
-        elif _repeats(action):
+                yield f"{key.value}{_SIGNS[name]}{self._write_list(name, value)}", line_of(key)
+        elif _may_repeat(action):
             for item in node.value if isinstance(node, yaml.SequenceNode) else [node]:
-                yield self._text(name, item), line_of(item)
+                yield self._write_value(name, item), line_of(item)
         else:
-            yield self._list(name, node), line_of(node)
+            yield self._write_list(name, node), line_of(node)
 
-    def _list(self, name: str, node: yaml.Node) -> str:
+    def _write_list(self, name: str, node: yaml.Node) -> str:
         if isinstance(node, yaml.SequenceNode):
-            return ",".join(self._text(name, item) for item in node.value)
-        return self._text(name, node)
+            return ",".join(self._write_value(name, item) for item in node.value)
+        return self._write_value(name, node)
 
-    def _text(self, name: str, node: yaml.Node) -> str:
+    def _write_value(self, name: str, node: yaml.Node) -> str:
         written = scalar(self._path, name, node)
-        if not written[:1].isdigit() and written not in ("true", "false"):  # those say nothing
+        if not written[:1].isdigit() and written not in ("true", "false"):  # these name nothing
             self._lines[written] = line_of(node)
         return written
 
 
-def _repeats(action: argparse.Action) -> bool:
-    """Whether an option may be repeated, and holds all."""
+def _may_repeat(action: argparse.Action) -> bool:
+    """Whether an option may be repeated, and all its values are kept."""
     return isinstance(action, argparse._AppendAction)

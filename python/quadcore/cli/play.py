@@ -1,4 +1,4 @@
-"""``quadcore play``: a page on which logs can be watched."""
+"""``quadcore play``: make a page that animates logs."""
 
 from __future__ import annotations
 
@@ -7,70 +7,100 @@ from pathlib import Path
 from typing import Any, List, Sequence, Tuple
 
 from .._core import InputError
-from ..model.description import read_model
+from ..model import resources
 from ..simulation.log import Log
+from ..studies.options import OUTPUT, VEHICLE
 from ..support import parse
 from ..support.output_files import atomic_write, check_writable, text_bytes
 from . import options, terminal
+from .parser import add_command, complete_from, find_group
+from .run_folder import find_logs, find_rotors
+
+_PAGE = "play.html"
 
 
 def register(commands: Any) -> None:
     """Add the command to the command line."""
-    parser = options.subparser(commands, "play", "Make a page that plays logs.", play)
-    parser.add_argument("logs", metavar="LOG", nargs="+", type=Path, help="log, .csv, .mat or .bag")
-    parser.add_argument(
-        "-o", "--out", metavar="PAGE.html", type=Path, required=True, help="the page to write"
+    parser = add_command(
+        commands,
+        "play",
+        "Make a page that animates logs.",
+        make_page,
+        """
+        quadcore play out/hover
+        quadcore play a.csv b.csv --model hexarotor --names before,after -o flights.html
+        """,
     )
-    parser.add_argument(
+    add_logs(parser)
+    find_group(parser, OUTPUT).add_argument(
+        "-o",
+        "--out",
+        metavar="PAGE.html",
+        type=Path,
+        help=f"page to write (default: {_PAGE} next to the first log)",
+    )
+    model = find_group(parser, VEHICLE).add_argument(
         "--model",
         metavar="MODEL",
-        help="whose rotors are drawn where they are, as for `quadcore run`; without, a cross",
+        help="model that gives the places of the rotors (default: that of the folder that `run` "
+        "wrote, else a cross)",
     )
-    add_names(parser)
-    parser.add_argument("--quiet", action="store_true", help="print warnings and errors only")
+    complete_from(model, list(resources.shipped("urdf")))
+    options.add_quiet(parser)
 
 
-def add_names(parser: argparse.ArgumentParser) -> None:
-    """Add the option that names logs."""
+def add_logs(parser: argparse.ArgumentParser) -> None:
+    """Add the logs, and the option that names them."""
     parser.add_argument(
+        "logs",
+        metavar="LOG",
+        nargs="+",
+        type=Path,
+        help="log, .csv, .mat or .bag; or a folder that `run` or `compare` wrote",
+    )
+    find_group(parser, OUTPUT).add_argument(
         "--names",
-        metavar="NAME,NAME",
+        metavar="A,B",
         type=parse.names,
-        help="what the flights are called (what their paths differ by)",
+        help="names of the flights (default: the part in which their paths differ)",
     )
 
 
-def play(arguments: argparse.Namespace) -> None:
+def make_page(arguments: argparse.Namespace) -> None:
     """Read the logs and write the page."""
-    from ..report.player import PlayerFlight, make_page  # not every command should pay for jinja2
+    from ..report.player import PlayerFlight  # jinja2 is slow to import
+    from ..report.player import make_page as render_page
 
-    if arguments.out.suffix.lower() not in (".html", ".htm"):
-        raise InputError(f"{arguments.out}: name a file that ends in .html, which it would hold")
-    check_writable(arguments.out)
-    names = names_of(arguments)
-    rotors = None if arguments.model is None else read_model(arguments.model).joint_places
+    logs, names = read_logs(arguments)
+    out = arguments.out or logs[0].parent / _PAGE
+    if out.suffix.lower() not in (".html", ".htm"):
+        raise InputError(f"{out}: is not a page. Name a file that ends in .html.")
+    check_writable(out)
     flights = [
-        PlayerFlight(name, Log.of_file(file), rotors) for name, file in zip(names, arguments.logs)
+        PlayerFlight(name, Log.of_file(log), find_rotors(log, arguments.model))
+        for name, log in zip(names, logs)
     ]
-    text = make_page(flights, ", ".join(names))
-    with atomic_write(arguments.out) as stream:
+    text = render_page(flights, ", ".join(names))
+    with atomic_write(out) as stream:
         stream.write(text_bytes(text))
     if not arguments.quiet:
-        terminal.console().print(f"written {arguments.out}")
+        terminal.print_written([out])
 
 
-def names_of(arguments: argparse.Namespace) -> List[str]:
-    """Name each log, as `add_names` asked for."""
-    names: List[str] = arguments.names or _names(arguments.logs)
-    if len(names) != len(arguments.logs):
-        raise InputError(f"--names: {len(names)} for {len(arguments.logs)} logs; name each")
-    return names
+def read_logs(arguments: argparse.Namespace) -> Tuple[List[Path], List[str]]:
+    """Find the logs that `add_logs` asked for, and name each flight."""
+    logs = [log for path in arguments.logs for log in find_logs(path)]
+    if arguments.names is None:
+        return logs, _name_by_path(logs, arguments.logs)
+    if len(arguments.names) != len(logs):
+        raise InputError(f"--names: {len(arguments.names)} names for {len(logs)} logs; name each")
+    return logs, arguments.names
 
 
-def _names(logs: Sequence[Path]) -> List[str]:
-    """Call each log by what its path differs by: out/ode/log.csv, out/eigen/log.csv: ode, eigen."""
+def _name_by_path(logs: Sequence[Path], given: Sequence[Path]) -> List[str]:
+    """Name logs by the part in which their paths differ: out/ode/log.csv, out/eigen/log.csv."""
     if len(logs) == 1:
-        return [logs[0].stem]
+        return [given[0].resolve().name if given[0] != logs[0] else logs[0].stem]
     parts: List[Tuple[str, ...]] = [log.with_suffix("").parts for log in logs]
     if len(set(logs)) < len(logs):
         twice = next(log for i, log in enumerate(logs) if log in logs[:i])

@@ -1,4 +1,4 @@
-"""``quadcore plot``: pictures of logs that there are."""
+"""``quadcore plot``: plot logs."""
 
 from __future__ import annotations
 
@@ -8,47 +8,54 @@ from typing import Any, List, Sequence
 
 from ..report.decimation import decimate
 from ..simulation.log import Log
+from ..studies.options import OUTPUT
 from ..studies.table import save_files
 from ..support.output_files import make_folder
 from . import options, terminal
-from .play import add_names, names_of
+from .parser import add_command, find_group
+from .play import add_logs, read_logs
 
 _OUT = Path("out/plot")
-_ROWS = 20_000  # of several logs, more than a picture shows
+_ROWS = 20_000  # of each of several logs; a plot shows no more
 
 
 def register(commands: Any) -> None:
     """Add the command to the command line."""
-    parser = options.subparser(
-        commands, "plot", "Draw a log, or several over each other, from the first on.", plot
+    parser = add_command(
+        commands,
+        "plot",
+        "Plot a log, or several logs in the same axes with their differences from the first.",
+        plot_logs,
+        """
+        quadcore plot out/hover
+        quadcore plot a.csv b.csv --names before,after --out out/both
+        """,
     )
-    parser.add_argument("logs", metavar="LOG", nargs="+", type=Path, help="log, .csv, .mat or .bag")
-    parser.add_argument(
+    add_logs(parser)
+    find_group(parser, OUTPUT).add_argument(
         "--out",
         metavar="DIR",
         type=Path,
         default=_OUT,
-        help=f"write pictures here; made if missing ({_OUT})",
+        help=f"folder for the plots (default: {_OUT})",
     )
-    add_names(parser)
-    parser.add_argument("--quiet", action="store_true", help="print warnings and errors only")
+    options.add_quiet(parser)
 
 
-def plot(arguments: argparse.Namespace) -> None:
-    """Read the logs and draw them."""
-    names = names_of(arguments)
-    logs = [Log.of_file(file) for file in arguments.logs]
+def plot_logs(arguments: argparse.Namespace) -> None:
+    """Read the logs and write the plots."""
+    files, names = read_logs(arguments)
+    logs = [Log.of_file(file) for file in files]
     if len(logs) == 1:
         logs[0].title = names[0]
         written = logs[0].plot(arguments.out)
     else:
-        written = _over_each_other(names, logs, arguments.out)
+        written = _plot_together(names, logs, arguments.out)
     if not arguments.quiet:
-        for file in written:
-            terminal.console().print(f"written {file}")
+        terminal.print_written(written)
 
 
-def _over_each_other(names: Sequence[str], logs: Sequence[Log], folder: Path) -> List[Path]:
+def _plot_together(names: Sequence[str], logs: Sequence[Log], folder: Path) -> List[Path]:
     from ..report.plots import png
     from ..studies.compare.plots import Curve, draw  # matplotlib is slow to import
 

@@ -1,4 +1,4 @@
-"""``quadcore serve``: flights driven from outside."""
+"""``quadcore serve``: let another program drive flights."""
 
 from __future__ import annotations
 
@@ -12,32 +12,38 @@ from ..serve import Server
 from ..serve.server import TIMEOUT
 from ..simulation.flight import columns_of
 from ..simulation.log import check_log_path, log_file
+from ..studies.options import OUTPUT
 from ..support import parse
-from . import options, terminal
+from . import options, reading, terminal
+from .parser import add_command, find_group
 
 
 def register(commands: Any) -> None:
     """Add the command to the command line."""
-    parser = options.subparser(
-        commands, "serve", "Let a program drive a flight over a local socket, in lockstep.", serve
+    parser = add_command(
+        commands,
+        "serve",
+        "Let another program drive flights over a local socket, in lockstep.",
+        serve_clients,
+        "quadcore serve quadrotor --port 5555 --log flight.csv",
     )
     options.add_model(parser)
     options.add_flight(parser, has_end=False)
-    options.add(parser, "scenario")
+    options.add_options(parser, "scenario", "wind")
     where = parser.add_mutually_exclusive_group()
     where.add_argument(
         "--port",
         metavar="N",
         type=parse.integer(0, 65535),
         default=0,
-        help="port of 127.0.0.1 (any that is free)",
+        help="port of 127.0.0.1 (default: any free port)",
     )
-    where.add_argument("--socket", metavar="PATH", help="path of a unix socket to make")
-    parser.add_argument(
+    where.add_argument("--socket", metavar="PATH", help="path of a Unix socket, which is created")
+    find_group(parser, OUTPUT).add_argument(
         "--log",
         metavar="FILE",
         type=Path,
-        help="write the log of the first flight here, .csv, .mat or .bag, of others to NAME-2 ...",
+        help="log of the first flight, .csv, .mat or .bag; the next flights go to NAME-2 ...",
     )
     options.add_log_topics(parser)
     parser.add_argument(
@@ -45,14 +51,14 @@ def register(commands: Any) -> None:
         metavar="S",
         type=parse.positive,
         default=TIMEOUT,
-        help=f"drop a client that is silent for S seconds before its first request, within a "
-        f"message, or while another one waits ({TIMEOUT:g})",
+        help="seconds after which a silent client is dropped: before its first request, within a "
+        f"message, or while another client waits (default: {TIMEOUT:g})",
     )
 
 
-def serve(arguments: argparse.Namespace) -> None:
-    """Serve clients until a signal comes."""
-    plan = options.flight_plan(arguments)
+def serve_clients(arguments: argparse.Namespace) -> None:
+    """Serve clients until a signal ends the process."""
+    plan = reading.make_flight_plan(arguments)
     simulation = plan.simulation()
     address = arguments.port if arguments.socket is None else arguments.socket
     topics = arguments.log_topics
@@ -65,24 +71,24 @@ def serve(arguments: argparse.Namespace) -> None:
     ) as server:
         if not arguments.quiet:
             print(f"serving {simulation.model.name} at {server.address}", flush=True)
-        server.serve(terminal.say)
+        server.serve(terminal.print_message)
 
 
 class _Logs:
-    """A file for each flight: NAME.csv, NAME-2.csv ...; numbers that are taken are left out."""
+    """A log for each flight: NAME.csv, NAME-2.csv ...; files that exist are kept."""
 
     def __init__(self, first: Path, columns: Sequence[str], ignored: Sequence[str]) -> None:
         self._first, self._columns, self._ignored = first, columns, ignored
-        self._begun = 0
+        self._count = 0
 
     def begin(self) -> LogFile:
-        """Open the next."""
-        self._begun += 1
-        path = self._first if self._begun == 1 else self._numbered()
-        while self._begun > 1 and os.path.lexists(path):  # of an earlier server, perhaps
-            self._begun += 1
-            path = self._numbered()
+        """Open the next log."""
+        self._count += 1
+        path = self._first if self._count == 1 else self._name_numbered()
+        while self._count > 1 and os.path.lexists(path):  # written by an earlier server
+            self._count += 1
+            path = self._name_numbered()
         return log_file(path, self._columns, (), self._ignored)
 
-    def _numbered(self) -> Path:
-        return self._first.with_name(f"{self._first.stem}-{self._begun}{self._first.suffix}")
+    def _name_numbered(self) -> Path:
+        return self._first.with_name(f"{self._first.stem}-{self._count}{self._first.suffix}")

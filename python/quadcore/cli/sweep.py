@@ -1,4 +1,4 @@
-"""``quadcore sweep``: thousands of flights, resumable, on whatever executes them."""
+"""``quadcore sweep``: simulate thousands of flights; resumable."""
 
 from __future__ import annotations
 
@@ -7,75 +7,91 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..simulation.engines import STUDIED
-from ..studies import tracking_metrics as of_guided
+from ..studies import tracking_metrics
 from ..studies.distributions import DESIGNS, list_forms
-from ..studies.options import SweepOptions
+from ..studies.options import OUTPUT, STUDY, SweepOptions
 from ..studies.output_folder import output_folder
 from ..studies.sweep import motion_metrics
 from ..support import parse
-from . import options, terminal
+from . import options, reading, terminal
 from .failed_flights import report_failures
-from .options_file import planned
+from .options_file import make_plan
+from .parser import add_command, find_group
 
 if TYPE_CHECKING:
     from ..studies.sweep.plan import Plan
 
 
 _OUT = Path("out/sweep")
-_UNTOLD = ("measure", "first_interval", "total_interval")
+_HIDDEN = ("measure", "first_interval", "total_interval")
 
 
 def register(commands: Any) -> None:
     """Add the command to the command line."""
-    parser = options.subparser(
-        commands, "sweep", "Fly thousands of flights, and tell what they depend on.", sweep
+    parser = add_command(
+        commands,
+        "sweep",
+        "Simulate thousands of flights, and find what their results depend on.",
+        sweep_flights,
+        """
+        quadcore sweep --controller geometric --reference spiral --samples 1000 \\
+          --vary frame.mass=uniform:0.9:1.1 --out out/mass
+        quadcore sweep --controller geometric --reference spiral --samples 1000 \\
+          --vary frame.mass=uniform:0.9:1.1 --out out/mass --resume
+        """,
     )
+    study, output = find_group(parser, STUDY), find_group(parser, OUTPUT)
     options.add_combined(parser)
     options.add_commands(parser)
-    options.add_vary(parser, f"{options.CONTROLLER_KEYS}; or drawn from {', '.join(list_forms())}")
-    parser.add_argument(
-        "--points", metavar="FILE.csv", help="rows are points of the axes that its header names"
+    distributions = f"; or a distribution, {', '.join(list_forms())}"
+    options.add_vary(parser, f", scenario{options.CONTROLLER_KEYS}", distributions)
+    study.add_argument(
+        "--points", metavar="FILE.csv", help="table with a column for each axis, a row per point"
     )
-    parser.add_argument(
+    study.add_argument(
         "--samples",
         metavar="N",
         type=parse.integer(1),
-        help="points of the axes that are drawn",
+        help="number of random samples of the axes with a distribution",
     )
     default = next(iter(DESIGNS))
-    parser.add_argument(
+    study.add_argument(
         "--design",
         choices=list(DESIGNS),
         default=default,
         help="; ".join(f"{name}: {meaning}" for name, (meaning, _) in DESIGNS.items())
-        + f" ({default})",
+        + f" (default: {default})",
     )
     options.add_study(parser, SweepOptions, [STUDIED])
-    parser.add_argument(
-        "--dask", metavar="ADDRESS", help="fly on the cluster of this scheduler, tcp://HOST:PORT"
+    study.add_argument(
+        "--dask", metavar="ADDRESS", help="Dask scheduler that runs the flights, tcp://HOST:PORT"
     )
-    options.add_out(parser, "rows, sums, pictures and a page", "pictures", _OUT)
-    parser.add_argument(
-        "--resume", action="store_true", help="go on with the rows that are in --out"
+    options.add_out(parser, "page, table, summary and plots", default=_OUT)
+    output.add_argument("--resume", action="store_true", help="continue the sweep in --out")
+    output.add_argument(
+        "--parquet", action="store_true", help="also write the rows as table.parquet"
     )
-    parser.add_argument(
-        "--parquet", action="store_true", help="write the rows as table.parquet, too"
-    )
-    parser.add_argument(
+    output.add_argument(
         "--measure",
         metavar="NAME",
-        help="what is drawn, and what the worst rows are worst in "
-        f"({next(iter(of_guided.UNITS))}; with --commands {next(iter(motion_metrics.UNITS))})",
+        help="metric of the plots and of the worst rows (default: "
+        f"{next(iter(tracking_metrics.UNITS))}, or {next(iter(motion_metrics.UNITS))} with "
+        "--commands)",
     )
 
 
-def sweep(arguments: argparse.Namespace) -> None:
-    """Fly what is missing, and tell what came of it."""
-    from ..studies.sweep.output import FILES, choose_metric
+def sweep_flights(arguments: argparse.Namespace) -> None:
+    """Simulate the flights that are missing, and summarize all."""
+    from ..studies.sweep.output import FILES, choose_metric, remove_sweep
+    from ..studies.sweep.sweep import TABLE
 
-    arguments, plan = planned(arguments, _plan)
+    arguments, plan = make_plan(arguments, _make_plan)
     measure = choose_metric(plan, arguments.measure)
-    with output_folder(arguments.out, FILES):  # after the flights would be too late
+    document = "" if arguments.resume else "sweep.json"
+    others = [name for name in FILES if name != TABLE]  # whose rows are checked when read
+    with output_folder(arguments.out, others, document):
+        if not arguments.resume:
+            remove_sweep(arguments.out)
         _sweep(arguments, plan, measure)
 
 
@@ -86,7 +102,7 @@ def _sweep(arguments: argparse.Namespace, plan: Plan, measure: str) -> None:
 
     out = arguments.out
     try:
-        with terminal.progress(arguments.quiet) as progress:
+        with terminal.show_progress(arguments.quiet) as progress:
             rows = fly_plan(
                 plan,
                 out,
@@ -97,21 +113,21 @@ def _sweep(arguments: argparse.Namespace, plan: Plan, measure: str) -> None:
                 progress=progress,
             )
     except KeyboardInterrupt:
-        terminal.say(f"rows so far: {out / TABLE}; --resume flies the rest")
+        terminal.print_message(f"rows so far: {out / TABLE}. Add --resume to continue.")
         raise
     columns = make_table(rows)
     files = write(plan, columns, out, measure, not arguments.no_plots)
     if not arguments.quiet:
         _show(plan, columns, measure, files)
-    _report(columns)
+    _report_failures(columns)
 
 
-def _plan(arguments: argparse.Namespace) -> Plan:
+def _make_plan(arguments: argparse.Namespace) -> Plan:
     from ..studies.sweep.plan import Plan, make_design
 
     design, shared = make_design(
-        options.unique("--vary", arguments.vary),
-        options.read(arguments, SweepOptions),
+        reading.collect_unique("--vary", arguments.vary),
+        reading.read_options(arguments, SweepOptions),
         arguments.points,
         arguments.design,
         arguments.samples,
@@ -132,30 +148,29 @@ def _show(plan: Plan, columns: Any, measure: str, files: list[Path]) -> None:
     from ..studies.sweep.sensitivity import compute_sensitivities
     from ..studies.table import format_number
 
-    console = terminal.console()
+    console = terminal.make_console()
     lines = [row for row in summarise_rows(plan, columns) if row["measure"] == measure]
     if lines:
-        make_table = terminal.table(*lines[0], numbers=True)
+        table = terminal.make_table(*lines[0], numbers=True)
         for row in lines:
-            make_table.add_row(*(_cell(value, format_number) for value in row.values()))
-        console.print(make_table, "")
+            table.add_row(*(_write_cell(value, format_number) for value in row.values()))
+        console.print(table, "")
     found = [row for row in compute_sensitivities(plan, columns) if row["measure"] == measure]
     if found:
-        shown = [name for name in found[0] if name not in _UNTOLD]
-        make_table = terminal.table(*shown, numbers=True)
+        shown = [name for name in found[0] if name not in _HIDDEN]
+        table = terminal.make_table(*shown, numbers=True)
         for row in found:
-            make_table.add_row(*(_cell(row[name], format_number) for name in shown))
-        console.print(make_table, "")
+            table.add_row(*(_write_cell(row[name], format_number) for name in shown))
+        console.print(table, "")
     console.print(count_rows(plan, columns))
-    for file in files:
-        console.print(f"written {file}")
+    terminal.print_written(files)
 
 
-def _cell(value: Any, format_number: Any) -> str:
+def _write_cell(value: Any, format_number: Any) -> str:
     return format_number(value) if isinstance(value, float) else str(value)
 
 
-def _report(columns: Any) -> None:
+def _report_failures(columns: Any) -> None:
     from ..studies.sweep.row_spec import REFUSED
 
     reasons = columns["failure"].tolist()

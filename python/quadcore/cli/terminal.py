@@ -1,4 +1,4 @@
-"""What the commands print."""
+"""Text that the commands print."""
 
 from __future__ import annotations
 
@@ -7,19 +7,21 @@ import sys
 import time
 import warnings
 from contextlib import contextmanager, suppress
-from typing import Any, Callable, Iterator
+from pathlib import Path
+from typing import Any, Callable, Iterable, Iterator
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TimeRemainingColumn
 from rich.table import Table
 
+from ..studies.table import make_json
 from ..support.warning import QuadcoreWarning
 
-_LONG = 1.0  # s; a run that is over sooner needs no progress bar
+_LONG = 1.0  # s; a shorter run needs no progress bar
 
 
-def prepare() -> None:
-    """Make standard output and error take every text, whatever they are connected to."""
+def prepare_streams() -> None:
+    """Let standard output and error take any text, whatever they are connected to."""
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if stream is None:  # closed by the caller
@@ -28,45 +30,45 @@ def prepare() -> None:
             stream.reconfigure(errors="backslashreplace")
 
 
-def say(line: str) -> None:
-    """Print a line on standard error; if that fails there is nobody to tell."""
+def print_message(line: str) -> None:
+    """Print a line on standard error, and ignore that it may be closed."""
     with suppress(OSError):
-        print(printable(line), file=sys.stderr)
+        print(escape_controls(line), file=sys.stderr)
 
 
-def forget_output() -> None:
-    """Let what standard output could not take go nowhere, so that the flush at exit succeeds."""
+def discard_output() -> None:
+    """Discard what standard output could not take, so that the flush at exit succeeds."""
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def printable(text: str) -> str:
-    """Escape what would steer a terminal: names of files may hold anything."""
+def escape_controls(text: str) -> str:
+    """Escape control characters, which names of files may hold."""
     return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in text)
 
 
 class _Console(Console):
     def print(self, *objects: Any, **options: Any) -> None:
-        shown = [printable(part) if isinstance(part, str) else part for part in objects]
+        shown = [escape_controls(part) if isinstance(part, str) else part for part in objects]
         super().print(*shown, **options)
 
     def on_broken_pipe(self) -> None:
-        raise BrokenPipeError  # not the exit of status 1 that newer rich makes of it
+        raise BrokenPipeError  # newer rich would exit with status 1
 
 
 class _Table(Table):
     def add_row(self, *cells: Any, **options: Any) -> None:
-        super().add_row(*(printable(str(cell)) for cell in cells), **options)
+        super().add_row(*(escape_controls(str(cell)) for cell in cells), **options)
 
 
-def console() -> Console:
-    """Make a console without markup that breaks no line unless a terminal needs it."""
+def make_console() -> Console:
+    """Make a console without markup that breaks lines only on a terminal."""
     width = None if sys.stdout.isatty() else 10_000
     return _Console(width=width, markup=False, emoji=False, highlight=False)
 
 
-def table(*columns: str, numbers: bool = False, **options: Any) -> Table:
-    """Make a table whose cells wrap, or one of numbers, which do not; the first column never."""
+def make_table(*columns: str, numbers: bool = False, **options: Any) -> Table:
+    """Make a table; cells wrap, except those of the first column and of tables of numbers."""
     made = _Table(box=None, pad_edge=False, header_style="bold", **options)
     for i, column in enumerate(columns):
         made.add_column(
@@ -78,17 +80,28 @@ def table(*columns: str, numbers: bool = False, **options: Any) -> Table:
     return made
 
 
+def print_written(files: Iterable[Path]) -> None:
+    """Print the names of the files that were written, a line for each."""
+    for file in files:
+        make_console().print(f"written {file}")
+
+
+def print_json(content: Any) -> None:
+    """Print plain values as JSON."""
+    print(make_json(content).decode(), end="")
+
+
 @contextmanager
-def warnings_as_lines() -> Iterator[None]:
+def print_warnings() -> Iterator[None]:
     """Print each QuadcoreWarning once, as a line on standard error."""
     show_others = warnings.showwarning
-    said = set()  # "once" is forgotten where a block ignores some
+    printed = set()  # Python forgets "once" after a block that ignores some
 
     def show(message: Any, category: Any, *where: Any, **to: Any) -> None:
         if issubclass(category, QuadcoreWarning):
-            if str(message) not in said:
-                say(f"warning: {message}")
-            said.add(str(message))
+            if str(message) not in printed:
+                print_message(f"warning: {message}")
+            printed.add(str(message))
         else:
             show_others(message, category, *where, **to)
 
@@ -99,8 +112,10 @@ def warnings_as_lines() -> Iterator[None]:
 
 
 @contextmanager
-def progress(quiet: bool, what: str = "flying") -> Iterator[Callable[[int, int], None] | None]:
-    """Give a callback that shows the progress of a long run, or None away from a terminal."""
+def show_progress(
+    quiet: bool, what: str = "simulating"
+) -> Iterator[Callable[[int, int], None] | None]:
+    """Give a callback that shows the progress of a long run; None without a terminal."""
     if quiet or not sys.stderr.isatty():
         yield None
         return
@@ -114,7 +129,7 @@ def progress(quiet: bool, what: str = "flying") -> Iterator[Callable[[int, int],
     )
     with_bar = Progress(*columns, console=Console(stderr=True), transient=True)
     task = with_bar.add_task(what, rate="")
-    first: int | None = None  # what was there before, of a sweep that goes on
+    first: int | None = None  # rows that a resumed sweep has already
 
     def report(done: int, total: int) -> None:
         nonlocal first

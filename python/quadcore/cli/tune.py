@@ -1,4 +1,4 @@
-"""``quadcore tune``: gains by search."""
+"""``quadcore tune``: search for gains."""
 
 from __future__ import annotations
 
@@ -7,15 +7,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._core import InputError
-from ..control import gains
+from ..control import controllers, gains
+from ..model import resources
 from ..simulation.engines import STUDIED
-from ..studies.options import Options
+from ..studies.options import CONTROLLER, OUTPUT, STUDY, VEHICLE, Options
 from ..support import parse
 from ..support.output_files import check_writable
-from . import options, terminal
+from . import options, reading, terminal
 from .command_checks import refuse_log_every
 from .interrupted_output import keep_partial_output
-from .options_file import planned
+from .options_file import make_plan
+from .parser import add_command, complete_from, find_group
 
 if TYPE_CHECKING:
     from ..studies.tune.problem import Problem
@@ -23,83 +25,91 @@ if TYPE_CHECKING:
 
 def register(commands: Any) -> None:
     """Add the command to the command line."""
-    parser = options.subparser(
-        commands, "tune", "Search for gains of a law, judged on references held out.", tune
+    parser = add_command(
+        commands,
+        "tune",
+        "Search for gains of a controller, and test them on references that are held out.",
+        tune_controller,
+        "quadcore tune geometric hexarotor --budget 100 -o gains.yaml",
     )
-    parser.add_argument(
+    controller = parser.add_argument(
         "law",
-        metavar="LAW",
-        help="as --controller of `quadcore run`: its parameters are where the search begins",
+        metavar="CONTROLLER",
+        help="controller, as for `quadcore run`; the search starts at its parameters",
     )
-    parser.add_argument(
-        "model", metavar="MODEL", nargs="*", default=["quadrotor"], help="what flies (quadrotor)"
+    model = parser.add_argument(
+        "model", metavar="MODEL", nargs="*", default=["quadrotor"],
+        help="URDF or xacro files, or built-in models (default: quadrotor)",
+    )  # fmt: skip
+    complete_from(controller, controllers.NAMES)
+    complete_from(model, list(resources.shipped("urdf")))
+    find_group(parser, OUTPUT).add_argument(
+        "-o", "--out", metavar="GAINS.yaml", type=Path, required=True, help="file to write"
     )
-    parser.add_argument(
-        "-o", "--out", metavar="GAINS.yaml", type=Path, required=True, help="the file to write"
-    )
-    parser.add_argument(
+    group = find_group(parser, CONTROLLER)
+    group.add_argument(
         "--reference",
         metavar="A,B",
         type=parse.several_calls,
         default=["spiral", "step"],
-        help="what is flown to tune, NAME, NAME:KEY=VALUE,... or files (spiral,step)",
+        help="references for the search, NAME, NAME:KEY=VALUE,... or files (default: spiral,step)",
     )
-    parser.add_argument(
+    group.add_argument(
         "--hold-out",
         metavar="A,B",
         type=parse.several_calls,
         default=["circle", "eight"],
-        help="what is flown to judge (circle,eight)",
+        help="references for the test (default: circle,eight)",
     )
-    parser.add_argument(
+    find_group(parser, VEHICLE).add_argument(
         "--hold-out-model",
         metavar="A,B",
         type=parse.names,
         default=[],
-        help="models that fly everything to judge, too (none)",
+        help="further models for the test, on all references (default: none)",
     )
-    parser.add_argument(
+    group.add_argument(
         "--only",
-        metavar="NAME,NAME",
+        metavar="A,B",
         type=parse.names,
-        help="parameters to tune (all gains that are not zero)",
+        help="parameters to tune (default: all gains that are not zero)",
     )
-    parser.add_argument(
+    find_group(parser, STUDY).add_argument(
         "--budget",
         metavar="N",
         type=parse.integer(1),
         default=300,
-        help="gains to try, at least (300)",
+        help="minimum number of gain sets to try (default: 300)",
     )
-    options.add_vary(parser, options.CONTROLLER_KEYS)
+    options.add_vary(parser, f", scenario{options.CONTROLLER_KEYS}")
     options.add_study(parser, Options, STUDIED)
 
 
-def tune(arguments: argparse.Namespace) -> None:
-    """Search, print what was found, and write it."""
+def tune_controller(arguments: argparse.Namespace) -> None:
+    """Search, print the gains, and write them."""
     from ..studies.tune.tune import search_gains
 
-    arguments, problem = planned(arguments, _problem)
+    arguments, problem = make_plan(arguments, _make_problem)
     out = arguments.out
 
-    def put(found: Any) -> None:
+    def write_gains(found: Any) -> None:
         gains.write(found.gains, out)
 
-    with keep_partial_output("tuning", out, put, "the best so far"), terminal.progress(
-        arguments.quiet, "tuning"
-    ) as progress:
+    with keep_partial_output(
+        "tuning", out, write_gains, "best gains so far"
+    ), terminal.show_progress(arguments.quiet, "tuning") as progress:
         found = search_gains(problem, arguments.budget, progress)
-    put(found)
+    write_gains(found)
     if not arguments.quiet:
         _show(found, out)
 
 
-def _problem(arguments: argparse.Namespace) -> Problem:
+def _make_problem(arguments: argparse.Namespace) -> Problem:
     from ..studies.tune.problem import Problem
 
     out = arguments.out
     if out.suffix.lower() not in (".yaml", ".yml"):
-        raise InputError(f"{out}: name a file that ends in .yaml, which it would hold")
+        raise InputError(f"{out}: is not a YAML file. Name a file that ends in .yaml.")
     refuse_log_every(arguments, "tuning")
     check_writable(out)
     return Problem(
@@ -110,22 +120,23 @@ def _problem(arguments: argparse.Namespace) -> Problem:
         arguments.hold_out_model,
         arguments.only,
         arguments.engine,
-        options.varied(arguments),
-        options.read(arguments, Options),
+        reading.read_axes(arguments),
+        reading.read_options(arguments, Options),
     )
 
 
 def _show(found: Any, out: Path) -> None:
-    console = terminal.console()
-    begun = found.gains.history["start"]
-    table = terminal.table("gain", "start", "found", numbers=True)
-    for name, value in begun.items():
+    console = terminal.make_console()
+    start = found.gains.history["start"]
+    table = terminal.make_table("gain", "start", "found", numbers=True)
+    for name, value in start.items():
         table.add_row(name, f"{value:.4g}", f"{found.gains.parameters[name]:.4g}")
     console.print(table, "")
-    table = terminal.table("", "RMS error (m)", numbers=True)
-    table.add_row("tuned on, at the start", f"{found.start:.4g}")
-    table.add_row("tuned on", f"{found.error:.4g}")
+    table = terminal.make_table("", "RMS error (m)", numbers=True)
+    table.add_row("search, at the start", f"{found.start:.4g}")
+    table.add_row("search", f"{found.error:.4g}")
     for label, error in found.held_out.items():
         table.add_row(f"held out: {label}", f"{error:.4g}")
     console.print(table)
-    console.print(f"{len(found.evaluations)} tried, {found.refused} refused; written {out}")
+    console.print(f"{len(found.evaluations)} gain sets tried, {found.refused} refused")
+    terminal.print_written([out])

@@ -1,4 +1,4 @@
-"""``quadcore validate``: plant against mathematical model, as in the thesis' chapter 6.1."""
+"""``quadcore validate``: compare engines with the mathematical model of thesis chapter 2."""
 
 from __future__ import annotations
 
@@ -11,68 +11,80 @@ from rich.table import Table
 from .._core import FlightError, InputError, QuadcoreError, engines
 from ..simulation.flight_plan import FlightPlan
 from ..studies.executor import run_contained
+from ..studies.options import FLIGHT, STUDY
 from ..support import interrupts, parse
 from ..support.output_files import atomic_write, prepare_folder
 from ..support.values import SPAWN
-from . import options, terminal
+from . import options, reading, terminal
 from .interrupted_output import keep_partial_output
+from .parser import add_command, find_group
 
 if TYPE_CHECKING:
     from ..thesis.validation import Chain, Experiment, Study
 
 
 _OF_FLIGHTS = ("duration", "spawn", "seed", "log_every", "motors", "jobs")
-"""Options that a recording leaves no room for."""
+"""Options that a recorded flight excludes."""
 
 
 def register(commands: Any) -> None:
     """Add the command to the command line."""
-    parser = options.subparser(
-        commands, "validate", "Compare engines with the mathematical model, and say why.", run
+    parser = add_command(
+        commands,
+        "validate",
+        "Compare engines with the mathematical model, and attribute their differences.",
+        validate_engines,
+        """
+        quadcore validate --out out/validation
+        quadcore validate --plant gazebo.bag
+        """,
     )
     options.add_model(parser, nargs="?", default="quadrotor")
     options.add_flight(parser, [name for name, _ in engines()], log_every=10)
     options.add_commands(parser)
-    parser.add_argument(
+    study = find_group(parser, STUDY)
+    study.add_argument(
         "--sim-slow",
-        metavar="LIST",
+        metavar="A,B",
         type=parse.positive_numbers,
-        help="slow-downs of the rotors (those of the thesis: 1,8,10,18)",
+        help="slowdowns of the rotors (default: those of the thesis, 1,8,10,18)",
     )
-    parser.add_argument(
+    study.add_argument(
         "--drag",
-        metavar="LIST",
+        metavar="A,B",
         type=lambda text: text.split(","),
-        help="none, all, or those that act alone: profile and so on (each that the model has)",
+        help="rotor drag terms: none, all, or single terms such as profile (default: none, all and "
+        "each term of the model)",
     )
-    parser.add_argument(
+    study.add_argument(
         "--motors",
         choices=("lag", "ideal"),
         default="lag",
-        help="of the mathematical model: those of the engines, or none that lags (lag)",
+        help="motors of the mathematical model: as in the engines, or without lag (default: lag)",
     )
-    parser.add_argument(
+    find_group(parser, FLIGHT).add_argument(
         "--plant",
         metavar="FILE",
         type=Path,
-        help="judge this recording instead: a log of any Gazebo, .csv, .mat or .bag; without "
-        "--commands its topic vel_cmd",
+        help="compare this recorded flight instead: a log of any Gazebo, .csv, .mat or .bag. "
+        "Without --commands, its topic vel_cmd commands the rotors",
     )
-    options.add(parser, "processes")
+    options.add_options(parser, "processes")
     options.add_out(parser, "page, tables and figures", "figures")
+    options.add_json(parser)
     of_flights = {name: parser.get_default(name) for name in _OF_FLIGHTS}
     parser.set_defaults(of_flights=of_flights)
 
 
-def run(arguments: argparse.Namespace) -> None:
-    """Fly everything, print how far it is from the model and why, and write it."""
+def validate_engines(arguments: argparse.Namespace) -> None:
+    """Simulate everything, print the differences and their causes, and write them."""
     if arguments.plant is not None:
-        return judge(arguments)
+        return judge_recording(arguments)
     # scipy and jinja2 are slow to import.
     from ..thesis.validation import Case, Experiment
 
     experiment = Experiment.of(
-        **options.model_arguments(arguments),
+        **reading.read_model_arguments(arguments),
         world=arguments.world,
         dt=arguments.dt,
         duration=arguments.duration,
@@ -81,41 +93,45 @@ def run(arguments: argparse.Namespace) -> None:
         motor_lag=arguments.motors == "lag",
         log_every=arguments.log_every,
     )
-    experiment.flight(Case("eigen")).simulation()  # says at once what is wrong or doubtful
+    experiment.flight(Case("eigen")).simulation()
     out = arguments.out
     if out is not None:
         prepare_folder(out, ["report.html"])  # after the flights would be too late
     study = _conduct(experiment, arguments)
-    failures = _row_failures(study)
+    failures = _describe_failures(study)
     if out is not None:
         page, *tables = _write(study, out)
-    if not arguments.quiet:
+    if arguments.json:
+        terminal.print_json(_describe(study))
+    elif not arguments.quiet:
         _show(study)
     if out is not None:
         drawn = {} if arguments.no_plots else _draw(study, arguments, failures)
-        if not arguments.quiet:
-            beside = len(tables) + len(drawn)
-            terminal.console().print(f"written {page} and {beside} tables and figures beside it")
+        if not (arguments.quiet or arguments.json):
+            count = len(tables) + len(drawn)
+            terminal.make_console().print(
+                f"written {page} and {count} tables and figures next to it"
+            )
     if failures:
         raise FlightError(failures[0])
 
 
-def judge(arguments: argparse.Namespace) -> None:
-    """Print how far a recording is from the model and the engines, and write it."""
+def judge_recording(arguments: argparse.Namespace) -> None:
+    """Print the differences of a recording from the model and the engines, and write them."""
     from ..thesis.validation import recorded_plant
     from ..thesis.validation.output import size
 
     for option in ("sim_slow", "drag"):
         if getattr(arguments, option) is not None:
             raise InputError(
-                f"--plant is one flight; give its --{option.replace('_', '-')} by --set"
+                f"--plant is one flight; give its --{option.replace('_', '-')} with --set"
             )
     for name, default in arguments.of_flights.items():
         if getattr(arguments, name) != default:
             option = f"--{name.replace('_', '-')}"
-            raise InputError(f"--plant judges the flight that was recorded; leave {option} out")
+            raise InputError(f"--plant is a recorded flight; leave {option} out")
     plan = FlightPlan.of(
-        **options.model_arguments(arguments), world=arguments.world, dt=arguments.dt
+        **reading.read_model_arguments(arguments), world=arguments.world, dt=arguments.dt
     )
     if arguments.out is not None:
         prepare_folder(arguments.out, ["plant.csv"])
@@ -123,16 +139,18 @@ def judge(arguments: argparse.Namespace) -> None:
     if arguments.out is not None:
         with atomic_write(arguments.out / "plant.csv") as stream:
             stream.write(recorded_plant.table_of(rows, len(plan.model.joints)))
-    if not arguments.quiet:
-        console = terminal.console()
-        console.print(f"{arguments.plant}: largest difference from")
-        table = terminal.table("", *_JUDGED, numbers=True)
+    if arguments.json:
+        terminal.print_json([_describe_judged(row) for row in rows])
+    elif not arguments.quiet:
+        console = terminal.make_console()
+        console.print(f"{arguments.plant}: maximum difference from")
+        table = terminal.make_table("", *_JUDGED, numbers=True)
         for row in rows:
             largest = row.difference.max if row.difference else {}
             table.add_row(row.plant, *(size(largest[n]) if largest else "failed" for n in _JUDGED))
         console.print(table)
         if arguments.out is not None:
-            console.print(f"written {arguments.out / 'plant.csv'}")
+            terminal.print_written([arguments.out / "plant.csv"])
     failed = [row for row in rows if row.failure]
     if failed:
         raise FlightError(f"{failed[0].plant}: {failed[0].failure}")
@@ -143,13 +161,13 @@ _JUDGED = ("position", "attitude", "velocity", "rates")
 
 
 def _conduct(experiment: Experiment, arguments: argparse.Namespace) -> Study:
-    """Fly; what was flown before an interrupt is written."""
+    """Simulate; the flights that ended before an interrupt are written."""
     from ..thesis.validation import conduct
 
-    def put(study: Study) -> None:
+    def write_tables_so_far(study: Study) -> None:
         _write(study, arguments.out)
 
-    with keep_partial_output("study", arguments.out, put), terminal.progress(
+    with keep_partial_output("study", arguments.out, write_tables_so_far), terminal.show_progress(
         arguments.quiet
     ) as progress:
         return conduct(
@@ -163,7 +181,7 @@ def _conduct(experiment: Experiment, arguments: argparse.Namespace) -> Study:
 
 
 def _write(study: Study, out: Path) -> List[Path]:
-    """Write page and tables, before any picture is drawn: flights are not flown twice."""
+    """Write page and tables, before any figure is drawn."""
     from ..thesis.validation.output import write_report, write_tables
 
     with interrupts.hold_signals():
@@ -172,7 +190,7 @@ def _write(study: Study, out: Path) -> List[Path]:
 
 
 def _draw(study: Study, arguments: argparse.Namespace, failures: List[str]) -> Dict[str, bytes]:
-    """Write each picture as soon as it is drawn, and then the page with all of them."""
+    """Write each figure as soon as it is drawn, and then the page with all figures."""
     from ..thesis.validation.figures import pictures
     from ..thesis.validation.output import write_picture, write_report
 
@@ -186,7 +204,7 @@ def _draw(study: Study, arguments: argparse.Namespace, failures: List[str]) -> D
         return function(*what)
 
     try:
-        with terminal.progress(arguments.quiet, "drawing") as progress:
+        with terminal.show_progress(arguments.quiet, "drawing") as progress:
 
             def take(index: int, picture: Union[bytes, QuadcoreError]) -> None:
                 name = names[index]
@@ -202,12 +220,12 @@ def _draw(study: Study, arguments: argparse.Namespace, failures: List[str]) -> D
         with interrupts.hold_signals():
             write_report(study, in_order, arguments.out)
     if failed:
-        failures.append(f"{len(failed)} of {len(names)} pictures failed; the first, {failed[0]}")
+        failures.append(f"{len(failed)} of {len(names)} figures failed; the first, {failed[0]}")
     return in_order
 
 
-def _row_failures(study: Study) -> List[str]:
-    """Say how many flights failed, and why the first did, if any did."""
+def _describe_failures(study: Study) -> List[str]:
+    """Describe how many flights failed, and why the first did."""
     failed = [row for row in study.rows if row.failure]
     if not failed:
         return []
@@ -219,19 +237,49 @@ def _row_failures(study: Study) -> List[str]:
 
 
 def _show(study: Study) -> None:
-    console = terminal.console()
-    console.print("largest distance from the mathematical model (m)")
-    console.print(_distances(study), "")
+    console = terminal.make_console()
+    console.print("maximum distance from the mathematical model (m)")
+    console.print(_make_distance_table(study), "")
     for chain in study.chains:
         if chain.drag == study.drags[-1]:
-            console.print(_chain(study, chain), "")
+            console.print(_make_cause_table(study, chain), "")
 
 
-def _distances(study: Study) -> Table:
+def _describe(study: Study) -> Dict[str, Any]:
+    """Describe the maximum differences of each flight, and their causes, in plain values."""
+    return {
+        "flights": [
+            {
+                **row.case._asdict(),
+                "max": dict(row.difference.max) if row.difference else None,
+                "failure": row.failure,
+            }
+            for row in study.rows
+        ],
+        "causes": [
+            {
+                "sim_slow": chain.sim_slow,
+                "drag": chain.drag,
+                "time": chain.time,
+                "distance": chain.distance,
+                "failure": chain.failure,
+                "links": [link._asdict() for link in chain.links],
+            }
+            for chain in study.chains
+        ],
+    }
+
+
+def _describe_judged(row: Any) -> Dict[str, Any]:
+    largest = dict(row.difference.max) if row.difference else None
+    return {"plant": row.plant, "max": largest, "failure": row.failure}
+
+
+def _make_distance_table(study: Study) -> Table:
     from ..thesis.validation import Case
     from ..thesis.validation.output import size
 
-    table = terminal.table("engine", "sim_slow", *study.drags, numbers=True)
+    table = terminal.make_table("engine", "sim_slow", *study.drags, numbers=True)
     rows = {row.case: row.difference for row in study.rows}
     for engine in study.engines:
         for slow in study.sim_slow:
@@ -241,11 +289,11 @@ def _distances(study: Study) -> Table:
     return table
 
 
-def _chain(study: Study, chain: Chain) -> Table:
+def _make_cause_table(study: Study, chain: Chain) -> Table:
     from ..thesis.validation.output import size
 
-    start = f"{study.engines[0]}, sim_slow {chain.sim_slow:g}, drag {chain.drag}: because of"
-    table = terminal.table(start, "share (m)", "max (m)", numbers=True)
+    start = f"{study.engines[0]}, sim_slow {chain.sim_slow:g}, drag {chain.drag}: cause"
+    table = terminal.make_table(start, "share (m)", "max (m)", numbers=True)
     for link in chain.links:
         table.add_row(link.change, size(link.share), size(link.max))
     table.add_row(chain.failure or f"sum, at {chain.time:.2f} s", size(chain.distance), "")

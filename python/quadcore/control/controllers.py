@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Callable, List, Optional, Sequence, Tuple
 
 from .. import _core
 from ..support.parameters import did_you_mean, docstring, keyword_signature, read_values
-from ..support.user_code import import_controller
+from ..support.user_code import import_controller, names_file
 from ..support.warning import warn
 from . import gains
 from .built_in import BuiltInController
@@ -26,7 +26,7 @@ def parse(text: str, vehicle: str = "") -> Any:
     ----------
     text
         ``LAW[:KEY=VALUE,...]``, keys being those of the law's parameters, ``rate`` and ``delay``;
-        a file of gains (.yaml); or ``MODULE:CLASS`` of your own.
+        a file of gains (.yaml); or your own ``FILE.py[:NAME]`` or ``MODULE:NAME``.
     vehicle
         Name of the robot that is to fly: the parameters of a law that are not given are those that
         are shipped for it, if there are any.
@@ -56,11 +56,11 @@ def parse(text: str, vehicle: str = "") -> Any:
         law.rate, law.delay = given.pop("rate", law.rate), given.pop("delay", law.delay)
         law.parameters.update(given)
         return law
-    if ":" in text:
+    if ":" in text or names_file(text):
         return import_controller(text)
     raise _core.InputError(
-        f"there is no law '{text}'{did_you_mean(text, NAMES)}; write one of {', '.join(NAMES)}, "
-        "a file of gains that ends in .yaml, or MODULE:CLASS"
+        f"there is no controller '{text}'{did_you_mean(text, NAMES)}; write one of "
+        f"{', '.join(NAMES)}, a gains file that ends in .yaml, FILE.py[:NAME], or MODULE:NAME"
     )
 
 
@@ -127,4 +127,4 @@ else:
             return _MAKERS[name]
         except KeyError:
             known = ", ".join(NAMES)
-            raise AttributeError(f"there is no law '{name}'; there are {known}") from None
+            raise AttributeError(f"there is no controller '{name}'; there are {known}") from None

@@ -57,6 +57,7 @@ class _Options(TypedDict, total=False):
     spawn: Sequence[Number]
     ignore: Sequence[str]
     scenario: Union[str, Path, Scenario, None]
+    wind: Optional[Sequence[float]]
 
 
 def export_fmu(
@@ -75,7 +76,7 @@ def export_fmu(
     model
         As for `Simulation`.
     **options
-        As for `Simulation`; or a ``scenario``, as for `FlightPlan.of`.
+        As for `Simulation`; or ``scenario`` and ``wind``, as for `FlightPlan.of`.
 
     Raises
     ------

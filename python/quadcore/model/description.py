@@ -121,12 +121,8 @@ def load_description(model: str, xacro_args: Mapping[str, str]) -> Document:
     Raises
     ------
     InputError
-        No such model, malformed XML, a fault in the xacro, or arguments for a file that is none.
-
-    Warns
-    -----
-    QuadcoreWarning
-        An argument that the xacro file does not have.
+        No such model, malformed XML, an error in the xacro, an argument that the xacro file does
+        not have, or arguments for a file without xacro.
     """
     path = _find("model", model, "urdf")
     if path.suffix not in _XACRO:

@@ -7,7 +7,6 @@ elements remember them, which serves the result and the error messages alike.
 from __future__ import annotations
 
 import contextlib
-import difflib
 import glob
 import io
 import os
@@ -22,6 +21,7 @@ import xacro
 from .._core import InputError, QuadcoreError
 from ..support.import_lock import LOCK
 from ..support.input_files import read_text
+from ..support.parameters import did_you_mean
 from ..support.warning import suppress_warnings, warn
 from . import resources, xml_origins, xml_source
 from .expansion_cache import Kept, Outside, content
@@ -61,18 +61,20 @@ def expand(path: str, arguments: Mapping[str, str]) -> _Lines:
     Raises
     ------
     InputError
-        Whatever is wrong in the file or one it includes.
+        Whatever is wrong in the file or one it includes, or an argument that it does not have.
 
     Warns
     -----
     QuadcoreWarning
-        What xacro itself warns of, and an argument that the file does not know.
+        What xacro itself warns of.
     """
     expansion = _kept(path, arguments)
     for name in arguments:
         if name not in expansion.asked:
-            what = f"there is no xacro argument {_named(name, expansion.asked)}: it has no effect"
-            warn(f"{path}: {what}")
+            known = sorted(expansion.asked)
+            near = did_you_mean(name, known)
+            remedy = f"Use one of {', '.join(known)}." if known else "Leave it out."
+            raise InputError(f"{path}: has no xacro argument '{name}'{near}. {remedy}")
     return expansion.lines
 
 
@@ -239,8 +241,3 @@ def _place(frames: Iterable[FrameType]) -> xml_source.Origin | None:
             if found is not None:
                 return found
     return None
-
-
-def _named(name: str, known: set[str]) -> str:
-    nearest = difflib.get_close_matches(name, known, n=1, cutoff=0.0)
-    return f"'{name}'; the nearest is '{nearest[0]}'" if nearest else f"'{name}', nor any other"

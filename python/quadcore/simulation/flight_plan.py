@@ -25,7 +25,7 @@ from .controller_pilot import Guided
 from .engines import ENGINE, AnyEngineName
 from .flight import Progress
 from .log import Log
-from .scenarios import Scenario
+from .scenarios import Scenario, add_wind
 from .scenarios import read as read_scenario
 from .simulation import Simulation, make_simulation
 
@@ -132,6 +132,7 @@ class FlightPlan:
         seed: int = 0,
         commands: Optional[CommandsLike] = None,
         scenario: Union[str, Path, Scenario, None] = None,
+        wind: Optional[Sequence[float]] = None,
         **others: Unpack[_Others],
     ) -> FlightPlan:
         """Read what a flight needs.
@@ -144,6 +145,8 @@ class FlightPlan:
             As for `Simulation.run`; a file is read now.
         scenario
             What befalls the vehicle: a file, or the name of a shipped one.
+        wind
+            Velocity of a constant wind in world axes, m/s.
         **others
             Members as they stand.
 
@@ -162,7 +165,7 @@ class FlightPlan:
             seed=seed,
             **others,
         )
-        plan = plan.befallen(scenario)
+        plan = plan.befallen(scenario).with_wind(wind)
         return plan if commands is None else plan.commanded(commands)
 
     @property
@@ -200,6 +203,19 @@ class FlightPlan:
         if unseen:
             warn(unseen)
         return plan
+
+    def with_wind(self, velocity: Optional[Sequence[float]]) -> FlightPlan:
+        """Make the same flight in a constant wind.
+
+        Parameters
+        ----------
+        velocity : sequence of 3 floats, optional
+            Of the air in world axes, m/s; None leaves the flight as it is.
+        """
+        if velocity is None:
+            return self
+        model, tags = add_wind(self.model, velocity)
+        return replace(self, model=model, parameters={**self.parameters, **tags})
 
     def commanded(self, commands: CommandsLike) -> FlightPlan:
         """Make the same flight under other commands.

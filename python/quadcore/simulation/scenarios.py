@@ -151,6 +151,30 @@ class Scenario:
             raise
 
 
+def add_wind(model: Model, velocity: Sequence[float]) -> Tuple[Model, Dict[str, str]]:
+    """Let a constant wind blow on a vehicle.
+
+    Parameters
+    ----------
+    model
+        The vehicle.
+    velocity
+        Of the air in world axes, m/s.
+
+    Returns
+    -------
+    tuple
+        The model with a plugin ``wind``, unless it has one, and values by ``PLUGIN.TAG``.
+    """
+    text = " ".join(repr(float(part)) for part in velocity)
+    names, end = _plugins_and_end(model.document.text)
+    if "wind" in names:
+        return model, {"wind.velocity": text}
+    wind = Addition("wind", "libwind_plugin.so", 1, [Tag("velocity", text, 1)])
+    document = _with_plugins(model.document, end, [wind], "--wind")
+    return read_model(document, list(model.passed_over.ignored)), {}
+
+
 def read(scenario: Union[str, Path, Scenario, None]) -> Optional[Scenario]:
     """Read a scenario, unless it is read already; None for `NONE`."""
     if scenario is None or isinstance(scenario, Scenario):

@@ -97,7 +97,7 @@ class Cases(Sequence[Case]):
         scenario: Any = options.scenario
         world: Any = options.world
         changes = options.parameters, options.xacro_args, options.ignore
-        self.variation = Variation(models, design, *changes, scenario)
+        self.variation = Variation(models, design, *changes, scenario, options.wind)
         if not isinstance(world, World):
             world = read_world(world, options.ignore)
         everything = [*self.variation.models, world, *self.variation.worlds.values()]
@@ -234,6 +234,7 @@ class Cases(Sequence[Case]):
             "dt": step,
             "log_every": self.steps_per_row(step),
             "spawn": None if spawn is None else [float(value) for value in spawn],
+            "wind": None if options.wind is None else [float(value) for value in options.wind],
             "controller_rate": options.controller_rate,
             "delay": options.delay,
             "set": dict(self.variation.set),

@@ -14,6 +14,7 @@ from ..control.keywords import ReferenceName
 from ..control.references import ReferenceLike
 from ..simulation.flight_plan import FlightPlan
 from ..support.arguments import brief
+from ..support.user_code import names_file
 from ..support.values import SPAWN, pose
 
 Controllers = Union[ControllerLike, Mapping[str, ControllerLike], Sequence[ControllerLike]]
@@ -148,9 +149,9 @@ def make_reference(thing: Any) -> Any:
 
 
 def names_user_code(thing: Any) -> bool:
-    """Whether a text names a module of the user's own."""
-    return (
-        isinstance(thing, str) and ":" in thing and thing.partition(":")[0] not in controllers.NAMES
+    """Whether a text names a module or a file of the user's own."""
+    return isinstance(thing, str) and (
+        names_file(thing) or (":" in thing and thing.partition(":")[0] not in controllers.NAMES)
     )
 
 

@@ -1,7 +1,7 @@
 """The options that all studies share.
 
 Each option is defined here once. The Python functions take it as a keyword argument, the commands
-as ``--FLAG``, and files of options as ``FLAG: VALUE``; `--help` and docstrings are made of it.
+as ``--FLAG``, and files of options as ``FLAG: VALUE``. Help texts and docstrings are made from it.
 """
 
 from __future__ import annotations
@@ -40,25 +40,37 @@ Progress = Callable[[int, int], None]
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 SPAWNED = "{:g},{:g},{:g}".format(*SPAWN)
-"""Where a flight begins by default, as --spawn takes it."""
+"""Default start position, as --spawn takes it."""
+
+VEHICLE, FLIGHT, CONTROLLER, STUDY, OUTPUT = GROUPS = (
+    "vehicle and world",
+    "flight",
+    "controller",
+    "study",
+    "output",
+)
+"""Headings under which `--help` lists options, in this order."""
 
 
 class OptionInfo(NamedTuple):
     """How an option is written, read, checked and explained."""
 
+    group: str
+    """One of `GROUPS`."""
     flag: str
     """Name on the command line; "" for an option of the Python functions only."""
     metavar: str
     meaning: str
     read: Callable[[str], Any]
-    """Reader of the command line's text."""
+    """Reads the text of the command line."""
     kind: Kind
     without: str
-    """Effect of leaving the option out, "" if the default value says it."""
+    """Default in words, "" if the default value is clear."""
     repeats: bool
 
 
 def _describe(
+    group: str,
     flag: str,
     metavar: str,
     meaning: str,
@@ -67,7 +79,7 @@ def _describe(
     without: str = "",
     repeats: bool = False,
 ) -> Dict[str, OptionInfo]:
-    return {"about": OptionInfo(flag, metavar, meaning, read, kind, without, repeats)}
+    return {"about": OptionInfo(group, flag, metavar, meaning, read, kind, without, repeats)}
 
 
 @dataclass(frozen=True)
@@ -81,74 +93,81 @@ class Options:
     """
 
     parameters: Optional[Mapping[str, Value]] = field(default=None, metadata=_describe(
-        "set", "PLUGIN.TAG=VALUE",
-        "other values of plugin tags, or of LINK.mass, LINK.ixx ... LINK.izz, xacro.ARG",
+        VEHICLE, "set", "PLUGIN.TAG=VALUE",
+        "value of a plugin tag, or of LINK.mass, LINK.ixx ... LINK.izz, xacro.ARG",
         parse.assignment(r"([^=]+\.[^.=]+)=(.+)", "PLUGIN.TAG=VALUE"),
         arguments.OPTIONS["parameters"], repeats=True,
     ))  # fmt: skip
     xacro_args: Optional[Mapping[str, object]] = field(default=None, metadata=_describe(
-        "xacro", "ARG:=VALUE", "arguments of the xacro file",
+        VEHICLE, "xacro", "ARG:=VALUE", "argument of the xacro file",
         parse.assignment(r"([^:=]+):=(.*)", "ARG:=VALUE"),
         arguments.OPTIONS["xacro_args"], repeats=True,
     ))  # fmt: skip
     ignore: Sequence[str] = field(default=(), metadata=_describe(
-        "ignore", "NAME",
-        "foreign plugins (name or file name), elements, or models of the world to leave out",
+        VEHICLE, "ignore", "NAME",
+        "foreign plugin (name or file name), element, or model of the world to ignore",
         kind=arguments.OPTIONS["ignore"], repeats=True,
     ))  # fmt: skip
     world: Union[str, Path, None] = field(default=None, metadata=_describe(
-        "world", "FILE",
-        f"world file, or a shipped world: {', '.join(resources.shipped('worlds'))}",
+        VEHICLE, "world", "FILE",
+        f"world file, or a built-in world: {', '.join(resources.shipped('worlds'))}",
         kind=arguments.ANY, without="empty",
     ))  # fmt: skip
     dt: Optional[float] = field(default=None, metadata=_describe(
-        "dt", "S", "step in s", parse.positive,
+        FLIGHT, "dt", "S", "step in seconds", parse.positive,
         arguments.OPTIONS["dt"], "the world's",
     ))  # fmt: skip
     scenario: Optional[Names] = field(default=None, metadata=_describe(
-        "scenario", "A,B",
-        "disturbances and faults, files or shipped: "
+        FLIGHT, "scenario", "A,B",
+        "scenario files or built-in scenarios of disturbances and faults: "
         + ", ".join([NONE, *resources.shipped("config/scenarios")]),
         parse.names, without=NONE,
     ))  # fmt: skip
+    wind: Optional[Sequence[float]] = field(default=None, metadata=_describe(
+        FLIGHT, "wind", "X,Y,Z", "constant wind in m/s, world axes", parse.vector,
+        arguments.or_none(arguments.VECTOR), "that of the world, model and scenario",
+    ))  # fmt: skip
     seed: int = field(
         default=0,
-        metadata=_describe("seed", "N", "first seed of all noise", parse.integer(0, 2**64 - 1)),
+        metadata=_describe(
+            FLIGHT, "seed", "N", "first seed of the noise", parse.integer(0, 2**64 - 1)
+        ),
     )
     seeds: int = field(default=1, metadata=_describe(
-        "seeds", "N", "number of seeds, counted from the first on",
-        parse.integer(1), arguments.COUNT,
+        STUDY, "seeds", "N", "number of consecutive seeds", parse.integer(1), arguments.COUNT,
     ))  # fmt: skip
     duration: float = field(
         default=10.0,
-        metadata=_describe("duration", "S", "time to fly in s", parse.positive, arguments.SECONDS),
+        metadata=_describe(
+            FLIGHT, "duration", "S", "simulated time in seconds", parse.positive, arguments.SECONDS
+        ),
     )
     spawn: Optional[Sequence[Number]] = field(default=None, metadata=_describe(
-        "spawn", "X,Y,Z[,ROLL,PITCH,YAW]", "start pose of the frame in m and rad",
+        FLIGHT, "spawn", "X,Y,Z[,ROLL,PITCH,YAW]", "start pose of the frame link in m and rad",
         parse.pose, without="on the reference",
     ))  # fmt: skip
     log_every: Optional[int] = field(default=None, metadata=_describe(
-        "log-every", "N", "steps from one logged or measured row to the next",
-        parse.integer(1), without="each hundredth of a second",
+        OUTPUT, "log-every", "N", "steps per logged and evaluated row",
+        parse.integer(1), without="one row per 0.01 s",
     ))  # fmt: skip
     controller_rate: Optional[float] = field(default=None, metadata=_describe(
-        "controller-rate", "HZ", "calls of the controller per second",
+        CONTROLLER, "controller-rate", "HZ", "controller calls per simulated second",
         parse.positive, without="the controller's, else 500",
     ))  # fmt: skip
     delay: Optional[float] = field(default=None, metadata=_describe(
-        "delay", "S", "actuation delay in s", parse.not_negative,
+        CONTROLLER, "delay", "S", "actuation delay in seconds", parse.not_negative,
         without="the controller's, else 0",
     ))  # fmt: skip
     time_limit: float = field(default=300.0, metadata=_describe(
-        "time-limit", "S", "limit of the wall clock for one flight in s",
+        STUDY, "time-limit", "S", "wall-clock limit per flight in seconds",
         parse.positive, arguments.LIMIT,
     ))  # fmt: skip
     processes: Optional[int] = field(default=None, metadata=_describe(
-        "jobs", "N", "processes", parse.integer(1),
+        STUDY, "jobs", "N", "number of processes", parse.integer(1),
         arguments.or_none(arguments.COUNT), "one per core",
     ))  # fmt: skip
     progress: Optional[Progress] = field(default=None, metadata=_describe(
-        "", "", "function that is called as progress(done, total)",
+        STUDY, "", "", "function called as progress(done, total)",
         kind=arguments.or_none(arguments.PROGRESS), without="none",
     ))  # fmt: skip
 
@@ -166,6 +185,7 @@ class Keywords(TypedDict, total=False):
     world: Union[str, Path, None]
     dt: Optional[float]
     scenario: Optional[Names]
+    wind: Optional[Sequence[float]]
     seed: int
     seeds: int
     duration: float
@@ -179,12 +199,12 @@ class Keywords(TypedDict, total=False):
 
 
 def change_option(name: str, **parts: Any) -> Dict[str, OptionInfo]:
-    """Describe an option again, some parts otherwise."""
+    """Describe an option again with some parts replaced."""
     return {"about": describe_options(Options)[name]._replace(**parts)}
 
 
 def describe_options(kind: Type[Options]) -> Dict[str, OptionInfo]:
-    """Give the description of each option, by name."""
+    """Return the description of each option, by name."""
     return {each.name: each.metadata["about"] for each in fields(kind)}
 
 
@@ -203,8 +223,7 @@ class CompareOptions(Options):
         default=1, metadata=change_option("log_every", kind=arguments.COUNT, without="")
     )
     spawn: Optional[Sequence[Number]] = field(
-        default=None,
-        metadata=change_option("spawn", without=f"{SPAWNED}; with a reference, on that"),
+        default=None, metadata=change_option("spawn", without=f"{SPAWNED}, or on the reference")
     )
 
 
@@ -214,7 +233,7 @@ class SweepOptions(Options):
 
     spawn: Optional[Sequence[Number]] = field(
         default=None,
-        metadata=change_option("spawn", without=f"on the reference; with --commands {SPAWNED}"),
+        metadata=change_option("spawn", without=f"on the reference, or {SPAWNED} with --commands"),
     )
 
 
@@ -236,7 +255,7 @@ def explain(about: OptionInfo, default: Any) -> str:
     """Write meaning and default of an option in one line."""
     plain = f"{default:g}" if isinstance(default, float) else str(default)
     without = about.without or ("" if default in (None, ()) else plain)
-    return f"{about.meaning} ({without})" if without else about.meaning
+    return f"{about.meaning} (default: {without})" if without else about.meaning
 
 
 def accept_options(kind: Type[Options], **own: Kind) -> Callable[[Function], Function]:
@@ -273,13 +292,13 @@ def accept_options(kind: Type[Options], **own: Kind) -> Callable[[Function], Fun
             for each in fields(kind)
         ]
         call.__signature__ = signature.replace(parameters=[*named, *options])  # type: ignore[attr-defined]
-        call.__doc__ = (function.__doc__ or "").replace("    **options\n", _document_options(kind))
+        call.__doc__ = (function.__doc__ or "").replace("    **options\n", _paragraphs(kind))
         return call  # type: ignore[return-value]
 
     return decorate
 
 
-def _document_options(kind: Type[Options]) -> str:
+def _paragraphs(kind: Type[Options]) -> str:
     """Write the options as a docstring's parameters."""
     lines = []
     for each in fields(kind):

@@ -9,7 +9,7 @@ import os
 import threading
 import time
 from pathlib import Path
-from typing import Any, Callable, Iterable, Iterator, List, Mapping, Optional, Set
+from typing import Any, Callable, Iterator, List, Mapping, Optional, Sequence, Set
 
 from .._core import InputError
 from ..support import interrupts
@@ -26,7 +26,9 @@ _held_lock = threading.Lock()
 
 
 @contextlib.contextmanager
-def output_folder(folder: Optional[Path], names: Iterable[str] = ()) -> Iterator[None]:
+def output_folder(
+    folder: Optional[Path], names: Sequence[str] = (), document: str = ""
+) -> Iterator[None]:
     """Make a folder for files of these names, and keep other studies from it until the end.
 
     Parameters
@@ -35,16 +37,27 @@ def output_folder(folder: Optional[Path], names: Iterable[str] = ()) -> Iterator
         None keeps nothing.
     names
         Files that must be writable.
+    document
+        The one of these files that only the same study writes. Without it in the folder, the
+        others are taken to be somebody else's. "": nothing is taken to be.
 
     Raises
     ------
     InputError
-        The folder cannot be made, a file cannot be written, or another study writes there.
+        The folder cannot be made, a file cannot be written or is somebody else's, or another study
+        writes there.
     """
     if folder is None:
         yield
         return
     prepare_folder(folder, names)
+    if document and not os.path.lexists(folder / document):
+        for name in names:
+            if os.path.lexists(folder / name):
+                raise InputError(
+                    f"{folder / name}: was not written by this command. Move it, or name "
+                    "another folder."
+                )
     real = os.path.realpath(folder)
     with _held_lock:
         if real in _held:

@@ -33,6 +33,8 @@ class Variation:
         As for `Simulation`.
     scenario
         Of all flights whose point names none.
+    wind
+        Velocity of a constant wind in all flights, m/s.
     """
 
     def __init__(
@@ -43,11 +45,13 @@ class Variation:
         xacro_args: Optional[Mapping[str, object]],
         ignore: Sequence[str],
         scenario: Union[str, Path, Scenario, None],
+        wind: Optional[Sequence[float]] = None,
     ) -> None:
         arguments, given = without_xacro(parameters, xacro_args)
         self.arguments = arguments
         self.set = {key: text_of(value) for key, value in given.items()}
         """Values that all flights have, by ``PLUGIN.TAG``, ``LINK.mass`` or the like."""
+        self._wind = wind
         self._read = lru_cache(_READ)(
             lambda i, varied: read_model(models[i], {**arguments, **dict(varied)}, ignore)
         )
@@ -79,7 +83,7 @@ class Variation:
         read = self._read(model, tuple(varied.items()))
         check_names(read, parameters)
         plan = replace(plan, **changed, model=read, parameters=tags)
-        return plan.befallen(self.scenarios[point.get("scenario")])
+        return plan.befallen(self.scenarios[point.get("scenario")]).with_wind(self._wind)
 
 
 def pick_controller_values(point: Mapping[str, str]) -> Dict[str, float]:

@@ -138,6 +138,13 @@ LAG: Kind = (
     lambda value: isinstance(value, Real) and 0 <= float(value) <= 10,
     "seconds, from 0 to 10",
 )
+VECTOR: Kind = (
+    lambda value: (
+        _is_lasting(value)
+        and [isinstance(x, Real) and math.isfinite(x) for x in value] == [True] * 3
+    ),
+    "three numbers",
+)
 LIMIT: Kind = (_is_limit, f"seconds, more than 0 and at most {_LONGEST:g}")
 WHOLE: Kind = (_is_whole, "a whole number")
 COUNT: Kind = (_is_count, "a whole number from 1 on")

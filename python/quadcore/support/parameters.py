@@ -76,7 +76,11 @@ def keyword_signature(
     return signature.replace(parameters=[*own, *named])
 
 
+_CLOSE = 0.7  # of difflib's measure, from 0 to 1
+
+
 def did_you_mean(name: str, known: Sequence[str]) -> str:
-    """Name the nearest of those that there are, if one is near."""
-    near = difflib.get_close_matches(name, known, 1)
-    return f" (did you mean '{near[0]}')" if near else ""
+    """Suggest the closest known name, if one is close; dashes of options do not count."""
+    bare = {each.lstrip("-"): each for each in known}
+    near = difflib.get_close_matches(name.lstrip("-"), bare, 1, _CLOSE)
+    return f" (did you mean '{bare[near[0]]}')" if near else ""

@@ -100,8 +100,17 @@ def integer(lowest: int, highest: int = 10**18) -> Callable[[str], int]:
 
 
 def pose(text: str) -> tuple[float, ...]:
-    """Read ``x,y,z[,roll,pitch,yaw]``."""
-    values = tuple(finite(part) for part in text.split(","))
-    if len(values) not in (3, 6):
-        raise argparse.ArgumentTypeError(f"'{text}' is not of the form x,y,z[,roll,pitch,yaw]")
+    """Read ``x,y,z[,roll,pitch,yaw]``, with commas or spaces between."""
+    return _numbers(text, "x,y,z[,roll,pitch,yaw]", (3, 6))
+
+
+def vector(text: str) -> tuple[float, ...]:
+    """Read ``x,y,z``, with commas or spaces between."""
+    return _numbers(text, "x,y,z", (3,))
+
+
+def _numbers(text: str, form: str, counts: Sequence[int]) -> tuple[float, ...]:
+    values = tuple(finite(part) for part in re.split(r"\s*,\s*|\s+", text.strip()))
+    if len(values) not in counts:
+        raise argparse.ArgumentTypeError(f"'{text}' is not of the form {form}")
     return values

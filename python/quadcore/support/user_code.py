@@ -1,64 +1,144 @@
-"""Controllers of the user's own, by the name of their module."""
+"""Controllers in modules and files of the user."""
 
 from __future__ import annotations
 
 import importlib
+import importlib.util
 import inspect
 import os
 import sys
 import traceback
-from contextlib import suppress
-from typing import Any
+from contextlib import contextmanager
+from pathlib import Path
+from types import ModuleType
+from typing import Any, Callable, Iterator, List, Tuple
 
 from .._core import InputError
+from .input_files import check_regular
+
+_FORM = "controller(t, state, reference)"
+
+
+def names_file(text: str) -> bool:
+    """Whether a text is ``FILE.py`` or ``FILE.py:NAME``."""
+    return _split(text)[0].endswith(".py")
 
 
 def import_controller(text: str) -> Any:
-    """Bring in a controller.
+    """Import a controller.
 
     Parameters
     ----------
     text
-        ``MODULE:NAME``: a class, which is made without arguments, or what can be called as a
-        controller. The module is looked for in the working folder, too.
+        ``MODULE:NAME``, ``FILE.py:NAME`` or ``FILE.py``: a class, which is made without arguments,
+        or an object that can be called as a controller. Modules in the working folder are found. A
+        file without NAME must define one class with a method ``__call__``, or one function.
 
     Raises
     ------
     InputError
-        No such module or name, or one of them fails.
+        If there is no such module, file or name, or its code fails.
     """
-    module, _, name = text.partition(":")
-    here = os.getcwd()
-    sys.path.insert(0, here)
+    place, name = _split(text)
+    is_file = place.endswith(".py")
+    if is_file:
+        check_regular(Path(place))
+    find = _find_in_file if is_file else _find_in_module
+    folder = os.path.dirname(os.path.realpath(place)) if is_file else os.getcwd()
     try:
-        found = getattr(importlib.import_module(module), name)
-        controller = found() if inspect.isclass(found) else found
+        with _importing_from(folder):
+            found = find(text, place, name)
+            controller = found() if inspect.isclass(found) else found
+    except (InputError, KeyboardInterrupt, MemoryError):
+        raise
+    except BaseException as error:  # SystemExit, too
+        raise _describe_failure(text, error) from error
+    if not callable(controller):
+        raise InputError(f"controller '{text}': it cannot be called as {_FORM}")
+    return controller
+
+
+def _split(text: str) -> Tuple[str, str]:
+    """Split ``MODULE:NAME``; NAME is "" if it is not given."""
+    if text.endswith(".py"):
+        return text, ""
+    place, _, name = text.rpartition(":")
+    return place, name
+
+
+def _find_in_module(text: str, module: str, name: str) -> Any:
+    try:
+        return getattr(importlib.import_module(module), name)
     except ModuleNotFoundError as error:
         if not f"{module}.".startswith(f"{error.name}."):
-            raise _failed(text, error) from error
+            raise
         raise InputError(
             f"controller '{text}': there is no module '{module}' here or on PYTHONPATH"
         ) from error
     except AttributeError as error:
         if module not in sys.modules or hasattr(sys.modules[module], name):
-            raise _failed(text, error) from error
+            raise
         raise InputError(f"controller '{text}': module '{module}' has no '{name}'") from error
-    except (KeyboardInterrupt, MemoryError):
-        raise
-    except BaseException as error:  # SystemExit, too
-        raise _failed(text, error) from error
+
+
+def _find_in_file(text: str, file: str, name: str) -> Any:
+    module = _import_file(file)
+    if name:
+        if not hasattr(module, name):
+            raise InputError(f"controller '{text}': {file} has no '{name}'")
+        return getattr(module, name)
+    own = [x for x in vars(module).values() if getattr(x, "__module__", "") == module.__name__]
+    classes = [x for x in own if inspect.isclass(x) and _defines_call(x)]
+    found: List[Any] = classes or [x for x in own if inspect.isfunction(x) and _takes_three(x)]
+    if len(found) != 1:
+        names = ", ".join(f"{file}:{each.__name__}" for each in found)
+        what = f"Name one: {names}." if found else f"Define a class or function {_FORM}."
+        raise InputError(f"controller '{text}': {file} has {len(found)} controllers. {what}")
+    return found[0]
+
+
+def _defines_call(kind: type) -> bool:
+    return any("__call__" in vars(base) for base in kind.__mro__)
+
+
+def _takes_three(function: Callable[..., Any]) -> bool:
+    try:
+        inspect.signature(function).bind(0.0, None, None)
+    except TypeError:
+        return False
+    return not function.__name__.startswith("_")
+
+
+def _import_file(file: str) -> ModuleType:
+    """Import a file, unless that was done."""
+    path = os.path.realpath(file)
+    name = f"quadcore controller {path}"  # hides no module of another name
+    if name not in sys.modules:
+        spec = importlib.util.spec_from_file_location(name, path)
+        assert spec is not None and spec.loader is not None  # as the suffix is .py
+        module = importlib.util.module_from_spec(spec)
+        sys.modules[name] = module  # dataclasses look their module up
+        try:
+            spec.loader.exec_module(module)
+        except BaseException:
+            del sys.modules[name]
+            raise
+    return sys.modules[name]
+
+
+@contextmanager
+def _importing_from(folder: str) -> Iterator[None]:
+    """Find modules in a folder first."""
+    sys.path.insert(0, folder)
+    try:
+        yield
     finally:
-        with suppress(ValueError):  # the module may have seen to it itself
-            sys.path.remove(here)
-    if not callable(controller):
-        raise InputError(
-            f"controller '{text}': it cannot be called as controller(t, state, reference)"
-        )
-    return controller
+        if folder in sys.path:  # the module may have removed it
+            sys.path.remove(folder)
 
 
 def describe_error(error: BaseException) -> str:
-    """Say in one line what was raised, and where."""
+    """Describe in one line what was raised, and where."""
     if isinstance(error, SyntaxError) and error.filename:
         kind, reason, file, line = type(error).__name__, error.msg, error.filename, error.lineno
     else:
@@ -67,5 +147,5 @@ def describe_error(error: BaseException) -> str:
     return " ".join(f"{kind}: {reason}".split()) + f" ({file}:{line})"
 
 
-def _failed(text: str, error: BaseException) -> InputError:
+def _describe_failure(text: str, error: BaseException) -> InputError:
     return InputError(f"controller '{text}': {describe_error(error)}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional
 
@@ -15,7 +16,7 @@ from . import plots as sweep_plots
 from .plan import AnyPlan
 from .repeat_command import write_command
 from .sensitivity import compute_sensitivities, list_combinations
-from .sweep import TABLE
+from .sweep import PARQUET, TABLE
 
 FILES = (TABLE, "sweep.json", "report.html")
 
@@ -81,6 +82,16 @@ def write(plan: AnyPlan, columns: Columns, folder: Path, measure: str, plots: bo
         plots=[{"name": name, "data": data} for name, data in images.items()],
     )
     return [folder / TABLE, *written, page]
+
+
+def remove_sweep(folder: Path) -> None:
+    """Remove the files of an earlier sweep that was finished; an unfinished one is kept."""
+    if not (folder / "sweep.json").exists():
+        return
+    remove_plots(folder, "sweep.json", sweep_plots.NAMES.__contains__)
+    for name in (*FILES, PARQUET):
+        with contextlib.suppress(OSError):
+            (folder / name).unlink()
 
 
 def count_rows(plan: AnyPlan, columns: Columns) -> str:

@@ -35,6 +35,8 @@ def write_command(plan: AnyPlan, row: int) -> Optional[str]:
     flags.update(seed=plan.seeds[case.seed], duration=told["duration"], dt=plan.options.dt)
     if told["spawn"] is not None:
         flags["spawn"] = ",".join(map(repr, told["spawn"]))
+    if told["wind"] is not None:
+        flags["wind"] = ",".join(map(repr, told["wind"]))
     words = ["quadcore", "run", plan.models[case.model]]
     words += [f"--{name}={_format(value)}" for name, value in flags.items() if value is not None]
     words += [f"--xacro={name}:={value}" for name, value in told["xacro"].items()]

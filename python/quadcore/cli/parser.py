@@ -1,0 +1,85 @@
+"""The argument parser of ``quadcore`` and its commands."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+import textwrap
+from typing import Any, Callable, NoReturn, Sequence
+
+from .._core import InputError
+from ..studies.options import GROUPS
+from ..support.parameters import did_you_mean
+
+
+class Parser(argparse.ArgumentParser):
+    """Raises `InputError` for a wrong option, as for any other wrong input."""
+
+    def error(self, message: str) -> NoReturn:  # noqa: D102
+        raise InputError(f"{message}; see {self.prog} --help")
+
+    def parse_known_args(self, *given: Any, **named: Any) -> Any:  # type: ignore[override]  # noqa: D102
+        read, unknown = super().parse_known_args(*given, **named)
+        if unknown:  # reported by the command, not by the parser of all commands
+            options = [word.partition("=")[0] for word in unknown if word.startswith("-")]
+            near = did_you_mean(options[0], list(self._option_string_actions)) if options else ""
+            self.error(f"unrecognized arguments: {' '.join(unknown)}{near}")
+        return read, unknown
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        try:
+            super()._check_value(action, value)
+        except argparse.ArgumentError as error:
+            near = did_you_mean(str(value), [str(choice) for choice in action.choices or ()])
+            raise argparse.ArgumentError(action, f"{error.message}{near}") from None
+
+    def exit(self, status: int = 0, message: str | None = None) -> NoReturn:  # noqa: D102
+        sys.stdout.flush()  # reports a full disk while that is still possible
+        super().exit(status, message)
+
+
+def add_command(
+    commands: Any, name: str, summary: str, action: Callable[..., None], example: str
+) -> Any:
+    """Add a command, and return its parser.
+
+    Parameters
+    ----------
+    commands
+        Subparsers of ``quadcore``.
+    name
+        Name of the command.
+    summary
+        One sentence.
+    action
+        Called with the parsed arguments.
+    example
+        One command line or more, with which the help ends.
+    """
+    lines = textwrap.dedent(example).strip()
+    heading = "examples" if "\nquadcore" in lines else "example"
+    parser = commands.add_parser(
+        name,
+        help=summary[0].lower() + summary[1:].rstrip("."),
+        description=summary,
+        epilog=f"{heading}:\n{textwrap.indent(lines, '  ')}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    # "-1,0,10" is a value; argparse takes it for an option unless it looks like a number.
+    parser._negative_number_matcher = re.compile(r"^-[\d.]")
+    parser.set_defaults(action=action)
+    for title in GROUPS:
+        parser.add_argument_group(title)
+    return parser
+
+
+def find_group(parser: argparse.ArgumentParser, title: str) -> Any:
+    """Return the group of a command's options that has a title."""
+    return next(group for group in parser._action_groups if group.title == title)
+
+
+def complete_from(action: argparse.Action, names: Sequence[str]) -> None:
+    """Let a shell complete an argument by names; files are completed if none of these fits."""
+    action.completer = lambda **_: list(names)  # type: ignore[attr-defined]

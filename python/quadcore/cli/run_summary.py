@@ -1,0 +1,105 @@
+"""The result of one flight, as values and as lines of a summary."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any, Dict, List, Optional, Tuple
+
+import numpy as np
+
+from ..simulation.controller_pilot import Guided
+from ..simulation.flight_plan import FlightPlan
+from ..simulation.recording import TAIL, Errors, Fastest
+from ..simulation.simulation import Simulation
+from ..simulation.trajectory import is_slow, per_command
+from ..support.rotation import roll_pitch_yaw
+
+
+def summarize(
+    arguments: argparse.Namespace,
+    plan: FlightPlan,
+    simulation: Simulation,
+    fastest: Fastest,
+    elapsed: float,
+    pilot: Optional[Guided],
+    errors: Optional[Errors],
+) -> Dict[str, Any]:
+    """Collect the result in plain values, by name."""
+    steps = round(simulation.time / simulation.dt)
+    size = per_command(simulation)
+    result: Dict[str, Any] = {
+        "model": simulation.model.name,
+        "engine": simulation.engine,
+        "duration": simulation.time,
+        "steps": steps,
+        "steps_per_second": steps / elapsed,
+        "final_position": _round(simulation.state.position, 9),
+        "final_roll_pitch_yaw": _round(np.degrees(roll_pitch_yaw(simulation.state.orientation)), 7),
+        "max_rotor_speed": float(fastest.speed),
+    }
+    if is_slow(size):
+        result["max_rotor_speed_commanded"] = float(fastest.speed / size)
+    counts = [
+        simulation.topic(name)["steps"]
+        for name, topic in simulation.topics.items()
+        if topic.kind == "saturation"
+    ]
+    if counts:
+        result["saturated_steps"] = int(max(counts))
+    if pilot is not None and errors is not None:
+        result.update(
+            controller=arguments.controller,
+            controller_rate=float(pilot.rate),
+            delay=float(pilot.delay),
+            reference=arguments.reference or "hover at the spawn",
+            starts_on_reference=plan.on_reference,
+            max_error=errors.max,
+            final_error=errors.final,
+            rms_error=errors.rms,
+            saturated_updates=pilot.saturated,
+            updates=pilot.updates,
+        )
+    return result
+
+
+def describe_result(result: Dict[str, Any]) -> List[Tuple[str, str]]:
+    """Write the result as lines of a name and a text."""
+    commanded = ""
+    if "max_rotor_speed_commanded" in result:
+        commanded = f" (commanded {result['max_rotor_speed_commanded']:.1f} rad/s)"
+    rows = [
+        ("model", result["model"]),
+        ("engine", result["engine"]),
+        ("duration", f"{result['duration']:.9g} s"),
+        ("steps", f"{result['steps']}, {result['steps_per_second']:,.0f} per s with logging"),
+        ("final position", f"{_join_numbers(result['final_position'], 6)} m"),
+        ("final roll, pitch, yaw", f"{_join_numbers(result['final_roll_pitch_yaw'], 4)} deg"),
+        ("max rotor speed", f"{result['max_rotor_speed']:.3f} rad/s{commanded}"),
+    ]
+    if "saturated_steps" in result:
+        rows.append(("saturated steps", str(result["saturated_steps"])))
+    if "controller" in result:
+        rows += _describe_control(result)
+    return rows
+
+
+def _describe_control(result: Dict[str, Any]) -> List[Tuple[str, str]]:
+    start = ", start in its full state" if result["starts_on_reference"] else ""
+    late = f", {result['final_error']:.4g} m (last {TAIL:g} s)" if result["duration"] > TAIL else ""
+    timing = f"{result['controller_rate']:g} Hz, delay {result['delay']:g} s"
+    return [
+        ("controller", f"{result['controller']}, {timing}"),
+        ("reference", f"{result['reference']}{start}"),
+        ("max error", f"{result['max_error']:.4g} m (whole flight){late}"),
+        ("RMS error", f"{result['rms_error']:.4g} m"),
+        ("saturated updates", f"{result['saturated_updates']} of {result['updates']}"),
+    ]
+
+
+def _round(values: Any, digits: int) -> List[float]:
+    # Rounded before -0 becomes 0.
+    return [round(float(value), digits) + 0.0 for value in values]
+
+
+def _join_numbers(values: List[float], digits: int) -> str:
+    return ", ".join(f"{value:.{digits}f}" for value in _round(values, digits))
