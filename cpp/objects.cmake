@@ -1,3 +1,19 @@
+# A build lists the objects of its targets in the folder "objects" of its build folder. Another build,
+# configured with QUADCORE_OBJECTS_OF=<that build folder>, links them instead of compiling them again.
+# Both must have the same sources and options. A static core takes only the lanes from a shared one.
+
+# quadcore_list_objects(VARIABLE TARGET) stores the objects that stand for TARGET in VARIABLE.
+function(quadcore_list_objects variable target)
+  if(QUADCORE_OBJECTS_OF AND (BUILD_SHARED_LIBS OR target MATCHES "_lanes[1248]$"))
+    file(STRINGS ${QUADCORE_OBJECTS_OF}/objects/${target} objects)
+    set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON)
+  else()
+    set(objects $<FILTER:$<TARGET_OBJECTS:${target}>,EXCLUDE,[.]gch>)  # no precompiled header
+    file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/objects/${target} CONTENT "$<JOIN:${objects},\n>\n")
+  endif()
+  set(${variable} ${objects} PARENT_SCOPE)
+endfunction()
+
 # quadcore_add_objects(NAME SOURCE...) makes a library of one folder, whose objects become part of
 # libquadcore. That folder is the include root of its headers. Link the libraries below it, as
 # CONTRIBUTING.md orders them, and no others: then an include that points upwards does not compile.
@@ -9,5 +25,7 @@ function(quadcore_add_objects name)
   if(BUILD_SHARED_LIBS AND CMAKE_CXX_COMPILER_ID MATCHES Clang)
     set_target_properties(${name} PROPERTIES CXX_VISIBILITY_PRESET default)
   endif()
-  set_property(GLOBAL APPEND PROPERTY quadcore_objects $<TARGET_OBJECTS:${name}>)
+  quadcore_precompile(${name})
+  quadcore_list_objects(objects ${name})
+  set_property(GLOBAL APPEND PROPERTY quadcore_objects ${objects})
 endfunction()
