@@ -20,7 +20,7 @@ def hover():
         ({"measures": ["failure"]}, "two columns 'failure'"),
         ({"measures": 3}, "measures is 3; give a name, or several"),
         ({"vary": {"a": None}}, "give a mapping of names to lists of values"),
-        ({"controllers": "pd"}, "a function is called in the place of flights"),
+        ({"controllers": "pd"}, "function replaces flights"),
         ({"vary": {"a": "uniform:0:1"}, "samples": 10**12}, "at most 1000000 rows are swept"),
         ({"vary": {"a": "uniform:0:1"}, "samples": 1, "design": "saltelli"}, "at least 2"),
         ({"executor": 3}, "executor is 3; give what has submit()"),

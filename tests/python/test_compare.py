@@ -268,7 +268,7 @@ def test_a_flight_to_compare_with_that_is_none_or_fails_is_said(capsys):
     assert main(["compare", "toy.urdf", *FLIGHT, *vary, "--against", "3"]) == 2
     assert capsys.readouterr().err == "error: --against 3: there are only 2 flights\n"
     assert main(["compare", "toy.urdf", *FLIGHT, *vary, "--against", "2"]) == 2
-    assert "error: no. 2, to compare the others with, is refused: " in capsys.readouterr().err
+    assert "error: baseline no. 2 is invalid: " in capsys.readouterr().err
     assert main(["compare", "toy.urdf", *FLIGHT, *vary, "--against", "1", "--out", "out"]) == 3
     assert json.loads(Path("out/comparison.json").read_text())["against"] == 1
     Path("fast.csv").write_text("t,w1\n0,400\n0.05,9000\n")
@@ -276,7 +276,7 @@ def test_a_flight_to_compare_with_that_is_none_or_fails_is_said(capsys):
     diverging += ["--engine", "ode"]  # which limits a turn
     unslowed = [f"--set={name}=1" for name in SLOW.split(",")]
     assert main(["compare", "toy.urdf", *diverging, *unslowed]) == 3
-    assert "error: no. 2, to compare the others with, failed: " in capsys.readouterr().err
+    assert "error: baseline no. 2 failed: " in capsys.readouterr().err
 
 
 def test_vehicles_are_compared_with_one_of_more_rotors():

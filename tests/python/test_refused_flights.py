@@ -88,7 +88,7 @@ LATE = "the flight failed at t = 0.060000 s: step(): a run is flying this simula
         (
             f"compare quadrotor --against 2 --vary engine=eigen,ode --controller flies:Late "
             f"{SPIRAL}",
-            f"no. 2, to compare the others with, failed: {LATE}",
+            f"baseline no. 2 failed: {LATE}",
         ),
         (
             f"evaluate --controller flies:Late {SPIRAL} --seeds 2",

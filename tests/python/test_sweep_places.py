@@ -233,7 +233,10 @@ def test_a_cluster_may_lose_workers_gain_some_and_be_lost_itself():
             started[0].kill()
             _, error = sweeping.communicate(timeout=LONG)
     assert sweeping.returncode == 2
-    assert error.count("\n") == 1 and "the scheduler is gone; the rows so far are kept" in error
+    assert (
+        error.count("\n") == 1
+        and "the connection to the scheduler is lost. The completed rows are kept" in error
+    )
     sweep(out="out", resume=True, **MANY)
     assert lines("out") == lines("here")
 

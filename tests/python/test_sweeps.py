@@ -222,7 +222,7 @@ def test_parquet_holds_what_the_csv_holds(tmp_path):
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["--reference", "circle"], "nothing to fly: name --controller, or --commands"),
+        (["--reference", "circle"], "no controller is given. Add --controller or --commands."),
         ([*SHORT, "--vary", "a.b=uniform:1:2"], "vary a.b: is drawn; say how many --samples"),
         ([*SHORT, "--samples", "3"], "samples is 3 but no axis is drawn; vary one as uniform:"),
         ([*SHORT, "--vary", "a.b=normal:1", "--samples", "3"],

@@ -1,7 +1,7 @@
-"""What every study of many flights is made of.
+"""Studies of many flights: evaluation, comparison, sweep, tuning and fit.
 
-`axes` span a grid of what is varied, a `variation` makes a `FlightPlan` of each of its points,
-`control` says what commands it, the `executor` flies them within a `time_limit`, `metrics`
-measures how far they are apart, and a `table` is what is kept. Comparison, evaluation, sweeps and
-validation say what to fly and what to tell.
+`axes` and `design` define the points, `variation` makes a `FlightPlan` of each point,
+`control_setup` adds controllers and references, and `cases` combines all of them. The `executor`
+runs the flights within a `time_limit`. `tracking_metrics` and `flight_differences` evaluate them,
+and `table` writes the results.
 """

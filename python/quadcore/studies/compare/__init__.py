@@ -1,4 +1,4 @@
-"""The same flight under many models and parameters, and how the flights differ."""
+"""Comparison of one flight under different models and parameters."""
 
 from .compare import compare
 from .model_differences import Difference

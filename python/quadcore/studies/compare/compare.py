@@ -1,4 +1,4 @@
-"""Flying all cases of a plan and measuring how each differs from the first."""
+"""Flights of a comparison and their differences from the baseline."""
 
 from __future__ import annotations
 
@@ -42,8 +42,7 @@ _LARGEST_LOGS = 2 * 2**30  # bytes
     against=arguments.or_none(arguments.WHOLE),
     reference=(
         lambda value: value is None or isinstance(value, str) or callable(value),
-        "where to fly: a name, or a function that is called as reference(t); the row that the "
-        "others are compared with is `against`",
+        "a reference name, or a function that is called as reference(t); `against` is the baseline",
     ),
 )
 def compare(
@@ -59,44 +58,43 @@ def compare(
     wrenches: bool = False,
     **options: Unpack[Keywords],
 ) -> Comparison:
-    """Fly the same flight with several models or parameters, in parallel.
+    """Simulate the same flight with several models or parameters, in parallel.
 
     Parameters
     ----------
     models
-        One or several models: files or names of shipped ones.
+        One or several models: files or names of built-in models.
     vary
-        Values by ``"PLUGIN.TAG"``, ``"LINK.mass"`` or the like, or ``"xacro.ARG"`` (several, joined
-        by commas, take the same value), ``"engine"``, ``"world"``, ``"scenario"`` or
-        ``"controller.KEY"``. All combinations are flown; the last axis runs fastest.
+        Values by ``"PLUGIN.TAG"``, ``"LINK.mass"`` (or another value of a link), ``"xacro.ARG"``,
+        ``"engine"``, ``"world"``, ``"scenario"`` or ``"controller.KEY"``. Tags joined by commas
+        take the same value. All combinations are simulated; the last axis varies fastest.
     commands, engine, wrenches
         As for `Simulation` and `Simulation.run`.
     controller, reference
-        As for `Simulation.run`: each flight is guided, and begins on the reference unless `spawn`
-        is given. Without a reference it hovers at the spawn.
+        As for `Simulation.run`. Flights start on the reference unless `spawn` is given. Without a
+        reference the vehicle hovers at the spawn.
     against
-        Row of the table that all others are compared with; None: the first that flies.
+        Row of the baseline; None: the first row that succeeds.
     logs
-        Whether to keep them.
+        Whether to keep the logs.
     **options
 
     Returns
     -------
     Comparison
-        The same whatever the number of processes: flights of a controller or reference that is none
-        of quadcore's have processes of their own, which begin as this one is when they begin.
+        Results that do not depend on the number of processes. Flights of user-defined controllers
+        or references run in separate forked processes.
 
     Raises
     ------
     InputError
-        Nothing was flown: too many cases, logs that would take more than 2 GiB, an unreadable
-        file, an unknown tag, models with different numbers of rotors under the same commands, or
-        a law that can fly none of them. A case that fails by itself is a row of the table with
-        its reason instead.
+        If there are too many cases, the logs exceed 2 GiB, a file cannot be read, a tag does not
+        exist, the models need different commands, or the controller supports none of the models.
+        No flight has run. A single invalid case is a row with its failure instead.
     FlightError
-        The flight to compare the others with failed.
+        If the baseline given by `against` fails.
     KeyboardInterrupt
-        With the attribute `comparison`, whose missing rows say so.
+        With the attribute `comparison`, in which the missing rows are marked.
     """
     shared = CompareOptions(**options)
     timing = shared.controller_rate, shared.delay
@@ -114,19 +112,19 @@ def fly_plan(
     progress: Optional[Progress] = None,
     against: Optional[int] = None,
 ) -> Comparison:
-    """Fly a plan.
+    """Simulate all flights of a plan.
 
     Parameters
     ----------
     plan
-        What to fly.
+        Flights to simulate.
     keep
-        Called as keep(row, log) in the process that flew; what it returns stands in for the log.
+        Called as keep(row, log) in the process of the flight; its result replaces the log.
     progress, against
         As for `compare`.
     """
     if against is not None and not 0 <= against < len(plan):
-        raise InputError(f"against is {against}; give a row from 0 to {len(plan) - 1}")
+        raise InputError(f"against is {against}. Give a row from 0 to {len(plan) - 1}.")
     tally = Tally(plan, keep, progress)
     rows = list(range(len(plan)))
     if against is not None:
@@ -154,14 +152,11 @@ def fly_plan(
 
 
 def _fly_first(plan: Plan, rows: List[int], tally: Tally, wanted: Optional[int]) -> Optional[Log]:
-    """Take rows until one flies, which all later ones are compared with.
-
-    One that is wanted must.
-    """
+    """Simulate rows until one succeeds, the baseline; a row that is wanted must succeed."""
     outcomes: List[Union[Log, QuadcoreError]] = []
     while rows:
         row = rows.pop(0)
-        # In a process too: what crashes there does not end the comparison.
+        # In a child process, so that a crash does not end the comparison.
         run_contained(plan.fly, [plan[row]], lambda _, outcome: outcomes.append(outcome), 1)
         log = outcomes.pop()
         if isinstance(log, Log):
@@ -171,8 +166,8 @@ def _fly_first(plan: Plan, rows: List[int], tally: Tally, wanted: Optional[int])
             return log
         if wanted is not None:
             if isinstance(log, InputError):
-                raise InputError(f"no. {row + 1}, to compare the others with, is refused: {log}")
-            raise FlightError(f"no. {row + 1}, to compare the others with, failed: {log}")
+                raise InputError(f"baseline no. {row + 1} is invalid: {log}")
+            raise FlightError(f"baseline no. {row + 1} failed: {log}")
         tally.add_outcome(row, log)
     return None
 
@@ -182,11 +177,11 @@ def _keep(row: int, found: Measured, log: Log, keep: Optional[Keep]) -> Outcome:
 
 
 def _check_memory(plan: Plan) -> None:
-    """Refuse logs that could not be held: better now than when the machine swaps."""
+    """Raise `InputError` if the logs would need too much memory."""
     rows = plan.options.duration / plan.dt / plan.steps_per_row(plan.dt)
     size = len(plan) * rows * (14 + plan.rotor_count) * 8
     if size > _LARGEST_LOGS:
         raise InputError(
-            f"the logs of {len(plan)} flights take {size / 2**30:.0f} GiB; give logs=False, or a "
-            "larger log_every"
+            f"the logs of {len(plan)} flights need {size / 2**30:.0f} GiB. Give logs=False or a "
+            "larger log_every."
         )

@@ -1,4 +1,4 @@
-"""What differs between two models, as their files write it."""
+"""Differences between the files of two models."""
 
 from __future__ import annotations
 
@@ -7,48 +7,46 @@ from xml.parsers import expat
 
 from ..._core import Document
 
-# They are looked at only.
-_UNFLOWN = ("visual", "material")
+_IGNORED = ("visual", "material")
 ABSENT = "absent"
 
 
 class Difference(NamedTuple):
-    """One number, name or element that two models do not share."""
+    """A value or element in which two models differ."""
 
     what: str
-    """``PLUGIN.TAG``, or the path of an element or attribute: ``link frame/inertial/mass value``.
-    """
+    """``PLUGIN.TAG`` or the path of an element or attribute: ``link frame/inertial/mass value``."""
     before: str
     after: str
     before_at: str
-    """``FILE:LINE``; "" where `before` is absent."""
+    """``FILE:LINE``; "" if `before` is absent."""
     after_at: str
 
 
 class Fact(NamedTuple):
-    """What one tag or attribute of a model says."""
+    """Value of a tag or attribute of a model."""
 
     text: str
     at: str
     """``FILE:LINE``"""
     within: Optional[str]
-    """The fact, if any, without which this one is none: the link, joint or plugin."""
+    """Enclosing link, joint or plugin, if any."""
 
 
 def list_facts(document: Document) -> Dict[str, Fact]:
-    """Everything in a model that may influence a flight, by name, in the file's order."""
+    """List everything in a model that may affect a flight, by name, in the order of the file."""
     found: Dict[str, Fact] = {}
     for element in _parse(document).children:
         if element.tag == "gazebo":
             for child in element.children:
                 _add(found, child)
-        elif element.tag not in _UNFLOWN:
+        elif element.tag not in _IGNORED:
             _add(found, element)
     return found
 
 
 def compare_documents(before: Document, after: Document) -> List[Difference]:
-    """List what two models do not share; numbers are compared as numbers."""
+    """List the differences between two models; numbers are compared as numbers."""
     old, new = list_facts(before), list_facts(after)
     rows = []
     for what in {**old, **new}:
@@ -60,7 +58,7 @@ def compare_documents(before: Document, after: Document) -> List[Difference]:
         fact, other = (a, new) if a is not None else (b, old)
         assert fact is not None
         if fact.within is not None and fact.within not in other:
-            continue  # told by that line
+            continue  # the enclosing element is listed
         present = fact.text or "present"
         if a is not None:
             rows.append(Difference(what, present, ABSENT, fact.at, ""))
@@ -77,7 +75,7 @@ class _Element:
 
 
 def _parse(document: Document) -> _Element:
-    # Not by xml_source: a model that flies may use prefixes that it does not declare.
+    # Not with xml_source: models may use undeclared prefixes.
     parser = expat.ParserCreate()
     top = _Element("", {}, "")
     stack = [top]
@@ -100,7 +98,7 @@ def _parse(document: Document) -> _Element:
 
 
 def _add(found: Dict[str, Fact], element: _Element) -> None:
-    """Add a link, joint, plugin or any other element of the top, and all that is in it."""
+    """Add a top-level element and its contents."""
     attributes = dict(element.attributes)
     name = f"{element.tag} {attributes.pop('name', '')}".strip()
     main = attributes.pop({"plugin": "filename", "joint": "type"}.get(element.tag, ""), "")
@@ -121,7 +119,7 @@ def _add_inner(
         found[f"{name} {key}"] = Fact(" ".join(value.split()), element.at, within)
     seen: Dict[str, int] = {}
     for child in element.children:
-        if child.tag in _UNFLOWN:
+        if child.tag in _IGNORED:
             continue
         seen[child.tag] = seen.get(child.tag, 0) + 1
         path = prefix + child.tag + (f"[{seen[child.tag]}]" if seen[child.tag] > 1 else "")
@@ -132,7 +130,7 @@ def _add_inner(
 
 
 def _compare_joint_order(old: Dict[str, Fact], new: Dict[str, Fact]) -> List[Difference]:
-    """Tell if joints both have come in another order, because that numbers the rotors."""
+    """List a different order of the joints, which numbers the rotors."""
     a = [name for name in old if name.startswith("joint ") and old[name].within is None]
     b = [name for name in new if name.startswith("joint ") and new[name].within is None]
     a, b = [name for name in a if name in b], [name for name in b if name in a]

@@ -1,4 +1,4 @@
-"""The flights of a comparison: everything read and checked before the first takes off."""
+"""Flights of a comparison, checked before the first one starts."""
 
 from __future__ import annotations
 
@@ -25,24 +25,24 @@ from ..time_limit import time_limit
 from .model_differences import Difference, compare_documents, list_facts
 
 LARGEST = 100_000
-"""Variants of one comparison."""
+"""Maximum number of variants of a comparison."""
 
 
 class Plan(Cases):
-    """Variants of one flight: models x points x seeds.
+    """Variants of one flight: models, points and seeds.
 
     Parameters
     ----------
     models, vary, engine, options, commands, wrenches
         As for `compare`.
     control
-        One controller and one reference, or none.
+        One controller and one reference, or neither.
 
     Raises
     ------
     InputError
-        Too many variants, a model, world or commands file that cannot be read, an unknown tag or
-        engine, or models that cannot share the commands.
+        If there are too many variants, a file cannot be read, a tag or engine does not exist, or
+        the models need different commands.
     """
 
     def __init__(
@@ -59,7 +59,7 @@ class Plan(Cases):
         design = Design(vary)
         self.axes = design.listed
         if commands is not None and control.is_closed_loop:
-            raise InputError("a flight takes commands or a controller; give one of them")
+            raise InputError("both commands and a controller are given. Give one of them.")
         _check_size(len(models), self.axes)
         known = [name for name, _ in list_engines()]
         for name in design.values("engine"):
@@ -69,7 +69,7 @@ class Plan(Cases):
         built = self._build_models()
         first = next(iter(built.values()), None)
         self.dt = 1e-3 if first is None else first.dt
-        """s, of the first model as it is."""
+        """Step of the first model, s."""
         check_logged(options.duration, self.dt, self.steps_per_row(self.dt))
         self._check_tags(built.values())
         self._check_guidance(built)
@@ -80,7 +80,7 @@ class Plan(Cases):
             self.set_commands(commands, [width] * len(models))
 
     def fly(self, case: Case) -> Log:
-        """Fly a variant; raises what building or flying it raises."""
+        """Simulate a variant; errors pass through."""
         with time_limit(self.options.time_limit):
             flight = self.make_plan(case)
             simulation = flight.simulation()
@@ -88,7 +88,7 @@ class Plan(Cases):
                 return flight.flown_by(simulation)
 
     def make_label(self, case: Case) -> str:
-        """Name of a variant for a person: what sets it apart from the others."""
+        """Label a variant by the values that differ among the variants."""
         parts = [self.models[case.model]] if len(self.models) > 1 else []
         for axis, value in zip(self.axes, self.design[case.point].values()):
             if len(axis.values) > 1 or not parts:
@@ -98,7 +98,7 @@ class Plan(Cases):
         return ", ".join(parts) or self.models[case.model]
 
     def compare_models(self) -> Dict[str, List[Difference]]:
-        """List what sets each model's file apart from the first's, by name of the model."""
+        """List the differences of each model's file from the first one, by model."""
         first, *others = self.variation.models
         return {
             name: compare_documents(first.document, model.document)
@@ -106,13 +106,13 @@ class Plan(Cases):
         }
 
     def format_written_value(self, axis: Axis) -> str:
-        """Tell what the first model's file gives an axis' tags, and where; "" for none."""
+        """Format the values that the tags of an axis have in the first model, with their places."""
         written = list_facts(self.variation.models[0].document)
         found = [written[tag] for tag in axis.tags if tag in written]
         return "; ".join(f"{fact.text} ({fact.at})" for fact in found)
 
     def _build_models(self) -> Dict[int, Simulation]:
-        """Build the models as they are; one that cannot be is a variant that will fail."""
+        """Build the unchanged models; an invalid one becomes a failed variant."""
         built = {}
         scenario = {name: value for name, value in self.design[0].items() if name == "scenario"}
         for model in range(len(self.models)):
@@ -139,7 +139,7 @@ class Plan(Cases):
                         raise InputError(f"vary {tag}: it is set as well; keep one")
 
     def _check_guidance(self, built: Mapping[int, Simulation]) -> None:
-        """Raise `InputError` if the controller can start on none of some models."""
+        """Raise `InputError` if the controller can start on none of the models."""
         refused = []
         for model, vehicle in built.items():
             try:
@@ -154,7 +154,7 @@ class Plan(Cases):
             if len(model.joints) != self.rotor_count:
                 raise InputError(
                     f"{name}: has {len(model.joints)} rotors, {self.models[0]} has "
-                    f"{self.rotor_count}; the same commands cannot fly both"
+                    f"{self.rotor_count}. Compare models with the same number of rotors."
                 )
 
 
@@ -163,13 +163,13 @@ def _check_size(models: int, axes: Sequence[Axis]) -> None:
     if math.prod(sizes) > LARGEST:
         product = " x ".join(str(size) for size in sizes if size > 1)
         raise InputError(
-            f"vary: {product} makes {math.prod(sizes)} flights; at most {LARGEST} are compared at "
-            "once"
+            f"vary: {product} are {math.prod(sizes)} flights, more than {LARGEST}. Vary fewer "
+            "values."
         )
 
 
 def _shorten(value: str) -> str:
-    """Leave out digits that a label has no room for."""
+    """Shorten a number for a label."""
     try:
         return f"{float(value):.4g}" if len(value) > 8 else value
     except ValueError:

@@ -1,4 +1,4 @@
-"""What is known of the flights of a comparison, while they fly and afterwards."""
+"""Results of a comparison."""
 
 from __future__ import annotations
 
@@ -29,30 +29,30 @@ from .plan import Plan
 Progress = Callable[[int, int], None]
 Keep = Callable[[int, Log], Any]
 Measured = Tuple[Sequence[float], np.ndarray]
-"""Root of the mean square and largest of the distance to the reference; and `metrics`."""
+"""RMS and maximum tracking error, m, and the result of `compute_final_and_max`."""
 Outcome = Tuple[Measured, Any]
 
 
 class Comparison(NamedTuple):
-    """What became of the flights.
+    """Results of a comparison.
 
     Attributes
     ----------
     table : ndarray
-        Structured, a row per variant: ``model``, each axis, ``failure`` ("" if it flew), of guided
-        flights ``rms_error`` and ``max_error``, the distance to the reference [m], and
-        ``final_STATE`` and ``max_STATE`` for each of `states`, NaN where it did not fly.
+        Structured array, a row per variant: ``model``, each axis, and ``failure`` ("" for success).
+        With a controller, ``rms_error`` and ``max_error``, the tracking error (m). ``final_STATE``
+        and ``max_STATE`` for each of `states`, NaN after a failure.
     logs : list
-        `Log` of each variant, None where it did not fly; empty if logs were not asked for.
+        `Log` of each variant, None after a failure; empty without logs.
     states : dict of str to str
-        Unit of each state that is compared, by name. ``position``, ``velocity`` and ``rates`` are
-        lengths of difference vectors, ``attitude`` is the angle between both.
+        Unit of each compared state, by name. ``position``, ``velocity`` and ``rates`` are norms of
+        difference vectors, ``attitude`` is the angle between both attitudes.
     against : int or None
-        Row that all others are compared with: the one asked for, or the first that flew.
+        Row of the baseline.
     differences : dict of str to list of Difference
-        What each further model's file differs in from the first's.
+        Differences of each further model's file from the first model's file.
     refused : int
-        How many of those that failed were bad input, and never flew.
+        Number of variants with invalid input, which did not run.
     """
 
     table: np.ndarray
@@ -81,13 +81,13 @@ class Comparison(NamedTuple):
 
 
 def measure(plan: Plan, against: Log, log: Log) -> Measured:
-    """Measure a flight by its reference, and by the flight that all are compared with."""
+    """Compute the tracking error of a flight and its difference from the baseline."""
     away = compute_errors(log) if plan.control.is_closed_loop else np.array([np.nan])
     return compute_rms_and_max(away), compute_final_and_max(against, log)
 
 
 class Tally:
-    """What is known of the flights so far."""
+    """Results so far."""
 
     def __init__(self, plan: Plan, keep: Optional[Keep], progress: Optional[Progress]) -> None:
         self.keep = keep
@@ -101,12 +101,12 @@ class Tally:
         self._kept: List[Any] = [] if keep is None else [None] * len(plan)
 
     def set_baseline(self, row: int, log: Log) -> None:
-        """Take the flight that the others are compared with."""
+        """Set the baseline."""
         self.against = row
         self._allocate(log.rotor_velocity.shape[1])
 
     def add_outcome(self, row: int, outcome: Union[Outcome, QuadcoreError]) -> None:
-        """Take what became of a flight."""
+        """Add the outcome of a flight."""
         if isinstance(outcome, QuadcoreError):
             self._failures[row] = str(outcome)
             self._refused += isinstance(outcome, InputError)
@@ -120,7 +120,7 @@ class Tally:
             self._progress(self.done, len(self._plan))
 
     def make_comparison(self) -> Comparison:
-        """Tell it all."""
+        """Return the results."""
         plan = self._plan
         points = [plan.design[case.point] for case in plan]
         columns: Dict[str, Any] = {
@@ -153,7 +153,7 @@ class Tally:
 
 
 def _convert_numbers(values: Sequence[str]) -> np.ndarray:
-    """Numbers if all are, else texts."""
+    """Convert texts to numbers if all are numbers."""
     try:
         return np.array([float(value) for value in values])
     except ValueError:

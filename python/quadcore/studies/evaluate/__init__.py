@@ -1,6 +1,5 @@
-"""How well controllers fly: every combination of what flies, measured, with intervals and margins.
+"""Evaluation of controllers: tracking metrics, confidence intervals and margins.
 
-`plan` says what is flown, `flights` flies one, `measures` and `step_response` look at it,
-`intervals` sums over seeds, `robustness` searches for what a controller forgives, and `evaluate`
-puts that together; `output` and `pictures` tell it.
+`plan` lists the flights, `evaluate` runs them, `seed_statistics` and `intervals` summarise the
+seeds, `margins` searches for gain and delay margins, and `output` and `plots` write the results.
 """

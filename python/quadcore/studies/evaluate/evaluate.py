@@ -1,4 +1,4 @@
-"""Flying all cases of a plan and drawing the sums."""
+"""Evaluation of a plan: flights, statistics, margins."""
 
 from __future__ import annotations
 
@@ -44,28 +44,28 @@ from .trial import Trial
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-_DRAWN = 60  # flights of which enough is kept to draw them
+_DRAWN = 60  # flights with logs for plots and animations
 
 
 class Evaluation(NamedTuple):
-    """What became of the flights.
+    """Results of an evaluation.
 
     Attributes
     ----------
     table : list of dict
-        A row per flight: controller, reference, engine, model, scenario, seed, failure ("" if it
-        flew) and each of the measures, NaN where it failed.
+        Row per flight: controller, reference, engine, model, scenario, seed, failure ("" for
+        success) and each metric, NaN after a failure.
     groups : list of dict
-        A row per combination, over its seeds: flights, not_flown and failure_rate; of those that
-        flew, for each of `JUDGED`, mean and interval (low, high); cvar, in which who failed counts
-        as infinite; and the mean difference from the first controller under the same seeds, with
-        its interval.
+        Row per combination, over its seeds: flights, not_flown and failure_rate. For each of
+        `JUDGED`, mean and interval (low, high) of the successful flights, and cvar, in which a
+        failure counts as infinite. Also the mean difference from the first controller, paired by
+        seed, with its interval.
     margins : list of dict
-        A row per controller if they were searched, see `robustness`.
+        Row per controller, empty without a search; see `evaluate.margins`.
     poles : list of dict
-        Of the cascaded laws in hover, for each axis, see `poles`; whose, and on what.
+        Row per axis of each cascaded controller in hover; see `compute_poles`.
     outcomes : sequence of Outcome
-        What is known of each flight; of the first seed of some combinations, enough to draw it.
+        Outcome of each flight. Those of the first seed contain a log, for at most 60 combinations.
     """
 
     table: List[Dict[str, Any]]
@@ -76,7 +76,7 @@ class Evaluation(NamedTuple):
 
     @property
     def drawn(self) -> Dict[int, Outcome]:
-        """What can be drawn, by row of the table."""
+        """Outcomes with a log, by row of the table."""
         return {row: outcome for row, outcome in enumerate(self.outcomes) if outcome.log}
 
     def __repr__(self) -> str:
@@ -108,39 +108,39 @@ def evaluate(
     margins: bool = False,
     **options: Unpack[Keywords],
 ) -> Evaluation:
-    """Fly controllers along references, and measure how well they do.
+    """Measure the tracking error of controllers along references.
 
     Parameters
     ----------
     controllers
-        Names of laws, ``LAW:KEY=VALUE,...``, files of gains, ``MODULE:CLASS``, or objects as
-        `Simulation.run` takes them; or a mapping of labels to these.
+        Controller names, ``NAME:KEY=VALUE,...``, gains files, ``MODULE:CLASS``, or objects as for
+        `Simulation.run`; or a mapping of labels to these.
     references
-        Names as on the command line, or of `quadcore.references`; or a mapping of labels.
+        Names as on the command line, objects of `quadcore.references`, or a mapping of labels to
+        these.
     engines, models
-        Names of one or several; default: "eigen" and "quadrotor".
+        One or several names (default: "eigen", "quadrotor").
     engine
         One engine, instead of `engines`.
     vary
-        Values by ``"PLUGIN.TAG"``, ``"world"``, ``"scenario"`` or ``"controller.KEY"``, KEY being
-        ``rate``, ``delay`` or a parameter of a law: conditions, of which all combinations fly.
+        Conditions by ``"PLUGIN.TAG"``, ``"world"``, ``"scenario"`` or ``"controller.KEY"``. KEY is
+        ``rate``, ``delay`` or a parameter of the controller. All combinations are simulated.
     margins
-        Whether to search for gain and delay margins, see `robustness`.
+        Whether to search for gain and delay margins.
     **options
 
     Returns
     -------
     Evaluation
-        But for the seconds the same whatever the number of processes: flights of a controller or
-        reference that is none of quadcore's have processes of their own, which begin as this one
-        is when they begin.
+        Results that do not depend on the number of processes, except for the measured durations.
+        Flights of user-defined controllers or references run in separate forked processes.
 
     Raises
     ------
     InputError
-        Nothing was flown.
+        If an argument is invalid; no flight has run.
     KeyboardInterrupt
-        With the attribute `evaluation`, whose missing rows say so.
+        With the attribute `evaluation`, in which the missing rows are marked.
     """
     shared = EvaluateOptions(**options)
     names = choose_engines(engine, engines), arguments.several(models)
@@ -149,7 +149,7 @@ def evaluate(
 
 
 def fly_plan(plan: Plan, progress: Optional[Progress] = None, margins: bool = False) -> Evaluation:
-    """Fly a plan; parameters as for `evaluate`."""
+    """Simulate all flights of a plan; parameters as for `evaluate`."""
     flights = _Flights(plan, progress, margins)
     try:
         flights.fly()
@@ -160,7 +160,7 @@ def fly_plan(plan: Plan, progress: Optional[Progress] = None, margins: bool = Fa
 
 
 class _Flights:
-    """The flights of an evaluation, and what is known of them so far."""
+    """Flights of an evaluation and their outcomes so far."""
 
     def __init__(self, plan: Plan, progress: Optional[Progress], margins: bool) -> None:
         self._plan, self._progress = plan, progress
@@ -174,7 +174,7 @@ class _Flights:
         self._poles = _compute_poles(plan)
 
     def fly(self) -> None:
-        """Fly all cases, then what the searches ask for."""
+        """Simulate all cases, then the trials of the margin search."""
         plan = self._plan
         self._fly_all(
             [partial(plan.make_plan, case) for case in plan], self._outcomes, _pick_drawn(plan)
@@ -183,7 +183,7 @@ class _Flights:
             self._searches.run(self._fly_trials)
 
     def make_evaluation(self) -> Evaluation:
-        """Sum up the flights so far."""
+        """Summarise the flights so far."""
         plan, outcomes = self._plan, self._outcomes
         names = [plan.name_case(case) for case in plan]
         return Evaluation(
@@ -208,7 +208,7 @@ class _Flights:
         outcomes: List[Outcome],
         drawn: Collection[int] = (),
     ) -> None:
-        """Fly what some functions describe; of the flights that are `drawn` the log is kept."""
+        """Simulate flights; those in `drawn` keep their logs."""
         options = self._plan.options
         expected = len(self._plan) + (self._searches.expected if self._searches else 0)
         total = max(self._done + len(flights), expected)
@@ -229,11 +229,11 @@ class _Flights:
 
 
 def _compute_poles(plan: Plan) -> List[Dict[str, Any]]:
-    """Find the poles of the laws that have some, on each model in the first scenario."""
+    """Compute the poles of all cascaded controllers on each model in the first scenario."""
     rows: List[Dict[str, Any]] = []
     for names, flight in plan.list_built_in_flights():
         if has_poles(flight.controller):
-            with suppress(QuadcoreError):  # a vehicle that chapter 2 cannot describe
+            with suppress(QuadcoreError):  # chapter 2 cannot describe every vehicle
                 found = compute_poles(
                     flight.controller, replace(flight, on_reference=False).simulation()
                 )
@@ -242,6 +242,6 @@ def _compute_poles(plan: Plan) -> List[Dict[str, Any]]:
 
 
 def _pick_drawn(plan: Plan) -> Set[int]:
-    """Choose the rows to draw: of first seeds, all or evenly many."""
+    """Return the rows to draw: first seeds, at most `_DRAWN` of them, evenly spaced."""
     firsts = range(0, len(plan), len(plan.seeds))
     return {firsts[i] for i in pick_evenly(len(firsts), _DRAWN)}

@@ -1,4 +1,4 @@
-"""How sure a mean over seeds is: bootstrap intervals, paired by seed where two are compared."""
+"""Bootstrap intervals and conditional value at risk of means over seeds."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ import numpy as np
 RESAMPLES = 2000
 CONFIDENCE = 0.95
 WORST = 0.1
-"""Part of the seeds whose mean is the conditional value at risk."""
+"""Share of the worst seeds; their mean is the conditional value at risk."""
 
 
 def compute_interval(values: np.ndarray) -> Tuple[float, float]:
-    """Percentile-bootstrap interval of the mean; NaN for fewer than two values.
+    """Return the percentile-bootstrap interval of the mean; NaN for fewer than two values.
 
-    For a difference of two controllers give the differences seed by seed: that pairs them.
+    To compare two controllers, pass the differences for each seed.
     """
     if len(values) < 2:
         return math.nan, math.nan
@@ -28,13 +28,13 @@ def compute_interval(values: np.ndarray) -> Tuple[float, float]:
 
 @lru_cache(maxsize=4)
 def _resample(count: int) -> np.ndarray:
-    # Of a seed of its own, so that the same values have the same interval wherever they stand.
+    # A fixed seed: equal values have equal intervals.
     picks: np.ndarray = np.random.default_rng(0).integers(count, size=(RESAMPLES, count))
     return picks
 
 
 def compute_cvar(values: np.ndarray) -> float:
-    """Conditional value at risk: the mean of the worst tenth, of at least one value."""
+    """Return the conditional value at risk: the mean of the worst tenth, at least of one value."""
     if len(values) == 0:
         return math.nan
     count = max(1, math.ceil(WORST * len(values) - 1e-9))

@@ -1,8 +1,8 @@
-"""How much a controller forgives: margins by search, a sweep of its rate, a box of wrong beliefs.
+"""Margins of a controller: gain, delay, update rate, and model errors.
 
-A controller believes in the vehicle as it is described, and flies one whose rotors push harder,
-whose air resists more, or whose motors lag longer: a law of quadcore has the described one as its
-belief, one of one's own is told of it by its reset(). So what is forgiven means the same for all.
+The controller has the nominal model of the vehicle, while thrust, drag and motor lag of the
+simulated vehicle are scaled. Built-in controllers receive the nominal model directly, user-defined
+ones in `reset`.
 """
 
 from __future__ import annotations
@@ -33,17 +33,17 @@ from .trial import Trial
 LARGEST_GAIN = 10.0
 LARGEST_DELAY = 0.5  # s
 ENDS = {"gain_low": 1 / LARGEST_GAIN, "gain_high": LARGEST_GAIN, "delay_margin": LARGEST_DELAY}
-"""Where a search ends: a margin of this value is at least so large."""
+"""Ends of the search range; a margin at an end may exceed it."""
 RATES = (1000.0, 500.0, 250.0, 125.0, 100.0, 50.0, 25.0)  # 1/s
 BOX = {"thrust": 0.1, "drag": 0.5, "lag": 0.3}
-"""By how much beliefs may be wrong, as part of the right value; the corners are flown, too."""
+"""Relative model errors: the corners of this box and random points inside are simulated."""
 
 NAMES = (*ENDS, *(f"rms_at_{rate:g}_Hz" for rate in RATES), "box_median", "box_worst")
 
-_STEPS = 7  # of each bisection: 2 % of a gain, 1 % of the range of the delay
-_SAMPLES = 16  # in the box
+_STEPS = 7  # per bisection: 2 % of a gain, 1 % of the range of the delay
+_SAMPLES = 16  # random points in the box
 _FIRST_DELAY = 0.004  # s
-_TRIALS = 60  # of a controller, about
+_TRIALS = 60  # per controller, about
 _METRIC = "rms_position"
 
 Found = Dict[str, float]
@@ -52,14 +52,14 @@ Fly = Callable[[List[Trial]], List[Outcome]]
 
 
 class MarginSearch:
-    """What is to be found out about controllers: on the first of everything else.
+    """Search for the margins of controllers, on the first reference, engine, model and scenario.
 
     Parameters
     ----------
     controllers
-        Names.
+        Names of the controllers.
     lacking
-        What no tag of the vehicle says, see `trial.lacking`: it cannot be varied.
+        Effects that no tag of the vehicle scales; see `list_missing_effects`.
     """
 
     def __init__(self, controllers: Sequence[str], lacking: Collection[str]) -> None:
@@ -72,11 +72,11 @@ class MarginSearch:
 
     @property
     def expected(self) -> int:
-        """About how many flights that will be."""
+        """Approximate number of flights."""
         return _TRIALS * len(self._rows)
 
     def run(self, fly: Fly) -> None:
-        """Make all searches side by side; `fly` flies what they ask for next."""
+        """Run all searches in parallel; `fly` simulates the trials of each round."""
         running: List[Tuple[int, Search]] = []
         as_it_is = self._fly_new(fly, [Trial(row) for row in range(len(self._rows))])
         for trial, outcome in as_it_is.items():
@@ -92,7 +92,7 @@ class MarginSearch:
             self._rows[row]["failure"] = ""
 
     def list_rows(self) -> List[Dict[str, Any]]:
-        """Give a row per controller: `NAMES`, and the reason where nothing could be found."""
+        """Return a row per controller: `NAMES`, and the failure that prevented a search."""
         return [dict(row) for row in self._rows]
 
     def _fly_new(self, fly: Fly, trials: Sequence[Trial]) -> Mapping[Trial, Outcome]:
@@ -109,7 +109,7 @@ class MarginSearch:
 
 
 def _search_gain(own: Trial) -> Search:
-    """Find the factors on thrust and torque of all rotors between which it is not lost."""
+    """Find the range of scaling of thrust and torque without failure."""
 
     def at(logarithm: float) -> Trial:
         return own._replace(thrust=math.exp(logarithm))
@@ -132,7 +132,7 @@ def _bisect(at: Callable[[float], Trial], good: float, bad: float) -> Generator[
 
 
 def _search_delay(own: Trial) -> Search:
-    """Find the largest delay besides the controller's own with which the vehicle is not lost, s."""
+    """Find the maximum additional delay without failure, s."""
 
     def at(delay: float) -> Trial:
         return own._replace(delay=delay)
@@ -146,18 +146,18 @@ def _search_delay(own: Trial) -> Search:
 
 
 def _sweep_rates(own: Trial) -> Search:
-    """Error at each rate; NaN where the vehicle is lost."""
+    """Find the error at each update rate; NaN after a failure."""
     outcomes = yield [own._replace(rate=rate) for rate in RATES]
     return {f"rms_at_{r:g}_Hz": o.measures[_METRIC] for r, o in zip(RATES, outcomes)}
 
 
 def _sample_model_errors(own: Trial) -> Search:
-    """Worst and median error over wrong beliefs; the worst is infinite if a vehicle is lost."""
+    """Find worst and median error under model errors; the worst is infinite after a failure."""
     corners = list(itertools.product(*((1 - part, 1 + part) for part in BOX.values())))
     inside = np.random.default_rng(0).uniform(-1, 1, (_SAMPLES, len(BOX)))
     points = [*corners, *(1 + inside * np.array(list(BOX.values()))).tolist()]
     outcomes = yield [
-        own._replace(**{name: 1 / believed for name, believed in zip(BOX, point)})
+        own._replace(**{name: 1 / modelled for name, modelled in zip(BOX, point)})
         for point in points
     ]
     errors = [o.measures[_METRIC] if o.flew else math.inf for o in outcomes]
@@ -165,7 +165,7 @@ def _sample_model_errors(own: Trial) -> Search:
 
 
 class _Kind(NamedTuple):
-    """What is searched for, how, and what of the vehicle that varies."""
+    """Kind of margin: its search, and the effects of the vehicle that it scales."""
 
     name: str
     search: Callable[[Trial], Search]
@@ -181,13 +181,13 @@ _KINDS = (
 
 
 def describe_omitted(model: str, lacking: Collection[str]) -> str:
-    """Tell in one line what cannot be searched for a vehicle, and why; "" if everything can."""
+    """State in one line the margins that cannot be searched; "" if all can."""
     left_out = [kind.name for kind in _KINDS if kind.varies & set(lacking)]
     if not left_out:
         return ""
     verb = "is" if len(left_out) == 1 else "are"
     return (
-        f"margins: no tag of '{model}' says its {' and its '.join(lacking)}; "
+        f"margins: no tag of '{model}' scales its {' and its '.join(lacking)}; "
         f"{' and '.join(left_out)} {verb} not searched"
     )
 
@@ -198,7 +198,7 @@ def _try_flight(trial: Trial) -> Generator[List[Trial], List[Outcome], bool]:
 
 
 def format_margin(row: Mapping[str, Any], name: str, number: Callable[[float], str]) -> str:
-    """Write what was found; a margin at the end of its search is larger, or smaller, than that."""
+    """Format a margin; < or > marks one at an end of the search range."""
     value = row.get(name, math.nan)
     if value == ENDS.get(name):
         return f"{'<' if name == 'gain_low' else '>'} {number(value)}"

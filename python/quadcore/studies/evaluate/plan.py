@@ -1,4 +1,4 @@
-"""The flights of an evaluation: every combination of what is named."""
+"""Flights of an evaluation."""
 
 from __future__ import annotations
 
@@ -19,18 +19,17 @@ from . import margins, trial
 
 
 class Plan(Cases):
-    """Controllers x references x engines x models x scenarios x seeds, checked.
+    """Checked combinations of controllers, references, engines, models, scenarios and seeds.
 
     Parameters
     ----------
     controllers, references_, engines, models, vary, options
-        As for `evaluate`. All combinations of the values of `vary` are scenarios.
+        As for `evaluate`. Each combination of the values of `vary` is a scenario.
 
     Raises
     ------
     InputError
-        Anything that is known to be wrong before it flies, but for a controller of the user's own,
-        whose flights fail.
+        If an input is invalid. Errors of user-defined controllers only fail their flights.
     """
 
     def __init__(
@@ -58,11 +57,11 @@ class Plan(Cases):
 
     @property
     def omitted_margins(self) -> str:
-        """What is left out of the margins, and why, in one line; "" if nothing is."""
+        """Margins that cannot be searched, with the reason, in one line; "" if there are none."""
         return margins.describe_omitted(self.models[0], self.lacking)
 
     def name_case(self, case: Case) -> Dict[str, Any]:
-        """Give what a case is made of, as the first columns of the table."""
+        """Return the names of a case, the first columns of the table."""
         return {
             **self.name_sides(case),
             "scenario": self.scenarios[case.point],
@@ -70,9 +69,9 @@ class Plan(Cases):
         }
 
     def list_built_in_flights(self) -> Iterator[Tuple[Dict[str, str], FlightPlan]]:
-        """Name controller, model and engines, and describe a flight, for each law of quadcore.
+        """Yield names and a flight for each built-in controller on each model.
 
-        Engines that fly the same plugins are one.
+        Engines with the same plugins share an entry.
         """
         of_plugins = [name for name in self.engines if exerts_wrenches(name)]
         several = [of_plugins, *([name] for name in self.engines if name not in of_plugins)]
@@ -86,7 +85,7 @@ class Plan(Cases):
                         yield names, flight
 
     def list_events(self) -> Dict[str, Sequence[Event]]:
-        """Give what happens in time, by scenario."""
+        """Return the events by scenario."""
         read = self.variation.scenarios
         found = {
             name: read[each.get("scenario")] for name, each in zip(self.scenarios, self.design)
@@ -94,7 +93,7 @@ class Plan(Cases):
         return {name: scenario.events for name, scenario in found.items() if scenario is not None}
 
     def describe(self) -> Dict[str, Any]:
-        """Give what flies and how, in plain values; controllers are told by `laws`."""
+        """Return all settings except those of the controllers, as plain values."""
         return {
             "controllers": self.control.controllers,
             "references": self.control.references,

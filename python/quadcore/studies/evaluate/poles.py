@@ -1,14 +1,14 @@
-"""Poles of the cascaded laws on a vehicle in hover, from the description of both.
+"""Poles of the cascaded controllers on a vehicle in hover.
 
-Around hover the axes are apart. The rotors follow commands as 1/(tau s + 1), tau = I_R/k_p. An
-angle follows what the outer loop asks for by its PID, whose derivative acts on the measured rate,
+Around hover the axes are decoupled. The rotors follow commands as 1/(tau s + 1), tau = I_R/k_p. An
+angle follows the command of the outer loop through a PID; its derivative acts on the measured rate,
 
     phi/phi_d = (k_p s + k_i) / (s^3 (tau s + 1) + k_d s^2 + k_p s + k_i),
 
-and tilts the thrust, which moves the vehicle by the PID of the position. In yaw the air's torque
-b w^2 on the rotors acts at once, and the reaction I_R dw/dt to their spin-up besides, which chapter
-2 leaves out: together (1 - s/z), z = 2 b w_0 sim_slow / I_R. With the air's torque along the spin
-(b > 0) the zero lies on the right: the vehicle first yaws the wrong way.
+and tilts the thrust, which moves the vehicle in the loop of the position PID. In yaw, the
+aerodynamic torque b w^2 on the rotors acts together with the reaction I_R dw/dt to their
+acceleration, which chapter 2 omits: (1 - s/z), z = 2 b w_0 sim_slow / I_R. For b > 0 the zero lies
+in the right half-plane: the vehicle first yaws in the wrong direction. Rotor drag is neglected.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Polynomial = np.ndarray
 
 
 def read_gains(law: BuiltInController) -> Dict[str, float]:
-    """Read the parameters with which a law flies: its own, or else its defaults."""
+    """Return all parameters of a controller, defaults included."""
     table = next(entry[2] for entry in _core.controllers() if entry[0] == law.name)
     flags = {"true": 1.0, "false": 0.0}
     defaults = {
@@ -37,32 +37,32 @@ def read_gains(law: BuiltInController) -> Dict[str, float]:
 
 
 def has_poles(law: Any) -> bool:
-    """Whether a law is a cascade of PIDs with an inner loop that waits for the motors."""
+    """Whether a controller is a cascade of PIDs."""
     return isinstance(law, BuiltInController) and {"kp_xy", "ki_rp", "kd_yaw"} <= set(
         read_gains(law)
     )
 
 
 def compute_poles(law: BuiltInController, simulation: Simulation) -> List[Dict[str, Any]]:
-    """Find the poles of each axis.
+    """Compute the poles of each axis.
 
     Parameters
     ----------
     law
-        For which `has_poles` is true.
+        Controller for which `has_poles` is true.
     simulation
-        What it flies, the mathematical model included.
+        Vehicle and engine.
 
     Returns
     -------
     list of dict
-        For each axis: ``axis``, ``poles`` (complex, 1/s), ``zero`` (1/s, infinite without one),
-        ``stable``, and ``because``, the cause of what is not.
+        Row per axis: ``axis``, ``poles`` (complex, 1/s), ``zero`` (1/s, infinite without one),
+        ``stable``, and ``because``, the cause of instability.
 
     Raises
     ------
     InputError
-        A vehicle whose description chapter 2 cannot read.
+        If chapter 2 cannot describe the vehicle.
     """
     from ...thesis.chapter2 import Vehicle  # scipy is slow to import
 
@@ -112,7 +112,7 @@ def _explain_yaw(zero: float, without: np.ndarray) -> str:
 
 
 def _pid_polynomial(gains: Dict[str, float], axis: str) -> Polynomial:
-    """Give k_d s^2 + k_p s + k_i."""
+    """Return the coefficients of k_d s^2 + k_p s + k_i."""
     return gains["scale"] * np.array([gains[f"k{part}_{axis}"] for part in "dpi"])
 
 
@@ -129,12 +129,12 @@ def _make_row(axis: str, polynomial: Polynomial, zero: float, cause: str) -> Dic
 
 
 def _find_roots(polynomial: Polynomial) -> np.ndarray:
-    # A gain that is 0 leaves a pole at 0 that nothing excites.
+    # A gain of 0 leaves an unexcited pole at 0.
     roots: np.ndarray = np.roots(np.trim_zeros(polynomial))
     return roots
 
 
 def format_poles(row: Dict[str, Any], count: int = 3) -> str:
-    """Write the poles farthest to the right, of pairs one."""
+    """Format the rightmost poles, one of each conjugate pair."""
     shown = [pole for pole in row["poles"] if pole.imag >= 0][:count]
     return ", ".join(f"{p.real:.3g}" + (f" +- {p.imag:.3g}i" if p.imag else "") for p in shown)

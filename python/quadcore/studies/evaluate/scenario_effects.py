@@ -1,4 +1,4 @@
-"""What controllers lose in each scenario."""
+"""Effect of each scenario on the tracking error."""
 
 from __future__ import annotations
 
@@ -10,20 +10,19 @@ _WHO = ("controller", "reference", "engine", "model")
 
 
 def compute_scenario_effects(groups: Sequence[Mapping[str, Any]]) -> List[Dict[str, Any]]:
-    """Compare each combination with the same in the first scenario.
+    """Compare each combination with the same combination in the first scenario.
 
     Parameters
     ----------
     groups
-        As `Evaluation.groups`.
+        Rows of `Evaluation.groups`.
 
     Returns
     -------
     list of dict
-        A row per combination of all but scenarios, and scenario: its names, the mean of
-        ``rms_position`` (m), ``loss``, what that is more than in the first scenario (m), and
-        ``factor``, how many times as much; infinite where a vehicle was lost. Empty with a single
-        scenario.
+        Row per combination and scenario: names, mean ``rms_position`` (m), its increase over the
+        first scenario, ``loss`` (m), and its ratio to the first scenario, ``factor``; infinite
+        after a failure. Empty for a single scenario.
     """
     first: Dict[Any, float] = {}
     rows = []

@@ -1,4 +1,4 @@
-"""Sums over the seeds: rates, means, intervals, risks, and differences of controllers."""
+"""Statistics over the seeds: failure rates, means, intervals, risks, and differences."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..tracking_metrics import UNITS
 from .intervals import compute_cvar, compute_interval
 
 JUDGED = tuple(UNITS)
-"""Measures that have a mean, an interval and a risk over the seeds."""
+"""Metrics with statistics over the seeds."""
 
 
 def summarise_seeds(
@@ -20,21 +20,21 @@ def summarise_seeds(
     names: Sequence[Mapping[str, Any]],
     outcomes: Sequence[Outcome],
 ) -> List[Dict[str, Any]]:
-    """Sum the flights of each combination.
+    """Summarise the flights of each combination.
 
     Parameters
     ----------
     groups
-        Of each flight: its combination, the controller's position first.
+        Combination of each flight; the index of the controller is first.
     names
-        Of each flight: what its row of the table begins with.
+        Names of each flight.
     outcomes
-        Of each flight.
+        Outcome of each flight.
 
     Returns
     -------
     list of dict
-        A row per combination, see `Evaluation.groups`.
+        Row per combination; see `Evaluation.groups`.
     """
     flights: Dict[Tuple[int, ...], List[Outcome]] = {}
     named: Dict[Tuple[int, ...], Mapping[str, Any]] = {}
@@ -51,7 +51,7 @@ def summarise_seeds(
 
 
 def _summarise(flights: Sequence[Outcome], first: Sequence[Outcome]) -> Dict[str, Any]:
-    """Sum the flights of one combination, and compare them with the first controller's."""
+    """Summarise the flights of a combination, and compare them with the first controller."""
     took_place = [flight for flight in flights if flight.was_flown]
     flew = [flight for flight in took_place if flight.flew]
     pairs = [(f, other) for f, other in zip(flights, first) if f.flew and other.flew]
@@ -64,7 +64,7 @@ def _summarise(flights: Sequence[Outcome], first: Sequence[Outcome]) -> Dict[str
         values = _pick_finite([flight.measures[name] for flight in flew])
         row[f"mean_{name}"] = float(values.mean()) if len(values) else math.nan
         row[f"low_{name}"], row[f"high_{name}"] = compute_interval(values)
-        # Who is lost did worse than anybody who is not.
+        # A failure is worse than any success.
         lost = np.full(len(took_place) - len(flew), math.inf)
         row[f"cvar_{name}"] = compute_cvar(np.concatenate([values, lost]))
         apart = _pick_finite([f.measures[name] - other.measures[name] for f, other in pairs])
@@ -76,6 +76,6 @@ def _summarise(flights: Sequence[Outcome], first: Sequence[Outcome]) -> Dict[str
 
 
 def _pick_finite(values: Sequence[float]) -> np.ndarray:
-    """Leave out what a flight does not have, such as the overshoot of no step."""
+    """Leave out missing values, such as the overshoot without a step."""
     array: np.ndarray = np.array([value for value in values if math.isfinite(value)], dtype=float)
     return array

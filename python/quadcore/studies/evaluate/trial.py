@@ -1,4 +1,4 @@
-"""One flight of a controller on a vehicle that is not quite as it was told."""
+"""Flights of the margin search: scaled vehicle, delay or update rate."""
 
 from __future__ import annotations
 
@@ -14,26 +14,26 @@ from ...simulation.simulation import Simulation
 from ..cases import Case, Cases
 
 EFFECTS = ("thrust", "drag", "lag")
-"""Properties of a vehicle that margins vary, as the tables of the plugins' tags name them."""
+"""Effects that tags scale, as named in the tables of tags."""
 
 
 class Trial(NamedTuple):
-    """A controller on the first of everything else, and in what flight and vehicle differ."""
+    """A controller with changes of timing and vehicle."""
 
     controller: int
-    """By its position in the plan."""
+    """Index in the plan."""
     delay: float = 0.0
-    """Besides its own, s."""
+    """Additional delay, s."""
     rate: Optional[float] = None
-    """Instead of its own, 1/s."""
+    """Update rate, 1/s; None: the controller's."""
     thrust: float = 1.0
-    """Factor on thrust and torque of the rotors."""
+    """Factor of thrust and torque of the rotors."""
     drag: float = 1.0
     lag: float = 1.0
-    """Factor on the time constant of the motors."""
+    """Factor of the time constant of the motors."""
 
     def make_plan(self, plan: Cases) -> FlightPlan:
-        """Describe the flight; raises what making the controller raises."""
+        """Make the plan of the flight; errors of the controller pass through."""
         flight = plan.make_plan(Case(self.controller))
         controller = flight.controller
         if self.rate is not None:
@@ -54,7 +54,7 @@ class Trial(NamedTuple):
         return replace(flight, controller=controller, parameters=changed)
 
     def _scale_tags(self, simulation: Simulation) -> Dict[str, str]:
-        """Return the tags of the vehicle that flies."""
+        """Return the tags of the scaled vehicle."""
         return {
             key: repr(number * getattr(self, tag.effect) ** tag.power)
             for key, tag, number in _scaling_tags(simulation)
@@ -62,13 +62,13 @@ class Trial(NamedTuple):
 
 
 def list_missing_effects(simulation: Simulation) -> List[str]:
-    """Name the effects that no tag of a vehicle scales."""
+    """List the effects that no tag of a vehicle scales."""
     found = {tag.effect for _, tag, _ in _scaling_tags(simulation)}
     return [name for name in EFFECTS if name not in found]
 
 
 def _scaling_tags(simulation: Simulation) -> Iterator[Tuple[str, ParameterInfo, float]]:
-    """Find the tags that scale an effect: PLUGIN.TAG, tag, number."""
+    """Yield the tags that scale an effect: PLUGIN.TAG, tag, number."""
     for plugin in simulation.plugins:
         for tag in plugin.parameters:
             number = parse_number(tag.value)
@@ -77,7 +77,7 @@ def _scaling_tags(simulation: Simulation) -> Iterator[Tuple[str, ParameterInfo, 
 
 
 class _NominalModelController:
-    """A controller of one's own that is told of another vehicle than flies; the rest is its own."""
+    """Wrap a user-defined controller, which receives the nominal vehicle in `reset`."""
 
     def __init__(self, controller: Any, vehicle: Simulation) -> None:
         check_callable(controller)
@@ -93,11 +93,11 @@ class _NominalModelController:
         return getattr(self._controller, name)
 
     def reset(self, _: Simulation) -> None:
-        """Let the controller begin anew."""
+        """Reset the controller with the nominal vehicle."""
         reset = getattr(self._controller, "reset", None)
         if reset is not None:
             reset(self._vehicle)
 
     def __call__(self, t: float, state: Any, reference: Any) -> Any:
-        """Ask the controller."""
+        """Call the controller."""
         return self._controller(t, state, reference)

@@ -1,4 +1,4 @@
-"""Rows that are flown together: open loop, on one batch."""
+"""Open-loop rows that run together on one batch."""
 
 from __future__ import annotations
 
@@ -17,18 +17,23 @@ from . import motion_metrics
 from .row_spec import Flight, Row, RowSpec
 
 ENGINE = "eigen"
-"""In which several vehicles share each instruction."""
+"""Engine of the batches."""
 
-_SLIP = 1e-9  # s; by which a command may come late, as in a flight by itself
+_SLIP = 1e-9  # s; tolerance of command times, as in a single flight
 
 
 def fly_together(specs: Sequence[RowSpec]) -> Optional[List[Row]]:
-    """Fly rows on one batch, each to the same bytes as by itself; None if they cannot be.
+    """Simulate rows on one batch, bit-identical to single flights.
 
     Parameters
     ----------
     specs
-        Of the rows.
+        Descriptions of the rows.
+
+    Returns
+    -------
+    list of Row, or None
+        Outcomes; None if the rows cannot share a batch.
     """
     flights = [spec for spec in specs if isinstance(spec, Flight)]
     if len(flights) < max(2, len(specs)) or not _are_alike([spec.plan for spec in flights]):
@@ -36,12 +41,12 @@ def fly_together(specs: Sequence[RowSpec]) -> Optional[List[Row]]:
     try:
         with time_limit(len(flights) * flights[0].limit), suppress_warnings():
             return _fly(flights)
-    except QuadcoreError:  # each by itself says whose fault it is
+    except QuadcoreError:  # single flights show which row is invalid
         return None
 
 
 def _are_alike(plans: Sequence[FlightPlan]) -> bool:
-    """Whether plans differ in nothing but the vehicle, its pose and the seed."""
+    """Whether plans differ only in the vehicle, its pose and the seed."""
     first = plans[0]
     return (
         first.engine == ENGINE
@@ -77,7 +82,7 @@ def _fly(flights: Sequence[Flight]) -> List[Row]:
     rotors = (batch.state_width - 13) // 2
     tables = np.empty((len(plans), len(logged), 14 + rotors))
     state = np.empty((len(plans), batch.state_width))
-    # The first step that each row of the commands is there for.
+    # First step of each row of the commands.
     begins = np.ceil((first.commands[:, 0] - _SLIP) / batch.dt).astype(int)
     stops = sorted({*logged, *begins[(begins > 0) & (begins < steps)].tolist()})
     flown = row = 0

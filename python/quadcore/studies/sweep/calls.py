@@ -1,4 +1,4 @@
-"""Rows that a function gives, in the place of flights."""
+"""Rows that call a function instead of simulating a flight."""
 
 from __future__ import annotations
 
@@ -14,19 +14,18 @@ from .row_spec import Measures, compute_digest, read_source
 
 
 class Calls:
-    """Rows that a function gives, in the place of a `Plan`.
+    """Plan of a sweep that calls a function.
 
     Parameters
     ----------
     design
-        The points.
+        Points of the sweep.
     function
-        Called with a dictionary of a point's values, numbers where they are; returns a number, or a
-        mapping.
+        Called with a dictionary of the values of a point; returns a number or a mapping.
     measures
-        Names of what it returns.
+        Names of the returned values.
     time_limit
-        Of the wall clock for one row, s.
+        Wall-clock limit per row, s.
     """
 
     def __init__(
@@ -37,32 +36,34 @@ class Calls:
         time_limit: float,
     ) -> None:
         if not callable(function):
-            raise InputError(f"function is {brief(function)}; give what is called with a point")
+            raise InputError(f"function is {brief(function)}. Give a callable.")
         if not measures or len(set(measures)) < len(measures):
-            raise InputError(f"measures is {brief(measures)}; name what the function returns")
+            raise InputError(f"measures is {brief(measures)}. Name each returned value once.")
         self.design, self.measures = design, list(measures)
         self.units = dict.fromkeys(self.measures, "")
-        self.meanings = dict.fromkeys(self.measures, "what the function returned")
+        self.meanings = dict.fromkeys(self.measures, "value that the function returned")
         self._function, self._limit = function, time_limit
         if len(design) > LARGEST:
-            raise InputError(f"these are {len(design)} points; at most {LARGEST} are swept")
+            raise InputError(
+                f"{len(design)} points are more than {LARGEST}. Use fewer values or samples."
+            )
 
     at_once = 32
-    """Rows of a task at most."""
+    """Maximum number of rows per task."""
     apart = False
     whole = ()
-    """Columns that hold whole numbers, besides ``row``."""
+    """Columns of whole numbers, in addition to ``row``."""
 
     def __len__(self) -> int:
         return len(self.design)
 
     @property
     def names(self) -> List[str]:
-        """Of the first columns."""
+        """Names of the first columns."""
         return self.design.names
 
     def list_cells(self, row: int) -> Dict[str, Any]:
-        """Tell a row's point."""
+        """Return the point of a row."""
         return dict(self.design[row])
 
     def make_spec(self, row: int) -> Call:
@@ -70,7 +71,7 @@ class Calls:
         return Call(row, self.list_cells(row), self._function, self.measures, self._limit)
 
     def describe(self) -> Dict[str, Any]:
-        """Say what is called."""
+        """Return the settings of the sweep."""
         return {
             "function": getattr(self._function, "__qualname__", repr(self._function)),
             **self.design.describe(),
@@ -79,19 +80,19 @@ class Calls:
 
 @dataclass(frozen=True)
 class Call:
-    """A row that a function gives."""
+    """A row that calls a function."""
 
     row: int
     names: Mapping[str, Any]
     function: Callable[[Dict[str, Any]], Any]
     wanted: Sequence[str]
-    """Names of what it returns."""
+    """Names of the returned values."""
     limit: float
 
     def fingerprint(self) -> str:
-        """Digest of its name, its module's text, and what it is called with.
+        """Return a digest of the name, the text of the module, and the arguments.
 
-        "" of what holds more than its text tells: closures, partial functions, objects.
+        Closures, partial functions and callable objects have none: "".
         """
         function, text = self.function, b""
         if isinstance(function, FunctionType) and not function.__closure__:
@@ -102,12 +103,12 @@ class Call:
         return compute_digest(f"{called} {compute_digest(text)}".encode())
 
     def measure(self) -> Measures:
-        """Call it.
+        """Call the function and return its values.
 
         Raises
         ------
         QuadcoreError
-            It raised something, or did not return the numbers that were told.
+            If it does not return numbers with the names in `measures`.
         """
         with time_limit(self.limit):
             found = self.function({name: _number(value) for name, value in self.names.items()})
@@ -116,8 +117,8 @@ class Call:
             return {name: float(values[name]) for name in self.wanted}
         except (KeyError, TypeError, ValueError) as error:
             raise QuadcoreError(
-                f"the function returned {brief(found)}; give a number, or a mapping of "
-                f"{', '.join(self.wanted)} to numbers"
+                f"the function returned {brief(found)}. Return a number, or a mapping of "
+                f"{', '.join(self.wanted)} to numbers."
             ) from error
 
 

@@ -1,4 +1,4 @@
-"""Rows flown by a Dask cluster."""
+"""Dask clusters as executors."""
 
 from __future__ import annotations
 
@@ -8,27 +8,27 @@ from typing import Any, Callable, Iterator, Tuple
 from ..._core import QuadcoreError
 from ...support.optional_packages import require_package
 
-_PATIENCE = 30.0  # s; for a scheduler to answer
+_PATIENCE = 30.0  # s; waiting time for a scheduler
 
 
 @contextmanager
 def connect_cluster(address: str) -> Iterator[Tuple[Any, Callable[[], None]]]:
-    """Be a client of a scheduler.
+    """Connect to a scheduler.
 
     Parameters
     ----------
     address
-        Of it, ``tcp://HOST:PORT``.
+        Address of the scheduler, ``tcp://HOST:PORT``.
 
     Returns
     -------
     tuple
-        An executor, and what raises `QuadcoreError` when the scheduler is gone.
+        Executor, and a function that raises `QuadcoreError` if the connection is lost.
 
     Raises
     ------
     QuadcoreError
-        No scheduler answers.
+        If no scheduler answers.
     """
     with require_package("--dask", "distributed", "dask"):
         from distributed import Client
@@ -47,8 +47,8 @@ def _connect(make: Any, address: str) -> Iterator[Tuple[Any, Callable[[], None]]
     def check() -> None:
         if client.status != "running":
             raise QuadcoreError(
-                f"{address}: the scheduler is gone; the rows so far are kept, --resume flies the "
-                "rest"
+                f"{address}: the connection to the scheduler is lost. The completed rows are kept; "
+                "add --resume to continue."
             )
 
     try:
@@ -59,7 +59,7 @@ def _connect(make: Any, address: str) -> Iterator[Tuple[Any, Callable[[], None]]
 
 @contextmanager
 def _silence_loggers() -> Iterator[None]:
-    """Let what the client says of a lost scheduler be told once, by us."""
+    """Silence the log messages of the client; a lost scheduler is reported once."""
     import logging
 
     known = logging.root.manager.loggerDict

@@ -1,4 +1,4 @@
-"""Where rows are flown: processes of this machine, or whatever executes futures."""
+"""Execution of the rows of a sweep: local processes, or an executor of futures."""
 
 from __future__ import annotations
 
@@ -32,36 +32,36 @@ if TYPE_CHECKING:
 Take = Callable[[Row], None]
 
 _ATTEMPTS = 3
-"""Of a row whose process was killed: by the system, perhaps, for want of memory."""
+"""Attempts for a row after its process was killed, perhaps because memory ran out."""
 
 _AHEAD = 1024
-"""Tasks that a cluster is given at a time: enough for many workers, and few to hold, 25 kB each."""
+"""Pending tasks of a cluster: enough for many workers; each needs 25 kB."""
 
 _AHEAD_OF_EACH = 2
-"""Tasks that a pool is given for each worker: one to fly and one to go on with."""
+"""Pending tasks per worker of a pool."""
 
 _WORKERS = 16
-"""That an executor, which does not say, may be thought to have."""
+"""Assumed number of workers of an executor."""
 
 _SHARES = 4
-"""Tasks at least for each process, if there are rows enough: one may be slower than another."""
+"""Minimum number of tasks per process, if there are enough rows, to balance the load."""
 
-_PIECE = 2**16  # bytes; what a pipe holds
+_PIECE = 2**16  # bytes; capacity of a pipe
 
-_LOOK = 1.0  # s; between two looks at whether an executor still lives
+_LOOK = 1.0  # s; interval between checks of the executor
 
 
 def fly_locally(plan: AnyPlan, rows: Iterable[int], take: Take, processes: Optional[int]) -> None:
-    """Fly rows in processes of this machine.
+    """Run rows in local processes.
 
     Parameters
     ----------
     plan, rows
-        What to fly.
+        Plan and numbers of the rows.
     take
-        Called with each row as it ends.
+        Called with the outcome of each row.
     processes
-        How many; None takes one per core.
+        Number of processes; None: one per core.
     """
     for attempt in range(1, 1 + _ATTEMPTS):
         attempt_ = _Attempt(plan, take, attempt)
@@ -72,7 +72,7 @@ def fly_locally(plan: AnyPlan, rows: Iterable[int], take: Take, processes: Optio
 
 
 class _Attempt:
-    """Rows that fly, and those that are to fly once more."""
+    """One attempt to run rows; some may need another attempt."""
 
     def __init__(self, plan: AnyPlan, take: Take, number: int) -> None:
         self.again: List[int] = []
@@ -82,7 +82,7 @@ class _Attempt:
     def fly(self, rows: Iterable[int], processes: Optional[int]) -> None:
         if self._number == 1:
             tasks = _share_out(self._plan, rows, processes or count_cores())
-        else:  # what was killed for want of memory has all of it when it flies alone
+        else:  # a single process has all the memory
             tasks, processes = _split(rows, 1), 1
         run_cases(
             self._fly_task,
@@ -119,21 +119,21 @@ def fly_on_executor(
     take: Take,
     check: Callable[[], None] = lambda: None,
 ) -> None:
-    """Fly rows by an executor of futures.
+    """Run rows on an executor of futures.
 
     Parameters
     ----------
     executor
-        Whatever its processes are, they have quadcore.
+        Executor; its processes need quadcore.
     plan, rows, take
-        As for `fly_here`.
+        As for `fly_locally`.
     check
-        Called every now and then; raises if the executor is gone.
+        Called at intervals; raises if the executor has failed.
 
     Raises
     ------
     QuadcoreError
-        The executor failed; the rows that it gave were taken.
+        If the executor fails; `take` has received the completed rows.
     """
     waiting = _share_out(plan, rows, _WORKERS)
     at_most = _AHEAD_OF_EACH * getattr(executor, "_max_workers", _AHEAD // _AHEAD_OF_EACH)
@@ -179,10 +179,10 @@ def fly_on_executor(
 
 
 def _shut_down_broken(executor: concurrent.futures.Executor, error: Exception) -> None:
-    """Shut a broken pool down without waiting for it, as its own ``with`` would.
+    """Shut down a broken pool without waiting for it.
 
-    It may never end by itself: one of its threads may be stuck in a full pipe that no process reads
-    any more (CPython issue 94777).
+    Its ``with`` block may never end: a thread may be stuck in a full pipe that no process reads
+    (CPython issue 94777).
     """
     from concurrent.futures import BrokenExecutor
 
@@ -195,9 +195,9 @@ def _shut_down_broken(executor: concurrent.futures.Executor, error: Exception) -
 
 
 def _drain(calls: Any) -> None:
-    """Read what is left in the pipe of a queue, beside its threads, up to its end."""
+    """Read the pipe of a queue to its end, in another thread."""
     try:
-        # Not the queue's own descriptor: its thread closes that one when it is done.
+        # A copy: the queue's thread closes its own descriptor.
         pipe = os.dup(calls._reader.fileno())
     except OSError:  # it is done
         return
@@ -205,7 +205,7 @@ def _drain(calls: Any) -> None:
         is_pipe = os.path.samestat(os.fstat(pipe), os.fstat(calls._writer.fileno()))
     except OSError:
         is_pipe = False
-    if not is_pipe:  # closed in between, and the number is another file's by now
+    if not is_pipe:  # closed meanwhile; the number belongs to another file
         os.close(pipe)
         return
 
@@ -218,9 +218,9 @@ def _drain(calls: Any) -> None:
 
 
 def fly_all(specs: Sequence[Union[RowSpec, Row]], apart: bool) -> List[Row]:
-    """Fly several rows where they were sent to."""
+    """Run several rows in the process that received them."""
     flown: List[Row] = []
-    if apart:  # what one's own controller remembers of a flight, no other knows
+    if apart:  # user-defined controllers may keep state between flights
 
         def take_outcome(index: int, outcome: Union[Row, QuadcoreError]) -> None:
             if isinstance(outcome, QuadcoreError):
@@ -234,7 +234,7 @@ def fly_all(specs: Sequence[Union[RowSpec, Row]], apart: bool) -> List[Row]:
 
 
 def _fly_several(specs: Sequence[Union[RowSpec, Row]]) -> List[Row]:
-    """Fly rows together if they can be, or else one by one."""
+    """Run rows on one batch if possible, else one by one."""
     if len(specs) > 1:
         together = fly_together([spec for spec in specs if not isinstance(spec, Row)])
         if together is not None and len(together) == len(specs):
@@ -251,7 +251,7 @@ def _get_fingerprint(spec: Union[RowSpec, Row]) -> str:
 
 
 def _make_spec(plan: AnyPlan, number: int) -> Union[RowSpec, Row]:
-    """Describe a row, or say why it cannot be flown."""
+    """Return the description of a row, or its failure."""
     try:
         return plan.make_spec(number)
     except QuadcoreError as error:
@@ -259,7 +259,7 @@ def _make_spec(plan: AnyPlan, number: int) -> Union[RowSpec, Row]:
 
 
 def _share_out(plan: AnyPlan, rows: Iterable[int], processes: int) -> Iterator[Sequence[int]]:
-    """Share rows out, so many to a task as its process flies at its best."""
+    """Split rows into tasks of the best size."""
     return _split(rows, max(1, min(plan.at_once, len(plan) // (_SHARES * processes))))
 
 
@@ -284,18 +284,19 @@ def _collect(plan: AnyPlan, future: Any, numbers: Sequence[int]) -> Iterator[Uni
         yield from future.result()
         return
     except Exception as error:
-        # Dask's, when a task has ended several workers: it is the task then.
+        # Dask raises it if the task has killed several workers.
         if type(error).__name__ != "KilledWorker":
             raise
     if len(numbers) > 1:
         yield from numbers
     else:
-        told = "its worker died, several times"
-        yield Row(numbers[0], told, None, compute_fingerprint(plan, numbers[0]))
+        text = "its worker died, several times"
+        yield Row(numbers[0], text, None, compute_fingerprint(plan, numbers[0]))
 
 
 def _describe_executor_failure(error: Exception) -> str:
     reason = " ".join(f"{type(error).__name__}: {error}".split())
     return (
-        f"the executor failed ({reason[:200]}); the rows so far are kept, --resume flies the rest"
+        f"the executor failed ({reason[:200]}). The completed rows are kept; add --resume to "
+        "continue."
     )

@@ -1,4 +1,4 @@
-"""What is measured of a flight that follows no reference."""
+"""Metrics of a flight without a reference."""
 
 from __future__ import annotations
 
@@ -21,26 +21,26 @@ UNITS = {
     "max_rate": "rad/s",
     "travelled": "m",
 }
-"""Of each measure, by name."""
+"""Unit of each metric, by name."""
 
 MEANINGS = {
     "final_x": "position of the frame at the end",
-    "final_y": "",
-    "final_z": "",
+    "final_y": "position of the frame at the end",
+    "final_z": "position of the frame at the end",
     "final_yaw": "heading at the end",
-    "final_tilt": "angle between the frame's z and the world's at the end",
-    "final_speed": "of the frame's origin at the end",
-    "max_tilt": "over the flight",
-    "max_speed": "over the flight",
-    "max_rate": "length of the angular velocity, over the flight",
-    "travelled": "length of the way",
+    "final_tilt": "angle between the z axes of frame and world at the end",
+    "final_speed": "speed of the frame's origin at the end",
+    "max_tilt": "maximum tilt",
+    "max_speed": "maximum speed of the frame's origin",
+    "max_rate": "maximum norm of the angular velocity",
+    "travelled": "length of the path",
 }
 
 
 def measure(log: Log) -> Dict[str, float]:
-    """Give a number for each of `UNITS`."""
+    """Compute the metrics in `UNITS`."""
     x, y = log.orientation[:, 0], log.orientation[:, 1]
-    tilt = 2 * np.arcsin(np.minimum(1, np.hypot(x, y)))  # of the quaternion: exact near 0
+    tilt = 2 * np.arcsin(np.minimum(1, np.hypot(x, y)))  # from the quaternion: exact near 0
     speed = np.linalg.norm(log.linear_velocity, axis=1)
     rate = np.linalg.norm(log.angular_velocity, axis=1)
     steps = np.linalg.norm(np.diff(log.position, axis=0), axis=1)

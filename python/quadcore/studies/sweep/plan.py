@@ -1,4 +1,4 @@
-"""The rows of a sweep: what each of them flies, checked before the first takes off."""
+"""Rows of a sweep, checked before the first one starts."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ from .batches import ENGINE
 from .calls import Calls as Calls
 from .row_spec import Flight, UserController
 
-_TOGETHER = 32  # rows: four times as many as share an instruction, and few to lose
+_TOGETHER = 32  # rows per batch: four times the number of lanes
 
 
 class Plan(Cases):
-    """Controllers x references x engines x models x points x seeds, checked.
+    """Checked combinations of controllers, references, engines, models, points and seeds.
 
-    Or commands, in the place of controllers and references.
+    Commands may replace controllers and references.
 
     Parameters
     ----------
     design
-        The points.
+        Points of the sweep.
     controllers, references_
         As `evaluate` takes them; None with `commands`.
     engines, models, options, commands
@@ -42,8 +42,7 @@ class Plan(Cases):
     Raises
     ------
     InputError
-        Anything that is known to be wrong before it flies, but for a controller of the user's own,
-        whose flights fail.
+        If an input is invalid. Errors of user-defined controllers only fail their flights.
     """
 
     def __init__(
@@ -63,30 +62,30 @@ class Plan(Cases):
         self.units, self.meanings = measured.UNITS, measured.MEANINGS
         self.measures = list(measured.UNITS)
         self.names = list(self.list_cells(0))
-        """Of the first columns, which say what flies."""
+        """Names of the first columns, the conditions."""
         self._commands = str(commands) if isinstance(commands, (str, Path)) else None
         self.check(commands)
 
     whole = ("seed",)
-    """Columns that hold whole numbers, besides ``row``."""
+    """Columns of whole numbers, in addition to ``row``."""
 
     @property
     def at_once(self) -> int:
-        """Rows of a task at most: several where they can fly on one batch."""
+        """Maximum number of rows per task: several if they can share a batch."""
         return 1 if self.control.is_closed_loop or self.engines != [ENGINE] else _TOGETHER
 
     @property
     def apart(self) -> bool:
-        """Whether each flight needs a process of its own."""
+        """Whether each flight needs a separate process."""
         return self.control.runs_user_code
 
     def list_cells(self, row: int) -> Dict[str, Any]:
-        """Give what a row flies, as the first columns of the table."""
+        """Return the conditions of a row, the first columns of the table."""
         case = self[row]
         return {**self.name_sides(case), **self.design[case.point], "seed": self.seeds[case.seed]}
 
     def make_spec(self, row: int) -> Flight:
-        """Describe a row; raises what making it raises."""
+        """Return the description of a row; errors pass through."""
         case, own = self[row], None
         plan = self.make_plan_without_controller(case)
         if self.control.is_closed_loop:
@@ -99,7 +98,7 @@ class Plan(Cases):
         return Flight(row, self.list_cells(row), plan, own, self.options.time_limit)
 
     def describe(self) -> Dict[str, Any]:
-        """Give what flies and how, in plain values."""
+        """Return all settings as plain values."""
         return {
             "controllers": self.control.controllers,
             "references": self.control.references,
@@ -112,7 +111,7 @@ class Plan(Cases):
 
 
 AnyPlan = Union[Plan, Calls]
-"""Says what the rows of a sweep are."""
+"""Plan of a sweep."""
 
 
 def make_design(
@@ -122,7 +121,7 @@ def make_design(
     design: str,
     samples: Optional[int],
 ) -> Tuple[Design, SweepOptions]:
-    """Make the points of a sweep, of the scenarios in its options too; arguments as for `sweep`."""
+    """Make the points of a sweep, including the scenarios; arguments as for `sweep`."""
     vary, options = make_scenario_axis(vary, options)
     return Design(vary, points, design, samples, whole(options.seed)), options
 
@@ -133,7 +132,7 @@ def _make_control_setup(
     if commands is None:
         for name, given in (("controller", controllers), ("reference", references_)):
             if given is None:
-                raise InputError(f"nothing to fly: name --{name}, or --commands")
+                raise InputError(f"no {name} is given. Add --{name} or --commands.")
         return ControlSetup(
             add_labels("controller", controllers, BuiltInController),
             add_labels("reference", references_, references.Shape),
@@ -142,6 +141,6 @@ def _make_control_setup(
             on_reference=options.spawn is None,
         )
     if controllers is not None or references_ is not None:
-        raise InputError("a flight takes --commands or a --controller; give one of them")
+        raise InputError("both --commands and --controller are given. Give one of them.")
     timing = options.controller_rate, options.delay
     return ControlSetup.single(None, None, None, *timing)

@@ -1,4 +1,4 @@
-"""The command line that flies a row again."""
+"""The command that repeats a row."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .plan import AnyPlan, Plan
 
 
 def write_command(plan: AnyPlan, row: int) -> Optional[str]:
-    """Write the command line of a row; None if it was an object of one's own that flew."""
+    """Write the command that repeats a row; None for controller objects and functions."""
     if not isinstance(plan, Plan):
         return None
     case = plan[row]
@@ -57,7 +57,7 @@ def _collect_parameters(common: Mapping[str, str], point: Mapping[str, str]) -> 
 
 
 def _write_controller(plan: Plan, row: int, text: str, point: Mapping[str, str]) -> str:
-    """Name a law with what the point gives it."""
+    """Write the controller with the values of the point."""
     keys = [name[len(OF_CONTROLLER) :] for name in point if name.startswith(OF_CONTROLLER)]
     if not set(keys) - {"rate", "delay"}:
         return text

@@ -1,4 +1,4 @@
-"""The file that a sweep's rows are kept in, whole at any time."""
+"""The file of a sweep's rows, valid at any time."""
 
 from __future__ import annotations
 
@@ -18,25 +18,24 @@ from .row_spec import Row, compute_digest
 
 
 class RowFile:
-    """A CSV file with a row for each flight, in the order in which they end.
+    """CSV file with a row per flight, in the order of completion.
 
-    The columns are ``row``, what flies, ``failure``, the measures and ``fingerprint``. Once all are
-    there the file is put in order.
+    The columns are ``row``, the conditions, ``failure``, the metrics and ``fingerprint``. A
+    complete file is sorted.
 
     Parameters
     ----------
     path
-        Of the file.
+        Path of the file.
     plan
-        What is flown.
+        Plan of the sweep.
     resume
-        Whether rows that are there already stay; they must be the plan's.
+        Whether to keep existing rows, which must match the plan.
 
     Raises
     ------
     InputError
-        There are rows and `resume` does not ask for them; or they were flown with other inputs, or
-        are damaged.
+        If there are rows without `resume`, or they are damaged or have other inputs.
     """
 
     def __init__(self, path: Path, plan: AnyPlan, resume: bool) -> None:
@@ -45,10 +44,9 @@ class RowFile:
         for name in self.columns:
             if self.columns.count(name) > 1:
                 raise InputError(
-                    f"the table would have two columns '{name}'; give an axis or a measure another "
-                    "name"
+                    f"the table would have two columns '{name}'. Rename an axis or a metric."
                 )
-        self._where = np.full((len(plan), 2), -1, dtype=np.int64)  # begin and length of each
+        self._where = np.full((len(plan), 2), -1, dtype=np.int64)  # begin and length of each row
         self.whole = ("row", *plan.whole)
         self._head = _write_line(self.columns)
         check_writable(path)
@@ -69,23 +67,23 @@ class RowFile:
 
     @property
     def missing(self) -> Iterator[int]:
-        """Rows that are not there."""
+        """Missing rows."""
         return (int(row) for row in np.flatnonzero(self._where[:, 0] < 0))
 
     @property
     def count(self) -> int:
-        """Rows that are there."""
+        """Number of existing rows."""
         return int((self._where[:, 0] >= 0).sum())
 
     def take(self, row: Row) -> None:
-        """Append a row; raises `InputError` if it does not fit, the others being whole."""
+        """Append a row; raises `InputError` if the disk is full, and keeps the other rows."""
         line = _write_line(self._cells(row))
         begin = self._end
         self._append(line)
         self._where[row.row] = begin, len(line)
 
     def close(self) -> None:
-        """Put the rows in order if they are all there, and close the file."""
+        """Sort the rows if all are present, and close the file."""
         if self.count == len(self._plan) and (np.diff(self._where[:, 0]) < 0).any():
             with atomic_write(self.path) as ordered:
                 ordered.write(self._head)
@@ -96,7 +94,7 @@ class RowFile:
         self._file.close()
 
     def read(self) -> Iterator[Dict[str, str]]:
-        """Give the rows that are there, by number."""
+        """Yield the existing rows in order."""
         file = Appended(self.path, older=True) if self._file.closed else self._file
         try:
             for line in file.parts(self._list_places()):
@@ -106,12 +104,12 @@ class RowFile:
                 file.close()
 
     def _list_places(self) -> Iterator[Tuple[int, int]]:
-        """Begin and length of each row that is there."""
+        """Yield begin and length of each existing row."""
         return ((begin, length) for begin, length in self._where.tolist() if begin >= 0)
 
     def _make_conflict(self) -> InputError:
         return InputError(
-            f"{self.path}: holds rows already; go on with --resume, or name another folder"
+            f"{self.path}: the file contains rows. Add --resume, or name another folder."
         )
 
     def _cells(self, row: Row) -> List[Any]:
@@ -129,15 +127,15 @@ class RowFile:
         self._end += len(line)
 
     def _index_rows(self) -> int:
-        """Note where rows are, and give the bytes that stay: what a kill cut off does not."""
+        """Index the rows, and return the number of valid bytes: an incomplete row is dropped."""
         lines = self._file.lines()
         head = next(lines, b"")
         if head != self._head:
             if not head.endswith(b"\n") and self._head.startswith(head):
                 return 0
             raise InputError(
-                f"{self.path}:1: other columns than this sweep's; name another folder, or fly what "
-                "was flown"
+                f"{self.path}:1: the columns are not those of this sweep. Name another folder, or "
+                "repeat the sweep with its inputs."
             )
         end = len(head)
         for number, line in enumerate(lines, start=2):
@@ -149,40 +147,44 @@ class RowFile:
         return end
 
     def _check_row(self, number: int, cells: Sequence[str]) -> int:
-        """Give the number of a row; raise `InputError` unless it is the plan's."""
+        """Return the number of a row; raise `InputError` unless it matches the plan."""
         place = f"{self.path}:{number}"
         if len(cells) != len(self.columns) or not re.fullmatch(r"[0-9]{1,18}", cells[0]):
-            raise InputError(f"{place}: is no row of a sweep; take the line out")
+            raise InputError(f"{place}: not a row of a sweep. Remove the line.")
         row = int(cells[0])
         if row >= len(self._plan):
-            raise InputError(f"{place}: row {row} of a sweep that has {len(self._plan)}")
+            raise InputError(
+                f"{place}: row {row} of a sweep with {len(self._plan)} rows. Remove the line."
+            )
         if self._where[row, 0] >= 0:
-            raise InputError(f"{place}: row {row} is there twice; take one out")
+            raise InputError(f"{place}: row {row} occurs twice. Remove one of them.")
         known, planned = dict(zip(self.columns, cells)), self._plan.list_cells(row)
         for name in self._plan.measures:
             if not _is_measure(known[name]):
                 raise InputError(
-                    f"{place}: column '{name}' holds '{known[name][:80]}', which is no number; "
-                    "take the line out"
+                    f"{place}: column '{name}' contains '{known[name][:80]}', not a number. "
+                    "Remove the line."
                 )
         for name, value in planned.items():
             if known[name] != _split_line(_write_line([value]))[0]:
                 raise InputError(
-                    f"{place}: was flown with {name} {known[name]}, now it is {value}; name "
-                    "another folder, or fly what was flown"
+                    f"{place}: the row has {name} {known[name]}, this sweep {value}. Name another "
+                    "folder, or repeat the sweep with its inputs."
                 )
         if known["fingerprint"] != compute_fingerprint(self._plan, row):
             raise InputError(
-                f"{place}: was flown with other inputs than these: a model, a world, a file or an "
-                "option has changed; name another folder, or fly what was flown"
+                f"{place}: the row has other inputs: a model, a world, a file or an option has "
+                "changed. Name another folder, or repeat the sweep with its inputs."
             )
         if not known["fingerprint"]:
-            raise InputError(f"{place}: nobody can tell whether this is what flies; see the docs")
+            raise InputError(
+                f"{place}: the inputs of the row cannot be compared. Name another folder."
+            )
         return row
 
 
 def compute_fingerprint(plan: AnyPlan, row: int) -> str:
-    """Digest of what a row depends on; "" if nobody can tell, and of why if it cannot be flown."""
+    """Return a digest of the inputs of a row or of its error; "" if they cannot be digested."""
     try:
         return plan.make_spec(row).fingerprint()
     except QuadcoreError as error:
@@ -196,7 +198,7 @@ def _write_line(cells: Sequence[Any]) -> bytes:
 
 
 def _is_measure(text: str) -> bool:
-    """Whether a cell is as `_line` writes the value of a measure."""
+    """Whether a cell contains a metric."""
     return text in ("", "inf", "-inf") or parse_number(text) is not None
 
 
@@ -204,7 +206,7 @@ def _escape(value: Any) -> Any:
     if isinstance(value, str):
         if parse_number(value) is not None:
             return value
-        # A row is a line, by which it is found again.
+        # Each row must be one line.
         return cell(value.replace("\n", "\\n").replace("\r", "\\r"))
     return "" if value != value else value
 

@@ -1,4 +1,4 @@
-"""One row of a sweep: a description that can be pickled, flown anywhere, and told from others."""
+"""Description of a row of a sweep, which can be pickled and run anywhere."""
 
 from __future__ import annotations
 
@@ -22,59 +22,59 @@ from . import motion_metrics
 Measures = Mapping[str, float]
 
 REFUSED = "refused: "
-"""Begins the failure of a row that is bad input: it never flew."""
+"""Prefix of the failure of a row with invalid input, which did not run."""
 
 
 @dataclass(frozen=True)
 class UserController:
-    """A controller of the user's own, made where it flies."""
+    """User-defined controller, made in the process of the flight."""
 
     text: str
     """``MODULE:CLASS``."""
     values: Tuple[Tuple[str, float], ...]
-    """What it is given: rate, delay."""
+    """Values to set: rate, delay, parameters."""
     source: str
-    """Digest of its module's text; that of what it imports is not looked at."""
+    """Digest of the text of its module, without imported modules."""
 
     @classmethod
     def of(cls, text: str, values: Mapping[str, Any]) -> UserController:
-        """Look the module up, without running it."""
+        """Find the module without importing it."""
         given = tuple((name, value) for name, value in values.items() if value is not None)
         return cls(text, given, compute_digest(read_source(text.partition(":")[0])))
 
     def make(self, vehicle: str) -> Any:
-        """Bring it in; raises `InputError`."""
+        """Import and make the controller; raises `InputError`."""
         return set_parameters(controllers.parse(self.text, vehicle), dict(self.values))
 
 
 @dataclass(frozen=True)
 class Flight:
-    """A row that is flown."""
+    """A row that is a flight."""
 
     row: int
     names: Mapping[str, Any]
-    """Its first columns."""
+    """First columns of the table."""
     plan: FlightPlan
-    """Without its controller if that is `own`."""
+    """Plan; without a controller if `own` is given."""
     own: Optional[UserController]
     limit: float
-    """Of the wall clock, s."""
+    """Wall-clock limit, s."""
 
     def fingerprint(self) -> str:
-        """Digest of all that it depends on; "" if nobody can tell."""
+        """Return a digest of all inputs; "" if they cannot be digested."""
         try:
             known = self.plan.fingerprint()
-        except InputError:  # a controller or a reference that is an object of one's own
+        except InputError:  # a user-defined controller or reference object
             return ""
         return known if self.own is None else compute_digest(f"{known} {self.own}".encode())
 
     def measure(self) -> Measures:
-        """Fly and measure it.
+        """Simulate the flight and return its metrics.
 
         Raises
         ------
         QuadcoreError
-            It failed.
+            If the flight fails.
         """
         if self.own is None and self.plan.controller is None:
             with time_limit(self.limit), suppress_warnings():
@@ -91,31 +91,31 @@ class Flight:
 
 
 class RowSpec(Protocol):
-    """One row, wherever it is flown."""
+    """A row of a sweep."""
 
     @property
     def row(self) -> int:
-        """Its number."""
+        """Row number."""
 
     def fingerprint(self) -> str:
-        """Digest of all that it depends on; "" if nobody can tell."""
+        """Return a digest of all inputs; "" if they cannot be digested."""
 
     def measure(self) -> Measures:
-        """Give what is measured; raises `QuadcoreError`."""
+        """Return the metrics; raises `QuadcoreError`."""
 
 
 class Row(NamedTuple):
-    """What became of a row."""
+    """Outcome of a row."""
 
     row: int
     failure: str
-    """Why there are no measures, after `REFUSED` if it never flew; "" if there are."""
+    """Reason for missing metrics, with the prefix `REFUSED` for invalid input; "" for success."""
     measures: Optional[Measures]
     fingerprint: str
 
 
 def fly_row(spec: RowSpec) -> Row:
-    """Fly a row, whatever becomes of it."""
+    """Run a row and return its outcome."""
     fingerprint = spec.fingerprint()
     try:
         return Row(spec.row, "", spec.measure(), fingerprint)
@@ -125,23 +125,23 @@ def fly_row(spec: RowSpec) -> Row:
         failure = "no memory left"
     except KeyboardInterrupt:
         raise
-    except BaseException as error:  # SystemExit, too: it is not for code that flies to end all
+    except BaseException as error:  # SystemExit too: user code must not end the sweep
         failure = describe_error(error)
     return Row(spec.row, " ".join(failure.split()), None, fingerprint)
 
 
 def describe_failure(error: QuadcoreError) -> str:
-    """Tell why a row has no measures."""
+    """Describe why a row has no metrics."""
     return f"{REFUSED if isinstance(error, InputError) else ''}{error}"
 
 
 def compute_digest(data: bytes) -> str:
-    """Hexadecimal SHA-256."""
+    """Return the hexadecimal SHA-256."""
     return hashlib.sha256(data).hexdigest()
 
 
 def read_source(module: str) -> bytes:
-    """Text of a module, which is not imported; empty if nobody can tell."""
+    """Return the text of a module without importing it; empty if it cannot be found."""
     loaded = sys.modules.get(module)
     origin = getattr(loaded, "__file__", None)
     if origin is None:

@@ -1,8 +1,9 @@
-"""What the measures of a sweep are sensitive to.
+"""Sensitivity of the metrics of a sweep to its parameters.
 
-Rank correlations (Spearman) tell of any design whether a measure grows with an axis. Sobol indices
-(Saltelli et al., Computer Physics Communications 181, 2010) tell of design "saltelli" which part of
-a measure's variance an axis brings about, alone (first) and with others (total).
+Rank correlations (Spearman) exist for every design; they miss effects that are not monotonic. With
+the design "saltelli", Sobol indices give the share of the variance that a parameter causes alone
+(first order) and together with others (total); see Saltelli et al., Computer Physics
+Communications 181, 2010.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from .plan import AnyPlan
 Columns = Mapping[str, np.ndarray]
 
 FAILED = "failed"
-"""Name of the measure that is 1 where a row failed and 0 where it flew."""
+"""Name of the metric that is 1 for a failed row and 0 otherwise."""
 
 COMBINATION = ("controller", "reference", "engine", "model")
 
@@ -27,21 +28,21 @@ _INDICES = ("first", "first_interval", "total", "total_interval")
 
 
 def compute_sensitivities(plan: AnyPlan, columns: Columns) -> List[Dict[str, Any]]:
-    """Tell what each measure is sensitive to.
+    """Compute the sensitivity of each metric to each parameter.
 
     Parameters
     ----------
     plan
-        What was flown.
+        Plan of the sweep.
     columns
-        What came of it, a row each, in their order.
+        Results, in the order of the rows.
 
     Returns
     -------
     list of dict
-        For each combination of what flies, measure and axis of numbers: ``rank``, the rank
-        correlation; and ``first``, ``total`` and the half-widths of their intervals at 95 %, NaN
-        where there are none: other designs, axes that are not drawn, rows that failed.
+        Row per combination, metric and numeric axis: ``rank``, the rank correlation, and
+        ``first``, ``total`` and the half-widths of their 95 % intervals. These are NaN for other
+        designs, for axes without a distribution, and if rows failed.
     """
     found = []
     for names, chosen in list_combinations(columns):
@@ -57,7 +58,7 @@ def compute_sensitivities(plan: AnyPlan, columns: Columns) -> List[Dict[str, Any
 
 
 def list_combinations(columns: Columns) -> Iterator[Tuple[Dict[str, str], np.ndarray]]:
-    """Name each combination of what flies, and where its rows are."""
+    """Yield the names of each combination and the indices of its rows."""
     shared = [name for name in COMBINATION if name in columns]
     count = len(columns["row"])
     if not shared:
@@ -72,7 +73,7 @@ def list_combinations(columns: Columns) -> Iterator[Tuple[Dict[str, str], np.nda
 def list_metrics(
     plan: AnyPlan, columns: Columns, chosen: np.ndarray
 ) -> Iterator[Tuple[str, np.ndarray]]:
-    """Give the measures that some rows have, and whether they failed if some did."""
+    """Yield the metrics of some rows; also `FAILED` if some of them failed."""
     failed = (columns["failure"][chosen] != "").astype(float)
     for name in plan.measures:
         values = columns[name][chosen].astype(float)
@@ -83,7 +84,7 @@ def list_metrics(
 
 
 def list_numeric_axes(plan: AnyPlan, columns: Columns) -> List[str]:
-    """Name the axes whose values are numbers, and several."""
+    """List the axes with several numeric values."""
     return [
         name
         for name in plan.design.names
@@ -92,7 +93,7 @@ def list_numeric_axes(plan: AnyPlan, columns: Columns) -> List[str]:
 
 
 def _rank_correlation(axis: np.ndarray, values: np.ndarray) -> float:
-    """Rank correlation of those that have a value; NaN without any."""
+    """Compute the rank correlation of the finite values; NaN for fewer than three."""
     from scipy.stats import rankdata
 
     known = np.isfinite(values)
@@ -107,7 +108,7 @@ def _rank_correlation(axis: np.ndarray, values: np.ndarray) -> float:
 def _sobol_indices(
     plan: AnyPlan, columns: Columns, chosen: np.ndarray, values: np.ndarray
 ) -> Dict[str, Dict[str, float]]:
-    """Give the indices of each drawn axis; nothing if there are none."""
+    """Compute the Sobol indices of each axis with a distribution; empty for other designs."""
     design = plan.design
     if design.kind != "saltelli" or not design.drawn or not np.isfinite(values).all():
         return {}

@@ -1,4 +1,4 @@
-"""Flying a sweep, and going on with one."""
+"""Run and resume sweeps."""
 
 from __future__ import annotations
 
@@ -46,15 +46,15 @@ PARQUET = "table.parquet"
 
 
 class Sweep(NamedTuple):
-    """What became of the rows.
+    """Results of a sweep.
 
     Attributes
     ----------
     columns : dict of str to ndarray
-        By name: ``row``, what flew, ``failure`` ("" if it flew), the measures, NaN where it failed,
-        and ``fingerprint``. pandas and polars make a DataFrame of it.
+        Columns by name: ``row``, the conditions, ``failure`` ("" for success), the metrics, NaN
+        after a failure, and ``fingerprint``. pandas and polars convert it to a DataFrame.
     sensitivities : list of dict
-        What each measure is sensitive to, see `sensitivity`.
+        Sensitivity of each metric to each parameter; see `compute_sensitivities`.
     """
 
     columns: Dict[str, np.ndarray]
@@ -101,60 +101,62 @@ def sweep(
     dask: Optional[str] = None,
     **options: Unpack[Keywords],
 ) -> Sweep:
-    """Fly thousands of flights, each described so that it can be flown anywhere.
+    """Simulate many flights over a grid or a random sample of parameters.
 
     Parameters
     ----------
     controllers, references
         As for `evaluate`.
     vary
-        By axis, as for `evaluate`, its values: a list; a text, ``"0.9:1.1:5"``, ``"log:1:100:9"``
-        or ``"normal:1:0.1"``; or a distribution, that is what has a method ppf, such as those of
-        scipy.stats.
+        Values by axis, as for `evaluate`: a list, a text (``"0.9:1.1:5"``, ``"log:1:100:9"`` or
+        ``"normal:1:0.1"``), or a distribution with a method ``ppf`` such as those of scipy.stats.
     commands
-        Flown open loop, in the place of controllers and references.
+        Rotor commands of an open-loop flight, instead of controllers and references.
     function, measures
-        In the place of flights: called with a dictionary of a point's values; returns a number, or
-        a mapping with these names.
+        Function to call instead of simulating flights. It receives a dictionary of the values of a
+        point and returns a number, or a mapping with the names in `measures`.
     points
-        A CSV file whose rows are points of the axes in its header.
+        CSV file; each row is a point of the axes in the header.
     design, samples
-        How axes with a distribution are drawn: "latin", "sobol", "random" or "saltelli"; and how
-        many points, from `seed` on.
+        Sampling of axes with a distribution, "latin", "sobol", "random" or "saltelli", and the
+        number of samples. `seed` fixes the sample.
     engines, engine, models
         As for `evaluate`.
     out
-        A folder in which ``table.csv`` grows by whole rows, in order once all are there.
+        Folder for ``table.csv``, which receives each completed row and is sorted at the end.
     parquet
-        Whether to write ``table.parquet``, too, at the end.
+        Whether to write also ``table.parquet`` at the end.
     resume
-        Whether to go on with what is there: nothing is flown twice.
+        Whether to continue the sweep in `out`; completed rows are kept.
     executor
-        Any of concurrent.futures' kind, in the place of `processes`.
+        Executor as in concurrent.futures, instead of `processes`.
     dask
-        Address of a scheduler, in the place of `processes`.
+        Address of a Dask scheduler, instead of `processes`.
     **options
 
     Returns
     -------
     Sweep
-        The same whatever flew it, in whatever order.
+        Results that do not depend on where and in which order the rows run.
 
     Raises
     ------
     InputError
-        Nothing was flown; or the disk is full, what was written being kept.
+        If an argument is invalid, before the first row; or if the disk is full. Completed rows are
+        kept.
     QuadcoreError
-        What should fly is gone; what was written is kept.
+        If the executor or the scheduler fails. Completed rows are kept.
     KeyboardInterrupt
-        What was written is kept.
+        Completed rows are kept.
     """
     shared = SweepOptions(**options)
     made, shared = make_design(vary or {}, shared, points, design, samples)
     plan: AnyPlan
     if function is not None:
         if (controllers, references, commands) != (None, None, None):
-            raise InputError("a function is called in the place of flights; give it, or these")
+            raise InputError(
+                "function replaces flights. Give it without controllers, references and commands."
+            )
         plan = Calls(made, function, arguments.several(measures), shared.time_limit)
     else:
         names = choose_engines(engine, engines), arguments.several(models)
@@ -162,7 +164,7 @@ def sweep(
     with ExitStack() as stack:
         if out is None:
             if resume or parquet:
-                raise InputError("resume and parquet need out; name a folder")
+                raise InputError("resume and parquet need a folder. Give out.")
             out = stack.enter_context(tempfile.TemporaryDirectory())
         folder = Path(out)
         stack.enter_context(output_folder(folder))
@@ -183,9 +185,9 @@ def fly_plan(
     dask: Optional[str] = None,
     progress: Optional[Progress] = None,
 ) -> RowFile:
-    """Fly what is missing of a plan; parameters as for `sweep`."""
+    """Simulate the missing rows of a plan; parameters as for `sweep`."""
     if executor is not None and dask is not None:
-        raise InputError("executor and dask are given; keep one")
+        raise InputError("both executor and dask are given. Give one of them.")
     rows = RowFile(folder / TABLE, plan, resume)
     flown = rows.count
 

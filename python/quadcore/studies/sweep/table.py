@@ -1,4 +1,4 @@
-"""The rows of a sweep as columns, in memory or as Parquet."""
+"""Columns of a sweep, in memory or as Parquet."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from ...support.output_files import atomic_write
 from .row_file import RowFile
 
 _TEXTS = ("failure", "fingerprint")
-_MANY = 10_000  # rows that are held at once when they are read
+_MANY = 10_000  # rows in memory at a time
 
 
 def make_table(rows: RowFile) -> Dict[str, np.ndarray]:
-    """Hold all rows that are there, by column: numbers where all are numbers, else texts."""
+    """Return all rows by column, as numbers if all values are numbers."""
     texts = _text_columns(rows)
     columns: Dict[str, Any] = {
         name: [] if name in texts else array.array("Q" if name in rows.whole else "d")
@@ -31,12 +31,12 @@ def make_table(rows: RowFile) -> Dict[str, np.ndarray]:
 
 
 def write_parquet(rows: RowFile, path: Path) -> None:
-    """Write the rows that are there as Parquet, whole or not at all, few of them held at a time.
+    """Write the rows as Parquet.
 
     Raises
     ------
     InputError
-        There is no pyarrow, or the file cannot be written.
+        If pyarrow is missing or the file cannot be written.
     """
     from ...support.optional_packages import require_package
 
@@ -59,7 +59,7 @@ def write_parquet(rows: RowFile, path: Path) -> None:
 
 
 def _text_columns(rows: RowFile) -> List[str]:
-    """Columns that hold more than numbers."""
+    """List the columns that contain texts."""
     found = list(_TEXTS)
     for row in rows.read():
         found += [
