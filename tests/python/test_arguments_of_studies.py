@@ -21,7 +21,7 @@ def hover():
         ({"measures": 3}, "measures is 3; give a name, or several"),
         ({"vary": {"a": None}}, "give a mapping of names to lists of values"),
         ({"controllers": "pd"}, "function replaces flights"),
-        ({"vary": {"a": "uniform:0:1"}, "samples": 10**12}, "at most 1000000 rows are swept"),
+        ({"vary": {"a": "uniform:0:1"}, "samples": 10**12}, "Give at most 1000000."),
         ({"vary": {"a": "uniform:0:1"}, "samples": 1, "design": "saltelli"}, "at least 2"),
         ({"executor": 3}, "executor is 3; give what has submit()"),
         ({"points": 3}, "points is 3; give a name or a path"),
@@ -46,7 +46,7 @@ def test_an_axis_named_seed_may_hold_any_number():
         ({"free": None}, "free is None; give a name, or several"),
         ({"horizon": 1e300}, "the log is shorter than a horizon"),
         ({"shift": 1e300}, "shift is 1e+300; give seconds, from 0 to 10"),
-        ({"channels": []}, "channels is []; give some of position"),
+        ({"channels": []}, "channels is []. Give some of position"),
         ({"bounds": {"frame.mass": 3}}, "give a mapping of names to (lowest, highest)"),
         ({"log": 3}, "log is 3; give a log, or its file"),
     ],
@@ -59,5 +59,5 @@ def test_wrong_arguments_of_a_fit_are_refused_in_one_line(hover, given, told):
 
 def test_a_flight_of_one_row_is_not_fitted():
     row = qc.Simulation("quadrotor", engine="eigen").run(0.0)
-    with pytest.raises(qc.InputError, match="log: has 1 rows; a flight has at least 2"):
+    with pytest.raises(qc.InputError, match="log: the log has 1 rows"):
         qc.fit("quadrotor", row, ["frame.mass"])

@@ -217,7 +217,7 @@ def test_references_and_laws_can_be_pickled():
         ({"controller": "geometric"}, "has no reference to follow"),
         ({"controller": "geometrik", "reference": "spiral"}, "did you mean 'geometric'"),
         ({"controller": "pd", "reference": "spirale"}, "did you mean 'spiral'"),
-        ({"controller": "pd", "reference": 5}, "reference is 5; give one of quadcore.references"),
+        ({"controller": "pd", "reference": 5}, "reference is 5. Give one of quadcore.references"),
         (
             {"controller": controllers.pd(delay=-1), "reference": "hover"},
             "its delay is -1; give seconds",

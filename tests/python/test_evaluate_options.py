@@ -160,7 +160,7 @@ def test_names_with_commas_and_parameters_are_told_apart():
         ({"engines": 5}, "engines is 5; give a name, or several"),
         ({"models": 5}, "models is 5; give a name, or several"),
         ({"models": [5]}, r"models is \[5\]; give a name, or several"),
-        ({"references": [None]}, "reference is None; give one of quadcore.references, or"),
+        ({"references": [None]}, "reference is None. Give one of quadcore.references, or"),
         ({"vary": {"frame.mass": 5}}, "give a mapping of names to lists of values"),
         ({"vary": {"frame.mass": "1,2"}}, "give a mapping of names to lists of values"),
         ({"vary": {5: [1]}}, r"vary is \{5: \[1\]\}; give a mapping"),

@@ -253,17 +253,29 @@ def test_the_command_writes_the_model_and_tells_what_is_known(flown, in_empty_fo
     free = ["--free", ",".join(["drone_plugin.rotorThrustCoeff", *LINEAR, "frame.mass"])]
     done = ran(*words, *free, "--sensed=odom", "--set", "frame.mass=0.9", "-o", "fitted.urdf")
     assert done.returncode == 0, done.stderr
-    assert f"not told one by one, only {SUM} = " in done.stdout
+    assert f"only the sum is identifiable: {SUM} = " in done.stdout
     assert "singular values" in done.stdout and "held out" in done.stdout
     assert qc.Simulation("fitted.urdf").mass == pytest.approx(1.04, rel=0.01)
     for bad, told in (
-        (["--free", "drone_plugin.k"], "free drone_plugin.k: model quadrotor has none"),
-        (["--free", "drone_plugin.dragModel"], "'appendix' is no number; only numbers are fitted"),
-        ([*free, "--bound", "frame.mass=2:3"], "bound frame.mass: begins at 1, not within 2 and 3"),
+        (
+            ["--free", "drone_plugin.k"],
+            "free drone_plugin.k: model quadrotor has no such parameter",
+        ),
+        (
+            ["--free", "drone_plugin.dragModel"],
+            "'appendix' is not a number. Only numbers can be fitted.",
+        ),
+        (
+            [*free, "--bound", "frame.mass=2:3"],
+            "bound frame.mass: the start value 1 is not within 2 and 3",
+        ),
         ([*free, "--bound", "frame.mass=2"], "'2' is not a range; write LOW:HIGH"),
-        ([*free, "--bound", "frame.ixx=0:3"], "bound frame.ixx: it is not free"),
+        ([*free, "--bound", "frame.ixx=0:3"], "bound frame.ixx: the parameter is not free"),
         ([*free, "--horizon", "99"], "the log is shorter than a horizon"),
-        ([*free, "--sensed", "gps"], "no topic 'gps' with a pose and velocities; its topics: odom"),
+        (
+            [*free, "--sensed", "gps"],
+            "topic 'gps' with pose and velocities does not exist (topics: odom",
+        ),
     ):
         assert told in refused(*words, *bad, "-o", "bad.urdf")
     assert not Path("bad.urdf").exists()

@@ -97,9 +97,13 @@ def test_the_command_writes_the_expanded_document(flown, in_empty_folder):
     assert qc.Simulation("fitted.urdf").mass == pytest.approx(1.07 + 0.04 + 0.043, rel=1e-4)
     Path("fitted.urdf").rename("plain.urdf")
     for model, name, told in (
-        ("quadrotor", "xacro.drag", "free xacro.drag: 'all' is no number; only numbers are fitted"),
-        ("quadrotor", "xacro.fram_mass", "has none (did you mean 'xacro.frame_mass')"),
-        ("plain.urdf", MASS, f"free {MASS}: model quadrotor has none"),
+        (
+            "quadrotor",
+            "xacro.drag",
+            "free xacro.drag: 'all' is not a number. Only numbers can be fitted.",
+        ),
+        ("quadrotor", "xacro.fram_mass", "has no such parameter (did you mean 'xacro.frame_mass')"),
+        ("plain.urdf", MASS, f"free {MASS}: model quadrotor has no such parameter"),
     ):
         assert told in refused("fit", model, *words[2:], "--free", name)
     assert not Path("fitted.urdf").exists()

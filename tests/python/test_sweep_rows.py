@@ -219,7 +219,7 @@ def test_two_studies_do_not_write_into_one_folder(command, monkeypatch, capsys):
         process.stdout.readline()
         assert main(words) == 2
         assert capsys.readouterr().err == (
-            "error: out: another study is writing there; wait, or name another folder\n"
+            "error: out: another study is writing there. Wait, or name another folder.\n"
         )
         process.stdin.close()
     assert not any(Path("out").iterdir())

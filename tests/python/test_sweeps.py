@@ -223,17 +223,17 @@ def test_parquet_holds_what_the_csv_holds(tmp_path):
     ("words", "told"),
     [
         (["--reference", "circle"], "no controller is given. Add --controller or --commands."),
-        ([*SHORT, "--vary", "a.b=uniform:1:2"], "vary a.b: is drawn; say how many --samples"),
-        ([*SHORT, "--samples", "3"], "samples is 3 but no axis is drawn; vary one as uniform:"),
+        ([*SHORT, "--vary", "a.b=uniform:1:2"], "vary a.b: a distribution requires a number of"),
+        ([*SHORT, "--samples", "3"], "no axis has a distribution. Vary one as uniform:"),
         ([*SHORT, "--vary", "a.b=normal:1", "--samples", "3"],
-         "vary a.b: 'normal:1' is no distribution; write normal:MEAN:DEVIATION, all numbers"),
+         "vary a.b: 'normal:1' is not a distribution. Write normal:MEAN:DEVIATION with numbers."),
         ([*SHORT, "--vary", "a.b=uniform:2:1", "--samples", "3"], "there is no uniform:2:1"),
         ([*SHORT, "--vary", "a.b=uniform:1:2", "--samples", "3", "--design", "sobol"],
-         "samples is 3; design sobol takes a power of two: 2 or 4"),
+         "samples is 3; design sobol requires a power of two. Give 2 or 4."),
         ([*SHORT, "--vary", "drone_plugin.k=1,2"], "drone_plugin"),
-        ([*SHORT, "--vary", "engine=eigen,ode"], "vary engine: name the engines by themselves"),
+        ([*SHORT, "--vary", "engine=eigen,ode"], "vary engine: engines are not an axis here."),
         ([*SHORT, "--vary", "frame.mass=1,2", "--measure", "x"], "metric 'x' does not exist"),
-        ([*SHORT, "--vary", "frame.mass=1:2:2000000"], "these are 2000000 flights"),
+        ([*SHORT, "--vary", "frame.mass=1:2:2000000"], "2000000 flights are more than 1000000"),
         (["nowhere.yaml"], "nowhere.yaml: cannot be read"),
     ],
 )  # fmt: skip
@@ -246,7 +246,9 @@ def test_wrong_sweeps_are_refused_in_one_line(words, told, in_empty_folder, caps
 
 def test_rows_of_a_file_of_points_are_refused_by_line(in_empty_folder):
     Path("p.csv").write_text("frame.mass\n1\n1,2\n")
-    with pytest.raises(qc.InputError, match=r"p\.csv:3: write 1 values"):
+    with pytest.raises(
+        qc.InputError, match=r"p\.csv:3: cells are missing or extra. Write 1 values"
+    ):
         sweep({}, points="p.csv", samples=None)
 
 

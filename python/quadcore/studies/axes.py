@@ -1,4 +1,4 @@
-"""What is varied: axes, each with its values, which span a grid."""
+"""Axes of a study: varied quantities with their values."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from .._core import InputError, parse_number
 from ..support.values import Value, text_of
 
 WHOLE = ("engine", "world", "scenario")
-"""What is varied by name, as a whole."""
+"""Axes that are not parameters."""
 
 OF_CONTROLLER = "controller."
-"""Begins the names of axes that vary a controller: its rate, delay or a parameter."""
+"""Prefix of axes that vary a controller: its rate, delay or a parameter."""
 
 Values = Union[Sequence[Value], Sequence[Path], np.ndarray]
 
 
 class Axis(NamedTuple):
-    """One thing that is varied."""
+    """A varied quantity."""
 
     name: str
     """``PLUGIN.TAG``, ``LINK.mass`` or the like, ``xacro.ARG``, several of them joined by commas,
@@ -31,12 +31,12 @@ class Axis(NamedTuple):
 
     @property
     def tags(self) -> List[str]:
-        """The plugin tags that take the value; none for `WHOLE`."""
+        """Plugin tags that take the value; none for an axis of `WHOLE`."""
         return [] if self.name in WHOLE else self.name.split(",")
 
 
 class Range(Sequence[str]):
-    """Numbers as texts, evenly spaced or in a geometric progression, none of them stored."""
+    """Numbers as texts, evenly spaced or in a geometric progression, computed on access."""
 
     def __init__(self, first: float, last: float, count: int, geometric: bool) -> None:
         self._first, self._last, self._size, self._geometric = first, last, count, geometric
@@ -52,7 +52,7 @@ class Range(Sequence[str]):
             value = self._first * (self._last / self._first) ** part
         else:
             value = self._first + part * (self._last - self._first)
-        return f"{value:.12g}"  # what a person would write into the URDF: 0.3
+        return f"{value:.12g}"  # as a person writes it: 0.3
 
 
 def parse_axis(name: str, text: str) -> Axis:
@@ -61,7 +61,7 @@ def parse_axis(name: str, text: str) -> Axis:
     Raises
     ------
     InputError
-        No values, or a range that is none.
+        If there is no value, or the range is invalid.
     """
     if ":" in text and name not in ("world", "scenario"):
         return Axis(name, _parse_range(name, text))
@@ -69,23 +69,25 @@ def parse_axis(name: str, text: str) -> Axis:
 
 
 def make_axes(vary: Mapping[str, Values]) -> List[Axis]:
-    """Make axes of names and values; numbers become the texts that a URDF would hold.
+    """Make axes from names and values; numbers become texts as in a URDF.
 
     Raises
     ------
     InputError
-        No values.
+        If an axis has no values, or combines quantities that need separate axes.
     """
     axes = []
     for key, values in vary.items():
         name = ",".join(part.strip() for part in key.split(","))
         if isinstance(values, str) or len(values) == 0:
-            raise InputError(f"vary {name}: holds no values; give at least one")
+            raise InputError(f"vary {name}: no values are given. Give at least one.")
         if set(WHOLE) & set(name.split(",")) and "," in name:
             own = f"{', '.join(WHOLE[:-1])} and {WHOLE[-1]}"
-            raise InputError(f"vary {name}: {own} take values of their own; vary each")
+            raise InputError(f"vary {name}: {own} cannot share values. Use an axis for each.")
         if OF_CONTROLLER in name and "," in name:
-            raise InputError(f"vary {name}: vary what is the controller's alone")
+            raise InputError(
+                f"vary {name}: a controller parameter cannot share values. Use an axis for it."
+            )
         axes.append(
             Axis(name, values if isinstance(values, Range) else [text_of(v) for v in values])
         )
@@ -98,13 +100,14 @@ def _parse_range(name: str, text: str) -> Range:
     first, last = (parse_number(match[2]), parse_number(match[3])) if match else (None, None)
     if match is None or first is None or last is None or not math.isfinite(first - last):
         raise InputError(
-            f"vary {name}: '{text}' is no range; write FIRST:LAST:COUNT or log:FIRST:LAST:COUNT"
+            f"vary {name}: '{text}' is not a range. Write FIRST:LAST:COUNT or log:FIRST:LAST:COUNT."
         )
     count = int(match[4])
     if count == 0:
-        raise InputError(f"vary {name}: the range '{text}' is empty; write a count of at least 1")
+        raise InputError(f"vary {name}: the range '{text}' is empty. Write a count of at least 1.")
     if match[1] and not first * last > 0:
         raise InputError(
-            f"vary {name}: '{text}' is no geometric range; write ends of one sign, none of them 0"
+            f"vary {name}: '{text}' is not a geometric range. Write two ends of the same sign, "
+            "not 0."
         )
     return Range(first, last, count, bool(match[1]))

@@ -1,4 +1,4 @@
-"""The flights of a study: everything that is combined, read and checked before the first flies."""
+"""Cases of a study: all combinations, read and checked before the first flight."""
 
 from __future__ import annotations
 
@@ -41,11 +41,11 @@ from .variation import Variation, pick_controller_values
 T = TypeVar("T", bound=Options)
 
 LOG_RATE = 100.0
-"""Rows per second that a flight is measured by."""
+"""Rows per second for the metrics of a flight."""
 
 
 class Case(NamedTuple):
-    """One flight, by the positions of what it is made of."""
+    """One flight, as indices of controller, reference, engine, model, point and seed."""
 
     controller: int = 0
     reference: int = 0
@@ -56,27 +56,29 @@ class Case(NamedTuple):
 
 
 class Cases(Sequence[Case]):
-    """Controllers x references x engines x models x points x seeds; the last run fastest.
+    """Combinations of controllers, references, engines, models, points and seeds.
+
+    The last varies fastest.
 
     Parameters
     ----------
     design
-        Points of the axes: what each flight changes.
+        Points of the axes.
     control
         Controllers and references.
     models, engines
         Files or names.
     options
-        What all flights share.
+        Options that all flights share.
     wrenches
-        Whether their logs hold wrenches.
+        Whether to log wrenches.
     largest
-        Number of flights that the study may have.
+        Maximum number of flights.
 
     Raises
     ------
     InputError
-        If something cannot be read, or there are too many flights.
+        If a file cannot be read, a name does not exist, or there are too many flights.
     """
 
     def __init__(
@@ -127,11 +129,11 @@ class Cases(Sequence[Case]):
 
     @property
     def vehicles(self) -> List[str]:
-        """Names of the models' robots."""
+        """Names of the vehicles in the models."""
         return [model.name for model in self.variation.models]
 
     def name_sides(self, case: Case) -> Dict[str, str]:
-        """Name the controller and reference of a flight, if there are any, its engine and model."""
+        """Return the names of controller and reference, if any, engine and model of a case."""
         found = {"engine": self.engines[case.engine], "model": self.models[case.model]}
         if not self.control.is_closed_loop:
             return found
@@ -143,7 +145,7 @@ class Cases(Sequence[Case]):
         }
 
     def make_plan_without_controller(self, case: Case) -> FlightPlan:
-        """Describe a flight but for its controller."""
+        """Make the plan of a flight without its controller."""
         plan = replace(
             self._plans[case.model],
             engine=self.engines[case.engine],
@@ -154,50 +156,52 @@ class Cases(Sequence[Case]):
         return replace(plan, log_every=self.steps_per_row(plan.step))
 
     def make_plan(self, case: Case) -> FlightPlan:
-        """Describe a flight with a controller of its own; raises what making that raises."""
+        """Make the plan of a flight; errors of the controller pass through."""
         plan = self.make_plan_without_controller(case)
         if not self.control.is_closed_loop:
             return plan
         return replace(plan, controller=self.make_controller(case))
 
     def make_controller(self, case: Case) -> Any:
-        """Make the controller of a flight, with what its point changes in it."""
+        """Make the controller of a flight with the values of its point."""
         return self._make_controller(case.controller, case.model, self.design[case.point])
 
     def make_vehicle(self, model: int, point: Point) -> Simulation:
-        """Make a model as a point changes it."""
+        """Make the vehicle of a model with the values of a point."""
         plan = replace(self._plans[model], engine=self.engines[0], on_reference=False)
         return self.variation.apply(plan, model, point).simulation()
 
     def start_controllers(self, model: int, point: Point, vehicle: Simulation) -> None:
-        """Start each shipped controller on a model as a point changes it."""
+        """Start each built-in controller on a model with the values of a point."""
         with _name_point_in_errors(point):
             for i in range(len(self.control.things)):
                 if not self.control.is_user_code(i):
                     Guided(self._make_controller(i, model, point), vehicle).reset(vehicle)
 
     def check(self, commands: Optional[CommandsLike] = None) -> List[Simulation]:
-        """Make each model, and start each shipped controller on it, at some of the points.
+        """Build each model and start each built-in controller on it, at some of the points.
 
         Parameters
         ----------
         commands
-            Flown open loop, as `Simulation.run` takes them.
+            Commands of open-loop flights, as for `Simulation.run`.
 
         Returns
         -------
         list of Simulation
-            Each model at the first point.
+            Vehicle of each model at the first point.
 
         Raises
         ------
         InputError
-            If anything is wrong that shows before a flight; the user's controllers are not started.
+            If an input is invalid. User-defined controllers are not started.
         """
         made = []
         for model in range(len(self.models)):
             for i, point in enumerate(self.design.pick_trial_points()):
-                with suppress_warnings() if i else nullcontext():  # the first says what is doubtful
+                with (
+                    suppress_warnings() if i else nullcontext()
+                ):  # the first point gives the warnings
                     vehicle = self.make_vehicle(model, point)
                     self.start_controllers(model, point, vehicle)
                 if not i:
@@ -211,20 +215,20 @@ class Cases(Sequence[Case]):
         return made
 
     def set_commands(self, commands: CommandsLike, widths: Sequence[int]) -> None:
-        """Let all flights follow commands, for models of so many rotors."""
+        """Set the commands of all flights; `widths` are the numbers of rotors of the models."""
         self._plans = [
             replace(plan, commands=as_commands(commands, width))
             for plan, width in zip(self._plans, widths)
         ]
 
     def steps_per_row(self, dt: float) -> int:
-        """Count the steps from one logged row to the next."""
+        """Return the number of steps between logged rows."""
         if self.options.log_every is None:
             return max(1, round(1 / (LOG_RATE * dt)))
         return self.options.log_every
 
     def list_settings(self) -> Dict[str, Any]:
-        """Give what all flights share, in plain values."""
+        """Return the settings that all flights share, as plain values."""
         options, step = self.options, self._plans[0].step
         spawn = options.spawn
         return {
@@ -257,14 +261,16 @@ class Cases(Sequence[Case]):
         known = [name for name, _ in list_engines()]
         for engine in self.engines:
             if engine not in known:
-                raise InputError(f"there is no engine '{engine}'; give some of {', '.join(known)}")
+                raise InputError(f"engine '{engine}' does not exist. Use {', '.join(known)}.")
         for name in self.design.names:
             if name.startswith(OF_CONTROLLER) and not self.control.is_closed_loop:
-                raise InputError(f"vary {name}: there is no controller; name a --controller")
+                raise InputError(f"vary {name}: no controller is given. Add --controller.")
         sizes = [len(side) or 1 for side in sides.values()]
         sizes += [self.design.size, int(self.options.seeds)]
         if math.prod(sizes) > largest:
-            raise InputError(f"these are {math.prod(sizes)} flights; at most {largest} are flown")
+            raise InputError(
+                f"{math.prod(sizes)} flights are more than {largest}. Use fewer combinations."
+            )
         return tuple(sizes)
 
 
@@ -272,35 +278,35 @@ def check_models(models: Sequence[Union[str, Path]], design: Design) -> None:
     """Raise `InputError` if a model is named twice, or an axis varies the engines."""
     check_labels("model", [shown(model) for model in models])
     if "engine" in design.names:
-        raise InputError("vary engine: name the engines by themselves")
+        raise InputError("vary engine: engines are not an axis here. Use --engine A,B.")
 
 
 def make_scenario_axis(
     vary: Mapping[str, Any], options: T, least: int = 1
 ) -> Tuple[Mapping[str, Any], T]:
-    """Make an axis of the scenarios that the options name, if there are so many."""
+    """Make an axis of the scenarios in the options, if there are at least `least`."""
     scenario: Any = options.scenario
     names = list(scenario) if isinstance(scenario, (list, tuple)) else [scenario]
     if scenario is None or not names:
         return vary, options
     if "scenario" in vary:
-        raise InputError("vary scenario: it is given as well; keep one")
+        raise InputError("vary scenario: --scenario is also given. Give one of them.")
     if len(names) < least or isinstance(names[0], Scenario):
         return vary, replace(options, scenario=names[0])
     return {"scenario": names, **vary}, replace(options, scenario=None)
 
 
 def check_labels(kind: str, names: Sequence[str]) -> None:
-    """Raise `InputError` if nothing of a kind is named, or something twice."""
+    """Raise `InputError` if there is no name, or one occurs twice."""
     for name in names:
         if names.count(name) > 1:
-            raise InputError(f"{kind} '{name}' is named twice; keep one, or label them")
+            raise InputError(f"{kind} '{name}' is named twice. Remove one, or label them.")
     if not names:
-        raise InputError(f"no {kind} is named; name at least one")
+        raise InputError(f"no {kind} is named. Name at least one.")
 
 
 def label_point(point: Mapping[str, str]) -> str:
-    """Name a point."""
+    """Label a point."""
     return " ".join(
         value if name == "scenario" else f"{name}={value}" for name, value in point.items()
     )
@@ -308,7 +314,7 @@ def label_point(point: Mapping[str, str]) -> str:
 
 @contextmanager
 def _name_point_in_errors(point: Mapping[str, str]) -> Iterator[None]:
-    """Name what a point gives to controllers in an error of the block."""
+    """Add the controller values of a point to errors of the block."""
     try:
         yield
     except InputError as error:

@@ -1,4 +1,4 @@
-"""The controllers and references of a study."""
+"""Controllers and references of a study."""
 
 from __future__ import annotations
 
@@ -26,21 +26,21 @@ References = Union[_Reference, Mapping[str, _Reference], Sequence[_Reference]]
 
 
 class ControlSetup:
-    """Controllers and references, each with a label; or none, for flights open loop.
+    """Controllers and references with labels; empty for open-loop flights.
 
     Parameters
     ----------
     controllers, references_
-        Labels, and texts as on the command line or objects as `Simulation.run` takes them.
+        Labels, and names as on the command line or objects as for `Simulation.run`.
     controller_rate, delay
-        Of each controller; None leaves it its own.
+        Timing of all controllers; None keeps that of each controller.
     on_reference
-        Whether flights begin on the reference.
+        Whether flights start on the reference.
 
     Raises
     ------
     InputError
-        If a reference is wrong.
+        If a reference is invalid.
     """
 
     def __init__(
@@ -54,7 +54,7 @@ class ControlSetup:
         self.controllers = [label for label, _ in controllers]
         self.references = [label for label, _ in references_]
         self.things = [thing for _, thing in controllers]
-        """The controllers as they were given."""
+        """Controllers as given."""
         self.shapes = [make_reference(thing) for _, thing in references_]
         self.timing = {"rate": controller_rate, "delay": delay}
         self.on_reference = on_reference
@@ -71,7 +71,7 @@ class ControlSetup:
         controller_rate: Optional[float],
         delay: Optional[float],
     ) -> ControlSetup:
-        """Take one controller and one reference, or neither.
+        """Make a setup of one controller and one reference, or of neither.
 
         Without a reference the vehicle hovers at the spawn.
         """
@@ -79,7 +79,7 @@ class ControlSetup:
             given = {"reference": reference, "controller_rate": controller_rate, "delay": delay}
             for name, value in given.items():
                 if value is not None:
-                    raise InputError(f"{name} needs a controller; give one")
+                    raise InputError(f"{name} requires a controller. Give one.")
             return cls()
         on_reference = reference is not None and spawn is None
         if reference is None:
@@ -93,22 +93,22 @@ class ControlSetup:
 
     @property
     def runs_user_code(self) -> bool:
-        """Whether flights call code of the user's, which may keep a state from flight to flight."""
+        """Whether flights call user code, which may keep state from flight to flight."""
         return any(map(_is_user_code, self.things)) or not all(
             isinstance(one, references.Shape) for one in self.shapes
         )
 
     def is_user_code(self, controller: int) -> bool:
-        """Whether a controller is the user's."""
+        """Whether a controller is user-defined."""
         return _is_user_code(self.things[controller])
 
     def make(self, controller: int, vehicle: str, values: Mapping[str, float]) -> Any:
-        """Make a controller for one flight of a vehicle, which gives it some values."""
+        """Make a controller with some values for one flight of a vehicle."""
         made = self._make_factory(controller, vehicle)()
         return set_parameters(made, {**self.timing, **values})
 
     def guide(self, plan: FlightPlan) -> FlightPlan:
-        """Make a flight guided by the only controller and reference."""
+        """Add the only controller and reference to a plan."""
         return replace(
             plan,
             controller=self.make(0, plan.model.name, {}),
@@ -117,39 +117,39 @@ class ControlSetup:
         )
 
     def check(self, vehicles: Iterable[str]) -> None:
-        """Raise `InputError` if a shipped controller cannot be made for one of some vehicles."""
+        """Raise `InputError` if a built-in controller cannot be made for one of the vehicles."""
         for vehicle in vehicles:
             for controller in range(len(self.things)):
                 self._make_factory(controller, vehicle)
 
 
 def add_labels(kind: str, things: Any, one: type) -> List[Tuple[str, Any]]:
-    """Give each thing a label."""
+    """Add a label to each controller or reference."""
     if isinstance(things, Mapping):
         return [(str(label), thing) for label, thing in things.items()]
     if isinstance(things, (str, one)) or callable(things):
         things = [things]
     if not isinstance(things, Iterable):
         raise InputError(
-            f"{kind} is {brief(things)}; give a name, what is called, or several of these"
+            f"{kind} is {brief(things)}. Give a name, a callable, or several of these."
         )
     return [(_make_label(thing), thing) for thing in things]
 
 
 def make_reference(thing: Any) -> Any:
-    """Make a reference of its name; what is one already is given as it is."""
+    """Make a reference from its name; return callables unchanged."""
     if isinstance(thing, str):
         return references.parse(thing)
     if not callable(thing):
         raise InputError(
-            f"reference is {brief(thing)}; give one of quadcore.references, or a function that is "
-            "called as reference(t)"
+            f"reference is {brief(thing)}. Give one of quadcore.references, or a function that is "
+            "called as reference(t)."
         )
     return thing
 
 
 def names_user_code(thing: Any) -> bool:
-    """Whether a text names a module or a file of the user's own."""
+    """Whether a text names a user-defined controller."""
     return isinstance(thing, str) and (
         names_file(thing) or (":" in thing and thing.partition(":")[0] not in controllers.NAMES)
     )
@@ -164,7 +164,7 @@ def _is_user_code(thing: Any) -> bool:
 
 
 def set_parameters(controller: Any, values: Mapping[str, Any]) -> Any:
-    """Give a controller its rate, delay and parameters, as far as they are not None."""
+    """Set rate, delay and parameters of a controller; None values are skipped."""
     for name, value in values.items():
         if value is not None:
             set_parameter(controller, name, value)
@@ -172,9 +172,9 @@ def set_parameters(controller: Any, values: Mapping[str, Any]) -> Any:
 
 
 def _make_factory(thing: Any, vehicle: str) -> Callable[[], Any]:
-    """Make what makes a controller for a flight; a module of the user's is imported then.
+    """Return a function that makes the controller of a flight; it imports user modules.
 
-    An object is given as it is: flights that run user code have processes of their own.
+    Objects are shared, as flights with user code run in separate processes.
     """
     if names_user_code(thing):
         return lambda: controllers.parse(thing, vehicle)

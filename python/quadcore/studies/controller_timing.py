@@ -1,4 +1,4 @@
-"""How long a controller takes by itself."""
+"""Computation time of controllers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..simulation.controller_pilot import Guided
 
 
 class TimedController:
-    """A controller of one's own, with the seconds that each call took; the rest is its own."""
+    """User-defined controller with the duration of each call, s."""
 
     def __init__(self, controller: Any) -> None:
         check_callable(controller)
@@ -24,7 +24,7 @@ class TimedController:
         return getattr(self._controller, name)
 
     def __call__(self, t: float, state: Any, reference: Any) -> Any:
-        """Ask the controller."""
+        """Call the controller."""
         started = perf_counter()
         answer = self._controller(t, state, reference)
         self.seconds.append(perf_counter() - started)
@@ -32,7 +32,7 @@ class TimedController:
 
 
 class TimedPilot:
-    """A pilot of a law of quadcore, with the same; it reads odometry and reference on the way."""
+    """Pilot of a built-in controller with the duration of each call, s, including its inputs."""
 
     def __init__(self, pilot: Guided) -> None:
         self.seconds: List[float] = []
@@ -42,7 +42,7 @@ class TimedPilot:
         return getattr(self._pilot, name)
 
     def speeds(self, simulation: Any) -> Any:
-        """Ask the law."""
+        """Return the rotor speeds of the controller."""
         started = perf_counter()
         answer = self._pilot.speeds(simulation)
         self.seconds.append(perf_counter() - started)
@@ -50,12 +50,12 @@ class TimedPilot:
 
 
 def time_controller(controller: Any) -> Any:
-    """Make a controller that is timed; a law of quadcore is by its pilot."""
+    """Wrap a user-defined controller; built-in controllers are timed in their pilot."""
     return controller if isinstance(controller, BuiltInController) else TimedController(controller)
 
 
 def summarise_durations(seconds: List[float]) -> Tuple[float, float]:
-    """Median, and what one call of a hundred exceeds, s; NaN without any."""
+    """Return median and 99 % quantile, s; NaN without a call."""
     if not seconds:
         return float("nan"), float("nan")
     middle, slow = np.quantile(seconds, [0.5, 0.99])

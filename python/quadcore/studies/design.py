@@ -1,4 +1,4 @@
-"""Which points of the axes are flown."""
+"""Designs: the points of the axes that a study simulates."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from . import distributions
 from .axes import Axis, make_axes, parse_axis
 
 LARGEST = 1_000_000
-"""Rows of one sweep."""
+"""Maximum number of rows of a sweep."""
 
-_LARGEST = 10**8  # bytes of a table of points
+_LARGEST = 10**8  # bytes of a file of points
 
 Point = Dict[str, str]
 
 
 class Block(NamedTuple):
-    """Axes that vary together, with a row of values for each of their points."""
+    """Axes that vary together, with a row of values per point."""
 
     names: Sequence[str]
     rows: Sequence[Sequence[str]]
@@ -28,22 +28,22 @@ class Block(NamedTuple):
 
 
 class Design(Sequence[Point]):
-    """All combinations of the points of several blocks; the last block runs fastest.
+    """All combinations of the points of several blocks; the last block varies fastest.
 
     Parameters
     ----------
     vary
-        By name of an axis its values: a list, a text as of ``--vary``, or a distribution, that is
-        what has a method ppf. An axis may be several, joined by commas.
+        Values by name of the axis: a list, a text as for ``--vary``, or a distribution with a
+        method ``ppf``. Names joined by commas share the values.
     points
-        A CSV file, whose rows are points of the axes that its header names.
+        CSV file; each row is a point of the axes in the header.
     design, samples, seed
-        See `distributions.drawn`.
+        See `distributions.draw_points`.
 
     Raises
     ------
     InputError
-        No values, or a name on two axes.
+        If an axis has no values, or a name occurs in two axes.
     """
 
     def __init__(
@@ -56,7 +56,7 @@ class Design(Sequence[Point]):
     ) -> None:
         listed: Dict[str, Any] = {}
         self.drawn: Dict[str, Any] = {}
-        """Distributions by axis."""
+        """Distribution of each sampled axis."""
         for name, given in vary.items():
             made = distributions.parse(name, given) if isinstance(given, str) else given
             if hasattr(made, "ppf"):
@@ -65,22 +65,25 @@ class Design(Sequence[Point]):
                 listed[name] = parse_axis(name, given).values if isinstance(given, str) else given
         self.kind, self.samples = design, samples
         self.listed = make_axes(listed)
-        """Axes whose values are listed."""
+        """Axes with lists of values."""
         blocks = [Block([axis.name], _Column(axis)) for axis in self.listed]
         if points is not None:
             blocks.append(_read_table(Path(points)))
         if self.drawn:
             names = list(self.drawn)
             if samples is None:
-                raise InputError(f"vary {names[0]}: is drawn; say how many --samples")
+                raise InputError(
+                    f"vary {names[0]}: a distribution requires a number of samples. Add --samples."
+                )
             if samples > LARGEST:
-                raise InputError(f"samples is {samples}; at most {LARGEST} rows are swept")
+                raise InputError(f"samples is {samples}. Give at most {LARGEST}.")
             values = list(self.drawn.values())
             rows = distributions.draw_points(names, values, design, samples, seed)
             blocks.append(Block(names, rows, is_drawn=True))
         elif samples is not None:
             raise InputError(
-                f"samples is {samples} but no axis is drawn; vary one as {', '.join(list_forms())}"
+                f"samples is {samples} but no axis has a distribution. Vary one as "
+                f"{', '.join(list_forms())}."
             )
         self.blocks = blocks
         self._sizes = [len(block.rows) for block in blocks]
@@ -88,12 +91,12 @@ class Design(Sequence[Point]):
 
     @property
     def names(self) -> List[str]:
-        """Of all axes, in the order of the blocks."""
+        """Names of all axes, in the order of the blocks."""
         return [name for block in self.blocks for name in block.names]
 
     @property
     def size(self) -> int:
-        """Number of points, which may exceed what `len` can give."""
+        """Number of points, which may exceed the limit of `len`."""
         return math.prod(self._sizes)
 
     def __len__(self) -> int:
@@ -113,14 +116,14 @@ class Design(Sequence[Point]):
         }
 
     def values(self, name: str) -> Iterator[str]:
-        """All values of an axis, the same perhaps often; none if there is no such axis."""
+        """Yield the values of an axis, perhaps repeated; none if the axis does not exist."""
         for block in self.blocks:
             if name in block.names:
                 column = list(block.names).index(name)
                 yield from (row[column] for row in block.rows)
 
     def pick_trial_points(self) -> List[Point]:
-        """Choose points in which each axis once has each value, or its ends if there are many."""
+        """Return points that contain each value of each axis, or the ends of a long axis."""
         if not len(self):
             return []
         first: Point = self[0]
@@ -131,7 +134,7 @@ class Design(Sequence[Point]):
         return list({tuple(point.items()): point for point in chosen}.values())
 
     def describe(self) -> Dict[str, Any]:
-        """Give the number of values of each axis and how points are drawn, in plain values."""
+        """Return the number of values of each axis and the sampling, as plain values."""
         return {
             "axes": {name: len(set(self.values(name))) for name in self.names},
             "design": self.kind if self.drawn else None,
@@ -143,11 +146,11 @@ class Design(Sequence[Point]):
         for name in self.names:
             for part in name.split(","):
                 if part in taken:
-                    raise InputError(f"vary {name}: {part} is varied twice; keep one")
+                    raise InputError(f"vary {name}: {part} is varied twice. Remove one axis.")
                 taken.append(part)
 
 
-_FEW = 16  # values of an axis that are all tried before anything flies
+_FEW = 16  # values of an axis that are all checked before the first flight
 
 
 class _Column(Sequence[Tuple[str]]):
@@ -164,12 +167,12 @@ class _Column(Sequence[Tuple[str]]):
 
 
 def list_forms() -> List[str]:
-    """Write how a distribution is asked for."""
+    """List the forms of the distributions."""
     return distributions.list_forms()
 
 
 def _end_rows(block: Block) -> List[int]:
-    """Rows with the least and the largest value of each column that holds numbers."""
+    """Return the rows with the minimum and maximum of each numeric column."""
     found = [0, len(block.rows) - 1]
     for column in range(len(block.names)):
         try:
@@ -184,13 +187,15 @@ def _read_table(path: Path) -> Block:
     header, *lines = read_text(path, _LARGEST).rstrip().splitlines() or [""]
     names = [name.strip() for name in header.split(",")]
     if not all(names):
-        raise InputError(f"{path}:1: the header is '{header[:80]}'; name an axis in each column")
+        raise InputError(f"{path}:1: the header is '{header[:80]}'. Name an axis in each column.")
     rows = []
     for number, line in enumerate(lines, start=2):
         cells = [cell.strip() for cell in line.split(",")]
         if len(cells) != len(names) or not all(cells):
-            raise InputError(f"{path}:{number}: write {len(names)} values, one for each column")
+            raise InputError(
+                f"{path}:{number}: cells are missing or extra. Write {len(names)} values."
+            )
         rows.append(cells)
     if not rows:
-        raise InputError(f"{path}: holds no points; write a row for each")
+        raise InputError(f"{path}: the file contains no points. Write a row for each.")
     return Block(names, rows)

@@ -1,4 +1,4 @@
-"""What an axis is drawn from: distributions by name, and sets of points that fill a box."""
+"""Distributions of axes, and sets of sample points."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from .._core import InputError, parse_number
 from ..support.optional_packages import require_package
 
 DIGITS = 12
-"""Of what is drawn, as text: fewer than a double has, so that every machine writes the same."""
+"""Digits of samples: fewer than in a double, so that all machines write the same text."""
 
 
 class Distribution(NamedTuple):
-    """One that the command line knows."""
+    """A distribution that the command line can name."""
 
     arguments: Tuple[str, ...]
     meaning: str
     make: Callable[..., Any]
-    """Makes one of scipy.stats, frozen."""
+    """Returns a frozen distribution of scipy.stats."""
 
 
 def _import_stats() -> Any:
@@ -32,11 +32,13 @@ def _import_stats() -> Any:
 
 KNOWN: Dict[str, Distribution] = {
     "uniform": Distribution(
-        ("LOW", "HIGH"), "all alike", lambda low, high: _import_stats().uniform(low, high - low)
+        ("LOW", "HIGH"),
+        "constant density",
+        lambda low, high: _import_stats().uniform(low, high - low),
     ),
     "loguniform": Distribution(
         ("LOW", "HIGH"),
-        "all magnitudes alike",
+        "constant density of the logarithm",
         lambda low, high: _import_stats().loguniform(low, high),
     ),
     "normal": Distribution(
@@ -44,14 +46,14 @@ KNOWN: Dict[str, Distribution] = {
     ),
     "truncnormal": Distribution(
         ("MEAN", "DEVIATION", "LOW", "HIGH"),
-        "the same within bounds",
+        "normal within bounds",
         lambda mean, deviation, low, high: _import_stats().truncnorm(
             (low - mean) / deviation, (high - mean) / deviation, mean, deviation
         ),
     ),
     "lognormal": Distribution(
         ("MEDIAN", "DEVIATION"),
-        "whose natural logarithm is normal, with this deviation",
+        "natural logarithm is normal with this deviation",
         lambda median, deviation: _import_stats().lognorm(deviation, scale=median),
     ),
     "triangular": Distribution(
@@ -65,17 +67,17 @@ KNOWN: Dict[str, Distribution] = {
 
 
 def list_forms() -> List[str]:
-    """Write how each is asked for."""
+    """List the forms of the distributions."""
     return [":".join((name, *known.arguments)) for name, known in KNOWN.items()]
 
 
 def parse(name: str, text: str) -> Optional[Any]:
-    """Read ``NAME:NUMBER:...``; None if no distribution is meant.
+    """Read ``NAME:NUMBER:...``; return None for any other text.
 
     Raises
     ------
     InputError
-        Other arguments than it takes.
+        If the arguments are invalid.
     """
     kind, *given = text.split(":")
     known = KNOWN.get(kind.strip())
@@ -84,7 +86,7 @@ def parse(name: str, text: str) -> Optional[Any]:
     numbers = [parse_number(part) for part in given]
     form = ":".join((kind.strip(), *known.arguments))
     if None in numbers or len(numbers) != len(known.arguments):
-        raise InputError(f"vary {name}: '{text}' is no distribution; write {form}, all numbers")
+        raise InputError(f"vary {name}: '{text}' is not a distribution. Write {form} with numbers.")
     with np.errstate(all="ignore"):
         try:
             made = known.make(*numbers)
@@ -92,7 +94,7 @@ def parse(name: str, text: str) -> Optional[Any]:
         except (ValueError, ZeroDivisionError):
             ends = np.array([math.nan])
     if not (np.isfinite(ends).all() and ends[0] < ends[-1]):
-        raise InputError(f"vary {name}: there is no {text}; {form} needs others")
+        raise InputError(f"vary {name}: the numbers of {text} are invalid. Write {form}.")
     return made
 
 
@@ -121,7 +123,7 @@ def _draw_sobol(dimensions: int, count: int, seed: int) -> np.ndarray:
 def _draw_saltelli(dimensions: int, count: int, seed: int) -> np.ndarray:
     _check_power("saltelli", count)
     if count < 2:
-        raise InputError("samples is 1; design saltelli tells nothing of one; give at least 2")
+        raise InputError("samples is 1; the design saltelli requires more. Give at least 2.")
     with require_package("design saltelli", "SALib", "sweep"):
         from SALib.sample import sobol
     points: np.ndarray = sobol.sample(
@@ -132,18 +134,18 @@ def _draw_saltelli(dimensions: int, count: int, seed: int) -> np.ndarray:
 
 DESIGNS: Dict[str, Tuple[str, Callable[[int, int, int], np.ndarray]]] = {
     "latin": ("a Latin hypercube", _draw_latin),
-    "sobol": ("a scrambled Sobol set", _draw_sobol),
+    "sobol": ("a scrambled Sobol sequence", _draw_sobol),
     "random": ("independent points", _draw_random),
     "saltelli": (
-        "the sets of Saltelli, for Sobol indices: samples x (axes + 2) flights",
+        "sample for Sobol indices (Saltelli): samples x (axes + 2) flights",
         _draw_saltelli,
     ),
 }
-"""Sets of points in the unit cube, by name, with what they are."""
+"""Designs in the unit cube by name, with their description."""
 
 
 def make_unit_problem(dimensions: int) -> Dict[str, Any]:
-    """Tell SALib of axes that are drawn from the unit cube."""
+    """Describe the axes of the unit cube for SALib."""
     return {
         "num_vars": dimensions,
         "names": [str(i) for i in range(dimensions)],
@@ -159,32 +161,33 @@ def draw_points(
     Parameters
     ----------
     names, distributions
-        Of the axes; of scipy.stats, or whatever has a method ppf.
+        Axes and their distributions, objects with a method ``ppf``.
     design
         One of `DESIGNS`.
     samples
-        How many; "saltelli" makes more of them.
+        Number of samples; "saltelli" makes more points.
     seed
-        The same gives the same.
+        Seed of the random numbers.
 
     Returns
     -------
     list of list of str
-        A row for each point.
+        Row of values per point.
 
     Raises
     ------
     InputError
-        No such design, a number of samples that it cannot have, or a value that is not finite.
+        If the design does not exist, does not support the number of samples, or a value is not
+        finite.
     """
     if design not in DESIGNS:
-        raise InputError(f"there is no design '{design}'; give one of {', '.join(DESIGNS)}")
+        raise InputError(f"design '{design}' does not exist. Use one of {', '.join(DESIGNS)}.")
     cube = DESIGNS[design][1](len(names), samples, seed)
     columns = []
     for name, distribution, part in zip(names, distributions, cube.T):
         values = np.asarray(distribution.ppf(part), dtype=float)
         if values.shape != part.shape or not np.isfinite(values).all():
-            raise InputError(f"vary {name}: a value that was drawn is not finite; bound it")
+            raise InputError(f"vary {name}: a sample is not finite. Use a bounded distribution.")
         columns.append([f"{value:.{DIGITS}g}" for value in values])
     return [list(row) for row in zip(*columns)]
 
@@ -193,7 +196,8 @@ def _check_power(design: str, count: int) -> None:
     if count & (count - 1):
         below = 1 << (count.bit_length() - 1)
         raise InputError(
-            f"samples is {count}; design {design} takes a power of two: {below} or {2 * below}"
+            f"samples is {count}; design {design} requires a power of two. Give {below} or "
+            f"{2 * below}."
         )
 
 
@@ -204,6 +208,6 @@ def _import_qmc() -> Any:
 
 
 def _seed_argument(engine: Any, seed: int) -> Dict[str, Any]:
-    """Name the seed as this release of scipy does."""
+    """Return the seed under the argument name of this release of scipy."""
     named = "rng" if "rng" in inspect.signature(engine.__init__).parameters else "seed"
     return {named: np.random.default_rng(seed)}

@@ -1,4 +1,4 @@
-"""Many independent cases over several processes."""
+"""Parallel execution of independent cases in several processes."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ Take = Callable[[int, Union[Any, QuadcoreError]], Any]
 Progress = Callable[[int, int], None]
 Task = Tuple[Callable[[Any], Any], Callable[[Any], Any]]
 
-# Forked, so that the caller's data need not be copied and its script need not be importable.
+# Forked: no copy of the caller's data, no need to import its script.
 _FORK = multiprocessing.get_context("fork")
 
-_PATIENCE = 10.0  # s; how long a process that was asked to end may take
+_PATIENCE = 10.0  # s; time for a process to end
 _PR_SET_PDEATHSIG = 1  # of linux/prctl.h
 
 
 def count_cores() -> int:
-    """Count the cores that this process may use."""
+    """Return the number of cores that this process may use."""
     return len(os.sched_getaffinity(0))
 
 
@@ -48,34 +48,32 @@ def run_cases(
     Parameters
     ----------
     function
-        Runs in forked processes; may be any callable, its result must be picklable. An interrupt
-        reaches it as `interrupts.Interrupted`, so that it can leave nothing half done.
+        Callable that runs in forked processes; its result must be picklable. An interrupt reaches
+        it as `interrupts.Interrupted`, so that it can clean up.
     cases
-        Taken one by one as processes fall idle, so that they may come from a generator.
+        Cases, perhaps from a generator; each idle process takes the next one.
     take
-        Called as take(index, result) for each case, in the order in which they end. A QuadcoreError
-        that `function` raised, without what it carries, and one made for a process that died, come
-        in place of the result: the other cases go on. An interrupt waits for it.
+        Called as take(index, result) for each case, in the order of completion. If `function`
+        raises a QuadcoreError or its process dies, the result is a QuadcoreError, and the other
+        cases continue. An interrupt waits for `take`.
     processes
-        How many; None takes one per core that this process may use. Fewer if the system gives no
-        more.
+        Number of processes; None: one per usable core. Fewer if the system has no more.
     conclude
-        Called on the result, in the same process, for what stands in its place. An interrupt waits
-        until that is done and the outcome was taken: a file that `conclude` writes is there if and
-        only if the outcome is.
+        Called with the result in the same process; returns its replacement. An interrupt waits
+        until `take` has received the result: a file that `conclude` writes exists if and only if
+        the result does.
     apart
-        Whether each case has a process of its own, which begins as this one is now: nothing that
-        `function` leaves behind, be it in the globals of a module, is there for another case.
+        Whether each case has a separate process, a copy of this one, so that cases share no state.
 
     Raises
     ------
     KeyboardInterrupt
-        After the results that were there already. No process is left, as none is left when this
-        process dies or `take` raises.
+        After `take` has received the available results. No process remains, also if this process
+        dies or `take` raises.
     QuadcoreError
-        The system gives not even one process.
+        If the system cannot start a process.
     RuntimeError
-        Anything else that `function` raised, with its traceback; see `contained`.
+        If `function` raises another exception; contains its traceback. See `contain_errors`.
     """
     pool = _WorkerPool(function, conclude, cases, apart)
     try:
@@ -102,12 +100,12 @@ def run_contained(
     progress: Optional[Progress] = None,
     apart: bool = False,
 ) -> None:
-    """Do as `each` does, but with any fault its case's alone.
+    """Call `run_cases`, but let any exception fail only its case.
 
     Parameters
     ----------
     progress
-        Called as progress(done, total) after each outcome was taken; `cases` has a length then.
+        Called as progress(done, total) after each `take`; requires `cases` with a length.
     """
     done = 0
 
@@ -124,30 +122,30 @@ def run_contained(
 
 
 def contain_errors(function: Callable[[Case], Result]) -> Callable[[Case], Result]:
-    """Make `function` raise QuadcoreError for any fault, so that it is one case's alone."""
+    """Make `function` raise QuadcoreError instead of any other exception."""
 
     def call(case: Case) -> Result:
         try:
             return function(case)
         except (QuadcoreError, MemoryError, KeyboardInterrupt):
             raise
-        except BaseException as error:  # SystemExit, too: it is not for code that flies to end all
+        except BaseException as error:  # SystemExit too: user code must not end the study
             raise QuadcoreError(describe_error(error)) from error
 
     return call
 
 
 class ProcessDied(QuadcoreError):
-    """The process of a case died."""
+    """Error of a case with a process that died."""
 
     def __init__(self, exit_code: int) -> None:
         super().__init__(_describe_death(exit_code))
         self.was_killed = exit_code < 0
-        """Whether by a signal, which may well have had nothing to do with the case."""
+        """Whether a signal ended it, perhaps for a reason unrelated to the case."""
 
 
 class _WorkerPool:
-    """Processes that work on cases."""
+    """Processes that run cases."""
 
     def __init__(
         self,
@@ -160,17 +158,17 @@ class _WorkerPool:
         self._apart = apart
         self._queue = enumerate(cases)
         self.busy: Dict[Connection, Tuple[int, Any]] = {}
-        """Index of the case and process, by the end of its pipe."""
+        """Index of the case and process, by pipe."""
 
     def start(self, processes: int) -> None:
-        """Start so many, or as many as the system gives, each with a case."""
+        """Start processes, as many as the system allows, each with a case."""
         for _ in range(processes):
             with interrupts.hold_signals():
                 if not self._replace():
                     break
 
     def take(self, connection: Any) -> Tuple[int, Any]:
-        """Take over the result that waits in a pipe, and give the process the next case."""
+        """Receive a result from a pipe, and send the next case."""
         index, process = self.busy.pop(connection)
         try:
             result, fault = connection.recv()
@@ -191,7 +189,7 @@ class _WorkerPool:
         return index, result
 
     def stop(self) -> Iterator[Tuple[int, Any]]:
-        """End all, and yield what some had finished."""
+        """End all processes, and yield the results that are complete."""
         for _, process in self.busy.values():
             process.terminate()
         while self.busy:
@@ -208,7 +206,7 @@ class _WorkerPool:
                 process.join()
 
     def _replace(self) -> bool:
-        """Start one more process; without success the others go on alone, if there are any."""
+        """Start another process; returns False if only the existing ones can continue."""
         try:
             self._give(*_start(self._task, list(self.busy)))
         except OSError as error:
@@ -220,10 +218,10 @@ class _WorkerPool:
     def _give(self, connection: Connection, process: Any) -> None:
         for index, case in itertools.islice(self._queue, 1):
             self.busy[connection] = index, process
-            with contextlib.suppress(BrokenPipeError):  # recv will tell that it died
+            with contextlib.suppress(BrokenPipeError):  # recv reports that it died
                 connection.send(case)
             return
-        connection.close()  # nothing is left to do: it ends
+        connection.close()  # no case remains: the process ends
         process.join()
 
 
@@ -232,7 +230,7 @@ def _start(task: Task, others: List[Connection]) -> Tuple[Connection, Any]:
     process = _FORK.Process(
         target=_run_worker, args=(task, there, [here, *others], os.getpid()), daemon=True
     )
-    # What comes before the child is ready waits for it, instead of finding the parent's handlers.
+    # Block signals until the child has installed its handlers.
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, interrupts.SIGNALS)
     try:
         process.start()
@@ -248,10 +246,10 @@ def _start(task: Task, others: List[Connection]) -> Tuple[Connection, Any]:
 def _run_worker(task: Task, pipe: Connection, inherited: List[Connection], parent: int) -> None:
     try:
         _set_signals(parent)
-        for connection in inherited:  # else nobody would see that the parent is gone
+        for connection in inherited:  # so that the parent's death closes them
             connection.close()
         _serve(*task, pipe)
-    except interrupts.Interrupted as stop:  # everything is left as it should be
+    except interrupts.Interrupted as stop:  # cleanup is complete
         signal.signal(stop.number, signal.SIG_DFL)
         os.kill(os.getpid(), stop.number)
 
@@ -269,7 +267,7 @@ def _serve(
 
 
 def _call(function: Callable[[Any], Any], argument: Any) -> Tuple[Any, Optional[str]]:
-    """Give the result or the QuadcoreError in its place, and the traceback of any other fault."""
+    """Return the result or a QuadcoreError, and the traceback of any other exception."""
     try:
         return function(argument), None
     except InputError as error:
@@ -283,17 +281,17 @@ def _call(function: Callable[[Any], Any], argument: Any) -> Tuple[Any, Optional[
 
 
 def _set_signals(parent: int) -> None:
-    """Leave Ctrl-C and a closed terminal to the parent, which hears them too; end when told to."""
+    """Ignore Ctrl-C and a closed terminal, which the parent handles; end at SIGTERM."""
 
     def end(number: int, _: Any) -> None:
-        signal.signal(number, signal.SIG_IGN)  # its group and its parent may both tell
+        signal.signal(number, signal.SIG_IGN)  # it may arrive twice
         raise interrupts.Interrupted(number)
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, end)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, interrupts.SIGNALS)
-    # A parent that is killed outright tells nobody: the kernel does.
+    # The kernel sends SIGTERM if the parent is killed.
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, int(signal.SIGTERM), 0, 0, 0)
     if os.getppid() != parent:
         raise interrupts.Interrupted(signal.SIGTERM)

@@ -1,4 +1,4 @@
-"""How far one flight is from another."""
+"""Differences between two flights."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from ..simulation.log import Log
 from ..support.rotation import angles_between
 
-# Lengths of the difference vectors, and the angle between the attitudes.
+# Norms of the difference vectors, and the angle between the attitudes.
 _WHOLE = {"position": "m", "attitude": "rad", "velocity": "m/s", "rates": "rad/s"}
 _PARTS = {
     **dict.fromkeys(("x", "y", "z"), "m"),
@@ -20,28 +20,28 @@ _PARTS = {
 
 
 def list_states(rotor_count: int) -> Dict[str, str]:
-    """Names and units of the columns of `differences`."""
+    """Return names and units of the columns of `compute_differences`."""
     return {**_WHOLE, **_PARTS, **{f"j{i}": "rad/s" for i in range(1, 1 + rotor_count)}}
 
 
 def compute_differences(against: Log, log: Log) -> np.ndarray:
-    """Differences of each state from that of another flight, over the time that both cover.
+    """Compute the difference of each state from another flight, over their common time.
 
-    Where the flights were logged at different times, the other one is interpolated.
+    If the times of the rows differ, the other flight is interpolated.
 
     Returns
     -------
     ndarray, shape (rows, 16 + n)
-        Columns as `states` names them for the other's n rotors; angles within [-pi, pi], of the
-        two triples that an attitude has the nearer. A flight with another number of rotors has NaN
-        for them.
+        Columns as in `list_states` for the n rotors of the other flight; NaN for the rotors if
+        their numbers differ. Angles lie within [-pi, pi]; of the two equivalent Euler-angle
+        triples, the nearer one is used.
     """
     log = Log(log.table[log.time <= against.time[-1] + 1e-9], {})
     against = _interpolate(log.time, against)
     position = log.position - against.position
     angles = angles_between(log.rpy, against.rpy)
-    # |q - p| and |q + p| are 2 sin and 2 cos of a quarter of the angle: exact for small angles too,
-    # and blind to the sign of a quaternion.
+    # |q - p| and |q + p| are 2 sin and 2 cos of a quarter of the angle: exact for small angles,
+    # and independent of the sign of a quaternion.
     apart = np.linalg.norm(log.orientation - against.orientation, axis=1)
     together = np.linalg.norm(log.orientation + against.orientation, axis=1)
     attitude = 4 * np.arctan2(np.minimum(apart, together), np.maximum(apart, together))
@@ -57,24 +57,24 @@ def compute_differences(against: Log, log: Log) -> np.ndarray:
 
 
 class DifferenceSizes(NamedTuple):
-    """Sizes of the difference of two flights over their time, by state."""
+    """Final, maximum and RMS difference of two flights, by state."""
 
     final: Dict[str, float]
-    """With its sign."""
+    """Final difference, with sign."""
     max: Dict[str, float]
-    """Of magnitudes."""
+    """Maximum magnitude."""
     rms: Dict[str, float]
 
 
 def summarise_differences(rows: np.ndarray, names: Sequence[str]) -> DifferenceSizes:
-    """Measure differences of the states of these names; rows of shape (rows, states)."""
+    """Compute final, maximum and RMS differences; `rows` has shape (rows, states)."""
     magnitudes = np.abs(rows)
     found = (rows[-1], magnitudes.max(axis=0), np.sqrt((magnitudes**2).mean(axis=0)))
     return DifferenceSizes(*(dict(zip(names, values.tolist())) for values in found))
 
 
 def compute_final_and_max(against: Log, log: Log) -> np.ndarray:
-    """Find the final and the largest difference of each state; shape (2, 16 + n)."""
+    """Compute the final and the maximum difference of each state; shape (2, 16 + n)."""
     names = list_states(against.rotor_velocity.shape[1])
     found = summarise_differences(compute_differences(against, log), list(names))
     return np.array([list(found.final.values()), list(found.max.values())])

@@ -1,4 +1,4 @@
-"""Flying what is to be evaluated, each flight in a process that measures it."""
+"""Simulation and metrics of one flight."""
 
 from __future__ import annotations
 
@@ -26,68 +26,68 @@ NAN = dict.fromkeys(UNITS, float("nan"))
 
 
 class Outcome(NamedTuple):
-    """What is known of a flight."""
+    """Outcome of a flight."""
 
     failure: str = NOT_FLOWN
-    """Why it counts as failed: lost, diverged, no command; "" if it flew."""
+    """Reason of a failure; "" for success."""
     measures: Dict[str, float] = NAN
-    """Of `UNITS`; NaN where it failed."""
+    """Metrics in `UNITS`; NaN after a failure."""
     seconds: float = float("nan")
-    """Of the wall clock."""
+    """Wall-clock duration."""
     updates: int = 0
-    """Of the controller."""
+    """Number of controller updates."""
     call: float = float("nan")
-    """Median of what an update took, s."""
+    """Median duration of an update, s."""
     slow_call: float = float("nan")
-    """What one update of a hundred exceeded, s."""
+    """99 % quantile of the duration of an update, s."""
     rate: float = float("nan")
-    """Of the controller, 1/s."""
+    """Update rate of the controller, 1/s."""
     delay: float = float("nan")
-    """From the controller to the motors, s."""
+    """Delay from the controller to the motors, s."""
     warnings: Sequence[str] = ()
-    """What was perhaps not meant, as `Simulation.warnings`."""
+    """Warnings, as in `Simulation.warnings`."""
     log: Optional[Log] = None
-    """Thinned, if it was asked for."""
+    """Decimated log, if kept."""
     response: Optional[np.ndarray] = None
-    """As `step_response` estimates it, if it was asked for."""
+    """Result of `step_response`, if kept."""
     limit: float = float("inf")
-    """Of the rotors, as the log has them, rad/s."""
+    """Limit of the joint speeds, rad/s."""
     rotors: Optional[np.ndarray] = None
-    """Where they are in the frame, if it was asked for, m; (n, 3)."""
+    """Rotor positions in the frame, if kept, m; (n, 3)."""
     refused: bool = False
-    """Whether it never flew, being bad input."""
+    """Whether the input was invalid and the flight did not run."""
 
     @property
     def flew(self) -> bool:
-        """Whether there is something measured."""
+        """Whether the flight succeeded."""
         return not self.failure
 
     @property
     def was_flown(self) -> bool:
-        """Whether it took place, be it that it failed."""
+        """Whether the flight ran, successful or not."""
         return self.failure != NOT_FLOWN
 
 
 def fly_and_measure(
     described: Callable[[], FlightPlan], most: float, keep: bool = False, timed: bool = True
 ) -> Outcome:
-    """Fly and measure.
+    """Simulate a flight and compute its metrics.
 
     Parameters
     ----------
     described
-        Gives the flight, guided; that a controller is brought in and made is part of the time.
+        Returns the plan; the time limit includes making the controller.
     most
-        Of the wall clock, s.
+        Wall-clock limit, s.
     keep
-        Whether to keep enough of the log to draw it.
+        Whether to keep a decimated log.
     timed
-        Whether to clock each update of the controller, which takes a while itself.
+        Whether to time each update of the controller, which slows the flight.
 
     Raises
     ------
     QuadcoreError
-        Nothing was flown, or not to its end for want of time.
+        If the flight cannot start, or exceeds the time limit.
     """
     started = time.perf_counter()
     failure = ""
@@ -141,6 +141,6 @@ def fly_and_measure(
 
 
 def _animated_topics(simulation: Simulation) -> List[str]:
-    from ..report.player import list_animated_topics  # not every flight should pay for jinja2
+    from ..report.player import list_animated_topics  # jinja2 is slow to import
 
     return list_animated_topics(simulation)

@@ -1,4 +1,4 @@
-"""The folder that a study writes into: one study at a time, and only its own files replaced."""
+"""Output folder of a study: exclusive access, and removal of the study's own files only."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from ..support.output_files import prepare_folder, unwritable
 from .table import make_json, save_files
 
 _LOCK = ".quadcore.lock"
-_PATIENCE = 10.0  # s; for one that was killed a moment ago and has not let go yet
+_PATIENCE = 10.0  # s; a study that was just killed may still hold the lock
 _LARGEST = 10**9  # bytes of a document
 
-_held: Set[str] = set()  # by threads of this process, which file locks do not keep apart
+_held: Set[str] = set()  # folders locked by threads of this process
 _held_lock = threading.Lock()
 
 
@@ -29,17 +29,17 @@ _held_lock = threading.Lock()
 def output_folder(
     folder: Optional[Path], names: Sequence[str] = (), document: str = ""
 ) -> Iterator[None]:
-    """Make a folder for files of these names, and keep other studies from it until the end.
+    """Make a folder, and lock it until the end of the block.
 
     Parameters
     ----------
     folder
-        None keeps nothing.
+        Folder; None: no output.
     names
         Files that must be writable.
     document
-        The one of these files that only the same study writes. Without it in the folder, the
-        others are taken to be somebody else's. "": nothing is taken to be.
+        File that only the same kind of study writes. If the folder contains others of these
+        files but not this one, they are not overwritten. "": no check.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def output_folder(
 
 
 def _lock(folder: Path) -> int:
-    """Lock the folder's file; forked processes do not inherit such a lock."""
+    """Lock the folder; forked processes do not inherit the lock."""
     path = folder / _LOCK
     end = time.monotonic() + _PATIENCE
     while True:
@@ -87,7 +87,7 @@ def _lock(folder: Path) -> int:
             raise unwritable(path, error) from error
         with contextlib.suppress(OSError):
             fcntl.lockf(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            if os.path.samestat(os.fstat(number), os.stat(path)):  # else its holder removed it
+            if os.path.samestat(os.fstat(number), os.stat(path)):  # else its owner removed it
                 return number
         os.close(number)
         if time.monotonic() > end:
@@ -96,24 +96,24 @@ def _lock(folder: Path) -> int:
 
 
 def _make_conflict(folder: Path) -> InputError:
-    return InputError(f"{folder}: another study is writing there; wait, or name another folder")
+    return InputError(f"{folder}: another study is writing there. Wait, or name another folder.")
 
 
 def remove_listed_files(
     folder: Path, document: str, key: str, is_ours: Callable[[str], Any]
 ) -> None:
-    """Remove files that an earlier study lists in its document, and no others.
+    """Remove the files that an earlier study lists in its document.
 
     Parameters
     ----------
     folder
-        Where the files and the document are.
+        Folder of the files and the document.
     document
-        Name of a JSON file; a missing or damaged one lists nothing.
+        Name of the JSON document; a missing or damaged one lists nothing.
     key
-        Of the list of file names.
+        Key of the list of file names.
     is_ours
-        Whether a study can have written a file of a name.
+        Whether a study writes files with a name.
     """
     try:
         listed = json.loads(read_bytes(folder / document, _LARGEST)).get(key, [])
@@ -125,11 +125,11 @@ def remove_listed_files(
                 (folder / name).unlink()
 
 
-def remove_plots(folder: Path, document: str, is_picture: Callable[[str], bool]) -> None:
-    """Remove the pictures of an earlier study; `is_picture` takes a name without its suffix."""
+def remove_plots(folder: Path, document: str, is_plot: Callable[[str], bool]) -> None:
+    """Remove the plots of an earlier study; `is_plot` receives a name without suffix."""
 
     def is_ours(name: str) -> bool:
-        return name.endswith(".png") and is_picture(name[: -len(".png")])
+        return name.endswith(".png") and is_plot(name[: -len(".png")])
 
     remove_listed_files(folder, document, "pictures", is_ours)
 
@@ -137,7 +137,7 @@ def remove_plots(folder: Path, document: str, is_picture: Callable[[str], bool])
 def save_plots(
     folder: Path, document: str, content: Mapping[str, Any], images: Mapping[str, bytes]
 ) -> List[Path]:
-    """Write pictures, by name without suffix, and list them in the document of this content."""
+    """Write plots, by name without suffix, and list them in a document with this content."""
     pictures = {f"{name}.png": data for name, data in images.items()}
     save_files(folder, {document: make_json({**content, "pictures": list(pictures)})})
     return save_files(folder, pictures)

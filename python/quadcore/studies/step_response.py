@@ -1,9 +1,8 @@
-"""The step response of a closed loop, estimated from any flight that excites it.
+"""Estimate of the step response of a closed loop from a flight.
 
-As PX4's Flight Review does for logged set points: the motion along one axis is taken for the
-reference's motion, delayed and spread by an impulse response, whose sum is the step response. The
-impulse response is that of least squares over the whole flight (with a little ridge), so that no
-window falsifies it.
+As in PX4's Flight Review, the motion along one axis is modelled as the motion of the reference,
+filtered by an impulse response; its sum is the step response. Least squares over the whole flight,
+with a small ridge, give the impulse response without the bias of a window.
 """
 
 from __future__ import annotations
@@ -15,22 +14,22 @@ import numpy as np
 from ..simulation.log import Log
 
 SPAN = 4.0
-"""Of the response, s."""
+"""Length of the response, s."""
 
-_RATE = 20.0  # 1/s, of what is fitted
-_BAND = 0.5  # Hz; up to where the reference has to move
-_QUIET = 1e-4  # of the spectrum's peak: what is below it tells nothing
-_RIDGE = 1e-6  # of the mean square of what is fitted to
+_RATE = 20.0  # 1/s; sampling rate
+_BAND = 0.5  # Hz; the reference must excite frequencies below
+_QUIET = 1e-4  # relative to the peak of the spectrum: no excitation
+_RIDGE = 1e-6  # relative to the mean square of the input
 
 
 def step_response(log: Log) -> Optional[np.ndarray]:
-    """Estimate the response along the axis that the reference moves most along.
+    """Estimate the response along the axis of maximum motion of the reference.
 
     Returns
     -------
     ndarray, shape (rows, 2), or None
-        Time (s) and response, which is to be 1; None for a flight that is too short or whose
-        reference moves too regularly to tell.
+        Time (s) and response (1 is ideal); None if the flight is too short or the reference excites
+        too few frequencies.
     """
     time = np.arange(log.time[0], log.time[-1] + 1e-9, 1 / _RATE)
     taps = round(SPAN * _RATE)
@@ -42,7 +41,7 @@ def step_response(log: Log) -> Optional[np.ndarray]:
     given, answer = (np.diff(np.interp(time, log.time, side)) for side in sides)
     if not _excites(given):
         return None
-    # Before the flight the reference is taken to have moved as at its beginning.
+    # Before the flight, the reference is assumed to move as at its start.
     padded = np.concatenate([np.full(taps - 1, given[0]), given])
     rows = np.lib.stride_tricks.as_strided(
         padded[taps - 1 :],
@@ -57,7 +56,7 @@ def step_response(log: Log) -> Optional[np.ndarray]:
 
 
 def _excites(given: np.ndarray) -> bool:
-    """Whether a motion has something of every frequency that is to be told."""
+    """Whether a motion excites all frequencies of the band."""
     if not np.any(given):
         return False
     power = np.abs(np.fft.rfft((given - given.mean()) * np.hanning(len(given)))) ** 2

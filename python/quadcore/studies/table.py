@@ -1,4 +1,4 @@
-"""What a study leaves behind as numbers: tables and files of them."""
+"""Tables of studies and their files."""
 
 from __future__ import annotations
 
@@ -28,38 +28,35 @@ def make_json(content: Any) -> bytes:
 
 
 def format_number(value: float) -> str:
-    """Four digits, for a table that is read."""
+    """Format a number with four digits; NaN is empty."""
     return "" if math.isnan(value) else f"{value:.4g}"
 
 
 def choose_display_unit(unit: str) -> Tuple[str, float]:
-    """Name the unit in which people are shown a quantity, and give the factor to it.
-
-    Files hold radians.
-    """
+    """Return the unit for display and the factor to it: degrees instead of radians."""
     return ("deg", 180 / math.pi) if unit == "rad" else (unit, 1.0)
 
 
 NOT_FLOWN = "not flown: interrupted"
-"""Stands for the reason of flights that an interrupt left out: they did not fail."""
+"""Failure text of flights that did not run because of an interrupt."""
 
 
 def count_outcomes(failures: Sequence[str]) -> str:
-    """How many flew, in one line, of flights of which those that failed have a reason."""
+    """Count successful, failed and missing flights in one line."""
     left_out = sum(1 for failure in failures if failure == NOT_FLOWN)
     failed = sum(1 for failure in failures if failure) - left_out
     flown = len(failures) - failed - left_out
-    told = f"{len(failures)} flights: {flown} flown, {failed} failed"
-    return told + (f", {left_out} not flown" if left_out else "")
+    text = f"{len(failures)} flights: {flown} flown, {failed} failed"
+    return text + (f", {left_out} not flown" if left_out else "")
 
 
 def save_files(folder: Path, files: Mapping[str, bytes]) -> List[Path]:
-    """Write files into a folder, each whole or not at all, and name them.
+    """Write files into a folder, each atomically, and return their paths.
 
     Raises
     ------
     InputError
-        One cannot be written.
+        If a file cannot be written.
     """
     for name, data in files.items():
         with atomic_write(folder / name) as stream:
@@ -76,7 +73,7 @@ def _plain(content: Any) -> Any:
 
 
 def format_settings(setting: Mapping[str, Any], most: Optional[int] = None) -> Dict[str, str]:
-    """Write what flew for a page: of a long list at most so many, of empty values nothing."""
+    """Format settings for a page: at most `most` entries of a list, no empty values."""
     found = {}
     for name, value in setting.items():
         if isinstance(value, Mapping):

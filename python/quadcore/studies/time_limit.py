@@ -1,4 +1,4 @@
-"""A limit of the wall clock for what may never return."""
+"""Wall-clock limit for code that may never return."""
 
 from __future__ import annotations
 
@@ -12,49 +12,49 @@ from typing import Any, Iterator, List
 
 from .._core import FlightError
 
-_AGAIN = 0.5  # s; who took the exception for one of its own is told once more
-_PATIENCE = 5.0  # s; what is not back by then does not run Python, and is ended
+_AGAIN = 0.5  # s; the exception is raised again if user code catches it
+_PATIENCE = 5.0  # s; after that the process ends, as it does not run Python
 
 
 class _TimeIsUp(KeyboardInterrupt):
-    """Not an Exception, so that a controller that catches those does not go on."""
+    """Raised at the limit; not an Exception, so that user code does not catch it by accident."""
 
 
 @contextmanager
 def time_limit(seconds: float) -> Iterator[None]:
-    """End the block after some time.
+    """Limit the duration of the block.
 
     Parameters
     ----------
     seconds : float
-        Of the wall clock.
+        Wall-clock limit.
 
     Raises
     ------
     FlightError
-        The block was not done. If it does not run Python at all, the process ends instead, which
-        was made for it; a block in another than the main thread is waited for.
+        If the limit is exceeded. If the block does not run Python, a child process ends instead; in
+        a thread other than the main thread, the block is waited for.
     """
     is_main = threading.current_thread() is threading.main_thread()
-    told: List[bool] = []
-    with (_alarm if is_main else _watch)(seconds, told):
+    expired: List[bool] = []
+    with (_alarm if is_main else _watch)(seconds, expired):
         try:
             yield
         except _TimeIsUp:
             pass
-        except Exception:  # what others made of it, an engine for instance
-            if not told:
+        except Exception:  # an engine may have converted it
+            if not expired:
                 raise
-    if told:
+    if expired:
         raise FlightError(f"not done within the time limit of {seconds:g} s")
 
 
 @contextmanager
-def _alarm(seconds: float, told: List[bool]) -> Iterator[None]:
-    """Raise `_TimeIsUp` in the main thread, and end a process that does not hear it."""
+def _alarm(seconds: float, expired: List[bool]) -> Iterator[None]:
+    """Raise `_TimeIsUp` in the main thread, and end a process that does not react."""
 
     def end(number: int, frame: Any) -> None:
-        told.append(True)
+        expired.append(True)
         raise _TimeIsUp
 
     before = signal.signal(signal.SIGALRM, end)
@@ -70,8 +70,8 @@ def _alarm(seconds: float, told: List[bool]) -> Iterator[None]:
 
 
 @contextmanager
-def _watch(seconds: float, told: List[bool]) -> Iterator[None]:
-    """Raise `_TimeIsUp` in this thread, which is none that hears signals."""
+def _watch(seconds: float, expired: List[bool]) -> Iterator[None]:
+    """Raise `_TimeIsUp` in this thread, which does not receive signals."""
     raise_in = ctypes.pythonapi.PyThreadState_SetAsyncExc
     thread = ctypes.c_ulong(threading.get_ident())
     over, turn = threading.Event(), threading.Lock()
@@ -81,7 +81,7 @@ def _watch(seconds: float, told: List[bool]) -> Iterator[None]:
         while not over.wait(pause):
             with turn:
                 if not over.is_set():
-                    told.append(True)
+                    expired.append(True)
                     raise_in(thread, ctypes.py_object(_TimeIsUp))
             pause = _AGAIN
 
@@ -92,5 +92,5 @@ def _watch(seconds: float, told: List[bool]) -> Iterator[None]:
     finally:
         with turn:
             over.set()
-        raise_in(thread, None)  # what is on its way
+        raise_in(thread, None)  # withdraw a pending exception
         watcher.join()

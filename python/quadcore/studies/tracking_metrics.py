@@ -1,4 +1,4 @@
-"""What is measured of one guided flight."""
+"""Metrics of a flight along a reference."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..simulation.recording import TAIL
 from ..support.rotation import roll_pitch_yaw
 
 FAILURE_DISTANCE = 5.0
-"""A vehicle that is farther from its reference is lost, m."""
+"""Tracking error at which a flight counts as failed, m."""
 
 UNITS = {
     "rms_position": "m",
@@ -30,36 +30,36 @@ UNITS = {
     "saturated": "",
     "energy": "J",
 }
-"""Of each measure, by name."""
+"""Unit of each metric, by name."""
 
 MEANINGS = {
-    "rms_position": "root of the mean square of the distance to the reference",
-    "max_position": "largest distance to the reference",
-    "final_position": f"the same of the last {TAIL:g} s",
-    "steady_position": f"length of the mean error of the last {TAIL:g} s, at most the second half",
-    "iae_position": "integral of the distance",
-    "itae_position": "integral of time x distance",
-    "max_yaw": "largest error of the yaw",
-    "rise_time": "from a tenth to nine tenths of a step",
-    "overshoot": "beyond a step, as part of it",
-    "settling_time": "from a step until the distance stays below 2 % of it",
-    "effort": "mean rate at which a rotor's speed changes",
-    "saturated": "share of the controller's updates that the rotors could not follow",
-    "energy": "of the air's torque on the rotors along their way",
+    "rms_position": "RMS tracking error",
+    "max_position": "maximum tracking error",
+    "final_position": f"maximum tracking error in the last {TAIL:g} s",
+    "steady_position": f"norm of the mean error in the last {TAIL:g} s, at most in the second half",
+    "iae_position": "integral of the tracking error",
+    "itae_position": "integral of time x tracking error",
+    "max_yaw": "maximum yaw error",
+    "rise_time": "time from 10 % to 90 % of a step",
+    "overshoot": "overshoot, relative to the step",
+    "settling_time": "time until the error stays below 2 % of the step",
+    "effort": "mean rate of change of the rotor speeds",
+    "saturated": "share of the controller updates that exceed a rotor limit",
+    "energy": "energy of the aerodynamic torque on the rotors",
 }
 
 _SETTLED = 0.02  # of a step
-_JUMP = 1e-3  # m; a reference that moves more between two rows, and suddenly, has a step
+_JUMP = 1e-3  # m; a larger sudden change of the reference between two rows is a step
 
 
 def find_failure_time(log: Log) -> Optional[float]:
-    """Time from which a vehicle is lost, s, or None."""
+    """Return the first time at which the tracking error exceeds `FAILURE_DISTANCE`, s, or None."""
     away = np.flatnonzero(~(compute_errors(log) <= FAILURE_DISTANCE))
     return float(log.time[away[0]]) if len(away) else None
 
 
 def describe_failure(log: Log) -> str:
-    """Tell when and where a vehicle is lost; "" if it is not."""
+    """Describe when and where the tracking error exceeds `FAILURE_DISTANCE`; "" if never."""
     time = find_failure_time(log)
     if time is None:
         return ""
@@ -68,33 +68,33 @@ def describe_failure(log: Log) -> str:
 
 
 def compute_errors(log: Log) -> np.ndarray:
-    """Distance to the reference, m; shape (rows,)."""
+    """Return the tracking error, m; shape (rows,)."""
     error = log.topics["error"]
     length: np.ndarray = np.sqrt(error["x"] ** 2 + error["y"] ** 2 + error["z"] ** 2)
     return length
 
 
 def compute_rms_and_max(away: np.ndarray) -> Tuple[float, float]:
-    """Root of the mean square of a distance, and the largest."""
+    """Return RMS and maximum of errors."""
     return float(np.sqrt(np.mean(away**2))), float(away.max())
 
 
 def measure(log: Log, saturated: float, rotors: Sequence[Rotor]) -> Dict[str, float]:
-    """Measure a flight.
+    """Compute the metrics of a flight.
 
     Parameters
     ----------
     log
-        Of a guided flight, evenly spaced.
+        Evenly spaced log with a reference.
     saturated
-        Share of the saturated updates.
+        Share of saturated controller updates.
     rotors
-        Of the vehicle, as `Simulation.rotors` describes them.
+        Rotors of the vehicle, as in `Simulation.rotors`.
 
     Returns
     -------
     dict
-        A number for each of `UNITS`; NaN for what the flight does not have, such as a step.
+        Value of each metric in `UNITS`; NaN if undefined, such as the overshoot without a step.
     """
     time, away = log.time - log.time[0], compute_errors(log)
     tail = time > time[-1] - TAIL
@@ -127,7 +127,7 @@ def _integrate(values: np.ndarray, time: np.ndarray) -> float:
 
 
 def _measure_step(log: Log, away: np.ndarray) -> Tuple[float, float, float]:
-    """Rise, overshoot and settling if the reference has one step, else NaN."""
+    """Return rise time, overshoot and settling time of a reference with one step, else NaN."""
     none = math.nan, math.nan, math.nan
     wanted = np.column_stack([log.topics["reference"][axis] for axis in "xyz"])
     moved = np.linalg.norm(np.diff(wanted, axis=0), axis=1)

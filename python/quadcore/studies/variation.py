@@ -1,4 +1,4 @@
-"""What a point of the axes changes in a flight: model, tags, world, engine, scenario."""
+"""Changes of a flight at a point: model, tags, world, engine, scenario."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from ..support.values import text_of
 from .axes import OF_CONTROLLER, WHOLE
 from .design import Design
 
-_READ = 16  # models that are kept as they were read
+_READ = 16  # cached models
 
 
 class Variation:
-    """Models, and what is common to all flights, with what may be changed in them.
+    """Models and common settings of all flights, and their changes at each point.
 
     Parameters
     ----------
     models
-        Files or names of shipped models.
+        Files or names of built-in models.
     design
-        The points, whose worlds and scenarios are read.
+        Points; their worlds and scenarios are read.
     parameters, xacro_args, ignore
         As for `Simulation`.
     scenario
-        Of all flights whose point names none.
+        Scenario of points without one.
     wind
         Velocity of a constant wind in all flights, m/s.
     """
@@ -50,7 +50,7 @@ class Variation:
         arguments, given = without_xacro(parameters, xacro_args)
         self.arguments = arguments
         self.set = {key: text_of(value) for key, value in given.items()}
-        """Values that all flights have, by ``PLUGIN.TAG``, ``LINK.mass`` or the like."""
+        """Values of all flights, by ``PLUGIN.TAG``, ``LINK.mass`` and so on."""
         self._wind = wind
         self._read = lru_cache(_READ)(
             lambda i, varied: read_model(models[i], {**arguments, **dict(varied)}, ignore)
@@ -65,11 +65,11 @@ class Variation:
 
     @property
     def taken(self) -> List[str]:
-        """Names of all values that every flight is given."""
+        """Names of the values of all flights."""
         return [*self.set, *(f"{XACRO}.{name}" for name in self.arguments)]
 
     def apply(self, plan: FlightPlan, model: int, point: Mapping[str, str]) -> FlightPlan:
-        """Make a flight of a model as a point has it; its controller is left as it is."""
+        """Apply the values of a point to a plan, except those of the controller."""
         changed: Dict[str, Any] = {}
         parameters = dict(self.set)
         for name, value in point.items():
@@ -87,12 +87,12 @@ class Variation:
 
 
 def pick_controller_values(point: Mapping[str, str]) -> Dict[str, float]:
-    """Give what a point changes in a controller.
+    """Return the values of a point for the controller.
 
     Raises
     ------
     InputError
-        A value that is no number.
+        If a value is not a number.
     """
     found = {}
     for name, text in point.items():

@@ -1,9 +1,8 @@
-"""Parameters from a flight log.
+"""Fit of model parameters to a flight log.
 
-A `record` is what was commanded and what was measured; `horizons` fly short pieces of it on a
-batch; a `problem` says what is free and what that leaves over; `search` makes it small; `identify`
-tells what the flight says of each parameter, and `document` writes them into the URDF. `fit` puts
-that together.
+A `record` contains commands and measurements. `horizons` simulates short pieces of it on a batch,
+`problem` computes the residuals for free parameters, and `search` minimises them.
+`identifiability` analyses the result, and `model_text` writes it into the URDF.
 """
 
 from .fit import Fit as Fit

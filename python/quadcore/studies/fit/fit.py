@@ -1,4 +1,4 @@
-"""Fitting parameters of a model to a flight."""
+"""Fit of model parameters to a flight."""
 
 from __future__ import annotations
 
@@ -33,29 +33,29 @@ _KINDS = {
     "progress": arguments.or_none(arguments.PROGRESS),
 }
 
-_HELD_OUT = 4  # each so many horizons one is not fitted to
+_HELD_OUT = 4  # every 4th horizon is held out
 
 
 class Fit(NamedTuple):
-    """What a flight tells of a model.
+    """Result of a fit.
 
     Attributes
     ----------
     values : dict of str to float
-        Of each free parameter; where the flight does not tell one, near where it began.
+        Value of each free parameter; near the start value if it is not identifiable.
     start, units : dict
-        Where each began, and its unit.
-    identified : Identified
-        Deviations, covariance, and which combinations alone are told.
+        Start value and unit of each parameter.
+    identified : Identifiability
+        Standard deviations, covariance, and identifiable combinations.
     shift : float
-        By which what was measured lags behind the commands, s.
+        Lag of the measurements behind the commands, s.
     train : dict of str to pair of float
-        By channel, root of the mean square that is left over with the start's values, and with
-        those that were found; each in the channel's unit, starts of horizons fitted.
+        RMS residual of each channel with the start values and with the fitted values, in the unit
+        of the channel. The starts of the horizons are fitted.
     held_out : dict of str to pair of float
-        The same of horizons that were not fitted to.
+        The same for the held-out horizons.
     model : Model
-        With the values.
+        Model with the fitted values.
     """
 
     values: Dict[str, float]
@@ -69,7 +69,7 @@ class Fit(NamedTuple):
 
     @property
     def combinations(self) -> List[Combination]:
-        """Sums of parameters of which each alone is not told."""
+        """Identifiable sums of parameters that are not identifiable one by one."""
         return self.identified.combinations
 
     def __repr__(self) -> str:
@@ -78,21 +78,22 @@ class Fit(NamedTuple):
         return f"<Fit: {', '.join(found)}>"
 
     def describe(self) -> List[str]:
-        """Say what the flight does not tell, and how well what it tells is apart, in lines."""
+        """Describe the identifiability of the parameters, a line for each statement."""
         lines = [
-            f"not told one by one, only {each} = {each.value:.6g} +- {each.deviation:.2g}"
+            f"only the sum is identifiable: {each} = {each.value:.6g} +- {each.deviation:.2g}"
             for each in self.combinations
         ]
-        lines += [f"without effect on this flight: {n}" for n in self.identified.without_effect]
+        lines += [f"no effect on this flight: {n}" for n in self.identified.without_effect]
         if self.shift:
-            lines.append(f"what was measured lags behind the commands by {self.shift:g} s")
+            lines.append(f"lag of the measurements behind the commands: {self.shift:g} s")
         values = ", ".join(f"{value:.2g}" for value in self.identified.singular_values)
         return [*lines, f"singular values of the unit derivatives: {values}"]
 
     def list_residuals(self) -> List[Tuple[str, str, List[float]]]:
-        """Name each channel with its unit, and what is left over.
+        """List channel, unit and RMS residuals.
 
-        At the start, with what was found, and of that where it was held out.
+        The residuals are those of the start values, of the fitted values, and of the fitted values
+        on the held-out horizons.
         """
         nan = float("nan")
         return [
@@ -119,51 +120,51 @@ def fit(
     ignore: Sequence[str] = (),
     progress: Optional[Progress] = None,
 ) -> Fit:
-    """Find parameters with which a model flies as a log says.
+    """Fit parameters of a model to a flight log.
 
-    The log is cut into horizons, each flown from its first row on a `BatchSimulation`; scipy's
-    least_squares makes what flights leave over small, in the noise that it has itself.
+    The log is split into horizons, and each is simulated from its first row on a `BatchSimulation`.
+    scipy's least_squares minimises the residuals, weighted by their estimated noise.
 
     Parameters
     ----------
     model, engine, world, dt, xacro_args, ignore
         As for `Simulation`.
     log
-        A log, or its file: pose and velocities; rotor speeds.
+        A log or its file, with pose, velocities and rotor speeds.
     free
-        Names, ``PLUGIN.TAG``, ``LINK.mass``, ``LINK.ixx``, ``xacro.ARG``.
+        Names of the free parameters: ``PLUGIN.TAG``, ``LINK.mass``, ``LINK.ixx``, ``xacro.ARG``.
     commands
-        As for `Simulation.run`. None: what the log has as topic ``vel_cmd``; without that, what the
-        measured rotor speeds must have been commanded by.
+        Commands as for `Simulation.run` (default: topic ``vel_cmd`` of the log, else computed from
+        the measured rotor speeds).
     horizon
-        Length, s.
+        Length of a horizon, s.
     channels
-        What is compared: some of "position", "attitude", "velocity", "rates", "rotors"; None: all
-        but velocity.
+        Channels to compare: some of "position", "attitude", "velocity", "rates", "rotors" (default:
+        all but "velocity").
     sensed
-        Topic of the log to take pose and velocities from.
+        Topic of the log with measured pose and velocities (default: the state).
     bounds
-        Lowest and highest value by name; None: what is not negative stays so.
+        Minimum and maximum value by name (default: non-negative parameters stay non-negative).
     shift
-        The most by which what was measured may lag behind the commands, s; found then.
+        Maximum lag of the measurements behind the commands, s; the lag is fitted too.
     parameters
-        As for `Simulation`: the values of others, and where the search begins.
+        As for `Simulation`: fixed values, and start values of free parameters.
     progress
-        Called as progress(done, at most).
+        Called as progress(done, total).
 
     Returns
     -------
     Fit
-        The values, how well the flight tells them, and the model that has them.
+        Fitted values, their identifiability, and the model with these values.
 
     Raises
     ------
     InputError
-        Something is at fault; nothing was fitted.
+        If an argument is invalid.
     FlightError
-        Flights from measured states fail.
+        If flights from measured states fail.
     KeyboardInterrupt
-        Its attribute `model` has the values of the last round.
+        With the attribute `model`, the model with the values of the last round.
     """
     told = dict(locals())
     options = ("parameters", "world", "dt", "xacro_args", "ignore")
@@ -174,7 +175,9 @@ def fit(
     known = dict(bounds or {})
     for name in known:
         if name not in named:
-            raise InputError(f"bound {name}: it is not free; free it, or leave the bound out")
+            raise InputError(
+                f"bound {name}: the parameter is not free. Free it, or remove the bound."
+            )
     wanted = [make_parameter(name, fitted, known.get(name)) for name in named]
     flown = records.read_record(log, simulation.rotor_count, commands, sensed)
     names = records.choose_channels(channels, flown)
@@ -220,7 +223,7 @@ def _make_fit(
     for is_held_out in (False, True):
         try:
             judged = problem(is_held_out)
-        except InputError:  # too few
+        except InputError:  # too few horizons
             residuals.append({})
             continue
         judged.horizons.shift = train.horizons.shift
@@ -244,7 +247,7 @@ def _make_fit(
 
 
 def _compute_rms(problem: Problem, values: np.ndarray) -> Dict[str, float]:
-    """Tell what is left over by channel when starts are fitted; infinite where a flight fails."""
+    """Compute the RMS residual of each channel with fitted starts; infinite after a failure."""
     try:
         problem.linearise_starts(values)
         problem.correct_starts(values)
@@ -255,7 +258,7 @@ def _compute_rms(problem: Problem, values: np.ndarray) -> Dict[str, float]:
 
 
 def _find_shift(problem: Problem, most: int) -> int:
-    """Find the lag in steps, from coarse to fine, with a short search for each."""
+    """Find the lag in steps, from coarse to fine, with a short fit for each."""
     costs: Dict[int, float] = {}
 
     def cost(steps: int) -> float:

@@ -1,4 +1,4 @@
-"""The model that is fitted, which is expanded anew for each value of an argument of xacro."""
+"""The fitted model, expanded again for each value of a xacro argument."""
 
 from __future__ import annotations
 
@@ -17,32 +17,32 @@ _PREFIX = f"{XACRO}."
 
 
 class FittedModel:
-    """A model, what is set of it, and what is free.
+    """Model with fixed values and free parameters.
 
     Parameters
     ----------
     free
-        Names of what is free.
+        Names of the free parameters.
     model, engine, world, dt, parameters, xacro_args, ignore
         As for `fit`.
 
     Attributes
     ----------
     model : Model
-        With the values from which the search begins.
+        Model with the start values.
     simulation : Simulation
-        Of that.
+        Simulation of this model.
     arguments : dict of str to str
-        What each ``xacro.ARG`` is then; empty unless one is free.
+        Start value of each ``xacro.ARG``; empty unless one is free.
     make : dict
-        Keywords of `BatchSimulation` but for n, dt and parameters.
+        Keywords of `BatchSimulation` except n, dt and parameters.
     fixed : dict of str to str
-        Parameters of it that are set and not free.
+        Parameters that are set and not free.
 
     Raises
     ------
     InputError
-        Something is at fault, or the model is read already and an argument of it is free.
+        If an argument is invalid, or a xacro argument is free but the model has no file.
     """
 
     def __init__(
@@ -67,7 +67,7 @@ class FittedModel:
         found = [name for name in free if name.startswith(_PREFIX)]
         if found:
             if isinstance(model, Model):
-                raise InputError(f"free {found[0]}: the model is read already; give its file")
+                raise InputError(f"free {found[0]}: a Model has no xacro arguments. Give the file.")
             known = xacro_arguments(model, of_xacro)
             self.arguments = {_PREFIX + name: text for name, text in known.items()}
             of_xacro = {n: value for n, value in of_xacro.items() if _PREFIX + n not in free}
@@ -84,7 +84,7 @@ class FittedModel:
         }
 
     def make_model(self, values: Mapping[str, float]) -> Model:
-        """Read the model that has values of what is free, and what was set besides."""
+        """Read the model with values of the free parameters and the fixed values."""
         make = self.make
         of_xacro, others = without_xacro(values, make["xacro_args"])
         read, _ = read_both(make["model"], make["world"], of_xacro, make["ignore"])

@@ -1,4 +1,4 @@
-"""Short pieces of a flight, flown side by side from measured states."""
+"""Horizons: short pieces of a flight, simulated in parallel from measured states."""
 
 from __future__ import annotations
 
@@ -10,42 +10,41 @@ from ..._core import InputError, Rotor
 from ...simulation.batch import BatchSimulation, BatchState
 from .record import CHANNELS, Record
 
-_FEW = 1024  # vehicles that one thread steps as fast as several
+_FEW = 1024  # up to this number of vehicles, one thread is as fast as several
 _SETTLED = 40
-"""Steps that hinges of ODE take to give way as they do under load, which a state does not tell."""
+"""Steps until ODE's hinges settle under load; a state does not contain their deflection."""
 
 
 class Horizons:
-    """Pieces of a record, each of which begins in a state that was measured.
+    """Pieces of a record, each starting from a measured state.
 
     Parameters
     ----------
     record
-        The flight.
+        Record of the flight.
     make
-        Keywords of `BatchSimulation` but for n and parameters.
+        Keywords of `BatchSimulation` except n and parameters.
     fixed
-        Parameters that all fly with.
+        Fixed parameters of all horizons.
     dt
         Step, s.
     length
-        Of a piece, s.
+        Length of a horizon, s.
     channels
-        Names of `CHANNELS` that are compared.
+        Names of the compared `CHANNELS`.
     rotors
-        Of the vehicle. Without recorded commands, `_commands` computes them from measured speeds.
+        Rotors of the vehicle, from which `_make_commands` computes missing commands.
     part
-        Called with the number of a piece: whether it is one of these.
+        Called with the number of a piece; returns whether to use it.
 
     Attributes
     ----------
     count : int
-        Of the pieces.
+        Number of pieces.
     width : int
-        Numbers that are compared in each.
+        Number of compared values per piece.
     corrections : int
-        Numbers by which the start of each may be corrected: position, turn, velocity, rates, those
-        of the rotors.
+        Number of corrections of each start: position, turn, velocity, rates, rotor speeds.
     """
 
     def __init__(
@@ -66,18 +65,18 @@ class Horizons:
         steps = np.rint((record.time - record.time[0]) / dt).astype(int)
         self._late = record.time - record.time[0] - steps * dt
         if length > record.time[-1] - record.time[0]:
-            raise InputError("the log is shorter than a horizon; make that shorter")
+            raise InputError("the log is shorter than a horizon. Give a shorter horizon.")
         pieces = self._split_pieces(steps, round(length / dt))
         starts = [piece for i, piece in enumerate(pieces) if part(i)]
         if not starts:
-            raise InputError(f"the log has {len(pieces)} horizons, too few; make them shorter")
+            raise InputError(f"the log has only {len(pieces)} horizons. Give a shorter horizon.")
         skipped = 0 if make["engine"] == "eigen" else _SETTLED
         self._rows = [
             a + 1 + np.flatnonzero(steps[a + 1 : b + 1] - steps[a] > skipped) for a, b in starts
         ]
         most = int(np.median([len(rows) for rows in self._rows]))
         if most < 3:
-            raise InputError("the log has too few rows within a horizon; make it longer")
+            raise InputError("the log has too few rows per horizon. Give a longer horizon.")
         keep = [i for i, rows in enumerate(self._rows) if len(rows) >= most]
         self._rows = [self._rows[i][:most] for i in keep]
         self._first = first = np.array([starts[i][0] for i in keep])
@@ -92,27 +91,27 @@ class Horizons:
         self.sizes = [sizes[name] for name in self.channels]
         self.width = most * sum(self.sizes)
         self.shift = 0
-        """Steps by which what was measured lags behind the commands."""
+        """Lag of the measurements behind the commands, steps."""
 
     def list_channels(self) -> np.ndarray:
-        """Give the number of the channel of each number that is compared."""
+        """Return the channel index of each compared value."""
         one = np.repeat(np.arange(len(self.sizes)), self.sizes)
         return np.tile(one, self.width // len(one))
 
     def fly(self, parameters: Sequence[Mapping[str, float]], starts: np.ndarray) -> np.ndarray:
-        """Fly every piece with each set of parameters, from corrected starts.
+        """Simulate every piece with each set of parameters, from corrected starts.
 
         Parameters
         ----------
         parameters
-            A mapping for each group.
+            Values by name, for each group.
         starts
             Corrections, shape (groups, count, corrections).
 
         Returns
         -------
         ndarray, shape (groups, count, width)
-            Flown less measured, NaN where a flight failed.
+            Simulated minus measured values; NaN after a failure.
         """
         groups, n = len(parameters), len(parameters) * self.count
         given: Dict[str, Any] = dict(self._fixed)
@@ -143,19 +142,19 @@ class Horizons:
         return compared.reshape(groups, self.count, self.width)
 
     def _split_pieces(self, steps: np.ndarray, length: int) -> List[Any]:
-        """Rows in which pieces begin and end."""
+        """Return the first and last row of each piece."""
         if length < 1:
-            raise InputError("a horizon is shorter than a step; make it longer")
+            raise InputError("the horizon is shorter than a step. Give a longer horizon.")
         found, first = [], 0
         while steps[-1] >= steps[first] + length:
             last = int(np.searchsorted(steps, steps[first] + length, "right")) - 1
             if last > first:
                 found.append((first, last))
-            first = max(last, first + 1)  # a gap of the log may be longer than a horizon
+            first = max(last, first + 1)  # gaps may be longer than a horizon
         return found
 
     def _list_command_steps(self, end: int) -> List[int]:
-        """Find the steps of a piece, 0 and later, with which some command changes."""
+        """List the steps of a piece, from 0, at which a command changes."""
         since = (self._command_steps[None, :] + self.shift) - self._begin[:, None]
         inside = since[(since > 0) & (since < end)]
         return [0, *np.unique(inside).tolist()]
@@ -181,7 +180,7 @@ class Horizons:
         )
 
     def _compare(self, state: BatchState, rows: np.ndarray) -> np.ndarray:
-        """Flown less measured, of rows that may be a little off the grid of steps."""
+        """Return simulated minus measured values, for rows that may lie between steps."""
         r, late = self._record, self._late[rows, None]
         parts: Dict[str, Callable[[], np.ndarray]] = {
             "position": lambda: state.position + late * state.linear_velocity - r.position[rows],
@@ -196,7 +195,7 @@ class Horizons:
 
 
 def _drop_close_rows(record: Record, dt: float) -> Record:
-    """Leave out rows that lie closer than most do."""
+    """Drop rows that follow the previous row too closely."""
     steps = np.rint((record.time - record.time[0]) / dt).astype(int)
     every = int(np.median(np.diff(steps)))
     kept = [0]
@@ -208,10 +207,10 @@ def _drop_close_rows(record: Record, dt: float) -> Record:
 
 
 def _make_commands(record: Record, dt: float, rotors: Sequence[Rotor]) -> Any:
-    """Return commands and the steps with which they begin.
+    """Return commands and the steps at which they start.
 
-    Without recorded commands, they are those with which the motors follow the measured speeds w:
-    from tau dw/dt = r c - w, c = (w + tau dw/dt) / r, r being the `Rotor.rate_per_command`.
+    Missing commands c follow from the measured speeds w and the motor model tau dw/dt = r c - w
+    with r = `Rotor.rate_per_command`: c = (w + tau dw/dt) / r.
     """
     start = record.time[0]
     if record.commands is not None:
@@ -229,7 +228,7 @@ def _make_commands(record: Record, dt: float, rotors: Sequence[Rotor]) -> Any:
 
 
 def _joint_angles(record: Record) -> np.ndarray:
-    """Angles of the joints, 0 in the first row; (-pi, pi]."""
+    """Return the angles of the joints, 0 in the first row; (-pi, pi]."""
     mean = (record.rotors[1:] + record.rotors[:-1]) / 2
     turned = np.cumsum(mean * np.diff(record.time)[:, None], axis=0)
     angles: np.ndarray = np.vstack([np.zeros(record.rotors.shape[1]), turned])
@@ -244,7 +243,7 @@ def _multiply(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _turn(q: np.ndarray, turn: np.ndarray) -> np.ndarray:
-    """Turn by a small angle about the body's axes, rad."""
+    """Turn quaternions by a small angle about body axes, rad."""
     half = turn / 2
     small = np.hstack([half, np.ones((len(q), 1))])
     turned = _multiply(q, small / np.linalg.norm(small, axis=1, keepdims=True))
@@ -252,7 +251,7 @@ def _turn(q: np.ndarray, turn: np.ndarray) -> np.ndarray:
 
 
 def _turn_between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Small turn from a to b in a's axes, rad."""
+    """Return the small turn from a to b in the axes of a, rad."""
     inverse = a * np.array([-1, -1, -1, 1])
     apart = _multiply(inverse, b)
     turn: np.ndarray = 2 * np.sign(apart[:, 3:]) * apart[:, :3]

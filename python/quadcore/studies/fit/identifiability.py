@@ -1,7 +1,7 @@
-"""What a flight says of each parameter: deviations, and which combinations alone are known.
+"""Identifiability of parameters: standard deviations, and identifiable combinations.
 
-Columns of the derivative, each made one long, are decomposed by singular values: parameters that do
-nothing, and directions in which nothing changes, cannot be told from the flight.
+The analysis uses the singular values of the derivative with columns of unit length. A near-zero
+singular value marks an unidentifiable combination.
 """
 
 from __future__ import annotations
@@ -11,19 +11,19 @@ from typing import Dict, List, NamedTuple, Sequence
 import numpy as np
 
 _SAME = 1e-3
-"""Singular value, of columns one long, below which a direction counts as one that nothing tells."""
+"""Singular value below which a direction counts as unidentifiable."""
 
 _NOTHING = 1e-9
-"""Length of a column, of the longest in its own unit, below which a parameter does nothing."""
+"""Relative length of a column below which a parameter has no effect."""
 
 _INVOLVED = 0.05
 
 
 class Combination(NamedTuple):
-    """Parameters of which only a sum is known."""
+    """Parameters with only an identifiable sum."""
 
     factors: Dict[str, float]
-    """By name; that of the first is 1."""
+    """Factor of each parameter; the first is 1."""
     value: float
     deviation: float
 
@@ -36,16 +36,16 @@ class Combination(NamedTuple):
 
 
 class Identifiability(NamedTuple):
-    """What is known of parameters."""
+    """Identifiability of the fitted parameters."""
 
     deviations: Dict[str, float]
-    """Standard deviation of each, NaN where the flight does not tell it."""
+    """Standard deviation of each parameter; NaN if it is not identifiable."""
     covariance: np.ndarray
-    """Of all, with zeros in directions that are not told."""
+    """Covariance, with zeros in unidentifiable directions."""
     singular_values: List[float]
-    """Of the derivative with columns one long; near 1: each is told by itself."""
+    """Singular values of the derivative with unit columns; near 1: independent parameters."""
     combinations: List[Combination]
-    """Of which only the sum is told."""
+    """Identifiable sums of parameters."""
     without_effect: List[str]
 
 
@@ -57,18 +57,18 @@ def analyse(
     left: np.ndarray,
     freedom: int,
 ) -> Identifiability:
-    """Look at the derivative of what is left over.
+    """Analyse the identifiability of parameters.
 
     Parameters
     ----------
     names, values
-        Of the parameters.
+        Names and fitted values of the parameters.
     sizes
-        Typical ones of them.
+        Typical values.
     derivative, left
-        Of what is left over in its noise, and that.
+        Derivative of the weighted residuals, and the residuals.
     freedom
-        Numbers that were compared, less those that were fitted.
+        Number of residuals minus number of fitted values.
     """
     lengths = np.linalg.norm(derivative, axis=0)
     acts = lengths * sizes > _NOTHING * np.max(lengths * sizes, initial=0)
@@ -94,7 +94,7 @@ def analyse(
         first = derivative[:, of[0]]
         factors = first @ derivative[:, of] / (first @ first)
         deviation = float(np.sqrt(factors @ covariance[np.ix_(of, of)] @ factors))
-        # Of a sum of rank one the pseudoinverse is exact.
+        # The pseudoinverse is exact for a sum of rank one.
         named = {names[i]: float(factor) for i, factor in zip(of, factors)}
         combinations.append(Combination(named, float(factors @ values[of]), deviation))
     without = [name for name, is_active in zip(names, acts) if not is_active]
@@ -103,7 +103,7 @@ def analyse(
 
 
 def _group_parameters(directions: np.ndarray) -> List[List[int]]:
-    """Join parameters that some direction that nothing tells involves."""
+    """Group parameters that occur in one unidentifiable direction."""
     groups: List[List[int]] = []
     for direction in np.abs(directions) > _INVOLVED:
         joined = set(np.flatnonzero(direction).tolist())

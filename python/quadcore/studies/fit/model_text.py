@@ -1,4 +1,4 @@
-"""Values written into the text of a model."""
+"""Values in the text of a model."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ from ...support.values import Value, text_of
 def write_values(
     model: Model, values: Mapping[str, Value], aliases: Optional[Mapping[str, str]] = None
 ) -> Model:
-    """Write values of plugins' tags and links into a model's text, and read it.
+    """Write values of tags and links into the text of a model, and read it.
 
     Parameters
     ----------
     model
-        Which has the text.
+        Model with the text.
     values
-        By ``PLUGIN.TAG``, ``LINK.mass`` and the like.
+        Values by ``PLUGIN.TAG``, ``LINK.mass`` and so on.
     aliases
-        Of names in `values`, under which the text may have them.
+        Other names of the tags in the text.
 
     Raises
     ------
     InputError
-        The model cannot have them.
+        If a value is invalid for the model.
     """
     changed, tags = with_links(model, {name: text_of(value) for name, value in values.items()})
     text = changed.document.text.encode()
@@ -44,7 +44,7 @@ def write_values(
 
 
 def _find_value(text: bytes, keys: Collection[str]) -> Tuple[int, int]:
-    """Find the value of a plugin's tag, or where the tag may be put: begin and end in bytes."""
+    """Find the value of a tag, or the place for a new tag: begin and end in bytes."""
     plugin = next(iter(keys)).rpartition(".")[0]
     tags = [[key.rpartition(".")[2]] for key in keys]
     parser = expat.ParserCreate()

@@ -1,4 +1,4 @@
-"""What is free in a fit, and what a flight with it leaves over."""
+"""Free parameters and residuals of a fit."""
 
 from __future__ import annotations
 
@@ -13,35 +13,35 @@ from ...support.parameters import did_you_mean
 from .fitted_model import FittedModel
 from .horizons import Horizons
 
-_STEP = 1e-4  # of a parameter, for its derivative
+_STEP = 1e-4  # relative step of a parameter for its derivative
 _START_STEPS = (1e-5, 1e-5, 1e-5, 1e-4, 1e-2)
-"""Of a start, for derivatives: position (m), turn (rad), velocity (m/s), rates, rotors (rad/s)."""
+"""Steps of a start: position (m), turn (rad), velocity (m/s), rates and rotors (rad/s)."""
 
 _FINEST = {"position": 1e-6, "attitude": 1e-6, "velocity": 1e-6, "rates": 1e-6, "rotors": 1e-4}
-"""What is measured better counts as measured so, in m, rad, s: derivatives are differences."""
+"""Minimum noise of each channel in m, rad, s: derivatives are finite differences."""
 
 _FAR = 1e6
-"""Stands for what a flight that failed leaves over."""
+"""Residual of a failed flight."""
 
 Bounds = Mapping[str, Tuple[float, float]]
 
 
 class Parameter:
-    """One number that is free.
+    """A free parameter.
 
     Parameters
     ----------
     name
         ``PLUGIN.TAG``, ``LINK.mass``, ``LINK.ixx`` or the like, ``xacro.ARG``.
     fitted
-        With the value from which the search begins.
+        Model with the start value.
     bounds
-        Between which it must stay.
+        Minimum and maximum value.
 
     Raises
     ------
     InputError
-        The model has no such number, or bounds that do not hold its value.
+        If the parameter does not exist, or its start value is out of bounds.
     """
 
     def __init__(
@@ -61,32 +61,36 @@ class Parameter:
             text, self.unit = links[name], "kg" if name.endswith(".mass") else "kg m^2"
         else:
             known = [*tags, *links, *fitted.arguments]
-            raise InputError(f"free {name}: model {model.name} has none{did_you_mean(name, known)}")
+            raise InputError(
+                f"free {name}: model {model.name} has no such parameter{did_you_mean(name, known)}"
+            )
         value = parse_number(text)
         if value is None:
-            raise InputError(f"free {name}: '{text}' is no number; only numbers are fitted")
+            raise InputError(f"free {name}: '{text}' is not a number. Only numbers can be fitted.")
         low, high = bounds
         if not low <= value <= high or low == high:
-            raise InputError(f"bound {name}: begins at {value:g}, not within {low:g} and {high:g}")
+            raise InputError(
+                f"bound {name}: the start value {value:g} is not within {low:g} and {high:g}"
+            )
         self.name, self.start, self.bounds = name, value, (low, high)
         self.size = abs(value) or 1e-2
 
 
 def check_free_names(free: Sequence[str]) -> List[str]:
-    """List what is free; raises `InputError` for what cannot be."""
+    """Return the names of free parameters; raises `InputError` for invalid ones."""
     names = [str(name) for name in arguments.several(free)]
     for name in names:
         if names.count(name) > 1:
-            raise InputError(f"free {name}: it is named twice; keep one")
+            raise InputError(f"free {name}: the parameter is named twice. Remove one.")
     if not names:
-        raise InputError("nothing is free; name what to fit")
+        raise InputError("no parameter is free. Name the parameters to fit.")
     return names
 
 
 def make_parameter(
     name: str, fitted: FittedModel, bounds: Optional[Tuple[float, float]]
 ) -> Parameter:
-    """Make one; without bounds what is not negative stays so."""
+    """Make a parameter; without bounds, a non-negative one stays non-negative."""
     if bounds is not None:
         return Parameter(name, fitted, bounds)
     made = Parameter(name, fitted)
@@ -96,11 +100,11 @@ def make_parameter(
 
 
 class Problem:
-    """Horizons and what is free in them.
+    """Horizons and their free parameters.
 
-    The start of each horizon is free, too, and eliminated: from what a flight leaves over, that
-    part is taken away which another start would have taken away (variable projection, Golub and
-    Pereyra, SIAM J. Numer. Anal. 10, 1973).
+    The starts of the horizons are also free. Variable projection (Golub and Pereyra, SIAM J. Numer.
+    Anal. 10, 1973) eliminates them: the part of the residuals that other starts would remove is
+    projected out.
     """
 
     def __init__(self, horizons: Horizons, parameters: Sequence[Parameter]) -> None:
@@ -109,25 +113,25 @@ class Problem:
         sizes = (3, 3, 3, 3, horizons.rotors)
         self._start_steps = np.repeat(_START_STEPS, sizes)
         self.noise = np.ones(len(horizons.channels))
-        """Standard deviation of each channel, as far as it is known."""
+        """Estimated standard deviation of each channel."""
         self._of_each = horizons.list_channels()
         self._along = np.zeros((horizons.count, horizons.width, 0))
         self._by_starts = np.zeros((horizons.count, horizons.width, horizons.corrections))
 
     def linearise_starts(self, values: np.ndarray) -> None:
-        """Find what other starts would do near these parameters; they are eliminated from now on.
+        """Compute the effect of the starts near these parameters, and eliminate them from now on.
 
         Raises
         ------
         FlightError
-            A flight fails.
+            If a flight fails.
         """
         steps = np.diag(self._start_steps)
         starts = np.stack([self.starts, *(self.starts + step for step in steps)])
         flown = self.horizons.fly([self._name_values(values)] * len(starts), starts)
         if not np.isfinite(flown).all():
             raise FlightError(
-                "flights from measured states fail; shorten the horizon, or begin with other values"
+                "flights from measured states fail. Give a shorter horizon or other start values."
             )
         change = (flown[1:] - flown[0]) / self._start_steps[:, None, None]
         self._by_starts = np.moveaxis(change, 0, 2)  # (count, width, corrections)
@@ -145,7 +149,7 @@ class Problem:
         return weights
 
     def compute_residuals(self, values: np.ndarray) -> np.ndarray:
-        """Give what flights leave over that no other starts would take away, in its noise.
+        """Return the residuals after the elimination of the starts, weighted by the noise.
 
         Returns
         -------
@@ -155,7 +159,7 @@ class Problem:
         return self._project(np.nan_to_num(flown, nan=_FAR)).ravel()
 
     def compute_derivative(self, values: np.ndarray) -> np.ndarray:
-        """Give the derivative of `left` by each parameter, shape (count * width, parameters)."""
+        """Return the derivative of the residuals, shape (count * width, parameters)."""
         steps = np.array([_STEP * max(abs(v), p.size) for v, p in zip(values, self.parameters)])
         inward = np.array([v + h > p.bounds[1] for v, h, p in zip(values, steps, self.parameters)])
         steps = np.where(inward, -steps, steps)
@@ -167,7 +171,7 @@ class Problem:
         return np.stack([self._project(change).ravel() for change in changes], axis=1)
 
     def correct_starts(self, values: np.ndarray) -> None:
-        """Move the starts to where least is left over, and take the noise from what is."""
+        """Move the starts to minimise the residuals."""
         flown = self.horizons.fly([self._name_values(values)], self.starts[None])[0]
         for i, (by_start, left) in enumerate(zip(self._by_starts, flown)):
             weighted = by_start / self._weights[:, None]
@@ -177,7 +181,7 @@ class Problem:
             self.starts[i] -= step
 
     def learn_noise(self, values: np.ndarray) -> None:
-        """Take each channel's noise from what is left over."""
+        """Estimate the noise of each channel from the residuals."""
         left = self.compute_residuals(values).reshape(self.horizons.count, -1) * self._weights
         free = 1 - self._along.shape[2] / self.horizons.width
         for channel in range(len(self.noise)):
@@ -188,7 +192,7 @@ class Problem:
             self._update_basis()
 
     def compute_rms(self, values: np.ndarray) -> Dict[str, float]:
-        """Tell what is left over by channel, root of the mean square in its unit."""
+        """Return the RMS residual of each channel in its unit."""
         left = self.compute_residuals(values).reshape(self.horizons.count, -1) * self._weights
         return {
             name: float(np.sqrt(np.mean(left[:, self._of_each == i] ** 2)))
@@ -206,5 +210,5 @@ class Problem:
 
 
 def list_bounds(parameters: Sequence[Parameter]) -> Tuple[List[float], List[float]]:
-    """Give lower and upper bounds."""
+    """Return lower and upper bounds."""
     return [p.bounds[0] for p in parameters], [p.bounds[1] for p in parameters]

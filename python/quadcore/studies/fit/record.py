@@ -1,4 +1,4 @@
-"""What was commanded and what was measured of one flight."""
+"""Record of a flight: commands and measurements."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ...simulation.log import Log
 from ...support import arguments
 
 CHANNELS: Dict[str, int] = {"position": 3, "attitude": 3, "velocity": 3, "rates": 3, "rotors": 0}
-"""What can be measured, with the numbers of each; `rotors` has one for each rotor."""
+"""Channels with their number of values; `rotors` has one per rotor."""
 
 UNITS = {"position": "m", "attitude": "rad", "velocity": "m/s", "rates": "rad/s", "rotors": "rad/s"}
 
@@ -21,20 +21,20 @@ _COMMANDS = "vel_cmd"
 
 
 class Record(NamedTuple):
-    """One flight.
+    """Commands and measurements of a flight.
 
     Attributes
     ----------
     time : ndarray (rows,)
-        s
+        Time, s.
     position, velocity, rates : ndarray (rows, 3)
-        As `Log` has them, m, m/s, rad/s.
+        As in `Log`, m, m/s, rad/s.
     orientation : ndarray (rows, 4)
         Unit quaternions x, y, z, w.
     rotors : ndarray (rows, n)
         Joint velocities, rad/s.
     commands : ndarray (m, 1 + n), optional
-        t, w1..wn; each row holds until the next. None: nobody wrote them down.
+        Columns t, w1..wn; each row is valid until the next. None: unknown.
     """
 
     time: np.ndarray
@@ -57,27 +57,27 @@ def read_record(
     Parameters
     ----------
     log
-        A log, or its file.
+        A log or its file.
     rotors
-        Of the vehicle.
+        Number of rotors.
     commands
-        A table or a file; None takes what the log has as topic ``vel_cmd``, if it has.
+        Table or file (default: topic ``vel_cmd`` of the log, if any).
     sensed
-        Topic of the log that has pose and velocities as they were measured, ``odom``; None takes
-        the state.
+        Topic with measured pose and velocities, such as ``odom`` (default: the state).
 
     Raises
     ------
     InputError
-        Fewer than two rows, another number of rotors, no such topic, or commands that are none.
+        If the log has fewer than two rows or another number of rotors, the topic does not exist, or
+        the commands are invalid.
     """
     where = "log" if isinstance(log, Log) else str(log)
     flown = log if isinstance(log, Log) else Log.of_file(log)
     if len(flown.time) < 2:
-        raise InputError(f"{where}: has {len(flown.time)} rows; a flight has at least 2")
+        raise InputError(f"{where}: the log has {len(flown.time)} rows. Give one with at least 2.")
     if flown.rotor_velocity.shape[1] != rotors:
         raise InputError(
-            f"{where}: has {flown.rotor_velocity.shape[1]} rotors, the model has {rotors}"
+            f"{where}: the log has {flown.rotor_velocity.shape[1]} rotors, the model {rotors}"
         )
     if commands is not None:
         table: Optional[np.ndarray] = as_commands(commands, rotors)
@@ -101,16 +101,16 @@ def read_record(
 
 
 def choose_channels(given: Optional[Sequence[str]], flown: Record) -> List[str]:
-    """Choose what is compared; raises `InputError` for what there is not."""
+    """Return the channels to compare; raises `InputError` for unknown ones."""
     if given is None:
         return ["position", "attitude", "rates"] + ["rotors"] * (flown.commands is not None)
     given = arguments.several(given)
     if not given:
-        raise InputError(f"channels is {given}; give some of {', '.join(CHANNELS)}")
+        raise InputError(f"channels is {given}. Give some of {', '.join(CHANNELS)}.")
     for name in given:
         if name not in CHANNELS:
             known = ", ".join(CHANNELS)
-            raise InputError(f"there is no channel '{name}'; give some of {known}")
+            raise InputError(f"channel '{name}' does not exist. Use some of {known}.")
     return [name for name in CHANNELS if name in given]
 
 
@@ -120,8 +120,8 @@ def _read_sensed_state(log: Log, where: str, topic: str) -> Tuple[np.ndarray, ..
     if not set(" ".join(names).split()) <= set(fields):
         known = ", ".join(log.topics) or "none"
         raise InputError(
-            f"{where}: no topic '{topic}' with a pose and velocities; its topics: {known}; fly "
-            "with --log-topics odom"
+            f"{where}: topic '{topic}' with pose and velocities does not exist (topics: {known}). "
+            "Log it with --log-topics odom."
         )
     parts = [np.column_stack([fields[name] for name in each.split()]) for each in names]
     parts[1] /= np.linalg.norm(parts[1], axis=1, keepdims=True)
@@ -129,7 +129,7 @@ def _read_sensed_state(log: Log, where: str, topic: str) -> Tuple[np.ndarray, ..
 
 
 def _read_commands(log: Log) -> Optional[np.ndarray]:
-    """Give each command once, with the time at which it came; None before the first."""
+    """Return each command once with its time; None if there is none."""
     fields = log.topics[_COMMANDS]
     table = np.column_stack(
         [fields["stamp"], *(fields[name] for name in fields if name != "stamp")]

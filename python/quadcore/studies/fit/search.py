@@ -1,4 +1,4 @@
-"""The search for the parameters that leave least over."""
+"""Search for the parameters with minimum residuals."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 from .problem import Problem, list_bounds
 
 _ROUNDS = 12
-"""In each, parameters are sought from given starts and noise, and these are corrected then."""
+"""Maximum number of rounds. Each fits the parameters, then corrects starts and noise."""
 
-_TRIALS, _LATER = 12, 3  # in the first round, from far; in others
+_TRIALS, _LATER = 12, 3  # evaluations in the first round and in later ones
 
 _STILL = 0.03
-"""Change of a round, of what the noise leaves open, with which the search ends."""
+"""Change relative to the uncertainty at which the search ends."""
 
 Progress = Callable[[int, int], None]
 
@@ -22,21 +22,21 @@ Progress = Callable[[int, int], None]
 def search(
     problem: Problem, rounds: int = _ROUNDS, progress: Optional[Progress] = None
 ) -> np.ndarray:
-    """Find the parameters; starts and noise of the problem are those that go with them.
+    """Find the parameters; also updates starts and noise of the problem.
 
     Parameters
     ----------
     problem
-        What is free.
+        Problem to solve.
     rounds
-        At most.
+        Maximum number of rounds.
     progress
-        Called as progress(rounds done, at most).
+        Called as progress(done, total).
 
     Raises
     ------
     KeyboardInterrupt
-        Its attribute `values` has what the last round ended with.
+        With the attribute `values`, the result of the last round.
     """
     values = np.array([p.start for p in problem.parameters])
     try:
@@ -53,10 +53,10 @@ def search(
 
 
 def _run_round(problem: Problem, values: np.ndarray, done: int) -> Tuple[np.ndarray, bool]:
-    """Seek once more, and tell whether that still moved anything."""
+    """Run a round; returns the values and whether they have converged."""
     from scipy.optimize import least_squares
 
-    if done:  # first with the starts as measured: far from the parameters others mislead
+    if done:  # the first round uses the measured starts
         problem.linearise_starts(values)
     else:
         problem.learn_noise(values)

@@ -1,4 +1,4 @@
-"""Gains by search: tuned on some references and vehicles, judged on others."""
+"""Gain tuning on training cases, checked on held-out cases."""
 
 from .search import Tuning
 from .tune import tune

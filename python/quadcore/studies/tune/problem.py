@@ -1,4 +1,4 @@
-"""What is tuned: a law's gains, the flights that they are tuned on, and those that judge them."""
+"""Tuning problem: gains, training cases and held-out cases."""
 
 from __future__ import annotations
 
@@ -27,42 +27,38 @@ from ..variation import pick_controller_values
 _GAIN = re.compile(r"(k[pidrw]|[qr])_\w+")
 
 OFFSET, TURN = (0.3, -0.2, 0.25), (0.1, -0.1, 0.2)
-"""Where flights begin that tell whether gains hold a vehicle at all, from the reference's start:
-how far off in the world (m), and turned how far about an axis of the frame (rad)."""
-_RETURN_TIME = 10.0  # s, in which it is to be back
-_LAST = 2.0  # s, the last of them
-_REMAINDER = (
-    0.5  # of the distance at the start, at most, by then: z of `pd` has a pole at -0.22 1/s
-)
+"""Offset of the start from the reference in the world (m), and turn about frame axes (rad)."""
+_RETURN_TIME = 10.0  # s; time to return from the offset
+_LAST = 2.0  # s; final part of it, in which the distance is measured
+_REMAINDER = 0.5  # maximum share of the offset that may remain: z of `pd` has a pole at -0.22 1/s
 _UNLISTED = ("duration", "dt", "seed", "scenario", "processes", "progress")
-"""Options that the history does not list, or lists apart."""
+"""Options that the history omits or lists separately."""
 
 
 class Trial(NamedTuple):
-    """One flight that gains are tried in."""
+    """Flight for the evaluation of gains."""
 
     label: str
-    """Reference and, if there are several, model, point and seed."""
+    """Name of the reference; also of model, point and seed if there are several."""
     plan: FlightPlan
-    """Without a controller."""
+    """Plan without a controller."""
     values: Mapping[str, float]
-    """What the point changes in the controller."""
+    """Values of the point for the controller."""
     has_offset: bool = False
     """Whether it begins `OFFSET` the reference."""
 
 
 class TrialResult(NamedTuple):
-    """How gains did in a case."""
+    """Result of gains in a trial."""
 
     error: float
-    """Root of the mean square of the distance to the reference, m; what is lost counts as LOST away
-    from then on, so that later is better."""
+    """RMS tracking error, m; after a failure, the error is `FAILURE_DISTANCE`."""
     failure: str
-    """When it was lost or diverged; "" if it flew."""
+    """Reason of a failure; "" for success."""
 
 
 class Problem:
-    """A law, where its gains begin, and the cases.
+    """Controller, start of the gains, and cases.
 
     Parameters
     ----------
@@ -72,7 +68,7 @@ class Problem:
     Raises
     ------
     InputError
-        Something is at fault; nothing was flown.
+        If an argument is invalid; no flight has run.
     """
 
     def __init__(
@@ -88,17 +84,21 @@ class Problem:
         options: Options,
     ) -> None:
         if not models or not references_ or not held_out:
-            raise InputError("tuning needs a model, a reference, and a reference that is held out")
+            raise InputError(
+                "tuning requires a model, a reference and a held-out reference. Give each of them."
+            )
         if names_user_code(law) or not isinstance(law, (str, BuiltInController)):
-            raise InputError(f"{law}: no law of quadcore: only their gains can be tuned")
+            raise InputError(f"{law}: only built-in controllers can be tuned. Name one.")
         trained, judged = (
             add_labels("reference", some, references.Shape) for some in (references_, held_out)
         )
         for label, _ in judged:
             if label in dict(trained):
-                raise InputError(f"reference '{label}' is tuned on and held out; choose one")
+                raise InputError(
+                    f"reference '{label}' is both a training and a held-out reference. Remove one."
+                )
         if options.log_every is not None:
-            raise InputError("tuning writes no log; leave log_every out")
+            raise InputError("tuning writes no log. Remove log_every.")
         self.options = options
         vary, options = make_scenario_axis(vary, options)
         design = Design(vary)
@@ -117,7 +117,7 @@ class Problem:
             is_trained = case.model < len(models) and case.reference < len(trained)
             (self.training if is_trained else self.held_out).append(self._make_trial(case))
         self.training += [
-            trial._replace(label=f"{trial.label}, from beside it", has_offset=True)
+            trial._replace(label=f"{trial.label}, from an offset", has_offset=True)
             for trial in self.training
             if trial.plan.on_reference
         ]
@@ -125,13 +125,13 @@ class Problem:
         self.start = self._start_gains(only)
 
     def with_gains(self, gains: Mapping[str, float]) -> BuiltInController:
-        """Make the law with some gains."""
+        """Make the controller with some gains."""
         law = self.law.copy()
         law.parameters.update(gains)
         return law
 
     def fly(self, trial: Trial, gains: Mapping[str, float]) -> TrialResult:
-        """Fly a trial and measure it; raises `InputError` if the law refuses gains or vehicle."""
+        """Simulate a trial; raises `InputError` if the controller rejects gains or vehicle."""
         failure = ""
         try:
             log = self._fly_log(trial, gains)
@@ -144,16 +144,21 @@ class Problem:
         if late is not None:
             failure = describe_failure(log)
             away[log.time >= late] = FAILURE_DISTANCE
-        # What a flight that failed has not flown, it was lost in.
+        # The missing part of a failed flight counts as failed.
         rest = max(0.0, 1 - (log.time[-1] - log.time[0]) / trial.plan.duration) if failure else 0.0
         square = (1 - rest) * np.mean(away**2) + rest * FAILURE_DISTANCE**2
         return TrialResult(float(np.sqrt(square)), failure)
 
     def check_return(self, trial: Trial, gains: Mapping[str, float]) -> str:
-        """Fly a trial from its start and from beside it; "" if both are one flight in the end.
+        """Check that a flight from an offset returns to the flight from the reference.
 
-        On the reference a law that knows all hardly needs its gains, and whatever error is left
-        there is no fault of theirs: what they are for is that a vehicle beside it comes back.
+        On the reference, a controller with a perfect model hardly needs its gains. Their purpose is
+        to correct an offset.
+
+        Returns
+        -------
+        str
+            Reason of a failure; "" for success.
         """
         longer = trial._replace(plan=replace(trial.plan, duration=_RETURN_TIME))
         try:
@@ -186,7 +191,7 @@ class Problem:
         )
 
     def list_settings(self) -> Dict[str, Any]:
-        """Say how everything flies, in plain values."""
+        """Return the settings of the flights, as plain values."""
         plan = self.training[0].plan
         told = {each.name: getattr(self.options, each.name) for each in fields(Options)}
         axes = {axis.name: list(axis.values) for axis in self._cases.design.listed}
@@ -225,14 +230,16 @@ class Problem:
         for name in names:
             if name not in numbers:
                 raise InputError(
-                    f"law '{self.law.name}' has no number '{name}'; tune some of "
-                    f"{', '.join(numbers)}"
+                    f"controller '{self.law.name}' has no parameter '{name}'. Use some of "
+                    f"{', '.join(numbers)}."
                 )
             if only is not None and not numbers[name] > 0:
-                raise InputError(f"{name} is {numbers[name]:g}; begin with more than 0")
+                raise InputError(f"{name} is {numbers[name]:g}. Start with more than 0.")
         start = {name: numbers[name] for name in names if numbers[name] > 0}
         if not start:
-            raise InputError(f"law '{self.law.name}' has no gain above 0 to begin with")
+            raise InputError(
+                f"controller '{self.law.name}' has no gain above 0. Set some at the start."
+            )
         return start
 
 

@@ -1,4 +1,4 @@
-"""The search for gains."""
+"""Search for gains."""
 
 from __future__ import annotations
 
@@ -17,32 +17,32 @@ from ..tracking_metrics import FAILURE_DISTANCE
 from .problem import Problem, Trial, TrialResult
 
 OBJECTIVE = (
-    "mean over the cases, from the start of the reference and from beside it, of the root mean "
-    "square of the distance, m"
+    "mean over the cases, from the start of the reference and from an offset, of the RMS tracking "
+    "error, m"
 )
 
-_SPREAD = 0.8  # of the logarithm of a gain at first: most lie within a factor of 2.2
+_SPREAD = 0.8  # initial deviation of the logarithm of a gain: a factor of 2.2
 
 
 class Tuning(NamedTuple):
-    """Gains that were found, and how."""
+    """Result of a tuning."""
 
     gains: Gains
-    """For `gains.write`, with the history; no held-out case was lost with them."""
+    """Best gains with the history of the search; all held-out cases succeed with them."""
     error: float
     """`OBJECTIVE` of these gains."""
     start: float
-    """The same of those that the search began with."""
+    """`OBJECTIVE` of the gains at the start."""
     evaluations: List[float]
-    """The same by evaluation, that of the start first."""
+    """`OBJECTIVE` of each candidate, the start first."""
     held_out: Dict[str, float]
-    """Root mean square of the distance, m, in each held-out case."""
+    """RMS tracking error in each held-out case, m."""
     refused: int
-    """How many gains were better on what they were tuned on, but lost a held-out case."""
+    """Number of candidates that were better on the training cases but failed a held-out case."""
 
 
 class Search:
-    """What was tried so far."""
+    """State of a search."""
 
     def __init__(
         self,
@@ -51,7 +51,7 @@ class Search:
         progress: Optional[Progress],
     ) -> None:
         if budget < 1:
-            raise InputError(f"budget is {budget}; give at least 1")
+            raise InputError(f"budget is {budget}. Give at least 1.")
         self.evaluations: List[float] = []
         self.refused = 0
         self.refusal = ""
@@ -62,16 +62,16 @@ class Search:
         self._limit, self._processes = options.time_limit, options.processes
         self._progress = progress
         self._best: Optional[Tuple[float, Dict[str, float], Dict[str, float]]] = None
-        """Objective, gains, and error by held-out case."""
+        """Objective, gains, and error of each held-out case."""
         self._least = math.inf
 
     def run(self, cma: Any) -> None:
         """Search until the budget is spent."""
         start = self._problem.start
-        for case in self._problem.training:  # what is wrong with law or vehicle is told at once
+        for case in self._problem.training:  # reports an invalid controller or vehicle at once
             self._problem.fly(case, start)
         self._try([start])
-        # Of its own generator: the one that numpy shares belongs to the caller.
+        # A separate generator: numpy's global one belongs to the caller.
         drawn = np.random.default_rng(self._seed)
         strategy = cma.CMAEvolutionStrategy(
             np.zeros(len(start)),
@@ -88,8 +88,8 @@ class Search:
             strategy.tell(points, self._try([self._scale_gains(point) for point in points]))
 
     def make_tuning(self, cma: Any, ended: str) -> Optional[Tuning]:
-        """Give the best so far."""
-        from ... import __version__  # which is there once the package is
+        """Return the best result so far."""
+        from ... import __version__  # defined after this module
 
         if self._best is None:
             return None
@@ -121,7 +121,7 @@ class Search:
         return {name: value * math.exp(x) for (name, value), x in zip(start.items(), point)}
 
     def _try(self, candidates: Sequence[Mapping[str, float]]) -> List[float]:
-        """Fly gains, and judge the best of them if none before was better."""
+        """Evaluate candidates, and check the best one if it is better than all before."""
         training = self._problem.training
         flights = self._fly([(case, gains) for gains in candidates for case in training])
         count = len(training)
@@ -143,7 +143,7 @@ class Search:
         held_out = {}
         for case, flown in zip(problem.held_out, flights):
             if flown.failure:
-                return self._refuse(f"lose {case.label}: {flown.failure}")
+                return self._refuse(f"fail on {case.label}: {flown.failure}")
             held_out[case.label] = flown.error
         left: List[str] = [""] * len(problem.return_trials)
 
@@ -157,19 +157,19 @@ class Search:
         run_contained(fly, range(len(left)), take, self._processes)
         for case, failure in zip(problem.return_trials, left):
             if failure:
-                return self._refuse(f"do not come back to {case.label} from beside it: {failure}")
+                return self._refuse(f"do not return to {case.label} from an offset: {failure}")
         self._least = error
         self._best = error, gains, held_out
 
     def _refuse(self, reason: str) -> None:
         self.refused += 1
-        self.refusal = f"those that fly best {reason}"
+        self.refusal = f"the best candidates {reason}"
 
     def _fly(self, flights: Sequence[Tuple[Trial, Mapping[str, float]]]) -> List[TrialResult]:
         outcomes: List[Optional[TrialResult]] = [None] * len(flights)
 
         def take(index: int, outcome: Union[TrialResult, QuadcoreError]) -> None:
-            # Gains that the law itself refuses are as bad as can be.
+            # Gains that the controller rejects count as the worst.
             failed = isinstance(outcome, QuadcoreError)
             outcomes[index] = TrialResult(FAILURE_DISTANCE, str(outcome)) if failed else outcome  # type: ignore
 
@@ -177,6 +177,6 @@ class Search:
             with suppress_warnings(), time_limit(self._limit):
                 return self._problem.fly(*flights[index])
 
-        # By their numbers: a reference may be a function, which no process can send to another.
+        # Indices, as a reference may be a function, which cannot be pickled.
         run_contained(fly, range(len(flights)), take, self._processes)
         return outcomes  # type: ignore[return-value]

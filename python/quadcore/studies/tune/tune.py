@@ -1,4 +1,4 @@
-"""Tune a law."""
+"""Gain tuning."""
 
 from __future__ import annotations
 
@@ -47,49 +47,50 @@ def tune(
     budget: int = 300,
     **options: Unpack[Keywords],
 ) -> Tuning:
-    """Search for gains of a law.
+    """Search for the gains of a controller.
 
-    By CMA-ES (Hansen 2016, arXiv:1604.00772) on the logarithms of the gains. Gains that are better
-    than all before are flown in the held-out cases, too, and refused if one is lost there, or if a
-    vehicle that begins beside a reference does not come back to it. The same seed gives the same
-    result, whatever the number of processes.
+    The search uses CMA-ES (Hansen 2016, arXiv:1604.00772) on the logarithms of the gains. Each new
+    best candidate is checked on the held-out cases. It is rejected if a held-out flight fails, or
+    if a vehicle that starts with an offset does not return to the reference. The result depends on
+    the seed but not on the number of processes.
 
     Parameters
     ----------
     law
-        Name, ``NAME:KEY=VALUE,...``, gains file, or one of `quadcore.controllers`. The search
-        starts at its parameters.
+        Controller name, ``NAME:KEY=VALUE,...``, gains file, or one of `quadcore.controllers`. The
+        search starts at its parameters.
     model
-        What flies, or several; the gains are for the first.
+        One or several models; the gains file names the first one.
     references
-        What is flown to tune: names as on the command line, or functions.
+        Training references: names as on the command line, or functions.
     held_out
-        What is flown, by every model, to judge; others than `references`.
+        Held-out references for all models, different from `references`.
     held_out_models
-        Fly everything, to judge only.
+        Held-out models for all references.
     only
-        Parameters to tune; without, all gains that are not zero at the start: those named k._...,
-        ``q_...`` and ``r_...``.
+        Parameters to tune (default: all gains, named ``k?_...``, ``q_...`` and ``r_...``, that are
+        not zero at the start).
     engine
-        Of each flight.
+        Engine of all flights.
     vary
-        Conditions by axis, as for `evaluate`: gains are tuned, and judged, in all combinations.
+        Conditions by axis, as for `evaluate`. Gains are tuned and checked in all combinations.
     budget
-        Gains to try, at least.
+        Minimum number of candidates.
     **options
 
     Returns
     -------
     Tuning
+        Best gains and the history of the search.
 
     Raises
     ------
     InputError
-        Something is at fault, or the package cma is missing; nothing was flown.
+        If an argument is invalid or the package cma is missing; no flight has run.
     FlightError
-        No gains kept every held-out case. Its `evaluations` are those of `Tuning`.
+        If every candidate is rejected. Its attribute `evaluations` is that of `Tuning`.
     KeyboardInterrupt
-        Its attribute `tuning` has the best so far, or None if all were refused.
+        With the attribute `tuning`, the best result so far, or None.
     """
     shared = Options(**options)
     flown = several(model), several(references)
@@ -100,7 +101,7 @@ def tune(
 
 
 def search_gains(problem: Problem, budget: int, progress: Optional[Progress] = None) -> Tuning:
-    """Search for the gains of a problem; raises as `tune`."""
+    """Search for the gains of a problem; raises as `tune` does."""
     cma = _import_cma()
     search = Search(problem, budget, progress)
     try:
@@ -111,7 +112,7 @@ def search_gains(problem: Problem, budget: int, progress: Optional[Progress] = N
     found = search.make_tuning(cma, "")
     if found is None:
         failure = FlightError(
-            f"no gains found: {search.refusal}; begin elsewhere, or search longer"
+            f"no acceptable gains found: {search.refusal}. Try another start or a larger budget."
         )
         failure.evaluations = search.evaluations  # type: ignore[attr-defined]
         raise failure
