@@ -49,7 +49,9 @@ def refusal(instance, call, *arguments):
     ids=lambda options: next(iter(options)),
 )
 def test_options_that_an_fmu_does_not_carry_are_refused_by_name(options, tmp_path):
-    with pytest.raises(qc.InputError, match=f"an FMU carries no {next(iter(options))}, ") as error:
+    with pytest.raises(
+        qc.InputError, match=f"an FMU has no option {next(iter(options))}: "
+    ) as error:
         qc.export_fmu(tmp_path / "x.fmu", "quadrotor", **options)
     assert "\n" not in str(error.value)
     with pytest.raises(qc.InputError, match="model is None; give a name or a path"):

@@ -190,14 +190,14 @@ def test_a_flight_that_fails_tells_why_and_gives_the_observation_before():
 @pytest.mark.parametrize(
     ("options", "says"),
     [
-        ({"observation": ["eror"]}, "observation 'eror' is none; the nearest is 'error'"),
-        ({"observation": "error"}, "observation is 'error'; name some of error, body_error"),
-        ({"reward": {"closeness": 1}}, "reward 'closeness' is none; the nearest is"),
-        ({"rate": 300}, "rate is 300, which makes 3.33333 steps of 0.001 s"),
-        ({"authority": 1.5}, r"authority is 1.5; give one in \(0, 1\]"),
-        ({"spread": 3.0}, "a vehicle would be lost as it starts"),
-        ({"duration": 0}, "duration is 0; give a number > 0"),
-        ({"seed": 1}, r"give it to reset\(\)"),
+        ({"observation": ["eror"]}, r"observation 'eror' does not exist \(did you mean 'error'\)"),
+        ({"observation": "error"}, "observation is 'error'. Name some of error, body_error"),
+        ({"reward": {"closeness": 1}}, "reward 'closeness' does not exist"),
+        ({"rate": 300}, "rate is 300: an action lasts 3.33333 steps of 0.001 s"),
+        ({"authority": 1.5}, r"authority is 1.5. Give a number in \(0, 1\]"),
+        ({"spread": 3.0}, "an episode could end at its start"),
+        ({"duration": 0}, "duration is 0. Give a number > 0"),
+        ({"seed": 1}, r"seed is an argument of reset\(\)"),
     ],
 )
 @pytest.mark.parametrize("kind", ["Env", "VectorEnv"])
@@ -210,7 +210,7 @@ def test_wrong_rules_are_told(kind, options, says):
 def test_wrong_actions_and_options_are_told(make):
     env = make(**CALM)
     zero = np.zeros(env.action_space.shape)
-    with pytest.raises(qc.InputError, match="reset the environment"):
+    with pytest.raises(qc.InputError, match="Reset the environment"):
         env.step(zero)
     with pytest.raises(qc.InputError, match="no option 'wind'"):
         env.reset(options={"wind": 1})

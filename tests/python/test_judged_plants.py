@@ -81,6 +81,6 @@ def test_what_cannot_be_judged_is_one_line(recording):
     late = ("--commands", str(recording / "late.csv"))
     assert "begins at t = 3, the commands at 3.1" in refused("validate", "--plant", bare, *late)
     found = refused("validate", "hexarotor", "--plant", str(recording / "flight.csv"))
-    assert "has 4 rotors, the model has 6" in found
+    assert "has 4 rotors, the model 6" in found
     found = refused("validate", "--plant", bare, "--sim-slow", "8")
     assert "--plant is one flight; give its --sim-slow with --set" in found

@@ -1,4 +1,4 @@
-"""FMUs: a vehicle in its world as a file that any importer of FMI 2.0 for co-simulation flies."""
+"""Export of a vehicle in its world as an FMU (functional mock-up unit) for co-simulation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""modelDescription.xml of FMI 2.0."""
+"""File modelDescription.xml of FMI 2.0."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from .variables import Variable
 def make_description(
     model: str, identifier: str, guid: str, tool: str, step: float, variables: Sequence[Variable]
 ) -> bytes:
-    """Describe an FMU for importers.
+    """Make the description of an FMU.
 
     Parameters
     ----------
     model
         Name of the vehicle.
     identifier
-        Name of the library inside, without its suffix.
+        Name of the library without suffix.
     guid
-        Which the library asks for.
+        GUID that the library checks.
     tool
-        That wrote the FMU.
+        Name of the program that writes the FMU.
     step
-        Shortest, s.
+        Minimum step, s.
     variables
-        All, in the order of their value references.
+        All variables, in the order of their value references.
     """
     root = ElementTree.Element(
         "fmiModelDescription",

@@ -1,4 +1,4 @@
-"""Writing an FMU."""
+"""Export of FMUs."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 _VERSION = 2  # of flight.yaml, which cpp/fmu/flight_file.cpp reads
-_LARGEST = 10**8  # bytes of a file that a tag names, as in the core
-_LONG_AGO = (1980, 1, 1, 0, 0, 0)  # the same FMU, the same bytes
+_LARGEST = 10**8  # bytes of a file that a tag names; same limit as in the core
+_LONG_AGO = (1980, 1, 1, 0, 0, 0)  # equal FMUs are bit-identical
 
 
 class _Options(TypedDict, total=False):
@@ -67,40 +67,40 @@ def export_fmu(
 ) -> None:
     """Write a vehicle in its world as an FMU for co-simulation, FMI 2.0.
 
-    It has inside whatever it needs to fly on Linux, and no path.
+    The FMU contains everything that it needs on Linux, and no absolute path.
 
     Parameters
     ----------
     path
-        A file that ends in ``.fmu``.
+        File name with the suffix ``.fmu``.
     model
         As for `Simulation`.
     **options
-        As for `Simulation`; or ``scenario`` and ``wind``, as for `FlightPlan.of`.
+        As for `Simulation`, and ``scenario`` and ``wind`` as for `FlightPlan.of`.
 
     Raises
     ------
     InputError
-        The model or an option is at fault, a plugin is not one of quadcore's own, or the file
-        cannot be written; nothing is left behind then.
+        If the model or an option is invalid, a plugin is not part of quadcore, or the file cannot
+        be written.
     """
     file = Path(path)
     if file.suffix.lower() != ".fmu":
-        raise InputError(f"{path}: name a file that ends in .fmu, which it would hold")
+        raise InputError(f"{path}: the suffix is not .fmu. Name a file that ends in .fmu.")
     for name in options:
         if name not in _Options.__annotations__:
             raise InputError(
-                f"an FMU carries no {name}, for it begins at rest and its importer commands it; "
-                f"leave it out, or give one of {', '.join(_Options.__annotations__)}"
+                f"an FMU has no option {name}: it starts at rest, and its importer commands it. "
+                f"Use {', '.join(_Options.__annotations__)}."
             )
     write_fmu(file, FlightPlan.of(model, duration=math.inf, **options))
 
 
 def write_fmu(path: Path, plan: FlightPlan) -> None:
-    """Write the vehicle of a plan; raises as `export_fmu` does."""
+    """Write the vehicle of a plan as an FMU; raises as `export_fmu` does."""
     simulation = plan.simulation()
     if plan.engine not in dict(_core.engines()):
-        raise InputError(f"an FMU flies on one of the engines, not on {plan.engine}; choose one")
+        raise InputError(f"an FMU cannot contain the engine {plan.engine}. Choose another engine.")
     libraries = Libraries(simulation)
     variables = [*list_variables(simulation), *list_start_variables(plan.spawn, plan.seed)]
     files = dict(_read_files(simulation))
@@ -129,7 +129,7 @@ def write_fmu(path: Path, plan: FlightPlan) -> None:
 
 
 def _read_files(simulation: Simulation) -> Iterator[Tuple[str, Tuple[str, bytes]]]:
-    """Find the files that tags name: PLUGIN.TAG, name among the resources, and what it holds."""
+    """Yield PLUGIN.TAG, resource name and content of each file that a tag names."""
     for plugin in simulation.plugins:
         for tag in plugin.parameters:
             if tag.file:

@@ -1,4 +1,4 @@
-"""The shared libraries inside an FMU: those that fly here, under names of their own."""
+"""Shared libraries of an FMU, with unique names."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from .. import _core
 from .._core import InputError
 from ..simulation.simulation import Simulation
 
-# The loader takes a library for one that it has loaded under the same name, so an FMU's would fly
-# by another's core, or by this one's, whose folders may be gone.
+# The loader reuses a loaded library with the same name. Unique names prevent that an FMU uses the
+# core of another FMU or of this process.
 _PT_LOAD, _PT_DYNAMIC, _DT_NEEDED, _DT_STRTAB = 1, 2, 1, 5
 _EVERYWHERE = re.compile(r"(ld-linux.*|lib(c|m|dl|rt|pthread|stdc\+\+|gcc_s))\.so.*")
 
 
 class Libraries:
-    """What an FMU needs beside the libraries of C and C++: the interface, core and plugins.
+    """Libraries of an FMU in addition to those of C and C++: interface, core and plugins.
 
     Parameters
     ----------
     simulation
-        Of the vehicle.
+        Simulation of the vehicle.
 
     Raises
     ------
     InputError
-        A plugin is not one of quadcore's own, or the interface was not built.
+        If a plugin is not part of quadcore, or the interface was not built.
     """
 
     def __init__(self, simulation: Simulation) -> None:
@@ -37,8 +37,8 @@ class Libraries:
         interface = own / "fmu" / "libquadcore_fmu.so"
         if not interface.is_file():
             raise InputError(
-                f"{interface}: is missing: quadcore was built without QUADCORE_BUILD_FMU; build it "
-                "anew"
+                f"{interface}: the file is missing, as quadcore was built without "
+                "QUADCORE_BUILD_FMU. Build it with this option."
             )
         self._interface = interface.read_bytes()
         self._plugins: Dict[str, bytes] = {}
@@ -46,8 +46,8 @@ class Libraries:
             path = Path(plugin.path)
             if path.parent not in (own, own / "quadcore"):
                 raise InputError(
-                    f"plugin '{plugin.name}': {plugin.filename} in {path.parent} is none of "
-                    "quadcore's own, which alone are inside an FMU; leave it out with --ignore"
+                    f"plugin '{plugin.name}': {plugin.filename} in {path.parent} is not part of "
+                    "quadcore, and an FMU cannot contain it. Remove it with --ignore."
                 )
             self._plugins[str(path.relative_to(own))] = path.read_bytes()
         self._linked: Dict[str, bytes] = {}
@@ -56,21 +56,23 @@ class Libraries:
         while to_see:
             for name in _read_needed(to_see.pop()) - set(self._linked):
                 for path in loaded:
-                    if f"{path.name}.".startswith(f"{name}."):  # links lead to longer names
+                    if f"{path.name}.".startswith(
+                        f"{name}."
+                    ):  # symbolic links point to longer names
                         self._linked[name] = path.read_bytes()
                         to_see.append(self._linked[name])
 
     def compute_digest(self) -> bytes:
-        """Digest of all, by which an FMU is told from another."""
+        """Return a digest of all libraries."""
         digest = hashlib.sha256(self._interface)
         for _, data in sorted([*self._plugins.items(), *self._linked.items()]):
             digest.update(data)
         return digest.digest()
 
     def make_files(self, identifier: str, guid: str) -> Dict[str, bytes]:
-        """Give each its place among the binaries; what others need is renamed by the GUID."""
+        """Return the libraries by their place in the FMU, with names derived from the GUID."""
         names = {}
-        for name in self._linked:  # in place, so as long as before
+        for name in self._linked:  # same length, as names are replaced in place
             digest = hashlib.sha256(f"{guid}{name}".encode()).hexdigest()
             names[name] = f"{digest[: len(name) - 3]}.so"
 
@@ -88,7 +90,7 @@ class Libraries:
 
 
 def _read_needed(data: bytes) -> Set[str]:
-    """Read from an ELF file for 64 bits which others it needs (man 5 elf)."""
+    """List the libraries that a 64-bit ELF file needs (man 5 elf)."""
     (headers,) = struct.unpack_from("<Q", data, 32)
     size, count = struct.unpack_from("<HH", data, 54)
     # Type, flags, offset, address, physical address, size.
@@ -107,6 +109,6 @@ def _read_needed(data: bytes) -> Set[str]:
 
 
 def _list_loaded() -> List[Path]:
-    """Find the libraries that this process has loaded."""
+    """List the libraries that this process has loaded."""
     maps = Path("/proc/self/maps").read_text(errors="surrogateescape").splitlines()
     return sorted({Path(line[line.index("/") :]) for line in maps if ".so" in line})

@@ -1,4 +1,4 @@
-"""The variables of an FMU; the library inside knows each by its place in this list."""
+"""Variables of an FMU; the index in the list is the value reference."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from ..simulation.simulation import Simulation
 _WRENCH = (("fx", "N"), ("fy", "N"), ("fz", "N"), ("tx", "N.m"), ("ty", "N.m"), ("tz", "N.m"))
 _SPAWN = ("x", "y", "z", "roll", "pitch", "yaw")
 _STATE_UNITS = ("s", "m", "m", "m", "", "", "", "", *["m/s"] * 3, *["rad/s"] * 3)
-_LARGEST_SEED = 2**31 - 1  # of an Integer
+_LARGEST_SEED = 2**31 - 1  # maximum of an Integer
 
 
 class Variable(NamedTuple):
-    """One of them: what importers see, and what the library makes of it."""
+    """A variable of an FMU."""
 
     name: str
     kind: str
-    """As cpp/fmu/flight_file.hpp has it."""
+    """Kind, as in cpp/fmu/flight_file.hpp."""
     key: str
-    """Topic, or PLUGIN.TAG."""
+    """Topic or PLUGIN.TAG."""
     place: int
-    """In a row, or among the fields."""
+    """Index in a row or among the fields."""
     type: str
     """Real, Integer, Boolean or String."""
     causality: str
@@ -34,16 +34,16 @@ class Variable(NamedTuple):
 
 
 def list_variables(simulation: Simulation) -> List[Variable]:
-    """List all that can be set and read.
+    """List all variables of a simulation.
 
     Raises
     ------
     InputError
-        Two have one name.
+        If two variables have the same name.
     """
     of_topics = [*_list_outputs(simulation), *_list_inputs(simulation)]
     taken = {variable.name for variable in of_topics}
-    parameters = [  # a plugin may have the name of a topic, and a tag that of a field of it
+    parameters = [  # plugin and topic may share a name, tag and field too
         tag._replace(name=f"{tag.name}_tag") if tag.name in taken else tag
         for tag in _list_parameters(simulation)
     ]
@@ -54,7 +54,7 @@ def list_variables(simulation: Simulation) -> List[Variable]:
         if other is not variable:
             raise InputError(
                 f"an FMU would have two variables {variable.name}, of kind {other.kind} "
-                f"and {variable.kind}; rename the plugin or the topic"
+                f"and {variable.kind}. Rename the plugin or the topic."
             )
     return found
 
@@ -63,7 +63,7 @@ def _list_outputs(simulation: Simulation) -> Iterator[Variable]:
     columns = _core.log_columns(simulation.rotor_count)
     units = [*_STATE_UNITS, *["rad/s"] * simulation.rotor_count]
     for i, (name, unit) in enumerate(zip(columns, units)):
-        if i > 0:  # time is the importer's
+        if i > 0:  # the importer defines the time
             yield _make_output(name, "state", "", i, unit, "continuous")
     for number, term in enumerate(simulation.wrench_terms):
         for i, (component, unit) in enumerate(_WRENCH):
@@ -85,7 +85,7 @@ def _list_inputs(simulation: Simulation) -> Iterator[Variable]:
     for topic in simulation.topics.values():
         if topic.writer is None:
             is_command = topic.name == simulation.command_topic
-            start = simulation.topic(topic.name)  # nobody has published yet
+            start = simulation.topic(topic.name)  # initial value
             for i, field in enumerate(topic.fields):
                 name = field if is_command else f"{topic.name}.{field}"
                 yield Variable(
@@ -101,7 +101,7 @@ def _list_parameters(simulation: Simulation) -> Iterator[Variable]:
             key = f"{plugin.name}.{tag.name}"
             is_number = tag.kind == "number" and tag.text != ""
             kind = "file" if tag.kind == "file" else "parameter"
-            types = {"flag": "Boolean", "number": "Real"}  # absent ones are texts, of nothing
+            types = {"flag": "Boolean", "number": "Real"}  # absent values are empty texts
             yield Variable(
                 key, kind, key, 0, types.get(tag.kind if tag.text else "", "String"), "parameter",
                 "tunable" if is_number else "fixed", tag.text, tag.unit if is_number else "",
@@ -110,7 +110,7 @@ def _list_parameters(simulation: Simulation) -> Iterator[Variable]:
 
 
 def list_start_variables(spawn: Sequence[float], seed: int) -> Iterator[Variable]:
-    """Give the parameters that are no plugin's."""
+    """Yield the parameters of spawn and seed."""
     for i, (name, value) in enumerate(zip(_SPAWN, spawn)):
         yield Variable(
             f"spawn.{name}", "spawn", "", i, "Real", "parameter", "fixed", repr(value),

@@ -1,14 +1,14 @@
-"""Environments of Gymnasium: fly to a goal and stay there.
+"""Gymnasium environments: fly to a goal and stay there.
 
-`Env` is one `Simulation`, `VectorEnv` one `BatchSimulation`; both are registered as
-``quadcore/Hover-v0`` when this module is imported. What is observed and rewarded is chosen by name
-from `OBSERVATIONS` and `REWARDS`.
+`Env` steps a `Simulation`, `VectorEnv` a `BatchSimulation`. Importing this module registers both as
+``quadcore/Hover-v0``. Observations and rewards are selected by name from `OBSERVATIONS` and
+`REWARDS`.
 """
 
 from .._core import InputError
 
 try:
-    from gymnasium.vector import AutoresetMode  # noqa: F401  (1.1 was the first to have it)
+    from gymnasium.vector import AutoresetMode  # noqa: F401  (new in 1.1)
 except ImportError:
     raise InputError(
         "quadcore.gym needs the package gymnasium, 1.1 or newer; install it: "
@@ -23,7 +23,7 @@ from .rewards import REWARDS
 from .vector_env import VectorEnv
 
 NAME = "quadcore/Hover-v0"
-"""For `gymnasium.make` and `gymnasium.make_vec`."""
+"""Name for `gymnasium.make` and `gymnasium.make_vec`."""
 
 gymnasium.register(
     NAME, entry_point="quadcore.gym:Env", vector_entry_point="quadcore.gym:VectorEnv"

@@ -1,4 +1,4 @@
-"""One vehicle as an environment."""
+"""Environment of one vehicle."""
 
 from __future__ import annotations
 
@@ -23,33 +23,33 @@ Step = Tuple[np.ndarray, float, bool, bool, Dict[str, Any]]
 class Env(gymnasium.Env):
     """Fly from the start to a goal near it, and stay there.
 
-    An episode begins at `spawn`, at rest, rotors and all. It is terminated when the vehicle is too
-    far from the goal or its flight fails, and truncated at the end of its duration.
+    An episode starts at `spawn`, with vehicle and rotors at rest. It is terminated if the vehicle
+    is too far from the goal or the flight fails, and truncated at the end of its duration.
 
     Parameters
     ----------
     model : str, path or Model
-        As of `Simulation`.
+        As for `Simulation`.
     engine : str
-        "eigen" unless another is named.
+        Engine.
     **options
         The members of `task.Rules`: observation, reward, rate, duration, spread, reach, authority.
-        Others as of `Simulation`.
+        Others as for `Simulation`.
 
     Attributes
     ----------
     simulation : Simulation
-        What flies.
+        Simulation of the vehicle.
     task : Task
-        What is observed, rewarded and commanded.
+        Observations, rewards and commands.
 
     Raises
     ------
     InputError
-        The model, the world or an argument is at fault, or actions are.
+        If the model, the world, an argument or an action is invalid.
     """
 
-    metadata = {"render_modes": []}  # noqa: RUF012  (as Gymnasium has it)
+    metadata = {"render_modes": []}  # noqa: RUF012  (as in Gymnasium)
 
     def __init__(
         self,
@@ -67,14 +67,14 @@ class Env(gymnasium.Env):
 
     @property
     def goal(self) -> np.ndarray:
-        """Where the vehicle is to go, world axes, (3,), m."""
+        """Goal of the vehicle, world axes, (3,), m."""
         goal: np.ndarray = self._episodes.goals[0]
         return goal
 
     def reset(
         self, *, seed: Optional[int] = None, options: Optional[Dict[str, Any]] = None
     ) -> Tuple[np.ndarray, Dict[str, Any]]:
-        """Begin an episode; `seed` is that of goals and noise from now on."""
+        """Start an episode; `seed` sets the generator of goals and noise."""
         check_no_options(options)
         super().reset(seed=seed)
         self._episodes.set_generators([self.np_random])
@@ -84,13 +84,13 @@ class Env(gymnasium.Env):
         return self._episodes.observe(self._state())[0], {}
 
     def step(self, action: np.ndarray) -> Step:
-        """Hold an action for 1 / rate seconds.
+        """Apply an action for 1 / rate seconds.
 
-        The `info` of a flight that failed has the reason as ``failure``; the observation is then of
-        the state before.
+        If the flight fails, `info` contains the reason as ``failure``, and the observation is that
+        of the previous state.
         """
         if not self._flies:
-            raise InputError("the episode has ended, or none has begun; reset the environment")
+            raise InputError("the episode has ended, or none has started. Reset the environment.")
         actions = np.asarray(action, dtype=float)[None]
         commands = self.task.commands(actions)
         before, info = self._state(), {}
@@ -111,6 +111,6 @@ class Env(gymnasium.Env):
 
 
 def check_no_options(options: Optional[Dict[str, Any]]) -> None:
-    """Raise `InputError` if a reset is given any."""
+    """Raise `InputError` if `reset` receives options."""
     if options:
-        raise InputError(f"reset: there is no option {', '.join(map(repr, options))}; give none")
+        raise InputError(f"reset: unknown option {', '.join(map(repr, options))}. Remove it.")

@@ -1,4 +1,4 @@
-"""The episodes of n vehicles: their goals, what they did last, and when they end."""
+"""Episodes of n vehicles: goals, last actions, and ends."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .task import Task
 
 
 class StepResult(NamedTuple):
-    """Of an action, a row or a number for each vehicle."""
+    """Result of an action, a row or a number for each vehicle."""
 
     observation: np.ndarray
     reward: np.ndarray
@@ -23,9 +23,9 @@ class StepResult(NamedTuple):
 
 
 class Episodes:
-    """Of vehicles that begin at `homes`, (n, 3), m.
+    """Episodes of vehicles that start at `homes`, (n, 3), m.
 
-    Each draws from a generator of its own: what befalls one does not depend on the others.
+    Each vehicle has its own random generator, so that vehicles are independent.
     """
 
     def __init__(self, task: Task, homes: np.ndarray) -> None:
@@ -38,19 +38,19 @@ class Episodes:
 
     @property
     def goals(self) -> np.ndarray:
-        """Where the vehicles are to go, world axes, (n, 3), m."""
+        """Goals of the vehicles, world axes, (n, 3), m."""
         return self._goals.copy()
 
     def set_seeds(self, seed: int) -> None:
-        """Give vehicle i the generator of seed + i."""
+        """Set the generator of vehicle i from seed + i."""
         self._generators = [seeding.np_random(seed + i)[0] for i in range(len(self._homes))]
 
     def set_generators(self, generators: Sequence[np.random.Generator]) -> None:
-        """Take over generators."""
+        """Set the generators."""
         self._generators = list(generators)
 
     def begin(self, mask: np.ndarray) -> np.ndarray:
-        """Begin the episodes of some vehicles; returns the seeds of their noise, (n,)."""
+        """Start the episodes of some vehicles; returns the seeds of their noise, (n,)."""
         seeds = np.zeros(len(mask), np.uint64)
         for i in np.flatnonzero(mask):
             draw = self._generators[i]
@@ -61,14 +61,14 @@ class Episodes:
         return seeds
 
     def observe(self, state: BatchState) -> np.ndarray:
-        """Give the observations of vehicles that have begun."""
+        """Return the observations at the start of an episode."""
         nobody = np.zeros(len(self._homes), bool)
         return self._task.observe(self._make_step(state, self._action, lost=nobody))
 
     def finish_step(
         self, state: BatchState, actions: np.ndarray, failed: np.ndarray, begun: np.ndarray
     ) -> StepResult:
-        """Say what came of actions, which those that have just begun did not take."""
+        """Return the results of actions; vehicles in `begun` have just started and ignore them."""
         actions = np.where(begun[:, None], 0.0, actions)
         self._count += ~begun
         away = np.linalg.norm(state.position - self._goals, axis=1)

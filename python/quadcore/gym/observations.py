@@ -1,4 +1,4 @@
-"""What can be observed, by name."""
+"""Observations by name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What can be rewarded, by name."""
+"""Rewards by name."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from .step_data import StepData
 
 
 class Reward(NamedTuple):
-    """A number for each vehicle and action, to be weighted."""
+    """Reward term of each vehicle and action."""
 
     meaning: str
     compute: Callable[[StepData], np.ndarray]
-    """Numbers, (n,)."""
+    """Returns the term of each vehicle, (n,)."""
 
 
 def _norm(rows: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""What observations and rewards are made of."""
+"""States and actions from which observations and rewards are computed."""
 
 from __future__ import annotations
 
@@ -8,24 +8,24 @@ import numpy as np
 
 
 class StepData(NamedTuple):
-    """Where n vehicles are after an action, a row for each.
+    """States of n vehicles after an action, a row for each.
 
     Attributes
     ----------
     error : ndarray (n, 3)
         From the goal to the frame origin, world axes, m.
     R_WF : ndarray (n, 3, 3)
-        Turns vectors from frame axes to world axes.
+        Rotation matrices from frame axes to world axes.
     linear_velocity : ndarray (n, 3)
-        Of the frame origins, world axes, m/s.
+        Velocities of the frame origins, world axes, m/s.
     angular_velocity : ndarray (n, 3)
-        Of the frames, body axes, rad/s.
+        Angular velocities of the frames, body axes, rad/s.
     rotor_velocity : ndarray (n, rotors)
-        Joint velocities as the engine has them, rad/s.
+        Joint velocities, rad/s.
     action, action_before : ndarray (n, rotors)
-        The one that led here, and the one before; zero at the start.
+        Current and previous action; zero at the start.
     lost : ndarray (n,) of bool
-        Whether the episode ends because the vehicle is lost.
+        Whether the episode is terminated.
     """
 
     error: np.ndarray

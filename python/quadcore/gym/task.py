@@ -1,8 +1,7 @@
-"""What an episode is about: how often one acts, what an action means, what is seen and rewarded."""
+"""Task of an episode: action rate, meaning of actions, observations and rewards."""
 
 from __future__ import annotations
 
-import difflib
 import math
 from numbers import Real
 from typing import Any, Mapping, NamedTuple, Sequence, Tuple
@@ -14,30 +13,31 @@ from .._core import InputError
 from ..control import references
 from ..control.inner_loop import AttitudeThrust, InnerLoop
 from ..simulation.simulation import Simulation
+from ..support.parameters import did_you_mean
 from .observations import OBSERVATIONS
 from .rewards import REWARDS
 from .step_data import StepData
 
 
 class Rules(NamedTuple):
-    """How episodes go; both environments take these arguments by name.
+    """Rules of episodes; both environments take these arguments by name.
 
     Attributes
     ----------
     observation : sequence of str
-        Of `OBSERVATIONS`, one behind another.
+        Names from `OBSERVATIONS`, which are concatenated.
     reward : mapping of str to float
-        Weights of `REWARDS`, which are summed.
+        Weights of the terms from `REWARDS`, which are summed.
     rate : float
-        Actions per second; each is held for a whole number of steps.
+        Actions per second; each lasts a whole number of steps.
     duration : float
-        Of an episode, s; it is truncated then.
+        Duration after which an episode is truncated, s.
     spread : float
-        The goal is drawn from the cube around the start with edges of twice this, m.
+        Half the edge of the cube around the start from which the goal is drawn, m.
     reach : float
-        Farther from the goal a vehicle is lost, m, and the episode terminated.
+        Distance from the goal at which an episode is terminated, m.
     authority : float
-        An action a commands a rotor a speed of (1 + authority a) times that of hovering; in (0, 1].
+        Action a commands (1 + authority a) times the hover speed of a rotor; in (0, 1].
     """
 
     observation: Sequence[str] = ("error", "rotation", "velocity", "rates", "action")
@@ -50,28 +50,28 @@ class Rules(NamedTuple):
 
 
 class Task:
-    """The rules, applied to a vehicle.
+    """Rules for a vehicle.
 
     Parameters
     ----------
     vehicle : Simulation
-        Says what flies: its speed of hovering is what actions are measured by.
+        Vehicle; actions are relative to its hover speed.
     rules : Rules
 
     Attributes
     ----------
     hover : ndarray (rotors,)
-        Commands that carry the vehicle upright in still air, rad/s, signed.
+        Signed hover commands in still air, rad/s.
     steps : int
-        Of the simulation for each action.
+        Simulation steps per action.
     actions : int
-        Of an episode.
+        Maximum number of actions of an episode.
     observation_space, action_space : Box
 
     Raises
     ------
     InputError
-        A name that is none, a number out of its range, or a vehicle that cannot hover.
+        If a name does not exist, a number is out of range, or the vehicle cannot hover.
     """
 
     def __init__(self, vehicle: Simulation, rules: Rules) -> None:
@@ -81,8 +81,8 @@ class Task:
         self.steps = round(steps)
         if self.steps < 1 or not math.isclose(self.steps, steps, rel_tol=1e-6):
             raise InputError(
-                f"rate is {rules.rate:g}, which makes {steps:g} steps of {vehicle.dt:g} s an "
-                "action; give one that makes whole ones"
+                f"rate is {rules.rate:g}: an action lasts {steps:g} steps of {vehicle.dt:g} s. "
+                "Give a rate with whole steps."
             )
         self.actions = max(1, round(rules.duration * rules.rate))
         self.hover = _hover_commands(vehicle)
@@ -94,31 +94,32 @@ class Task:
         self.action_space = spaces.Box(-1, 1, (rotors,), np.float32)
 
     def commands(self, actions: np.ndarray) -> np.ndarray:
-        """Make the commands of actions (n, rotors), rad/s.
+        """Return the commands of actions (n, rotors), rad/s.
 
         Raises
         ------
         InputError
-            Others than one for each rotor, or one outside of [-1, 1]: nothing is clamped unasked.
+            If an action has the wrong shape or exceeds [-1, 1]; actions are not clipped.
         """
         if actions.ndim != 2 or actions.shape[1] != len(self.hover):
             raise InputError(
-                f"an action is an array of {actions.shape[1:]}; give {self.hover.shape}"
+                f"an action has shape {actions.shape[1:]}. Give shape {self.hover.shape}."
             )
         if not (np.abs(actions) <= 1).all():
             raise InputError(
-                "an action is not within [-1, 1]; clip it, as gymnasium.wrappers.ClipAction does"
+                "an action is not within [-1, 1]. Clip it, for example with "
+                "gymnasium.wrappers.ClipAction."
             )
         commands: np.ndarray = self.hover * (1 + self.rules.authority * actions)
         return commands
 
     def observe(self, step: StepData) -> np.ndarray:
-        """Give the observations, (n, width)."""
+        """Return the observations, (n, width)."""
         parts = [OBSERVATIONS[name].compute(step) for name in self.rules.observation]
         return np.concatenate(parts, axis=1).astype(np.float32)
 
     def reward(self, step: StepData) -> np.ndarray:
-        """Give the rewards, (n,)."""
+        """Return the rewards, (n,)."""
         total = np.zeros(len(step.error))
         for name, weight in self.rules.reward.items():
             total += weight * REWARDS[name].compute(step)
@@ -131,30 +132,30 @@ class Task:
             ("reward", rules.reward, REWARDS),
         ):
             if isinstance(names, str) or not names:
-                raise InputError(f"{what} is {names!r}; name some of {', '.join(known)}")
+                raise InputError(f"{what} is {names!r}. Name some of {', '.join(known)}.")
             for name in names:
                 if name not in known:
-                    near = difflib.get_close_matches(str(name), known, 1, 0.0)[0]
+                    near = did_you_mean(str(name), list(known))
                     raise InputError(
-                        f"{what} '{name}' is none; the nearest is '{near}' of {', '.join(known)}"
+                        f"{what} '{name}' does not exist{near}. Use some of {', '.join(known)}."
                     )
         for name in ("rate", "duration", "reach", "authority"):
             value = getattr(rules, name)
             if not (isinstance(value, Real) and 0 < float(value) < math.inf):
-                raise InputError(f"{name} is {value!r}; give a number > 0")
+                raise InputError(f"{name} is {value!r}. Give a number > 0.")
         if rules.authority > 1:
-            raise InputError(f"authority is {rules.authority:g}; give one in (0, 1]")
+            raise InputError(f"authority is {rules.authority:g}. Give a number in (0, 1].")
         if not 0 <= rules.spread < rules.reach / math.sqrt(3):
             raise InputError(
-                f"spread is {rules.spread:g} but reach {rules.reach:g} m: a vehicle would be lost "
-                "as it starts; give a spread from 0 to less than reach / sqrt(3)"
+                f"spread is {rules.spread:g} m but reach {rules.reach:g} m: an episode could end "
+                "at its start. Give a spread from 0 to less than reach / sqrt(3)."
             )
 
 
 def split_options(options: Mapping[str, Any]) -> Tuple[Rules, Mapping[str, Any]]:
-    """Tell the rules from other arguments."""
+    """Split options into rules and other arguments."""
     if "seed" in options:
-        raise InputError("seed: an environment takes it when it is reset; give it to reset()")
+        raise InputError("seed is an argument of reset(), not of the environment. Pass it there.")
     own = {name: value for name, value in options.items() if name in Rules._fields}
     return Rules(**own), {name: value for name, value in options.items() if name not in own}
 

@@ -1,4 +1,4 @@
-"""Many vehicles as one environment."""
+"""Environment of many vehicles."""
 
 from __future__ import annotations
 
@@ -23,36 +23,36 @@ Step = Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, Dict[str, Any]]
 
 
 class VectorEnv(_VectorEnv):
-    """Many vehicles, each on its way to a goal of its own; see `Env`.
+    """Many vehicles, each with its own goal; see `Env`.
 
-    Vehicle i flies, to the last bit, as an `Env` does that is reset with seed + i. Autoreset is
-    that of the next step (`AutoresetMode.NEXT_STEP`): the step after the last one of an episode
-    begins the next episode, whatever the action, and gives its first observation with reward 0.
+    Vehicle i is bit-identical to an `Env` that is reset with seed + i. Autoreset is that of the
+    next step (`AutoresetMode.NEXT_STEP`): the step after the end of an episode ignores the action,
+    starts the next episode, and returns its first observation with reward 0.
 
     Parameters
     ----------
     num_envs : int
-        Vehicles.
+        Number of vehicles.
     model : str, path or Model
-        As of `Simulation`.
+        As for `Simulation`.
     engine : str
-        "eigen" unless another is named.
+        Engine.
     **options
-        The members of `task.Rules`, as for `Env`; others as of `BatchSimulation`, so that
-        parameters and starts may be each vehicle's own. Actions mean the same for all: the speed of
-        hovering that they are measured by is that of the model without parameters that differ.
+        The members of `task.Rules`, as for `Env`. Others as for `BatchSimulation`, so that
+        parameters and starts may differ between vehicles. Actions are relative to the hover speed
+        of the model without the parameters that differ.
 
     Attributes
     ----------
     batch : BatchSimulation
-        What flies.
+        Simulation of the vehicles.
     task : Task
-        What is observed, rewarded and commanded.
+        Observations, rewards and commands.
 
     Raises
     ------
     InputError
-        As of `Env`.
+        As for `Env`.
     """
 
     metadata = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}  # noqa: RUF012
@@ -66,7 +66,7 @@ class VectorEnv(_VectorEnv):
     ) -> None:
         rules, others = split_options(options)
         self.batch = BatchSimulation(model, num_envs, engine, **others)
-        with suppress_warnings():  # it has been said of the batch
+        with suppress_warnings():  # the batch has given the warnings
             self.task = Task(Simulation(model, engine, **_pick_common(others)), rules)
         self.num_envs = self.batch.n
         self.single_observation_space = self.task.observation_space
@@ -80,17 +80,17 @@ class VectorEnv(_VectorEnv):
 
     @property
     def goals(self) -> np.ndarray:
-        """Where the vehicles are to go, world axes, (num_envs, 3), m."""
+        """Goals of the vehicles, world axes, (num_envs, 3), m."""
         return self._episodes.goals
 
     def reset(
         self, *, seed: Optional[int] = None, options: Optional[Dict[str, Any]] = None
     ) -> Tuple[np.ndarray, Dict[str, Any]]:
-        """Begin an episode of each vehicle; `seed` + i is that of vehicle i from now on."""
+        """Start an episode of each vehicle; `seed` + i sets the generator of vehicle i."""
         check_no_options(options)
         super().reset(seed=seed)
         if seed is not None or not self._has_begun:
-            # Without a seed, one that nobody can foresee.
+            # Without a seed, a random one.
             self._episodes.set_seeds(int(self.np_random.integers(2**31)) if seed is None else seed)
         self._has_begun = True
         everyone = np.ones(self.num_envs, bool)
@@ -99,17 +99,17 @@ class VectorEnv(_VectorEnv):
         return self._episodes.observe(self._state()), {}
 
     def step(self, actions: np.ndarray) -> Step:
-        """Hold an action of each vehicle for 1 / rate seconds.
+        """Apply an action of each vehicle for 1 / rate seconds.
 
-        `infos` has the reasons of flights that failed as ``failure``, and as ``_failure`` which
-        they are; their observations are then of the state before.
+        If flights fail, `infos` contains the reasons as ``failure`` and a mask of these flights as
+        ``_failure``. Their observations are those of the previous state.
         """
         if not self._has_begun:
-            raise InputError("no episode has begun; reset the environment")
+            raise InputError("no episode has started. Reset the environment.")
         actions = np.asarray(actions, dtype=float)
         if actions.shape != self.action_space.shape:
             raise InputError(
-                f"actions are an array of {actions.shape}; give {self.action_space.shape}"
+                f"actions have shape {actions.shape}. Give shape {self.action_space.shape}."
             )
         commands, ended = self.task.commands(actions), self._ended
         before = self._rows.copy()
@@ -134,7 +134,7 @@ class VectorEnv(_VectorEnv):
 
 
 def _pick_common(options: Mapping[str, Any]) -> Dict[str, Any]:
-    """Give the arguments of a `Simulation` in which all vehicles of a batch agree."""
+    """Return the arguments of a `Simulation` that all vehicles of a batch share."""
     alike = {k: v for k, v in options.items() if k in ("world", "dt", "xacro_args", "ignore")}
     parameters = (options.get("parameters") or {}).items()
     return {**alike, "parameters": {k: v for k, v in parameters if np.ndim(v) == 0}}

@@ -1,4 +1,4 @@
-"""A flight driven from outside the process, in lockstep over a socket: see docs/serve.md."""
+"""Simulation server: other processes step a flight over a socket; see docs/serve.md."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A client of ``quadcore serve``. It and `protocol` need the standard library alone."""
+"""Client of ``quadcore serve``. It and `protocol` need only the standard library."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ Row = Tuple[float, ...]
 
 
 class ServerError(Exception):
-    """The server refused a request, or the flight has failed.
+    """Error of a request or of the flight.
 
     Attributes
     ----------
     failed : bool
-        The flight has failed: it stands, until a reset.
+        Whether the flight has failed; only a reset continues.
     """
 
     def __init__(self, why: str, failed: bool) -> None:
@@ -26,28 +26,28 @@ class ServerError(Exception):
 
 
 class Client:
-    """Drives a served flight, which begins anew with each client.
+    """Connection to a server; the flight starts again for each client.
 
     Parameters
     ----------
     address : int, (str, int) or str
-        Port of this machine, host and port, or the path of a unix socket.
+        Port on this machine, host and port, or path of a Unix socket.
 
     Attributes
     ----------
     dt : float
         Length of a step, s.
     rotors : int
-        Numbers of a command.
+        Number of values of a command.
     columns : list of str
-        Names of the numbers of a row: those of a log.
+        Names of the values of a row, as in a log.
 
     Raises
     ------
     OSError
-        Nobody listens there.
+        If no server listens at the address.
     ServerError
-        The server speaks another version.
+        If the server uses another version of the protocol.
     """
 
     def __init__(self, address: Union[int, Tuple[str, int], str]) -> None:
@@ -63,28 +63,28 @@ class Client:
         self.columns: List[str] = protocol.decode_text(self._ask(Request.COLUMNS)).split(",")
 
     def step(self, speeds: Optional[Sequence[float]] = None, steps: int = 1) -> Row:
-        """Fly on; returns the row at the end.
+        """Advance the flight; returns the last row.
 
         Parameters
         ----------
         speeds : sequence of float, optional
-            Signed rotor speeds before the division by sim_slow, rad/s; None keeps the ones before.
+            Signed rotor speeds before the division by sim_slow, rad/s (default: unchanged).
         steps : int
-            How many; 0 gives the row that is.
+            Number of steps; 0 returns the current row.
 
         Raises
         ------
         ServerError
-            The request is at fault, or the flight failed.
+            If the request is invalid or the flight fails.
         """
         return self._ask(Request.STEP, [steps, *(() if speeds is None else speeds)])
 
     def reset(self, seed: Optional[int] = None) -> Row:
-        """Begin another flight; returns its first row. Without a seed it has the one before."""
+        """Start another flight, by default with the same seed; returns its first row."""
         return self._ask(Request.RESET, [] if seed is None else [seed])
 
     def close(self) -> None:
-        """End the flight."""
+        """End the flight and close the connection."""
         self._socket.close()
 
     def __enter__(self) -> Client:
@@ -98,7 +98,7 @@ class Client:
         try:
             reply, answer = protocol.read_message(self._socket.recv)
         except EOFError:
-            raise ConnectionError("the server has gone") from None
+            raise ConnectionError("the server has closed the connection") from None
         if reply != Reply.DONE:
             raise ServerError(protocol.decode_text(answer), reply == Reply.FAILED)
         return answer

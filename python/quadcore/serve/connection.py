@@ -1,4 +1,4 @@
-"""The connection to a client, which may not keep others out by its silence."""
+"""Connection to a client, with time limits, so that silent clients do not block others."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ _GONE = select.POLLRDHUP | select.POLLHUP | select.POLLERR
 
 
 class Connection:
-    """Messages from and to one client.
+    """Messages from and to a client.
 
     Parameters
     ----------
     client : socket
-        What it is connected by.
+        Socket of the client.
     others : socket
-        Where other clients wait.
+        Listening socket, where other clients wait.
     timeout : float
-        Longest silence, s: before the first message, within any, of a client that does not read its
+        Maximum silence, s: before the first message, within a message, while a client does not read
         answers, and between messages while another client waits.
 
     Raises
     ------
     ConnectionError
-        By each method: the client has gone, or has been silent for too long.
+        If the client has disconnected or is silent for too long.
     """
 
     def __init__(self, client: socket.socket, others: socket.socket, timeout: float) -> None:
@@ -49,7 +49,7 @@ class Connection:
         try:
             message = protocol.read_message(receive)
         except socket.timeout:
-            raise ConnectionError(f"stopped within a message for {self._timeout:g} s") from None
+            raise ConnectionError(f"silent within a message for {self._timeout:g} s") from None
         self._has_asked = True
         return message
 
@@ -59,29 +59,29 @@ class Connection:
         try:
             self._client.sendall(message)
         except socket.timeout:
-            raise ConnectionError(f"has read no answer for {self._timeout:g} s") from None
+            raise ConnectionError(f"no answer read for {self._timeout:g} s") from None
 
     def check_there(self) -> None:
-        """Raise if the client has closed its end, whatever it has sent before."""
+        """Raise `ConnectionError` if the client has disconnected."""
         poll = select.poll()
         poll.register(self._client, _GONE)
         if poll.poll(0):
-            raise ConnectionError("has gone before its steps were flown")
+            raise ConnectionError("disconnected before its steps were complete")
 
     def _wait(self) -> None:
-        """Wait until a message begins, or the client closes its end."""
+        """Wait until a message starts or the client disconnects."""
         poll = select.poll()
         poll.register(self._client, select.POLLIN)
         if poll.poll(1000 * self._timeout):
             return
         if self._has_asked and self._comes_first(poll):
             return
-        raise ConnectionError(f"has sent nothing for {self._timeout:g} s")
+        raise ConnectionError(f"no message for {self._timeout:g} s")
 
     def _comes_first(self, poll: select.poll) -> bool:
-        """Wait on; whether the client sends something before another one waits."""
+        """Keep waiting; returns whether the client sends something before another client waits."""
         others = self._others.fileno()
-        if others >= 0:  # else the server is closed, and nobody else can come
+        if others >= 0:  # else the server is closed
             poll.register(others, select.POLLIN)
         while True:
             ready = dict(poll.poll())

@@ -1,7 +1,7 @@
-"""What goes over the socket: docs/serve.md has it in words.
+"""Protocol of the simulation server; docs/serve.md describes it.
 
-Numbers are all float64, little-endian. A message is a kind, how many numbers follow, and these. Of
-the standard library alone, as the client is.
+All numbers are float64, little-endian. A message consists of its kind, the count of the following
+numbers, and these numbers. The module needs only the standard library.
 """
 
 from __future__ import annotations
@@ -13,85 +13,87 @@ from typing import Callable, List, Sequence, Tuple
 VERSION = 1
 
 LONGEST = 1_000_000
-"""Numbers of a message, at most."""
+"""Maximum count of numbers in a message."""
 
 _HEAD = struct.Struct("<2d")
 
 
 class Request(IntEnum):
-    """What a client asks for."""
+    """Kind of a request."""
 
     HELLO = 0
-    """VERSION -> VERSION, dt (s), speeds of a command, columns of a row"""
+    """VERSION -> VERSION, dt (s), number of speeds in a command, number of columns in a row"""
     COLUMNS = 1
-    """nothing -> names of the columns of a row, with commas, as text"""
+    """nothing -> names of the columns of a row, separated by commas, as text"""
     STEP = 2
-    """how many steps, and a command (rad/s) or none, which keeps the one before -> a row"""
+    """number of steps, and a command (rad/s) or nothing to keep the previous one -> a row"""
     RESET = 3
-    """nothing or a seed -> the row of the start"""
+    """nothing or a seed -> the first row"""
 
 
 class Reply(IntEnum):
-    """How a request went."""
+    """Kind of a reply."""
 
     DONE = 0
     REFUSED = 1
-    """the request is at fault and changed nothing: why, as text"""
+    """the request is invalid and changed nothing: reason as text"""
     FAILED = 2
-    """the flight has failed, at the row before; only a reset helps: why, as text"""
+    """the flight has failed after the previous row; only a reset continues: reason as text"""
 
 
 class ProtocolError(Exception):
-    """What came is no message."""
+    """Malformed message."""
 
 
 def pack_message(kind: int, numbers: Sequence[float] = ()) -> bytes:
-    """Write a message."""
+    """Encode a message."""
     return struct.pack(f"<{2 + len(numbers)}d", kind, len(numbers), *numbers)
 
 
 def encode_text(text: str) -> List[int]:
-    """Code a text: a number for each byte of UTF-8."""
+    """Encode a text: a number for each byte of UTF-8."""
     return list(text.encode())
 
 
 def decode_text(numbers: Sequence[float]) -> str:
-    """Read a text."""
+    """Decode a text."""
     return bytes(int(number) for number in numbers).decode(errors="replace")
 
 
 def read_message(receive: Callable[[int], bytes]) -> Tuple[int, Tuple[float, ...]]:
-    """Read a message: its kind and numbers.
+    """Read a message; returns its kind and numbers.
 
     Parameters
     ----------
     receive
-        Gives so many bytes at most, none at the end, as `socket.recv` does.
+        Returns at most as many bytes as asked for, none at the end, like `socket.recv`.
 
     Raises
     ------
     EOFError
-        There is no other.
+        If there is no further message.
     ProtocolError
-        What came is none.
+        If the message is malformed.
     """
     head = _receive_exactly(_HEAD.size, receive)
     if not head:
         raise EOFError
     if len(head) < _HEAD.size:
-        raise ProtocolError(f"ended within a message, after {len(head)} bytes of its head")
+        raise ProtocolError(f"incomplete message: {len(head)} bytes of its head")
     kind, count = _HEAD.unpack(head)
     for name, number, largest in (("kind", kind, max(Request)), ("length", count, LONGEST)):
         if not (number == number and 0 <= number <= largest and number == int(number)):
-            raise ProtocolError(f"a message of {name} {number:g}; a whole number to {largest}")
+            raise ProtocolError(
+                f"message with {name} {number:g}. Send a whole number up to {largest}."
+            )
     body = _receive_exactly(8 * int(count), receive)
     if len(body) < 8 * count:
-        raise ProtocolError(f"ended within a message, after {len(body)} of {8 * int(count)} bytes")
+        raise ProtocolError(f"incomplete message: {len(body)} of {8 * int(count)} bytes")
     return int(kind), struct.unpack(f"<{int(count)}d", body)
 
 
 def _receive_exactly(count: int, receive: Callable[[int], bytes]) -> bytes:
-    """So many bytes, or fewer at the end."""
+    """Receive a number of bytes, or fewer at the end."""
     data = b""
     while len(data) < count:
         piece = receive(count - len(data))

@@ -1,4 +1,4 @@
-"""A flight that goes on as it is asked to."""
+"""Flights of a client, advanced by requests."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from .. import _core
 from ..formats.rows import Recorder
 from ..simulation.simulation import Simulation
 
-_PIECE = 1000  # steps whose rows are held at once
+_PIECE = 1000  # steps per piece of rows in memory
 _MOST_STEPS = 1_000_000_000
 
 
 class ServedFlight:
-    """The flights of a client, one after the other, each from the start of the simulation.
+    """Successive flights of a client, each from the start of the simulation.
 
     Parameters
     ----------
     simulation, topics, record, log_every
-        As of `Server`.
+        As for `Server`.
     check_there
-        Called now and then while many steps are flown; raises where nobody waits for them.
+        Called at intervals during many steps; raises if the client has disconnected.
     """
 
     def __init__(
@@ -43,22 +43,24 @@ class ServedFlight:
         self._begin(None)
 
     def step(self, numbers: Sequence[float]) -> List[float]:
-        """Fly on; gives the row at the end.
+        """Advance the flight; returns the last row.
 
         Parameters
         ----------
         numbers
-            How many steps, and a command (rad/s) or none.
+            Number of steps, and a command (rad/s) or nothing.
 
         Raises
         ------
         InputError
-            They are at fault; nothing has changed.
+            If the numbers are invalid; nothing has changed.
         FlightError
-            The flight failed, now or before, or its log cannot be written further.
+            If the flight fails or has failed, or its log cannot be written.
         """
         if not numbers:
-            raise _core.InputError("a step needs the number of steps, and a command or none")
+            raise _core.InputError(
+                "the number of steps is missing. Send it, and a command or nothing."
+            )
         steps = _check_whole(numbers[0], "the number of steps", _MOST_STEPS)
         if self._failure is not None:
             raise self._failure
@@ -79,31 +81,31 @@ class ServedFlight:
         return self._row
 
     def reset(self, numbers: Sequence[float]) -> List[float]:
-        """Begin another flight; gives its first row.
+        """Start another flight; returns its first row.
 
         Parameters
         ----------
         numbers
-            A seed, or nothing: that of the flight before.
+            A seed, or nothing to keep the previous one.
 
         Raises
         ------
         FlightError
-            The log of the flight before cannot be written.
+            If the log of the previous flight cannot be written.
         """
         if len(numbers) > 1:
-            raise _core.InputError(f"a reset takes a seed or nothing, not {len(numbers)} numbers")
+            raise _core.InputError(f"a reset has {len(numbers)} numbers. Send a seed or nothing.")
         seed = _check_whole(numbers[0], "the seed", 2**53) if numbers else None
         before = self._unwritten
         self._finish()
         self._begin(seed)
         if self._unwritten is not before:
-            self._failure = _core.FlightError(f"the log of the flight before: {self._unwritten}")
+            self._failure = _core.FlightError(f"log of the previous flight: {self._unwritten}")
             raise self._failure
         return self._row
 
     def close(self) -> None:
-        """Finish what is recorded; raises `InputError` if a log is not whole."""
+        """Close the log; raises `InputError` if a log is incomplete."""
         self._finish()
         if self._unwritten is not None:
             raise self._unwritten
@@ -141,10 +143,10 @@ class ServedFlight:
             except _core.InputError as error:
                 self._unwritten = error
                 self._finish()
-                raise _core.FlightError(f"{error}; the flight ends here") from error
+                raise _core.FlightError(f"{error}. The flight has ended.") from error
 
     def _record_from_the_start(self) -> None:
-        """Open what records, unless it is open: a flight that is not flown leaves nothing."""
+        """Open the log, unless it is open: a flight without steps writes no log."""
         if self._record is None or self._recorder is not None:
             return
         recorder = self._record()
@@ -159,5 +161,5 @@ class ServedFlight:
 
 def _check_whole(number: float, what: str, largest: int) -> int:
     if not (np.isfinite(number) and 0 <= number <= largest and number == int(number)):
-        raise _core.InputError(f"{what} is {number:g}; give a whole number from 0 to {largest}")
+        raise _core.InputError(f"{what} is {number:g}. Give a whole number from 0 to {largest}.")
     return int(number)

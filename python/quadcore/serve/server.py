@@ -1,4 +1,4 @@
-"""Serves flights of one simulation, to one client after the other."""
+"""Server of flights of one simulation, for one client at a time."""
 
 from __future__ import annotations
 
@@ -19,38 +19,38 @@ from .protocol import ProtocolError, Reply, Request
 from .served_flight import ServedFlight
 
 TIMEOUT = 60.0
-"""Seconds that a client may be silent, unless another number is given."""
+"""Default limit of the silence of a client, s."""
 
 _LONGEST = 1e6  # s
 
 
 class Server:
-    """A socket on this machine, behind which a vehicle flies in lockstep with its client.
+    """Server on a local socket; a vehicle runs in lockstep with its client.
 
     Parameters
     ----------
     simulation : Simulation
-        What flies; each client finds it at its start.
+        Simulation; each client starts from its initial state.
     address : int or str
-        Port of 127.0.0.1, 0 for any that is free, or the path of a unix socket to make.
+        Port of 127.0.0.1 (0: any free port), or path of a new Unix socket.
     topics : sequence of str
-        Names of topics whose columns follow those of the state in each row.
+        Topics with columns in each row after those of the state.
     record : callable, optional
-        Called as each flight begins; returns what takes its rows.
+        Called at the start of each flight; returns a recorder of its rows.
     log_every : int
         Steps between recorded rows.
     timeout : float
-        Seconds after which a silent client is dropped; see `Connection`.
+        Time after which a silent client is disconnected, s; see `Connection`.
 
     Attributes
     ----------
     address : str
-        Where it listens.
+        Address of the server.
 
     Raises
     ------
     InputError
-        The address is taken, a topic is none, or the time-out is not positive.
+        If the address is in use, a topic does not exist, or the timeout is not positive.
     """
 
     def __init__(
@@ -63,11 +63,13 @@ class Server:
         timeout: float = TIMEOUT,
     ) -> None:
         if not 0 < timeout <= _LONGEST:
-            raise _core.InputError(f"the time-out is {timeout:g} s; give 0 to {_LONGEST:g}")
+            raise _core.InputError(
+                f"the timeout is {timeout:g} s. Give more than 0, at most {_LONGEST:g}."
+            )
         self._timeout = timeout
         self._simulation, self._topics = simulation, list(topics)
         self._record, self._log_every = record, log_every
-        self._start = simulation.snapshot()  # whose seed is each client's, whatever others asked
+        self._start = simulation.snapshot()  # includes the seed
         self.columns = columns_of(simulation, topics)
         self._socket, self._path = _listen(address)
         self._is_closed = False
@@ -77,12 +79,14 @@ class Server:
             self.address = self._path
 
     def serve(self, tell: Callable[[str], None], clients: Optional[int] = None) -> None:
-        """Serve so many clients, or whoever comes, one after the other, until `close`.
+        """Serve clients one after the other, until `close` or for a number of clients.
 
         Parameters
         ----------
         tell
-            Called with a line about each client that was dropped, or whose log is not whole.
+            Called with a line about each disconnected client or incomplete log.
+        clients
+            Number of clients (default: unlimited).
         """
         served = 0
         while served != clients:
@@ -100,10 +104,10 @@ class Server:
                     tell(f"client {served}: {error}")
 
     def close(self) -> None:
-        """Listen no longer, in whatever thread; a client that is there is served to its end."""
+        """Stop listening; may be called from any thread. The current client is still served."""
         self._is_closed = True
         with suppress(OSError):  # on some systems only connections can be shut down
-            self._socket.shutdown(socket.SHUT_RDWR)  # wakes who waits for a client
+            self._socket.shutdown(socket.SHUT_RDWR)  # wakes a waiting accept
         self._socket.close()
         if self._path is not None:
             os.unlink(self._path)
@@ -153,9 +157,9 @@ class Server:
 
     def _greet(self, numbers: Sequence[float]) -> List[float]:
         if list(numbers) != [protocol.VERSION]:
-            said = ", ".join(f"{number:g}" for number in numbers) or "nothing"
+            version = ", ".join(f"{number:g}" for number in numbers) or "''"
             raise _core.InputError(
-                f"the client speaks version {said} of the protocol; this is {protocol.VERSION}"
+                f"unsupported protocol version {version} (expected {protocol.VERSION})"
             )
         simulation = self._simulation
         return [protocol.VERSION, simulation.dt, simulation.command_width, len(self.columns)]
@@ -166,7 +170,7 @@ def _pack_text(reply: Reply, text: str) -> bytes:
 
 
 def _listen(address: Union[int, str]) -> Tuple[socket.socket, Optional[str]]:
-    """Open a socket; returns it and the path that it made."""
+    """Open a socket; returns it and its path, if any."""
     listening = socket.socket(socket.AF_INET if isinstance(address, int) else socket.AF_UNIX)
     try:
         if isinstance(address, int):
@@ -174,18 +178,20 @@ def _listen(address: Union[int, str]) -> Tuple[socket.socket, Optional[str]]:
             listening.bind(("127.0.0.1", address))
         else:
             if not address:
-                raise _core.InputError("the path of the socket is empty; name one")
+                raise _core.InputError("the path of the socket is empty. Name one.")
             _remove_stale_socket(address)
             listening.bind(address)
         listening.listen()
     except (OSError, OverflowError) as error:
         listening.close()
-        raise _core.InputError(f"cannot listen at {address}: {error}; give another") from None
+        raise _core.InputError(
+            f"cannot listen at {address}: {error}. Give another address."
+        ) from None
     return listening, None if isinstance(address, int) else address
 
 
 def _remove_stale_socket(path: str) -> None:
-    """Remove the socket of a server that was killed."""
+    """Remove the socket of a killed server."""
     if not (os.path.exists(path) and stat.S_ISSOCK(os.stat(path).st_mode)):
         return
     with socket.socket(socket.AF_UNIX) as probe:
