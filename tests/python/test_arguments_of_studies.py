@@ -42,7 +42,7 @@ def test_an_axis_named_seed_may_hold_any_number():
 @pytest.mark.parametrize(
     ("given", "told"),
     [
-        ({"free": ["xacro.motor"]}, "free xacro.motor: 'pid' is no number; only numbers are"),
+        ({"free": ["xacro.motor"]}, "free xacro.motor: 'pid' is not a number. Only numbers can"),
         ({"free": None}, "free is None; give a name, or several"),
         ({"horizon": 1e300}, "the log is shorter than a horizon"),
         ({"shift": 1e300}, "shift is 1e+300; give seconds, from 0 to 10"),

@@ -27,7 +27,7 @@ from quadcore.cli import main
             "vary engine: there is no 'eigne'; the nearest is 'eigen'",
         ),
         ("toy.urdf --vary world=nope", "nope: no such file, and no shipped world"),
-        ("toy.urdf --vary motor.kp=", "motor.kp: holds no values"),
+        ("toy.urdf --vary motor.kp=", "motor.kp: no values are given"),
         ("toy.urdf --vary motor.kp=1:2:0", "the range '1:2:0' is empty"),
         ("toy.urdf --vary motor.kp=1:x:3", "'1:x:3' is not a range"),
         ("toy.urdf --vary motor.kp=1:2", "'1:2' is not a range"),
@@ -35,10 +35,10 @@ from quadcore.cli import main
         ("toy.urdf --vary motor.kp=1 --vary motor.kp=2", "motor.kp is given twice"),
         ("toy.urdf --vary motor.kp=1 --vary motor.kp,motor.ki=2", "motor.kp is varied twice"),
         ("toy.urdf --vary motor.kp=1 --set motor.kp=2e-4", "motor.kp: it is set as well"),
-        ("toy.urdf --vary motor.kp=0:1:1000000000", "makes 1000000000 flights"),
+        ("toy.urdf --vary motor.kp=0:1:1000000000", "values make 1000000000 flights"),
         (
             "toy.urdf --vary motor.kp=0:1:1000 --vary motor.ki=0:1:1000 --vary motor.kd=0:1:1000",
-            "1000 x 1000 x 1000 makes 1000000000 flights; at most 100000",
+            "1000 x 1000 x 1000 values make 1000000000 flights, more than 100000",
         ),
         ("toy.urdf quadrotor --commands c.csv", "quadrotor: has 4 rotors, toy.urdf has 1"),
         ("toy.urdf --vary motor.kp=1 --commands nope.csv", "nope.csv: cannot be read"),
@@ -62,7 +62,7 @@ def test_bad_input_is_one_line_and_nothing_is_flown(capsys, monkeypatch, argumen
 
 
 def test_from_python_too_much_is_refused():
-    with pytest.raises(qc.InputError, match="the logs of 50000 flights take"):
+    with pytest.raises(qc.InputError, match="the logs of 50000 flights need"):
         qc.compare("toy.urdf", {"motor.kp": np.linspace(1e-4, 1e-3, 50_000)})
     with pytest.raises(qc.InputError, match="holds no values"):
         qc.compare("toy.urdf", {"motor.kp": []})

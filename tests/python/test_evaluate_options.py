@@ -113,10 +113,10 @@ def test_a_file_that_is_wrong_is_one_line(capsys, text, says):
         ("--controller pd --reference spirl", "there is no reference 'spirl'"),
         ("--controller pd --reference spiral --engine bullet", "'bullet' is none of"),
         ("--controller pd --reference spiral --model nope", "nope: no such file"),
-        ("--controller pd --reference spiral --vary engine=ode", "name the engines"),
+        ("--controller pd --reference spiral --vary engine=ode", "engines are not an axis here"),
         ("--controller pd --reference spiral --vary controller.rate=x", "not a finite number"),
         ("--controller pd --reference spiral --vary a.b=1", "a.b"),
-        ("--controller pd --reference spiral --seeds 100001", "100001 flights; at most"),
+        ("--controller pd --reference spiral --seeds 100001", "100001 flights are more than"),
         ("--controller pd:kp=2 --reference spiral", "law 'pd' has no parameter 'kp'"),
         ("--controller pd:rate=-2 --reference spiral", "its rate is -2.0; give calls per second"),
         ("--controller pd,lqr --reference hover --vary controller.kp_xy=2", "no parameter 'kp_xy'"),
@@ -155,8 +155,8 @@ def test_names_with_commas_and_parameters_are_told_apart():
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        ({"controllers": 5}, "controller is 5; give a name"),
-        ({"references": 5}, "reference is 5; give a name"),
+        ({"controllers": 5}, "controller is 5. Give a name"),
+        ({"references": 5}, "reference is 5. Give a name"),
         ({"engines": 5}, "engines is 5; give a name, or several"),
         ({"models": 5}, "models is 5; give a name, or several"),
         ({"models": [5]}, r"models is \[5\]; give a name, or several"),

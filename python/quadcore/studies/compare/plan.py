@@ -163,8 +163,8 @@ def _check_size(models: int, axes: Sequence[Axis]) -> None:
     if math.prod(sizes) > LARGEST:
         product = " x ".join(str(size) for size in sizes if size > 1)
         raise InputError(
-            f"vary: {product} are {math.prod(sizes)} flights, more than {LARGEST}. Vary fewer "
-            "values."
+            f"vary: {product} values make {math.prod(sizes)} flights, more than {LARGEST}. "
+            "Vary fewer values."
         )
 
 
