@@ -194,7 +194,7 @@ class TestCommand:
     @pytest.mark.parametrize(
         ("arguments", "message"),
         [
-            (["pd", "-o", "pd.txt"], "pd.txt: name a file that ends in .yaml"),
+            (["pd", "-o", "pd.txt"], "pd.txt: is not a YAML file. Name a file that ends in .yaml"),
             (["pd", "-o", "no/pd.yaml"], "there is no folder no"),
             (["nothing", "-o", "pd.yaml"], "there is no controller 'nothing'"),
             (["pd", "no.urdf", "-o", "pd.yaml"], "no.urdf: no such file"),
