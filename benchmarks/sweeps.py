@@ -68,7 +68,8 @@ def two_against_one() -> None:
 
     wall, undisturbed = np.median([seconds(1) / seconds(2) for _ in range(ROUNDS)], axis=0)
     print(
-        f"two processes : one, {ROWS} rows   {wall:.2f}, undisturbed {undisturbed:.2f}   (limit 1.9)"
+        f"two processes : one, {ROWS} rows   {wall:.2f}, undisturbed {undisturbed:.2f}   "
+        "(limit 1.9)"
     )
 
 

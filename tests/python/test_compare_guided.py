@@ -170,15 +170,15 @@ def test_a_controller_that_raises_is_a_row_with_the_time():
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        ("--commands c.csv --controller pd", "--commands or a --controller; give one of them"),
+        ("--commands c.csv --controller pd", "--commands and --controller exclude each other"),
         ("--reference spiral", "--reference needs a --controller; name one"),
         ("--delay 0.1", "--delay needs a --controller; name one"),
         ("--controller pdd", "there is no controller 'pdd'"),
         ("--controller pd --reference spirl", "there is no reference 'spirl'"),
         ("--controller geometric:kp=3", "law 'geometric' has no parameter 'kp'"),
         ("--controller pd --controller-rate 0", "--controller-rate: 0 is not greater than 0"),
-        ("--controller pd --reference 2", "flight that the others are compared with is --against"),
-        ("--reference 2", "flight that the others are compared with is --against 2"),
+        ("--controller pd --reference 2", "To choose the baseline flight, use --against"),
+        ("--reference 2", "To choose the baseline flight, use --against 2"),
     ],
 )
 def test_bad_guidance_is_one_line_and_nothing_is_flown(capsys, monkeypatch, arguments, told):

@@ -64,7 +64,7 @@ def test_bad_input_is_one_line_and_nothing_is_flown(capsys, monkeypatch, argumen
 def test_from_python_too_much_is_refused():
     with pytest.raises(qc.InputError, match="the logs of 50000 flights need"):
         qc.compare("toy.urdf", {"motor.kp": np.linspace(1e-4, 1e-3, 50_000)})
-    with pytest.raises(qc.InputError, match="holds no values"):
+    with pytest.raises(qc.InputError, match="no values are given"):
         qc.compare("toy.urdf", {"motor.kp": []})
 
 

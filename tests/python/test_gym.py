@@ -212,7 +212,7 @@ def test_wrong_actions_and_options_are_told(make):
     zero = np.zeros(env.action_space.shape)
     with pytest.raises(qc.InputError, match="Reset the environment"):
         env.step(zero)
-    with pytest.raises(qc.InputError, match="no option 'wind'"):
+    with pytest.raises(qc.InputError, match="unknown option 'wind'"):
         env.reset(options={"wind": 1})
     env.reset(seed=0)
     with pytest.raises(qc.InputError, match=r"array of \("):

@@ -277,9 +277,9 @@ class TestCommand:
             (["text.mat", "-o", "b.html"], "text.mat: not a MATLAB file"),
             (["other.mat", "-o", "b.html"], "other.mat: no log of quadcore"),
             (["a.csv", "a.csv", "-o", "b.html"], "a.csv: is named twice; name each log once"),
-            (["a.csv", "-o", "b.txt"], "b.txt: name a file that ends in .html"),
+            (["a.csv", "-o", "b.txt"], "b.txt: is not a page. Name a file that ends in .html"),
             (["a.csv", "-o", "no/b.html"], "no/b.html: there is no folder no"),
-            (["a.csv", "-o", "b.html", "--names", "x,y"], "--names: 2 for 1 logs"),
+            (["a.csv", "-o", "b.html", "--names", "x,y"], "--names: names 2 of 1 flights"),
             (["a.csv", "-o", "b.html", "--model", "quadrotor"], "has 3 rotors"),
         ],
     )

@@ -124,7 +124,7 @@ def test_other_models_judge_too(tmp_path):
         ({"law": "pd:spins=1"}, "law 'pd' has no parameter 'spins'"),
         ({"only": ["kp_xz"]}, "controller 'pd' has no parameter 'kp_xz'. Use some of scale, kp_xy"),
         ({"only": ["ki_xy"]}, "ki_xy is 0. Start with more than 0."),
-        ({"only": ["drag"]}, "no number 'drag'"),
+        ({"only": ["drag"]}, "no parameter 'drag'"),
         (
             {"held_out": ["spiral"]},
             "reference 'spiral' is both a training and a held-out reference",
@@ -176,7 +176,7 @@ class TestCommand:
 
             yield report
 
-        monkeypatch.setattr(terminal, "progress", interrupting)
+        monkeypatch.setattr(terminal, "show_progress", interrupting)
         assert main(["tune", "pd", "-o", "pd.yaml", "--budget", "500", *FLIGHT]) == 130
         assert "best gains so far: pd.yaml" in capsys.readouterr().err
         history = yaml.safe_load(Path("pd.yaml").read_text())["history"]
@@ -194,7 +194,7 @@ class TestCommand:
     @pytest.mark.parametrize(
         ("arguments", "message"),
         [
-            (["pd", "-o", "pd.txt"], "pd.txt: name a file that ends in .yaml"),
+            (["pd", "-o", "pd.txt"], "pd.txt: is not a YAML file. Name a file that ends in .yaml"),
             (["pd", "-o", "no/pd.yaml"], "there is no folder no"),
             (["nothing", "-o", "pd.yaml"], "there is no controller 'nothing'"),
             (["pd", "no.urdf", "-o", "pd.yaml"], "no.urdf: no such file"),

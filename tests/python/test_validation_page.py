@@ -157,7 +157,7 @@ def test_a_process_killed_while_it_draws_costs_its_picture_alone(tmp_path, monke
     monkeypatch.setattr(pictures_of_study, "draw", draw)
     (tmp_path / "velocity_induced.png").write_bytes(b"of another study")
     assert main(["validate", *FAST, "--jobs", "2", "--out", str(tmp_path)]) == 3
-    says = "1 of 8 pictures failed; the first, attitude_none: its process was ended by SIGKILL"
+    says = "1 of 8 figures failed; the first, attitude_none: its process was ended by SIGKILL"
     assert capsys.readouterr().err == f"error: {says}\n"
     (row,) = csv.DictReader((tmp_path / "errors.csv").open())
     assert row["failure"] == "" and float(row["max_distance"]) >= 0

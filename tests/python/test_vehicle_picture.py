@@ -52,4 +52,4 @@ def test_info_writes_the_picture_and_refuses_other_files(tmp_path, capsys):
         assert main(["info", "quadrotor", "--picture", str(tmp_path / name)]) == 0
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
     assert main(["info", "quadrotor", "--picture", "a.svg"]) == 2
-    assert "name a file that ends in .png" in capsys.readouterr().err
+    assert "Name a file that ends in .png" in capsys.readouterr().err

@@ -93,7 +93,7 @@ def read_logs(arguments: argparse.Namespace) -> Tuple[List[Path], List[str]]:
     if arguments.names is None:
         return logs, _name_by_path(logs, arguments.logs)
     if len(arguments.names) != len(logs):
-        raise InputError(f"--names: {len(arguments.names)} names for {len(logs)} logs; name each")
+        raise InputError(f"--names: names {len(arguments.names)} of {len(logs)} flights; name each")
     return logs, arguments.names
 
 

@@ -237,13 +237,13 @@ class SweepOptions(Options):
     )
 
 
-def choose_engines(engine: Optional[str], engines: Union[str, Sequence[str], None]) -> List[str]:
-    """List the engines of a study, which takes `engine` for one and `engines` for several."""
-    if engine is not None and engines is not None:
+def choose_engines(engine: Optional[str], engines: Union[str, Sequence[str]]) -> List[str]:
+    """List the engines of a study that accepts `engine` instead of `engines`."""
+    if engine is None:
+        return arguments.several(engines)
+    if engines != STUDIED:
         raise InputError("engine and engines are both given. Keep one.")
-    if engine is not None:
-        return [engine]
-    return arguments.several(STUDIED if engines is None else engines)
+    return [engine]
 
 
 def list_kinds(kind: Type[Options]) -> Dict[str, Kind]:

@@ -88,8 +88,8 @@ def compare(
     Raises
     ------
     InputError
-        If there are too many cases, the logs exceed 2 GiB, a file cannot be read, a tag does not
-        exist, the models need different commands, or the controller supports none of the models.
+        If there are too many cases, the logs exceed 2 GiB, a file cannot be read, or a tag does not
+        exist. Also if the models need different commands, or the controller supports none of them.
         No flight has run. A single invalid case is a row with its failure instead.
     FlightError
         If the baseline given by `against` fails.

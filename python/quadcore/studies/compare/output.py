@@ -20,7 +20,7 @@ from .plan import Plan
 from .result import Comparison
 
 _ROWS_OF_PAGE = 200
-_DRAWN = 40  # flights in one picture
+_DRAWN = 40  # flights in one plot
 
 
 def pick_drawn(count: int) -> List[int]:

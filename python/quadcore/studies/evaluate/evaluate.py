@@ -23,7 +23,7 @@ from typing import (
 from ..._core import InputError, QuadcoreError
 from ...report.decimation import pick_evenly
 from ...report.html_table import SHOWN_ROWS, html_table, html_title
-from ...simulation.engines import AnyEngineName
+from ...simulation.engines import STUDIED, AnyEngineName
 from ...simulation.flight_plan import FlightPlan
 from ...support import arguments
 from ...support.warning import warn
@@ -91,7 +91,7 @@ class Evaluation(NamedTuple):
 
 @accept_options(
     EvaluateOptions,
-    engines=arguments.or_none(arguments.SOME),
+    engines=arguments.SOME,
     engine=arguments.or_none(arguments.NAME),
     models=arguments.SOME,
     vary=arguments.or_none(arguments.AXES),
@@ -100,7 +100,7 @@ class Evaluation(NamedTuple):
 def evaluate(
     controllers: Controllers,
     references: References,
-    engines: Union[AnyEngineName, Sequence[AnyEngineName], None] = None,
+    engines: Union[AnyEngineName, Sequence[AnyEngineName]] = STUDIED,
     models: Names = "quadrotor",
     *,
     engine: Optional[AnyEngineName] = None,

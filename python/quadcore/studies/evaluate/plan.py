@@ -57,7 +57,7 @@ class Plan(Cases):
 
     @property
     def omitted_margins(self) -> str:
-        """Margins that cannot be searched, with the reason, in one line; "" if there are none."""
+        """Margins that cannot be searched, with the reason, in one line; "" if all can."""
         return margins.describe_omitted(self.models[0], self.lacking)
 
     def name_case(self, case: Case) -> Dict[str, Any]:

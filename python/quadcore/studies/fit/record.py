@@ -129,7 +129,7 @@ def _read_sensed_state(log: Log, where: str, topic: str) -> Tuple[np.ndarray, ..
 
 
 def _read_commands(log: Log) -> Optional[np.ndarray]:
-    """Return each command once with its time; None if there is none."""
+    """Return each command once with its time; None without commands."""
     fields = log.topics[_COMMANDS]
     table = np.column_stack(
         [fields["stamp"], *(fields[name] for name in fields if name != "stamp")]

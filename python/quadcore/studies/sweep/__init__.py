@@ -1,6 +1,6 @@
-"""Sweeps: thousands of flights from one description, on whatever executes them.
+"""Sweeps: many flights over a grid or a random sample of parameters.
 
-A `design` says which points of the axes are flown, a `plan` makes a `spec` of each row, which can
-be flown anywhere, `places` fly them, `rows` keeps what comes back, and `sweep` puts that together;
-`sensitivity`, `again` and `pictures` tell what it means, and `output` writes that.
+`plan` describes the rows, and `row_spec` makes each of them independent of the process that runs
+it. `execution` runs the rows on local processes or an executor, and `row_file` stores them.
+`sensitivity` analyses the results, and `output` and `plots` write them.
 """

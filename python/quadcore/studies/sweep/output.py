@@ -120,7 +120,7 @@ def summarise_rows(plan: AnyPlan, columns: Columns) -> List[Dict[str, Any]]:
 
 
 def list_worst(plan: AnyPlan, columns: Columns, measure: str) -> List[Dict[str, Any]]:
-    """List failed rows and those with the largest metric, each with the command to repeat it."""
+    """List failed rows and rows with maximum metric, each with the command to repeat it."""
     values = columns[measure].astype(float)
     failed = np.flatnonzero(columns["failure"] != "")[:WORST]
     order = np.argsort(-np.where(np.isfinite(values), values, -np.inf), kind="stable")

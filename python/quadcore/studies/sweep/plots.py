@@ -144,7 +144,7 @@ def _draw_sensitivity(rows: Sequence[Mapping[str, Any]], measure: str) -> Figure
 
 
 def _leading_axes(rows: Sequence[Mapping[str, Any]]) -> List[str]:
-    """Return the two axes with the largest effect."""
+    """Return the two axes with the strongest effect."""
     weight: Dict[str, float] = {}
     for row in rows:
         size = row["total"] if np.isfinite(row["total"]) else abs(row["rank"])
@@ -228,7 +228,7 @@ def _draw_parallel(
     chosen = np.concatenate([part for _, part in parts])
     ends = {name: (columns[name][chosen].min(), columns[name][chosen].max()) for name in names}
     rows = chosen[pick_evenly(len(chosen), _LINES)]
-    rows = rows[np.argsort(columns[measure][rows])]  # the largest on top
+    rows = rows[np.argsort(columns[measure][rows])]  # high values on top
     heights = np.stack([_normalise(columns[name][rows], ends[name]) for name in names], axis=1)
     scale = _colour_scale(columns[measure][chosen])
     heights[:, -1] = scale(columns[measure][rows])

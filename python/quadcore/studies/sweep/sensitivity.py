@@ -1,8 +1,8 @@
 """Sensitivity of the metrics of a sweep to its parameters.
 
-Rank correlations (Spearman) exist for every design; they miss effects that are not monotonic. With
-the design "saltelli", Sobol indices give the share of the variance that a parameter causes alone
-(first order) and together with others (total); see Saltelli et al., Computer Physics
+Rank correlations (Spearman) exist for every design; they miss effects that are not monotonic. The
+design "saltelli" also gives Sobol indices: the share of the variance that a parameter causes alone
+(first order) and together with others (total). See Saltelli et al., Computer Physics
 Communications 181, 2010.
 """
 

@@ -22,7 +22,7 @@ import numpy as np
 
 from ..._core import InputError
 from ...simulation.commands import CommandsLike
-from ...simulation.engines import AnyEngineName
+from ...simulation.engines import STUDIED, AnyEngineName
 from ...support import arguments, interrupts
 from ..control_setup import Controllers, References
 from ..options import Keywords, Names, Progress, SweepOptions, accept_options, choose_engines
@@ -66,7 +66,7 @@ class Sweep(NamedTuple):
 
 @accept_options(
     SweepOptions,
-    engines=arguments.or_none(arguments.NAMES),
+    engines=arguments.NAMES,
     engine=arguments.or_none(arguments.NAME),
     models=arguments.NAMES,
     vary=arguments.or_none(arguments.VALUES),
@@ -91,7 +91,7 @@ def sweep(
     points: Optional[Union[str, Path]] = None,
     design: str = "latin",
     samples: Optional[int] = None,
-    engines: Union[AnyEngineName, Sequence[AnyEngineName], None] = None,
+    engines: Union[AnyEngineName, Sequence[AnyEngineName]] = STUDIED,
     engine: Optional[AnyEngineName] = None,
     models: Names = "quadrotor",
     out: Optional[Union[str, Path]] = None,
