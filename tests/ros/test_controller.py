@@ -154,7 +154,10 @@ class TestController(unittest.TestCase):
             ({"kp_xy": "much"}, "<kp_xy> 'much' is not a finite number"),
             ({"kp_rp": 1}, "law 'geometric' has no parameter 'kp_rp'"),
             ({"reference": "spirale"}, "parameter ~reference: plugin"),
-            ({"reference": {"shape": "circle", "radios": 1}}, "parameter ~reference/radios: is"),
+            (
+                {"reference": {"shape": "circle", "radios": 1}},
+                "parameter ~reference/radios: does not exist",
+            ),
             ({"urdf": description(rate="100"), "rate": 200}, "~rate: odometry arrives 100 times a"),
             ({"urdf": flown}, "vel_cmd"),
             ({"urdf": description(twistFrame="body")}, "twistFrame"),
