@@ -226,16 +226,16 @@ class TestSetPoints(unittest.TestCase):
         cases = [
             ("/command/pose", pose(0, 0, 10, frame="map"), "frame_id is 'map'"),
             ("/command/pose", PoseStamped(), "is not a quaternion of length 1"),
-            ("/command/pose", pose(float("nan"), 0, 10), "position holds a number"),
+            ("/command/pose", pose(float("nan"), 0, 10), "position contains a number"),
             ("/command/trajectory", MultiDOFJointTrajectory(), "a path without points"),
-            ("/command/trajectory", MultiDOFJointTrajectory(points=[two]), "not one transform"),
+            ("/command/trajectory", MultiDOFJointTrajectory(points=[two]), "Give one transform"),
             ("/command/trajectory", MultiDOFJointTrajectory(points=late), "not later than"),
             ("/command/velocity", Twist(angular=Vector3(1, 0, 0)), "angular is not about z"),
             ("/command/attitude_thrust", AttitudeThrust(None, upright, sideways), "not along z"),
             (
                 "/command/rate_thrust",
                 RateThrust(None, Vector3(0, 0, float("inf")), Vector3()),
-                "angular_rates holds a number",
+                "angular_rates contains a number",
             ),
         ]
         self.ask("/command/pose", pose(0, 0, 10.2))
