@@ -45,7 +45,7 @@ def imported():
 
 def expansions(folder, rounds):
     """Pairs of times in which a xacro is read again, and for the first time."""
-    text = (resources.root() / "urdf/quadrotor.urdf.xacro").read_text()
+    text = (resources.find_root() / "urdf/quadrotor.urdf.xacro").read_text()
 
     def read(file):
         return cost(lambda: load_description(str(file), {}), 1)

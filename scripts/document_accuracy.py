@@ -16,7 +16,7 @@ from measured import figures, put
 
 import quadcore as qc
 from quadcore.thesis.validation import Experiment
-from quadcore.thesis.validation.damping import measure
+from quadcore.thesis.validation.damping import measure_damping
 
 DATA = Path(__file__).resolve().parents[1] / "tests" / "data"
 CASES = DATA / "gazebo11" / "cases"
@@ -102,8 +102,8 @@ def decays() -> Iterator[Any]:
     """Tabulate the decay of a pitch rate in the first second, and for some in the next one."""
     experiment = Experiment.of(commands=[[0, *HOVER * SPIN]])
     for slow, recorded in GAZEBO_DECAY.items():
-        first = measure(experiment, ENGINES, slow, (0, 1))
-        then = measure(experiment, LATER, slow, (1, 2))
+        first = measure_damping(experiment, ENGINES, slow, (0, 1))
+        then = measure_damping(experiment, LATER, slow, (1, 2))
         found = [decay(first.measured[engine]) for engine in ENGINES]
         later = [decay(then.measured[engine]) for engine in LATER]
         yield slow, figures(first.formula, 3), recorded, *found, *later

@@ -126,7 +126,7 @@ def write_reference_section() -> str:
 
 def write_world_section() -> str:
     """Tabulate the elements of a world, and the built-in worlds."""
-    if set(WORLDS) != set(resources.shipped("worlds")):
+    if set(WORLDS) != set(resources.list_shipped("worlds")):
         sys.exit(f"worlds: described are {list(WORLDS)}")
     rows = ((f"`{e.name}`", e.unit, e.default, e.range, e.meaning) for e in _core.world_elements())
     return (

@@ -14,9 +14,9 @@ from measured import DOCS, figures, put
 
 from quadcore.report.colours import PALETTE
 from quadcore.report.plots import dress, make_figure, png
-from quadcore.thesis.validation import Case, Experiment, Study, conduct
+from quadcore.thesis.validation import Case, Experiment, Study, run_study
 from quadcore.thesis.validation.experiment import NO_LAG
-from quadcore.thesis.validation.figures import pictures
+from quadcore.thesis.validation.figures import list_figures
 from quadcore.thesis.validation.output import size
 from quadcore.thesis.validation.thesis_figures import KINDS, thesis_figures
 
@@ -142,7 +142,7 @@ def hexarotor() -> Iterator[Any]:
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "hexarotor.urdf.xacro"
         file.write_text(text)
-        study = conduct(Experiment.of(str(file)), drags=["all"])
+        study = run_study(Experiment.of(str(file)), drags=["all"])
     rows = {row.case: row.difference for row in study.rows}
     for engine in study.engines:
         found = [rows[Case(engine, slow, "all")] for slow in study.sim_slow]
@@ -171,10 +171,10 @@ def write_tables(study: Study) -> None:
 
 def main() -> None:
     """Run the experiment of ``quadcore validate``; write tables and figures."""
-    study = conduct(Experiment.of())
+    study = run_study(Experiment.of())
     write_tables(study)
     drawn = {"gains": draw_gains()}
-    wanted = pictures(study)
+    wanted = list_figures(study)
     for name, picture in {**FROM_THE_COMMAND, "commands": "commands", "damping": "damping"}.items():
         function, arguments = wanted[picture]
         drawn[name] = function(*arguments)

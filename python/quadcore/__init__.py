@@ -1,7 +1,8 @@
-"""Find out how well a controller flies.
+"""Multirotor simulator and controller test bench.
 
-quadcore flies multirotors from their URDF, without Gazebo: its default engine repeats the published
-Gazebo 11 model to the last digit, faults included, two others fly the same files without those.
+quadcore simulates multirotors from their URDF, without Gazebo. Its default engine repeats Gazebo 11
+to the last digit, including the bugs of Gazebo. The engines "ode" and "eigen" simulate the same
+files without these bugs.
 
 >>> import quadcore as qc
 >>> sim = qc.Simulation("quadrotor", engine="eigen", spawn=(0, 0, 10), xacro_args={"sim_slow": 1})
@@ -116,10 +117,10 @@ _LATE = {
     "sweep": "studies.sweep.sweep",
     "tune": "studies.tune.tune",
 }
-"""Where to find the names that are imported at their first use: a single flight needs none."""
+"""Modules of the names that are imported at first use, because a single flight needs none."""
 
 for _module in (controllers, gains, references):
-    # So that `from quadcore.controllers import geometric` works, too.
+    # Makes `from quadcore.controllers import geometric` work.
     sys.modules[f"{__name__}.{_module.__name__.rpartition('.')[2]}"] = _module
 
 

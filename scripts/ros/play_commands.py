@@ -20,7 +20,7 @@ from std_msgs.msg import Float64MultiArray
 
 from quadcore import InputError
 from quadcore._core import log_columns
-from quadcore.simulation.log import check_log_path, log_file
+from quadcore.simulation.log import check_log_path, make_log_file
 
 
 class Player:
@@ -73,7 +73,7 @@ def main():
     try:
         if out:
             check_log_path(out)
-            log = log_file(Path(out), log_columns(0), (), ())
+            log = make_log_file(Path(out), log_columns(0), (), ())
         table = read_table(arguments[0], int(rospy.get_param("~rotors", 4)))
     except (InputError, ValueError) as error:
         sys.exit(f"error: {error}")

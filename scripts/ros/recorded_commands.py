@@ -14,7 +14,7 @@ def read_table(path, rotors):
         from quadcore.simulation.commands import read_commands as read_file
 
         return read_file(path, rotors)
-    from quadcore.simulation.commands import as_commands
+    from quadcore.simulation.commands import check_commands
 
     _, times, commands = _read_recorded(path, "")
     rows = dict(zip(times, commands))  # the last one of each time
@@ -22,7 +22,7 @@ def read_table(path, rotors):
         raise ValueError(
             f"{path}: contains commands that are not for {rotors} rotors. Set _rotors:=N."
         )
-    return as_commands([[time, *row] for time, row in sorted(rows.items())], rotors)
+    return check_commands([[time, *row] for time, row in sorted(rows.items())], rotors)
 
 
 def read_commands(path, topic=""):

@@ -79,9 +79,9 @@ def study():
     """The flights of the validation, slowed down by 1 and 8, without drag and with all."""
     from flights import ENGINES
 
-    from quadcore.thesis.validation import Experiment, conduct
+    from quadcore.thesis.validation import Experiment, run_study
 
-    return conduct(Experiment.of(), ENGINES, [1, 8], ["none", "all"])
+    return run_study(Experiment.of(), ENGINES, [1, 8], ["none", "all"])
 
 
 @pytest.fixture(scope="session")

@@ -91,8 +91,8 @@ def digest(data):
 def with_pilot(folder):
     """Copy the quadrotor with a PID, whose gains lie in a file beside it."""
     folder.mkdir()
-    shutil.copy(resources.root() / "config/gains/quadrotor/pid.yaml", folder / "gains.yaml")
-    text = (resources.root() / "urdf/quadrotor.urdf.xacro").read_text()
+    shutil.copy(resources.find_root() / "config/gains/quadrotor/pid.yaml", folder / "gains.yaml")
+    text = (resources.find_root() / "urdf/quadrotor.urdf.xacro").read_text()
     pilot = (
         '<gazebo><plugin name="pilot" filename="libcontroller_plugin.so"><law>pid</law>'
         "<gains>gains.yaml</gains></plugin></gazebo></robot>"

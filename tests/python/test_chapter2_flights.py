@@ -24,7 +24,7 @@ from vehicles import (
 
 import quadcore as qc
 from quadcore.thesis.chapter2 import GYROSTAT, THESIS, MathematicalModel, Terms, Vehicle
-from quadcore.thesis.validation.prescribed_speeds import STIFFNESS, fly_given_speeds
+from quadcore.thesis.validation.prescribed_speeds import STIFFNESS, fly_prescribed_speeds
 
 HOVER = np.sqrt(1.04 * 9.8 / 4 / 1.1487e-5)
 BALANCED = HOVER * np.array([1, -1, 1, -1])
@@ -139,7 +139,7 @@ def test_eigen_with_given_speeds_leaves_out_what_the_thesis_does(lag):
         kp = STIFFNESS * vehicle_.rotor_inertia.min() / dt
         stiff = quadrotor(dt=dt, motorpid_plugin__kp=kp)
         every = round(1e-2 / dt)
-        paths.append(fly_given_speeds(stiff, vehicle_, FLIGHT, 10, every, lag).position)
+        paths.append(fly_prescribed_speeds(stiff, vehicle_, FLIGHT, 10, every, lag).position)
     gaps = [np.abs(path - expected).max() for path in paths]
     assert gaps[0] < 1e-3
     assert gaps[1] == pytest.approx(gaps[0] / 2, rel=0.05)

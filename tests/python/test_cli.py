@@ -266,7 +266,7 @@ def test_help_names_what_is_shipped_and_where_a_flight_begins(capsys):
     with pytest.raises(SystemExit):
         main(["run", "--help"])
     told = " ".join(capsys.readouterr().out.split())
-    models, worlds = (", ".join(resources.shipped(folder)) for folder in ("urdf", "worlds"))
+    models, worlds = (", ".join(resources.list_shipped(folder)) for folder in ("urdf", "worlds"))
     assert "quadrotor" in models and f"or a built-in model: {models} " in told
     assert "default" in worlds and f"or a built-in world: {worlds} (default: empty) " in told
     x, y, z = qc.FlightPlan.of().spawn[:3]

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from quadcore import InputError
-from quadcore.simulation.commands import as_commands, read_commands
+from quadcore.simulation.commands import check_commands, read_commands
 
 TABLE = np.array([[0.0, 1.0, -2.0], [0.5, 3.0, -4.0]])
 
@@ -118,7 +118,7 @@ def test_files_that_are_missing_or_of_another_kind_are_refused(tmp_path):
 def test_arrays_and_paths_are_taken_alike(csv):
     path = csv("t,w1,w2", "0,1,-2", "0.5,3,-4")
     for commands in (TABLE, TABLE.tolist(), path, str(path), np.asfortranarray(TABLE)):
-        checked = as_commands(commands, 2)
+        checked = check_commands(commands, 2)
         assert np.array_equal(checked, TABLE)
         assert checked.flags.c_contiguous
 
@@ -136,4 +136,4 @@ def test_arrays_and_paths_are_taken_alike(csv):
 )
 def test_a_wrong_array_is_refused(array, message):
     with pytest.raises(InputError, match=message):
-        as_commands(array, 2)
+        check_commands(array, 2)

@@ -19,7 +19,7 @@ from quadcore.cli import main
 from quadcore.model import resources
 from quadcore.studies import flight_differences
 from quadcore.studies.compare import Comparison
-from quadcore.support.rotation import roll_pitch_yaw
+from quadcore.support.rotation import to_roll_pitch_yaw
 
 pytestmark = pytest.mark.usefixtures("toy")
 
@@ -102,7 +102,7 @@ def test_lines_of_a_xacro_are_those_of_its_file(capsys):
 
 
 def test_numbers_written_otherwise_and_order_are_no_difference_but_that_of_joints_is():
-    model = str(resources.root() / "urdf" / "quadrotor.urdf.xacro")
+    model = str(resources.find_root() / "urdf" / "quadrotor.urdf.xacro")
     text = Path(model).read_text()
     assert "0.000011487" in text
     Path("same.xacro").write_text(text.replace("0.000011487", "1.1487e-5"))
@@ -187,7 +187,7 @@ def test_metrics_are_those_of_the_logs():
     assert row["final_z"] == b.table[-1, 3] - a.table[-1, 3]
     apart = np.linalg.norm(b.position - a.position, axis=1)
     assert row["max_position"] == pytest.approx(apart.max(), rel=1e-12)
-    yaw = (roll_pitch_yaw(b.orientation) - roll_pitch_yaw(a.orientation))[:, 2]
+    yaw = (to_roll_pitch_yaw(b.orientation) - to_roll_pitch_yaw(a.orientation))[:, 2]
     assert row["max_yaw"] == pytest.approx(np.abs(yaw).max(), rel=1e-9)
     assert row["max_attitude"] == pytest.approx(np.abs(yaw).max(), rel=1e-9)
     assert row["final_j1"] == b.rotor_velocity[-1, 0] - a.rotor_velocity[-1, 0]

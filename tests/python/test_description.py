@@ -111,7 +111,7 @@ def test_find_resolves_this_package_and_those_on_the_ros_path(robot, tmp_path, m
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(package.parent))
     file = robot('<a v="$(find quadcore)/urdf"/>', '<b v="$(find other_package)"/>')
     found = places(expand(file, {}))
-    assert f'<a v="{resources.root()}/urdf"/>' in found
+    assert f'<a v="{resources.find_root()}/urdf"/>' in found
     assert f'<b v="{package}"/>' in found
 
 

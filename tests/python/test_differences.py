@@ -16,7 +16,7 @@ from quadcore.studies.compare.model_differences import (
     compare_documents,
     list_facts,
 )
-from quadcore.support.rotation import continuous, roll_pitch_yaw
+from quadcore.support.rotation import to_roll_pitch_yaw, unwrap_angles
 
 BEFORE = """<robot name="r">
   <link name="a">
@@ -166,10 +166,10 @@ def test_differences_are_those_of_each_state_row_by_row():
     assert np.allclose(found[:, 1], between, atol=1e-12)
     assert np.array_equal(found[:, 4:7], apart[:, 1:4])
     # Added to the angles of the reference they give the log's attitude, and by no way round.
-    angles = roll_pitch_yaw(reference.orientation) + found[:, 7:10]
+    angles = to_roll_pitch_yaw(reference.orientation) + found[:, 7:10]
     there = Rotation.from_euler("ZYX", angles[:, ::-1])
     assert np.allclose((there.inv() * turns[1]).magnitude(), 0, atol=1e-7)
-    straight = roll_pitch_yaw(log.orientation) - roll_pitch_yaw(reference.orientation)
+    straight = to_roll_pitch_yaw(log.orientation) - to_roll_pitch_yaw(reference.orientation)
     straight = np.abs(np.angle(np.exp(1j * straight))).sum(axis=1)
     assert np.all(np.abs(found[:, 7:10]).sum(axis=1) <= straight + 1e-12)
     assert np.abs(found[:, 7:10]).max() <= np.pi
@@ -223,9 +223,9 @@ def test_a_flip_of_the_angles_beyond_the_vertical_is_no_difference():
 
 def test_a_looping_is_drawn_without_a_jump():
     looping = np.arange(0, 730, 10.0)
-    angles = np.degrees(continuous(pitched(*looping).rpy))
+    angles = np.degrees(unwrap_angles(pitched(*looping).rpy))
     assert np.allclose(angles, np.stack([0 * looping, looping, 0 * looping], axis=1), atol=1e-6)
-    assert continuous(np.zeros((0, 3))).shape == (0, 3)
+    assert unwrap_angles(np.zeros((0, 3))).shape == (0, 3)
 
 
 def test_the_sign_of_a_quaternion_makes_no_difference():
@@ -269,10 +269,10 @@ def test_roll_pitch_yaw_are_the_angles_of_fixed_axes():
     random = np.random.default_rng(3)
     angles = random.uniform([-np.pi, -np.pi / 2, -np.pi], [np.pi, np.pi / 2, np.pi], (200, 3))
     quaternions = Rotation.from_euler("xyz", angles).as_quat()
-    assert np.allclose(roll_pitch_yaw(quaternions), angles, rtol=0, atol=1e-7)
-    assert np.allclose(roll_pitch_yaw(-quaternions.reshape(2, 100, 4)).reshape(-1, 3), angles)
-    assert roll_pitch_yaw([0, 0, 0, 1]).tolist() == [0, 0, 0]
+    assert np.allclose(to_roll_pitch_yaw(quaternions), angles, rtol=0, atol=1e-7)
+    assert np.allclose(to_roll_pitch_yaw(-quaternions.reshape(2, 100, 4)).reshape(-1, 3), angles)
+    assert to_roll_pitch_yaw([0, 0, 0, 1]).tolist() == [0, 0, 0]
     # Rounding must not carry the sine of a vertical pitch beyond 1.
     half = np.sqrt(0.5) * (1 + 1e-15)
     for sign in (1, -1):
-        assert roll_pitch_yaw([0, sign * half, 0, half])[1] == pytest.approx(sign * np.pi / 2)
+        assert to_roll_pitch_yaw([0, sign * half, 0, half])[1] == pytest.approx(sign * np.pi / 2)

@@ -10,7 +10,7 @@ from flights import NOISE
 from processes import ran, refused
 
 import quadcore as qc
-from quadcore.model.overrides import link_values
+from quadcore.model.overrides import list_link_values
 from quadcore.studies.fit.horizons import _make_commands as commands_from_speeds
 from quadcore.studies.fit.model_text import write_values
 from quadcore.studies.fit.record import read_record
@@ -210,7 +210,7 @@ def test_values_are_written_where_they_stand_and_added_where_they_do_not():
         "drone_plugin.rotorRadius": 0.07,
     }
     changed = write_values(model, values)
-    assert link_values(changed.document)["frame.izz"] == "0.015"
+    assert list_link_values(changed.document)["frame.izz"] == "0.015"
     plugin = qc.Simulation(changed).plugins[0]
     tags = {tag.name: tag.value for tag in plugin.parameters}
     assert (tags["parasiticDragCoeff"], tags["rotorRadius"]) == ("0.125", "0.07")

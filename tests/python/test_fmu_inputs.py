@@ -21,7 +21,7 @@ LAB = {
 
 def with_all_that_listens(folder):
     """Copy the quadrotor with every kind of plugin that its caller tells something."""
-    text = (resources.root() / "urdf/quadrotor.urdf.xacro").read_text()
+    text = (resources.find_root() / "urdf/quadrotor.urdf.xacro").read_text()
     parts = "".join(
         f'<gazebo><plugin name="{name}" filename="lib'
         f'{"payload" if name == "later" else name}_plugin.so">{tags}</plugin></gazebo>'

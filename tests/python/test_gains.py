@@ -67,15 +67,15 @@ def test_a_wrong_file_is_one_line_that_tells_where(text, line, says, tmp_path):
 
 def test_a_file_that_is_not_there_is_told(tmp_path):
     with pytest.raises(qc.InputError, match=r"no\.yaml: cannot be read"):
-        controllers.of_file(tmp_path / "no.yaml")
+        controllers.read_controller(tmp_path / "no.yaml")
 
 
 def test_a_law_has_the_gains_that_are_shipped_for_the_vehicle():
-    own = controllers.of_file(SHIPPED[0])
+    own = controllers.read_controller(SHIPPED[0])
     vehicle, law = SHIPPED[0].parent.name, SHIPPED[0].stem
-    assert gains.law_for(law, vehicle).parameters == own.parameters != {}
-    assert gains.law_for("geometric", "of nobody").parameters == {}
-    assert gains.law_for("geometric", "..").parameters == {}
+    assert gains.make_for_vehicle(law, vehicle).parameters == own.parameters != {}
+    assert gains.make_for_vehicle("geometric", "of nobody").parameters == {}
+    assert gains.make_for_vehicle("geometric", "..").parameters == {}
 
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: f"{path.parent.name} {path.stem}")
@@ -113,7 +113,7 @@ def test_tags_that_contradict_the_file_are_refused(tags, says, tmp_path, hangar)
 
 def test_a_law_of_a_file_flies_at_its_rate(tmp_path):
     path = written(tmp_path, "law: geometric\nrate: 100\nparameters:\n  kp_xy: 7\n")
-    law = controllers.of_file(path)
+    law = controllers.read_controller(path)
     assert (law.rate, law.delay) == (100, 0)
     hover = references.hover(x=0.1)
     one = quadrotor("eigen").run(0.5, controller=law, reference=hover)

@@ -9,7 +9,7 @@ import pytest
 from processes import refused
 
 from quadcore.cli import main, make_parser
-from quadcore.simulation.engines import ENGINE, STUDIED
+from quadcore.simulation.engines import ENGINE, STUDY_ENGINE
 
 PARSERS = next(iter(make_parser()._subparsers._group_actions)).choices
 NOTHING = (None, False, [], argparse.SUPPRESS)
@@ -34,7 +34,7 @@ def test_help_tells_the_default_of_every_option(command):
 
 def test_help_tells_what_studies_fly_where_from_and_where_to(capsys):
     for command in ("evaluate", "sweep", "tune", "fit"):
-        assert f"(default: {STUDIED}) --" in told(capsys, command)
+        assert f"(default: {STUDY_ENGINE}) --" in told(capsys, command)
     assert f"(default: {ENGINE}) --dt" in told(capsys, "run")
     for command in ("evaluate", "tune"):
         assert "pose of the frame link in m and rad (default: on the reference)" in told(

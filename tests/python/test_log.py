@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation
 
 from quadcore import InputError, Log
 from quadcore.simulation.log import check_log_path
-from quadcore.support.rotation import roll_pitch_yaw
+from quadcore.support.rotation import to_roll_pitch_yaw
 
 COLUMNS = "t,x,y,z,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz,j1,j2,j3,j4"
 WRENCH = ("fx", "fy", "fz", "tx", "ty", "tz")
@@ -141,7 +141,7 @@ def test_angles_come_back_from_the_product_of_the_three_turns(angles):
         np.append(np.sin(angle / 2) * axis, np.cos(angle / 2))
         for angle, axis in zip(angles, np.eye(3))
     )
-    assert roll_pitch_yaw(times(yaw, times(pitch, roll))) == pytest.approx(angles, abs=1e-9)
+    assert to_roll_pitch_yaw(times(yaw, times(pitch, roll))) == pytest.approx(angles, abs=1e-9)
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".mat"])

@@ -13,7 +13,7 @@ from vehicles import plugin
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.support.rotation import roll_pitch_yaw
+from quadcore.support.rotation import to_roll_pitch_yaw
 
 ALTERNATING = (1, -1, 1, -1, 1, -1)
 PAIRED = (1, 1, -1, -1, 1, -1)  # two neighbours of one sense, twice
@@ -53,7 +53,7 @@ def flown(rotor, spins, engine="eigen", detection=0.0, event="weaken: {}, to: 0"
     log = plan.fly()
     error = log.topics["error"]
     distance = np.sqrt(sum(error[axis] ** 2 for axis in "xyz"))
-    return log, distance, np.unwrap(roll_pitch_yaw(log.orientation)[:, 2])
+    return log, distance, np.unwrap(to_roll_pitch_yaw(log.orientation)[:, 2])
 
 
 @pytest.mark.parametrize("rotor", range(1, 7))

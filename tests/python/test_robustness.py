@@ -16,7 +16,7 @@ from processes import FALL, LONG, QUADCORE, ran, refused, script
 
 import quadcore as qc
 from quadcore import _core
-from quadcore.simulation.recording import Thinned
+from quadcore.simulation.recording import DecimatedRows
 
 pytestmark = pytest.mark.usefixtures("in_empty_folder")
 
@@ -153,7 +153,7 @@ def test_pictures_are_drawn_from_rows_evenly_taken_and_the_last(rows, piece):
     simulation = quadrotor()
     table = np.arange(rows)[:, None] * np.ones((1, 18))
     wrenches = np.arange(rows)[:, None, None] * np.ones((1, len(simulation.wrench_terms), 6))
-    thinned = Thinned(rows, _core.flight_columns(simulation, []), simulation.wrench_terms)
+    thinned = DecimatedRows(rows, _core.flight_columns(simulation, []), simulation.wrench_terms)
     for begin in range(0, rows, piece):
         thinned.receive(table[begin : begin + piece], wrenches[begin : begin + piece])
     log = thinned.log()

@@ -15,7 +15,7 @@ from quadcore.model import resources
 from quadcore.simulation.scenario_events import KINDS
 from quadcore.simulation.scenarios import Scenario
 
-SHIPPED = sorted(resources.shipped("config/scenarios"))
+SHIPPED = sorted(resources.list_shipped("config/scenarios"))
 GUIDED = ["--controller", "geometric", "--xacro", "sim_slow:=1"]
 
 

@@ -164,7 +164,7 @@ def test_without_the_optimiser_it_is_told_what_to_install(monkeypatch):
 class TestCommand:
     def test_it_writes_a_gains_file_that_flies(self):
         assert main(["tune", "pd", "-o", "pd.yaml", "--budget", "1", *FLIGHT]) == 0
-        assert gains.of_file("pd.yaml").parameters["kp_xy"] == 2.4
+        assert gains.read_controller("pd.yaml").parameters["kp_xy"] == 2.4
         assert main(["tune", "pd.yaml", "-o", "again.yaml", "--budget", "1", *FLIGHT]) == 0
 
     def test_an_interrupt_keeps_the_best_so_far(self, monkeypatch, capsys):

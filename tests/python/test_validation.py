@@ -11,9 +11,9 @@ from vehicles import AIR, CROSS, DRAG, MOTOR, vehicle
 
 import quadcore as qc
 from quadcore.thesis.chapter2 import Vehicle
-from quadcore.thesis.validation import MODEL, Case, Experiment, compare, states
-from quadcore.thesis.validation.ascent import ascent
-from quadcore.thesis.validation.experiment import at_steps
+from quadcore.thesis.validation import MODEL, Case, Experiment, compare_states, extract_states
+from quadcore.thesis.validation.ascent import make_ascent
+from quadcore.thesis.validation.experiment import align_to_steps
 from quadcore.thesis.validation.prescribed_speeds import speeds
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -30,7 +30,7 @@ def distances(study):
 
 def test_every_flight_ascends_and_moves_in_all_axes_without_a_steep_angle(study):
     for flight in study.flights.values():
-        ranges = np.ptp(states(flight.log)[:, :6], axis=0)
+        ranges = np.ptp(extract_states(flight.log)[:, :6], axis=0)
         assert ranges[:2].min() > 0.2
         assert flight.log.position[-1, 2] > 20
         assert ranges[3:].min() > np.radians(2)
@@ -61,7 +61,7 @@ def test_a_chain_leads_from_the_plant_to_the_model_and_adds_up(study):
             assert link.end == after.begin
         assert sum(link.share for link in chain.links) == pytest.approx(chain.distance, abs=1e-12)
         ends = [study.flights[case].log for case in (chain.links[0].begin, chain.links[-1].end)]
-        whole = compare(*ends).max["distance"]
+        whole = compare_states(*ends).max["distance"]
         assert chain.distance == pytest.approx(whole, abs=1e-12)
     assert [len(chain.links) for chain in study.chains] == [5, 6, 5, 6]
 
@@ -116,7 +116,7 @@ def test_only_gazebo_damps_and_as_expected(study):
 def test_the_model_has_no_second_engine_in_it(study):
     """Its flight is apart from that of the engine whose limit it is."""
     flights = [study.flights[Case("eigen", 1, "all", "given speeds")], study.flights[Case(MODEL)]]
-    assert 1e-6 < compare(*(flight.log for flight in flights)).max["distance"] < 2e-4
+    assert 1e-6 < compare_states(*(flight.log for flight in flights)).max["distance"] < 2e-4
 
 
 def test_an_ascent_lifts_a_hexarotor_with_odd_rotors():
@@ -125,7 +125,7 @@ def test_an_ascent_lifts_a_hexarotor_with_odd_rotors():
     assert (np.sign(experiment.commands[:, 1:]) == [1, -1, 1, -1, 1, -1]).all()
     log = experiment.fly(Case("eigen")).log
     assert log.position[-1, 2] > 11
-    assert np.abs(states(log)[:, 3:5]).max() < 0.3
+    assert np.abs(extract_states(log)[:, 3:5]).max() < 0.3
 
 
 def test_a_vehicle_that_the_input_cannot_lift_tilt_or_turn_is_refused_with_the_reason(hangar):
@@ -133,7 +133,7 @@ def test_a_vehicle_that_the_input_cannot_lift_tilt_or_turn_is_refused_with_the_r
         air = {**AIR, **DRAG, **air}
         urdf = vehicle(rotors, air=air, motor=MOTOR)
         with pytest.raises(qc.InputError) as refusal:
-            ascent(Vehicle.of(hangar(urdf, (0, 0, -9.8), engine="eigen")))
+            make_ascent(Vehicle.of(hangar(urdf, (0, 0, -9.8), engine="eigen")))
         return str(refusal.value)
 
     assert "give this vehicle no lift without another force" in refused(CROSS[:2])
@@ -146,7 +146,7 @@ def test_a_vehicle_that_the_input_cannot_lift_tilt_or_turn_is_refused_with_the_r
 
 def test_a_command_takes_effect_with_the_step_that_feels_it():
     table = np.array([[-1, 1], [0, 2], [0.0011, 3], [0.002, 4], [0.0021, 5], [0.005, 6]])
-    assert at_steps(table, 1e-3).tolist() == [[0, 2], [0.002, 4], [0.003, 5], [0.005, 6]]
+    assert align_to_steps(table, 1e-3).tolist() == [[0, 2], [0.002, 4], [0.003, 5], [0.005, 6]]
 
 
 def test_given_speeds_are_those_of_motors_on_a_held_frame():

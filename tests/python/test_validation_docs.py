@@ -11,7 +11,7 @@ import pytest
 import quadcore as qc
 from quadcore.thesis.chapter2 import Vehicle
 from quadcore.thesis.validation import Experiment
-from quadcore.thesis.validation.damping import measure
+from quadcore.thesis.validation.damping import measure_damping
 from quadcore.thesis.validation.output import size
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -87,7 +87,7 @@ def test_both_tables_of_the_damper_are_the_one_formula_at_the_speed_in_their_hea
     assert list(formulas) == [1, 8, 10, 18]
     experiment = Experiment.of(commands=[[0, speed, -speed, speed, -speed]])
     for slow, formula in formulas.items():
-        assert formula == pytest.approx(measure(experiment, [], slow).formula, rel=0.005)
+        assert formula == pytest.approx(measure_damping(experiment, [], slow).formula, rel=0.005)
 
 
 def test_real_gazebo_and_gazebo11_are_measured_alike_in_the_docs():

@@ -16,9 +16,9 @@ from test_docs import COMMANDS
 
 import quadcore as qc
 from quadcore.cli import main
-from quadcore.thesis.validation import Experiment, cause_plots, conduct
+from quadcore.thesis.validation import Experiment, cause_plots, run_study
 from quadcore.thesis.validation import figures as pictures_of_study
-from quadcore.thesis.validation.figures import pictures
+from quadcore.thesis.validation.figures import list_figures
 from quadcore.thesis.validation.output import size
 from quadcore.thesis.validation.thesis_figures import KINDS, SIM_SLOW, thesis_figures
 
@@ -98,21 +98,21 @@ def test_the_pictures_carry_the_numbers_of_the_thesis_figures():
 def test_the_slow_downs_of_text_and_captions_are_flown_unless_others_are_named():
     assert SIM_SLOW == (1, 8, 10, 18)
     (option,) = (a for a in COMMANDS["validate"]._actions if a.dest == "sim_slow")
-    assert option.default is None  # `conduct` decides
+    assert option.default is None  # `run_study` decides
     assert ",".join(f"{n:g}" for n in SIM_SLOW) in option.help
 
 
 @pytest.fixture(scope="module")
 def short():
     """Study of a flight so short that most differences are rounding."""
-    return conduct(Experiment.of(duration=0.5), ENGINES, [1, 8], ["none", "all"], 1)
+    return run_study(Experiment.of(duration=0.5), ENGINES, [1, 8], ["none", "all"], 1)
 
 
 def test_no_text_of_a_picture_is_cut_off(short, study, monkeypatch):
     figures = []
     for module in (pictures_of_study, cause_plots):
         monkeypatch.setattr(module, "png", figures.append)
-    for draw, what in [*pictures(short).values(), *pictures(study).values()]:
+    for draw, what in [*list_figures(short).values(), *list_figures(study).values()]:
         draw(*what)
     assert len(figures) == 2 * 14
     for figure in figures:
@@ -140,7 +140,7 @@ def test_rounding_is_drawn_as_a_flat_line(short, monkeypatch):
     figures = []
     monkeypatch.setattr(pictures_of_study, "png", figures.append)
     for kind, least in (("error", 1e-8), ("position", 1e-3), ("rates", 1e-3)):
-        pictures_of_study.draw(pictures_of_study.curves(short, "none"), kind)
+        pictures_of_study.draw(pictures_of_study.collect_curves(short, "none"), kind)
         for axes in figures[-1].axes:
             low, high = axes.get_ylim()
             assert high - low >= 0.999 * least

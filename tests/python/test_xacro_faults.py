@@ -10,7 +10,7 @@ from faults import refusal
 import quadcore as qc
 from quadcore.model import resources
 
-SHIPPED = Path(resources.shipped("urdf")["quadrotor"]).name
+SHIPPED = Path(resources.list_shipped("urdf")["quadrotor"]).name
 
 
 def told(**arguments):

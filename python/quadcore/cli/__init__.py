@@ -10,9 +10,9 @@ from typing import Sequence
 
 from .. import __version__
 from .._core import FlightError, QuadcoreError
-from ..simulation.engines import ENGINE, STUDIED
+from ..simulation.engines import ENGINE, STUDY_ENGINE
 from ..support import interrupts
-from ..support.output_files import shown
+from ..support.output_files import printable_name
 from . import (
     compare,
     completion,
@@ -58,7 +58,7 @@ _COMMANDS = (
 _DESCRIPTION = (
     "Multirotor simulator and controller test bench.",
     f"By default run, compare, serve and export-fmu use the engine {ENGINE}; evaluate, sweep, tune "
-    f"and fit use {STUDIED}; validate compares all engines.",
+    f"and fit use {STUDY_ENGINE}; validate compares all engines.",
 )
 
 _EPILOG = """\
@@ -117,7 +117,7 @@ def _run_command(argv: Sequence[str] | None) -> int:
         terminal.discard_output()
     except OSError as error:
         terminal.discard_output()
-        where = shown(error.filename) if error.filename else "standard output"
+        where = printable_name(error.filename) if error.filename else "standard output"
         terminal.print_message(f"error: {where}: {error.strerror or error}")
         return 2
     return 0

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ..simulation.log import Log, check_log_path
-from ..support.output_files import remove_left
+from ..support.output_files import remove_leftovers
 from .parser import add_command
 
 _FORMATS = ".csv, .mat or .bag"
@@ -29,5 +29,5 @@ def register(commands: Any) -> None:
 def convert_log(arguments: argparse.Namespace) -> None:
     """Read one log, write the other."""
     check_log_path(arguments.target)
-    remove_left(arguments.target)
+    remove_leftovers(arguments.target)
     Log.of_file(arguments.source).to_file(arguments.target)

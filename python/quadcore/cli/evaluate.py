@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._core import InputError
-from ..simulation.engines import STUDIED
+from ..simulation.engines import STUDY_ENGINE
 from ..studies.options import STUDY, EvaluateOptions
 from ..studies.output_folder import output_folder
 from . import options, reading, terminal
@@ -37,7 +37,7 @@ def register(commands: Any) -> None:
     )
     options.add_combined(parser)
     options.add_vary(parser, f", scenario{options.CONTROLLER_KEYS}")
-    options.add_study(parser, EvaluateOptions, [STUDIED])
+    options.add_study(parser, EvaluateOptions, [STUDY_ENGINE])
     find_group(parser, STUDY).add_argument(
         "--margins", action="store_true", help="also search for gain and delay margins"
     )

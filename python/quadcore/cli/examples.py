@@ -33,13 +33,15 @@ def register(commands: Any) -> None:
 def copy_examples(arguments: argparse.Namespace) -> None:
     """Copy the folders; nothing is overwritten."""
     for name in _FOLDERS:
-        if not (resources.root() / name).is_dir():
-            raise InputError(f"{resources.root()}: has no folder {name}. Install quadcore again.")
+        if not (resources.find_root() / name).is_dir():
+            raise InputError(
+                f"{resources.find_root()}: has no folder {name}. Install quadcore again."
+            )
         if (arguments.folder / name).exists():
             raise InputError(f"{arguments.folder / name}: exists already. Name another folder.")
     make_folder(arguments.folder)
     for name in _FOLDERS:
         target = arguments.folder / name
-        shutil.copytree(resources.root() / name, target, ignore=_LEFT_OUT)
+        shutil.copytree(resources.find_root() / name, target, ignore=_LEFT_OUT)
         if not arguments.quiet:
             terminal.print_written([target])

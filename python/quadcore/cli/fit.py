@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._core import InputError, engines, parse_number
-from ..simulation.engines import STUDIED
+from ..simulation.engines import STUDY_ENGINE
 from ..studies.fit.record import CHANNELS
 from ..studies.options import FLIGHT, OUTPUT, STUDY
 from ..support import parse
-from ..support.output_files import atomic_write, check_writable, text_bytes
+from ..support.output_files import atomic_write, check_writable, encode_text
 from . import options, reading, terminal
 from .interrupted_output import keep_partial_output
 from .parser import add_command, find_group
@@ -87,7 +87,7 @@ def register(commands: Any) -> None:
     )
     names = [name for name, _ in engines()]
     find_group(parser, FLIGHT).add_argument(
-        "--engine", choices=names, default=STUDIED, help=f"engine (default: {STUDIED})"
+        "--engine", choices=names, default=STUDY_ENGINE, help=f"engine (default: {STUDY_ENGINE})"
     )
     options.add_options(parser, "world", "dt")
     output.add_argument(
@@ -108,7 +108,7 @@ def fit_model(arguments: argparse.Namespace) -> None:
 
     def write_model(model: Any) -> None:
         with atomic_write(out) as stream:
-            stream.write(text_bytes(model.document.text))
+            stream.write(encode_text(model.document.text))
 
     with keep_partial_output(
         "model", out, write_model, "best model so far"

@@ -233,7 +233,7 @@ def _make_parameter_table(plugin: Any) -> Table:
 def _shorten_origin(origin: str) -> str:
     if origin == "set":
         return "--set"
-    built_in = f"{resources.root()}{os.sep}"
+    built_in = f"{resources.find_root()}{os.sep}"
     return origin[len(built_in) :] if origin.startswith(built_in) else origin
 
 

@@ -54,7 +54,7 @@ def print_entries(entries: List[Dict[str, Any]]) -> None:
 def list_entries(kind: str) -> List[Dict[str, Any]]:
     """List the names of a kind with all that is known of them."""
     if kind in _FOLDERS:
-        files = resources.shipped(_FOLDERS[kind])
+        files = resources.list_shipped(_FOLDERS[kind])
         found: List[Dict[str, Any]] = [
             {"name": name, "file": str(file)} for name, file in files.items()
         ]

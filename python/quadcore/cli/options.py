@@ -30,7 +30,7 @@ from ..support import parse
 from ..support.values import Number
 from .parser import complete_from, find_group
 
-MODEL = "URDF or xacro file, or a built-in model: " + ", ".join(resources.shipped("urdf"))
+MODEL = "URDF or xacro file, or a built-in model: " + ", ".join(resources.list_shipped("urdf"))
 
 CHANGES = ("parameters", "xacro_args", "ignore")
 """Options that change a model."""
@@ -48,7 +48,7 @@ class FlightOptions(Options):
             "scenario",
             metavar="FILE",
             meaning="scenario file or built-in scenario of disturbances and faults: "
-            + ", ".join([NONE, *resources.shipped("config/scenarios")]),
+            + ", ".join([NONE, *resources.list_shipped("config/scenarios")]),
             read=str,
         ),
     )
@@ -86,8 +86,8 @@ def add_options(
 
 
 _COMPLETIONS = {
-    "world": list(resources.shipped("worlds")),
-    "scenario": [NONE, *resources.shipped("config/scenarios")],
+    "world": list(resources.list_shipped("worlds")),
+    "scenario": [NONE, *resources.list_shipped("config/scenarios")],
 }
 """Names of files that come with quadcore, by option."""
 
@@ -106,7 +106,7 @@ def add_model(
         default=default,
         help=MODEL if default is None else f"{MODEL} (default: {default})",
     )
-    complete_from(model, list(resources.shipped("urdf")))
+    complete_from(model, list(resources.list_shipped("urdf")))
     if changes:
         add_options(parser, *CHANGES)
 
@@ -189,7 +189,7 @@ def add_combined(parser: argparse.ArgumentParser) -> None:
     )
     complete_from(controller, controllers.NAMES)
     complete_from(reference, references.NAMES)
-    complete_from(model, list(resources.shipped("urdf")))
+    complete_from(model, list(resources.list_shipped("urdf")))
 
 
 _CONTROLLERS = (

@@ -11,7 +11,7 @@ from typing import Callable, Iterator, TypeVar
 import yaml
 
 from .._core import InputError
-from ..support.yaml_nodes import line_of, pairs, root, scalar
+from ..support.yaml_nodes import find_line, read_pairs, read_root, read_scalar
 
 _SIGNS = {"set": "=", "vary": "=", "xacro": ":="}
 """Options that give values to keys, with the sign between them."""
@@ -55,12 +55,12 @@ class OptionsFile:
         self._parser = parser
         self._lines: dict[str, int] = {}
         self._read = argparse.Namespace()
-        for key, node in pairs(path, root(path), _PAIRS):
+        for key, node in read_pairs(path, read_root(path), _PAIRS):
             name = key.value
             action = parser._option_string_actions.get(f"--{name}")
             if action is None or name in ("help", "options"):
                 raise InputError(
-                    f"{path}:{line_of(key)}: there is no option '{name}'; see {parser.prog} -h"
+                    f"{path}:{find_line(key)}: there is no option '{name}'; see {parser.prog} -h"
                 )
             for text, line in self._write_values(name, action, node):
                 self._store(action, text, line)
@@ -73,8 +73,8 @@ class OptionsFile:
         """
         for name in _SIGNS:
             mine = {key for key, _ in getattr(arguments, name)}
-            pairs = getattr(self._read, name, [])
-            setattr(self._read, name, [pair for pair in pairs if pair[0] not in mine])
+            given = getattr(self._read, name, [])
+            setattr(self._read, name, [pair for pair in given if pair[0] not in mine])
         both: argparse.Namespace = self._parser.parse_args(arguments.words[1:], self._read)
         return both
 
@@ -111,18 +111,18 @@ class OptionsFile:
         """Write each value of an option as on the command line, with its line in the file."""
         if action.nargs == 0:
             if self._write_value(name, node) not in ("true", "false"):
-                raise InputError(f"{self._path}:{line_of(node)}: {name}: write true or false")
+                raise InputError(f"{self._path}:{find_line(node)}: {name}: write true or false")
             if self._write_value(name, node) == "true":
-                yield "", line_of(node)
+                yield "", find_line(node)
         elif name in _SIGNS and isinstance(node, yaml.MappingNode):
-            for key, value in pairs(self._path, node, _PAIRS):
-                self._lines[key.value] = line_of(key)
-                yield f"{key.value}{_SIGNS[name]}{self._write_list(name, value)}", line_of(key)
+            for key, value in read_pairs(self._path, node, _PAIRS):
+                self._lines[key.value] = find_line(key)
+                yield f"{key.value}{_SIGNS[name]}{self._write_list(name, value)}", find_line(key)
         elif _may_repeat(action):
             for item in node.value if isinstance(node, yaml.SequenceNode) else [node]:
-                yield self._write_value(name, item), line_of(item)
+                yield self._write_value(name, item), find_line(item)
         else:
-            yield self._write_list(name, node), line_of(node)
+            yield self._write_list(name, node), find_line(node)
 
     def _write_list(self, name: str, node: yaml.Node) -> str:
         if isinstance(node, yaml.SequenceNode):
@@ -130,9 +130,9 @@ class OptionsFile:
         return self._write_value(name, node)
 
     def _write_value(self, name: str, node: yaml.Node) -> str:
-        written = scalar(self._path, name, node)
+        written = read_scalar(self._path, name, node)
         if not written[:1].isdigit() and written not in ("true", "false"):  # these name nothing
-            self._lines[written] = line_of(node)
+            self._lines[written] = find_line(node)
         return written
 
 

@@ -10,7 +10,7 @@ from typing import Any, Callable, NoReturn, Sequence
 
 from .._core import InputError
 from ..studies.options import GROUPS
-from ..support.parameters import did_you_mean
+from ..support.parameters import suggest
 
 
 class Parser(argparse.ArgumentParser):
@@ -23,7 +23,7 @@ class Parser(argparse.ArgumentParser):
         read, unknown = super().parse_known_args(*given, **named)
         if unknown:  # reported by the command, not by the parser of all commands
             options = [word.partition("=")[0] for word in unknown if word.startswith("-")]
-            near = did_you_mean(options[0], list(self._option_string_actions)) if options else ""
+            near = suggest(options[0], list(self._option_string_actions)) if options else ""
             self.error(f"unrecognized arguments: {' '.join(unknown)}{near}")
         return read, unknown
 
@@ -31,7 +31,7 @@ class Parser(argparse.ArgumentParser):
         try:
             super()._check_value(action, value)
         except argparse.ArgumentError as error:
-            near = did_you_mean(str(value), [str(choice) for choice in action.choices or ()])
+            near = suggest(str(value), [str(choice) for choice in action.choices or ()])
             raise argparse.ArgumentError(action, f"{error.message}{near}") from None
 
     def exit(self, status: int = 0, message: str | None = None) -> NoReturn:  # noqa: D102

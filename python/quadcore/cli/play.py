@@ -11,7 +11,7 @@ from ..model import resources
 from ..simulation.log import Log
 from ..studies.options import OUTPUT, VEHICLE
 from ..support import parse
-from ..support.output_files import atomic_write, check_writable, text_bytes
+from ..support.output_files import atomic_write, check_writable, encode_text
 from . import options, terminal
 from .parser import add_command, complete_from, find_group
 from .run_folder import find_logs, find_rotors
@@ -45,7 +45,7 @@ def register(commands: Any) -> None:
         help="model that gives the places of the rotors (default: that of the folder that `run` "
         "wrote, else a cross)",
     )
-    complete_from(model, list(resources.shipped("urdf")))
+    complete_from(model, list(resources.list_shipped("urdf")))
     options.add_quiet(parser)
 
 
@@ -82,7 +82,7 @@ def make_page(arguments: argparse.Namespace) -> None:
     ]
     text = render_page(flights, ", ".join(names))
     with atomic_write(out) as stream:
-        stream.write(text_bytes(text))
+        stream.write(encode_text(text))
     if not arguments.quiet:
         terminal.print_written([out])
 

@@ -10,11 +10,11 @@ from typing import Any
 
 from .._core import InputError, QuadcoreError
 from ..formats.rows import Recorder
-from ..simulation.controller_pilot import controller_errors_as_failures
+from ..simulation.controller_pilot import convert_controller_errors
 from ..simulation.engines import check_wrenches, list_engines
-from ..simulation.flight import columns_of, fly, steps_within
-from ..simulation.log import check_log_path, log_file
-from ..simulation.recording import Errors, Fastest, Recording, Thinned
+from ..simulation.flight import count_steps, fly, list_columns
+from ..simulation.log import check_log_path, make_log_file
+from ..simulation.recording import DecimatedRows, FastestRotor, Recording, TrackingError
 from ..studies.options import OUTPUT
 from ..studies.output_folder import output_folder
 from ..support import interrupts
@@ -66,26 +66,26 @@ def _run(arguments: argparse.Namespace) -> None:
     plan = reading.make_flight_plan(arguments)
     simulation = plan.simulation()
     pilot = plan.pilot(simulation)
-    columns = columns_of(simulation, plan.topics, pilot)
-    fastest, drawn, errors = Fastest(simulation), None, None
+    columns = list_columns(simulation, plan.topics, pilot)
+    fastest, drawn, errors = FastestRotor(simulation), None, None
     others: list[Recorder] = [fastest]
     if pilot is not None:
-        errors = Errors(columns)
+        errors = TrackingError(columns)
         others.append(errors)
     if arguments.wrenches:
         check_wrenches(simulation.engine)
     terms = simulation.wrench_terms if arguments.wrenches else []
     if out is not None:
-        steps = steps_within(plan.duration, simulation.dt)
-        drawn = Thinned(1 + steps // plan.log_every, columns, terms)
+        steps = count_steps(plan.duration, simulation.dt)
+        drawn = DecimatedRows(1 + steps // plan.log_every, columns, terms)
         others.append(drawn)
     files = _check_log_files(arguments)
-    logs = [log_file(file, columns, terms, simulation.ignored) for file in files]
+    logs = [make_log_file(file, columns, terms, simulation.ignored) for file in files]
     recording = Recording(logs, others)
     described = run_folder.write_description(arguments, plan) if out is not None else []
     started = time.perf_counter()
     try:
-        with terminal.show_progress(arguments.quiet) as progress, controller_errors_as_failures(
+        with terminal.show_progress(arguments.quiet) as progress, convert_controller_errors(
             simulation
         ):
             fly(

@@ -21,7 +21,7 @@ from ..simulation.simulation import Simulation
 from ..simulation.trajectory import per_command
 from ..studies.table import make_json, save_files
 from ..support.input_files import is_file, read_text
-from ..support.output_files import text_bytes
+from ..support.output_files import encode_text
 
 LOG = "log.csv"
 MODEL = "model.urdf"
@@ -59,7 +59,7 @@ def write_description(arguments: argparse.Namespace, plan: FlightPlan) -> List[P
         "ignore": list(arguments.ignore),
         "log": LOG,
     }
-    model = text_bytes(plan.model.document.text)
+    model = encode_text(plan.model.document.text)
     return save_files(arguments.out, {MODEL: model, DOCUMENT: make_json(content)})
 
 

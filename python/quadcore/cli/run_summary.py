@@ -7,22 +7,22 @@ from typing import Any, Dict, List, Optional, Tuple
 
 import numpy as np
 
-from ..simulation.controller_pilot import Guided
+from ..simulation.controller_pilot import ControllerPilot
 from ..simulation.flight_plan import FlightPlan
-from ..simulation.recording import TAIL, Errors, Fastest
+from ..simulation.recording import TAIL, FastestRotor, TrackingError
 from ..simulation.simulation import Simulation
 from ..simulation.trajectory import is_slow, per_command
-from ..support.rotation import roll_pitch_yaw
+from ..support.rotation import to_roll_pitch_yaw
 
 
 def summarize(
     arguments: argparse.Namespace,
     plan: FlightPlan,
     simulation: Simulation,
-    fastest: Fastest,
+    fastest: FastestRotor,
     elapsed: float,
-    pilot: Optional[Guided],
-    errors: Optional[Errors],
+    pilot: Optional[ControllerPilot],
+    errors: Optional[TrackingError],
 ) -> Dict[str, Any]:
     """Collect the result in plain values, by name."""
     steps = round(simulation.time / simulation.dt)
@@ -34,7 +34,9 @@ def summarize(
         "steps": steps,
         "steps_per_second": steps / elapsed,
         "final_position": _round(simulation.state.position, 9),
-        "final_roll_pitch_yaw": _round(np.degrees(roll_pitch_yaw(simulation.state.orientation)), 7),
+        "final_roll_pitch_yaw": _round(
+            np.degrees(to_roll_pitch_yaw(simulation.state.orientation)), 7
+        ),
         "max_rotor_speed": float(fastest.speed),
     }
     if is_slow(size):

@@ -10,8 +10,8 @@ from typing import Any, Sequence
 from ..formats.rows import LogFile
 from ..serve import Server
 from ..serve.server import TIMEOUT
-from ..simulation.flight import columns_of
-from ..simulation.log import check_log_path, log_file
+from ..simulation.flight import list_columns
+from ..simulation.log import check_log_path, make_log_file
 from ..studies.options import OUTPUT
 from ..support import parse
 from . import options, reading, terminal
@@ -65,7 +65,7 @@ def serve_clients(arguments: argparse.Namespace) -> None:
     record = None
     if arguments.log is not None:
         check_log_path(arguments.log)
-        record = _Logs(arguments.log, columns_of(simulation, topics), simulation.ignored).begin
+        record = _Logs(arguments.log, list_columns(simulation, topics), simulation.ignored).begin
     with Server(
         simulation, address, topics, record, arguments.log_every, arguments.timeout
     ) as server:
@@ -88,7 +88,7 @@ class _Logs:
         while self._count > 1 and os.path.lexists(path):  # written by an earlier server
             self._count += 1
             path = self._name_numbered()
-        return log_file(path, self._columns, (), self._ignored)
+        return make_log_file(path, self._columns, (), self._ignored)
 
     def _name_numbered(self) -> Path:
         return self._first.with_name(f"{self._first.stem}-{self._count}{self._first.suffix}")

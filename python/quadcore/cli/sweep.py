@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..simulation.engines import STUDIED
+from ..simulation.engines import STUDY_ENGINE
 from ..studies import tracking_metrics
 from ..studies.distributions import DESIGNS, list_forms
 from ..studies.options import OUTPUT, STUDY, SweepOptions
@@ -62,7 +62,7 @@ def register(commands: Any) -> None:
         help="; ".join(f"{name}: {meaning}" for name, (meaning, _) in DESIGNS.items())
         + f" (default: {default})",
     )
-    options.add_study(parser, SweepOptions, [STUDIED])
+    options.add_study(parser, SweepOptions, [STUDY_ENGINE])
     study.add_argument(
         "--dask", metavar="ADDRESS", help="Dask scheduler that runs the flights, tcp://HOST:PORT"
     )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from .._core import InputError
 from ..control import controllers, gains
 from ..model import resources
-from ..simulation.engines import STUDIED
+from ..simulation.engines import STUDY_ENGINE
 from ..studies.options import CONTROLLER, OUTPUT, STUDY, VEHICLE, Options
 from ..support import parse
 from ..support.output_files import check_writable
@@ -42,7 +42,7 @@ def register(commands: Any) -> None:
         help="URDF or xacro files, or built-in models (default: quadrotor)",
     )  # fmt: skip
     complete_from(controller, controllers.NAMES)
-    complete_from(model, list(resources.shipped("urdf")))
+    complete_from(model, list(resources.list_shipped("urdf")))
     find_group(parser, OUTPUT).add_argument(
         "-o", "--out", metavar="GAINS.yaml", type=Path, required=True, help="file to write"
     )
@@ -82,7 +82,7 @@ def register(commands: Any) -> None:
         help="minimum number of gain sets to try (default: 300)",
     )
     options.add_vary(parser, f", scenario{options.CONTROLLER_KEYS}")
-    options.add_study(parser, Options, STUDIED)
+    options.add_study(parser, Options, STUDY_ENGINE)
 
 
 def tune_controller(arguments: argparse.Namespace) -> None:

@@ -135,10 +135,10 @@ def judge_recording(arguments: argparse.Namespace) -> None:
     )
     if arguments.out is not None:
         prepare_folder(arguments.out, ["plant.csv"])
-    rows = list(recorded_plant.judge(plan, arguments.plant, arguments.commands, arguments.engine))
+    rows = list(recorded_plant.replay(plan, arguments.plant, arguments.commands, arguments.engine))
     if arguments.out is not None:
         with atomic_write(arguments.out / "plant.csv") as stream:
-            stream.write(recorded_plant.table_of(rows, len(plan.model.joints)))
+            stream.write(recorded_plant.write_table(rows, len(plan.model.joints)))
     if arguments.json:
         terminal.print_json([_describe_judged(row) for row in rows])
     elif not arguments.quiet:
@@ -162,7 +162,7 @@ _JUDGED = ("position", "attitude", "velocity", "rates")
 
 def _conduct(experiment: Experiment, arguments: argparse.Namespace) -> Study:
     """Simulate; the flights that ended before an interrupt are written."""
-    from ..thesis.validation import conduct
+    from ..thesis.validation import run_study
 
     def write_tables_so_far(study: Study) -> None:
         _write(study, arguments.out)
@@ -170,7 +170,7 @@ def _conduct(experiment: Experiment, arguments: argparse.Namespace) -> Study:
     with keep_partial_output("study", arguments.out, write_tables_so_far), terminal.show_progress(
         arguments.quiet
     ) as progress:
-        return conduct(
+        return run_study(
             experiment,
             arguments.engine,
             arguments.sim_slow,
@@ -191,10 +191,10 @@ def _write(study: Study, out: Path) -> List[Path]:
 
 def _draw(study: Study, arguments: argparse.Namespace, failures: List[str]) -> Dict[str, bytes]:
     """Write each figure as soon as it is drawn, and then the page with all figures."""
-    from ..thesis.validation.figures import pictures
-    from ..thesis.validation.output import write_picture, write_report
+    from ..thesis.validation.figures import list_figures
+    from ..thesis.validation.output import write_figure, write_report
 
-    wanted = pictures(study)
+    wanted = list_figures(study)
     names = list(wanted)
     drawn: Dict[str, bytes] = {}
     failed: List[str] = []
@@ -211,7 +211,7 @@ def _draw(study: Study, arguments: argparse.Namespace, failures: List[str]) -> D
                 if isinstance(picture, QuadcoreError):
                     failed.append(f"{name}: {picture}")
                 else:
-                    write_picture(name, picture, arguments.out)
+                    write_figure(name, picture, arguments.out)
                     drawn[name] = picture
 
             run_contained(draw, names, take, arguments.jobs, progress=progress)

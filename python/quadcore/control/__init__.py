@@ -1,1 +1,1 @@
-"""Controllers: the built-in laws, their gains and references, and the inner loop."""
+"""Controllers, their gains, reference trajectories and the inner loop."""

@@ -1,4 +1,4 @@
-"""A control law of quadcore, as `Simulation.run` flies it."""
+"""Built-in controllers."""
 
 from __future__ import annotations
 
@@ -8,28 +8,30 @@ from typing import Any, Dict, Optional, Sequence
 import numpy as np
 
 from .. import _core
-from ..support.parameters import values
+from ..support.parameters import check_values
 from .rate_and_delay import DELAY, RATE, check_rate_or_delay
 
 
 class BuiltInController:
-    """A law of quadcore with its parameters; what it believes of the vehicle it takes from it.
+    """Built-in controller with its parameters.
+
+    Its model of the vehicle comes from the simulated vehicle, or from `belief`. Parameters named
+    ``believed_...`` scale this model.
 
     Attributes
     ----------
     name : str
-        Of the law.
+        Name of the controller.
     parameters : dict of str to float
-        That were given.
+        Parameters that differ from the defaults.
     rate : float
-        Calls per simulated second.
+        Calls per simulated second, 1/s.
     delay : float
-        Time after which a command reaches the motors, s.
+        Time from a call until its command reaches the motors, s.
     spins : list of float
-        1 or -1 for each rotor; empty: neighbours around the vehicle turn against each other.
+        Direction of each rotor, 1 or -1; empty if neighbouring rotors turn in opposite directions.
     belief : Simulation, optional
-        What is flown, as the law believes; None: what is flown. Parameters named ``believed_...``
-        make it wrong.
+        Vehicle that the controller is designed for. Default: the simulated vehicle.
     """
 
     def __init__(
@@ -46,22 +48,22 @@ class BuiltInController:
         self.delay = delay
         self.spins = list(spins)
         self.belief = belief
-        self.parameters = values(f"law '{name}'", parameters)
+        self.parameters = check_values(f"law '{name}'", parameters)
         self._controller: Optional[_core.Controller] = None
         self._period = math.nan
 
     def reset(self, simulation: _core.Simulation) -> None:
-        """Begin anew, on what is to be flown.
+        """Prepare for a run.
 
         Parameters
         ----------
         simulation : Simulation
-            Says what the law believes of the vehicle, unless `belief` does.
+            Simulation that the controller is to command.
 
         Raises
         ------
         InputError
-            A vehicle that the law cannot fly, or a rate that is none.
+            If the controller does not support the vehicle, or its rate is out of range.
         """
         vehicle = simulation if self.belief is None else self.belief
         self._controller = _core.Controller(
@@ -71,55 +73,55 @@ class BuiltInController:
         self._period = max(1 / rate, simulation.dt)  # called once a step at most
 
     def __call__(self, t: float, state: Any, reference: Any) -> np.ndarray:
-        """Give the speeds of the rotors, rad/s."""
-        controller = self._begun()
+        """Return the signed rotor speeds, rad/s; see `Controller`."""
+        controller = self._get_controller()
         if reference is None:
             raise _core.InputError(f"law '{self.name}' has no reference to follow; give one")
         return controller.command(self._period, state, reference)
 
     def at(self, simulation: _core.Simulation, sensed: str, shape: _core.ReferenceShape) -> Any:
-        """Give the speeds that a call would, for what the simulation knows now.
+        """Return the rotor speeds for the present state of a simulation.
 
         Parameters
         ----------
         simulation : Simulation
-            Which flies.
+            Simulation that the controller commands.
         sensed : str
-            Topic on which the odometry stands.
+            Topic of the odometry.
         shape : ReferenceShape
-            Where to fly: `Shape.shape`.
+            Reference trajectory, as `Shape.shape`.
 
         Returns
         -------
         ndarray (n,)
-            rad/s, signed.
+            Signed rotor speeds, rad/s.
         """
-        return self._begun().command_at(self._period, simulation, sensed, shape)
+        return self._get_controller().command_at(self._period, simulation, sensed, shape)
 
-    def _begun(self) -> _core.Controller:
+    def _get_controller(self) -> _core.Controller:
         if self._controller is None:
             raise _core.InputError(f"law '{self.name}' flies nothing yet; call its reset()")
         return self._controller
 
     @property
     def saturated(self) -> bool:
-        """Whether the rotors could not do what was asked of them last."""
+        """Whether the last command reached the limits of the rotors."""
         return self._controller is not None and bool(self._controller.saturated)
 
     def copy(self) -> BuiltInController:
-        """Make the same law, as it is before it flies."""
+        """Return an equal controller that has not run."""
         same = BuiltInController(self.name, self.rate, self.delay, self.spins, self.belief)
-        same.parameters.update(self.parameters)  # whose names the core checks
+        same.parameters.update(self.parameters)  # the core checks their names
         return same
 
-    def told(self) -> Dict[str, Any]:
-        """Say what it is, in plain values."""
+    def to_dict(self) -> Dict[str, Any]:
+        """Return the attributes by name."""
         if self.belief is not None:
             raise _core.InputError(f"law '{self.name}' with a belief of its own cannot be told")
         return {n: v for n, v in self.__dict__.items() if not n.startswith("_")}
 
     def __getstate__(self) -> Dict[str, Any]:
-        return {**self.__dict__, "_controller": None}  # made anew by reset()
+        return {**self.__dict__, "_controller": None}  # reset() makes another
 
     def __repr__(self) -> str:
         inside = "".join(f", {name}={value:g}" for name, value in self.parameters.items())

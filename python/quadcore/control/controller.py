@@ -1,4 +1,4 @@
-"""What a controller of a flight is: a law of quadcore or an object of the user's."""
+"""Interface of controllers."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import _core
 from .._core import InputError, odometry_parts
-from ..support.arguments import brief
+from ..support.arguments import shorten
 from .built_in import BuiltInController
 from .inner_loop import AttitudeThrust, RatesThrust
 from .keywords import ControllerName
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ..support.values import FloatArray
 
 SENSED = "odom"
-"""Topic on which the odometry stands."""
+"""Topic of the odometry that controllers receive."""
 
 
 class ControllerFunction(Protocol):
@@ -33,51 +33,53 @@ class ControllerFunction(Protocol):
 
 
 class Controller(Protocol):
-    """A law. A function ``law(t, state, reference)`` will do; the other members are optional.
+    """Interface of controllers; a function ``controller(t, state, reference)`` suffices.
+
+    `reset` and all attributes are optional.
 
     Attributes
     ----------
-    rate : float
-        Calls per simulated second, at most one per step; 500 without the attribute.
-    delay : float
-        From a call to the first step whose motors know of it, s, rounded up to whole steps; 0
-        without the attribute. The first call of a run acts at once, for nothing precedes it.
-    inner_loop : InnerLoop
-        Flies the `AttitudeThrust` and `RatesThrust` that it returns; one with the defaults without
-        the attribute.
+    rate : float, default 500
+        Calls per simulated second, 1/s; at most one call per step.
+    delay : float, default 0
+        Time from a call until its command reaches the motors, s, rounded up to whole steps. The
+        command of the first call acts at once.
+    inner_loop : InnerLoop, optional
+        Converts a returned `AttitudeThrust` or `RatesThrust` to rotor speeds. Default: an inner
+        loop with default gains.
     """
 
     def reset(self, simulation: Any, /) -> None:
-        """Begin anew.
+        """Prepare for a run; called before its first step.
 
         Parameters
         ----------
         simulation : Simulation
-            Which flies; called with it before the first step of each run.
+            Simulation that the controller is to command.
         """
 
     def __call__(
         self, t: float, state: Odometry, reference: Any, /
     ) -> Union[npt.ArrayLike, AttitudeThrust, RatesThrust]:
-        """Give the speeds for the steps until the next call.
+        """Return the command until the next call.
 
-        It may read the simulation that flies, and publish; to move or command it is refused.
+        A controller may read the simulation and publish on topics. It must not step, move or
+        command the simulation.
 
         Parameters
         ----------
         t : float
-            Time of the simulation, s.
+            Simulation time, s.
         state : Odometry
-            What the odometry said last.
-        reference
-            What the run's reference says at that time, with attributes position, velocity,
-            acceleration, jerk, snap, yaw, yaw_rate, yaw_acceleration; None without one.
+            Latest odometry message.
+        reference : Reference or None
+            Value of the reference at `t`; None if the run has no reference.
 
         Returns
         -------
-        array_like, shape (n,), or AttitudeThrust, or RatesThrust
-            Rotor speeds, rad/s, signed, as `Simulation.command` takes them; or what an inner loop
-            is to make of them.
+        array_like (n,), AttitudeThrust or RatesThrust
+            Signed rotor speeds as for `Simulation.command`, rad/s; or a set point for the inner
+            loop.
         """
 
 
@@ -86,28 +88,27 @@ ControllerLike = Union[Controller, ControllerFunction, ControllerName]
 
 
 class Odometry:
-    """What the odometry plugin said, with the noise that its tags ask for.
+    """Latest message of the odometry plugin, including the noise that its tags define.
 
     Parameters
     ----------
     simulation : Simulation
-        Whose odometry it is.
+        Simulation whose odometry is read.
 
     Attributes
     ----------
     time : float
-        Of the message, s.
+        Time of the message, s.
     position : ndarray (3,)
-        Frame origin in the world, m.
+        Position of the frame origin in the world, m.
     orientation : ndarray (4,)
-        Of the frame in the world, unit quaternion x, y, z, w.
+        Orientation of the frame in the world, unit quaternion x, y, z, w.
     linear_velocity : ndarray (3,)
-        Of the frame origin, m/s; in the axes that the plugin's `twistFrame` names.
+        Velocity of the frame origin in the axes of the plugin's `twistFrame`, m/s.
     angular_velocity : ndarray (3,)
-        Of the frame, body axes, rad/s.
+        Angular velocity of the frame, body axes, rad/s.
     topic : callable
-        ``topic(name)`` is what stands on another topic of the flight, as `Simulation.topic` has
-        it: what other sensors say.
+        ``topic(name)`` returns the message of another topic, as `Simulation.topic` does.
     """
 
     __slots__ = (
@@ -138,19 +139,19 @@ _PARTS = [entry for entry in odometry_parts() if entry[0] in Odometry.__slots__]
 
 
 def check_callable(controller: Any) -> None:
-    """Raise `InputError` unless a controller can be called as one."""
+    """Raise `InputError` unless an object can be called as a controller."""
     form = "controller(t, state, reference)"
     if not callable(controller):
         raise InputError(
-            f"controller is {brief(controller)}; give a function, or an object, that is called as "
-            f"{form}"
+            f"controller is {shorten(controller)}; give a function, or an object, that is called "
+            f"as {form}"
         )
     if inspect.isclass(controller):
         name = controller.__name__
         raise InputError(f"controller is the class {name}; give an instance: {name}()")
     try:
         signature = inspect.signature(controller)
-    except (TypeError, ValueError):  # of a compiled one nobody can tell
+    except (TypeError, ValueError):  # compiled functions may have no signature
         return
     try:
         signature.bind(0.0, None, None)
@@ -159,12 +160,12 @@ def check_callable(controller: Any) -> None:
 
 
 def set_parameter(controller: Any, name: str, value: float) -> None:
-    """Give a controller another `rate` or `delay`, or a law of quadcore another parameter.
+    """Set the rate or delay of a controller, or a parameter of a built-in controller.
 
     Raises
     ------
     InputError
-        It cannot have one.
+        If the controller does not have the attribute.
     """
     if name in ("rate", "delay"):
         try:

@@ -1,7 +1,7 @@
-"""Control laws, as `Simulation.run` flies them.
+"""Built-in controllers.
 
-Each function makes one, e.g. ``quadcore.controllers.geometric(kp_xy=4)``; its docstring lists the
-parameters. ``NAMES`` holds them all. `of_file` makes one of a gains file.
+Each function makes a controller, for example ``quadcore.controllers.geometric(kp_xy=4)``; its
+docstring lists the parameters. ``NAMES`` contains all names. `read_controller` reads a gains file.
 """
 
 from __future__ import annotations
@@ -9,37 +9,37 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Callable, List, Optional, Sequence, Tuple
 
 from .. import _core
-from ..support.parameters import did_you_mean, docstring, keyword_signature, read_values
+from ..support.parameters import make_signature, read_values, suggest, write_docstring
 from ..support.user_code import import_controller, names_file
 from ..support.warning import warn
 from . import gains
 from .built_in import BuiltInController
-from .gains import law_for, of_file
+from .gains import make_for_vehicle, read_controller
 from .keywords import ControllerName
 from .rate_and_delay import DELAY, RATE
 
 
 def parse(text: str, vehicle: str = "") -> Any:
-    """Make the controller that a command line names.
+    """Make a controller from a text as the option ``--controller`` takes it.
 
     Parameters
     ----------
-    text
-        ``LAW[:KEY=VALUE,...]``, keys being those of the law's parameters, ``rate`` and ``delay``;
-        a file of gains (.yaml); or your own ``FILE.py[:NAME]`` or ``MODULE:NAME``.
-    vehicle
-        Name of the robot that is to fly: the parameters of a law that are not given are those that
-        are shipped for it, if there are any.
+    text : str
+        ``NAME[:KEY=VALUE,...]`` with parameters, ``rate`` and ``delay`` as keys; a gains file
+        (.yaml); or your own controller as ``FILE.py[:NAME]`` or ``MODULE:NAME``.
+    vehicle : str, optional
+        Name of the robot in its URDF. The gains that are shipped for it become the defaults.
 
     Raises
     ------
     InputError
-        No such law, parameter, file, module or class, or one that cannot be called as a controller.
+        If the controller, a parameter, the file, the module or the name does not exist, or the
+        object cannot be called as a controller.
 
     Warns
     -----
     QuadcoreWarning
-        Gains of a file that are for another vehicle.
+        If the gains of the file belong to another vehicle.
     """
     if text.lower().endswith((".yaml", ".yml")):
         read = gains.read(text)
@@ -51,7 +51,7 @@ def parse(text: str, vehicle: str = "") -> Any:
         return read.make()
     name, _, rest = text.partition(":")
     if name in NAMES:
-        law = law_for(name, vehicle)
+        law = make_for_vehicle(name, vehicle)
         given = read_values(f"law '{text}'", rest)
         law.rate, law.delay = given.pop("rate", law.rate), given.pop("delay", law.delay)
         law.parameters.update(given)
@@ -59,21 +59,23 @@ def parse(text: str, vehicle: str = "") -> Any:
     if ":" in text or names_file(text):
         return import_controller(text)
     raise _core.InputError(
-        f"there is no controller '{text}'{did_you_mean(text, NAMES)}; write one of "
+        f"there is no controller '{text}'{suggest(text, NAMES)}; write one of "
         f"{', '.join(NAMES)}, a gains file that ends in .yaml, FILE.py[:NAME], or MODULE:NAME"
     )
 
 
 _COMMON = """\
-rate, delay : float
-    Calls per simulated second; s after which a command reaches the motors.
+rate : float
+    Calls per simulated second, 1/s.
+delay : float
+    Time from a call until its command reaches the motors, s.
 spins : sequence of float
-    1 or -1 for each rotor; without, neighbours around the vehicle turn against each other.
+    Direction of each rotor, 1 or -1. Default: neighbouring rotors turn in opposite directions.
 belief : Simulation, optional
-    A vehicle to take for the one that is flown."""
+    Vehicle that the controller is designed for. Default: the simulated vehicle."""
 
 
-def _function(
+def _make_function(
     name: str, summary: str, table: List[_core.ParameterSpec]
 ) -> Callable[..., BuiltInController]:
     def make(
@@ -87,12 +89,12 @@ def _function(
         return BuiltInController(name, rate, delay, spins, belief, **parameters)
 
     make.__name__ = make.__qualname__ = name
-    make.__doc__ = docstring(summary, table, _COMMON)
-    make.__signature__ = keyword_signature(make, table)  # type: ignore[attr-defined]
+    make.__doc__ = write_docstring(summary, table, _COMMON)
+    make.__signature__ = make_signature(make, table)  # type: ignore[attr-defined]
     return make
 
 
-_MAKERS = {entry[0]: _function(*entry) for entry in _core.controllers()}
+_MAKERS = {entry[0]: _make_function(*entry) for entry in _core.controllers()}
 NAMES: Tuple[ControllerName, ...] = tuple(_MAKERS)
 __all__ = [
     "NAMES",
@@ -100,12 +102,12 @@ __all__ = [
     "geometric",
     "indi",
     "lqr",
-    "of_file",
     "parse",
     "pd",
     "pd_compensated",
     "pid",
     "pid_thesis",
+    "read_controller",
 ]  # fmt: skip
 
 if TYPE_CHECKING:

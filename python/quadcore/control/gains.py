@@ -1,8 +1,9 @@
-"""Gains files: a law with the parameters with which it flies a vehicle.
+"""Gains files: a controller with its parameters for a vehicle.
 
-A mapping in YAML: ``law``, ``vehicle``, ``rate`` [1/s], ``delay`` [s], ``parameters`` by name and
-``history``, which is kept for people; only ``law`` must be there. Those that quadcore has lie in
-``config/gains/VEHICLE/LAW.yaml``, VEHICLE being the name of the robot in its URDF.
+A gains file is a mapping in YAML with ``law`` (the name of the controller), ``vehicle``, ``rate``
+[1/s], ``delay`` [s], ``parameters`` by name and ``history``, which is for people. Only ``law`` is
+required. The shipped files are ``config/gains/VEHICLE/LAW.yaml``, where VEHICLE is the name of the
+robot in its URDF.
 """
 
 from __future__ import annotations
@@ -15,29 +16,29 @@ from .. import _core
 from ..model import resources
 from ..support.import_lock import LOCK
 from ..support.input_files import is_file
-from ..support.output_files import atomic_write, text_bytes
+from ..support.output_files import atomic_write, encode_text
 from .built_in import BuiltInController
 from .rate_and_delay import DELAY, RATE, check_rate_or_delay
 
 
 @dataclass(frozen=True)
 class Gains:
-    """What a gains file says.
+    """Contents of a gains file.
 
     Attributes
     ----------
     law : str
-        Its name.
+        Name of the controller.
     vehicle : str
-        Name of the robot for which they were made; empty: not told.
+        Name of the robot that the gains are for; empty if unknown.
     rate : float
-        Calls per simulated second.
+        Calls per simulated second, 1/s.
     delay : float
-        Time after which a command reaches the motors, s.
+        Time from a call until its command reaches the motors, s.
     parameters : mapping of str to float
-        Of the law; those that are not there have the law's defaults.
-    history
-        How they were found: a mapping or a list to be written; what is read has None.
+        Parameters of the controller; the others have their defaults.
+    history : mapping or list, optional
+        Origin of the gains, which is written but not read.
     """
 
     law: str
@@ -48,7 +49,7 @@ class Gains:
     history: Any = None
 
     def make(self) -> BuiltInController:
-        """Make the law."""
+        """Make the controller."""
         return BuiltInController(self.law, self.rate, self.delay, (), None, **self.parameters)
 
 
@@ -58,67 +59,85 @@ def read(path: Union[str, Path]) -> Gains:
     Parameters
     ----------
     path : str or path
-        A YAML file with the law, its parameters, rate and delay.
+        YAML file.
 
     Raises
     ------
     InputError
-        A missing file, or one that is wrong: one line with file and line.
+        If the file is missing or wrong; the message begins with ``FILE:LINE``.
     """
     return Gains(*_core.read_gains(str(path)))
 
 
 def write(gains: Gains, path: Union[str, Path]) -> None:
-    """Write a gains file, whole or not at all; raises `InputError` if it cannot be written."""
-    told: Dict[str, Any] = {"law": gains.law}
+    """Write a gains file, completely or not at all.
+
+    Parameters
+    ----------
+    gains : Gains
+        Contents.
+    path : str or path
+        YAML file.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written.
+    """
+    contents: Dict[str, Any] = {"law": gains.law}
     if gains.vehicle:
-        told["vehicle"] = gains.vehicle
-    told["rate"] = check_rate_or_delay("gains", "rate", gains.rate)
-    told["delay"] = check_rate_or_delay("gains", "delay", gains.delay)
-    told["parameters"] = {name: float(value) for name, value in gains.parameters.items()}
+        contents["vehicle"] = gains.vehicle
+    contents["rate"] = check_rate_or_delay("gains", "rate", gains.rate)
+    contents["delay"] = check_rate_or_delay("gains", "delay", gains.delay)
+    contents["parameters"] = {name: float(value) for name, value in gains.parameters.items()}
     if gains.history is not None:
-        told["history"] = gains.history
+        contents["history"] = gains.history
     with LOCK:
         import yaml  # slow to import
 
-    text = yaml.safe_dump(told, sort_keys=False, allow_unicode=True)
+    text = yaml.safe_dump(contents, sort_keys=False, allow_unicode=True)
     with atomic_write(Path(path)) as stream:
-        stream.write(text_bytes(text))
+        stream.write(encode_text(text))
 
 
-def of_file(path: Union[str, Path]) -> BuiltInController:
-    """Make the law of a gains file; raises as `read`.
+def read_controller(path: Union[str, Path]) -> BuiltInController:
+    """Make the controller that a gains file describes.
 
     Parameters
     ----------
     path : str or path
-        As for `read`.
+        YAML file.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or wrong; the message begins with ``FILE:LINE``.
     """
     return read(path).make()
 
 
-def law_for(name: str, vehicle: str) -> BuiltInController:
-    """Make a law with the gains that are shipped for a vehicle, or else with its defaults.
+def make_for_vehicle(name: str, vehicle: str) -> BuiltInController:
+    """Make a controller with the gains that are shipped for a vehicle, or else the defaults.
 
     Parameters
     ----------
     name
-        Of the law.
+        Name of the controller.
     vehicle
         Name of the robot in its URDF.
 
     Raises
     ------
     InputError
-        No such law.
+        If the controller does not exist.
     """
-    path = shipped(name, vehicle)
-    return BuiltInController(name) if path is None else of_file(path)
+    path = find_shipped(name, vehicle)
+    return BuiltInController(name) if path is None else read_controller(path)
 
 
-def shipped(name: str, vehicle: str) -> Optional[Path]:
-    """Path of the gains that are shipped for a vehicle; None if there are none."""
-    folder = resources.root() / "config" / "gains"
+def find_shipped(name: str, vehicle: str) -> Optional[Path]:
+    """Return the path of the gains that are shipped for a vehicle, or None."""
+    folder = resources.find_root() / "config" / "gains"
     path = folder / vehicle / f"{name}.yaml"
-    # A name is no path.
+    # A name may contain no path.
     return path if path.parent.parent == folder and is_file(path) else None

@@ -1,4 +1,4 @@
-"""From attitudes and rates, at which many laws end, down to the rotors."""
+"""Inner loop: rotor speeds from an attitude or angular velocity and a thrust."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Dict, NamedTuple, Optional, Sequence, Uni
 import numpy as np
 
 from .. import _core
-from ..support.arguments import brief
-from ..support.parameters import docstring, values
+from ..support.arguments import shorten
+from ..support.parameters import check_values, write_docstring
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -19,18 +19,18 @@ if TYPE_CHECKING:
     from .keywords import InnerLoopGains
 
 _ROUNDNESS = 1e-3
-"""By which the length of a quaternion may differ from 1."""
+"""Accepted difference between 1 and the length of a quaternion."""
 
 
 class AttitudeThrust(NamedTuple):
-    """An attitude to be held, and the thrust of all rotors: what a controller may return.
+    """Attitude and thrust that a controller may return instead of rotor speeds.
 
     Attributes
     ----------
     orientation : array_like (4,)
-        Of the frame in the world, unit quaternion x, y, z, w.
+        Desired orientation of the frame in the world, unit quaternion x, y, z, w.
     thrust : float
-        Along z of the frame, N.
+        Desired thrust of all rotors along z of the frame, N.
     """
 
     orientation: npt.ArrayLike
@@ -38,14 +38,14 @@ class AttitudeThrust(NamedTuple):
 
 
 class RatesThrust(NamedTuple):
-    """An angular velocity to be held, and the thrust of all rotors: what a controller may return.
+    """Angular velocity and thrust that a controller may return instead of rotor speeds.
 
     Attributes
     ----------
     angular_velocity : array_like (3,)
-        Of the frame, its own axes, rad/s.
+        Desired angular velocity of the frame, body axes, rad/s.
     thrust : float
-        Along z of the frame, N.
+        Desired thrust of all rotors along z of the frame, N.
     """
 
     angular_velocity: npt.ArrayLike
@@ -53,7 +53,7 @@ class RatesThrust(NamedTuple):
 
 
 class InnerLoop:
-    """Flies an attitude or rates with a thrust."""
+    """Compute rotor speeds from an attitude or angular velocity and a thrust."""
 
     def __init__(
         self,
@@ -63,11 +63,11 @@ class InnerLoop:
     ) -> None:
         self.spins = list(spins)
         self.belief = belief
-        self.parameters = values("inner loop", parameters)
+        self.parameters = check_values("inner loop", parameters)
         self._loop: Optional[_core.InnerLoop] = None
 
     def leave(self) -> None:
-        """Begin anew with the next call: other commands come between."""
+        """Start anew at the next call, because other commands come in between."""
         self._loop = None
 
     def speeds(
@@ -77,31 +77,30 @@ class InnerLoop:
         state: Any,
         wanted: Union[AttitudeThrust, RatesThrust],
     ) -> np.ndarray:
-        """Give the speeds of the rotors until the next call.
+        """Return the rotor speeds until the next call.
 
         Parameters
         ----------
         simulation : Simulation
-            Says what flies.
+            Simulation that is commanded.
         period : float
-            Since the last call and until the next, s.
+            Time between two calls, s.
         state : Odometry
-            What the odometry says.
+            Latest odometry message.
         wanted : AttitudeThrust or RatesThrust
-            What is to be flown.
+            Set point.
 
         Returns
         -------
         ndarray (n,)
-            rad/s, signed, as `Simulation.command` takes them.
+            Signed rotor speeds as for `Simulation.command`, rad/s.
 
         Raises
         ------
         InputError
-            Something wanted that is no attitude, rate or thrust, or a vehicle that cannot be
-            flown.
+            If the set point is not valid, or the inner loop does not support the vehicle.
         """
-        target, thrust = _checked(wanted)
+        target, thrust = _check_target(wanted)
         if self._loop is None:
             vehicle = simulation if self.belief is None else self.belief
             self._loop = _core.InnerLoop(vehicle, simulation, self.parameters, self.spins)
@@ -110,7 +109,7 @@ class InnerLoop:
         return self._loop.rates(period, state, target, thrust)
 
     def __getstate__(self) -> Dict[str, Any]:
-        return {**self.__dict__, "_loop": None}  # made anew by the next call
+        return {**self.__dict__, "_loop": None}  # the next call makes another
 
     def __repr__(self) -> str:
         inside = ", ".join(f"{name}={value:g}" for name, value in self.parameters.items())
@@ -119,19 +118,19 @@ class InnerLoop:
 
 _COMMON = """\
 spins : sequence of float
-    1 or -1 for each rotor; without, neighbours around the vehicle turn against each other.
+    Direction of each rotor, 1 or -1. Default: neighbouring rotors turn in opposite directions.
 belief : Simulation, optional
-    A vehicle to take for the one that is flown."""
+    Vehicle that the inner loop is designed for. Default: the simulated vehicle."""
 
-InnerLoop.__doc__ = docstring(
-    "flies an attitude or rates with a thrust, as the laws on rotations do inside",
+InnerLoop.__doc__ = write_docstring(
+    "compute rotor speeds from an attitude or angular velocity and a thrust",
     _core.inner_loop(),
     _COMMON,
 )
 
 
-def _checked(wanted: Union[AttitudeThrust, RatesThrust]) -> Any:
-    """Give target and thrust; raises `InputError` if they are none."""
+def _check_target(wanted: Union[AttitudeThrust, RatesThrust]) -> Any:
+    """Return target and thrust; raises `InputError` if they are not valid."""
     name, count = type(wanted)._fields[0], 4 if isinstance(wanted, AttitudeThrust) else 3
     who = f"{type(wanted).__name__}: its"
     try:
@@ -139,12 +138,12 @@ def _checked(wanted: Union[AttitudeThrust, RatesThrust]) -> Any:
     except (TypeError, ValueError) as error:
         raise _core.InputError(f"{who} {name}: {error}") from None
     if target.shape != (count,) or not np.isfinite(target).all():
-        raise _core.InputError(f"{who} {name} is {brief(wanted[0])}; give {count} finite numbers")
+        raise _core.InputError(f"{who} {name} is {shorten(wanted[0])}; give {count} finite numbers")
     if count == 4:
         length = float(np.linalg.norm(target))
         if abs(length - 1) > _ROUNDNESS:
             raise _core.InputError(f"{who} {name} has length {length:g}; give a unit quaternion")
         target = target / length
     if not (isinstance(wanted.thrust, Real) and math.isfinite(wanted.thrust)):
-        raise _core.InputError(f"{who} thrust is {brief(wanted.thrust)}; give N")
+        raise _core.InputError(f"{who} thrust is {shorten(wanted.thrust)}; give N")
     return target, float(wanted.thrust)

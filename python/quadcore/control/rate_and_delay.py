@@ -1,4 +1,4 @@
-"""When a controller is asked, and how late it acts: bounds and defaults, from the core's table."""
+"""Rate and delay of controllers: bounds and defaults from the table of the core."""
 
 from __future__ import annotations
 
@@ -6,21 +6,21 @@ from numbers import Real
 from typing import Any
 
 from .. import _core
-from ..support.arguments import brief
+from ..support.arguments import shorten
 
 _ROWS = {row.name: row for row in _core.timing()}
 _WORDS = {"rate": "calls per second", "delay": "seconds"}
 
 RATE = float(_ROWS["rate"].default)
-"""Calls per simulated second where none are told."""
+"""Default calls per simulated second."""
 DELAY = float(_ROWS["delay"].default)
-"""Time after which a command reaches the motors where none is told, s."""
+"""Default time from a call until its command reaches the motors, s."""
 
 
 def check_rate_or_delay(who: str, name: str, value: Any) -> float:
-    """Give a `rate` or a `delay` as a number; raises `InputError` if it is out of range."""
+    """Return a `rate` or `delay` as a number; raises `InputError` if it is out of range."""
     if isinstance(value, Real) and _core.is_timing(name, float(value)):
         return float(value)
     raise _core.InputError(
-        f"{who}: its {name} is {brief(value)}; give {_WORDS[name]}, {_ROWS[name].range}"
+        f"{who}: its {name} is {shorten(value)}; give {_WORDS[name]}, {_ROWS[name].range}"
     )

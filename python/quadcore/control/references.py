@@ -1,7 +1,7 @@
-"""References: where a vehicle is to be, with all derivatives.
+"""Reference trajectories with all derivatives.
 
-Each function makes one, e.g. ``quadcore.references.spiral(radius=3)``; its docstring lists the
-parameters. ``NAMES`` holds them all.
+Each function makes a reference, for example ``quadcore.references.spiral(radius=3)``; its docstring
+lists the parameters. ``NAMES`` contains all names.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ import numpy as np
 from .. import _core
 from ..formats import bag, mat
 from ..model import resources
-from ..support.arguments import brief
+from ..support.arguments import shorten
 from ..support.parameters import (
-    did_you_mean,
-    docstring,
-    keyword_signature,
+    check_values,
+    make_signature,
     read_values,
-    values,
+    suggest,
+    write_docstring,
 )
 from .keywords import ReferenceName
 
@@ -78,32 +78,32 @@ class ReferenceLike(Protocol):
 
 
 class Shape:
-    """A reference of a kind that quadcore has.
+    """Built-in reference trajectory.
 
     Parameters
     ----------
     name : str
-        Of its kind.
+        Name of the reference.
     rows : array_like (points, columns), optional
-        Of kinds that go through points, such as ``waypoints``.
+        Points of a reference such as ``waypoints``: t, x, y, z[, yaw] in s, m, rad.
     **parameters
-        Of the kind, m, s, rad.
+        Parameters of the reference in m, s, rad.
 
     Attributes
     ----------
     name : str
-        Of its kind.
+        Name of the reference.
     parameters : dict of str to float
-        That were given.
+        Parameters that differ from the defaults.
     shape : _core.ReferenceShape
-        Which says it.
+        Object of the core that computes the trajectory.
     """
 
     def __init__(
         self, name: str, rows: Optional[npt.ArrayLike] = None, /, **parameters: Any
     ) -> None:
         self.name = name
-        self.parameters = values(f"reference '{name}'", parameters)
+        self.parameters = check_values(f"reference '{name}'", parameters)
         try:
             self.rows = None if rows is None else np.array(rows, dtype=float)
         except (TypeError, ValueError) as error:
@@ -111,16 +111,16 @@ class Shape:
         self.shape = _core.ReferenceShape(name, self.parameters, self.rows)
 
     def __call__(self, t: float) -> _core.Reference:
-        """Say where the vehicle is to be at a time [s]."""
+        """Return the reference at a time [s]."""
         return self.shape.at(t)
 
     def on(self, simulation: _core.Simulation) -> Shape:
-        """Make the same for a vehicle: from the `ground` where that rests, if none is given.
+        """Return the reference with the defaults for a vehicle, such as the height of the ground.
 
         Parameters
         ----------
         simulation : Simulation
-            Of the vehicle.
+            Simulation of the vehicle.
         """
         parameters = _core.on_vehicle(self.name, self.parameters, simulation)
         if parameters == self.parameters:
@@ -129,42 +129,42 @@ class Shape:
 
     @property
     def end(self) -> float:
-        """From when on nothing moves any more, s; infinite if that never comes."""
+        """Time after which the reference rests, s; infinite if it never does."""
         return self.shape.end
 
-    def told(self) -> Dict[str, Any]:
-        """Say what it is, in plain values."""
+    def to_dict(self) -> Dict[str, Any]:
+        """Return name, parameters and rows by name."""
         rows = None if self.rows is None else self.rows.tolist()
         return {"name": self.name, "parameters": self.parameters, "rows": rows}
 
     def __reduce__(self) -> Any:
-        return _again, (self.name, self.rows, self.parameters)
+        return _make_shape, (self.name, self.rows, self.parameters)
 
     def __repr__(self) -> str:
         inside = ", ".join(f"{name}={value:g}" for name, value in self.parameters.items())
         return f"quadcore.references.{self.name}({inside})"
 
 
-def _again(name: str, rows: Optional[np.ndarray], parameters: Any) -> Shape:
+def _make_shape(name: str, rows: Optional[np.ndarray], parameters: Any) -> Shape:
     return Shape(name, rows, **parameters)
 
 
 def start(simulation: Any, reference: ReferenceLike, spins: Sequence[float] = ()) -> State:
-    """Give the state of a vehicle that follows a reference exactly from the simulation's time on.
+    """Return the state of a vehicle that follows a reference exactly at the present time.
 
     Parameters
     ----------
     simulation : Simulation
-        Says what flies.
+        Simulation of the vehicle.
     reference : callable
-        Of quadcore.references, or a function like one.
-    spins : sequence of float
-        1 or -1 for each rotor; without, neighbours turn against each other.
+        Built-in reference, or a function reference(t).
+    spins : sequence of float, default ()
+        Direction of each rotor, 1 or -1. Default: neighbouring rotors turn in opposite directions.
 
     Returns
     -------
     State
-        Attitude, rates and rotor speeds included; for `Simulation.set_state`.
+        State for `Simulation.set_state`, including attitude, angular velocity and rotor speeds.
     """
     if isinstance(reference, Shape):
         reference = reference.on(simulation)
@@ -174,55 +174,57 @@ def start(simulation: Any, reference: ReferenceLike, spins: Sequence[float] = ()
     return state
 
 
-def hover_at(pose: Sequence[float]) -> Shape:
-    """Make the reference that stays at x, y, z [m] and the yaw of roll, pitch, yaw [rad]."""
+def make_hover(pose: Sequence[float]) -> Shape:
+    """Make a reference that stays at a pose: x, y, z [m], roll, pitch, yaw [rad]."""
     x, y, z, _, _, yaw = pose
     return Shape("hover", x=x, y=y, height=z, yaw=yaw)
 
 
-def places(reference: ReferenceLike, times: np.ndarray) -> np.ndarray:
-    """Give x, y, z [m] and yaw [rad] of a reference at each of some times [s]; shape (n, 4)."""
+def sample_positions(reference: ReferenceLike, times: np.ndarray) -> np.ndarray:
+    """Return x, y, z [m] and yaw [rad] of a reference at times [s]; shape (n, 4)."""
     if isinstance(reference, Shape):
         return np.asarray(reference.shape.places(times))
-    return np.array([_place(reference(t)) for t in times.tolist()], dtype=float).reshape(-1, 4)
+    return np.array([_read_position(reference(t)) for t in times.tolist()], dtype=float).reshape(
+        -1, 4
+    )
 
 
-def _place(wanted: Any) -> List[float]:
+def _read_position(wanted: Any) -> List[float]:
     try:
         x, y, z = wanted.position
         return [float(x), float(y), float(z), float(wanted.yaw)]
     except (AttributeError, TypeError, ValueError):
         raise _core.InputError(
-            f"the reference gave {brief(wanted)}; give a quadcore.Reference, or what has the "
+            f"the reference gave {shorten(wanted)}; give a quadcore.Reference, or what has the "
             "members of one"
         ) from None
 
 
-_SHIPPED = resources.root() / "config" / "waypoints.yaml"
+_SHIPPED = resources.find_root() / "config" / "waypoints.yaml"
 _FILES = (".csv", ".mat", ".yaml", ".yml", ".bag")
 
 
 def parse(text: str) -> Shape:
-    """Make the reference that a command line names.
+    """Make a reference from a text as the option ``--reference`` takes it.
 
     Parameters
     ----------
-    text
-        ``NAME[:KEY=VALUE,...]``, or the path of a .csv, .mat, .bag or .yaml file of waypoints,
-        which ``waypoints:FILE[,KEY=VALUE,...]`` names too; ``waypoints`` alone are those of
-        config/waypoints.yaml. The rows of ``series:FILE`` neither begin nor end at rest.
+    text : str
+        ``NAME[:KEY=VALUE,...]``; or a .csv, .mat, .bag or .yaml file of waypoints, also as
+        ``waypoints:FILE[,KEY=VALUE,...]``. ``waypoints`` alone reads config/waypoints.yaml.
+        ``series:FILE`` reads a path that neither begins nor ends at rest.
 
     Raises
     ------
     InputError
-        No such reference, parameter or file.
+        If the reference, a parameter or the file does not exist.
     """
     if text.lower().endswith(_FILES) and text.partition(":")[0] not in NAMES:
         return Shape("waypoints", read_rows(Path(text)))
     name, _, rest = text.partition(":")
     if name not in NAMES:
         raise _core.InputError(
-            f"there is no reference '{name}'{did_you_mean(name, NAMES)}; write one of "
+            f"there is no reference '{name}'{suggest(name, NAMES)}; write one of "
             f"{', '.join(NAMES)}, or the name of a "
             f"file that ends in {', '.join(_FILES)}"
         )
@@ -238,18 +240,18 @@ def parse(text: str) -> Shape:
 
 
 def read_rows(path: Path) -> npt.ArrayLike:
-    """Read rows of time and place.
+    """Read rows t, x, y, z[, yaw] from a file.
 
     Parameters
     ----------
     path
-        A .csv file with columns t, x, y, z and perhaps yaw, or a log, a .yaml file with `columns`,
-        these, and `rows`, a .mat file with t, x, y, z, or a bag of a flight.
+        A .csv file with these columns, a log, a .yaml file with ``columns`` and ``rows``, a .mat
+        file with these vectors, or a bag of a flight.
 
     Raises
     ------
     InputError
-        A missing file, or one that holds something else.
+        If the file is missing or has other contents.
     """
     if path.suffix.lower() in (".csv", ".yaml", ".yml"):
         return _core.read_rows(str(path))
@@ -260,7 +262,7 @@ def read_rows(path: Path) -> npt.ArrayLike:
     raise _core.InputError(f"{path}: paths are read from {', '.join(_FILES)} files")
 
 
-def _function(
+def _make_function(
     name: str, summary: str, table: List[_core.ParameterSpec], takes_rows: bool
 ) -> Callable[..., Shape]:
     if takes_rows:
@@ -281,12 +283,12 @@ def _function(
         "rows : array_like (n, 4 or 5), or path of a .csv, .mat, .bag or .yaml file\n"
         "    t, x, y, z[, yaw] in s, m, rad."
     )
-    make.__doc__ = docstring(summary, table, rows if takes_rows else "")
-    make.__signature__ = keyword_signature(make, table)  # type: ignore[attr-defined]
+    make.__doc__ = write_docstring(summary, table, rows if takes_rows else "")
+    make.__signature__ = make_signature(make, table)  # type: ignore[attr-defined]
     return make
 
 
-_MAKERS = {entry[0]: _function(*entry) for entry in _core.references()}
+_MAKERS = {entry[0]: _make_function(*entry) for entry in _core.references()}
 NAMES: Tuple[ReferenceName, ...] = tuple(_MAKERS)
 _OF_ROWS = tuple(entry[0] for entry in _core.references() if entry[3])
 __all__ = [

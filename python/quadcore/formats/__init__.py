@@ -11,7 +11,7 @@ import numpy as np
 from .._core import InputError
 from . import bag, csv, mat
 from .rows import LogFile, LogRows, Table
-from .whole_log import AtTheEnd
+from .whole_log import DeferredLogFile
 
 _Wrenches = Mapping[str, np.ndarray]
 
@@ -34,13 +34,13 @@ class Format(NamedTuple):
 FORMATS: Dict[str, Format] = {
     ".csv": Format(csv.read_commands, csv.write_log, csv.read_log, csv.CsvFile),
     ".mat": Format(
-        mat.read_commands, mat.write_log, mat.read_log, partial(AtTheEnd, mat.write_log)
+        mat.read_commands, mat.write_log, mat.read_log, partial(DeferredLogFile, mat.write_log)
     ),
-    ".bag": Format(bag.read_commands, bag.write_log, bag.read_log, bag.log_file),
+    ".bag": Format(bag.read_commands, bag.write_log, bag.read_log, bag.make_log_file),
 }
 
 
-def format_of(path: Path, what: str) -> Format:
+def find_format(path: Path, what: str) -> Format:
     """Find the format that a file's name asks for.
 
     Parameters

@@ -13,18 +13,18 @@ from .._core import InputError, QuadcoreError, log_columns
 from ..support import interrupts
 from ..support.input_files import check_regular
 from ..support.optional_packages import require_package
-from ..support.output_files import atomic_write, beside, unwritable
-from ..support.rotation import roll_pitch_yaw
+from ..support.output_files import atomic_write, make_write_error, name_temporary
+from ..support.rotation import to_roll_pitch_yaw
 from .bag_messages import ARRAY, Messages
 from .rows import (
     LogRows,
     Table,
     check_log_columns,
     check_log_rows,
-    wrench_columns,
-    wrenches_at_the_end,
+    find_wrench_terms,
+    list_wrench_columns,
 )
-from .whole_log import AtTheEnd
+from .whole_log import DeferredLogFile
 
 LOG = "/quadcore/log"
 """Whole rows; the label of the first dimension names the columns, further ones what was ignored."""
@@ -40,7 +40,7 @@ def read_commands(path: Path, names: Sequence[str]) -> Table:
     InputError
         No such topic or several, or messages of another length.
     """
-    with _opened(path) as bag:
+    with _open_bag(path) as bag:
         found = [c for c in bag.connections if c.topic.endswith("vel_cmd") and c.msgtype == ARRAY]
         topics = sorted({connection.topic for connection in found})
         if len(topics) != 1:
@@ -50,7 +50,7 @@ def read_commands(path: Path, names: Sequence[str]) -> Table:
             )
         start = bag.start_time if bag.start_time > _ON_A_WALL * 1e9 else 0
         rows: Dict[int, np.ndarray] = {}  # of those of one time the last counts
-        for time, message in _messages(bag, found):
+        for time, message in _read_messages(bag, found):
             speeds = np.asarray(message.data, dtype=float)
             if len(speeds) != len(names) - 1:
                 raise InputError(
@@ -66,7 +66,7 @@ def read_commands(path: Path, names: Sequence[str]) -> Table:
 def read_path(path: Path) -> np.ndarray:
     """Read where a vehicle was: t, x, y, z and yaw; shape (rows, 5)."""
     rows = read_log(path).rows
-    yaw = np.unwrap(roll_pitch_yaw(rows[:, 4:8])[:, 2])
+    yaw = np.unwrap(to_roll_pitch_yaw(rows[:, 4:8])[:, 2])
     return np.column_stack([rows[:, :4], yaw])
 
 
@@ -81,32 +81,36 @@ def read_log(path: Path) -> LogRows:
     InputError
         No log, or a broken one.
     """
-    with _opened(path) as bag:
+    with _open_bag(path) as bag:
         whole = [c for c in bag.connections if c.topic == LOG and c.msgtype == ARRAY]
-        columns, rows, ignored = _whole_rows(bag, whole) if whole else _rows_of_the_node(path, bag)
+        columns, rows, ignored = (
+            _read_whole_rows(bag, whole) if whole else _read_node_rows(path, bag)
+        )
     of_state = check_log_columns(f"{path}", columns)
     check_log_rows(lambda row: f"{path}: row {1 + row}", rows, of_state)
-    terms = wrenches_at_the_end(columns)
+    terms = find_wrench_terms(columns)
     own = len(columns) - 6 * len(terms)
     wrenches = {name: rows[:, own + 6 * i :][:, :6] for i, name in enumerate(terms)}
     return LogRows(columns[:own], rows[:, :own], wrenches, ignored)
 
 
-def _whole_rows(bag: Any, found: Sequence[Any]) -> Tuple[List[str], np.ndarray, List[str]]:
-    messages = [message for _, message in _messages(bag, found)]
+def _read_whole_rows(bag: Any, found: Sequence[Any]) -> Tuple[List[str], np.ndarray, List[str]]:
+    messages = [message for _, message in _read_messages(bag, found)]
     labels = [dimension.label for dimension in messages[0].layout.dim] if messages else []
     if not labels:
         raise InputError(f"{bag.path}: {LOG} does not name its columns; quadcore wrote other bags")
     return labels[0].split(","), np.array([m.data for m in messages], dtype=float), labels[1:]
 
 
-def _rows_of_the_node(path: Path, bag: Any) -> Tuple[List[str], np.ndarray, List[str]]:
-    odometry = _stamped(bag, _only(path, bag, "nav_msgs/msg/Odometry", "ground_truth/odometry"))
-    joints = _stamped(bag, _only(path, bag, "sensor_msgs/msg/JointState", "joint_states"))
+def _read_node_rows(path: Path, bag: Any) -> Tuple[List[str], np.ndarray, List[str]]:
+    odometry = _read_stamps(
+        bag, _find_topic(path, bag, "nav_msgs/msg/Odometry", "ground_truth/odometry")
+    )
+    joints = _read_stamps(bag, _find_topic(path, bag, "sensor_msgs/msg/JointState", "joint_states"))
     stamps = sorted(set(odometry) & set(joints))
     if not stamps:
         raise InputError(f"{path}: no time has both a ground_truth/odometry and a joint_states")
-    step = int(np.gcd.reduce([*_stamps_of_clock(bag), *stamps])) or 1
+    step = int(np.gcd.reduce([*_read_clock(bag), *stamps])) or 1
     rows, rotors = [], len(joints[stamps[0]].velocity)
     for stamp in stamps:
         pose, twist = odometry[stamp].pose.pose, odometry[stamp].twist.twist
@@ -118,17 +122,18 @@ def _rows_of_the_node(path: Path, bag: Any) -> Tuple[List[str], np.ndarray, List
             )
         rows.append([
             stamp // step * (step / 1e9),  # as simulations count it
-            *_xyz(pose.position), *_xyz(q), q.w, *_xyz(twist.linear), *_xyz(twist.angular),
+            *_list_vector(pose.position), *_list_vector(q), q.w,
+            *_list_vector(twist.linear), *_list_vector(twist.angular),
             *joints[stamp].velocity,
         ])  # fmt: skip
     return log_columns(rotors), np.array(rows), []
 
 
-def _xyz(vector: Any) -> Tuple[float, float, float]:
+def _list_vector(vector: Any) -> Tuple[float, float, float]:
     return vector.x, vector.y, vector.z
 
 
-def _only(path: Path, bag: Any, kind: str, name: str) -> List[Any]:
+def _find_topic(path: Path, bag: Any, kind: str, name: str) -> List[Any]:
     found = [c for c in bag.connections if c.topic.endswith(name) and c.msgtype == kind]
     topics = sorted({connection.topic for connection in found})
     if len(topics) != 1:
@@ -140,17 +145,17 @@ def _only(path: Path, bag: Any, kind: str, name: str) -> List[Any]:
     return found
 
 
-def _stamped(bag: Any, found: Sequence[Any]) -> Dict[int, Any]:
-    messages = (message for _, message in _messages(bag, found))
+def _read_stamps(bag: Any, found: Sequence[Any]) -> Dict[int, Any]:
+    messages = (message for _, message in _read_messages(bag, found))
     return {m.header.stamp.sec * 10**9 + m.header.stamp.nanosec: m for m in messages}
 
 
-def _stamps_of_clock(bag: Any) -> List[int]:
+def _read_clock(bag: Any) -> List[int]:
     found = [c for c in bag.connections if c.msgtype == "rosgraph_msgs/msg/Clock"]
-    return [m.clock.sec * 10**9 + m.clock.nanosec for _, m in _messages(bag, found)] or [0]
+    return [m.clock.sec * 10**9 + m.clock.nanosec for _, m in _read_messages(bag, found)] or [0]
 
 
-def _messages(bag: Any, found: Sequence[Any]) -> Iterator[Tuple[int, Any]]:
+def _read_messages(bag: Any, found: Sequence[Any]) -> Iterator[Tuple[int, Any]]:
     if not found:  # which would be all
         return
     for connection in found:
@@ -167,7 +172,7 @@ def _messages(bag: Any, found: Sequence[Any]) -> Iterator[Tuple[int, Any]]:
 
 
 @contextlib.contextmanager
-def _opened(path: Path) -> Iterator[Any]:
+def _open_bag(path: Path) -> Iterator[Any]:
     with require_package("a bag", "rosbags", "bag"):
         from rosbags.rosbag1 import Reader
     try:
@@ -193,10 +198,10 @@ def write_log(
     with require_package("a bag", "rosbags", "bag"):
         from rosbags.rosbag1 import Writer
     messages = Messages()
-    names = [*columns, *wrench_columns(list(wrenches))]
-    layout = messages.layout([",".join(names), *ignored], len(names))
-    of_node = messages.of_node(columns)
-    with _name_beside(path) as part, atomic_write(path) as stream:
+    names = [*columns, *list_wrench_columns(list(wrenches))]
+    layout = messages.make_layout([",".join(names), *ignored], len(names))
+    of_node = messages.make_node_messages(columns)
+    with _name_temporary(path) as part, atomic_write(path) as stream:
         with Writer(part) as bag:  # to a name only
             connections = {
                 topic: bag.add_connection(topic, kind, typestore=messages.store)
@@ -205,7 +210,7 @@ def write_log(
             for i, state in enumerate(table):
                 acting = [wrench[i : i + 1] for wrench in wrenches.values()]
                 row = np.hstack([table[i : i + 1], *acting])[0] if acting else state
-                whole = (LOG, state[0], messages.array(row, layout))
+                whole = (LOG, state[0], messages.make_array(row, layout))
                 for topic, time, data in [*of_node.at(state), whole]:
                     # A bag has no message at time 0.
                     bag.write(connections[topic], max(1, round(time * 1e9)), data)
@@ -214,23 +219,23 @@ def write_log(
 
 
 @contextlib.contextmanager
-def _name_beside(path: Path) -> Iterator[Path]:
+def _name_temporary(path: Path) -> Iterator[Path]:
     """Name a file for a while; one that a process left which was killed is in nobody's way."""
-    part = beside(path, ".rows")
+    part = name_temporary(path, ".rows")
     with contextlib.suppress(FileNotFoundError):
         part.unlink()
     try:
         yield part
     except OSError as error:
-        raise unwritable(path, error) from error
+        raise make_write_error(path, error) from error
     finally:
         with interrupts.hold_signals(), contextlib.suppress(OSError):
             part.unlink()
 
 
-def log_file(
+def make_log_file(
     path: Path, columns: Sequence[str], terms: Sequence[str], ignored: Sequence[str]
-) -> AtTheEnd:
+) -> DeferredLogFile:
     """Make what records a flight; raises `InputError` without the package rosbags."""
     Messages()
-    return AtTheEnd(write_log, path, columns, terms, ignored)
+    return DeferredLogFile(write_log, path, columns, terms, ignored)

@@ -17,7 +17,7 @@ _TF = "tf2_msgs/msg/TFMessage"
 _LEAST_VARIANCE = 1e-12  # as the node has it
 
 
-class OfNode(NamedTuple):
+class NodeMessages(NamedTuple):
     """What the node would publish: types by topic, and at(row) -> topic, time in s and bytes."""
 
     kinds: Dict[str, str]
@@ -36,18 +36,18 @@ class Messages:
                 get_types_from_msg("geometry_msgs/TransformStamped[] transforms", _TF)
             )
 
-    def layout(self, labels: Sequence[str], size: int) -> Any:
+    def make_layout(self, labels: Sequence[str], size: int) -> Any:
         """Make the layout of an array whose dimensions are called so."""
         dimension = self._type("std_msgs/msg/MultiArrayDimension")
         sizes = [size, *[1] * (len(labels) - 1)]
         dimensions = [dimension(label, n, n) for label, n in zip(labels, sizes)]
         return self._type("std_msgs/msg/MultiArrayLayout")(dimensions, 0)
 
-    def array(self, numbers: np.ndarray, layout: Any) -> bytes:
+    def make_array(self, numbers: np.ndarray, layout: Any) -> bytes:
         """Make an array of numbers."""
         return self._bytes(self._type(ARRAY)(layout, np.array(numbers, dtype=float)), ARRAY)
 
-    def of_node(self, columns: Sequence[str]) -> OfNode:
+    def make_node_messages(self, columns: Sequence[str]) -> NodeMessages:
         """Make what turns a row with these columns into the node's messages."""
         rotors = sum("." not in column for column in columns) - len(log_columns(0))
         topics: Dict[str, List[int]] = {}
@@ -65,7 +65,7 @@ class Messages:
         for topic, places in topics.items():
             fields = [columns[i].partition(".")[2] for i in places if not _is_stamp(columns[i])]
             kinds[f"/{topic}"] = _ODOMETRY if fields == _FIELDS else ARRAY
-            layouts[topic] = self.layout([", ".join(fields)], len(fields))
+            layouts[topic] = self.make_layout([", ".join(fields)], len(fields))
         sent: Dict[str, float] = {}  # stamps
 
         def at(row: np.ndarray) -> Iterator[Tuple[str, float, bytes]]:
@@ -85,10 +85,10 @@ class Messages:
                 if kinds[f"/{topic}"] == _ODOMETRY:
                     data = self._odometry(self._stamp(when), numbers[:13], numbers[13:].tolist())
                 else:
-                    data = self.array(numbers, layouts[topic])
+                    data = self.make_array(numbers, layouts[topic])
                 yield f"/{topic}", when, data
 
-        return OfNode(kinds, at)
+        return NodeMessages(kinds, at)
 
     def _type(self, name: str) -> Any:
         return self.store.types[name]

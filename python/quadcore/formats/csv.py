@@ -10,15 +10,15 @@ import numpy as np
 
 from .._core import InputError, csv_rows, log_remark
 from ..support.input_files import read_text
-from ..support.output_files import Appended, atomic_write
+from ..support.output_files import LineFile, atomic_write
 from .rows import (
     LogRows,
     Table,
+    append_wrenches,
     check_log_columns,
     check_log_rows,
-    with_wrenches,
-    wrench_columns,
-    wrenches_at_the_end,
+    find_wrench_terms,
+    list_wrench_columns,
 )
 
 _LARGEST = 10**9  # bytes; of commands more than three hours at 1 kHz
@@ -40,7 +40,7 @@ def read_commands(path: Path, names: Sequence[str]) -> Table:
             f"{path}:1: the header is '{header[:80]}'; this model with {len(names) - 1} rotors "
             f"takes '{','.join(names)}'"
         )
-    rows = _numbers(path, lines, 2, names)
+    rows = _read_numbers(path, lines, 2, names)
     return Table(rows, lambda row: f"{path}:{2 + row}", "")
 
 
@@ -55,19 +55,21 @@ def read_log(path: Path) -> LogRows:
     header, *lines = read_text(path, _LARGEST).rstrip().splitlines() or [""]
     columns = header.split(",")
     of_state = check_log_columns(f"{path}:1", columns)
-    terms = wrenches_at_the_end(columns)
+    terms = find_wrench_terms(columns)
     ignored: Sequence[str] = ()
     if lines and lines[0].startswith(_REMARK):
         ignored = lines.pop(0)[len(_REMARK) :].split(", ")
     first = 3 if ignored else 2
-    rows = _numbers(path, lines, first, columns)
+    rows = _read_numbers(path, lines, first, columns)
     check_log_rows(lambda row: f"{path}:{first + row}", rows, of_state)
     own = len(columns) - 6 * len(terms)
     wrenches = {name: rows[:, own + 6 * i :][:, :6] for i, name in enumerate(terms)}
     return LogRows(columns[:own], rows[:, :own], wrenches, ignored)
 
 
-def _numbers(path: Path, lines: Sequence[str], first: int, columns: Sequence[str]) -> np.ndarray:
+def _read_numbers(
+    path: Path, lines: Sequence[str], first: int, columns: Sequence[str]
+) -> np.ndarray:
     """Read rows of numbers; `first` is the number of the first line."""
     values = array.array("d")
     for number, line in enumerate(lines, start=first):
@@ -79,7 +81,7 @@ def _numbers(path: Path, lines: Sequence[str], first: int, columns: Sequence[str
                 raise ValueError
             values.extend([float(cell) for cell in cells])
         except ValueError:
-            raise InputError(f"{path}:{number}: {_first_fault(columns, cells)}") from None
+            raise InputError(f"{path}:{number}: {_find_fault(columns, cells)}") from None
     return np.array(values).reshape(-1, len(columns))
 
 
@@ -96,7 +98,7 @@ def _is_number(cell: str) -> bool:
     return _is_plain(cell)
 
 
-def _first_fault(columns: Sequence[str], cells: Sequence[str]) -> str:
+def _find_fault(columns: Sequence[str], cells: Sequence[str]) -> str:
     column, cell = next(pair for pair in zip(columns, cells) if not _is_number(pair[1]))
     return f"column '{column}' holds '{cell.strip()[:80]}'; write a number such as -471.5"
 
@@ -110,7 +112,7 @@ def write_log(
 ) -> None:
     """Write a log with the fewest digits that restore every bit."""
     with atomic_write(path) as stream:
-        stream.write(_head(columns, list(wrenches), ignored))
+        stream.write(_write_head(columns, list(wrenches), ignored))
         for begin in range(0, len(table), _PIECE):
             piece = slice(begin, begin + _PIECE)
             acting = [wrench[piece] for wrench in wrenches.values()]
@@ -125,15 +127,15 @@ class CsvFile:
     ) -> None:
         self.path = path
         self.wrenches = bool(terms)
-        self._head = _head(columns, terms, ignored)
-        self._file: Optional[Appended] = None
+        self._head = _write_head(columns, terms, ignored)
+        self._file: Optional[LineFile] = None
 
     def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
         """Write a piece."""
         if self._file is None:  # not sooner: a flight that is refused leaves an older log alone
-            self._file = Appended(self.path)
+            self._file = LineFile(self.path)
             self._file.write(self._head)
-        self._file.write(csv_rows(with_wrenches(table, wrenches if self.wrenches else None)))
+        self._file.write(csv_rows(append_wrenches(table, wrenches if self.wrenches else None)))
 
     def close(self) -> None:
         """Close the file."""
@@ -141,6 +143,6 @@ class CsvFile:
             self._file.close()
 
 
-def _head(columns: Sequence[str], terms: Sequence[str], ignored: Sequence[str]) -> bytes:
+def _write_head(columns: Sequence[str], terms: Sequence[str], ignored: Sequence[str]) -> bytes:
     """First line, and what was ignored."""
-    return (",".join([*columns, *wrench_columns(terms)]) + log_remark(ignored) + "\n").encode()
+    return (",".join([*columns, *list_wrench_columns(terms)]) + log_remark(ignored) + "\n").encode()

@@ -10,7 +10,7 @@ import numpy as np
 from .._core import InputError, log_columns
 from ..support.import_lock import LOCK
 from ..support.output_files import atomic_write
-from .mat_tables import listed, read_table, together
+from .mat_tables import list_signals, read_table, stack_vectors
 from .mat_types import Value
 from .mat_variables import load
 from .rows import LogRows, Table, check_log_columns, check_log_rows, split_columns
@@ -63,7 +63,7 @@ def read_log(path: Path) -> LogRows:
     InputError
         No log, or a broken one.
     """
-    variables = _vectors(path, load(path, list))
+    variables = _split_layout(path, load(path, list))
     columns = [name for name in log_columns(len(variables)) if name in variables]
     of_state = check_log_columns(f"{path}", columns)
     parts = {name: variables[name] for name in columns}
@@ -71,10 +71,10 @@ def read_log(path: Path) -> LogRows:
     for name, value in variables.items():
         kind, _, rest = name.partition("_")
         if kind == "wrench":
-            wrenches[rest] = _wrench(path, name, value)
+            wrenches[rest] = _read_wrench(path, name, value)
         elif kind == "topic" and isinstance(value, dict):
             parts.update((f"{rest}.{field}", column) for field, column in value.items())
-    rows = together(path, parts)
+    rows = stack_vectors(path, parts)
     for name, wrench in wrenches.items():
         if len(wrench) != len(rows):
             raise InputError(f"{path}: wrench_{name} has {len(wrench)} rows, the log {len(rows)}")
@@ -84,14 +84,14 @@ def read_log(path: Path) -> LogRows:
     return LogRows(list(parts), rows, wrenches, names)
 
 
-def _wrench(path: Path, name: str, value: Any) -> np.ndarray:
+def _read_wrench(path: Path, name: str, value: Any) -> np.ndarray:
     wrench = np.asarray(value)
     if wrench.dtype.kind not in "iuf" or wrench.ndim != 2 or wrench.shape[1] != 6:
         raise InputError(f"{path}: {name} is no matrix of 6 columns; give force and torque")
     return wrench.astype(float)
 
 
-def _vectors(path: Path, variables: Dict[str, Value]) -> Dict[str, Any]:
+def _split_layout(path: Path, variables: Dict[str, Value]) -> Dict[str, Any]:
     """Bring a log of any layout into that of vectors."""
     log = variables.get(_LOG)
     if isinstance(log, np.ndarray) and log.ndim == 2:
@@ -113,7 +113,7 @@ def _vectors(path: Path, variables: Dict[str, Value]) -> Dict[str, Any]:
     if not set(log) >= {"time", "signals"}:
         return log
     vectors = {"t": log["time"]}
-    for label, values in _labelled(path, log["signals"]):
+    for label, values in _add_labels(path, log["signals"]):
         topic, is_topic, field = label.partition(".")
         if is_topic:
             vectors.setdefault(f"topic_{topic}", {})[field] = values
@@ -122,8 +122,8 @@ def _vectors(path: Path, variables: Dict[str, Value]) -> Dict[str, Any]:
     return {**vectors, **{name: value for name, value in variables.items() if name != _LOG}}
 
 
-def _labelled(path: Path, signals: Any) -> Iterator[Tuple[str, Any]]:
-    for signal in listed(signals):
+def _add_labels(path: Path, signals: Any) -> Iterator[Tuple[str, Any]]:
+    for signal in list_signals(signals):
         if not isinstance(signal, dict) or not set(signal) >= {"label", "values"}:
             raise InputError(f"{path}: {_LOG}.signals: give each a label and values")
         yield str(signal["label"]), signal["values"]
@@ -157,11 +157,11 @@ def write_log(
         named["columns"] = np.array(list(columns), dtype=object)
         variables = {_LOG: table, **acting}
     elif layout == "signals":
-        variables = {_LOG: _signals(variables)}
+        variables = {_LOG: _make_signals(variables)}
     write_variables(path, {**variables, **named} if layout != "struct" else variables)
 
 
-def _signals(variables: Mapping[str, Any]) -> Dict[str, Any]:
+def _make_signals(variables: Mapping[str, Any]) -> Dict[str, Any]:
     """Put variables of a log into Simulink's structure with time."""
     labelled: List[Tuple[str, np.ndarray]] = []
     for name, value in variables.items():

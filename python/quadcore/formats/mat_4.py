@@ -7,7 +7,7 @@ from typing import Dict, Tuple
 
 import numpy as np
 
-from .mat_types import Choose, Held, Value, complex_of
+from .mat_types import Choose, Value, Variable, combine_parts
 
 _HEADER = 20  # bytes: MOPT, rows, columns, whether it is complex, length of the name
 _TYPES = ("f8", "f4", "i4", "i2", "u2", "u1")
@@ -16,20 +16,20 @@ _CLASSES = ("double", "char", "sparse")
 
 def load_4(data: bytes, choose: Choose) -> Dict[str, Value]:
     """Load the variables that `choose` picks; raises ValueError where the file is damaged."""
-    found: Dict[str, Tuple[Held, np.ndarray]] = {}
+    found: Dict[str, Tuple[Variable, np.ndarray]] = {}
     rest = memoryview(data)
     while rest:
-        name, held, size, dtype = _header(rest)
+        name, held, size, dtype = _read_header(rest)
         begin = _HEADER + len(name) + 1
         if begin + size > len(rest):
             raise ValueError(f"{size} bytes of a variable are not all there")
         found[name.decode("latin-1")] = held, np.frombuffer(rest[begin : begin + size], dtype)
         rest = rest[begin + size :]
     names = choose({name: held for name, (held, _) in found.items()})
-    return {name: _value(*found[name]) for name in names}
+    return {name: _read_value(*found[name]) for name in names}
 
 
-def _header(data: memoryview) -> Tuple[bytes, Held, int, np.dtype]:
+def _read_header(data: memoryview) -> Tuple[bytes, Variable, int, np.dtype]:
     """Give the name, what is held, its bytes and the type of a number."""
     if len(data) < _HEADER:
         raise ValueError("it ends within a header")
@@ -50,16 +50,16 @@ def _header(data: memoryview) -> Tuple[bytes, Held, int, np.dtype]:
     ):
         raise ValueError("a variable has a damaged header")
     dtype = np.dtype(f"{order}{_TYPES[precision]}")
-    held = Held((rows, columns), _CLASSES[kind])
+    held = Variable((rows, columns), _CLASSES[kind])
     return name[:-1], held, rows * columns * (1 + is_complex) * dtype.itemsize, dtype
 
 
-def _value(held: Held, numbers: np.ndarray) -> Value:
+def _read_value(held: Variable, numbers: np.ndarray) -> Value:
     if held.kind == "sparse":
         return "of class sparse"
     if held.kind == "char":
         return numbers.astype("uint8").tobytes().decode("latin-1") if held.shape[0] == 1 else ""
     count = held.shape[0] * held.shape[1]
     if len(numbers) > count:
-        numbers = complex_of(numbers[:count], numbers[count:])
+        numbers = combine_parts(numbers[:count], numbers[count:])
     return numbers.reshape(held.shape, order="F")

@@ -12,8 +12,8 @@ from typing import Dict, List, NamedTuple, Tuple
 
 import numpy as np
 
-from .mat_elements import COMPRESSED, HEADER, MATRIX, Elements, byte_order
-from .mat_types import Choose, Held, Value, complex_of
+from .mat_elements import COMPRESSED, HEADER, MATRIX, Elements, find_byte_order
+from .mat_types import Choose, Value, Variable, combine_parts
 
 _LARGEST = 10**9  # bytes of a variable
 _DEEPEST = 32  # levels of cells and structs in each other
@@ -44,28 +44,28 @@ _LOGICAL, _COMPLEX = 0x200, 0x800
 
 def is_5(data: bytes) -> bool:
     """Whether this is such a file."""
-    return byte_order(data) is not None
+    return find_byte_order(data) is not None
 
 
 def load_5(data: bytes, choose: Choose) -> Dict[str, Value]:
     """Load the variables that `choose` picks; raises ValueError where the file is damaged."""
-    elements = Elements(memoryview(data)[HEADER:], byte_order(data) or "<")
+    elements = Elements(memoryview(data)[HEADER:], find_byte_order(data) or "<")
     found: Dict[str, Tuple[int, Elements]] = {}
-    held: Dict[str, Held] = {}
+    held: Dict[str, Variable] = {}
     while elements:
         kind, content = elements.take()
-        matrix = _begin(_inflated(content, _BEGINNING) if kind == COMPRESSED else content)
+        matrix = _read_head(_inflate(content, _BEGINNING) if kind == COMPRESSED else content)
         if matrix.name:  # only what MATLAB's objects share has none
             found[matrix.name] = kind, Elements(content.data, content.order)
-            held[matrix.name] = Held(matrix.shape, matrix.kind)
-    return {name: _variable(*found[name]) for name in choose(held)}
+            held[matrix.name] = Variable(matrix.shape, matrix.kind)
+    return {name: _read_variable(*found[name]) for name in choose(held)}
 
 
-def _variable(kind: int, content: Elements) -> Value:
-    return _value(_inflated(content, _LARGEST) if kind == COMPRESSED else content)
+def _read_variable(kind: int, content: Elements) -> Value:
+    return _read_value(_inflate(content, _LARGEST) if kind == COMPRESSED else content)
 
 
-def _inflated(content: Elements, most: int) -> Elements:
+def _inflate(content: Elements, most: int) -> Elements:
     """Decompress a variable, or its beginning of `most` bytes."""
     stream = zlib.decompressobj()
     try:
@@ -93,7 +93,7 @@ class _Matrix(NamedTuple):
     content: Elements
 
 
-def _begin(parts: Elements) -> _Matrix:
+def _read_head(parts: Elements) -> _Matrix:
     flags = parts.take_numbers("u4")
     kind = _CLASSES.get(int(flags[0]) & 0xFF) if len(flags) == 2 else None
     if kind is None:
@@ -108,26 +108,26 @@ def _begin(parts: Elements) -> _Matrix:
     return _Matrix("logical" if is_logical else kind, shape, name, is_complex, parts)
 
 
-def _value(parts: Elements, level: int = 0) -> Value:
+def _read_value(parts: Elements, level: int = 0) -> Value:
     if not parts:
         return np.empty((0, 0))
     if level > _DEEPEST:
         raise ValueError(f"cells and structs are nested deeper than {_DEEPEST} levels")
-    matrix = _begin(parts)
+    matrix = _read_head(parts)
     if matrix.kind in _UNREAD:
         return f"of class {matrix.kind}"
     if matrix.kind == "char":
         text = parts.take_text()
         return text if matrix.shape[0] == 1 else ""
     if matrix.kind == "cell":
-        return _contents(matrix, 1, level)
+        return _read_contents(matrix, 1, level)
     if matrix.kind in ("struct", "object"):
-        return _structs(matrix, level)
-    numbers = _array(matrix)
-    return complex_of(numbers, _array(matrix)) if matrix.is_complex else numbers
+        return _read_structs(matrix, level)
+    numbers = _read_array(matrix)
+    return combine_parts(numbers, _read_array(matrix)) if matrix.is_complex else numbers
 
 
-def _array(matrix: _Matrix) -> np.ndarray:
+def _read_array(matrix: _Matrix) -> np.ndarray:
     """Take real numbers, in the type in which they are held: often a smaller one than the class."""
     numbers = matrix.content.take_numbers()
     if len(numbers) != math.prod(matrix.shape):
@@ -135,15 +135,15 @@ def _array(matrix: _Matrix) -> np.ndarray:
     return numbers.reshape(matrix.shape, order="F")
 
 
-def _contents(matrix: _Matrix, each: int, level: int) -> List[Value]:
+def _read_contents(matrix: _Matrix, each: int, level: int) -> List[Value]:
     """Take what so many variables for each element hold."""
     count = each * math.prod(matrix.shape)
     if 8 * count > len(matrix.content.data):  # the tag alone has 8 bytes
         raise ValueError(f"{len(matrix.content.data)} bytes hold no {count} variables")
-    return [_value(matrix.content.take_matrix(), level + 1) for _ in range(count)]
+    return [_read_value(matrix.content.take_matrix(), level + 1) for _ in range(count)]
 
 
-def _structs(matrix: _Matrix, level: int) -> Value:
+def _read_structs(matrix: _Matrix, level: int) -> Value:
     """Take a struct, or an array of them."""
     parts = matrix.content
     if matrix.kind == "object":
@@ -154,7 +154,7 @@ def _structs(matrix: _Matrix, level: int) -> Value:
         raise ValueError("a struct has damaged names of fields")
     width = int(lengths[0])
     fields = [names[i : i + width].split(b"\0")[0].decode() for i in range(0, len(names), width)]
-    values = _contents(matrix, len(fields), level)
+    values = _read_contents(matrix, len(fields), level)
     if not fields:
         return {}
     starts = range(0, len(values), len(fields))

@@ -7,7 +7,7 @@ from typing import IO, Any, Dict
 import h5py
 import numpy as np
 
-from .mat_types import Choose, Held, Value
+from .mat_types import Choose, Value, Variable
 
 _OF_MATLAB = "#"  # begins the names of groups for its own use
 
@@ -15,40 +15,40 @@ _OF_MATLAB = "#"  # begins the names of groups for its own use
 def load_73(stream: IO[bytes], choose: Choose) -> Dict[str, Value]:
     """Load the variables that `choose` picks; raises as h5py does."""
     with h5py.File(stream, "r") as file:
-        items = {name: _content(item) for name, item in file.items() if name[0] != _OF_MATLAB}
-        held = {name: _held(item) for name, item in items.items()}
-        return {name: _value(file, items[name]) for name in choose(held)}
+        items = {name: _unwrap(item) for name, item in file.items() if name[0] != _OF_MATLAB}
+        held = {name: _describe(item) for name, item in items.items()}
+        return {name: _read_value(file, items[name]) for name in choose(held)}
 
 
-def _content(item: Any) -> Any:
+def _unwrap(item: Any) -> Any:
     """Of what Octave wraps with its type."""
     is_wrapped = isinstance(item, h5py.Group) and set(item) >= {"type", "value"}
     return item["value"] if is_wrapped else item
 
 
-def _held(item: Any) -> Held:
+def _describe(item: Any) -> Variable:
     if isinstance(item, h5py.Group):
-        return Held((1, 1), "struct")
-    return Held(item.shape[::-1], _kind(item))
+        return Variable((1, 1), "struct")
+    return Variable(item.shape[::-1], _find_kind(item))
 
 
-def _kind(item: Any) -> str:
+def _find_kind(item: Any) -> str:
     kind = item.attrs.get("MATLAB_class", b"double")
     return kind.decode() if isinstance(kind, bytes) else str(kind)
 
 
-def _value(file: Any, item: Any) -> Value:
-    item = _content(item)
+def _read_value(file: Any, item: Any) -> Value:
+    item = _unwrap(item)
     if isinstance(item, h5py.Group):
-        fields = {name: _value(file, part) for name, part in item.items()}
+        fields = {name: _read_value(file, part) for name, part in item.items()}
         if fields and all(isinstance(value, list) for value in fields.values()):
             return [dict(zip(fields, row)) for row in zip(*fields.values())]  # an array of structs
         return fields
     if item.dtype == h5py.ref_dtype:
-        return [_value(file, file[reference]) for reference in item[()].T.flat]
+        return [_read_value(file, file[reference]) for reference in item[()].T.flat]
     if item.attrs.get("MATLAB_empty", 0):
-        return "" if _kind(item) == "char" else np.empty((0, 0))
+        return "" if _find_kind(item) == "char" else np.empty((0, 0))
     numbers = np.asarray(item[()]).T  # columns first
-    if _kind(item) == "char":
+    if _find_kind(item) == "char":
         return "".join(map(chr, numbers.flat))
     return numbers

@@ -28,7 +28,7 @@ _CODECS = {1: "utf-8", 2: "utf-8", 4: "utf-16", 16: "utf-8", 17: "utf-16", 18: "
 _ORDERS = {b"\x00\x01IM": "<", b"\x01\x00MI": ">"}  # the version and the order end the header
 
 
-def byte_order(data: bytes) -> Optional[str]:
+def find_byte_order(data: bytes) -> Optional[str]:
     """Give "<" or ">", or None if this is no such file."""
     return _ORDERS.get(data[HEADER - 4 : HEADER])
 
@@ -48,7 +48,7 @@ class Elements:
 
     def take(self) -> Tuple[int, Elements]:
         """Take the type and the content of the next element."""
-        kind, size, begin, end = self._tag()
+        kind, size, begin, end = self._read_tag()
         if begin + size > len(self.data):
             raise ValueError(f"an element of {size} bytes is longer than what holds it")
         self._at = min(end, len(self.data))  # the padding of the last one may be missing
@@ -56,7 +56,7 @@ class Elements:
 
     def take_size(self, expected: int) -> int:
         """Take the tag of an element of this type, whose content follows elsewhere."""
-        kind, size, self._at, _ = self._tag()
+        kind, size, self._at, _ = self._read_tag()
         if kind != expected:
             raise ValueError(f"an element of type {kind} instead of {expected}")
         return size
@@ -93,7 +93,7 @@ class Elements:
             raise ValueError(f"an element of type {kind} instead of {wanted}")
         return np.frombuffer(content.data, f"{self.order}{held}")
 
-    def _tag(self) -> Tuple[int, int, int, int]:
+    def _read_tag(self) -> Tuple[int, int, int, int]:
         """Give type, size, and where the content begins and the next element does."""
         at = self._at
         if at + 8 > len(self.data):

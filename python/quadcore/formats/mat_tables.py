@@ -8,7 +8,7 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence
 import numpy as np
 
 from .._core import InputError
-from .mat_types import Held, Value
+from .mat_types import Value, Variable
 from .mat_variables import load
 
 
@@ -34,7 +34,7 @@ def read_table(path: Path, names: Sequence[str], needed: int, expected: str) -> 
         It holds something else.
     """
 
-    def choose(held: Mapping[str, Held]) -> Sequence[str]:
+    def choose(held: Mapping[str, Variable]) -> Sequence[str]:
         if set(names[:needed]) <= set(held) and not _is_one_more(held, names):
             return [name for name in names if name in held]
         tables = [
@@ -49,24 +49,24 @@ def read_table(path: Path, names: Sequence[str], needed: int, expected: str) -> 
 
     variables = load(path, choose)
     if set(names[:needed]) <= set(variables):
-        return together(path, variables)
+        return stack_vectors(path, variables)
     [(name, value)] = variables.items()
     if isinstance(value, dict) and set(names[:needed]) <= set(value):
         if _is_one_more(value, names):
             raise InputError(f"{path}: {name} holds {', '.join(value)}; {expected}")
-        return together(path, {column: value[column] for column in names if column in value})
-    table = _of_signals(value) if isinstance(value, dict) else value
+        return stack_vectors(path, {column: value[column] for column in names if column in value})
+    table = _join_signals(value) if isinstance(value, dict) else value
     if not (
         isinstance(table, np.ndarray)
         and table.dtype.kind in "iuf"
         and table.ndim == 2
         and needed <= table.shape[1] <= len(names)
     ):
-        raise InputError(f"{path}: {name} is {_told(value)}; {expected}")
+        raise InputError(f"{path}: {name} is {_describe(value)}; {expected}")
     return table.astype(float)
 
 
-def _is_row(variable: Held, least: int, most: int) -> bool:
+def _is_row(variable: Variable, least: int, most: int) -> bool:
     """Whether it may be a matrix of one row, such as a command that is held throughout."""
     return (
         variable.shape[:1] == (1,) and least <= variable.shape[-1] <= most and variable.is_numbers
@@ -78,9 +78,9 @@ def _is_one_more(held: Mapping[str, Any], names: Sequence[str]) -> bool:
     return f"w{len(names)}" in held and names[-1] == f"w{len(names) - 1}"
 
 
-def together(path: Path, columns: Mapping[str, Value]) -> np.ndarray:
+def stack_vectors(path: Path, columns: Mapping[str, Value]) -> np.ndarray:
     """Make a table of vectors, which must have the length of the first."""
-    vectors = {name: vector(path, name, value) for name, value in columns.items()}
+    vectors = {name: check_vector(path, name, value) for name, value in columns.items()}
     first = next(iter(vectors))
     count = len(vectors[first])
     for name, column in vectors.items():
@@ -89,7 +89,7 @@ def together(path: Path, columns: Mapping[str, Value]) -> np.ndarray:
     return np.column_stack(list(vectors.values()))
 
 
-def vector(path: Path, name: str, value: Value) -> np.ndarray:
+def check_vector(path: Path, name: str, value: Value) -> np.ndarray:
     """Check that a variable is a vector of real numbers."""
     if (
         not isinstance(value, np.ndarray)
@@ -100,31 +100,33 @@ def vector(path: Path, name: str, value: Value) -> np.ndarray:
     return value.ravel().astype(float)
 
 
-def _of_signals(struct: Dict[str, Value]) -> Optional[np.ndarray]:
+def _join_signals(struct: Dict[str, Value]) -> Optional[np.ndarray]:
     """Put time and signals side by side; None unless the struct is such a one."""
     fields = {name.lower(): value for name, value in struct.items()}
     time = fields.get("time")
     if "signals" in fields:
         signals = fields["signals"]
-        parts = [signal.get("values") for signal in listed(signals) if isinstance(signal, dict)]
+        parts = [
+            signal.get("values") for signal in list_signals(signals) if isinstance(signal, dict)
+        ]
     else:
         parts = [fields.get("data")]
     arrays = [part for part in [time, *parts] if isinstance(part, np.ndarray)]
     if len(arrays) != 1 + len(parts) or len(parts) == 0:
         return None
     rows = arrays[0].size
-    columns = [_rows_of(array, rows) for array in arrays]
+    columns = [_to_rows(array, rows) for array in arrays]
     if any(column is None for column in columns):
         return None
     return np.hstack([column for column in columns if column is not None])
 
 
-def listed(signals: Value) -> List[Any]:
+def list_signals(signals: Value) -> List[Any]:
     """Give the signals of a struct as Simulink writes it, where one is no list."""
     return signals if isinstance(signals, list) else [signals]
 
 
-def _rows_of(array: np.ndarray, rows: int) -> Optional[np.ndarray]:
+def _to_rows(array: np.ndarray, rows: int) -> Optional[np.ndarray]:
     """Turn values to a row for each time; Simulink has vectors as (n, 1, rows)."""
     flat = np.squeeze(array)
     if flat.ndim <= 1 and flat.size == rows:
@@ -134,7 +136,7 @@ def _rows_of(array: np.ndarray, rows: int) -> Optional[np.ndarray]:
     return flat.T if flat.ndim == 2 and flat.shape[1] == rows else None
 
 
-def _told(value: Value) -> str:
+def _describe(value: Value) -> str:
     if isinstance(value, dict):
         return f"a struct of {', '.join(value)}"
     if isinstance(value, np.ndarray):

@@ -11,7 +11,7 @@ Value = Union[np.ndarray, str, List[Any], Dict[str, Any]]
 _OTHERS = ("struct", "object", "char", "cell", "sparse", "function", "opaque")
 
 
-class Held(NamedTuple):
+class Variable(NamedTuple):
     """A variable before it is read."""
 
     shape: Tuple[int, ...]
@@ -29,10 +29,10 @@ class Held(NamedTuple):
         return self.kind not in _OTHERS
 
 
-Choose = Callable[[Mapping[str, Held]], Sequence[str]]
+Choose = Callable[[Mapping[str, Variable]], Sequence[str]]
 
 
-def complex_of(real: np.ndarray, imaginary: np.ndarray) -> np.ndarray:
+def combine_parts(real: np.ndarray, imaginary: np.ndarray) -> np.ndarray:
     """Put parts together, whatever they are: a product of infinities would warn."""
     numbers = real.astype(complex)
     numbers.imag = imaginary

@@ -11,7 +11,7 @@ from ..support.input_files import open_file, read_whole
 from ..support.optional_packages import require_package
 from .mat_4 import load_4
 from .mat_5 import is_5, load_5
-from .mat_types import Choose, Held, Value
+from .mat_types import Choose, Value, Variable
 
 _LARGEST = 10**9  # bytes of a file before version 7.3
 _MOST_VALUES = 10**7  # of a variable; of commands more than three hours at 1 kHz
@@ -49,8 +49,8 @@ def _load(path: Path, stream: IO[bytes], choose: Choose) -> Dict[str, Value]:
     if head.startswith(_OCTAVE_TEXT):
         raise InputError(f"{path}: is a text by Octave; save it with the option -v7")
 
-    def chosen(held: Mapping[str, Held]) -> Sequence[str]:
-        return _checked(path, choose(held), held)
+    def chosen(held: Mapping[str, Variable]) -> Sequence[str]:
+        return _check_chosen(path, choose(held), held)
 
     if _HDF5 in (head[:8], head[512:]):
         with require_package(
@@ -65,7 +65,7 @@ def _load(path: Path, stream: IO[bytes], choose: Choose) -> Dict[str, Value]:
     raise InputError(f"{path}: not a MATLAB file. Save it with the option -v7.")
 
 
-def _checked(path: Path, names: Sequence[str], held: Mapping[str, Held]) -> Sequence[str]:
+def _check_chosen(path: Path, names: Sequence[str], held: Mapping[str, Variable]) -> Sequence[str]:
     for name in names:
         values = math.prod(held[name].shape)
         if values > _MOST_VALUES:

@@ -62,24 +62,24 @@ def split_columns(columns: Sequence[str], rows: np.ndarray) -> Tuple[Sequence[st
     return columns[: len(columns) - sum(map(len, topics.values()))], topics
 
 
-def wrench_columns(terms: Sequence[str]) -> List[str]:
+def list_wrench_columns(terms: Sequence[str]) -> List[str]:
     """Name the columns of wrenches where they stand in rows: behind all others, six of each."""
     return [f"wrench_{term}.{field}" for term in terms for field in _WRENCH]
 
 
-def wrenches_at_the_end(columns: Sequence[str]) -> List[str]:
+def find_wrench_terms(columns: Sequence[str]) -> List[str]:
     """Name the wrenches whose columns are the last of these."""
     terms: List[str] = []
     for end in range(len(columns), len(_WRENCH) - 1, -len(_WRENCH)):
         six = list(columns[end - len(_WRENCH) : end])
         term = six[0].partition(".")[0][len("wrench_") :]
-        if six != wrench_columns([term]):
+        if six != list_wrench_columns([term]):
             break
         terms.insert(0, term)
     return terms
 
 
-def with_wrenches(table: np.ndarray, wrenches: Optional[np.ndarray]) -> np.ndarray:
+def append_wrenches(table: np.ndarray, wrenches: Optional[np.ndarray]) -> np.ndarray:
     """Put wrenches (rows, terms, 6), if any, behind the columns of a table (rows, columns)."""
     if wrenches is None:
         return table

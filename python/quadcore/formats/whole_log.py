@@ -8,13 +8,13 @@ from typing import Callable, Mapping, Sequence
 
 import numpy as np
 
-from ..support.output_files import unwritable
-from .rows import with_wrenches
+from ..support.output_files import make_write_error
+from .rows import append_wrenches
 
 Write = Callable[[Path, Sequence[str], np.ndarray, Mapping[str, np.ndarray], Sequence[str]], None]
 
 
-class AtTheEnd:
+class DeferredLogFile:
     """Rows wait in a file without name until the flight ends.
 
     It lies beside the log, where there must be room for the log as well.
@@ -43,16 +43,16 @@ class AtTheEnd:
         try:
             self._rows = tempfile.TemporaryFile(dir=str(path.parent))  # noqa: SIM115
         except OSError as error:
-            raise unwritable(path, error) from error
+            raise make_write_error(path, error) from error
 
     def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
         """Keep a piece."""
-        rows = with_wrenches(table, wrenches if self.wrenches else None)
+        rows = append_wrenches(table, wrenches if self.wrenches else None)
         try:
             self._rows.write(rows.tobytes())
             self._rows.flush()
         except OSError as error:
-            raise unwritable(self.path, error) from error
+            raise make_write_error(self.path, error) from error
         self._count += len(table)
 
     def close(self) -> None:

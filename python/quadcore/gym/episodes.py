@@ -8,7 +8,7 @@ import numpy as np
 from gymnasium.utils import seeding
 
 from ..simulation.batch import BatchState
-from ..support.rotation import matrix
+from ..support.rotation import to_matrix
 from .step_data import StepData
 from .task import Task
 
@@ -85,7 +85,7 @@ class Episodes:
     def _make_step(self, state: BatchState, action: np.ndarray, lost: np.ndarray) -> StepData:
         return StepData(
             state.position - self._goals,
-            matrix(state.orientation),
+            to_matrix(state.orientation),
             state.linear_velocity,
             state.angular_velocity,
             state.rotor_velocity,

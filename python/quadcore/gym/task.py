@@ -13,7 +13,7 @@ from .._core import InputError
 from ..control import references
 from ..control.inner_loop import AttitudeThrust, InnerLoop
 from ..simulation.simulation import Simulation
-from ..support.parameters import did_you_mean
+from ..support.parameters import suggest
 from .observations import OBSERVATIONS
 from .rewards import REWARDS
 from .step_data import StepData
@@ -135,7 +135,7 @@ class Task:
                 raise InputError(f"{what} is {names!r}. Name some of {', '.join(known)}.")
             for name in names:
                 if name not in known:
-                    near = did_you_mean(str(name), list(known))
+                    near = suggest(str(name), list(known))
                     raise InputError(
                         f"{what} '{name}' does not exist{near}. Use some of {', '.join(known)}."
                     )

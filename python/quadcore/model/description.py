@@ -1,4 +1,4 @@
-"""Models and worlds, from a file or a shipped name."""
+"""Reading models and worlds from files or shipped names."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from .._core import Document, InputError, Model, World
 from ..support.arguments import LIST, NAME, OPTIONS, check, read_once
 from ..support.import_lock import LOCK
 from ..support.input_files import check_regular, is_file
-from ..support.output_files import shown
-from ..support.parameters import did_you_mean
+from ..support.output_files import printable_name
+from ..support.parameters import suggest
 from . import resources, xml_source
 
 _XACRO = (".xacro", ".gazebo")
-"""Ends of names of files that are expanded; RotorS has the second."""
+"""Suffixes of xacro files; RotorS uses the second."""
 
 
 def read_model(
@@ -23,57 +23,59 @@ def read_model(
     xacro_args: Optional[Mapping[str, object]] = None,
     ignore: Sequence[str] = (),
 ) -> Model:
-    """Read a model, to fly it often or to take it elsewhere: it holds its text, no path.
+    """Read a model once, for any number of simulations.
+
+    The result contains the text of the model and no path, so that it can be pickled.
 
     Parameters
     ----------
-    model
-        URDF or xacro file, or the name of a shipped model ("quadrotor").
-    xacro_args
+    model : str or path, default "quadrotor"
+        URDF or xacro file, or name of a shipped model.
+    xacro_args : mapping of str to value, optional
         Arguments of a xacro model.
-    ignore
-        As for `Simulation`; a name that nothing goes by is refused when the model flies.
+    ignore : sequence of str, default ()
+        As for `Simulation`. Names that do not occur are an error once the model is simulated.
 
     Returns
     -------
     Model
-        For any number of simulations.
+        Model to pass to `Simulation`.
 
     Raises
     ------
     InputError
-        The model is at fault; the message carries ``FILE:LINE``.
+        If the model is wrong; the message begins with ``FILE:LINE``.
     """
     check({"model": model, "xacro_args": xacro_args}, {"model": NAME})
     arguments = {name: str(value) for name, value in (xacro_args or {}).items()}
     return _core.read_model(
-        load_description(str(model), arguments), list_of_names("ignore", ignore)
+        load_description(str(model), arguments), check_names_argument("ignore", ignore)
     )
 
 
 def read_world(world: Union[str, Path, None] = None, ignore: Sequence[str] = ()) -> World:
-    """Read a world, to fly in it often or to take it elsewhere.
+    """Read a world once, for any number of simulations.
 
     Parameters
     ----------
-    world
-        World file, or the name of a shipped one; None is empty.world.
-    ignore
+    world : str or path, optional
+        World file, or name of a shipped world. Default: empty.world.
+    ignore : sequence of str, default ()
         As for `read_model`.
 
     Returns
     -------
     World
-        For any number of simulations.
+        World to pass to `Simulation`.
 
     Raises
     ------
     InputError
-        The world is at fault; the message carries ``FILE:LINE``.
+        If the world is wrong; the message begins with ``FILE:LINE``.
     """
     check({"world": world}, OPTIONS)
     document = load_world(None if world is None else str(world))
-    return _core.read_world(document, list_of_names("ignore", ignore))
+    return _core.read_world(document, check_names_argument("ignore", ignore))
 
 
 def read_both(
@@ -82,14 +84,14 @@ def read_both(
     xacro_args: Optional[Mapping[str, object]],
     ignore: Sequence[str],
 ) -> Tuple[Model, World]:
-    """Read a model and a world, each unless it is read already.
+    """Read a model and a world, except for those that are read already.
 
     Raises
     ------
     InputError
-        One of them is at fault, or nothing in them goes by a name to ignore.
+        If one of them is wrong, or a name to ignore occurs in neither.
     """
-    names = list_of_names("ignore", ignore)
+    names = check_names_argument("ignore", ignore)
     if not isinstance(model, Model):
         model = read_model(model, xacro_args, names)
     elif xacro_args:
@@ -100,29 +102,28 @@ def read_both(
     return model, world
 
 
-def list_of_names(argument: str, names: Sequence[str]) -> list[str]:
-    """Check names given as an argument, which may come one by one."""
+def check_names_argument(argument: str, names: Sequence[str]) -> list[str]:
+    """Return the names of an argument, which may be an iterator, as a list."""
     names = read_once(names)
     check({argument: names}, {argument: LIST})
     return list(map(str, names))
 
 
 def load_description(model: str, xacro_args: Mapping[str, str]) -> Document:
-    """Read a model.
+    """Read the text of a model, and expand it if it is a xacro file.
 
     Parameters
     ----------
     model
-        Path to a URDF file or to a xacro file (name ending in ``.xacro`` or, as RotorS has it,
-        ``.gazebo``; then it is expanded), or the name of a shipped model, such as ``"quadrotor"``.
+        URDF file, xacro file (``.xacro`` or ``.gazebo``), or name of a shipped model.
     xacro_args
-        Values of the xacro file's arguments, by name.
+        Arguments of the xacro file, by name.
 
     Raises
     ------
     InputError
-        No such model, malformed XML, an error in the xacro, an argument that the xacro file does
-        not have, or arguments for a file without xacro.
+        If the model does not exist, the XML or xacro is wrong, or the file does not have an
+        argument.
     """
     path = _find("model", model, "urdf")
     if path.suffix not in _XACRO:
@@ -135,36 +136,38 @@ def load_description(model: str, xacro_args: Mapping[str, str]) -> Document:
 
     lines = expand(str(path), xacro_args)
     return Document(
-        shown(path),
+        printable_name(path),
         "\n".join(text for text, _ in lines),
-        [(shown(place.file), place.line) for _, place in lines],
+        [(printable_name(place.file), place.line) for _, place in lines],
     )
 
 
-def xacro_arguments(model: Union[str, Path], given: Mapping[str, object]) -> Dict[str, str]:
-    """Tell what each argument of a model's xacro file is: as given, or its default.
+def list_xacro_arguments(model: Union[str, Path], given: Mapping[str, object]) -> Dict[str, str]:
+    """Return the value of each argument of a xacro file, given or default.
+
+    A file that is not a xacro file has no arguments.
 
     Raises
     ------
     InputError
-        As of `load_description`; a file that is no xacro file has none.
+        As for `load_description`.
     """
     path = _find("model", str(model), "urdf")
     if path.suffix not in _XACRO:
         return {}
     with LOCK:
-        from .xacro_expansion import arguments_of
+        from .xacro_expansion import list_arguments
 
-    return arguments_of(str(path), {name: str(value) for name, value in given.items()})
+    return list_arguments(str(path), {name: str(value) for name, value in given.items()})
 
 
 def load_world(world: str | None) -> Document:
-    """Read a world: a path, the name of a shipped one (``"empty"``), or None for ``"empty"``.
+    """Read the text of a world file or a shipped world; None is ``"empty"``.
 
     Raises
     ------
     InputError
-        No such world, or malformed XML.
+        If the world does not exist, or the XML is malformed.
     """
     return _plain(_find("world", "empty" if world is None else world, "worlds"))
 
@@ -173,7 +176,7 @@ def _find(kind: str, name: str, folder: str) -> Path:
     path = Path(name)
     if is_file(path):
         return path
-    shipped = resources.shipped(folder)
+    shipped = resources.list_shipped(folder)
     by_name = {**shipped, **{file.name: file for file in shipped.values()}}
     if name in by_name:
         return by_name[name]
@@ -182,11 +185,11 @@ def _find(kind: str, name: str, folder: str) -> Path:
     if path.exists():
         check_regular(path)
     known = f"({', '.join(shipped) or 'none'})"
-    near = did_you_mean(name, list(by_name))
+    near = suggest(name, list(by_name))
     raise InputError(f"{name}: no such file, and no shipped {kind} of that name {known}{near}")
 
 
 def _plain(path: Path) -> Document:
     text = xml_source.read(path)
-    xml_source.check(shown(path), text)
-    return Document(shown(path), text)
+    xml_source.check(printable_name(path), text)
+    return Document(printable_name(path), text)

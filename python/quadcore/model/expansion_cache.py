@@ -16,7 +16,7 @@ Answer = TypeVar("Answer")
 _MOST = 256  # a study of an argument of xacro asks for each of its values again and again
 
 
-class Outside:
+class Dependencies:
     """What one expansion asked of the world outside its text, and what it was answered."""
 
     def __init__(self) -> None:
@@ -37,7 +37,7 @@ class Outside:
             return False
 
 
-def content(path: str) -> Optional[bytes]:
+def read_content(path: str) -> Optional[bytes]:
     """Give what a regular file holds; None if there is none to be read."""
     try:
         return read_bytes(Path(path), LARGEST)
@@ -45,7 +45,7 @@ def content(path: str) -> Optional[bytes]:
         return None
 
 
-def _working_folder() -> str:
+def _get_working_folder() -> str:
     try:
         return os.getcwd()
     except OSError:  # it was removed
@@ -53,22 +53,22 @@ def _working_folder() -> str:
 
 
 class _Entry(NamedTuple):
-    outside: Outside
+    outside: Dependencies
     expansion: Any
 
 
-class Kept(Generic[Expansion]):
+class ExpansionCache(Generic[Expansion]):
     """Expansions by what they were made of: the file, its arguments and the working folder."""
 
     def __init__(self) -> None:
         self._entries: OrderedDict[Any, _Entry] = OrderedDict()
 
-    def get(self, key: Any, expand: Callable[[Outside], Expansion]) -> Expansion:
+    def get(self, key: Any, expand: Callable[[Dependencies], Expansion]) -> Expansion:
         """Give what is kept, if all that it asked outside is as it was; else expand(outside)."""
-        key = (_working_folder(), key)
+        key = (_get_working_folder(), key)
         entry = self._entries.pop(key, None)
         if entry is None or not entry.outside.is_the_same():
-            outside = Outside()
+            outside = Dependencies()
             entry = _Entry(outside, expand(outside))
         if entry.outside.may_be_kept:
             self._entries[key] = entry

@@ -9,7 +9,7 @@ from xml.parsers import expat
 from .. import _core
 from .._core import Document, InputError, Model
 from ..support.arguments import OPTIONS, check
-from ..support.parameters import did_you_mean
+from ..support.parameters import suggest
 
 XACRO = "xacro"
 _LINK = "a link"
@@ -19,7 +19,7 @@ _PLACES = {"mass": ("mass", "value")}
 _PLACES.update({name: ("inertia", name) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")})
 
 
-def without_xacro(
+def split_xacro_arguments(
     parameters: Optional[Mapping[str, Any]], xacro_args: Optional[Mapping[str, object]]
 ) -> Tuple[Dict[str, object], Dict[str, Any]]:
     """Take the xacro.ARG out of parameters: arguments for the reader, and what is left.
@@ -47,7 +47,7 @@ def check_names(model: Model, parameters: Iterable[str]) -> None:
     keys = [key for key in parameters if _is_special(key)]
     if not keys:
         return
-    kinds = _kinds(model.document)
+    kinds = _describe_names(model.document)
     for key in keys:
         owner = key.rpartition(".")[0]
         if len(kinds.get(owner, ())) > 1:
@@ -56,7 +56,7 @@ def check_names(model: Model, parameters: Iterable[str]) -> None:
             )
 
 
-def with_links(model: Model, parameters: Mapping[str, str]) -> Tuple[Model, Dict[str, str]]:
+def apply_link_values(model: Model, parameters: Mapping[str, str]) -> Tuple[Model, Dict[str, str]]:
     """Take the LINK.mass and the like out of parameters, and give the model these values.
 
     Returns
@@ -73,7 +73,7 @@ def with_links(model: Model, parameters: Mapping[str, str]) -> Tuple[Model, Dict
     if not any(_is_special(key) for key in parameters):
         return model, dict(parameters)
     check_names(model, parameters)
-    kinds = _kinds(model.document)
+    kinds = _describe_names(model.document)
     of_links: Dict[str, str] = {}
     left: Dict[str, str] = {}
     for key, value in parameters.items():
@@ -82,7 +82,7 @@ def with_links(model: Model, parameters: Mapping[str, str]) -> Tuple[Model, Dict
             raise InputError(f"set {key}: the model is read already; give it to its reader")
         is_of_link = _is_special(key) and kinds.get(owner) == [_LINK]
         (of_links if is_of_link else left)[key] = value
-    return (_changed(model, of_links) if of_links else model), left
+    return (_change_values(model, of_links) if of_links else model), left
 
 
 def _check_link_names(model: Model, parameters: Iterable[str]) -> None:
@@ -90,16 +90,20 @@ def _check_link_names(model: Model, parameters: Iterable[str]) -> None:
     links = [link.name for link in model.links]
     for key in parameters:
         owner, _, name = key.rpartition(".")
-        if owner in links and not _is_special(key) and _kinds(model.document)[owner] == [_LINK]:
-            near, known = did_you_mean(name, list(_PLACES)), ", ".join(_PLACES)
+        if (
+            owner in links
+            and not _is_special(key)
+            and _describe_names(model.document)[owner] == [_LINK]
+        ):
+            near, known = suggest(name, list(_PLACES)), ", ".join(_PLACES)
             raise InputError(
                 f"set {key}: link '{owner}' has no value '{name}'{near}. Set one of {known}."
             )
 
 
-def link_values(document: Document) -> Dict[str, str]:
+def list_link_values(document: Document) -> Dict[str, str]:
     """Find every LINK.NAME that a document's links have, with its text."""
-    found = _attributes(document.text.encode())
+    found = _find_attributes(document.text.encode())
     return {key: attribute.text for key, attribute in found.items()}
 
 
@@ -109,7 +113,7 @@ def _is_special(key: str) -> bool:
     return owner == XACRO or name in _PLACES
 
 
-def _kinds(document: Document) -> Dict[str, List[str]]:
+def _describe_names(document: Document) -> Dict[str, List[str]]:
     """Say what goes by each name in a document."""
     kinds: Dict[str, List[str]] = {XACRO: ["the arguments of xacro"]}
 
@@ -125,9 +129,9 @@ def _kinds(document: Document) -> Dict[str, List[str]]:
     return kinds
 
 
-def _changed(model: Model, values: Mapping[str, str]) -> Model:
+def _change_values(model: Model, values: Mapping[str, str]) -> Model:
     document = model.document
-    places = _attributes(document.text.encode())
+    places = _find_attributes(document.text.encode())
     edits = []
     for key, value in values.items():
         if _core.parse_number(value) is None:
@@ -153,7 +157,7 @@ class _Attribute(NamedTuple):
     text: str
 
 
-def _attributes(text: bytes) -> Dict[str, _Attribute]:
+def _find_attributes(text: bytes) -> Dict[str, _Attribute]:
     """Find the values that may be changed, by LINK.NAME."""
     found: Dict[str, _Attribute] = {}
     parser = expat.ParserCreate()

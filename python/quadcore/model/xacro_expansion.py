@@ -21,11 +21,11 @@ import xacro
 from .._core import InputError, QuadcoreError
 from ..support.import_lock import LOCK
 from ..support.input_files import read_text
-from ..support.parameters import did_you_mean
+from ..support.parameters import suggest
 from ..support.warning import suppress_warnings, warn
 from . import resources, xml_origins, xml_source
-from .expansion_cache import Kept, Outside, content
-from .xacro_faults import reason
+from .expansion_cache import Dependencies, ExpansionCache, read_content
+from .xacro_faults import explain_error
 
 _MOST_ELEMENTS = 20000  # a few lines of macros can ask for billions
 
@@ -40,7 +40,7 @@ class _Expansion(NamedTuple):
     asked: Set[str]
 
 
-_KEPT: Kept[_Expansion] = Kept()
+_CACHE: ExpansionCache[_Expansion] = ExpansionCache()
 
 
 def expand(path: str, arguments: Mapping[str, str]) -> _Lines:
@@ -68,17 +68,17 @@ def expand(path: str, arguments: Mapping[str, str]) -> _Lines:
     QuadcoreWarning
         What xacro itself warns of.
     """
-    expansion = _kept(path, arguments)
+    expansion = _expand_cached(path, arguments)
     for name in arguments:
         if name not in expansion.asked:
             known = sorted(expansion.asked)
-            near = did_you_mean(name, known)
+            near = suggest(name, known)
             remedy = f"Use one of {', '.join(known)}." if known else "Leave it out."
             raise InputError(f"{path}: has no xacro argument '{name}'{near}. {remedy}")
     return expansion.lines
 
 
-def arguments_of(path: str, given: Mapping[str, str]) -> Dict[str, str]:
+def list_arguments(path: str, given: Mapping[str, str]) -> Dict[str, str]:
     """Tell what each argument of a xacro file is: as given, or its default.
 
     Raises
@@ -86,36 +86,38 @@ def arguments_of(path: str, given: Mapping[str, str]) -> Dict[str, str]:
     InputError
         As of `expand`.
     """
-    expansion = _kept(path, given)
+    expansion = _expand_cached(path, given)
     return {name: text for name, text in expansion.arguments.items() if name in expansion.asked}
 
 
-def _kept(path: str, arguments: Mapping[str, str]) -> _Expansion:
+def _expand_cached(path: str, arguments: Mapping[str, str]) -> _Expansion:
     key = (path, tuple(sorted(arguments.items())))
     with LOCK:
-        return _KEPT.get(key, lambda outside: _expanded(path, arguments, outside))
+        return _CACHE.get(key, lambda outside: _expand_file(path, arguments, outside))
 
 
-def _expanded(path: str, arguments: Mapping[str, str], outside: Outside) -> _Expansion:
+def _expand_file(path: str, arguments: Mapping[str, str], outside: Dependencies) -> _Expansion:
     table = _Arguments(arguments)
     try:
-        with _replaced_hooks(table, outside):
+        with _replace_hooks(table, outside):
             document = xacro.process_file(path, mappings=table)
     except QuadcoreError:
         raise
     except Exception as error:  # xacro has no common base class for what it raises
         frames = [frame for frame, _ in traceback.walk_tb(error.__traceback__)]
-        place = _place(reversed(frames)) or path
-        raise InputError(f"{place}: {_blamed(path, arguments, reason(error))}") from error
+        place = _find_place(reversed(frames)) or path
+        raise InputError(
+            f"{place}: {_blame_argument(path, arguments, explain_error(error))}"
+        ) from error
     return _Expansion(xml_origins.write(document), dict(table), table.asked)
 
 
-def _blamed(path: str, arguments: Mapping[str, str], what: str) -> str:
+def _blame_argument(path: str, arguments: Mapping[str, str], what: str) -> str:
     """Name the argument without which the file would expand, if there is one."""
     for name, value in arguments.items():
         table = _Arguments({other: text for other, text in arguments.items() if other != name})
         try:
-            with _replaced_hooks(table, Outside()), suppress_warnings():
+            with _replace_hooks(table, Dependencies()), suppress_warnings():
                 xacro.process_file(path, mappings=table)
             default = table[name]
         except Exception:  # it is not this one, or not it alone
@@ -142,13 +144,13 @@ class _Arguments(Dict[str, str]):
 
 
 @contextlib.contextmanager
-def _replaced_hooks(arguments: _Arguments, outside: Outside) -> Iterator[None]:
+def _replace_hooks(arguments: _Arguments, outside: Dependencies) -> Iterator[None]:
     old_parse, old_extension = xacro.parse, xacro.eval_extension
     old_all, old_text = xacro.eval_all, xacro.eval_text
 
     def parse(source: Any, filename: str | None = None) -> Any:
         if filename is not None:
-            outside.ask(content, filename)
+            outside.ask(read_content, filename)
         if filename is None or not Path(filename).exists():
             return old_parse(source, filename)  # it raises what <xacro:include optional=""> expects
         if not Path(filename).is_file():
@@ -176,7 +178,7 @@ def _replaced_hooks(arguments: _Arguments, outside: Outside) -> Iterator[None]:
     def eval_extension(text: str) -> str:
         command, *words = text[len("$(") : -len(")")].split() or [""]
         if command == "find" and len(words) == 1:
-            return outside.ask(_package_folder, words[0])
+            return outside.ask(_find_package, words[0])
         if command in ("env", "optenv") and words:
             outside.ask(os.environ.get, words[0])
         elif command not in ("arg", "cwd", "dirname"):  # eval; anon, which is another each time
@@ -189,7 +191,7 @@ def _replaced_hooks(arguments: _Arguments, outside: Outside) -> Iterator[None]:
         return str(old_extension(text))
 
     def opened(filename: str) -> io.StringIO:  # for load_yaml
-        outside.ask(content, filename)
+        outside.ask(read_content, filename)
         try:
             return io.StringIO(read_text(Path(filename)))
         except InputError as error:  # xacro expects what open raises: an include may be optional
@@ -199,7 +201,7 @@ def _replaced_hooks(arguments: _Arguments, outside: Outside) -> Iterator[None]:
 
     def warning(message: str) -> None:
         outside.may_be_kept = False  # it would not be told again
-        place = _place(frame for frame, _ in traceback.walk_stack(None))
+        place = _find_place(frame for frame, _ in traceback.walk_stack(None))
         warn(f"{place}: {message}" if place else message)
 
     new = {
@@ -222,9 +224,9 @@ def _replaced_hooks(arguments: _Arguments, outside: Outside) -> Iterator[None]:
         vars(xacro).update(old)
 
 
-def _package_folder(name: str) -> str:
+def _find_package(name: str) -> str:
     if name == "quadcore":  # installed by pip, it is in no ROS workspace
-        return str(resources.root())
+        return str(resources.find_root())
     try:
         return str(rospkg.RosPack().get_path(name))
     except rospkg.ResourceNotFound:
@@ -233,11 +235,11 @@ def _package_folder(name: str) -> str:
         ) from None
 
 
-def _place(frames: Iterable[FrameType]) -> xml_source.Origin | None:
+def _find_place(frames: Iterable[FrameType]) -> xml_source.Origin | None:
     """Origin of the element that xacro works at, from the first of `frames` that has one."""
     for frame in frames:
         for name in ("node", "elt", "tag"):  # what xacro calls it
-            found = xml_origins.origin(frame.f_locals.get(name))
+            found = xml_origins.find_origin(frame.f_locals.get(name))
             if found is not None:
                 return found
     return None

@@ -10,7 +10,7 @@ from typing import List
 _EXPRESSION = re.compile(r"when evaluating expression '(.*)'", re.DOTALL)
 
 
-def reason(error: BaseException) -> str:
+def explain_error(error: BaseException) -> str:
     """Say in one line what went wrong, as far as xacro tells."""
     cause, inner = error, error
     while isinstance(getattr(cause, "exc", None), Exception):
@@ -20,21 +20,21 @@ def reason(error: BaseException) -> str:
     if isinstance(cause, RecursionError):
         return "a macro or an include contains itself without end"
     if isinstance(cause, KeyError):
-        return _no_key(cause, str(getattr(inner, "suffix", "")))
+        return _explain_key_error(cause, str(getattr(inner, "suffix", "")))
     text = str(cause if "<class" in str(error) else error)
     hint = "; define it with <xacro:property>" if isinstance(cause, NameError) else ""
     return (" ".join(text.split()) or type(error).__name__) + hint
 
 
-def _no_key(error: KeyError, suffix: str) -> str:
+def _explain_key_error(error: KeyError, suffix: str) -> str:
     found = _EXPRESSION.search(suffix)
     expression = " ".join(found[1].split()) if found else ""
-    keys = _keys(expression)
+    keys = _list_keys(expression)
     instead = f"write one of {', '.join(keys)}" if keys else f"mend '{expression or error}'"
     return f"there is no {' '.join(str(error).split())}; {instead}"
 
 
-def _keys(expression: str) -> List[str]:
+def _list_keys(expression: str) -> List[str]:
     """Names that an expression chooses from: of dict(name=...)[...]."""
     try:
         tree = ast.parse(expression, mode="eval")

@@ -7,13 +7,13 @@ from xml.dom import expatbuilder, minidom
 from xml.parsers import expat
 from xml.sax.saxutils import escape, quoteattr
 
-from .xml_source import Origin, check, malformed
+from .xml_source import Origin, check, make_syntax_error
 
 _KEY = "quadcore.origin"
 
 
 def parse(file: str, text: str) -> minidom.Document:
-    """Document of `text` whose elements know their `origin`.
+    """Document of `text` whose elements know their `find_origin`.
 
     Raises
     ------
@@ -24,10 +24,10 @@ def parse(file: str, text: str) -> minidom.Document:
     try:
         return _Builder(file).parseString(text)
     except expat.ExpatError as error:
-        raise malformed(file, error) from error
+        raise make_syntax_error(file, error) from error
 
 
-def origin(node: Any) -> Origin | None:
+def find_origin(node: Any) -> Origin | None:
     """Where a node, or the nearest element around it that was read from a file, stands."""
     while isinstance(node, minidom.Node):
         found: Origin | None = node.getUserData(_KEY)
@@ -45,7 +45,7 @@ def write(document: minidom.Document) -> list[tuple[str, Origin]]:
     """
     root = document.documentElement
     assert root is not None
-    return list(_lines(root))
+    return list(_write_lines(root))
 
 
 class _Inherit:
@@ -68,8 +68,8 @@ class _Builder(expatbuilder.ExpatBuilderNS):
         self.curNode.setUserData(_KEY, place, _Inherit)
 
 
-def _lines(element: minidom.Element) -> Iterator[tuple[str, Origin]]:
-    place = origin(element)
+def _write_lines(element: minidom.Element) -> Iterator[tuple[str, Origin]]:
+    place = find_origin(element)
     assert place is not None
     tag = element.tagName
     head = "<" + tag + "".join(f" {k}={quoteattr(v)}" for k, v in element.attributes.items())
@@ -82,5 +82,5 @@ def _lines(element: minidom.Element) -> Iterator[tuple[str, Origin]]:
         return
     yield from ((line, place) for line in f"{head}>{text}".split("\n"))
     for child in children:
-        yield from _lines(child)
+        yield from _write_lines(child)
     yield f"</{tag}>", place

@@ -64,10 +64,10 @@ def check(file: str, text: str) -> None:
     try:
         parser.Parse(text, True)
     except expat.ExpatError as error:
-        raise malformed(file, error) from error
+        raise make_syntax_error(file, error) from error
 
 
-def malformed(file: str, error: expat.ExpatError) -> InputError:
+def make_syntax_error(file: str, error: expat.ExpatError) -> InputError:
     """Make the error that says why a text is no XML."""
     what = expat.ErrorString(error.code)
     hint = ' (declare it: xmlns:xacro="http://www.ros.org/wiki/xacro")' if "prefix" in what else ""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Callable, Sequence, Tuple
 import numpy as np
 
 from ..support.output_files import atomic_write, make_folder
-from ..support.rotation import continuous
+from ..support.rotation import unwrap_angles
 from .colours import PALETTE
 from .plots import (
     AXES,
@@ -72,7 +72,7 @@ def draw_overview(log: Trajectory) -> Figure:
     """Draw position and attitude over time, side by side."""
     figure, grid = panels(_make_title(log, "Position and attitude of the frame"), 3, 2)
     _plot_components(grid[:, 0], log.time, log.position, _PLACES)
-    _plot_components(grid[:, 1], log.time, np.degrees(continuous(log.rpy)), _ANGLES)
+    _plot_components(grid[:, 1], log.time, np.degrees(unwrap_angles(log.rpy)), _ANGLES)
     return figure
 
 
@@ -106,7 +106,7 @@ def _reference_position(log: Trajectory) -> Any:
 
 def _draw_attitude(log: Trajectory) -> Figure:
     figure, grid = panels(_make_title(log, "Attitude of the frame"), 3)
-    _plot_components(grid[:, 0], log.time, np.degrees(continuous(log.rpy)), _ANGLES)
+    _plot_components(grid[:, 0], log.time, np.degrees(unwrap_angles(log.rpy)), _ANGLES)
     return figure
 
 

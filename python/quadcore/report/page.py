@@ -7,7 +7,7 @@ from pathlib import Path
 
 import jinja2
 
-from ..support.output_files import atomic_write, text_bytes
+from ..support.output_files import atomic_write, encode_text
 
 
 def write_page(path: Path, template: str, **values: object) -> None:
@@ -20,7 +20,7 @@ def write_page(path: Path, template: str, **values: object) -> None:
     """
     page = render(template, **values)
     with atomic_write(path) as stream:
-        stream.write(text_bytes(page))
+        stream.write(encode_text(page))
 
 
 def render(template: str, **values: object) -> str:

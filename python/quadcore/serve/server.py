@@ -11,7 +11,7 @@ from typing import Callable, List, Optional, Sequence, Tuple, Union
 
 from .. import _core
 from ..formats.rows import Recorder
-from ..simulation.flight import columns_of
+from ..simulation.flight import list_columns
 from ..simulation.simulation import Simulation
 from . import protocol
 from .connection import Connection
@@ -70,7 +70,7 @@ class Server:
         self._simulation, self._topics = simulation, list(topics)
         self._record, self._log_every = record, log_every
         self._start = simulation.snapshot()  # includes the seed
-        self.columns = columns_of(simulation, topics)
+        self.columns = list_columns(simulation, topics)
         self._socket, self._path = _listen(address)
         self._is_closed = False
         if self._path is None:

@@ -1,4 +1,4 @@
-"""Many vehicles, stepped together."""
+"""The public class `BatchSimulation`."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ import numpy as np
 
 from .. import _core
 from .._core import InputError
-from ..support.arguments import brief
-from ..support.values import SPAWN, Value, poses, seeds, whole
+from ..support.arguments import shorten
+from ..support.values import SPAWN, Value, check_poses, check_seeds, check_whole
 from ..support.warning import warn
 from .batch_state import BatchState as BatchState
-from .batch_vehicles import refusal, vehicle_count, vehicles
+from .batch_vehicles import check_vehicle_count, explain_refusal, read_vehicles
 from .engines import EngineName, check_engine_and_step
-from .flight import check_logged, steps_within
+from .flight import check_log_length, count_steps
 from .log import Log
 
 if TYPE_CHECKING:
@@ -31,50 +31,54 @@ if TYPE_CHECKING:
 
 
 class BatchSimulation(_core.Batch):
-    """Many vehicles of one model, each in a world of its own, stepped together.
+    """Simulate many vehicles of one model, each in its own world.
 
-    Each moves, to the last bit, as a `Simulation` of it does, however many others and threads there
-    are. In the engines "eigen" and "gazebo11" several vehicles share each instruction, as long as
-    motors and force laws are all that acts; others, and those in "ode", are stepped one by one.
+    Each vehicle moves bit-identically to a `Simulation` of it, whatever the number of vehicles and
+    threads. The engines "eigen" and "gazebo11" step several vehicles per instruction if only motors
+    and force models act on them. All other vehicles are stepped one by one.
 
     Parameters
     ----------
-    model, engine, world, dt, ignore
-        As of `Simulation`; the engine is "eigen" unless another is named.
-    n : int
-        Vehicles.
+    model, world, dt, ignore
+        As for `Simulation`.
+    n : int, default 1
+        Number of vehicles.
+    engine : {"gazebo11", "ode", "eigen"}, default "eigen"
+        Engine.
     parameters : mapping of str to value or array (n,), optional
-        As of `Simulation`; an array has one for each vehicle, which ``xacro.ARG`` takes, too: the
-        file is expanded for each value. Of a tag that is a row of k numbers an array is (n, k).
+        As for `Simulation`. An array contains one value per vehicle; of a tag with k numbers it has
+        the shape (n, k). ``xacro.ARG`` accepts arrays as well.
     xacro_args : mapping of str to value or array (n,), optional
-        As of `Simulation`; the same as ``xacro.ARG``.
-    spawn : array_like (n, 6), (n, 3), (6,) or (3,)
-        x, y, z (m), and roll, pitch, yaw (rad), of each vehicle or of all.
-    seed : int or array_like (n,)
-        Of the noise of each vehicle; a number is that of the first, the next has the next.
+        Arguments of a xacro model, equivalent to ``xacro.ARG``.
+    spawn : array_like (n, 6), (n, 3), (6,) or (3,), default (0, 0, 10)
+        x, y, z (m) and roll, pitch, yaw (rad) of each vehicle, or of all.
+    seed : int or array_like (n,), default 0
+        Seed of each vehicle, or of the first; the following vehicles then count up from it.
     threads : int, optional
-        That step; None: one for each processor.
+        Number of threads. Default: one per processor.
 
     Attributes
     ----------
     n : int
         Number of vehicles.
     time : ndarray (n,)
-        Of each vehicle, s.
+        Time of each vehicle, s.
     dt : float
-        Length of a step, s.
+        Step, s.
     command_width : int
-        Numbers of a vehicle's command.
+        Count of numbers in the command of a vehicle.
 
     Raises
     ------
     InputError
-        The model, world or an argument is at fault; the message carries ``FILE:LINE``.
+        If the model, the world or an argument is wrong; the message begins with ``FILE:LINE``
+        where a file is at fault.
 
     Warns
     -----
     QuadcoreWarning
-        What was said of the first vehicle as it was made; `warnings(i)` has what was said of any.
+        If input for the first vehicle is suspicious; `warnings(i)` lists the messages of any
+        vehicle.
     """
 
     def __init__(
@@ -91,42 +95,44 @@ class BatchSimulation(_core.Batch):
         xacro_args: Optional[Mapping[str, object]] = None,
         ignore: Sequence[str] = (),
     ) -> None:
-        n = vehicle_count(n)
+        n = check_vehicle_count(n)
         engine, dt = check_engine_and_step(engine, dt)
         try:
-            models, tags, self.world = vehicles(n, model, world, parameters, xacro_args, ignore)
+            models, tags, self.world = read_vehicles(
+                n, model, world, parameters, xacro_args, ignore
+            )
             super().__init__(
                 models,
                 self.world,
                 engine,
                 dt,
                 tags,
-                poses(spawn, n),
-                seeds(seed, n),
-                0 if threads is None else whole(threads, "threads", bits=31),
+                check_poses(spawn, n),
+                check_seeds(seed, n),
+                0 if threads is None else check_whole(threads, "threads", bits=31),
             )
         except InputError as error:
-            raise refusal(error, (parameters, xacro_args), n) from error.__cause__
+            raise explain_refusal(error, (parameters, xacro_args), n) from error.__cause__
         for warning in self.warnings(0):
             warn(warning)
 
     @property
     def state(self) -> BatchState:
-        """The states now, copied; a failed vehicle's is that in which it failed."""
+        """Copy of the present states; a failed vehicle keeps the state in which it failed."""
         return BatchState.of(self.read_state())
 
     def read_state(self, out: Optional[np.ndarray] = None) -> np.ndarray:
-        """Write the states now.
+        """Return the present states as one array.
 
         Parameters
         ----------
         out : ndarray (n, 13 + 2 rotors), optional
-            Where to; None makes one.
+            Array to write to. Default: a new array.
 
         Returns
         -------
-        ndarray
-            `out`: the columns of `BatchState`, one behind another.
+        ndarray (n, 13 + 2 rotors)
+            `out`, with the columns of `BatchState` in their order.
 
         Raises
         ------
@@ -139,18 +145,20 @@ class BatchSimulation(_core.Batch):
         return out
 
     def set_state(self, rows: npt.ArrayLike) -> None:
-        """Take all vehicles to other states, at time 0; flights that failed go on.
+        """Set the states of all vehicles, at time 0.
+
+        Commands stay. Failed vehicles are simulated again.
 
         Parameters
         ----------
         rows : array_like (n, 13 + 2 rotors)
-            As `read_state` has them; commands stay as they were.
+            States as `read_state` returns them.
 
         Raises
         ------
         InputError
-            Another shape, a number that is not finite, or a quaternion that is none; nothing has
-            changed then.
+            If the shape is wrong, a number is not finite, or a quaternion has no direction.
+            Nothing changes.
         """
         self._take_state(rows)
 
@@ -160,18 +168,18 @@ class BatchSimulation(_core.Batch):
         Parameters
         ----------
         commands : array_like (n, rotors), optional
-            Signed rotor speeds before the division by sim_slow, rad/s, held over these steps; None
-            keeps the ones before.
-        steps : int
-            How many.
+            Signed rotor speeds before the division by sim_slow, rad/s, constant over these steps.
+            Default: the present commands.
+        steps : int, default 1
+            Number of steps.
 
         Raises
         ------
         InputError
-            Commands of another shape, or not finite, or for vehicles that a plugin commands;
-            nothing has moved then.
+            If commands have a wrong shape or are not finite, or if a plugin commands the vehicles.
+            Nothing moves.
         """
-        super().step(commands, whole(steps, "steps", bits=63))
+        super().step(commands, check_whole(steps, "steps", bits=63))
 
     def run(
         self,
@@ -180,39 +188,39 @@ class BatchSimulation(_core.Batch):
         log: Sequence[int] = (),
         log_every: int = 1,
     ) -> List[Log]:
-        """Fly all vehicles for a while, and log some of them.
+        """Simulate all vehicles for a duration, and log some of them.
 
         Parameters
         ----------
         duration : float
-            s; the last step is the last that ends within it.
+            Duration, s. Only steps that end within it are simulated.
         commands : array_like (n, rotors), optional
-            As of `step`.
-        log : sequence of int
-            Vehicles, counted from 0.
-        log_every : int
+            As for `step`.
+        log : sequence of int, default ()
+            Indices of the vehicles to log, from 0.
+        log_every : int, default 1
             Steps between logged rows.
 
         Returns
         -------
         list of Log
-            Of each of these vehicles, the bytes that `Simulation.run` would give. One that fails
-            ends with the last row before.
+            One log for each of these vehicles, bit-identical to that of `Simulation.run`. The log
+            of a failed vehicle ends before the failure.
 
         Raises
         ------
         InputError
-            An argument is at fault; nothing has moved then.
+            If an argument is wrong. Nothing moves.
         """
         if not isinstance(log, Iterable):
-            raise InputError(f"log is {brief(log)}; give a list of numbers of vehicles")
-        chosen = [whole(vehicle, "log") for vehicle in log]
+            raise InputError(f"log is {shorten(log)}; give a list of numbers of vehicles")
+        chosen = [check_whole(vehicle, "log") for vehicle in log]
         for vehicle in chosen:
             if vehicle >= self.n:
                 raise InputError(f"log names vehicle {vehicle}; there are 0 to {self.n - 1}")
-        total = steps_within(duration, self.dt)
-        if whole(log_every, "log_every") < 1 or chosen:
-            check_logged(duration, self.dt, log_every)
+        total = count_steps(duration, self.dt)
+        if check_whole(log_every, "log_every") < 1 or chosen:
+            check_log_length(duration, self.dt, log_every)
         self.step(commands, 0)
         logged = [[row] for row in self._rows_now(chosen)]
         times = total // log_every if chosen else 0
@@ -225,13 +233,13 @@ class BatchSimulation(_core.Batch):
         return [Log(np.array(rows), {}) for rows in logged]
 
     def _rows_now(self, chosen: Sequence[int]) -> np.ndarray:
-        """Write rows of a log, which has no angles of the joints."""
+        """Return the present rows of the log, without joint angles."""
         *logged, _ = BatchState.of(self.read_state()[chosen])
         return np.column_stack([self.time[chosen], *logged])
 
     @property
     def failed(self) -> np.ndarray:
-        """Whether each vehicle's flight has failed: (n,) of bool. A reset ends that."""
+        """Whether each vehicle has failed since its last reset; (n,) of bool."""
         return np.array([bool(why) for why in self.failures])
 
     def reset(
@@ -239,22 +247,22 @@ class BatchSimulation(_core.Batch):
         mask: Optional[npt.ArrayLike] = None,
         seed: Union[int, npt.ArrayLike, None] = None,
     ) -> None:
-        """Take vehicles back to the moment of construction, bit for bit.
+        """Return vehicles to their initial states, bit-identically.
 
         Parameters
         ----------
         mask : array_like (n,) of bool, optional
-            Which; None: all.
+            Vehicles to reset. Default: all.
         seed : int or array_like (n,), optional
-            As if they had been made with it; None keeps what they have.
+            New seeds, as for the constructor. Default: the present seeds.
 
         Raises
         ------
         InputError
-            Another shape or kind; nothing has changed then.
+            If an array has a wrong shape or type. Nothing changes.
         """
         chosen = np.ones(self.n, bool) if mask is None else mask
-        super().reset(chosen, None if seed is None else seeds(seed, self.n))
+        super().reset(chosen, None if seed is None else check_seeds(seed, self.n))
 
     def __repr__(self) -> str:
         failed = sum(map(bool, self.failures))

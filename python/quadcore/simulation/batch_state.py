@@ -1,4 +1,4 @@
-"""The states of many vehicles."""
+"""States of all vehicles of a batch."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ if TYPE_CHECKING:
 
 
 class BatchState(NamedTuple):
-    """The states of the vehicles of a batch, a row for each.
+    """States of the vehicles of a batch, one row per vehicle.
 
     Attributes
     ----------
     position : ndarray (n, 3)
-        Frame origins in the world, m.
+        Positions of the frame origins in the world, m.
     orientation : ndarray (n, 4)
-        Of the frames in the world, unit quaternions x, y, z, w.
+        Orientations of the frames in the world, unit quaternions x, y, z, w.
     linear_velocity : ndarray (n, 3)
-        Of the frame origins, world axes, m/s.
+        Velocities of the frame origins, world axes, m/s.
     angular_velocity : ndarray (n, 3)
-        Of the frames, body axes, rad/s.
+        Angular velocities of the frames, body axes, rad/s.
     rotor_velocity : ndarray (n, rotors)
-        Joint velocities as the engine has them, rad/s.
+        Joint velocities in the engine, after the division by sim_slow, rad/s.
     rotor_angle : ndarray (n, rotors)
         Joint angles in (-pi, pi], rad.
     """
@@ -38,12 +38,12 @@ class BatchState(NamedTuple):
 
     @classmethod
     def of(cls, rows: np.ndarray) -> BatchState:
-        """Name the columns of rows, without a copy.
+        """Split rows of states into named columns, without a copy.
 
         Parameters
         ----------
         rows : ndarray (n, 13 + 2 rotors)
-            As `BatchSimulation.read_state` writes them.
+            Rows as `BatchSimulation.read_state` returns them.
         """
         rotors = (rows.shape[1] - 13) // 2
         ends = np.cumsum([3, 4, 3, 3, rotors])

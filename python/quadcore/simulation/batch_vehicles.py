@@ -9,8 +9,8 @@ import numpy as np
 
 from .._core import InputError, Model, World
 from ..model.description import read_both
-from ..model.overrides import XACRO, check_names, with_links, without_xacro
-from ..support.values import text_of, whole
+from ..model.overrides import XACRO, apply_link_values, check_names, split_xacro_arguments
+from ..support.values import check_whole, format_value
 
 
 class Vehicles(NamedTuple):
@@ -25,15 +25,15 @@ MOST = 1_000_000
 """Vehicles of a batch, at most. Each takes some kilobytes."""
 
 
-def vehicle_count(n: object) -> int:
+def check_vehicle_count(n: object) -> int:
     """Check the number of vehicles."""
-    count = whole(n, "n")
+    count = check_whole(n, "n")
     if not 1 <= count <= MOST:
         raise InputError(f"n is {count}. Give a number of vehicles from 1 to {MOST}.")
     return count
 
 
-def vehicles(
+def read_vehicles(
     n: int,
     model: Union[str, Path, Model],
     world: Union[str, Path, World, None],
@@ -48,32 +48,34 @@ def vehicles(
     InputError
         The model, the world, or what is set is at fault, or is not there for each vehicle.
     """
-    arguments, others = without_xacro(parameters, xacro_args)
-    of_xacro = _of_each(n, {f"{XACRO}.{name}": value for name, value in arguments.items()})
+    arguments, others = split_xacro_arguments(parameters, xacro_args)
+    of_xacro = _split_values(n, {f"{XACRO}.{name}": value for name, value in arguments.items()})
     read: Dict[Tuple[Tuple[str, str], ...], Model] = {}
     built: List[Tuple[Model, Dict[str, str]]] = []
     before: Any = None
-    for given, values in zip(of_xacro, _of_each(n, others)):
-        now = tuple((name[len(XACRO) + 1 :], _argument(value)) for name, value in given.items())
+    for given, values in zip(of_xacro, _split_values(n, others)):
+        now = tuple(
+            (name[len(XACRO) + 1 :], _format_argument(value)) for name, value in given.items()
+        )
         if now not in read:
             read[now], world = read_both(model, world, dict(now), ignore)
             check_names(read[now], parameters or {})
             _check_rotors(read[now], built, arguments)
-        texts = {key: text_of(value) for key, value in values.items()}
+        texts = {key: format_value(value) for key, value in values.items()}
         if (now, texts) != before:
             before = now, texts
-            built.append(with_links(read[now], texts))
+            built.append(apply_link_values(read[now], texts))
         else:
             built.append(built[-1])
     assert isinstance(world, World)
     return Vehicles([each for each, _ in built], [tags for _, tags in built], world)
 
 
-def _argument(value: Any) -> str:
-    return text_of(value) if isinstance(value, np.ndarray) and value.ndim else str(value)
+def _format_argument(value: Any) -> str:
+    return format_value(value) if isinstance(value, np.ndarray) and value.ndim else str(value)
 
 
-def refusal(error: InputError, given: Sequence[Any], n: int) -> InputError:
+def explain_refusal(error: InputError, given: Sequence[Any], n: int) -> InputError:
     """Say how each vehicle has a value of its own, if a row of them was taken for one value.
 
     Parameters
@@ -91,7 +93,11 @@ def refusal(error: InputError, given: Sequence[Any], n: int) -> InputError:
             if not is_table and not isinstance(value, (list, tuple)):
                 continue
             rows = value if is_table else [value]
-            if any(text in str(error) for row in rows for text in (text_of(row), _argument(row))):
+            if any(
+                text in str(error)
+                for row in rows
+                for text in (format_value(row), _format_argument(row))
+            ):
                 return InputError(f"{error}; a value for each vehicle is an array of shape ({n},)")
     return error
 
@@ -107,7 +113,7 @@ def _check_rotors(
         )
 
 
-def _of_each(n: int, parameters: Mapping[str, Any]) -> List[Dict[str, Any]]:
+def _split_values(n: int, parameters: Mapping[str, Any]) -> List[Dict[str, Any]]:
     """Give the values of each vehicle, by name."""
     for key, value in parameters.items():
         shape: Tuple[int, ...] = value.shape if isinstance(value, np.ndarray) else ()

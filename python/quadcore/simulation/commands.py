@@ -9,12 +9,12 @@ from typing import Callable, List, Union
 import numpy as np
 
 from .._core import InputError, fault_of_commands
-from ..formats import format_of
+from ..formats import find_format
 
 CommandsLike = Union[str, "os.PathLike[str]", np.ndarray]
 
 
-def as_commands(commands: CommandsLike, rotor_count: int) -> np.ndarray:
+def check_commands(commands: CommandsLike, rotor_count: int) -> np.ndarray:
     """Check a table of commands, or read it from a file.
 
     Parameters
@@ -48,7 +48,7 @@ def as_commands(commands: CommandsLike, rotor_count: int) -> np.ndarray:
     if table.ndim != 2 or table.shape[1] != 1 + rotor_count:
         raise InputError(
             f"commands: an array of shape {table.shape}; this model with {rotor_count} rotors "
-            f"takes (rows, {1 + rotor_count}): {','.join(_columns(rotor_count))}"
+            f"takes (rows, {1 + rotor_count}): {','.join(_list_columns(rotor_count))}"
         )
     counted = " (rows count from 0, as numpy's do)"
     _check(table, lambda row: f"commands: row {row}", "commands", counted)
@@ -77,8 +77,8 @@ def read_commands(path: Union[str, os.PathLike[str]], rotor_count: int) -> np.nd
         increase; the message begins with ``FILE:LINE:`` where a line is at fault.
     """
     path = Path(path)
-    file = format_of(path, "commands are read from")
-    table, place, counted = file.read_commands(path, _columns(rotor_count))
+    file = find_format(path, "commands are read from")
+    table, place, counted = file.read_commands(path, _list_columns(rotor_count))
     _check(table, place, str(path), counted)
     return table
 
@@ -92,5 +92,5 @@ def _check(table: np.ndarray, place: Callable[[int], str], whole: str, counted: 
         raise InputError(f"{place(row)}: {what}{counted}")
 
 
-def _columns(rotor_count: int) -> List[str]:
+def _list_columns(rotor_count: int) -> List[str]:
     return ["t", *(f"w{i}" for i in range(1, 1 + rotor_count))]

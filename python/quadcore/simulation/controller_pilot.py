@@ -15,12 +15,12 @@ from ..control.controller import SENSED, ControllerLike, Odometry, check_callabl
 from ..control.inner_loop import AttitudeThrust, InnerLoop, RatesThrust
 from ..control.keywords import ReferenceName
 from ..control.rate_and_delay import DELAY, RATE, check_rate_or_delay
-from ..support.arguments import brief
+from ..support.arguments import shorten
 from ..support.user_code import describe_error
 from .flight import Pilot
 
 
-class Guided(Pilot):
+class ControllerPilot(Pilot):
     """The pilot (see `flight.fly`) that asks a controller, and tells it what the odometry says.
 
     Attributes
@@ -53,8 +53,8 @@ class Guided(Pilot):
             reference = reference.on(simulation)
         if reference is not None and not callable(reference):
             raise InputError(
-                f"reference is {brief(reference)}; give one of quadcore.references, or a function "
-                "that is called as reference(t)"
+                f"reference is {shorten(reference)}; give one of quadcore.references, or a "
+                "function that is called as reference(t)"
             )
         check_callable(controller)
         self.rate = check_rate_or_delay("controller", "rate", getattr(controller, "rate", RATE))
@@ -62,7 +62,7 @@ class Guided(Pilot):
         inner_loop = getattr(controller, "inner_loop", None)
         if not (inner_loop is None or isinstance(inner_loop, InnerLoop)):
             raise InputError(
-                f"controller: its inner_loop is {brief(inner_loop)}; give a quadcore.InnerLoop"
+                f"controller: its inner_loop is {shorten(inner_loop)}; give a quadcore.InnerLoop"
             )
         self._inner_loop = InnerLoop() if inner_loop is None else inner_loop
         self.columns = _COLUMNS if reference is not None else ()
@@ -94,11 +94,13 @@ class Guided(Pilot):
             if isinstance(reference, references.Shape):
                 speeds = law.at(simulation, SENSED, reference.shape)
             else:
-                speeds = law(simulation.time, Odometry(simulation), self._wanted(simulation))
+                speeds = law(
+                    simulation.time, Odometry(simulation), self._evaluate_reference(simulation)
+                )
             self.saturated += law.saturated
             return speeds
         state = Odometry(simulation)
-        speeds = law(simulation.time, state, self._wanted(simulation))
+        speeds = law(simulation.time, state, self._evaluate_reference(simulation))
         if isinstance(speeds, (AttitudeThrust, RatesThrust)):
             period = max(1 / self.rate, simulation.dt)  # called once a step at most
             speeds = self._inner_loop.speeds(simulation, period, state, speeds)
@@ -109,14 +111,14 @@ class Guided(Pilot):
             self.saturated += bool(np.any(sizes >= self._limits))
         return speeds
 
-    def beside(self, table: np.ndarray) -> np.ndarray:
+    def add_columns(self, table: np.ndarray) -> np.ndarray:
         """Add what `columns` names to rows of the state."""
         if self._reference is None:
             return table
-        wanted = references.places(self._reference, table[:, 0])
+        wanted = references.sample_positions(self._reference, table[:, 0])
         return np.hstack([table, wanted, table[:, 1:4] - wanted[:, :3]])
 
-    def _wanted(self, simulation: _core.Simulation) -> Any:
+    def _evaluate_reference(self, simulation: _core.Simulation) -> Any:
         return None if self._reference is None else self._reference(simulation.time)
 
 
@@ -127,7 +129,7 @@ _COLUMNS = (
 
 
 @contextmanager
-def controller_errors_as_failures(simulation: _core.Simulation) -> Iterator[None]:
+def convert_controller_errors(simulation: _core.Simulation) -> Iterator[None]:
     """Make of what a controller raises a flight that failed, told in one line.
 
     Raises
@@ -142,15 +144,15 @@ def controller_errors_as_failures(simulation: _core.Simulation) -> Iterator[None
     except InputError as error:
         # Without a time it is not what flies that is at fault: a full disk, say.
         if simulation.time > begin and hasattr(error, "time"):
-            raise _failure(simulation, str(error)) from error
+            raise _make_failure(simulation, str(error)) from error
         raise
     except (QuadcoreError, MemoryError, KeyboardInterrupt):
         raise
     except BaseException as error:  # SystemExit, too: a controller ends its flight, not the program
-        raise _failure(simulation, f"controller: {describe_error(error)}") from error
+        raise _make_failure(simulation, f"controller: {describe_error(error)}") from error
 
 
-def _failure(simulation: _core.Simulation, reason: str) -> FlightError:
+def _make_failure(simulation: _core.Simulation, reason: str) -> FlightError:
     failure = FlightError(f"the flight failed at t = {simulation.time:f} s: {reason}")
     failure.time = simulation.time
     return failure

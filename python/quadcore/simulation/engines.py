@@ -1,11 +1,11 @@
-"""The engines that a flight can name: those of the core, and those that are added to them."""
+"""Engines of the core, and engines that other packages add."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Callable, Dict, List, Literal, NamedTuple, Optional, Tuple, Union
 
 from .._core import InputError, engines
-from ..support.arguments import brief
+from ..support.arguments import shorten
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -19,21 +19,22 @@ AnyEngineName = Union[EngineName, Literal["lagrange"]]
 ENGINE: EngineName = engines()[0][0]
 """Default engine of a single flight."""
 
-STUDIED: EngineName = "eigen"
+STUDY_ENGINE: EngineName = "eigen"
 """Default engine of a study."""
 
 
 class AddedEngine(NamedTuple):
-    """A model that moves the vehicle in the place of one of the core's engines.
+    """Model that moves the vehicle instead of an engine of the core.
 
-    No force of a plugin acts on it, so that there are no wrenches.
+    Forces of plugins do not act, so that there are no wrenches.
 
     Attributes
     ----------
     summary : str
-        A noun phrase for lists of engines.
+        Noun phrase for lists of engines.
     make : callable
-        Takes the arguments of `Simulation` except `engine`, and returns a `Simulation`.
+        Function that takes the arguments of `Simulation` except `engine`, and returns a
+        `Simulation`.
     """
 
     summary: str
@@ -44,22 +45,22 @@ _ADDED: Dict[str, AddedEngine] = {}
 
 
 def add_engine(name: str, engine: AddedEngine) -> None:
-    """Make an engine known to flight plans, studies and commands."""
+    """Add an engine for flight plans, studies and commands."""
     _ADDED[name] = engine
 
 
-def added_engine(name: str) -> Optional[AddedEngine]:
-    """Find an engine that was added; None if it is one of the core's, or unknown."""
+def find_added_engine(name: str) -> Optional[AddedEngine]:
+    """Return an added engine, or None if it belongs to the core or does not exist."""
     return _ADDED.get(name)
 
 
 def list_engines() -> List[Tuple[str, str]]:
-    """Name each engine, with a summary."""
+    """Return name and summary of each engine."""
     return [*engines(), *((name, engine.summary) for name, engine in _ADDED.items())]
 
 
 def exerts_wrenches(engine: str) -> bool:
-    """Whether forces of plugins act in an engine."""
+    """Return whether forces of plugins act in an engine."""
     return engine not in _ADDED
 
 
@@ -73,10 +74,10 @@ def check_wrenches(engine: str) -> None:
 
 
 def check_engine_and_step(engine: EngineName, dt: object) -> Tuple[EngineName, Optional[float]]:
-    """Check the name of an engine, known or not, and the length of a step or None."""
+    """Check the type of an engine name, and a step [s] or None."""
     known = ", ".join(name for name, _ in engines())
     if not (isinstance(engine, str) and engine.isprintable()):
-        raise InputError(f"engine is {brief(engine)}; give one of {known}")
+        raise InputError(f"engine is {shorten(engine)}; give one of {known}")
     if engine in _ADDED:
         raise InputError(
             f"Engine '{engine}' is available in quadcore.FlightPlan, in evaluate, and in the "
@@ -89,4 +90,4 @@ def check_engine_and_step(engine: EngineName, dt: object) -> Tuple[EngineName, O
             return engine, float(dt)  # type: ignore[arg-type]
     except (TypeError, ValueError):
         pass
-    raise InputError(f"dt is {brief(dt)}; give the length of a step in s")
+    raise InputError(f"dt is {shorten(dt)}; give the length of a step in s")

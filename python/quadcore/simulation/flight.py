@@ -13,8 +13,8 @@ import numpy as np
 
 from .. import _core
 from ..support import interrupts
-from ..support.arguments import brief
-from .commands import CommandsLike, as_commands
+from ..support.arguments import shorten
+from .commands import CommandsLike, check_commands
 from .engines import check_wrenches
 from .log import Log
 from .trajectory import per_command
@@ -50,7 +50,7 @@ class Pilot(Protocol):
     def speeds(self, simulation: Any) -> npt.ArrayLike:
         """Give the command for the steps until it is asked again, rad/s."""
 
-    def beside(self, table: np.ndarray) -> np.ndarray:
+    def add_columns(self, table: np.ndarray) -> np.ndarray:
         """Add its columns to rows of a log."""
         return table
 
@@ -94,9 +94,9 @@ def fly(
     """
     if wrenches:
         check_wrenches(simulation.engine)
-    total = steps_within(duration, simulation.dt)
-    log_every = _row_every(log_every)
-    table = None if commands is None else as_commands(commands, simulation.command_width)
+    total = count_steps(duration, simulation.dt)
+    log_every = _check_log_every(log_every)
+    table = None if commands is None else check_commands(commands, simulation.command_width)
     wrenches = wrenches and len(simulation.wrench_terms) > 0
     moves = pilot is not None and pilot.moves
     run = nullcontext() if moves else _core.Run(simulation)
@@ -117,13 +117,17 @@ def _advance(
     pilot: Optional[Pilot],
 ) -> None:
     """Fly so many steps, in pieces of so many at most."""
-    advance = flight.advance if pilot is None else _Piloted(simulation, flight, pilot).advance
+    advance = flight.advance if pilot is None else _PilotedFlight(simulation, flight, pilot).advance
 
     def hand_over() -> None:
         with interrupts.hold_signals():
             table, wrenches = flight.take()
             try:
-                whole = table if pilot is None else _called(simulation, pilot.beside, table)
+                whole = (
+                    table
+                    if pilot is None
+                    else _call_with_time(simulation, pilot.add_columns, table)
+                )
             except BaseException:  # what was flown is known even so
                 beside = 0 if pilot is None else len(pilot.columns)
                 receive(np.hstack([table, np.full((len(table), beside), np.nan)]), wrenches)
@@ -136,7 +140,7 @@ def _advance(
             hand_over()
             steps = min(steps, total - done, most)
             started = time.perf_counter()
-            _called(simulation, advance, steps)
+            _call_with_time(simulation, advance, steps)
             done += steps
             now = time.perf_counter()
             if now - started < _PIECE:
@@ -148,7 +152,7 @@ def _advance(
         hand_over()
 
 
-def _called(simulation: _core.Simulation, act: Callable[[Any], Any], given: Any) -> Any:
+def _call_with_time(simulation: _core.Simulation, act: Callable[[Any], Any], given: Any) -> Any:
     """Call, and add to bad input the time at which it ended the flight, as a `FlightError` has."""
     try:
         return act(given)
@@ -157,7 +161,7 @@ def _called(simulation: _core.Simulation, act: Callable[[Any], Any], given: Any)
         raise
 
 
-class _Piloted:
+class _PilotedFlight:
     """A flight whose pilot is asked whenever a step begins at which it is due."""
 
     def __init__(self, simulation: _core.Simulation, flight: _core.Flight, pilot: Pilot) -> None:
@@ -197,13 +201,14 @@ class _Piloted:
             simulation, fault = self._simulation, str(error).partition("; give")[0]
             failure = _core.FlightError(
                 f"the flight failed at t = {simulation.time:f} s: the controller returned "
-                f"{brief(speeds)}: {fault}; return {simulation.command_width} rotor speeds (rad/s)"
+                f"{shorten(speeds)}: {fault}; return {simulation.command_width} rotor speeds "
+                "(rad/s)"
             )
             failure.time = simulation.time
             raise failure from error
 
 
-def columns_of(
+def list_columns(
     simulation: _core.Simulation, topics: Sequence[str] = (), pilot: Optional[Pilot] = None
 ) -> List[str]:
     """Name the columns of what `fly` hands over.
@@ -269,11 +274,11 @@ def _grow(array: np.ndarray, rows: int) -> None:
         array.resize((rows, *array.shape[1:]), refcheck=False)
 
 
-def steps_within(duration: float, dt: float) -> int:
+def count_steps(duration: float, dt: float) -> int:
     """Count the steps that end within a duration; raises `InputError` if it is none."""
     if not (isinstance(duration, Real) and 0 <= duration <= _LONGEST):
         raise _core.InputError(
-            f"duration is {brief(duration)}; give seconds, from 0 to {_LONGEST:g}"
+            f"duration is {shorten(duration)}; give seconds, from 0 to {_LONGEST:g}"
         )
     steps = math.floor(duration / dt + 1e-6)
     if steps == 0 and duration > 0:
@@ -283,18 +288,18 @@ def steps_within(duration: float, dt: float) -> int:
     return steps
 
 
-def _row_every(log_every: object) -> int:
+def _check_log_every(log_every: object) -> int:
     """Check after how many steps a log has a row."""
     is_whole = isinstance(log_every, (int, np.integer)) and not isinstance(log_every, bool)
     if not is_whole or not 1 <= log_every < 2**63:  # type: ignore[operator]
-        raise _core.InputError(f"log_every is {brief(log_every)}; give a whole number >= 1")
+        raise _core.InputError(f"log_every is {shorten(log_every)}; give a whole number >= 1")
     return int(log_every)  # type: ignore[call-overload,no-any-return]
 
 
-def check_logged(duration: float, dt: float, log_every: int) -> None:
+def check_log_length(duration: float, dt: float, log_every: int) -> None:
     """Raise `InputError` if a log would hold the start alone: nothing could be told from it."""
-    steps = steps_within(duration, dt)
-    if _row_every(log_every) > steps:
+    steps = count_steps(duration, dt)
+    if _check_log_every(log_every) > steps:
         raise _core.InputError(
             f"log_every is {log_every} but the flight has {steps} steps; log more often"
         )

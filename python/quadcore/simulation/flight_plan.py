@@ -17,16 +17,16 @@ from ..control.built_in import BuiltInController
 from ..control.controller import ControllerLike
 from ..control.references import ReferenceLike
 from ..model.description import read_both
-from ..model.overrides import check_names, with_links, without_xacro
-from ..support.values import SPAWN, Number, Value, pose, text_of, whole
+from ..model.overrides import apply_link_values, check_names, split_xacro_arguments
+from ..support.values import SPAWN, Number, Value, check_pose, check_whole, format_value
 from ..support.warning import suppress_warnings, warn
-from .commands import CommandsLike, as_commands
-from .controller_pilot import Guided
+from .commands import CommandsLike, check_commands
+from .controller_pilot import ControllerPilot
 from .engines import ENGINE, AnyEngineName
 from .flight import Progress
 from .log import Log
 from .scenarios import Scenario, add_wind
-from .scenarios import read as read_scenario
+from .scenarios import read_scenario as read_scenario
 from .simulation import Simulation, make_simulation
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ class FlightPlan:
     dt: Optional[float] = None
     seed: int = 0
     parameters: Mapping[str, str] = field(default_factory=dict)
-    spawn: Tuple[float, ...] = pose(SPAWN)
+    spawn: Tuple[float, ...] = check_pose(SPAWN)
     rotor_velocity: Optional[Tuple[float, ...]] = None
     duration: float = 10.0
     commands: Optional[np.ndarray] = field(default=None, repr=False)
@@ -102,15 +102,15 @@ class FlightPlan:
 
     def __post_init__(self) -> None:
         """Bring what was given into the form in which it is kept and compared."""
-        model, parameters = with_links(
-            self.model, {key: text_of(value) for key, value in self.parameters.items()}
+        model, parameters = apply_link_values(
+            self.model, {key: format_value(value) for key, value in self.parameters.items()}
         )
         kept = {
             "model": model,
             "dt": None if self.dt is None else float(self.dt),
-            "seed": whole(self.seed),
+            "seed": check_whole(self.seed),
             "parameters": parameters,
-            "spawn": pose(self.spawn),
+            "spawn": check_pose(self.spawn),
             "duration": float(self.duration),
             "log_every": int(self.log_every),
             "wrenches": bool(self.wrenches),
@@ -155,25 +155,25 @@ class FlightPlan:
         InputError
             The model, the world, the commands, the scenario or an argument is at fault.
         """
-        arguments, given = without_xacro(parameters, xacro_args)
+        arguments, given = split_xacro_arguments(parameters, xacro_args)
         readings = read_both(model, world, arguments, ignore)
         check_names(readings[0], parameters or {})
         plan = cls(
             *readings,
             parameters=given,
-            spawn=pose(spawn),
+            spawn=check_pose(spawn),
             seed=seed,
             **others,
         )
-        plan = plan.befallen(scenario).with_wind(wind)
-        return plan if commands is None else plan.commanded(commands)
+        plan = plan.apply_scenario(scenario).with_wind(wind)
+        return plan if commands is None else plan.replace_commands(commands)
 
     @property
     def step(self) -> float:
         """Of the flight, s: the world's unless `dt` is another."""
         return self.world.max_step_size if self.dt is None else self.dt
 
-    def befallen(self, scenario: Union[str, Path, Scenario, None]) -> FlightPlan:
+    def apply_scenario(self, scenario: Union[str, Path, Scenario, None]) -> FlightPlan:
         """Make the same flight in a scenario; what the plan sets wins over it.
 
         Parameters
@@ -194,12 +194,12 @@ class FlightPlan:
         read = read_scenario(scenario)
         if read is None:
             return self
-        model, tags = read.onto(self.model)
+        model, tags = read.apply_to(self.model)
         plan = replace(self, model=model, parameters={**tags, **self.parameters})
         # Other warnings follow when the vehicle is made.
-        with read.blamed(), suppress_warnings():
+        with read.locate_errors(), suppress_warnings():
             make_simulation(**plan._vehicle())
-        unseen = read.unseen(self.duration)
+        unseen = read.describe_late_events(self.duration)
         if unseen:
             warn(unseen)
         return plan
@@ -217,7 +217,7 @@ class FlightPlan:
         model, tags = add_wind(self.model, velocity)
         return replace(self, model=model, parameters={**self.parameters, **tags})
 
-    def commanded(self, commands: CommandsLike) -> FlightPlan:
+    def replace_commands(self, commands: CommandsLike) -> FlightPlan:
         """Make the same flight under other commands.
 
         Parameters
@@ -231,7 +231,7 @@ class FlightPlan:
             The commands, or what else makes a simulation, are at fault.
         """
         vehicle = make_simulation(**self._vehicle())
-        return replace(self, commands=as_commands(commands, vehicle.command_width))
+        return replace(self, commands=check_commands(commands, vehicle.command_width))
 
     def simulation(self) -> Simulation:
         """Make the vehicle as it takes off; raises and warns as `Simulation` does."""
@@ -245,7 +245,7 @@ class FlightPlan:
             simulation.set_state(references.start(simulation, self.reference, spins))
         return simulation
 
-    def pilot(self, simulation: Simulation) -> Optional[Guided]:
+    def pilot(self, simulation: Simulation) -> Optional[ControllerPilot]:
         """Make what asks the controller, if the flight has one; raises as `Simulation.run`.
 
         Parameters
@@ -255,7 +255,7 @@ class FlightPlan:
         """
         if self.controller is None:
             return None
-        return Guided(self.controller, simulation, self.reference)
+        return ControllerPilot(self.controller, simulation, self.reference)
 
     def fly(self, progress: Optional[Progress] = None) -> Log:
         """Fly it; raises and warns as `Simulation` and `Simulation.run` do.
@@ -270,9 +270,9 @@ class FlightPlan:
         Log
             Of the whole flight, from the state in which it begins.
         """
-        return self.flown_by(self.simulation(), progress)
+        return self.fly_with(self.simulation(), progress)
 
-    def flown_by(self, simulation: Simulation, progress: Optional[Progress] = None) -> Log:
+    def fly_with(self, simulation: Simulation, progress: Optional[Progress] = None) -> Log:
         """Do as `fly` with what is made already.
 
         Parameters
@@ -304,14 +304,14 @@ class FlightPlan:
         InputError
             The controller or the reference is one's own, of which nobody can tell what it does.
         """
-        text = json.dumps(self._told(), sort_keys=True, allow_nan=True)
+        text = json.dumps(self._describe(), sort_keys=True, allow_nan=True)
         return hashlib.sha256(text.encode()).hexdigest()
 
     def _vehicle(self) -> Dict[str, Any]:
         names = ("model", "world", "engine", "dt", "seed", "parameters", "spawn")
         return {name: getattr(self, name) for name in names}
 
-    def _told(self) -> Dict[str, Any]:
+    def _describe(self) -> Dict[str, Any]:
         told = {item.name: getattr(self, item.name) for item in fields(self)}
         for name in ("model", "world"):
             told[name] = [told[name].document.text, told[name].passed_over.ignored]
@@ -321,7 +321,7 @@ class FlightPlan:
             elif not isinstance(told[name], own):
                 raise _core.InputError(f"a plan whose {name} is your own has no fingerprint")
             else:
-                told[name] = told[name].told()
+                told[name] = told[name].to_dict()
         told["dt"] = self.step
         if self.commands is not None:  # 10 and 10.0 are the same
             told["commands"] = np.asarray(self.commands, dtype=float).tolist()

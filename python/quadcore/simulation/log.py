@@ -9,13 +9,13 @@ from typing import Any, Dict, List, Mapping, Sequence, Tuple, Union
 import numpy as np
 
 from .._core import InputError
-from ..formats import format_of, mat
-from ..formats.rows import LogFile, split_columns, wrench_columns
+from ..formats import find_format, mat
+from ..formats.rows import LogFile, list_wrench_columns, split_columns
 from ..support.arguments import NAME, check
 from ..support.import_lock import LOCK
 from ..support.optional_packages import require_package
 from ..support.output_files import check_writable
-from ..support.parameters import did_you_mean
+from ..support.parameters import suggest
 from .trajectory import Trajectory
 
 PathLike = Union[str, "os.PathLike[str]"]
@@ -68,8 +68,8 @@ class Log(Trajectory):
             Another suffix, a file that cannot be read, or one that holds no log; the message begins
             with the file and, if it is text, the line.
         """
-        file = _named(path)
-        read = format_of(file, _READ).read_log(file)
+        file = _check_path(path)
+        read = find_format(file, _READ).read_log(file)
         return cls.of_rows(read.rows, read.columns, read.wrenches, read.ignored)
 
     def to_dict(self) -> Dict[str, np.ndarray]:
@@ -78,7 +78,7 @@ class Log(Trajectory):
         for topic, fields in self.topics.items():
             named.update((f"{topic}.{field}", column) for field, column in fields.items())
         for term, wrench in self.wrenches.items():
-            named.update(zip(wrench_columns([term]), wrench.T))
+            named.update(zip(list_wrench_columns([term]), wrench.T))
         return named
 
     def to_dataframe(self) -> Any:
@@ -96,7 +96,7 @@ class Log(Trajectory):
     def __getitem__(self, column: str) -> np.ndarray:
         named = self.to_dict()
         if not isinstance(column, str) or column not in named:
-            near = did_you_mean(str(column), list(named))
+            near = suggest(str(column), list(named))
             raise InputError(f"log[{column!r}]: no such column{near}; log.to_dict() has them all")
         return named[column]
 
@@ -173,7 +173,7 @@ class Log(Trajectory):
             Another suffix or layout, or a file that cannot be written; nothing is left behind then.
         """
         self._check_suffix(path, ".mat")
-        mat.write_log(_named(path), *self._parts(), layout)
+        mat.write_log(_check_path(path), *self._parts(), layout)
 
     def to_file(self, path: PathLike) -> None:
         """Write a ``.csv``, ``.mat`` or ``.bag`` file.
@@ -188,8 +188,8 @@ class Log(Trajectory):
         InputError
             Another suffix, or a file that cannot be written; nothing is left behind then.
         """
-        file = _named(path)
-        format_of(file, _WRITTEN).write_log(file, *self._parts())
+        file = _check_path(path)
+        find_format(file, _WRITTEN).write_log(file, *self._parts())
 
     def _parts(self) -> Tuple[List[str], np.ndarray, Mapping[str, np.ndarray], List[str]]:
         """Give what files hold: columns, table, wrenches, and what was ignored."""
@@ -218,29 +218,29 @@ class Log(Trajectory):
         InputError
             They cannot be written.
         """
-        folder = _named(directory, "directory")
+        folder = _check_path(directory, "directory")
         with LOCK:
             from ..report.log_plots import draw  # matplotlib is slow to import
 
         return draw(self, folder)
 
     def _check_suffix(self, path: PathLike, suffix: str) -> None:
-        if _named(path).suffix.lower() != suffix:
+        if _check_path(path).suffix.lower() != suffix:
             raise InputError(f"{path}: name a file that ends in {suffix}, which it would hold")
 
 
-def _named(path: PathLike, argument: str = "path") -> Path:
+def _check_path(path: PathLike, argument: str = "path") -> Path:
     check({argument: path}, {argument: NAME})
     return Path(path)
 
 
 def check_log_path(path: PathLike) -> None:
     """Raise `InputError` now if `Log.to_file` could not write `path` later."""
-    format_of(Path(path), _WRITTEN)
+    find_format(Path(path), _WRITTEN)
     check_writable(Path(path))
 
 
-def log_file(
+def make_log_file(
     path: Path, columns: Sequence[str], terms: Sequence[str], ignored: Sequence[str]
 ) -> LogFile:
     """Make the recorder that a file's name asks for.
@@ -256,4 +256,4 @@ def log_file(
     ignored
         What was left out of model and world.
     """
-    return format_of(path, _WRITTEN).log_file(path, columns, terms, ignored)
+    return find_format(path, _WRITTEN).log_file(path, columns, terms, ignored)

@@ -22,7 +22,7 @@ TAIL = 10.0
 _DRAWN = 20_000  # rows, more than a picture can show
 
 
-class Thinned:
+class DecimatedRows:
     """Rows enough to draw: all, or each so many of a long flight, and the last."""
 
     def __init__(self, rows: int, columns: Sequence[str], terms: Sequence[str]) -> None:
@@ -50,7 +50,7 @@ class Thinned:
 
     def log(self) -> Log:
         """Give what was picked; the title tells if that is not all."""
-        title = f"every {_ordinal(self.every)} row" if self.every > 1 else ""
+        title = f"every {_format_ordinal(self.every)} row" if self.every > 1 else ""
         table, wrenches = (
             np.concatenate([*pieces, *self._last[i : i + 1]])
             for i, pieces in enumerate(self._pieces)
@@ -61,14 +61,14 @@ class Thinned:
         return Log.of_rows(table, self._columns, named, title=title)
 
 
-def _ordinal(number: int) -> str:
+def _format_ordinal(number: int) -> str:
     """Write 1st, 2nd, 3rd, 4th and so on."""
     suffixes = {1: "st", 2: "nd", 3: "rd"}
     is_teen = 10 < number % 100 < 20
     return f"{number}{'th' if is_teen else suffixes.get(number % 10, 'th')}"
 
 
-class Fastest:
+class FastestRotor:
     """The largest speed of a rotor, rad/s, and the time of the last row, s."""
 
     wrenches = False
@@ -89,7 +89,7 @@ class Fastest:
         """Nothing is open."""
 
 
-class Errors:
+class TrackingError:
     """How far a guided flight is from its reference; NaN without rows."""
 
     wrenches = False
@@ -149,13 +149,13 @@ class Recording:
         """Give a piece to all; raises `InputError` when the last of the files has failed."""
         for recorder in self._others:
             recorder.receive(table, wrenches)
-        self._each(lambda file: file.receive(table, wrenches))
+        self._try_each(lambda file: file.receive(table, wrenches))
         if self._failure is not None and not self._files:
             raise self._failure
 
     def close(self) -> List[Path]:
         """Finish all; returns the files that hold the flight."""
-        self._each(lambda file: file.close())
+        self._try_each(lambda file: file.close())
         return [file.path for file in self._files]
 
     def check(self) -> None:
@@ -163,7 +163,7 @@ class Recording:
         if self._failure is not None:
             raise self._failure
 
-    def _each(self, act: Callable[[Any], None]) -> None:
+    def _try_each(self, act: Callable[[Any], None]) -> None:
         for file in list(self._files):
             try:
                 act(file)

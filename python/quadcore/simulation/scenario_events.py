@@ -9,10 +9,10 @@ from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 import yaml
 
 from .._core import InputError, parse_number
-from ..support.yaml_nodes import line_of, pairs, scalar
+from ..support.yaml_nodes import find_line, read_pairs, read_scalar
 
 
-class Kind(NamedTuple):
+class EventKind(NamedTuple):
     """One kind of event, named by the key that says what happens."""
 
     library: str
@@ -28,9 +28,9 @@ class Kind(NamedTuple):
     """In a picture."""
 
 
-KINDS: Dict[str, Kind] = {
-    "gust": Kind("wind", "gusts", 3, {"lasts": (1, "")}, "{gust} {at} {lasts}", "gust"),
-    "push": Kind(
+KINDS: Dict[str, EventKind] = {
+    "gust": EventKind("wind", "gusts", 3, {"lasts": (1, "")}, "{gust} {at} {lasts}", "gust"),
+    "push": EventKind(
         "push",
         "pushes",
         3,
@@ -38,12 +38,12 @@ KINDS: Dict[str, Kind] = {
         "{at} {lasts} {push} {torque}",
         "push",
     ),
-    "release": Kind("payload", "release", 0, {}, "{at}", "{release} released"),
-    "pick_up": Kind("payload", "pickUp", 0, {}, "{at}", "{pick_up} picked up"),
-    "weaken": Kind(
+    "release": EventKind("payload", "release", 0, {}, "{at}", "{release} released"),
+    "pick_up": EventKind("payload", "pickUp", 0, {}, "{at}", "{pick_up} picked up"),
+    "weaken": EventKind(
         "fault", "losses", 1, {"to": (1, "")}, "{at} {weaken} {to}", "rotor {weaken} to {to}"
     ),
-    "cut": Kind("fault", "cuts", 1, {}, "{at} {cut}", "rotor {cut} cut"),
+    "cut": EventKind("fault", "cuts", 1, {}, "{at} {cut}", "rotor {cut} cut"),
 }
 """Kinds of events, by key."""
 
@@ -76,7 +76,7 @@ class Event(NamedTuple):
             )
 
 
-def events_of(file: str, node: yaml.Node) -> Sequence[Event]:
+def read_events(file: str, node: yaml.Node) -> Sequence[Event]:
     """Read the events of a scenario, by time.
 
     Parameters
@@ -93,10 +93,10 @@ def events_of(file: str, node: yaml.Node) -> Sequence[Event]:
     """
     what = "events as a list of {at: TIME, KIND: ...}"
     if not isinstance(node, yaml.SequenceNode):
-        raise InputError(f"{file}:{line_of(node)}: write {what}")
+        raise InputError(f"{file}:{find_line(node)}: write {what}")
     events: List[Event] = []
     for item in node.value:
-        event = _event(file, item, what)
+        event = _read_event(file, item, what)
         for other in events:
             if (other.time, other.thing) == (event.time, event.thing):
                 raise InputError(
@@ -107,12 +107,12 @@ def events_of(file: str, node: yaml.Node) -> Sequence[Event]:
     return sorted(events, key=lambda event: event.time)
 
 
-def _event(file: str, node: yaml.Node, what: str) -> Event:
-    given = {key.value: (key, value) for key, value in pairs(file, node, what)}
-    where = f"{file}:{line_of(node)}"
+def _read_event(file: str, node: yaml.Node, what: str) -> Event:
+    given = {key.value: (key, value) for key, value in read_pairs(file, node, what)}
+    where = f"{file}:{find_line(node)}"
     named = [name for name in given if name in KINDS]
     if len(named) != 1:
-        several = " and ".join(named) or _unknown(given)
+        several = " and ".join(named) or _name_unknown(given)
         raise InputError(f"{where}: an event is {several}; write one of {', '.join(KINDS)}")
     (name,) = named
     kind = KINDS[name]
@@ -124,11 +124,12 @@ def _event(file: str, node: yaml.Node, what: str) -> Event:
         if key not in wanted:
             nearest = difflib.get_close_matches(key, wanted, 1, 0.0)[0]
             raise InputError(
-                f"{file}:{line_of(node_of_key)}: {name} has no '{key}'; the nearest is '{nearest}'"
+                f"{file}:{find_line(node_of_key)}: {name} has no '{key}'; "
+                f"the nearest is '{nearest}'"
             )
     for key, (count, default) in wanted.items():
         if key in given:
-            values[key] = _numbers(file, key, given[key][1], count)
+            values[key] = _read_numbers(file, key, given[key][1], count)
         elif default:
             values[key] = default
         else:
@@ -136,7 +137,7 @@ def _event(file: str, node: yaml.Node, what: str) -> Event:
     time = parse_number(values["at"])
     assert time is not None  # it was read as one
     if time < 0:
-        at = line_of(given["at"][0])
+        at = find_line(given["at"][0])
         raise InputError(f"{file}:{at}: an event at {time:g} s is before the start; write at: >= 0")
     plugin = values["plugin"] if kind.numbers else values[name]
     rotor = parse_number(values[name]) if kind.numbers == 1 else None
@@ -145,23 +146,23 @@ def _event(file: str, node: yaml.Node, what: str) -> Event:
     may_repeat = kind.numbers > 0
     text = kind.told.format(**values)
     return Event(
-        time, text, plugin, kind.library, kind.tag, row, may_repeat, thing, rotor, line_of(node)
+        time, text, plugin, kind.library, kind.tag, row, may_repeat, thing, rotor, find_line(node)
     )
 
 
-def _unknown(given: Mapping[str, object]) -> str:
+def _name_unknown(given: Mapping[str, object]) -> str:
     others = [name for name in given if name != "at"]
     return f"'{others[0]}'" if others else "nothing"
 
 
-def _numbers(file: str, key: str, node: yaml.Node, count: int) -> str:
+def _read_numbers(file: str, key: str, node: yaml.Node, count: int) -> str:
     """Read so many numbers as a tag has them; with 0, a text."""
     items = node.value if isinstance(node, yaml.SequenceNode) else [node]
-    texts = [scalar(file, key, item) for item in items]
+    texts = [read_scalar(file, key, item) for item in items]
     if count == 0 and len(texts) == 1:
         return texts[0]
     values = [parse_number(text) for text in texts]
     if len(values) != count or any(v is None or not math.isfinite(v) for v in values):
         form = {0: "a name", 1: "a number"}.get(count, f"a list of {count} numbers")
-        raise InputError(f"{file}:{line_of(node)}: {key} is {' '.join(texts)}; write {form}")
+        raise InputError(f"{file}:{find_line(node)}: {key} is {' '.join(texts)}; write {form}")
     return " ".join(texts)

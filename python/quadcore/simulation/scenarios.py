@@ -19,10 +19,10 @@ import yaml
 from .._core import Document, InputError, Model, read_model
 from ..model import resources
 from ..support.input_files import check_regular, is_file
-from ..support.output_files import shown
-from ..support.parameters import did_you_mean
-from ..support.yaml_nodes import line_of, pairs, root, scalar
-from .scenario_events import Event, events_of
+from ..support.output_files import printable_name
+from ..support.parameters import suggest
+from ..support.yaml_nodes import find_line, read_pairs, read_root, read_scalar
+from .scenario_events import Event, read_events
 
 NONE = "none"
 """Name of the scenario in which nothing befalls."""
@@ -39,7 +39,7 @@ class Tag(NamedTuple):
     line: int
 
 
-class Addition(NamedTuple):
+class PluginEntry(NamedTuple):
     """A plugin that a scenario speaks of."""
 
     name: str
@@ -72,25 +72,25 @@ class Scenario:
     def __init__(self, path: Union[str, Path]) -> None:
         file = _find(str(path))
         self.name = file.name.split(".")[0]
-        self._file = shown(file)
-        nodes = _sections(self._file, root(file))
+        self._file = printable_name(file)
+        nodes = _read_sections(self._file, read_root(file))
         additions = {}
         if "plugins" in nodes:
             what = "plugins as NAME: {TAG: VALUE, ...}"
-            for key, node in pairs(self._file, nodes["plugins"], what):
-                additions[key.value] = _addition(self._file, key, node)
+            for key, node in read_pairs(self._file, nodes["plugins"], what):
+                additions[key.value] = _read_plugin(self._file, key, node)
         self.events: Sequence[Event] = ()
         if "events" in nodes:
-            self.events = events_of(self._file, nodes["events"])
+            self.events = read_events(self._file, nodes["events"])
         for event in self.events:
             library = f"lib{event.library}_plugin.so"
             addition = additions.setdefault(
-                event.plugin, Addition(event.plugin, library, event.line, [])
+                event.plugin, PluginEntry(event.plugin, library, event.line, [])
             )
-            _put(self._file, addition, event)
+            _add_event(self._file, addition, event)
         self._additions = list(additions.values())
 
-    def onto(self, model: Model) -> Tuple[Model, Dict[str, str]]:
+    def apply_to(self, model: Model) -> Tuple[Model, Dict[str, str]]:
         """Let it befall a vehicle.
 
         Returns
@@ -106,7 +106,7 @@ class Scenario:
         """
         for event in self.events:
             event.check(self._file, len(model.joints))
-        own, end = _plugins_and_end(model.document.text)
+        own, end = _find_plugins(model.document.text)
         parameters = {
             f"{addition.name}.{tag.name}": tag.value
             for addition in self._additions
@@ -116,10 +116,10 @@ class Scenario:
         added = [addition for addition in self._additions if addition.name not in own]
         if not added:
             return model, parameters
-        document = _with_plugins(model.document, end, added, self._file)
+        document = _insert_plugins(model.document, end, added, self._file)
         return read_model(document, list(model.passed_over.ignored)), parameters
 
-    def unseen(self, end: float) -> str:
+    def describe_late_events(self, end: float) -> str:
         """Tell which events come when a flight has ended, in one line; "" if none does.
 
         Parameters
@@ -134,7 +134,7 @@ class Scenario:
         return f"{self._file}:{late[0].line}: the flight ends at {end:g} s, before {told}"
 
     @contextmanager
-    def blamed(self) -> Iterator[None]:
+    def locate_errors(self) -> Iterator[None]:
         """Name file and line in an error of the block about a tag that it gives."""
         try:
             yield
@@ -167,15 +167,15 @@ def add_wind(model: Model, velocity: Sequence[float]) -> Tuple[Model, Dict[str, 
         The model with a plugin ``wind``, unless it has one, and values by ``PLUGIN.TAG``.
     """
     text = " ".join(repr(float(part)) for part in velocity)
-    names, end = _plugins_and_end(model.document.text)
+    names, end = _find_plugins(model.document.text)
     if "wind" in names:
         return model, {"wind.velocity": text}
-    wind = Addition("wind", "libwind_plugin.so", 1, [Tag("velocity", text, 1)])
-    document = _with_plugins(model.document, end, [wind], "--wind")
+    wind = PluginEntry("wind", "libwind_plugin.so", 1, [Tag("velocity", text, 1)])
+    document = _insert_plugins(model.document, end, [wind], "--wind")
     return read_model(document, list(model.passed_over.ignored)), {}
 
 
-def read(scenario: Union[str, Path, Scenario, None]) -> Optional[Scenario]:
+def read_scenario(scenario: Union[str, Path, Scenario, None]) -> Optional[Scenario]:
     """Read a scenario, unless it is read already; None for `NONE`."""
     if scenario is None or isinstance(scenario, Scenario):
         return scenario
@@ -185,33 +185,33 @@ def read(scenario: Union[str, Path, Scenario, None]) -> Optional[Scenario]:
 def _find(name: str) -> Path:
     if is_file(Path(name)):
         return Path(name)
-    known = resources.shipped("config/scenarios")
+    known = resources.list_shipped("config/scenarios")
     if name in known:
         return known[name]
     if Path(name).exists():
         check_regular(Path(name))
     names = [NONE, *known]
-    near = did_you_mean(name, names)
+    near = suggest(name, names)
     raise InputError(
         f"{name}: no such file, and no shipped scenario of that name ({', '.join(names)}){near}"
     )
 
 
-def _sections(file: str, node: yaml.Node) -> Dict[str, yaml.Node]:
+def _read_sections(file: str, node: yaml.Node) -> Dict[str, yaml.Node]:
     found = {}
-    for key, value in pairs(file, node, _WRITE):
+    for key, value in read_pairs(file, node, _WRITE):
         if key.value not in ("plugins", "events"):
             raise InputError(
-                f"{file}:{line_of(key)}: a scenario has no '{key.value}'; write {_WRITE}"
+                f"{file}:{find_line(key)}: a scenario has no '{key.value}'; write {_WRITE}"
             )
         found[key.value] = value
     return found
 
 
-def _addition(file: str, key: yaml.ScalarNode, node: yaml.Node) -> Addition:
+def _read_plugin(file: str, key: yaml.ScalarNode, node: yaml.Node) -> PluginEntry:
     tags = [
-        Tag(tag.value, _value(file, tag, value), line_of(tag))
-        for tag, value in pairs(file, node, "{TAG: VALUE, ...}, or {}")
+        Tag(tag.value, _read_value(file, tag, value), find_line(tag))
+        for tag, value in read_pairs(file, node, "{TAG: VALUE, ...}, or {}")
     ]
     library = key.value
     for tag in tags:
@@ -222,16 +222,16 @@ def _addition(file: str, key: yaml.ScalarNode, node: yaml.Node) -> Addition:
     if not library.endswith(".so"):
         library = f"lib{library}_plugin.so"
     others = [tag for tag in tags if tag.name != _LIBRARY]
-    return Addition(key.value, library, line_of(key), others)
+    return PluginEntry(key.value, library, find_line(key), others)
 
 
-def _value(file: str, tag: yaml.ScalarNode, node: yaml.Node) -> str:
+def _read_value(file: str, tag: yaml.ScalarNode, node: yaml.Node) -> str:
     if isinstance(node, yaml.SequenceNode):
-        return " ".join(scalar(file, tag.value, item) for item in node.value)
-    return scalar(file, tag.value, node)
+        return " ".join(read_scalar(file, tag.value, item) for item in node.value)
+    return read_scalar(file, tag.value, node)
 
 
-def _put(file: str, addition: Addition, event: Event) -> None:
+def _add_event(file: str, addition: PluginEntry, event: Event) -> None:
     """Add an event to the list that is its plugin's tag."""
     for i, tag in enumerate(addition.tags):
         if tag.name != event.tag:
@@ -246,7 +246,7 @@ def _put(file: str, addition: Addition, event: Event) -> None:
     addition.tags.append(Tag(event.tag, event.row, event.line))
 
 
-def _plugins_and_end(text: str) -> Tuple[List[str], int]:
+def _find_plugins(text: str) -> Tuple[List[str], int]:
     """Find the names of a model's plugins, and where its root element ends, in characters."""
     parser = expat.ParserCreate()
     names: List[str] = []
@@ -270,7 +270,9 @@ def _plugins_and_end(text: str) -> Tuple[List[str], int]:
     return names, len(encoded[:end].decode())
 
 
-def _with_plugins(document: Document, end: int, added: Sequence[Addition], file: str) -> Document:
+def _insert_plugins(
+    document: Document, end: int, added: Sequence[PluginEntry], file: str
+) -> Document:
     """Write plugins into a model; each of their lines is known to be the scenario's."""
     before, after = document.text[:end], document.text[end:]
     count = document.text.count("\n") + 1

@@ -1,4 +1,4 @@
-"""The simulation as Python drives it."""
+"""The public class `Simulation`."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from ..control.built_in import BuiltInController
 from ..control.controller import ControllerLike
 from ..control.keywords import ReferenceName
 from ..control.references import ReferenceLike
-from ..model.description import list_of_names, read_both
-from ..model.overrides import check_names, with_links, without_xacro
+from ..model.description import check_names_argument, read_both
+from ..model.overrides import apply_link_values, check_names, split_xacro_arguments
 from ..support.arguments import PROGRESS, check, or_none
-from ..support.rotation import roll_pitch_yaw
-from ..support.values import SPAWN, Number, Value, pose, text_of, whole
+from ..support.rotation import to_roll_pitch_yaw
+from ..support.values import SPAWN, Number, Value, check_pose, check_whole, format_value
 from ..support.warning import warn
-from .controller_pilot import Guided
-from .engines import ENGINE, EngineName, added_engine, check_engine_and_step
-from .flight import Progress, Rows, columns_of, fly
+from .controller_pilot import ControllerPilot
+from .engines import ENGINE, EngineName, check_engine_and_step, find_added_engine
+from .flight import Progress, Rows, fly, list_columns
 from .log import Log
 from .state import LiveState
 
@@ -31,48 +31,49 @@ if TYPE_CHECKING:
 
 
 class Simulation(_core.Simulation):
-    """One vehicle in one world, stepped from outside.
+    """Simulate one vehicle in one world.
 
     Parameters
     ----------
-    model : str, path or Model
-        URDF or xacro file, the name of a shipped model ("quadrotor"), or a model already read.
-    engine : str
-        "gazebo11" (the default: the model as published), "ode" or "eigen"; `quadcore.engines()`
-        says what each is.
+    model : str, path or Model, default "quadrotor"
+        URDF or xacro file, name of a shipped model, or a model that `read_model` returned.
+    engine : {"gazebo11", "ode", "eigen"}, default "gazebo11"
+        Engine; `quadcore.engines()` describes each.
     world : str, path or World, optional
-        World file, the name of a shipped one, or a world already read; None is empty.world.
+        World file, name of a shipped world, or a world that `read_world` returned.
+        Default: empty.world.
     dt : float, optional
-        Step in s; None takes the world's max_step_size.
-    seed : int
-        Of all noise. The same seed gives the same bytes.
+        Step, s. Default: max_step_size of the world.
+    seed : int, default 0
+        Seed of all noise. The same seed gives a bit-identical simulation.
     parameters : mapping of str to number, str, bool, path or sequence of those, optional
-        "PLUGIN.TAG" -> value; wins over the URDF. So do "LINK.mass", "LINK.ixx" ... "LINK.izz" and
-        "xacro.ARG", an argument of a xacro model.
+        Values by "PLUGIN.TAG", which override the URDF. "LINK.mass", "LINK.ixx" ... "LINK.izz"
+        and "xacro.ARG" are accepted as well.
     xacro_args : mapping of str to value, optional
         Arguments of a xacro model.
-    spawn : sequence of 3 or 6 numbers
+    spawn : sequence of 3 or 6 numbers, default (0, 0, 10)
         x, y, z (m) and roll, pitch, yaw (rad) of the frame link in the world.
-    ignore : sequence of str
-        What to leave out of model and world because quadcore does not know it: names or file names
-        of plugins, names of elements, uris or names of a world's models. `ignored` keeps it.
+    ignore : sequence of str, default ()
+        Unknown parts of model and world to leave out: names or file names of plugins, names of
+        elements, URIs or names of models in the world. `ignored` lists them.
 
     Attributes
     ----------
     world : World
-        As it was read.
+        World in which the vehicle is simulated.
     command_topic : str
-        That `command` publishes on.
+        Topic on which `command` publishes.
 
     Raises
     ------
     InputError
-        The model, world or an argument is at fault; the message carries ``FILE:LINE``.
+        If the model, the world or an argument is wrong; the message begins with ``FILE:LINE``
+        where a file is at fault.
 
     Warns
     -----
     QuadcoreWarning
-        What is allowed but was perhaps not meant; `warnings` keeps it.
+        If valid input is suspicious; `warnings` lists the messages.
     """
 
     def __init__(
@@ -88,18 +89,20 @@ class Simulation(_core.Simulation):
         ignore: Sequence[str] = (),
     ) -> None:
         engine, dt = check_engine_and_step(engine, dt)
-        arguments, others = without_xacro(parameters, xacro_args)
+        arguments, others = split_xacro_arguments(parameters, xacro_args)
         model, self.world = read_both(model, world, arguments, ignore)
         check_names(model, parameters or {})
-        model, tags = with_links(model, {key: text_of(value) for key, value in others.items()})
+        model, tags = apply_link_values(
+            model, {key: format_value(value) for key, value in others.items()}
+        )
         super().__init__(
             model=model,
             world=self.world,
             engine=engine,
             dt=dt,
-            seed=whole(seed),
+            seed=check_whole(seed),
             parameters=tags,
-            spawn=pose(spawn),
+            spawn=check_pose(spawn),
         )
         self._live = LiveState(self)
         for warning in self.warnings:
@@ -115,68 +118,72 @@ class Simulation(_core.Simulation):
         # attrgetter, not a function: reading the state is part of every step of a Python loop.
         state = property(
             attrgetter("_live"),
-            doc="The state now, as live read-only views; `state.copy()` is free.",
+            doc="Current state, as read-only views that change with each step.",
         )
 
     @property
     def hover_speed(self) -> np.ndarray:
-        """Commands with which the vehicle hovers level, signed, rad/s; shape (n,).
+        """Commands at which the vehicle hovers level, signed, rad/s; shape (n,).
 
-        Neighbours around the vehicle turn against each other; faults of rotors are not
-        heeded. Asks the force laws anew, which takes some milliseconds. Raises InputError if
-        nothing drives the rotors or they cannot hold it.
+        Neighbouring rotors turn in opposite directions; rotor faults are not considered. Each
+        access evaluates the force models, which takes some milliseconds.
+
+        Raises
+        ------
+        InputError
+            If no plugin drives the rotors, or the rotors cannot lift the vehicle.
         """
         return np.asarray(_core.hover_commands(self, []))
 
     def restore(  # type: ignore[override]  # pybind11 2.4 has no keyword-only arguments
         self, snapshot: _core.Snapshot, *, allow: Sequence[str] = ()
     ) -> None:
-        """Go back to a snapshot, bit for bit, its seed included.
+        """Restore a snapshot, bit-identically, including the seed.
 
         Parameters
         ----------
         snapshot : Snapshot
-            Of this simulation, or of one that is alike, in whatever process.
-        allow : sequence of str
-            What may differ on purpose: "world", "parameters". This simulation's hold.
+            Snapshot of this simulation, or of an equal one in any process.
+        allow : sequence of str, default ()
+            Differences to accept: "world", "parameters". The values of this simulation stay.
 
         Raises
         ------
         InputError
-            It was taken from another simulation, with what differs, or is damaged; nothing has
-            changed then.
+            If the snapshot belongs to a different simulation or is damaged. The simulation does
+            not change.
         """
-        super().restore(snapshot, list_of_names("allow", allow))
+        super().restore(snapshot, check_names_argument("allow", allow))
 
     def reset(self, seed: Optional[int] = None) -> None:
-        """Go back to the moment of construction, bit for bit.
+        """Return to the initial state, bit-identically.
 
         Parameters
         ----------
         seed : int, optional
-            As if the simulation had been made with it; None keeps the one it has.
+            New seed of all noise. Default: the present seed.
         """
-        super().reset(None if seed is None else whole(seed))
+        super().reset(None if seed is None else check_whole(seed))
 
     def publish(self, topic: str, values: Union[Mapping[str, float], npt.ArrayLike]) -> None:
-        """Publish a message on a topic that no plugin writes, for the plugins that take it.
+        """Publish a message to the plugins that read a topic.
 
         Parameters
         ----------
         topic : str
-            One of `topics`.
+            Name of a topic that no plugin writes; see `topics`.
         values : mapping of str to number, or sequence of numbers
-            A number for each field of the topic, by name or in their order.
+            One number for each field of the topic, by name or in the order of the fields.
 
         Raises
         ------
         InputError
-            No such topic, a plugin that writes it, other fields than the topic's, a number that is
-            not finite, or the command's topic while a run flies; nothing was changed.
+            If the topic does not exist or a plugin writes it, if the fields are wrong, if a number
+            is not finite, or if a running flight owns the topic. Nothing changes.
         """
         if isinstance(values, Mapping):
             known = self.topics.get(topic)
-            values = _in_order(topic, values, known.fields) if known else []
+            values = _order_fields(topic, values, known.fields) if known else []
         super().publish(topic, values)
 
     def run(
@@ -192,63 +199,62 @@ class Simulation(_core.Simulation):
         reference: Union[ReferenceLike, ReferenceName, None] = None,
         on_reference: bool = False,
     ) -> Log:
-        """Fly for a while and log it.
+        """Simulate for a duration and log the states.
+
+        Any exception that ends the run has the attribute `log`, which contains the rows so far.
 
         Parameters
         ----------
         duration : float
-            s; the last step is the last that ends within it.
+            Duration, s. Only steps that end within it are simulated.
         commands : ndarray (rows, 1 + n), or path of a .csv, .mat or .bag file, optional
-            Open loop: columns t, w1..wn, signed rad/s; each row holds until the next. None keeps
-            the present command.
-        log_every : int
+            Open-loop commands with columns t, w1..wn: time (s) and signed rotor speeds (rad/s).
+            Each row holds until the next. Default: the present command.
+        log_every : int, default 1
             Steps between logged rows.
         progress : callable, optional
             Called as progress(steps_done, steps_total) every few hundredths of a second.
-        wrenches : bool
-            Whether to log them, too, which takes three times the memory: `Log.wrenches`.
-        topics : sequence of str
-            Names of topics to log, too: `Log.topics`.
+        wrenches : bool, default False
+            Whether to log forces and torques in `Log.wrenches`, which triples the memory.
+        topics : sequence of str, default ()
+            Names of topics to log in `Log.topics`.
         controller : name, object or callable, optional
-            Closed loop, instead of `commands`: the name of one of `quadcore.controllers`, with
-            the gains that are shipped for the vehicle, if any, or what is called as
-            controller(t, state, reference) at its rate and returns n rotor speeds in rad/s; see
-            `Controller`.
+            Controller, instead of `commands`. The name of a built-in controller selects the gains
+            that are shipped for the vehicle, or else the defaults. Any other controller is called
+            as controller(t, state, reference) and returns n rotor speeds (rad/s); see
+            `Controller`. `quadcore.controllers.parse` reads texts with parameters.
         reference : name or callable, optional
-            Where the controller is to fly: one of `quadcore.references`, or what is called as
-            reference(t), t being the time of the simulation in s, and depends on that alone: it is
-            asked for the rows of the log, too, which has it as topic ``reference`` (x, y, z, yaw),
-            and the position less its own as topic ``error`` (x, y, z).
-        on_reference : bool
-            Whether the vehicle is first put onto the reference, in the full state of one that
-            follows it (`quadcore.references.start`); else the flight begins in the present state.
+            Reference trajectory of the controller: the name of a built-in reference, a reference
+            from `quadcore.references`, or a function reference(t) of the simulation time (s)
+            alone. The log contains it as topic ``reference`` (x, y, z, yaw) and the tracking error
+            as topic ``error`` (x, y, z).
+        on_reference : bool, default False
+            Whether to start in the full state of a vehicle that follows the reference; see
+            `quadcore.references.start`. Otherwise the present state is the start.
 
         Returns
         -------
         Log
-            Begins with the present state.
+            Log whose first row is the present state.
 
         Raises
         ------
         InputError
-            An argument is at fault; nothing was flown. Or what is called back, such as the
-            controller, would move the vehicle or command it, which ends the flight.
+            If an argument is wrong; nothing is simulated. Also if a callback, such as the
+            controller, moves or commands the vehicle itself, which ends the flight.
         FlightError
-            The flight failed, or the controller gave no command, be it at its first call. Its
-            attribute `log` is the log so far, as it is of whatever else ends a run: the
-            KeyboardInterrupt, the MemoryError when a log has no more room, the error that a
-            controller raises.
+            If the flight fails, or the controller returns no valid command.
         """
         if commands is not None and controller is not None:
             raise _core.InputError("a flight takes commands or a controller; give one of them")
         if reference is not None and controller is None:
             raise _core.InputError("a reference needs a controller that follows it; give one")
         if on_reference:
-            reference = self._put_on(controller, reference)
-        names = list_of_names("topics", topics)
+            reference = self._start_on(controller, reference)
+        names = check_names_argument("topics", topics)
         check({"progress": progress}, {"progress": or_none(PROGRESS)})
-        pilot = None if controller is None else Guided(controller, self, reference)
-        rows = Rows(self, columns_of(self, names, pilot))
+        pilot = None if controller is None else ControllerPilot(controller, self, reference)
+        rows = Rows(self, list_columns(self, names, pilot))
         try:
             fly(self, duration, commands, log_every, rows.receive, wrenches, progress, pilot, names)
         except (Exception, KeyboardInterrupt) as error:
@@ -273,15 +279,18 @@ class Simulation(_core.Simulation):
             ("engine", f"{self.engine}, steps of {self.dt:g} s"),
             ("plugins", ", ".join(plugin.name for plugin in self.plugins)),
             ("time", f"{self.time:g} s"),
-            ("position", f"{_in_words(state.position)} m"),
-            ("roll, pitch, yaw", f"{_in_words(np.degrees(roll_pitch_yaw(state.orientation)))} deg"),
-            ("velocity", f"{_in_words(state.linear_velocity)} m/s"),
-            ("rotors", f"{_in_words(state.rotor_velocity)} rad/s"),
+            ("position", f"{_format_values(state.position)} m"),
+            (
+                "roll, pitch, yaw",
+                f"{_format_values(np.degrees(to_roll_pitch_yaw(state.orientation)))} deg",
+            ),
+            ("velocity", f"{_format_values(state.linear_velocity)} m/s"),
+            ("rotors", f"{_format_values(state.rotor_velocity)} rad/s"),
         ]
         return f"<b>{escape(self.model.name)}</b>" + html_table((), rows)
 
-    def _put_on(self, controller: Any, reference: Any) -> Any:
-        """Put the vehicle onto a reference, and give that."""
+    def _start_on(self, controller: Any, reference: Any) -> Any:
+        """Set the state of a vehicle on a reference, and return the reference."""
         if reference is None:
             raise _core.InputError("on_reference needs a reference to begin on; give one")
         if isinstance(reference, str):
@@ -294,18 +303,18 @@ class Simulation(_core.Simulation):
 
 
 def make_simulation(engine: str, **options: Any) -> Simulation:
-    """Make a simulation in any engine of `list_engines`; `options` are those of `Simulation`."""
-    added = added_engine(engine)
+    """Make a simulation with any engine of `list_engines`; `options` as for `Simulation`."""
+    added = find_added_engine(engine)
     if added is None:
         return Simulation(engine=engine, **options)  # type: ignore[arg-type]
     return added.make(**options)
 
 
-def _in_words(values: np.ndarray) -> str:
+def _format_values(values: np.ndarray) -> str:
     return ", ".join(f"{round(float(value), 4) + 0.0:g}" for value in values)
 
 
-def _in_order(topic: str, values: Mapping[str, float], fields: Sequence[str]) -> list[float]:
+def _order_fields(topic: str, values: Mapping[str, float], fields: Sequence[str]) -> list[float]:
     if set(values) != set(fields):
         raise _core.InputError(
             f"publish: topic '{topic}': fields {', '.join(map(str, values)) or 'none'}; "

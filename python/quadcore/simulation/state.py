@@ -1,4 +1,4 @@
-"""The state of a vehicle, live and as a free copy."""
+"""State of a vehicle: as a copy, and as live views."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ _VECTORS = (
 
 
 class State:
-    """A free copy of a state; every member can be assigned.
+    """State of a vehicle; every attribute can be assigned.
 
     Attributes
     ----------
     time : float
-        s
+        Simulation time, s.
     position : ndarray (3,)
-        Frame origin in the world, m.
+        Position of the frame origin in the world, m.
     orientation : ndarray (4,)
-        Of the frame in the world, unit quaternion x, y, z, w.
+        Orientation of the frame in the world, unit quaternion x, y, z, w.
     linear_velocity : ndarray (3,)
-        Of the frame origin, world axes, m/s.
+        Velocity of the frame origin, world axes, m/s.
     angular_velocity : ndarray (3,)
-        Of the frame, body axes, rad/s.
+        Angular velocity of the frame, body axes, rad/s.
     rotor_velocity : ndarray (n,)
-        Joint velocities as the engine has them, rad/s.
+        Joint velocities in the engine, after the division by sim_slow, rad/s.
     rotor_angle : ndarray (n,)
         Joint angles in (-pi, pi], rad.
     """
@@ -52,7 +52,7 @@ class State:
     rotor_angle: FloatArray
 
     def copy(self) -> State:
-        """Make a free copy of this state."""
+        """Return an independent copy."""
         other = State()
         other.time = self.time
         for name in _VECTORS:
@@ -66,11 +66,11 @@ class State:
 
 
 class LiveState:
-    """The state of a simulation now: read-only views that change with every step.
+    """Current state of a simulation: read-only views that change with each step.
 
-    Members as in `State`; `copy()` makes a free copy, all of one moment, which is also what
-    `copy.copy`, `pickle` and `multiprocessing` make of it. A view that is read while another thread
-    steps may be torn, half old and half new: `copy()` refuses then.
+    The attributes are those of `State`. `copy()`, `copy.copy` and `pickle` make an independent
+    `State` of a single moment. A view may mix two moments if it is read while another thread
+    steps; `copy()` raises an error in this case.
     """
 
     __slots__ = ("_clock", "_copy", *_VECTORS)
@@ -102,23 +102,23 @@ class LiveState:
         return float(self._clock[0])
 
     def copy(self) -> State:
-        """Make a free copy of this state.
+        """Return an independent copy.
 
         Raises
         ------
         InputError
-            Another thread is stepping the simulation.
+            If another thread is stepping the simulation.
         """
-        return state_of(self._copy())
+        return make_state(self._copy())
 
     def __reduce__(self) -> Any:
-        return state_of, (self._copy(),)
+        return make_state, (self._copy(),)
 
     __repr__ = State.__repr__
 
 
-def state_of(members: Mapping[str, Any]) -> State:
-    """Make a state of its members by name."""
+def make_state(members: Mapping[str, Any]) -> State:
+    """Make a state from its attributes by name."""
     state = State()
     for name, value in members.items():
         setattr(state, name, value)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Dict, Mapping, Optional, Sequence
 import numpy as np
 
 from .._core import InputError, Simulation, log_columns
-from ..support.arguments import brief
-from ..support.rotation import roll_pitch_yaw
+from ..support.arguments import shorten
+from ..support.rotation import to_roll_pitch_yaw
 
 if TYPE_CHECKING:
     from ..support.values import FloatArray
@@ -27,10 +27,10 @@ def is_slow(size: float) -> bool:
     return size not in (0.0, 1.0)
 
 
-def _states(table: Any) -> FloatArray:
+def _check_table(table: Any) -> FloatArray:
     if isinstance(table, np.ndarray) and table.ndim == 2 and table.shape[1] >= _STATE_SIZE:
         return table
-    given = f"an array {table.shape}" if isinstance(table, np.ndarray) else brief(table)
+    given = f"an array {table.shape}" if isinstance(table, np.ndarray) else shorten(table)
     raise InputError(
         f"table: give an array (rows, {_STATE_SIZE} + rotors), not {given}; "
         "files are read by Log.of_file"
@@ -86,7 +86,7 @@ class Trajectory:
         ignored: Sequence[str] = (),
         topics: Optional[Mapping[str, Mapping[str, np.ndarray]]] = None,
     ) -> None:
-        self.table = _states(table)
+        self.table = _check_table(table)
         self.wrenches = Wrenches(wrenches or {})
         self.title = title
         self.ignored = list(ignored)
@@ -123,7 +123,7 @@ class Trajectory:
     @property
     def rpy(self) -> FloatArray:
         """Roll, pitch, yaw of the frame link, R = Rz(yaw) Ry(pitch) Rx(roll), rad; (rows, 3)."""
-        return roll_pitch_yaw(self.orientation)
+        return to_roll_pitch_yaw(self.orientation)
 
     @property
     def linear_velocity(self) -> FloatArray:

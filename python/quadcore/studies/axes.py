@@ -10,7 +10,7 @@ from typing import Any, List, Mapping, NamedTuple, Sequence, Union
 import numpy as np
 
 from .._core import InputError, parse_number
-from ..support.values import Value, text_of
+from ..support.values import Value, format_value
 
 WHOLE = ("engine", "world", "scenario")
 """Axes that are not parameters."""
@@ -89,7 +89,7 @@ def make_axes(vary: Mapping[str, Values]) -> List[Axis]:
                 f"vary {name}: a controller parameter cannot share values. Use an axis for it."
             )
         axes.append(
-            Axis(name, values if isinstance(values, Range) else [text_of(v) for v in values])
+            Axis(name, values if isinstance(values, Range) else [format_value(v) for v in values])
         )
     return axes
 

@@ -21,16 +21,16 @@ from typing import (
 )
 
 from .._core import InputError, World, check_ignored
-from ..model.description import list_of_names, read_world
-from ..simulation.commands import CommandsLike, as_commands
-from ..simulation.controller_pilot import Guided
+from ..model.description import check_names_argument, read_world
+from ..simulation.commands import CommandsLike, check_commands
+from ..simulation.controller_pilot import ControllerPilot
 from ..simulation.engines import list_engines
-from ..simulation.flight import check_logged
+from ..simulation.flight import check_log_length
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.scenarios import Scenario
 from ..simulation.simulation import Simulation
-from ..support.output_files import shown
-from ..support.values import whole
+from ..support.output_files import printable_name
+from ..support.values import check_whole
 from ..support.warning import suppress_warnings
 from .axes import OF_CONTROLLER
 from .control_setup import ControlSetup
@@ -92,8 +92,8 @@ class Cases(Sequence[Case]):
         largest: int = 100_000,
     ) -> None:
         self.design, self.control, self.options = design, control, options
-        self.models, self.engines = [shown(model) for model in models], list(engines)
-        first = whole(options.seed)
+        self.models, self.engines = [printable_name(model) for model in models], list(engines)
+        first = check_whole(options.seed)
         self.seeds = range(first, first + options.seeds)
         self._sizes = self._check_sizes(largest)
         scenario: Any = options.scenario
@@ -103,7 +103,7 @@ class Cases(Sequence[Case]):
         if not isinstance(world, World):
             world = read_world(world, options.ignore)
         everything = [*self.variation.models, world, *self.variation.worlds.values()]
-        ignored = list_of_names("ignore", options.ignore)
+        ignored = check_names_argument("ignore", options.ignore)
         check_ignored(ignored, [each.passed_over for each in everything])
         where = {} if options.spawn is None else {"spawn": options.spawn}
         common: Dict[str, Any] = {"dt": options.dt, "duration": options.duration, **where}
@@ -176,7 +176,7 @@ class Cases(Sequence[Case]):
         with _name_point_in_errors(point):
             for i in range(len(self.control.things)):
                 if not self.control.is_user_code(i):
-                    Guided(self._make_controller(i, model, point), vehicle).reset(vehicle)
+                    ControllerPilot(self._make_controller(i, model, point), vehicle).reset(vehicle)
 
     def check(self, commands: Optional[CommandsLike] = None) -> List[Simulation]:
         """Build each model and start each built-in controller on it, at some of the points.
@@ -209,7 +209,7 @@ class Cases(Sequence[Case]):
         for plan in self._plans:
             for world in [plan.world, *self.variation.worlds.values()]:
                 step = replace(plan, world=world).step
-                check_logged(self.options.duration, step, self.steps_per_row(step))
+                check_log_length(self.options.duration, step, self.steps_per_row(step))
         if commands is not None:
             self.set_commands(commands, [vehicle.command_width for vehicle in made])
         return made
@@ -217,7 +217,7 @@ class Cases(Sequence[Case]):
     def set_commands(self, commands: CommandsLike, widths: Sequence[int]) -> None:
         """Set the commands of all flights; `widths` are the numbers of rotors of the models."""
         self._plans = [
-            replace(plan, commands=as_commands(commands, width))
+            replace(plan, commands=check_commands(commands, width))
             for plan, width in zip(self._plans, widths)
         ]
 
@@ -276,7 +276,7 @@ class Cases(Sequence[Case]):
 
 def check_models(models: Sequence[Union[str, Path]], design: Design) -> None:
     """Raise `InputError` if a model is named twice, or an axis varies the engines."""
-    check_labels("model", [shown(model) for model in models])
+    check_labels("model", [printable_name(model) for model in models])
     if "engine" in design.names:
         raise InputError("vary engine: engines are not an axis here. Use --engine A,B.")
 

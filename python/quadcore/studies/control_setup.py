@@ -13,9 +13,9 @@ from ..control.controller import ControllerLike, check_callable, set_parameter
 from ..control.keywords import ReferenceName
 from ..control.references import ReferenceLike
 from ..simulation.flight_plan import FlightPlan
-from ..support.arguments import brief
+from ..support.arguments import shorten
 from ..support.user_code import names_file
-from ..support.values import SPAWN, pose
+from ..support.values import SPAWN, check_pose
 
 Controllers = Union[ControllerLike, Mapping[str, ControllerLike], Sequence[ControllerLike]]
 """One or several controllers, or a mapping of labels to controllers."""
@@ -83,7 +83,7 @@ class ControlSetup:
             return cls()
         on_reference = reference is not None and spawn is None
         if reference is None:
-            reference = references.hover_at(pose(SPAWN if spawn is None else spawn))
+            reference = references.make_hover(check_pose(SPAWN if spawn is None else spawn))
         return cls([("", controller)], [("", reference)], controller_rate, delay, on_reference)
 
     @property
@@ -131,7 +131,7 @@ def add_labels(kind: str, things: Any, one: type) -> List[Tuple[str, Any]]:
         things = [things]
     if not isinstance(things, Iterable):
         raise InputError(
-            f"{kind} is {brief(things)}. Give a name, a callable, or several of these."
+            f"{kind} is {shorten(things)}. Give a name, a callable, or several of these."
         )
     return [(_make_label(thing), thing) for thing in things]
 
@@ -142,8 +142,8 @@ def make_reference(thing: Any) -> Any:
         return references.parse(thing)
     if not callable(thing):
         raise InputError(
-            f"reference is {brief(thing)}. Give one of quadcore.references, or a function that is "
-            "called as reference(t)."
+            f"reference is {shorten(thing)}. Give one of quadcore.references, or a function "
+            "that is called as reference(t)."
         )
     return thing
 

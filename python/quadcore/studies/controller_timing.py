@@ -9,7 +9,7 @@ import numpy as np
 
 from ..control.built_in import BuiltInController
 from ..control.controller import check_callable
-from ..simulation.controller_pilot import Guided
+from ..simulation.controller_pilot import ControllerPilot
 
 
 class TimedController:
@@ -34,7 +34,7 @@ class TimedController:
 class TimedPilot:
     """Pilot of a built-in controller with the duration of each call, s, including its inputs."""
 
-    def __init__(self, pilot: Guided) -> None:
+    def __init__(self, pilot: ControllerPilot) -> None:
         self.seconds: List[float] = []
         self._pilot = pilot
 

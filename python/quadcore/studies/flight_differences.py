@@ -7,7 +7,7 @@ from typing import Dict, NamedTuple, Sequence
 import numpy as np
 
 from ..simulation.log import Log
-from ..support.rotation import angles_between
+from ..support.rotation import subtract_angles
 
 # Norms of the difference vectors, and the angle between the attitudes.
 _WHOLE = {"position": "m", "attitude": "rad", "velocity": "m/s", "rates": "rad/s"}
@@ -39,7 +39,7 @@ def compute_differences(against: Log, log: Log) -> np.ndarray:
     log = Log(log.table[log.time <= against.time[-1] + 1e-9], {})
     against = _interpolate(log.time, against)
     position = log.position - against.position
-    angles = angles_between(log.rpy, against.rpy)
+    angles = subtract_angles(log.rpy, against.rpy)
     # |q - p| and |q + p| are 2 sin and 2 cos of a quarter of the angle: exact for small angles,
     # and independent of the sign of a quaternion.
     apart = np.linalg.norm(log.orientation - against.orientation, axis=1)

@@ -10,8 +10,8 @@ import numpy as np
 
 from .._core import FlightError
 from ..report.decimation import decimate
-from ..simulation.controller_pilot import controller_errors_as_failures
-from ..simulation.flight import Rows, columns_of, fly
+from ..simulation.controller_pilot import convert_controller_errors
+from ..simulation.flight import Rows, fly, list_columns
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.log import Log
 from ..simulation.simulation import Simulation
@@ -102,9 +102,9 @@ def fly_and_measure(
         if timed and not isinstance(clock, TimedController):
             clock = pilot = TimedPilot(pilot)
         topics = _animated_topics(simulation) if keep else []
-        rows = Rows(simulation, columns_of(simulation, topics, pilot))
+        rows = Rows(simulation, list_columns(simulation, topics, pilot))
         try:
-            with controller_errors_as_failures(simulation):
+            with convert_controller_errors(simulation):
                 fly(
                     simulation,
                     flight.duration,

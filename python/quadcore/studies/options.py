@@ -29,7 +29,7 @@ from typing import (
 
 from .._core import InputError
 from ..model import resources
-from ..simulation.engines import STUDIED
+from ..simulation.engines import STUDY_ENGINE
 from ..simulation.scenarios import NONE
 from ..support import arguments, parse
 from ..support.arguments import Kind
@@ -110,7 +110,7 @@ class Options:
     ))  # fmt: skip
     world: Union[str, Path, None] = field(default=None, metadata=_describe(
         VEHICLE, "world", "FILE",
-        f"world file, or a built-in world: {', '.join(resources.shipped('worlds'))}",
+        f"world file, or a built-in world: {', '.join(resources.list_shipped('worlds'))}",
         kind=arguments.ANY, without="empty",
     ))  # fmt: skip
     dt: Optional[float] = field(default=None, metadata=_describe(
@@ -120,7 +120,7 @@ class Options:
     scenario: Optional[Names] = field(default=None, metadata=_describe(
         FLIGHT, "scenario", "A,B",
         "scenario files or built-in scenarios of disturbances and faults: "
-        + ", ".join([NONE, *resources.shipped("config/scenarios")]),
+        + ", ".join([NONE, *resources.list_shipped("config/scenarios")]),
         parse.names, without=NONE,
     ))  # fmt: skip
     wind: Optional[Sequence[float]] = field(default=None, metadata=_describe(
@@ -240,8 +240,8 @@ class SweepOptions(Options):
 def choose_engines(engine: Optional[str], engines: Union[str, Sequence[str]]) -> List[str]:
     """List the engines of a study that accepts `engine` instead of `engines`."""
     if engine is None:
-        return arguments.several(engines)
-    if engines != STUDIED:
+        return arguments.to_list(engines)
+    if engines != STUDY_ENGINE:
         raise InputError("engine and engines are both given. Keep one.")
     return [engine]
 

@@ -14,7 +14,7 @@ from typing import Any, Callable, Iterator, List, Mapping, Optional, Sequence, S
 from .._core import InputError
 from ..support import interrupts
 from ..support.input_files import read_bytes
-from ..support.output_files import prepare_folder, unwritable
+from ..support.output_files import make_write_error, prepare_folder
 from .table import make_json, save_files
 
 _LOCK = ".quadcore.lock"
@@ -84,7 +84,7 @@ def _lock(folder: Path) -> int:
         try:
             number = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o666)
         except OSError as error:
-            raise unwritable(path, error) from error
+            raise make_write_error(path, error) from error
         with contextlib.suppress(OSError):
             fcntl.lockf(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
             if os.path.samestat(os.fstat(number), os.stat(path)):  # else its owner removed it

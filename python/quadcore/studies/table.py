@@ -9,7 +9,7 @@ import math
 from pathlib import Path
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
-from ..support.output_files import atomic_write, cell, text_bytes
+from ..support.output_files import atomic_write, encode_text, escape_cell
 
 
 def make_csv(rows: Iterable[Sequence[Any]]) -> bytes:
@@ -17,14 +17,14 @@ def make_csv(rows: Iterable[Sequence[Any]]) -> bytes:
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     for row in rows:
-        writer.writerow(["" if value != value else cell(value) for value in row])
-    return text_bytes(stream.getvalue())
+        writer.writerow(["" if value != value else escape_cell(value) for value in row])
+    return encode_text(stream.getvalue())
 
 
 def make_json(content: Any) -> bytes:
     """Write lists and dictionaries as JSON; NaN is null."""
     text = json.dumps(_plain(content), indent=1, ensure_ascii=False, allow_nan=False)
-    return text_bytes(text + "\n")
+    return encode_text(text + "\n")
 
 
 def format_number(value: float) -> str:

@@ -9,11 +9,11 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Union
 
 from .._core import InputError, Model, World, parse_number
 from ..model.description import read_model, read_world
-from ..model.overrides import XACRO, check_names, without_xacro
+from ..model.overrides import XACRO, check_names, split_xacro_arguments
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.scenarios import Scenario
-from ..simulation.scenarios import read as read_scenario
-from ..support.values import text_of
+from ..simulation.scenarios import read_scenario as read_scenario
+from ..support.values import format_value
 from .axes import OF_CONTROLLER, WHOLE
 from .design import Design
 
@@ -47,9 +47,9 @@ class Variation:
         scenario: Union[str, Path, Scenario, None],
         wind: Optional[Sequence[float]] = None,
     ) -> None:
-        arguments, given = without_xacro(parameters, xacro_args)
+        arguments, given = split_xacro_arguments(parameters, xacro_args)
         self.arguments = arguments
-        self.set = {key: text_of(value) for key, value in given.items()}
+        self.set = {key: format_value(value) for key, value in given.items()}
         """Values of all flights, by ``PLUGIN.TAG``, ``LINK.mass`` and so on."""
         self._wind = wind
         self._read = lru_cache(_READ)(
@@ -79,11 +79,11 @@ class Variation:
                 changed["engine"] = value
             elif name not in WHOLE and not name.startswith(OF_CONTROLLER):
                 parameters.update(dict.fromkeys(name.split(","), value))
-        varied, tags = without_xacro(parameters, None)
+        varied, tags = split_xacro_arguments(parameters, None)
         read = self._read(model, tuple(varied.items()))
         check_names(read, parameters)
         plan = replace(plan, **changed, model=read, parameters=tags)
-        return plan.befallen(self.scenarios[point.get("scenario")]).with_wind(self._wind)
+        return plan.apply_scenario(self.scenarios[point.get("scenario")]).with_wind(self._wind)
 
 
 def pick_controller_values(point: Mapping[str, str]) -> Dict[str, float]:

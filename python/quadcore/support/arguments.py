@@ -11,7 +11,7 @@ from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Tuple
 import numpy as np
 
 from .._core import InputError
-from .parameters import did_you_mean
+from .parameters import suggest
 
 Kind = Tuple[Callable[[Any], bool], str]
 """Whether a value is of it, and what to give."""
@@ -32,13 +32,13 @@ def check(arguments: Mapping[str, Any], kinds: Mapping[str, Kind]) -> None:
     for name, value in arguments.items():
         kind = kinds.get(name) or OPTIONS.get(name)
         if kind is None:
-            near = did_you_mean(name, [*kinds, *OPTIONS])
+            near = suggest(name, [*kinds, *OPTIONS])
             raise InputError(
                 f"there is no option '{name}'{near}; besides those of help() there are "
                 f"{', '.join(OPTIONS)}"
             )
         if not kind[0](value):
-            raise InputError(f"{name} is {brief(value)}; give {kind[1]}")
+            raise InputError(f"{name} is {shorten(value)}; give {kind[1]}")
 
 
 def or_none(kind: Kind) -> Kind:
@@ -46,7 +46,7 @@ def or_none(kind: Kind) -> Kind:
     return (lambda value: value is None or kind[0](value)), kind[1]
 
 
-def several(value: Any) -> List[Any]:
+def to_list(value: Any) -> List[Any]:
     """Make a list of one or several names or functions."""
     return [value] if _is_text(value) or callable(value) else list(value)
 
@@ -56,7 +56,7 @@ def read_once(value: Any) -> Any:
     return list(value) if isinstance(value, Iterator) else value
 
 
-def brief(value: Any) -> str:
+def shorten(value: Any) -> str:
     """Write a value in one line, shortened if it is long."""
     return " ".join(reprlib.repr(value).split())
 
@@ -79,8 +79,8 @@ def _is_lasting(value: Any) -> bool:
 
 
 def _are_guides(value: Any) -> bool:
-    several = value if isinstance(value, (list, tuple)) else [value]
-    return all(isinstance(one, str) or callable(one) for one in several)
+    guides = value if isinstance(value, (list, tuple)) else [value]
+    return all(isinstance(one, str) or callable(one) for one in guides)
 
 
 def _are_named(value: Any) -> bool:
@@ -122,7 +122,7 @@ def _is_limit(value: Any) -> bool:
 
 NAME: Kind = (_is_text, "a name or a path")
 NAMES: Kind = (_are_names, "a name, or several")
-SOME: Kind = (lambda value: _are_names(value) and len(several(value)) > 0, NAMES[1])
+SOME: Kind = (lambda value: _are_names(value) and len(to_list(value)) > 0, NAMES[1])
 LIST: Kind = (_is_list, "a list of names")
 GUIDES: Kind = (_are_guides, "names, or functions that are called as reference(t)")
 NAMED: Kind = (_are_named, "a mapping of names to values")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 
-def remedy(message: str) -> str:
+def find_remedy(message: str) -> str:
     """Add to the loader's message about a library what brings it; "" about anything else.
 
     Debian names a library's package by its file: libode.so.8 is in libode8, libtinyxml2.so.9 in
@@ -25,7 +25,7 @@ def remedy(message: str) -> str:
 try:
     from .. import _core  # noqa: F401
 except ImportError as error:
-    said = remedy(str(error))
+    said = find_remedy(str(error))
     if not said:
         raise
     raise ImportError(said) from None

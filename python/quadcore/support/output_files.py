@@ -16,7 +16,7 @@ from . import interrupts
 _PART = ".part"
 
 
-def shown(name: Union[str, Path]) -> str:
+def printable_name(name: Union[str, Path]) -> str:
     """Name of a file as it can be shown anywhere: bytes that are no UTF-8 are escaped."""
     return os.fsencode(name).decode("utf-8", "backslashreplace")
 
@@ -33,9 +33,9 @@ def atomic_write(path: Path) -> Iterator[IO[bytes]]:
         The file cannot be written. Nothing is left behind then, and an older file stays.
     """
     target = Path(os.path.realpath(str(path)))
-    part = beside(target)
+    part = name_temporary(target)
     try:
-        if not _replaceable(target):
+        if not _is_replaceable(target):
             with target.open("wb") as stream:
                 yield stream
             return
@@ -45,13 +45,13 @@ def atomic_write(path: Path) -> Iterator[IO[bytes]]:
             shutil.copymode(str(target), str(part))
         os.replace(part, target)
     except OSError as error:
-        raise unwritable(path, error) from error
+        raise make_write_error(path, error) from error
     finally:
         with interrupts.hold_signals(), contextlib.suppress(OSError):
             part.unlink()
 
 
-class Appended:
+class LineFile:
     """A file that grows by whole lines and is complete up to the last one at any time.
 
     Parameters
@@ -73,7 +73,7 @@ class Appended:
             how = os.O_RDWR | os.O_CREAT | (0 if older else os.O_TRUNC)
             self._stream = open(os.open(path, how, 0o666), "r+b", buffering=0)  # noqa: SIM115
         except OSError as error:
-            raise unwritable(path, error) from error
+            raise make_write_error(path, error) from error
 
     def keep(self, size: int) -> None:
         """Cut what is there to so many bytes, and go on behind them."""
@@ -81,7 +81,7 @@ class Appended:
             self._stream.truncate(size)
             self._stream.seek(size)
         except OSError as error:
-            raise unwritable(self._path, error) from error
+            raise make_write_error(self._path, error) from error
 
     def lines(self) -> Iterator[bytes]:
         """Give its lines from the start."""
@@ -110,7 +110,7 @@ class Appended:
             with contextlib.suppress(OSError):
                 rest = written - (lines.rfind(b"\n", 0, written) + 1)
                 self._stream.truncate(self._stream.tell() - rest)
-            raise unwritable(self._path, error) from error
+            raise make_write_error(self._path, error) from error
 
     def fileno(self) -> int:
         """Give the number of the open file."""
@@ -126,12 +126,12 @@ class Appended:
         self._stream.close()
 
 
-def text_bytes(text: str) -> bytes:
+def encode_text(text: str) -> bytes:
     """UTF-8 of a text; file names in it that are none are escaped."""
     return text.encode("utf-8", "backslashreplace")
 
 
-def cell(value: object) -> object:
+def escape_cell(value: object) -> object:
     """Keep a text in a CSV table from being taken for a formula by a spreadsheet."""
     return f"'{value}" if isinstance(value, str) and value[:1] in tuple("=+-@") else value
 
@@ -171,28 +171,28 @@ def check_writable(path: Path) -> None:
         if not path.parent.is_dir():
             raise InputError(f"{path}: there is no folder {path.parent}; create it first")
         target = Path(os.path.realpath(str(path)))
-        if not _replaceable(target):
+        if not _is_replaceable(target):
             return
         if target.exists() and not os.access(str(target), os.W_OK):
             raise InputError(f"{path}: cannot be written: it is read-only")
-        probe = beside(target)
+        probe = name_temporary(target)
         with interrupts.hold_signals():
             probe.touch()
             probe.unlink()
     except OSError as error:
-        raise unwritable(path, error) from error
+        raise make_write_error(path, error) from error
 
 
-def unwritable(path: Path, error: OSError) -> InputError:
+def make_write_error(path: Path, error: OSError) -> InputError:
     """Make the error that says why a file cannot be written."""
     return InputError(f"{path}: cannot be written: {error.strerror or error}")
 
 
-def remove_left(path: Path) -> None:
+def remove_leftovers(path: Path) -> None:
     """Remove what processes that were killed while they wrote `path` have left beside it."""
     target = Path(os.path.realpath(str(path)))
-    for part in target.parent.glob(f"{glob.escape(_before(target))}*{_PART}"):
-        number = part.name[len(_before(target)) :].partition(".")[0]
+    for part in target.parent.glob(f"{glob.escape(_find_previous(target))}*{_PART}"):
+        number = part.name[len(_find_previous(target)) :].partition(".")[0]
         if not number.isdigit():
             continue
         try:
@@ -204,18 +204,18 @@ def remove_left(path: Path) -> None:
             pass
 
 
-def beside(path: Path, piece: str = "") -> Path:
+def name_temporary(path: Path, piece: str = "") -> Path:
     """Name a file in which a process prepares `path`, or a piece of it, until it is whole.
 
     In the same folder, because a rename is atomic only within one file system.
     """
-    return path.with_name(f"{_before(path)}{os.getpid()}{piece}{_PART}")
+    return path.with_name(f"{_find_previous(path)}{os.getpid()}{piece}{_PART}")
 
 
-def _before(path: Path) -> str:
+def _find_previous(path: Path) -> str:
     return f".{path.name}."
 
 
-def _replaceable(path: Path) -> bool:
+def _is_replaceable(path: Path) -> bool:
     """Whether a new file may take the place of what is there: not of a device or a pipe."""
     return not path.exists() or path.is_file()

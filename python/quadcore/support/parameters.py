@@ -1,4 +1,4 @@
-"""Parameters of laws and references, as their tables in the core have them."""
+"""Parameters of controllers and references, from the tables of the core."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import Any, Callable, Dict, Iterable, Mapping, Sequence
 from .. import _core
 
 
-def values(who: str, given: Mapping[str, Any]) -> Dict[str, float]:
-    """Make numbers of parameters; the core checks their names and ranges."""
+def check_values(who: str, given: Mapping[str, Any]) -> Dict[str, float]:
+    """Return parameters as numbers; the core checks their names and ranges."""
     for name, value in given.items():
         if not isinstance(value, (bool, Real)):
             raise _core.InputError(f"{who}: '{name}' is {value!r}; give a number or a flag")
@@ -22,12 +22,12 @@ _FLAGS = {"true": 1.0, "false": 0.0}
 
 
 def read_values(who: str, text: str) -> Dict[str, float]:
-    """Read ``KEY=VALUE,...``, values being numbers or true and false.
+    """Read ``KEY=VALUE,...`` with numbers, true and false as values.
 
     Raises
     ------
     InputError
-        Something else, or a key that comes twice.
+        If the text has another form, or a key occurs twice.
     """
     read: Dict[str, float] = {}
     for part in filter(None, text.split(",")):
@@ -43,8 +43,8 @@ def read_values(who: str, text: str) -> Dict[str, float]:
     return read
 
 
-def docstring(summary: str, table: Iterable[_core.ParameterSpec], more: str = "") -> str:
-    """Write what a function with these parameters does."""
+def write_docstring(summary: str, table: Iterable[_core.ParameterSpec], more: str = "") -> str:
+    """Write the docstring of a function with these parameters."""
     lines = [summary[0].upper() + summary[1:] + ".", "", "Parameters", "----------"]
     lines += [more] if more else []
     for spec in table:
@@ -58,7 +58,7 @@ def docstring(summary: str, table: Iterable[_core.ParameterSpec], more: str = ""
     return "\n".join(lines)
 
 
-def keyword_signature(
+def make_signature(
     function: Callable[..., Any], table: Iterable[_core.ParameterSpec]
 ) -> inspect.Signature:
     """Return the signature of a function, with the parameters of a table for ``**parameters``."""
@@ -79,7 +79,7 @@ def keyword_signature(
 _CLOSE = 0.7  # of difflib's measure, from 0 to 1
 
 
-def did_you_mean(name: str, known: Sequence[str]) -> str:
+def suggest(name: str, known: Sequence[str]) -> str:
     """Suggest the closest known name, if one is close; dashes of options do not count."""
     bare = {each.lstrip("-"): each for each in known}
     near = difflib.get_close_matches(name.lstrip("-"), bare, 1, _CLOSE)

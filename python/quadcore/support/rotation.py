@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 
-def roll_pitch_yaw(orientation: np.ndarray) -> np.ndarray:
+def to_roll_pitch_yaw(orientation: np.ndarray) -> np.ndarray:
     """Roll phi, pitch theta and yaw psi, with R = Rz(psi) Ry(theta) Rx(phi).
 
     Parameters
@@ -25,7 +25,7 @@ def roll_pitch_yaw(orientation: np.ndarray) -> np.ndarray:
     return np.stack([roll, pitch, yaw], axis=-1)
 
 
-def continuous(angles: np.ndarray) -> np.ndarray:
+def unwrap_angles(angles: np.ndarray) -> np.ndarray:
     """Write roll, pitch, yaw of a motion without jumps.
 
     An attitude has two triples of angles, ``(r, p, y)`` and ``(r + pi, pi - p, y + pi)``, and
@@ -34,40 +34,42 @@ def continuous(angles: np.ndarray) -> np.ndarray:
     Parameters
     ----------
     angles : ndarray (rows, 3)
-        As `roll_pitch_yaw` gives them, rad.
+        As `to_roll_pitch_yaw` gives them, rad.
 
     Returns
     -------
     ndarray (rows, 3)
         rad; pitch, too, may leave [-pi/2, pi/2].
     """
-    stays = _apart(angles[1:], angles[:-1]) <= _apart(_flipped(angles[1:]), angles[:-1])
+    stays = _measure_distance(angles[1:], angles[:-1]) <= _measure_distance(
+        _flip(angles[1:]), angles[:-1]
+    )
     is_flipped = np.concatenate([[False], np.cumsum(~stays) % 2 == 1])[: len(angles)]
-    nearest = np.where(is_flipped[:, None], _flipped(angles), angles)
+    nearest = np.where(is_flipped[:, None], _flip(angles), angles)
     return np.asarray(np.unwrap(nearest, axis=0))
 
 
-def angles_between(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+def subtract_angles(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Subtract roll, pitch, yaw, rad, of the triples that are nearest: shape (rows, 3)."""
-    is_near = _apart(one, other) <= _apart(_flipped(one), other)
-    nearest = np.where(is_near[:, None], one, _flipped(one))
-    return _wrapped(nearest - other)
+    is_near = _measure_distance(one, other) <= _measure_distance(_flip(one), other)
+    nearest = np.where(is_near[:, None], one, _flip(one))
+    return _wrap(nearest - other)
 
 
-def _flipped(angles: np.ndarray) -> np.ndarray:
+def _flip(angles: np.ndarray) -> np.ndarray:
     return np.stack([angles[:, 0] + np.pi, np.pi - angles[:, 1], angles[:, 2] + np.pi], axis=1)
 
 
-def _wrapped(angles: np.ndarray) -> np.ndarray:
+def _wrap(angles: np.ndarray) -> np.ndarray:
     wrapped: np.ndarray = np.remainder(angles + np.pi, 2 * np.pi) - np.pi
     return wrapped
 
 
-def _apart(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    return np.asarray(np.abs(_wrapped(one - other)).sum(axis=1))
+def _measure_distance(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    return np.asarray(np.abs(_wrap(one - other)).sum(axis=1))
 
 
-def matrix(orientation: np.ndarray) -> np.ndarray:
+def to_matrix(orientation: np.ndarray) -> np.ndarray:
     """Give the matrices R_WF that turn vectors from frame axes to world axes.
 
     Parameters
@@ -88,7 +90,7 @@ def matrix(orientation: np.ndarray) -> np.ndarray:
     return np.stack(entries, axis=-1).reshape((*x.shape, 3, 3))
 
 
-def turned(orientation: np.ndarray, angle: np.ndarray) -> np.ndarray:
+def turn(orientation: np.ndarray, angle: np.ndarray) -> np.ndarray:
     """Turn a body about an axis of its own.
 
     Parameters

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Sequence, Tuple, Union
 import numpy as np
 
 from .. import _core
-from .arguments import brief
+from .arguments import shorten
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -22,46 +22,46 @@ SPAWN = (0.0, 0.0, 10.0)
 """Where a flight begins unless told, m in the world."""
 
 
-def whole(seed: object, name: str = "seed", bits: int = 64) -> int:
+def check_whole(seed: object, name: str = "seed", bits: int = 64) -> int:
     """Check a seed, or what else is such a number of so many bits."""
     is_whole = isinstance(seed, (int, np.integer)) and not isinstance(seed, bool)
     if not is_whole or not 0 <= seed < 2**bits:  # type: ignore[operator]
         raise _core.InputError(
-            f"{name} is {brief(seed)}; give a whole number from 0 to 2^{bits} - 1"
+            f"{name} is {shorten(seed)}; give a whole number from 0 to 2^{bits} - 1"
         )
     return int(seed)  # type: ignore[call-overload,no-any-return]
 
 
-def text_of(value: Value) -> str:
+def format_value(value: Value) -> str:
     """Write a parameter's value as a URDF would."""
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value.item()
     if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
     if isinstance(value, (list, tuple, np.ndarray)):
-        return " ".join(text_of(part) for part in value)
+        return " ".join(format_value(part) for part in value)
     text = str(value)
     try:
         text.encode()
     except UnicodeEncodeError:
-        raise _core.InputError(f"{brief(value)} is not text in UTF-8. Give another.") from None
+        raise _core.InputError(f"{shorten(value)} is not text in UTF-8. Give another.") from None
     return text
 
 
-def pose(spawn: Sequence[Number]) -> Tuple[float, ...]:
+def check_pose(spawn: Sequence[Number]) -> Tuple[float, ...]:
     """Check a start pose: x, y, z, roll, pitch, yaw."""
     try:
-        given = [_number(value) for value in spawn]
+        given = [_to_number(value) for value in spawn]
     except (TypeError, ValueError):
         given = []
     if len(given) not in (3, 6):
         raise _core.InputError(
-            f"spawn is {brief(spawn)}; give x, y, z[, roll, pitch, yaw] in m and rad"
+            f"spawn is {shorten(spawn)}; give x, y, z[, roll, pitch, yaw] in m and rad"
         )
     return (*given, *[0.0] * (6 - len(given)))
 
 
-def _number(value: Number) -> float:
+def _to_number(value: Number) -> float:
     if not isinstance(value, str):
         return float(value)
     number = _core.parse_number(value)
@@ -70,7 +70,7 @@ def _number(value: Number) -> float:
     return number
 
 
-def poses(spawn: npt.ArrayLike, n: int) -> np.ndarray:
+def check_poses(spawn: npt.ArrayLike, n: int) -> np.ndarray:
     """Check the start poses of n vehicles, one for each or one for all: shape (n, 6)."""
     try:
         given = np.atleast_2d(np.asarray(spawn, dtype=float))
@@ -86,10 +86,10 @@ def poses(spawn: npt.ArrayLike, n: int) -> np.ndarray:
     return padded
 
 
-def seeds(seed: Union[int, npt.ArrayLike], n: int) -> np.ndarray:
+def check_seeds(seed: Union[int, npt.ArrayLike], n: int) -> np.ndarray:
     """Check the seeds of n vehicles; one is that of the first, the next has the next."""
     if isinstance(seed, (int, np.integer)):
-        first = whole(seed)
+        first = check_whole(seed)
         return np.array([(first + i) % 2**64 for i in range(n)], np.uint64)
     try:
         given = np.asarray(seed)
@@ -99,4 +99,4 @@ def seeds(seed: Union[int, npt.ArrayLike], n: int) -> np.ndarray:
         raise _core.InputError(f"seed holds no {n} whole numbers; give one for each, or one")
     if given.dtype == np.uint64:
         return given
-    return np.array([whole(number) for number in given], np.uint64)
+    return np.array([check_whole(number) for number in given], np.uint64)

@@ -1,4 +1,4 @@
-"""quadcore's warnings."""
+"""Warnings of quadcore."""
 
 import sys
 import warnings
@@ -8,25 +8,25 @@ from typing import Iterator
 
 
 class QuadcoreWarning(UserWarning):
-    """What is allowed but was perhaps not meant."""
+    """Valid but suspicious input."""
 
 
 def warn(message: str) -> None:
-    """Warn of the line that called the package, however deep in it the doubt arose."""
+    """Issue a warning at the line that called the package."""
     frame, level = sys._getframe(1), 2
-    while _is_ours(frame) and frame.f_back is not None:
+    while _is_own(frame) and frame.f_back is not None:
         frame, level = frame.f_back, level + 1
     warnings.warn(message, QuadcoreWarning, stacklevel=level)
 
 
-def _is_ours(frame: FrameType) -> bool:
+def _is_own(frame: FrameType) -> bool:
     name = str(frame.f_globals.get("__name__"))
-    return name.partition(".")[0] in ("quadcore", "xacro")  # xacro warns through us
+    return name.partition(".")[0] in ("quadcore", "xacro")  # xacro warns through this module
 
 
 @contextmanager
 def suppress_warnings() -> Iterator[None]:
-    """Let what is doubtful within the block be no news: simulations keep it."""
+    """Suppress warnings within the block; simulations still list them."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", QuadcoreWarning)
         yield

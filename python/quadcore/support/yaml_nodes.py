@@ -13,7 +13,7 @@ from .input_files import read_text
 _SCALAR = "tag:yaml.org,2002:"
 
 
-def root(path: Path) -> yaml.Node:
+def read_root(path: Path) -> yaml.Node:
     """Read a file; raises `InputError` if it is missing or no YAML."""
     try:
         return yaml.compose(read_text(path), yaml.SafeLoader)
@@ -26,25 +26,25 @@ def root(path: Path) -> yaml.Node:
         raise InputError(f"{path}:1: nested too deeply") from None
 
 
-def pairs(
+def read_pairs(
     path: Union[str, Path], node: Any, what: str
 ) -> Iterator[Tuple[yaml.ScalarNode, yaml.Node]]:
     """Give keys and values of a mapping; raises `InputError` if it is none, with what to write."""
     if not isinstance(node, yaml.MappingNode):
-        raise InputError(f"{path}:{line_of(node) if node else 1}: write {what}")
+        raise InputError(f"{path}:{find_line(node) if node else 1}: write {what}")
     names = set()
     for key, value in node.value:
         if not isinstance(key, yaml.ScalarNode):
-            raise InputError(f"{path}:{line_of(key)}: a key is no text; write {what}")
+            raise InputError(f"{path}:{find_line(key)}: a key is no text; write {what}")
         if key.value in names:
-            raise InputError(f"{path}:{line_of(key)}: {key.value} is given twice; keep one")
+            raise InputError(f"{path}:{find_line(key)}: {key.value} is given twice; keep one")
         names.add(key.value)
         yield key, value
 
 
-def scalar(path: Union[str, Path], name: str, node: yaml.Node) -> str:
+def read_scalar(path: Union[str, Path], name: str, node: yaml.Node) -> str:
     """Read a value as it is written; raises `InputError` if it is none."""
-    where = f"{path}:{line_of(node)}"
+    where = f"{path}:{find_line(node)}"
     if not isinstance(node, yaml.ScalarNode):
         kind = "a list" if isinstance(node, yaml.SequenceNode) else "a mapping"
         raise InputError(f"{where}: {name} is {kind} here; write a value, or a list of values")
@@ -55,7 +55,7 @@ def scalar(path: Union[str, Path], name: str, node: yaml.Node) -> str:
     return str(node.value)
 
 
-def line_of(node: yaml.Node) -> int:
+def find_line(node: yaml.Node) -> int:
     """Where a node begins, from 1."""
     at: int = node.start_mark.line + 1
     return at

@@ -99,7 +99,7 @@ def compare(
     shared = CompareOptions(**options)
     timing = shared.controller_rate, shared.delay
     control = ControlSetup.single(controller, reference, shared.spawn, *timing)
-    several = arguments.several(models)
+    several = arguments.to_list(models)
     plan = Plan(several, vary or {}, engine, control, shared, commands, wrenches)
     if logs:
         _check_memory(plan)

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Union
 
 from ..._core import InputError, QuadcoreError
-from ...model.overrides import XACRO, link_values
+from ...model.overrides import XACRO, list_link_values
 from ...simulation.commands import CommandsLike
-from ...simulation.controller_pilot import controller_errors_as_failures
+from ...simulation.controller_pilot import convert_controller_errors
 from ...simulation.engines import list_engines
-from ...simulation.flight import check_logged
+from ...simulation.flight import check_log_length
 from ...simulation.log import Log
 from ...simulation.simulation import Simulation
 from ..axes import OF_CONTROLLER, WHOLE, Axis, Values
@@ -70,7 +70,7 @@ class Plan(Cases):
         first = next(iter(built.values()), None)
         self.dt = 1e-3 if first is None else first.dt
         """Step of the first model, s."""
-        check_logged(options.duration, self.dt, self.steps_per_row(self.dt))
+        check_log_length(options.duration, self.dt, self.steps_per_row(self.dt))
         self._check_tags(built.values())
         self._check_guidance(built)
         self.rotor_count = len(self.variation.models[0].joints)
@@ -84,8 +84,8 @@ class Plan(Cases):
         with time_limit(self.options.time_limit):
             flight = self.make_plan(case)
             simulation = flight.simulation()
-            with controller_errors_as_failures(simulation):
-                return flight.flown_by(simulation)
+            with convert_controller_errors(simulation):
+                return flight.fly_with(simulation)
 
     def make_label(self, case: Case) -> str:
         """Label a variant by the values that differ among the variants."""
@@ -127,7 +127,7 @@ class Plan(Cases):
             for plugin in simulation.plugins:
                 known += [f"{plugin.name}.{tag.name}" for tag in plugin.parameters]
                 known += [f"{plugin.name}.{tag.alias}" for tag in plugin.parameters if tag.alias]
-            known += link_values(self.variation.models[0].document)
+            known += list_link_values(self.variation.models[0].document)
             for axis in self.axes:
                 for tag in axis.tags:
                     if tag not in known and not tag.startswith((f"{XACRO}.", OF_CONTROLLER)):

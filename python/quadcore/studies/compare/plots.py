@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from ...report.colours import PALETTE
 from ...report.plots import NOTHING, WHOLE, add_unslowed_axis, flatten, make_figure, panels, space
 from ...simulation.log import Log
-from ...support.rotation import continuous
+from ...support.rotation import unwrap_angles
 from ..flight_differences import compute_differences
 
 _LABELS = 6  # in the legend of many flights
@@ -83,7 +83,7 @@ def _draw_position(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) ->
 
 
 def _draw_attitude(curves: Sequence[Curve], styles: Sequence[Dict[str, Any]]) -> Figure:
-    values = [np.degrees(continuous(curve.log.rpy)) for curve in curves]
+    values = [np.degrees(unwrap_angles(curve.log.rpy)) for curve in curves]
     labels = [f"{angle} (deg)" for angle in ("roll", "pitch", "yaw")]
     return _draw_panels("Attitude", curves, styles, [(values, labels)])
 

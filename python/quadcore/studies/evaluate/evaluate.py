@@ -23,7 +23,7 @@ from typing import (
 from ..._core import InputError, QuadcoreError
 from ...report.decimation import pick_evenly
 from ...report.html_table import SHOWN_ROWS, html_table, html_title
-from ...simulation.engines import STUDIED, AnyEngineName
+from ...simulation.engines import STUDY_ENGINE, AnyEngineName
 from ...simulation.flight_plan import FlightPlan
 from ...support import arguments
 from ...support.warning import warn
@@ -100,7 +100,7 @@ class Evaluation(NamedTuple):
 def evaluate(
     controllers: Controllers,
     references: References,
-    engines: Union[AnyEngineName, Sequence[AnyEngineName]] = STUDIED,
+    engines: Union[AnyEngineName, Sequence[AnyEngineName]] = STUDY_ENGINE,
     models: Names = "quadrotor",
     *,
     engine: Optional[AnyEngineName] = None,
@@ -143,7 +143,7 @@ def evaluate(
         With the attribute `evaluation`, in which the missing rows are marked.
     """
     shared = EvaluateOptions(**options)
-    names = choose_engines(engine, engines), arguments.several(models)
+    names = choose_engines(engine, engines), arguments.to_list(models)
     plan = Plan(controllers, references, *names, vary or {}, shared)
     return fly_plan(plan, shared.progress, margins)
 

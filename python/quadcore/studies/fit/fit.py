@@ -8,7 +8,7 @@ from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Seq
 import numpy as np
 
 from ..._core import FlightError, InputError, Model
-from ...simulation.engines import STUDIED, EngineName
+from ...simulation.engines import STUDY_ENGINE, EngineName
 from ...simulation.log import Log
 from ...support import arguments
 from ...support.warning import suppress_warnings
@@ -107,7 +107,7 @@ def fit(
     log: Union[Log, str, Path],
     free: Sequence[str],
     commands: Union[np.ndarray, str, Path, None] = None,
-    engine: EngineName = STUDIED,
+    engine: EngineName = STUDY_ENGINE,
     horizon: float = 1.0,
     channels: Optional[Sequence[str]] = None,
     sensed: Optional[str] = None,

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any, Dict, Mapping, Optional, Sequence, Union
 
 from ..._core import InputError, Model, World
-from ...model.description import read_both, xacro_arguments
-from ...model.overrides import XACRO, check_names, with_links, without_xacro
+from ...model.description import list_xacro_arguments, read_both
+from ...model.overrides import XACRO, apply_link_values, check_names, split_xacro_arguments
 from ...simulation.engines import EngineName
 from ...simulation.simulation import Simulation
-from ...support.values import text_of
+from ...support.values import format_value
 from .model_text import write_values
 
 _PREFIX = f"{XACRO}."
@@ -56,11 +56,11 @@ class FittedModel:
         xacro_args: Optional[Mapping[str, object]],
         ignore: Sequence[str],
     ) -> None:
-        of_xacro, others = without_xacro(parameters, xacro_args)
+        of_xacro, others = split_xacro_arguments(parameters, xacro_args)
         read, world = read_both(model, world, of_xacro, ignore)
         check_names(read, [*(parameters or {}), *free])
-        given = {name: text_of(value) for name, value in others.items()}
-        self.model, tags = with_links(read, given)
+        given = {name: format_value(value) for name, value in others.items()}
+        self.model, tags = apply_link_values(read, given)
         self.simulation = Simulation(self.model, engine=engine, world=world, dt=dt, parameters=tags)
         self.arguments: Dict[str, str] = {}
         begin: Union[str, Path, Model] = self.model
@@ -68,7 +68,7 @@ class FittedModel:
         if found:
             if isinstance(model, Model):
                 raise InputError(f"free {found[0]}: a Model has no xacro arguments. Give the file.")
-            known = xacro_arguments(model, of_xacro)
+            known = list_xacro_arguments(model, of_xacro)
             self.arguments = {_PREFIX + name: text for name, text in known.items()}
             of_xacro = {n: value for n, value in of_xacro.items() if _PREFIX + n not in free}
             begin, tags = model, given
@@ -86,7 +86,7 @@ class FittedModel:
     def make_model(self, values: Mapping[str, float]) -> Model:
         """Read the model with values of the free parameters and the fixed values."""
         make = self.make
-        of_xacro, others = without_xacro(values, make["xacro_args"])
+        of_xacro, others = split_xacro_arguments(values, make["xacro_args"])
         read, _ = read_both(make["model"], make["world"], of_xacro, make["ignore"])
         aliases = {
             f"{plugin.name}.{tag.name}": f"{plugin.name}.{tag.alias}"

@@ -8,8 +8,8 @@ from xml.sax.saxutils import escape
 
 from ... import _core
 from ..._core import Document, Model
-from ...model.overrides import with_links
-from ...support.values import Value, text_of
+from ...model.overrides import apply_link_values
+from ...support.values import Value, format_value
 
 
 def write_values(
@@ -31,7 +31,9 @@ def write_values(
     InputError
         If a value is invalid for the model.
     """
-    changed, tags = with_links(model, {name: text_of(value) for name, value in values.items()})
+    changed, tags = apply_link_values(
+        model, {name: format_value(value) for name, value in values.items()}
+    )
     text = changed.document.text.encode()
     names = {key: {key, (aliases or {}).get(key, key)} for key in tags}
     edits = [(*_find_value(text, names[key]), key, escape(value)) for key, value in tags.items()]

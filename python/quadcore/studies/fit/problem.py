@@ -7,9 +7,9 @@ from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 import numpy as np
 
 from ..._core import FlightError, InputError, parse_number
-from ...model.overrides import link_values
+from ...model.overrides import list_link_values
 from ...support import arguments
-from ...support.parameters import did_you_mean
+from ...support.parameters import suggest
 from .fitted_model import FittedModel
 from .horizons import Horizons
 
@@ -52,7 +52,7 @@ class Parameter:
     ) -> None:
         plugins, model = fitted.simulation.plugins, fitted.model
         tags = {f"{p.name}.{tag.name}": tag for p in plugins for tag in p.parameters}
-        links = link_values(model.document)
+        links = list_link_values(model.document)
         if name in fitted.arguments:
             text, self.unit = fitted.arguments[name], ""
         elif name in tags:
@@ -62,7 +62,7 @@ class Parameter:
         else:
             known = [*tags, *links, *fitted.arguments]
             raise InputError(
-                f"free {name}: model {model.name} has no such parameter{did_you_mean(name, known)}"
+                f"free {name}: model {model.name} has no such parameter{suggest(name, known)}"
             )
         value = parse_number(text)
         if value is None:
@@ -78,7 +78,7 @@ class Parameter:
 
 def check_free_names(free: Sequence[str]) -> List[str]:
     """Return the names of free parameters; raises `InputError` for invalid ones."""
-    names = [str(name) for name in arguments.several(free)]
+    names = [str(name) for name in arguments.to_list(free)]
     for name in names:
         if names.count(name) > 1:
             raise InputError(f"free {name}: the parameter is named twice. Remove one.")

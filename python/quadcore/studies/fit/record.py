@@ -8,7 +8,7 @@ from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 import numpy as np
 
 from ..._core import InputError
-from ...simulation.commands import as_commands
+from ...simulation.commands import check_commands
 from ...simulation.log import Log
 from ...support import arguments
 
@@ -80,7 +80,7 @@ def read_record(
             f"{where}: the log has {flown.rotor_velocity.shape[1]} rotors, the model {rotors}"
         )
     if commands is not None:
-        table: Optional[np.ndarray] = as_commands(commands, rotors)
+        table: Optional[np.ndarray] = check_commands(commands, rotors)
     elif _COMMANDS in flown.topics:
         table = _read_commands(flown)
     else:
@@ -104,7 +104,7 @@ def choose_channels(given: Optional[Sequence[str]], flown: Record) -> List[str]:
     """Return the channels to compare; raises `InputError` for unknown ones."""
     if given is None:
         return ["position", "attitude", "rates"] + ["rotors"] * (flown.commands is not None)
-    given = arguments.several(given)
+    given = arguments.to_list(given)
     if not given:
         raise InputError(f"channels is {given}. Give some of {', '.join(CHANNELS)}.")
     for name in given:

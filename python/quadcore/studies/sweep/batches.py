@@ -8,7 +8,7 @@ import numpy as np
 
 from ... import _core
 from ..._core import QuadcoreError
-from ...simulation.flight import steps_within
+from ...simulation.flight import count_steps
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
 from ...support.warning import suppress_warnings
@@ -77,7 +77,7 @@ def _fly(flights: Sequence[Flight]) -> List[Row]:
         np.array([plan.seed for plan in plans], np.uint64),
         1,
     )
-    steps = steps_within(first.duration, batch.dt)
+    steps = count_steps(first.duration, batch.dt)
     logged = range(0, steps + 1, first.log_every)
     rotors = (batch.state_width - 13) // 2
     tables = np.empty((len(plans), len(logged), 14 + rotors))

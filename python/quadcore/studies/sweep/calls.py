@@ -7,7 +7,7 @@ from types import FunctionType
 from typing import Any, Callable, Dict, List, Mapping, Sequence
 
 from ..._core import InputError, QuadcoreError
-from ...support.arguments import brief
+from ...support.arguments import shorten
 from ..design import LARGEST, Design
 from ..time_limit import time_limit
 from .row_spec import Measures, compute_digest, read_source
@@ -36,9 +36,9 @@ class Calls:
         time_limit: float,
     ) -> None:
         if not callable(function):
-            raise InputError(f"function is {brief(function)}. Give a callable.")
+            raise InputError(f"function is {shorten(function)}. Give a callable.")
         if not measures or len(set(measures)) < len(measures):
-            raise InputError(f"measures is {brief(measures)}. Name each returned value once.")
+            raise InputError(f"measures is {shorten(measures)}. Name each returned value once.")
         self.design, self.measures = design, list(measures)
         self.units = dict.fromkeys(self.measures, "")
         self.meanings = dict.fromkeys(self.measures, "value that the function returned")
@@ -117,7 +117,7 @@ class Call:
             return {name: float(values[name]) for name in self.wanted}
         except (KeyError, TypeError, ValueError) as error:
             raise QuadcoreError(
-                f"the function returned {brief(found)}. Return a number, or a mapping of "
+                f"the function returned {shorten(found)}. Return a number, or a mapping of "
                 f"{', '.join(self.wanted)} to numbers."
             ) from error
 

@@ -7,7 +7,7 @@ from typing import Dict
 import numpy as np
 
 from ...simulation.log import Log
-from ...support.rotation import roll_pitch_yaw
+from ...support.rotation import to_roll_pitch_yaw
 
 UNITS = {
     "final_x": "m",
@@ -46,7 +46,7 @@ def measure(log: Log) -> Dict[str, float]:
     steps = np.linalg.norm(np.diff(log.position, axis=0), axis=1)
     values = (
         *log.position[-1],
-        roll_pitch_yaw(log.orientation[-1:])[0, 2],
+        to_roll_pitch_yaw(log.orientation[-1:])[0, 2],
         tilt[-1],
         speed[-1],
         tilt.max(),

@@ -10,7 +10,7 @@ from ..._core import InputError
 from ...control import references
 from ...control.built_in import BuiltInController
 from ...simulation.commands import CommandsLike
-from ...support.values import whole
+from ...support.values import check_whole
 from .. import tracking_metrics as of_guided
 from ..cases import Cases, check_models, make_scenario_axis
 from ..control_setup import ControlSetup, add_labels, names_user_code
@@ -123,7 +123,7 @@ def make_design(
 ) -> Tuple[Design, SweepOptions]:
     """Make the points of a sweep, including the scenarios; arguments as for `sweep`."""
     vary, options = make_scenario_axis(vary, options)
-    return Design(vary, points, design, samples, whole(options.seed)), options
+    return Design(vary, points, design, samples, check_whole(options.seed)), options
 
 
 def _make_control_setup(

@@ -12,7 +12,7 @@ from typing import Any, Dict, Iterator, List, Sequence, Tuple
 import numpy as np
 
 from ..._core import InputError, QuadcoreError, parse_number
-from ...support.output_files import Appended, atomic_write, cell, check_writable, text_bytes
+from ...support.output_files import LineFile, atomic_write, check_writable, encode_text, escape_cell
 from .plan import AnyPlan
 from .row_spec import Row, compute_digest
 
@@ -52,7 +52,7 @@ class RowFile:
         check_writable(path)
         if path.exists() and path.stat().st_size > 0 and not resume:
             raise self._make_conflict()
-        self._file = Appended(path, older=True)
+        self._file = LineFile(path, older=True)
         try:
             self.is_resumed = os.fstat(self._file.fileno()).st_size > 0
             if self.is_resumed and not resume:
@@ -95,7 +95,7 @@ class RowFile:
 
     def read(self) -> Iterator[Dict[str, str]]:
         """Yield the existing rows in order."""
-        file = Appended(self.path, older=True) if self._file.closed else self._file
+        file = LineFile(self.path, older=True) if self._file.closed else self._file
         try:
             for line in file.parts(self._list_places()):
                 yield dict(zip(self.columns, _split_line(line)))
@@ -194,7 +194,7 @@ def compute_fingerprint(plan: AnyPlan, row: int) -> str:
 def _write_line(cells: Sequence[Any]) -> bytes:
     stream = io.StringIO()
     csv.writer(stream, lineterminator="\n").writerow([_escape(value) for value in cells])
-    return text_bytes(stream.getvalue())
+    return encode_text(stream.getvalue())
 
 
 def _is_measure(text: str) -> bool:
@@ -207,7 +207,7 @@ def _escape(value: Any) -> Any:
         if parse_number(value) is not None:
             return value
         # Each row must be one line.
-        return cell(value.replace("\n", "\\n").replace("\r", "\\r"))
+        return escape_cell(value.replace("\n", "\\n").replace("\r", "\\r"))
     return "" if value != value else value
 
 

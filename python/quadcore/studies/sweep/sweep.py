@@ -22,7 +22,7 @@ import numpy as np
 
 from ..._core import InputError
 from ...simulation.commands import CommandsLike
-from ...simulation.engines import STUDIED, AnyEngineName
+from ...simulation.engines import STUDY_ENGINE, AnyEngineName
 from ...support import arguments, interrupts
 from ..control_setup import Controllers, References
 from ..options import Keywords, Names, Progress, SweepOptions, accept_options, choose_engines
@@ -91,7 +91,7 @@ def sweep(
     points: Optional[Union[str, Path]] = None,
     design: str = "latin",
     samples: Optional[int] = None,
-    engines: Union[AnyEngineName, Sequence[AnyEngineName]] = STUDIED,
+    engines: Union[AnyEngineName, Sequence[AnyEngineName]] = STUDY_ENGINE,
     engine: Optional[AnyEngineName] = None,
     models: Names = "quadrotor",
     out: Optional[Union[str, Path]] = None,
@@ -157,9 +157,9 @@ def sweep(
             raise InputError(
                 "function replaces flights. Give it without controllers, references and commands."
             )
-        plan = Calls(made, function, arguments.several(measures), shared.time_limit)
+        plan = Calls(made, function, arguments.to_list(measures), shared.time_limit)
     else:
-        names = choose_engines(engine, engines), arguments.several(models)
+        names = choose_engines(engine, engines), arguments.to_list(models)
         plan = Plan(made, controllers, references, *names, shared, commands)
     with ExitStack() as stack:
         if out is None:

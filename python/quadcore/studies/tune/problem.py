@@ -181,7 +181,7 @@ class Problem:
         if trial.has_offset:
             state = simulation.state.copy()
             state.position = state.position + OFFSET
-            state.orientation = rotation.turned(state.orientation, np.array(TURN))
+            state.orientation = rotation.turn(state.orientation, np.array(TURN))
             simulation.set_state(state)
         return simulation.run(
             plan.duration,

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Union
 from ..._core import FlightError
 from ...control.built_in import BuiltInController
 from ...control.keywords import ControllerName
-from ...simulation.engines import STUDIED, AnyEngineName
+from ...simulation.engines import STUDY_ENGINE, AnyEngineName
 from ...support import arguments
-from ...support.arguments import several
+from ...support.arguments import to_list
 from ...support.optional_packages import require_package
 from ..axes import Values
 from ..control_setup import References
@@ -42,7 +42,7 @@ def tune(
     held_out_models: Names = (),
     only: Optional[Sequence[str]] = None,
     *,
-    engine: AnyEngineName = STUDIED,
+    engine: AnyEngineName = STUDY_ENGINE,
     vary: Optional[Mapping[str, Values]] = None,
     budget: int = 300,
     **options: Unpack[Keywords],
@@ -93,9 +93,9 @@ def tune(
         With the attribute `tuning`, the best result so far, or None.
     """
     shared = Options(**options)
-    flown = several(model), several(references)
-    judged = several(held_out), several(held_out_models)
-    chosen = None if only is None else several(only)
+    flown = to_list(model), to_list(references)
+    judged = to_list(held_out), to_list(held_out_models)
+    chosen = None if only is None else to_list(only)
     problem = Problem(law, *flown, *judged, chosen, engine, vary or {}, shared)
     return search_gains(problem, budget, shared.progress)
 

@@ -9,11 +9,11 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from ..._core import FlightError
-from ...simulation.commands import as_commands
-from ...simulation.flight import steps_within
+from ...simulation.commands import check_commands
+from ...simulation.flight import count_steps
 from ...simulation.log import Log
 from ...simulation.state import State
-from ...support.rotation import roll_pitch_yaw
+from ...support.rotation import to_roll_pitch_yaw
 from . import matrices
 from .kinematics import euler_rates_to_body, gradient_of_W, quaternion, rotation, skew
 from .vehicle import Vehicle
@@ -115,11 +115,11 @@ class MathematicalModel:
         """
         v = self.vehicle
         n = len(v.arms)
-        table = as_commands(commands, n)
-        time = state.time + dt * np.arange(steps_within(duration, dt) + 1)
+        table = check_commands(commands, n)
+        time = state.time + dt * np.arange(count_steps(duration, dt) + 1)
         y = self._start(state)
-        if _upright(0, y) <= 0:
-            raise _toppled(state.time)
+        if _measure_uprightness(0, y) <= 0:
+            raise _make_tilt_failure(state.time)
         rows = np.empty((len(time), len(y)))
         begins = np.concatenate([time[:1], table[1:, 0]])
         ends = np.append(begins[1:], np.inf)
@@ -161,8 +161,8 @@ class MathematicalModel:
         slopes: List[np.ndarray] = []
         for part in (0.0, 0.5, 0.5, 1.0):
             at = y + part * dt * slopes[-1] if slopes else y
-            if _upright(0, at) <= 0:
-                raise _toppled(state.time)
+            if _measure_uprightness(0, at) <= 0:
+                raise _make_tilt_failure(state.time)
             slopes.append(self._derivative(at, command))
         a, b, c, d = slopes
         after = y + dt / 6 * (a + 2 * b + 2 * c + d)
@@ -183,10 +183,10 @@ class MathematicalModel:
             atol=1e-11,
             max_step=0.1,  # s; over longer ones the interpolation for the log would be the coarser
             dense_output=True,
-            events=_upright,
+            events=_measure_uprightness,
         )
         if solution.status != 0:
-            raise _toppled(float(solution.t[-1]))
+            raise _make_tilt_failure(float(solution.t[-1]))
         return solution.sol(wanted).T, solution.y[:, -1]
 
     def _derivative(self, y: np.ndarray, command: np.ndarray) -> np.ndarray:
@@ -201,7 +201,7 @@ class MathematicalModel:
 
     def _start(self, state: State) -> np.ndarray:
         """Generalised coordinates of a state of the frame link."""
-        eta = roll_pitch_yaw(state.orientation)
+        eta = to_roll_pitch_yaw(state.orientation)
         offset, sweep = self._lever(eta, state.angular_velocity)
         etadot = np.linalg.solve(euler_rates_to_body(eta), state.angular_velocity)
         xi, xidot = state.position + offset, state.linear_velocity + sweep
@@ -241,14 +241,14 @@ def _bias(q: np.ndarray, qdot: np.ndarray) -> np.ndarray:
     return bias
 
 
-def _upright(_: float, y: np.ndarray) -> float:
+def _measure_uprightness(_: float, y: np.ndarray) -> float:
     return float(np.cos(y[4])) - 1e-2
 
 
-_upright.terminal = True  # type: ignore[attr-defined]
+_measure_uprightness.terminal = True  # type: ignore[attr-defined]
 
 
-def _toppled(time: float) -> FlightError:
+def _make_tilt_failure(time: float) -> FlightError:
     error = FlightError(f"t = {time:.6g} s: the pitch reaches 90 degrees, where (2.9) ends")
     error.time = time
     return error

@@ -9,11 +9,11 @@ import numpy as np
 
 from ..._core import InputError
 from ...simulation.simulation import Simulation
-from ...simulation.state import State, state_of
+from ...simulation.state import State, make_state
 from ...support import interrupts
 from .. import LAGRANGE
 from .model import THESIS, MathematicalModel, Terms
-from .vehicle import Vehicle, air_of, command_order
+from .vehicle import Vehicle, find_air_plugin, list_command_order
 
 _UNFELT = ("libwind_plugin.so", "libpayload_plugin.so", "libfault_plugin.so")
 """What changes the forces of others, not of the mathematical model."""
@@ -41,7 +41,7 @@ class Plant(Simulation):
     def __init__(self, terms: Terms = THESIS, **options: Any) -> None:
         super().__init__(**options, engine="eigen")
         check(self)
-        self._move_by(_Motion(MathematicalModel(Vehicle.of(self), terms), command_order(self)))
+        self._move_by(_Motion(MathematicalModel(Vehicle.of(self), terms), list_command_order(self)))
 
     @property
     def engine(self) -> str:
@@ -68,7 +68,7 @@ class _Motion:
 
     def __call__(self, dt: float, command: np.ndarray, members: Mapping[str, Any]) -> State:
         with interrupts.hold_signals():  # the engine would take one for a fault of the model
-            state = state_of(members)
+            state = make_state(members)
             joints = state.rotor_velocity.copy()
             state.rotor_velocity = joints[self._order]
             speeds = np.clip(command, -self._fastest, self._fastest)
@@ -87,7 +87,7 @@ def check(simulation: Simulation) -> None:
             f"engine {LAGRANGE}: the mathematical model has no contact, and the world a ground "
             "plane; fly in a world without, such as empty"
         )
-    air = air_of(simulation)
+    air = find_air_plugin(simulation)
     for plugin in simulation.plugins:
         if plugin.wrenches and plugin.name != air.name:
             raise InputError(

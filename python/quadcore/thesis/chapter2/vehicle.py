@@ -80,7 +80,10 @@ class Vehicle:
         InputError
             A vehicle that chapter 2 has no equation for.
         """
-        air, motor = parameters_of(air_of(simulation)), parameters_of(motor_of(simulation))
+        air, motor = (
+            read_parameters(find_air_plugin(simulation)),
+            read_parameters(find_motor_plugin(simulation)),
+        )
         integral = float(motor["ki"]) * (float(motor["iMax"]) - float(motor["iMin"]))
         if integral != 0 or float(motor["kd"]) != 0:
             raise InputError("the mathematical model has proportional motors; set <ki>, <kd> to 0")
@@ -89,7 +92,7 @@ class Vehicle:
         for plugin in (air, motor):
             if sorted(plugin["rotorJoints"].split()) != sorted(simulation.rotor_names):
                 raise InputError("the mathematical model needs every rotor in each <rotorJoints>")
-        order = command_order(simulation)
+        order = list_command_order(simulation)
         joints = [simulation.model.joints[i] for i in order]
         links = [simulation.model.links[1 + i] for i in order]  # the first is the frame
         turns = [Rotation.from_euler("xyz", joint.rpy) for joint in joints]
@@ -160,21 +163,21 @@ class Vehicle:
         return any((self.A_1c, self.A_1s, self.B_1, self.B_2))
 
 
-def air_of(simulation: Simulation) -> PluginInfo:
+def find_air_plugin(simulation: Simulation) -> PluginInfo:
     """Find the one plugin whose force laws those of chapter 2 are: it reports the thrust."""
     found = [plugin for plugin in simulation.plugins if "thrust" in plugin.wrenches]
-    return _the_one(found, "libaerodynamic_plugin.so")
+    return _find_only(found, "libaerodynamic_plugin.so")
 
 
-def motor_of(simulation: Simulation) -> PluginInfo:
+def find_motor_plugin(simulation: Simulation) -> PluginInfo:
     """Find the one plugin that turns the rotors: it takes the commands."""
     commands = simulation.topics.get(simulation.command_topic)
     readers = commands.readers if commands else []
     found = [plugin for plugin in simulation.plugins if plugin.name in readers]
-    return _the_one(found, "libmotorpid_plugin.so")
+    return _find_only(found, "libmotorpid_plugin.so")
 
 
-def _the_one(found: Sequence[PluginInfo], such_as: str) -> PluginInfo:
+def _find_only(found: Sequence[PluginInfo], such_as: str) -> PluginInfo:
     if len(found) == 1:
         return found[0]
     others = sorted({plugin.filename for plugin in found} - {such_as})
@@ -182,7 +185,7 @@ def _the_one(found: Sequence[PluginInfo], such_as: str) -> PluginInfo:
     raise InputError(f"the mathematical model needs one plugin {such_as}; got {got}")
 
 
-def parameters_of(plugin: PluginInfo) -> Dict[str, str]:
+def read_parameters(plugin: PluginInfo) -> Dict[str, str]:
     """Read the effective parameters of a plugin, by name."""
     return _Tags(plugin)
 
@@ -201,7 +204,7 @@ class _Tags(Dict[str, str]):
         )
 
 
-def command_order(simulation: Simulation) -> List[int]:
+def list_command_order(simulation: Simulation) -> List[int]:
     """Joints in the order of a command's numbers: `rotor_velocity[command_order(s)]`."""
-    driven = parameters_of(motor_of(simulation))["rotorJoints"].split()
+    driven = read_parameters(find_motor_plugin(simulation))["rotorJoints"].split()
     return [simulation.rotor_names.index(name) for name in driven]

@@ -4,8 +4,8 @@ from .damping import Damping
 from .drags import DRAGS
 from .error_budget import Chain, Link
 from .experiment import MODEL, TERMS, Case, Experiment, Flight
-from .states import STATES, compare, states
-from .study import Row, Study, conduct
+from .states import STATES, compare_states, extract_states
+from .study import Row, Study, run_study
 
 __all__ = [
     "DRAGS",
@@ -20,7 +20,7 @@ __all__ = [
     "Link",
     "Row",
     "Study",
-    "compare",
-    "conduct",
-    "states",
+    "compare_states",
+    "extract_states",
+    "run_study",
 ]

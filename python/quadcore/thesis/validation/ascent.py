@@ -21,7 +21,7 @@ MOVES = (
 )
 
 
-def ascent(vehicle: Vehicle) -> np.ndarray:
+def make_ascent(vehicle: Vehicle) -> np.ndarray:
     """Rotor speeds that lift a vehicle and tilt and turn it for ten seconds.
 
     The signs of the speeds alternate along the command. The thesis' quadrotor tilts by 2 degrees

@@ -21,20 +21,20 @@ _COMMON = "0.55"  # colour of a link that belongs to several chains
 
 def draw_chains(chains: Sequence[Chain]) -> bytes:
     """Draw what each link of the chains of one drag costs."""
-    groups = _bars(chains)
+    groups = _list_bars(chains)
     bars = sum(len(group) for group in groups.values())
     height = 0.9 + 0.19 * (bars + len(groups))
     figure = make_figure(f"What each change moves, drag: {chains[0].drag}", 9, height, _DPI)
     axes = figure.add_axes((0.36, 0.55 / height, 0.61, 1 - 1.0 / height))
     dress(axes)
     largest = [link.max for group in groups.values() for _, link in group]
-    low, high = _range(largest)
+    low, high = _find_range(largest)
     ticks, top = [], 0
     named: Dict[str, Any] = {}
     for group in groups.values():
         for row, (whose, link) in enumerate(group, start=top):
             shown = max(link.max, low)
-            colour = _colour(whose, chains)
+            colour = _choose_colour(whose, chains)
             (bar,) = axes.barh(row, shown - low, 0.85, left=low, color=colour)
             axes.text(shown, row, f" {size(link.max)} m", va="center", fontsize="small")
             named.setdefault(whose, bar)
@@ -61,7 +61,7 @@ def draw_chains(chains: Sequence[Chain]) -> bytes:
     return png(figure)
 
 
-def _bars(chains: Sequence[Chain]) -> Dict[str, List[Tuple[str, Link]]]:
+def _list_bars(chains: Sequence[Chain]) -> Dict[str, List[Tuple[str, Link]]]:
     """Links by what they change, each with whose it is: one slow-down's, or all chains'."""
     owners: Dict[Tuple[Any, Any], List[Chain]] = {}
     for chain in chains:
@@ -78,14 +78,14 @@ def _bars(chains: Sequence[Chain]) -> Dict[str, List[Tuple[str, Link]]]:
     return groups
 
 
-def _range(values: Sequence[float]) -> Tuple[float, float]:
+def _find_range(values: Sequence[float]) -> Tuple[float, float]:
     """Find the ends of a logarithmic axis for bars, with room for their labels."""
     low = max(min(values), _NO_DISTANCE) / 3
     span = max(np.log10(max(values) / low), 1.0)
     return low, low * 10 ** (1.2 * span)
 
 
-def _colour(name: str, chains: Sequence[Chain]) -> str:
+def _choose_colour(name: str, chains: Sequence[Chain]) -> str:
     names = [f"sim_slow {chain.sim_slow:g}" for chain in chains]
     return PALETTE[names.index(name) % len(PALETTE)] if name in names else _COMMON
 

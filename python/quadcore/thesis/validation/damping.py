@@ -33,7 +33,7 @@ class Damping(NamedTuple):
     """1/s, by engine; without those that cannot fly so."""
 
 
-def measure(
+def measure_damping(
     experiment: Experiment,
     engines: Sequence[str],
     sim_slow: float,
@@ -50,13 +50,15 @@ def measure(
     measured = {}
     for engine in engines:
         try:
-            measured[engine] = _decay(_falling(experiment, case._replace(plant=engine)), *window)
+            measured[engine] = _measure_decay(
+                _fall(experiment, case._replace(plant=engine)), *window
+            )
         except QuadcoreError:  # the rows of its flights say why
             continue
-    return Damping(sim_slow, _formula(_falling(experiment, case)), measured)
+    return Damping(sim_slow, _compute_decay(_fall(experiment, case)), measured)
 
 
-def _falling(experiment: Experiment, case: Case) -> Simulation:
+def _fall(experiment: Experiment, case: Case) -> Simulation:
     coefficients = ("rotorThrustCoeff", "rotorTorqueCoeff")
     no_air = {f"{experiment.air}.{coefficient}": 0 for coefficient in coefficients}
     simulation = experiment.flight(case, no_air).simulation()
@@ -67,14 +69,14 @@ def _falling(experiment: Experiment, case: Case) -> Simulation:
     return simulation
 
 
-def _decay(simulation: Simulation, begin: float, end: float) -> float:
+def _measure_decay(simulation: Simulation, begin: float, end: float) -> float:
     log = simulation.run(end)
     first = int(np.searchsorted(log.time, begin - 1e-9))
     tilting = np.linalg.norm(log.angular_velocity[[first, -1], :2], axis=1)
     return float(np.log(tilting[0] / tilting[1]) / (log.time[-1] - log.time[first]))
 
 
-def _formula(simulation: Simulation) -> float:
+def _compute_decay(simulation: Simulation) -> float:
     flatness = []
     for link, joint in zip(simulation.model.links[1:], simulation.model.joints):
         axial = joint.axis @ link.inertia @ joint.axis

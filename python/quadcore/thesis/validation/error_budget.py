@@ -49,7 +49,7 @@ ENGINES = {
 }
 
 
-def stages(drag: str, sim_slow: float, plant: str) -> Dict[Case, str]:
+def list_stages(drag: str, sim_slow: float, plant: str) -> Dict[Case, str]:
     """Flights of a chain, from the plant to the model, each with what changed before it.
 
     The plant's faults are repaired at its own slow-down, and only then is the slow-down undone: at
@@ -65,9 +65,9 @@ def stages(drag: str, sim_slow: float, plant: str) -> Dict[Case, str]:
     return chain
 
 
-def forge(drag: str, sim_slow: float, plant: str, flights: Mapping[Case, Flight]) -> Chain:
+def make_chain(drag: str, sim_slow: float, plant: str, flights: Mapping[Case, Flight]) -> Chain:
     """Split the distance between a plant and the model, once all flights are there."""
-    chain = stages(drag, sim_slow, plant)
+    chain = list_stages(drag, sim_slow, plant)
     for case in chain:
         if flights[case].log is None:
             return Chain(drag, sim_slow, 0.0, 0.0, [], flights[case].failure)

@@ -8,18 +8,23 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tup
 import numpy as np
 
 from ..._core import InputError, QuadcoreError
-from ...simulation.commands import CommandsLike, as_commands
-from ...simulation.flight import check_logged
+from ...simulation.commands import CommandsLike, check_commands
+from ...simulation.flight import check_log_length
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
 from ...simulation.simulation import Simulation
 from ...simulation.state import State
-from ...support.values import SPAWN, Value, text_of
+from ...support.values import SPAWN, Value, format_value
 from ..chapter2 import GYROSTAT, MathematicalModel, Terms, Vehicle
-from ..chapter2.vehicle import air_of, command_order, motor_of, parameters_of
-from .ascent import ascent
+from ..chapter2.vehicle import (
+    find_air_plugin,
+    find_motor_plugin,
+    list_command_order,
+    read_parameters,
+)
+from .ascent import make_ascent
 from .drags import DRAGS
-from .prescribed_speeds import fly_given_speeds, stiff_gain
+from .prescribed_speeds import compute_stiff_gain, fly_prescribed_speeds
 
 MODEL = "model"
 LAG, NO_LAG = "motors that lag", "motors without lag"
@@ -105,16 +110,16 @@ class Experiment:
                 raise InputError(f"{key}: every flight has its own; give a list of sim_slow")
         plan = FlightPlan.of(**asked, engine="eigen", dt=dt, duration=duration, log_every=log_every)
         simulation = plan.simulation()
-        check_logged(duration, simulation.dt, log_every)
+        check_log_length(duration, simulation.dt, log_every)
         vehicle = Vehicle.of(simulation)
         rotors = len(vehicle.arms)
-        table = ascent(vehicle) if commands is None else as_commands(commands, rotors)
+        table = make_ascent(vehicle) if commands is None else check_commands(commands, rotors)
         if table[0, 0] > 0:
             raise InputError(f"commands: the first row is for t = {table[0, 0]:g}; begin at t = 0")
-        air, motor = air_of(simulation).name, motor_of(simulation).name
-        table = at_steps(table, simulation.dt)
+        air, motor = find_air_plugin(simulation).name, find_motor_plugin(simulation).name
+        table = align_to_steps(table, simulation.dt)
         plan = replace(plan, dt=simulation.dt, commands=table)
-        return cls(asked, plan, motor_lag, air, motor, tuple(command_order(simulation)))
+        return cls(asked, plan, motor_lag, air, motor, tuple(list_command_order(simulation)))
 
     @property
     def commands(self) -> np.ndarray:
@@ -144,7 +149,7 @@ class Experiment:
         return replace(
             self.plan,
             engine="eigen" if case.plant == MODEL else case.plant,
-            parameters={key: text_of(value) for key, value in parameters.items()},
+            parameters={key: format_value(value) for key, value in parameters.items()},
             rotor_velocity=tuple(speeds.tolist()),
         )
 
@@ -162,13 +167,13 @@ class Experiment:
             simulation = flight.simulation()
             model = MathematicalModel(Vehicle.of(simulation), terms)
             step = flight.log_every * simulation.dt
-            return model.fly(flight.duration, self.commands, _in_order(simulation), step)
+            return model.fly(flight.duration, self.commands, _order_rotors(simulation), step)
         if case.variant == "given speeds":
             plain = flight.simulation()
             vehicle = Vehicle.of(plain)
-            gain = {f"{self.motor}.kp": stiff_gain(vehicle, plain.dt)}
+            gain = {f"{self.motor}.kp": compute_stiff_gain(vehicle, plain.dt)}
             stiff = self.flight(case, {**gain, f"{self.motor}.maxVelocity": 1e9})
-            return fly_given_speeds(
+            return fly_prescribed_speeds(
                 stiff.simulation(),
                 vehicle,
                 self.commands,
@@ -180,12 +185,12 @@ class Experiment:
 
     def drags(self) -> List[str]:
         """Cases of drag that differ for this vehicle: none, each that acts alone, all."""
-        values = parameters_of(air_of(self.flight(Case("eigen")).simulation()))
+        values = read_parameters(find_air_plugin(self.flight(Case("eigen")).simulation()))
         acting = [d for d, tags in DRAGS.items() if any(float(values[tag]) for tag in tags)]
         return ["none", *acting, "all"]
 
 
-def at_steps(commands: np.ndarray, dt: float) -> np.ndarray:
+def align_to_steps(commands: np.ndarray, dt: float) -> np.ndarray:
     """Move each row to the step that would be the first to feel it; of several, the last counts."""
     steps = np.ceil((commands[:, 0] - 1e-9) / dt)
     steps[steps < 0] = 0
@@ -194,8 +199,8 @@ def at_steps(commands: np.ndarray, dt: float) -> np.ndarray:
     return table
 
 
-def _in_order(simulation: Simulation) -> State:
+def _order_rotors(simulation: Simulation) -> State:
     """Present state, rotors in the order of a command."""
     state = simulation.state.copy()
-    state.rotor_velocity = state.rotor_velocity[command_order(simulation)]
+    state.rotor_velocity = state.rotor_velocity[list_command_order(simulation)]
     return state

@@ -10,7 +10,7 @@ from ...report.colours import PALETTE
 from ...report.plots import make_figure, png, subplots, widen
 from .cause_plots import draw_chains, draw_damping
 from .experiment import MODEL, Case
-from .states import states
+from .states import extract_states
 from .study import Study
 from .thesis_figures import KINDS, thesis_figures
 
@@ -30,7 +30,7 @@ class Curves(NamedTuple):
     plants: Dict[Tuple[str, float], np.ndarray]
 
 
-def curves(study: Study, drag: str) -> Curves:
+def collect_curves(study: Study, drag: str) -> Curves:
     """Collect the flights of one drag; those that failed are not among them.
 
     Raises
@@ -44,8 +44,8 @@ def curves(study: Study, drag: str) -> Curves:
         if flight.log is not None and case.drag == drag and not case.variant
     }
     model = flown.pop((MODEL, 1.0))
-    plants = {key: states(log) for key, log in flown.items() if key[1] in study.sim_slow}
-    return Curves(drag, study.engines, study.sim_slow, model.time, states(model), plants)
+    plants = {key: extract_states(log) for key, log in flown.items() if key[1] in study.sim_slow}
+    return Curves(drag, study.engines, study.sim_slow, model.time, extract_states(model), plants)
 
 
 def draw(what: Curves, kind: str) -> bytes:
@@ -55,7 +55,7 @@ def draw(what: Curves, kind: str) -> bytes:
     numbers = thesis_figures(what.drag, kind, what.sim_slow)
     if numbers:
         title += f" (thesis: {numbers})"
-    figure, panels = _panels(title, 3, len(what.engines), "none" if error else "row")
+    figure, panels = _make_panels(title, 3, len(what.engines), "none" if error else "row")
     for engine, column in zip(what.engines, panels.T):
         column[0].set_title(engine, fontsize="medium")
         for i, (n, colour) in enumerate(zip(what.sim_slow, _cycle(what.sim_slow))):
@@ -77,7 +77,7 @@ def draw(what: Curves, kind: str) -> bytes:
         axes.set_ylabel(label)
     for axes in panels[-1]:
         axes.set_xlabel("time (s)")
-    _legend(figure, panels.flat)
+    _add_legend(figure, panels.flat)
     return png(figure)
 
 
@@ -85,7 +85,7 @@ def draw_commands(commands: np.ndarray, duration: float) -> bytes:
     """Draw the input."""
     n = commands.shape[1] - 1
     title = "Input: magnitude of the rotors' speeds (rad/s)"
-    figure, panels = _panels(title, n, 1, "all", each=0.8, width=9, above=0.4)
+    figure, panels = _make_panels(title, n, 1, "all", each=0.8, width=9, above=0.4)
     time = np.append(commands[:, 0], duration)
     for i, (axes, speeds) in enumerate(zip(panels[:, 0], np.abs(commands[:, 1:]).T), 1):
         axes.step(time, np.append(speeds, speeds[-1]), where="post", color="black", linewidth=1.2)
@@ -95,7 +95,7 @@ def draw_commands(commands: np.ndarray, duration: float) -> bytes:
     return png(figure)
 
 
-def pictures(study: Study) -> Dict[str, Tuple[Callable[..., bytes], Tuple[Any, ...]]]:
+def list_figures(study: Study) -> Dict[str, Tuple[Callable[..., bytes], Tuple[Any, ...]]]:
     """Every picture of a study by name, as a function and what to call it with."""
     result: Dict[str, Tuple[Callable[..., bytes], Tuple[Any, ...]]] = {
         "commands": (draw_commands, (study.experiment.commands, study.experiment.plan.duration)),
@@ -108,11 +108,13 @@ def pictures(study: Study) -> Dict[str, Tuple[Callable[..., bytes], Tuple[Any, .
             continue
         if any(chain.links for chain in chains):
             result[f"chain_{drag}"] = (draw_chains, (chains,))
-        result.update((f"{kind}_{drag}", (draw, (curves(study, drag), kind))) for kind in KINDS)
+        result.update(
+            (f"{kind}_{drag}", (draw, (collect_curves(study, drag), kind))) for kind in KINDS
+        )
     return result
 
 
-def _panels(
+def _make_panels(
     title: str,
     rows: int,
     columns: int,
@@ -141,7 +143,7 @@ def _panels(
     return figure, panels
 
 
-def _legend(figure: Any, panels: Any) -> None:
+def _add_legend(figure: Any, panels: Any) -> None:
     named: Dict[str, Any] = {}
     for axes in panels:
         for handle, label in zip(*axes.get_legend_handles_labels()):

@@ -33,10 +33,10 @@ def write_tables(study: Study, directory: Path) -> List[Path]:
         A file cannot be written.
     """
     files = {
-        "commands.csv": make_csv(_commands(study)),
-        "errors.csv": make_csv(_errors(study.rows)),
-        "chains.csv": make_csv(_chains(study.chains)),
-        "validation.json": make_json(as_json(study)),
+        "commands.csv": make_csv(_list_commands(study)),
+        "errors.csv": make_csv(_list_errors(study.rows)),
+        "chains.csv": make_csv(_list_chains(study.chains)),
+        "validation.json": make_json(to_json(study)),
     }
     for old in directory.glob("*.png"):
         if PICTURE.fullmatch(old.name):
@@ -47,7 +47,7 @@ def write_tables(study: Study, directory: Path) -> List[Path]:
     return save_files(directory, files)
 
 
-def write_picture(name: str, picture: bytes, directory: Path) -> None:
+def write_figure(name: str, picture: bytes, directory: Path) -> None:
     """Write one of `figures.pictures`.
 
     Raises
@@ -88,7 +88,7 @@ def write_report(study: Study, pictures: Mapping[str, bytes], directory: Path) -
     return page
 
 
-def as_json(study: Study) -> Dict[str, Any]:
+def to_json(study: Study) -> Dict[str, Any]:
     """All numbers of a study as plain lists and dictionaries; angles in rad."""
     experiment = study.experiment
     asked = dict(experiment.asked)
@@ -103,13 +103,13 @@ def as_json(study: Study) -> Dict[str, Any]:
     return {
         "experiment": shared,
         "commands": experiment.commands.tolist(),
-        "errors": [_row(row) for row in study.rows],
+        "errors": [_format_row(row) for row in study.rows],
         "chains": [
-            {**chain._asdict(), "links": [_link(link) for link in chain.links]}
+            {**chain._asdict(), "links": [_format_link(link) for link in chain.links]}
             for chain in study.chains
         ],
-        "left_out": [_row(row) for row in study.left_out],
-        "slowed": [_row(row) for row in study.slowed],
+        "left_out": [_format_row(row) for row in study.left_out],
+        "slowed": [_format_row(row) for row in study.slowed],
         "damping": [entry._asdict() for entry in study.damping],
         "thesis_figures": {
             f"{kind}_{drag}": thesis_figures(drag, kind, study.sim_slow)
@@ -126,23 +126,23 @@ def size(value: float) -> str:
     return f"{value:#.3g}".rstrip(".") if abs(value) >= 1e-3 else f"{value:.0e}"
 
 
-def _row(row: Row) -> Dict[str, Any]:
+def _format_row(row: Row) -> Dict[str, Any]:
     result = {**row.case._asdict(), "steepest": row.steepest, "failure": row.failure}
     if row.difference is not None:
         result.update({kind: getattr(row.difference, kind) for kind in _TOLD})
     return result
 
 
-def _link(link: Any) -> Dict[str, Any]:
+def _format_link(link: Any) -> Dict[str, Any]:
     return {**link._asdict(), "begin": link.begin._asdict(), "end": link.end._asdict()}
 
 
-def _commands(study: Study) -> Iterable[Sequence[Any]]:
+def _list_commands(study: Study) -> Iterable[Sequence[Any]]:
     rows = study.experiment.commands.tolist()
     return [["t", *(f"w{i}" for i in range(1, len(rows[0])))], *rows]
 
 
-def _errors(rows: Sequence[Row]) -> Iterable[Sequence[Any]]:
+def _list_errors(rows: Sequence[Row]) -> Iterable[Sequence[Any]]:
     kinds = [f"{kind}_{name}" for kind in ("max", "rms") for name in _SIZES]
     yield ["engine", "sim_slow", "drag", "steepest", *kinds, "failure"]
     for row in rows:
@@ -153,7 +153,7 @@ def _errors(rows: Sequence[Row]) -> Iterable[Sequence[Any]]:
         yield [*row.case[:3], row.steepest, *sizes, row.failure]
 
 
-def _chains(chains: Sequence[Chain]) -> Iterable[Sequence[Any]]:
+def _list_chains(chains: Sequence[Chain]) -> Iterable[Sequence[Any]]:
     yield ["drag", "sim_slow", "change", "share", "max", "rms", "failure"]
     for chain in chains:
         for link in chain.links:

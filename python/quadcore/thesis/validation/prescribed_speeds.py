@@ -12,18 +12,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...simulation.flight import Pilot, Rows, columns_of, fly, steps_within
+from ...simulation.flight import Pilot, Rows, count_steps, fly, list_columns
 from ...simulation.log import Log
 from ...simulation.simulation import Simulation
 from ..chapter2 import Vehicle
-from ..chapter2.vehicle import command_order
+from ..chapter2.vehicle import list_command_order
 
 # The rate of a stiff motor times the step; Runge-Kutta is stable below 2.78.
 STIFFNESS = 2.0
 
 
-def stiff_gain(vehicle: Vehicle, dt: float) -> float:
-    """Proportional gain for the simulation that `fly_given_speeds` is given, N m s/rad."""
+def compute_stiff_gain(vehicle: Vehicle, dt: float) -> float:
+    """Proportional gain for the simulation that `fly_prescribed_speeds` is given, N m s/rad."""
     return float(STIFFNESS * vehicle.rotor_inertia.min() / dt)
 
 
@@ -59,7 +59,7 @@ def speeds(vehicle: Vehicle, commands: np.ndarray, times: np.ndarray, lag: bool)
     return omega
 
 
-class GivenSpeeds(Pilot):
+class PrescribedSpeeds(Pilot):
     """The pilot (see `flight.fly`) that puts the rotors to the speeds of `vehicle`'s motors.
 
     Parameters
@@ -77,14 +77,14 @@ class GivenSpeeds(Pilot):
         self, vehicle: Vehicle, commands: np.ndarray, lag: bool, duration: float, dt: float
     ) -> None:
         self.rate = 1 / dt
-        middles = dt * (np.arange(steps_within(duration, dt)) + 0.5)
+        middles = dt * (np.arange(count_steps(duration, dt)) + 0.5)
         self._omega = speeds(vehicle, commands, middles, lag)
         # What a stiff motor must be asked for to hold a speed against friction.
-        self._asked = self._omega * (1 + vehicle.joint_damping / stiff_gain(vehicle, dt))
+        self._asked = self._omega * (1 + vehicle.joint_damping / compute_stiff_gain(vehicle, dt))
 
     def reset(self, simulation: Simulation) -> None:
         """Begin with the rotors as they turn."""
-        self._order = command_order(simulation)
+        self._order = list_command_order(simulation)
         before = np.vstack([simulation.state.rotor_velocity[self._order], self._omega[:-1]])
         self._steps = zip(self._asked, self._omega - before)
 
@@ -99,7 +99,7 @@ class GivenSpeeds(Pilot):
         return now
 
 
-def fly_given_speeds(
+def fly_prescribed_speeds(
     simulation: Simulation,
     vehicle: Vehicle,
     commands: np.ndarray,
@@ -112,9 +112,9 @@ def fly_given_speeds(
     Parameters
     ----------
     simulation : Simulation
-        Engine ``eigen``, at rest, its motors of `stiff_gain`, sim_slow 1.
+        Engine ``eigen``, at rest, its motors of `compute_stiff_gain`, sim_slow 1.
     """
-    pilot = GivenSpeeds(vehicle, commands, lag, duration, simulation.dt)
-    rows = Rows(simulation, columns_of(simulation))
+    pilot = PrescribedSpeeds(vehicle, commands, lag, duration, simulation.dt)
+    rows = Rows(simulation, list_columns(simulation))
     fly(simulation, duration, None, log_every, rows.receive, pilot=pilot)
     return rows.log()

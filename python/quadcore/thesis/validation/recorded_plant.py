@@ -12,7 +12,7 @@ from typing import Callable, Iterator, NamedTuple, Optional, Sequence, Union
 import numpy as np
 
 from ..._core import FlightError, InputError
-from ...simulation.commands import as_commands
+from ...simulation.commands import check_commands
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
 from ...simulation.state import State
@@ -23,14 +23,14 @@ from ...studies.flight_differences import (
     list_states,
     summarise_differences,
 )
-from ...support.output_files import text_bytes
+from ...support.output_files import encode_text
 from ..chapter2 import GYROSTAT, MathematicalModel, Terms, Vehicle
-from ..chapter2.vehicle import command_order
+from ..chapter2.vehicle import list_command_order
 
 MODELS = {"chapter 2": Terms(), "chapter 2, as a gyrostat": GYROSTAT}
 
 
-class Judged(NamedTuple):
+class Replay(NamedTuple):
     """How far a recording is from one flight that begins as it does and is commanded alike."""
 
     plant: str
@@ -41,12 +41,12 @@ class Judged(NamedTuple):
     """Why there is none."""
 
 
-def judge(
+def replay(
     plan: FlightPlan,
     recording: Union[str, Path],
     commands: Union[str, Path, np.ndarray, None],
     engines: Sequence[str],
-) -> Iterator[Judged]:
+) -> Iterator[Replay]:
     """Fly what was recorded once more, by the mathematical model and by engines.
 
     Parameters
@@ -69,28 +69,28 @@ def judge(
     vehicle = replace(plan, engine="eigen").simulation()
     if len(log) < 2:
         raise InputError(f"{recording}: has one row; record a flight")
-    table = _commands(recording, commands, vehicle.rotor_count)
+    table = _read_commands(recording, commands, vehicle.rotor_count)
     if table[0, 0] > log.time[0] + 1e-9:
         raise InputError(
             f"{recording}: begins at t = {log.time[0]:g}, the commands at {table[0, 0]:g}; give "
             "those from its begin on"
         )
     duration = float(log.time[-1] - log.time[0])
-    start = _state(log, vehicle.state.copy())
-    order = command_order(vehicle)
+    start = _read_state(log, vehicle.state.copy())
+    order = list_command_order(vehicle)
     in_order = start.copy()
     in_order.rotor_velocity = start.rotor_velocity[order]
     due = table[np.searchsorted(table[:, 0], log.time[0] + 1e-9, side="right") - 1 :]
     for name, terms in MODELS.items():
         model = MathematicalModel(Vehicle.of(vehicle), terms)
-        yield _judged(name, log, partial(model.fly, duration, due, in_order, vehicle.dt))
+        yield _replay(name, log, partial(model.fly, duration, due, in_order, vehicle.dt))
     for engine in engines:
         simulation = replace(plan, engine=engine).simulation()
         simulation.set_state(start)
-        yield _judged(engine, log, partial(simulation.run, duration, table))
+        yield _replay(engine, log, partial(simulation.run, duration, table))
 
 
-def _commands(
+def _read_commands(
     recording: Union[str, Path], commands: Union[str, Path, np.ndarray, None], rotors: int
 ) -> np.ndarray:
     if commands is None:
@@ -99,10 +99,10 @@ def _commands(
         if Path(recording).suffix.lower() != ".bag":
             raise InputError(f"{recording}: has no topic vel_cmd; give the --commands that flew")
         commands = recording
-    return as_commands(commands, rotors)
+    return check_commands(commands, rotors)
 
 
-def _state(log: Log, state: State) -> State:
+def _read_state(log: Log, state: State) -> State:
     """Give the first of a recording; angles of the rotors are not recorded, and act on nothing."""
     rotors = log.rotor_velocity.shape[1]
     if rotors != len(state.rotor_velocity):
@@ -118,18 +118,18 @@ def _state(log: Log, state: State) -> State:
     return state
 
 
-def _judged(name: str, log: Log, fly: Callable[[], Log]) -> Judged:
+def _replay(name: str, log: Log, fly: Callable[[], Log]) -> Replay:
     try:
         flown = fly()
     except FlightError as error:
-        return Judged(name, None, str(error))
+        return Replay(name, None, str(error))
     apart = compute_differences(flown, log)
-    return Judged(
+    return Replay(
         name, summarise_differences(apart, list(list_states(log.rotor_velocity.shape[1]))), ""
     )
 
 
-def table_of(rows: Sequence[Judged], rotors: int) -> bytes:
+def write_table(rows: Sequence[Replay], rotors: int) -> bytes:
     """Write all differences as CSV: plant, state, unit, largest, rms, final, failure."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
@@ -141,4 +141,4 @@ def table_of(rows: Sequence[Judged], rotors: int) -> bytes:
         for state, unit in list_states(rotors).items():
             parts = (row.difference.max, row.difference.rms, row.difference.final)
             writer.writerow([row.plant, state, unit, *(repr(part[state]) for part in parts), ""])
-    return text_bytes(stream.getvalue())
+    return encode_text(stream.getvalue())

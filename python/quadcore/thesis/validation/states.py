@@ -6,28 +6,28 @@ import numpy as np
 
 from ...simulation.log import Log
 from ...studies.flight_differences import DifferenceSizes, summarise_differences
-from ...support.rotation import roll_pitch_yaw
+from ...support.rotation import to_roll_pitch_yaw
 from ..chapter2.kinematics import euler_rates_to_body
 
 # xi, eta and their rates, as chapter 6 plots them: m, rad, m/s, rad/s.
 STATES = ("x", "y", "z", "phi", "theta", "psi", "vx", "vy", "vz", "phidot", "thetadot", "psidot")
 
 
-def states(log: Log) -> np.ndarray:
+def extract_states(log: Log) -> np.ndarray:
     """Position and Euler angles of the frame link, and their rates; (rows, 12) as STATES."""
-    eta = np.unwrap(roll_pitch_yaw(log.orientation), axis=0)
+    eta = np.unwrap(to_roll_pitch_yaw(log.orientation), axis=0)
     W = np.array([euler_rates_to_body(row) for row in eta])
     etadot = np.linalg.solve(W, log.angular_velocity[..., None])[..., 0]
     return np.hstack([log.position, eta, log.linear_velocity, etadot])
 
 
-def compare(log: Log, reference: Log) -> DifferenceSizes:
+def compare_states(log: Log, reference: Log) -> DifferenceSizes:
     """Compare two flights that were logged at the same times: by state, and "distance", m."""
-    apart = states(log) - states(reference)
+    apart = extract_states(log) - extract_states(reference)
     distance = np.linalg.norm(apart[:, :3], axis=1, keepdims=True)
     return summarise_differences(np.hstack([apart, distance]), (*STATES, "distance"))
 
 
 def steepest(log: Log) -> float:
     """Largest roll or pitch of a flight, rad."""
-    return float(np.abs(states(log)[:, 3:5]).max())
+    return float(np.abs(extract_states(log)[:, 3:5]).max())

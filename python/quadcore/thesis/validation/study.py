@@ -8,10 +8,10 @@ from ..._core import InputError, QuadcoreError
 from ...studies.executor import run_contained
 from ...studies.flight_differences import DifferenceSizes
 from ...studies.table import NOT_FLOWN
-from .damping import Damping, measure
-from .error_budget import ORDER, Chain, forge, stages
+from .damping import Damping, measure_damping
+from .error_budget import ORDER, Chain, list_stages, make_chain
 from .experiment import LAG, MODEL, NO_LAG, TERMS, Case, Experiment, Flight
-from .states import compare, steepest
+from .states import compare_states, steepest
 from .thesis_figures import SIM_SLOW
 
 
@@ -27,7 +27,7 @@ class Row(NamedTuple):
 
 
 class Study(NamedTuple):
-    """What `conduct` found."""
+    """What `run_study` found."""
 
     experiment: Experiment
     engines: List[str]
@@ -44,7 +44,7 @@ class Study(NamedTuple):
     damping: List[Damping]
 
 
-def conduct(
+def run_study(
     experiment: Experiment,
     engines: Sequence[str] = ORDER,
     sim_slow: Optional[Sequence[float]] = None,
@@ -82,7 +82,7 @@ def conduct(
     asked = [Case(e, n, drag) for e in engines for n in sim_slow for drag in drags]
     own = LAG if experiment.motor_lag else NO_LAG
     terms = [Case(MODEL, 1.0, drags[-1], name) for name in TERMS if name != own]
-    chains = [stages(drag, n, engines[0]) for drag in drags for n in sim_slow]
+    chains = [list_stages(drag, n, engines[0]) for drag in drags for n in sim_slow]
     cases = dict.fromkeys([*(case for chain in chains for case in chain), *asked, *terms])
     flights = {case: Flight(case, None, NOT_FLOWN) for case in cases}
     damping: List[Damping] = []
@@ -94,11 +94,11 @@ def conduct(
             sim_slow,
             drags,
             flights,
-            [_row(flights[case], flights[Case(MODEL, 1.0, case.drag)]) for case in asked],
-            [forge(drag, n, engines[0], flights) for drag in drags for n in sim_slow],
-            [_row(flights[case], flights[Case(MODEL, 1.0, drags[-1])]) for case in terms],
+            [_compare_row(flights[case], flights[Case(MODEL, 1.0, case.drag)]) for case in asked],
+            [make_chain(drag, n, engines[0], flights) for drag in drags for n in sim_slow],
+            [_compare_row(flights[case], flights[Case(MODEL, 1.0, drags[-1])]) for case in terms],
             [
-                _row(flights[Case("eigen", n, drag)], flights[Case("eigen", 1.0, drag)])
+                _compare_row(flights[Case("eigen", n, drag)], flights[Case("eigen", 1.0, drag)])
                 for n in sim_slow
                 for drag in drags
                 if n != 1
@@ -108,7 +108,7 @@ def conduct(
 
     try:
         _fly(experiment, flights, processes, progress)
-        damping.extend(measure(experiment, engines, n) for n in sim_slow)
+        damping.extend(measure_damping(experiment, engines, n) for n in sim_slow)
     except KeyboardInterrupt as stop:
         stop.study = study()  # type: ignore[attr-defined]
         raise
@@ -133,8 +133,8 @@ def _fly(
     run_contained(experiment.fly, cases, take, processes, progress=progress)
 
 
-def _row(flight: Flight, reference: Flight) -> Row:
+def _compare_row(flight: Flight, reference: Flight) -> Row:
     if flight.log is None or reference.log is None:
         failure = flight.failure or f"{reference.case.plant}: {reference.failure}"
         return Row(flight.case, None, 0.0, failure)
-    return Row(flight.case, compare(flight.log, reference.log), steepest(flight.log), "")
+    return Row(flight.case, compare_states(flight.log, reference.log), steepest(flight.log), "")

@@ -10,7 +10,7 @@ import numpy as np
 SIM_SLOW = (1.0, 8.0, 10.0, 18.0)
 
 
-class Kind(NamedTuple):
+class FigureKind(NamedTuple):
     """One of the five figures that chapter 6.1 shows for each drag."""
 
     title: str
@@ -30,12 +30,12 @@ _ERRORS = ("$e_x$ (m)", "$e_y$ (m)", "$e_z$ (m)")
 _DEGREES = float(np.degrees(1))
 
 # In the order of the thesis.
-KINDS: Mapping[str, Kind] = {
-    "position": Kind("Position", slice(0, 3), ("x (m)", "y (m)", "z (m)"), 1, False, 1e-3),
-    "error": Kind("Distance from the model", slice(0, 3), _ERRORS, 1, True, 1e-8),
-    "attitude": Kind("Attitude", slice(3, 6), _ANGLES, _DEGREES, False, 1e-3),
-    "velocity": Kind("Velocity", slice(6, 9), _SPEEDS, 1, False, 1e-3),
-    "rates": Kind("Rates of the attitude", slice(9, 12), _RATES, _DEGREES, False, 1e-3),
+KINDS: Mapping[str, FigureKind] = {
+    "position": FigureKind("Position", slice(0, 3), ("x (m)", "y (m)", "z (m)"), 1, False, 1e-3),
+    "error": FigureKind("Distance from the model", slice(0, 3), _ERRORS, 1, True, 1e-8),
+    "attitude": FigureKind("Attitude", slice(3, 6), _ANGLES, _DEGREES, False, 1e-3),
+    "velocity": FigureKind("Velocity", slice(6, 9), _SPEEDS, 1, False, 1e-3),
+    "rates": FigureKind("Rates of the attitude", slice(9, 12), _RATES, _DEGREES, False, 1e-3),
 }
 # Five figures for each, from 6.1 on. At which slow-down the drags act alone is not said.
 _ALONE = ("profile", "parasitic", "translational", "induced")
