@@ -1,5 +1,5 @@
-# Leaves those symbols in a shared library's table that match a pattern. Hidden visibility alone would
-# leave the templates of the standard library beside them.
+# Exports only the symbols of a shared library that match a pattern. Hidden visibility alone would also
+# export templates of the standard library.
 function(export_only target)
   string(JOIN "; " symbols ${ARGN})
   set(map ${CMAKE_CURRENT_BINARY_DIR}/${target}.map)

@@ -1,7 +1,7 @@
-# quadcore_compile_lanes(TARGET SOURCE [INCLUDE FOLDER...] [OPTIONS OPTION...]) adds SOURCE to TARGET
-# once for each width of lanes, compiled with the options. Each time it defines QUADCORE_LANES and uses
-# the instructions of the processors with registers of that width; lane_width.hpp chooses one.
-# SOURCE includes only what may be compiled so: see cpp/physics/lanes/pack.hpp.
+# quadcore_compile_lanes(TARGET SOURCE [INCLUDE FOLDER...] [OPTIONS OPTION...]) compiles SOURCE with the
+# options once for each lane width and adds the objects to TARGET. Each time it defines QUADCORE_LANES
+# and uses the instructions of processors with registers of that width; lane_width.hpp selects one.
+# SOURCE may include only headers that allow this: see cpp/physics/lanes/pack.hpp.
 function(quadcore_compile_lanes target source)
   cmake_parse_arguments(PARSE_ARGV 2 given "" "" "INCLUDE;OPTIONS")
   get_filename_component(name ${source} NAME_WE)
@@ -12,9 +12,9 @@ function(quadcore_compile_lanes target source)
     target_link_libraries(${object} PRIVATE quadcore_physics)
     target_include_directories(${object} PRIVATE ${given_INCLUDE})
     target_compile_definitions(${object} PRIVATE QUADCORE_LANES=${lanes})
-    # Vectors never cross a function that is not inlined, so how they would be passed is of no concern.
-    # What the compiler would vectorise by itself are vectors of three, written as scalars just before:
-    # reading them back at once stalls.
+    # All functions with vectors are inlined, so their calling convention does not matter. Automatic
+    # vectorisation would affect only three-vectors that have just been written as scalars, and reading
+    # them back at once stalls.
     target_compile_options(${object} PRIVATE -O3 -ffp-contract=off -fno-math-errno
                                              -fno-trapping-math
                                              -fno-tree-vectorize
@@ -31,7 +31,7 @@ function(quadcore_compile_lanes target source)
       endif()
     endif()
     quadcore_list_objects(objects ${object})
-    if(type STREQUAL OBJECT_LIBRARY)  # which cannot hand on the objects of another
+    if(type STREQUAL OBJECT_LIBRARY)  # which cannot pass on the objects of another
       set_property(GLOBAL APPEND PROPERTY quadcore_objects ${objects})
     else()
       target_sources(${target} PRIVATE ${objects})

@@ -86,12 +86,12 @@ def _sentence(text: str) -> str:
 
 def write_ignored_section() -> str:
     """Tabulate ignored elements and modules."""
-    everything = _core.everything_unfelt()
+    everything = _core.list_harmless_elements()
     elements = ((f"`<{u.name}>`", f"`<{u.parent}>`", u.what) for u in everything if u.parent)
     modules: dict[str, list[str]] = {}
-    for unfelt in everything:
-        if not unfelt.parent:
-            modules.setdefault(unfelt.what, []).append(f"`{unfelt.name}`")
+    for element in everything:
+        if not element.parent:
+            modules.setdefault(element.what, []).append(f"`{element.name}`")
     return (
         "\n## Seen or sensed\n\n"
         "quadcore ignores elements without effect on the motion, with one warning that lists\n"
@@ -108,9 +108,9 @@ def write_reference_section() -> str:
     felt = (
         (f"`{tag.name}`", tag.of, tag.unit, tag.default, tag.range, tag.meaning)
         for tag in tags
-        if tag.felt_by
+        if tag.affects
     )
-    unfelt = ((f"`{tag.name}`", tag.of, tag.range, tag.meaning) for tag in tags if not tag.felt_by)
+    unfelt = ((f"`{tag.name}`", tag.of, tag.range, tag.meaning) for tag in tags if not tag.affects)
     return (
         "\n## Tags of `<gazebo reference>`\n\n"
         "These tags have an effect in the engines `gazebo11` and `ode`. The first eight are for\n"

@@ -19,7 +19,7 @@ struct BatchSnapshot::Content {
     std::vector<std::string> warnings;
     std::optional<Snapshot> apart;
   };
-  std::shared_ptr<const void> of;  ///< the batch
+  std::shared_ptr<const void> of;  ///< identity of the batch
   LaneBlocks::Saved lanes;
   std::vector<std::int64_t> steps;
   std::vector<double> commands;
@@ -28,10 +28,10 @@ struct BatchSnapshot::Content {
   std::vector<Vehicle> vehicles;
 };
 
-/// Every call begins in the lanes. A vehicle that meets a bound there goes on as a Simulation,
-/// which knows all that there is to be said, and comes back at the end of the call. One that does
-/// not fit into the lanes is a Simulation always. What each call touches of every vehicle lies
-/// apart from the rest, in arrays.
+/// Every call starts in the lanes. A vehicle that reaches a bound continues as a Simulation, which
+/// handles all cases, and returns to the lanes at the end of the call. A vehicle that is unsuitable
+/// for the lanes is always a Simulation. Data that each call uses for every vehicle is stored in
+/// separate arrays.
 class Batch::Implementation {
  public:
   Implementation(std::vector<BatchVehicle> vehicles, const World& world,
@@ -57,7 +57,9 @@ class Batch::Implementation {
   const std::vector<std::string>& warnings(std::size_t i) const { return members_.at(i).warnings; }
 
   void step(const double* commands, std::int64_t count) {
-    if (count < 0) throw InputError("step count is " + std::to_string(count) + "; give one >= 0");
+    if (count < 0)
+      throw InputError("the step count is " + std::to_string(count) +
+                       ". Give a whole number >= 0.");
     if (commands) {
       common_.check(commands, size());
       std::copy_n(commands, commands_.size(), commands_.begin());
@@ -69,7 +71,7 @@ class Batch::Implementation {
       lanes_->step(block, count, dt(), work, flown);
       for (std::size_t i = first; i < end; ++i) {
         const bool hears =
-            commands && is_apart_[i] && !members_[i].in_lanes;  // even if no step follows
+            commands && is_apart_[i] && !members_[i].in_lanes;  // even without a following step
         if (!failures_[i].empty()) {
           if (hears) members_[i].apart->command(command_of(i), command_width());
           continue;
@@ -101,7 +103,7 @@ class Batch::Implementation {
       states.push_back(batch::taken(rows + i * state_width(), rotors));
       batch::check(states.back(), i);
     }
-    std::unique_ptr<Simulation> alike;  // of the vehicle before
+    std::unique_ptr<Simulation> alike;  // of the previous vehicle
     for (std::size_t i = 0; i < size(); ++i) {
       Member& member = members_[i];
       failures_[i].clear();
@@ -145,7 +147,9 @@ class Batch::Implementation {
 
   void restore(const BatchSnapshot& snapshot) {
     const BatchSnapshot::Content& taken = *snapshot.content;
-    if (taken.of != identity_) throw InputError("snapshot: was taken of another batch");
+    if (taken.of != identity_)
+      throw InputError(
+          "snapshot: it was taken from another batch. Restore a snapshot of this batch.");
     lanes_->restore(taken.lanes);
     steps_ = taken.steps;
     commands_ = taken.commands;
@@ -165,7 +169,7 @@ class Batch::Implementation {
  private:
   const double* command_of(std::size_t i) const { return &commands_[i * command_width()]; }
 
-  /// Calls work(block, first vehicle, behind the last, room to work in) from several threads.
+  /// Call work(block, first vehicle, end of the vehicles, work memory) from several threads.
   template <class Work>
   void for_each_block(const Work& work) const {
     side_by_side(threads_, lanes_->blocks(), [&](std::size_t begin, std::size_t end) {
@@ -214,7 +218,7 @@ class Batch::Implementation {
       simulation.restore(now);
     }
     try {
-      // Of a vehicle that is never in the lanes the simulation remembers, and since when.
+      // For a vehicle that is never in the lanes, the simulation stores the command and its time.
       const bool forgot = member.in_lanes && is_commanded_[i];
       if (told || forgot) simulation.command(command_of(i), command_width());
       simulation.step(steps);
@@ -235,9 +239,9 @@ class Batch::Implementation {
   unsigned threads_;
   std::vector<Member> members_;
   std::vector<std::int64_t> steps_;
-  std::vector<double> commands_;    ///< a row for each
-  std::vector<char> is_commanded_;  ///< whether it was given a row
-  std::vector<char> is_apart_;      ///< whether it has an `apart`
+  std::vector<double> commands_;    ///< a row for each vehicle
+  std::vector<char> is_commanded_;  ///< whether each vehicle has a command
+  std::vector<char> is_apart_;      ///< whether each vehicle has an `apart`
   std::vector<std::string> failures_;
   std::unique_ptr<LaneBlocks> lanes_;
 };

@@ -13,11 +13,11 @@ using laws::Matrix3;
 using laws::Quaternion;
 using laws::Vec3;
 
-/// The numbers of some vehicles of a block, from one of them on.
+/// The numbers of some vehicles of a block, starting at one of them.
 template <class T>
 using Table = laws::Table<T, widest_lanes>;
 
-/// As laws::quaternion_rate().
+/// Like laws::quaternion_rate().
 template <class T>
 QUADCORE_LAW Quaternion<T> quaternion_rate(const Quaternion<T>& q, const Vec3<T>& w_F) {
   const Vec3<T> h = 0.5 * w_F;
@@ -25,7 +25,7 @@ QUADCORE_LAW Quaternion<T> quaternion_rate(const Quaternion<T>& q, const Vec3<T>
           (q.x * h.y + q.w * h.z) - q.y * h.x, -q.x * h.x - (q.y * h.y + q.z * h.z)};
 }
 
-/// The motion of the frames of a pack of vehicles.
+/// Motion of the frames of a pack of vehicles.
 template <class T>
 struct Frames {
   Quaternion<T> q_WF;
@@ -42,7 +42,7 @@ struct Frames {
         v_WCcm_F(inversely(R_WF, v_WCcm_W)) {}
 };
 
-/// The motion of the i-th rotors of a pack of vehicles: see laws/rotor_forces.hpp. `upright` as in
+/// Motion of the i-th rotors of a pack of vehicles, see laws/rotor_forces.hpp. `upright` as in
 /// RotorsOfState.
 template <class T, bool upright>
 struct Rotors {
@@ -97,7 +97,7 @@ struct Rotors {
   }
 };
 
-/// The laws of the i-th rotors of a pack of vehicles, all of which are whole.
+/// Force laws of the i-th rotors of a pack of vehicles, which are all intact.
 template <class T>
 QUADCORE_LAW laws::LawsOfRotors<T> laws_of_rotors(const Laws& laws, const Table<T>& constants,
                                                   std::size_t i) {

@@ -7,7 +7,7 @@
 namespace quadcore::batch {
 namespace {
 
-/// The places of a pack of vehicles.
+/// Offsets of a pack of vehicles.
 struct Places {
   const double *constants, *motors;
   double *state, *stage, *sum, *turns;
@@ -38,7 +38,7 @@ QUADCORE_LAW void turn(const Block& block, const Places& at, const double* state
   }
 }
 
-/// Shares out the rate of a state, whose turns the table holds.
+/// Compute the rate of a state with the rotations in the table.
 template <class T, Stage stage, bool upright>
 QUADCORE_LAW void differentiate(const Block& block, const Places& at, const double* from,
                                 const Share& share) {
@@ -97,7 +97,7 @@ QUADCORE_LAW void normalise(const Block& block, double* state) {
   const T x = laws::load<T>(q), y = laws::load<T>(q + widest_lanes),
           z = laws::load<T>(q + 2 * widest_lanes), w = laws::load<T>(q + 3 * widest_lanes);
   const T square = (x * x + y * y) + (z * z + w * w);
-  T by = 1.5 - 0.5 * square;  // 1/sqrt(s) to the last digit near 1, where steps leave it
+  T by = 1.5 - 0.5 * square;  // equals 1/sqrt(s) within rounding near 1, where s stays in steps
   const auto far = laws::absolute(square - 1) >= 1e-8;
   const auto put = [&](std::size_t i, T component)
                        QUADCORE_INLINED { laws::store(q + i * widest_lanes, component); };
@@ -115,7 +115,7 @@ QUADCORE_LAW void normalise(const Block& block, double* state) {
   }
 }
 
-/// Vehicles of which no plugin has to be asked about the state in which a step begins.
+/// Return the vehicles for which no plugin needs to check the state at the start of a step.
 template <class T>
 QUADCORE_LAW Mask<T> is_quiet(const Block& block, const Table<T>& constants, const Table<T>& state,
                               std::size_t first, double dt) {

@@ -10,7 +10,7 @@ namespace {
 template <class T>
 using Bodies = HingedBodies<T, Lanes::vehicles>;
 
-/// The places of a pack of vehicles, from the first of them on.
+/// Offsets of a pack of vehicles, starting at the first of them.
 template <class T>
 struct Places {
   const double *constants, *motors;
@@ -31,7 +31,7 @@ struct Places {
   }
 };
 
-/// The motion of the i-th rotors: see laws/rotor_forces.hpp.
+/// Motion of the i-th rotors, see laws/rotor_forces.hpp.
 template <class T>
 struct MovingRotor : HingedRotor<T, Lanes::vehicles> {
   QUADCORE_LAW MovingRotor(const Bodies<T>& bodies, const HingedFrame<T>& frame, std::size_t i)
@@ -77,8 +77,8 @@ QUADCORE_LAW void push(const Block& block, const Places<T>& at, Bodies<T>& bodie
   push_frame(bodies, frame, f_F, tau_F + reaction_F);
 }
 
-/// Vehicles of which no plugin has to be asked about the state in which a step begins, and which
-/// are not to come near the ground soon.
+/// Return the vehicles for which no plugin needs to check the state at the start of a step, and
+/// which will not come near the ground soon.
 template <class T>
 QUADCORE_LAW Mask<T> is_quiet(const Block& block, const Bodies<T>& bodies,
                               const HingedFrame<T>& frame, std::size_t first, double dt) {
@@ -89,7 +89,7 @@ QUADCORE_LAW Mask<T> is_quiet(const Block& block, const Bodies<T>& bodies,
     good &= mask<T>(laws::absolute(bodies.joint_rate(i + 1)) < bounds.fastest) | spins;
   }
   if (bounds.reach > 0) {
-    // Earlier than OdeEngine looks closer, so that it has taken a step by itself before.
+    // Leave before OdeEngine checks for contacts, so that it has already taken a step.
     const double g_z = block.gravity_W[2];
     const double time = (steps_beside_contact + 10) * dt,
                  fallen = (10 + (g_z < 0 ? -g_z : g_z)) * time * time;

@@ -18,7 +18,7 @@
 namespace quadcore::batch {
 namespace {
 
-/// Where a vehicle still flies for certain; a Simulation of it says where it does not.
+/// Limits within which a vehicle is certainly not diverged; beyond them, its Simulation decides.
 constexpr double sure_distance = 1e8;                      // m
 constexpr double sure_speed = 1e5;                         // m/s
 constexpr double sure_rate = Simulation::max_rate / 10.0;  // rad/s
@@ -66,7 +66,7 @@ LaneBlocks::LaneBlocks(const std::vector<std::shared_ptr<const LaneVehicle>>& ve
   may_tilt_.resize(places);
   for (std::size_t i = 0; i < places; ++i) {
     const bool is_in = i < vehicles.size() && vehicles[i];
-    const LaneVehicle& vehicle = is_in ? *vehicles[i] : *first;  // an empty place is flown, too
+    const LaneVehicle& vehicle = is_in ? *vehicles[i] : *first;  // unused places are simulated, too
     flies_[i] = -std::int64_t{is_in};
     if (!are_hinged()) {
       column(state_, state_rows(), i)[(StateRow::orientation + 3) * widest_lanes] = 1;
@@ -192,7 +192,7 @@ void LaneBlocks::show(std::size_t block, std::size_t vehicles, double* work, dou
   }
 }
 
-/// As Kinematics::angle(): of the j-th joint of a vehicle whose motion was shown.
+/// Return the angle of the j-th joint of a vehicle with a written motion, like Kinematics::angle().
 double LaneBlocks::hinged_angle(std::size_t vehicle, const double* shown, std::size_t j) const {
   const auto vector = [](const double* from) {
     return Vector3d(from[0], from[widest_lanes], from[2 * widest_lanes]);
@@ -213,7 +213,7 @@ double LaneBlocks::hinged_angle(std::size_t vehicle, const double* shown, std::s
 
 namespace {
 
-/// Calls f(row here, place there) for each number that a state has both here and in the engine.
+/// Call f(row here, place there) for each number that a state has both here and in the engine.
 template <class Function>
 void for_each_number(std::size_t rotors, const Function& f) {
   using There = GyrostatState;
@@ -228,7 +228,7 @@ void for_each_number(std::size_t rotors, const Function& f) {
   }
 }
 
-/// The same of bodies on hinges.
+/// The same for bodies on hinges.
 template <class Function>
 void for_each_hinged_number(std::size_t rotors, const Function& f) {
   for (std::size_t i = 0; i <= rotors; ++i) {
@@ -243,7 +243,7 @@ void for_each_hinged_number(std::size_t rotors, const Function& f) {
   }
 }
 
-/// Writes rotations that belong to the quaternions.
+/// Write the rotations of the quaternions.
 void turn_hinged(std::size_t rotors, double* engine) {
   for (std::size_t i = 0; i <= rotors; ++i) {
     const double* const q = engine + i * (pose_size + velocity_size) + 3;

@@ -9,38 +9,38 @@
 
 namespace quadcore::batch {
 
-/// The vehicles of a batch, eight to a block, as their laws alone move them.
+/// The vehicles of a batch in blocks of eight, moved only by their force laws.
 class LaneBlocks {
  public:
-  /// \param vehicles  of which those that are null are not in the lanes
+  /// \param vehicles  null for vehicles that are not in the lanes
   LaneBlocks(const std::vector<std::shared_ptr<const LaneVehicle>>& vehicles, std::size_t rotors,
              const World& world);
 
   std::size_t blocks() const { return flies_.size() / widest_lanes; }
-  /// Numbers of a vehicle in show().
+  /// Return the number of values of a vehicle in show().
   std::size_t shown_rows() const { return StateRow::count(rotors_); }
-  /// Numbers of the room that steps and show() work in.
+  /// Return the size of the work memory of steps and show().
   std::size_t work_size() const;
 
-  /// Takes a vehicle to a state, in which nothing was commanded or warned of yet.
+  /// Set the state of a vehicle, without commands or warnings so far.
   void begin(std::size_t vehicle, const std::vector<double>& engine_state);
-  /// Sets what the motors of a vehicle follow.
+  /// Set the targets of a vehicle's motors.
   void command(std::size_t vehicle, const double* speeds);
-  /// Whether a vehicle moves in steps of its block.
+  /// Set whether a vehicle moves in the steps of its block.
   void let_fly(std::size_t vehicle, bool flies);
-  /// Lifts the bounds of a vehicle beyond which its plugins have no more to say.
+  /// Remove the bounds of a vehicle beyond which its plugins have already warned.
   void lift_bounds(std::size_t vehicle, const std::vector<Quiet>& quiet);
-  /// \param work   room of its own for each thread
-  /// \param steps  of each vehicle of the block: how many of `count` it has flown
+  /// \param work   separate work memory of each thread
+  /// \param steps  number of completed steps of each vehicle of the block, up to `count`
   void step(std::size_t block, std::int64_t count, double dt, double* work, std::int64_t* steps);
 
-  /// To and from the state that the engine saves, of which the ground's part stays as it is.
+  /// Convert to and from the state that the engine saves, without changing the ground's part.
   void get_engine_state(std::size_t vehicle, std::vector<double>& state) const;
   void set_engine_state(std::size_t vehicle, const std::vector<double>& state);
-  /// As Batch::get_state() has it, the rows of all vehicles of a block that there are.
+  /// Write the rows of Batch::get_state() for all vehicles of a block.
   void show(std::size_t block, std::size_t vehicles, double* work, double* rows);
 
-  /// All that changes.
+  /// All variable data.
   struct Saved {
     LaneNumbers state, motors;
     std::vector<std::int64_t> flies, may_spin, may_tilt;
@@ -77,14 +77,14 @@ class LaneBlocks {
   Laws laws_ = {};
   Bounds bounds_;
   Vector3d gravity_W_;
-  bool constants_differ_;  ///< or all blocks share one
+  bool constants_differ_;  ///< whether the constants differ; otherwise all blocks share one table
   LaneNumbers constants_, motors_, state_;
   std::vector<std::int64_t> flies_, may_spin_, may_tilt_;
-  std::vector<int> places_;  ///< as LaneVehicle has them
+  std::vector<int> places_;  ///< see LaneVehicle
   std::shared_ptr<const HingedModel> hinged_;
-  HingedTree tree_ = {};     ///< of hinged ones
-  bool has_ground_ = false;  ///< and they remember it
-  /// What the engine has saved last of each of these.
+  HingedTree tree_ = {};     ///< tree of hinged vehicles
+  bool has_ground_ = false;  ///< whether hinged vehicles store contacts
+  /// Last saved state of the engine for each hinged vehicle.
   std::vector<std::vector<double>> of_ground_;
   void (*step_)(const Block&, std::int64_t, double) = nullptr;
   void (*show_)(const Block&, double*) = nullptr;

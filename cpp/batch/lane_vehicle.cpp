@@ -48,7 +48,8 @@ void put_gyrostat(const Model& model, const World& world, LaneVehicle& vehicle) 
   }
 }
 
-/// How far shapes reach from the frame's centre of mass [m]; none if rotors throw theirs about.
+/// Return the reach of the shapes from the frame's centre of mass [m], or nothing if rotors have
+/// shapes that are not bodies of revolution.
 std::optional<double> reach_of(const Model& model, const std::vector<Reach>& reaches) {
   double furthest = 0;
   for (const Reach& reach : reaches) {
@@ -64,7 +65,7 @@ std::optional<double> reach_of(const Model& model, const std::vector<Reach>& rea
   return furthest;
 }
 
-/// Whether the vehicle can be put.
+/// Return whether the vehicle is suitable.
 bool put_hinged(const Model& model, const World& world, LaneVehicle& vehicle) {
   const OdeEngine engine(model, world, gazebo11_recipe);
   const HingedModel hinged(engine.bodies());

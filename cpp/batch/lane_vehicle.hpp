@@ -9,21 +9,21 @@
 
 namespace quadcore::batch {
 
-/// What steps of a block take of one vehicle.
+/// Data of one vehicle for the steps of a block.
 struct LaneVehicle {
   Laws laws;
-  double fastest;                             ///< as Bounds, rad/s
-  bool no_tilt;                               ///< as Bounds
-  double reach;                               ///< as Bounds [m]
-  std::vector<double> constants;              ///< rows as ConstantRow has them, or HingedRow
-  std::vector<int> places;                    ///< of each rotor, of its number in the command
+  double fastest;                             ///< see Bounds [rad/s]
+  bool no_tilt;                               ///< see Bounds
+  double reach;                               ///< see Bounds [m]
+  std::vector<double> constants;              ///< rows of ConstantRow or HingedRow
+  std::vector<int> places;                    ///< index of each rotor in the command
   std::shared_ptr<const HingedModel> hinged;  ///< for gazebo11; null for eigen
 };
 
-/// The vehicle of a simulation, if laws that fly in lanes are all that acts on it.
+/// Return the vehicle of a simulation if only force laws for lanes act on it.
 std::optional<LaneVehicle> lane_vehicle(const Simulation& simulation);
 
-/// Whether two may fly in one batch's lanes.
+/// Return whether two vehicles are suitable for the same batch's lanes.
 bool fit(const LaneVehicle& one, const LaneVehicle& other);
 
 }  // namespace quadcore::batch

@@ -4,7 +4,7 @@
 
 namespace quadcore::batch {
 
-/// Where a comparison holds, all bits.
+/// All bits are set where a comparison is true.
 template <class T>
 using Mask = laws::BitsOf<T>;
 
@@ -17,16 +17,16 @@ QUADCORE_LAW Mask<T> mask(const Comparison& comparison) {
   }
 }
 
-/// How a step has left a pack of vehicles.
+/// Result of a step for a pack of vehicles.
 template <class T>
 struct Outcome {
   T distance_squared, speed_squared, rate_squared, joint_rates_squared;
 };
 
-/// Vehicles that a step left where a flight may go on without looking closer.
+/// Return the vehicles that can continue without further checks.
 template <class T>
 QUADCORE_LAW Mask<T> is_sound(const Bounds& bounds, const Outcome<T>& left) {
-  // By the bits, because the compiler may be told that numbers are finite.
+  // Test the bits, because compiler options may assume finite numbers.
   constexpr std::int64_t exponent = 0x7FF0000000000000;
   const T all =
       ((left.distance_squared + left.speed_squared) + left.rate_squared) + left.joint_rates_squared;

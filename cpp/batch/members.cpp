@@ -75,8 +75,8 @@ void Common::check(std::size_t i, Simulation& made) {
   if (i > 0) {
     if (made.rotor_count() == rotors_ && made.command_width() == command_width_) return;
     throw InputError("vehicle " + std::to_string(i) + " has " + std::to_string(made.rotor_count()) +
-                     " rotors, vehicle 0 has " + std::to_string(rotors_) +
-                     "; make a batch of each kind");
+                     " rotors, but vehicle 0 has " + std::to_string(rotors_) +
+                     ". Make a separate batch for each number of rotors.");
   }
   dt_ = made.dt();
   command_width_ = made.command_width();
@@ -95,17 +95,17 @@ void Common::check(const double* commands, std::size_t vehicles) const {
   for (std::size_t k = 0; k < vehicles * command_width_; ++k) {
     if (std::isfinite(commands[k])) continue;
     std::ostringstream what;
-    what << "command of vehicle " << k / command_width_ << ", rotor " << k % command_width_ + 1
-         << " is " << commands[k] << "; give a finite speed in rad/s";
+    what << "the command for rotor " << k % command_width_ + 1 << " of vehicle "
+         << k / command_width_ << " is " << commands[k] << ". Give a finite speed in rad/s.";
     throw InputError(what.str());
   }
 }
 
 Crew make_crew(std::vector<BatchVehicle> vehicles, Common& common) {
-  if (vehicles.empty()) throw InputError("a batch has no vehicle; give it one at least");
+  if (vehicles.empty()) throw InputError("the batch has no vehicle. Give it at least one.");
   Crew crew{std::vector<Member>(vehicles.size()), {}};
   std::shared_ptr<const LaneVehicle> first;
-  std::unique_ptr<Simulation> made;  // of the vehicle before, if that is in the lanes
+  std::unique_ptr<Simulation> made;  // of the previous vehicle, if it is in the lanes
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     Member& member = crew.members[i];
     member.made_of = std::move(vehicles[i]);

@@ -9,28 +9,30 @@
 
 namespace quadcore::batch {
 
-/// A vehicle of a batch, as it is apart from the motion that it shares the lanes for.
+/// A vehicle of a batch, without its motion in the lanes.
 struct Member {
   BatchVehicle made_of;
   bool in_lanes = false;
-  std::vector<double> start;          ///< in the lanes: as the engine saves it
-  std::unique_ptr<Simulation> apart;  ///< in the lanes: as long as it was needed in the last call
+  std::vector<double> start;  ///< in the lanes: initial state as saved by the engine
+  std::unique_ptr<Simulation>
+      apart;  ///< in the lanes: simulation of the last call, if it was needed
   std::vector<std::string> warnings;
   std::size_t warned_at_load = 0;
 
-  /// Adds warnings of the flight; what one in pieces says again is told once.
+  /// Add warnings of the flight, without repetitions.
   void hear(const std::vector<std::string>& said);
 };
 
-/// What all vehicles of a batch have in common.
+/// Common properties of all vehicles of a batch.
 class Common {
  public:
   Common(const World& world, const SimulationOptions& options) : world_(world), options_(options) {}
 
   std::unique_ptr<Simulation> simulate(const BatchVehicle& vehicle) const;
-  /// Takes note of the first vehicle. Throws InputError on one that does not go with it.
+  /// Store the properties of the first vehicle. Throws InputError for another vehicle that does not
+  /// match.
   void check(std::size_t i, Simulation& made);
-  /// Throws InputError on commands of so many vehicles that are not finite, or are a plugin's.
+  /// Throw InputError for commands of so many vehicles that are not finite, or that a plugin gives.
   void check(const double* commands, std::size_t vehicles) const;
 
   const World& world() const { return world_; }
@@ -43,18 +45,18 @@ class Common {
   SimulationOptions options_;
   double dt_ = 0;
   std::size_t command_width_ = 0, rotors_ = 0;
-  std::string refused_;  ///< why there can be no commands; "" if there can
+  std::string refused_;  ///< reason why commands are not possible, or ""
 };
 
 bool are_built_alike(const BatchVehicle& a, const BatchVehicle& b);
 
-/// To and from a row as Batch::get_state() has it.
+/// Convert to and from a row of Batch::get_state().
 void put(const VehicleState& state, double* row);
 VehicleState taken(const double* row, Eigen::Index rotors);
-/// Throws InputError unless a vehicle can be in this state.
+/// Throw InputError for a state that is invalid for a vehicle.
 void check(const VehicleState& state, std::size_t vehicle);
 
-/// Members, and of each its kind in the lanes, null for one that is not in them.
+/// Members, and the lane vehicle of each, null for one that is not in the lanes.
 struct Crew {
   std::vector<Member> members;
   std::vector<std::shared_ptr<const LaneVehicle>> in_lanes;

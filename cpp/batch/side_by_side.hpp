@@ -8,9 +8,9 @@
 
 namespace quadcore {
 
-/// Calls work(begin, end) for parts of 0 ... count, each in a thread of its own, and waits for all.
-/// What the first part of those that threw has thrown is thrown on.
-/// \param threads  at most; 0: one for each processor
+/// Call work(begin, end) for parts of 0 ... count in separate threads and wait for all. Rethrows
+/// the exception of the first part that threw one.
+/// \param threads  maximum number; 0: one for each processor
 template <class Work>
 void side_by_side(unsigned threads, std::size_t count, const Work& work) {
   if (threads == 0) threads = std::max(1U, std::thread::hardware_concurrency());
@@ -29,7 +29,7 @@ void side_by_side(unsigned threads, std::size_t count, const Work& work) {
   try {
     others.reserve(parts - 1);
     for (; begun < parts; ++begun) others.emplace_back(fly, begun);
-  } catch (const std::exception&) {  // no more threads to be had: this one does the rest
+  } catch (const std::exception&) {  // no more threads available: this thread does the rest
   }
   fly(0);
   for (; begun < parts; ++begun) fly(begun);

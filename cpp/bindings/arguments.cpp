@@ -6,12 +6,12 @@ namespace quadcore::bindings {
 namespace {
 
 struct AnyArray : py::array {
-  /// An array of whatever type, or null and Python's exception.
+  /// Return an array of any type, or null with a Python exception.
   static PyObject* of(const py::object& object) { return raw_array(object.ptr()); }
 };
 
 bool is_masked(const py::object& object) {
-  // The usual ones need not look for numpy.ma.
+  // Common types do not require a lookup of numpy.ma.
   const PyTypeObject* const type = Py_TYPE(object.ptr());
   if (type == &PyList_Type || type == py::detail::npy_api::get().PyArray_Type_) return false;
   return py::isinstance(object, py::module_::import("numpy.ma").attr("MaskedArray"));
@@ -31,7 +31,7 @@ Numbers numbers(const py::object& object, int dimensions, const char* what) {
   const bool masked = is_masked(object);
   const auto array = py::reinterpret_steal<py::array>(masked ? nullptr : AnyArray::of(object));
   if (!array && !masked) {
-    // What is no such error, an interrupt, is not about the argument.
+    // Other exceptions, such as an interrupt, do not concern the argument.
     if (!PyErr_ExceptionMatches(PyExc_Exception)) throw py::error_already_set();
     PyErr_Clear();
   }
@@ -40,7 +40,8 @@ Numbers numbers(const py::object& object, int dimensions, const char* what) {
     throw InputError(std::string(what) + " is not " +
                      (dimensions == 0
                           ? "a number"
-                          : "a " + std::to_string(dimensions) + "-dimensional array of numbers"));
+                          : "a " + std::to_string(dimensions) + "-dimensional array of numbers") +
+                     ". Give one.");
   }
   return Numbers(array);
 }
@@ -58,8 +59,8 @@ double* writable(const py::object& object, const Shape& shape, const char* what)
     const bool fits = (array.flags() & as_read) == as_read && shape_of(array) == shape;
     if (fits && array.writeable()) return array.mutable_data();
   }
-  throw InputError(std::string(what) + " is not a writable, contiguous array of " + written(shape) +
-                   " float64. Give one.");
+  throw InputError(std::string(what) + " is not a writable, contiguous float64 array of shape " +
+                   written(shape) + ". Give such an array.");
 }
 
 py::str text(const std::string& text) { return one_line(text); }

@@ -11,28 +11,29 @@
 #include "quadcore/plugin/error.hpp"
 
 /// \file
-/// Numbers and texts on their way between Python and the core.
+/// Conversion of numbers and texts between Python and the core.
 
 namespace quadcore::bindings {
 
 namespace py = pybind11;
 
-/// Numbers as C++ reads them: row after row, each where a double may lie.
+/// Numbers for C++: a contiguous, aligned array of doubles in row-major order.
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast |
                                         static_cast<int>(py::detail::npy_api::NPY_ARRAY_ALIGNED_)>;
-/// A shape as Python writes it, "(2, 13)".
+/// Format a shape like Python, "(2, 13)".
 using Shape = std::vector<py::ssize_t>;
 
-/// Real numbers from anything that numpy makes an array of so many dimensions of; `what` names it
-/// in the InputError otherwise. No texts, no complex numbers, no masks.
+/// Return real numbers from any object that numpy converts to an array of so many dimensions.
+/// Throws InputError with the name `what` otherwise, and for texts, complex numbers and masked
+/// arrays.
 Numbers numbers(const py::object& object, int dimensions, const char* what);
 
-/// Throws InputError unless an array has this shape; `what` names it there. To be called for every
-/// array whose size C++ does not take from the array itself.
+/// Throw InputError with the name `what` unless an array has this shape. Call this for every array
+/// of a size that C++ assumes.
 void check_shape(const py::array& array, const Shape& shape, const char* what);
 
-/// The array that C++ is to write to, as it lies in memory: no copy, which would take what is
-/// written. Throws InputError unless it is a writable, contiguous array of doubles of this shape.
+/// Return the array that C++ writes to, without a copy. Throws InputError unless it is a writable,
+/// contiguous array of doubles of this shape.
 double* writable(const py::object& object, const Shape& shape, const char* what);
 
 /// Any object; signatures in docstrings name it by `type`.
@@ -50,8 +51,7 @@ inline constexpr char state_type[] = "quadcore.State";
 using ArrayLike = Annotated<array_like>;
 using StateLike = Annotated<state_type>;
 
-/// A whole number or a name that is refused in one line of quadcore's own if it is none; `what`
-/// names it there.
+/// A whole number or a name. Another object is an InputError with the name `what`.
 template <class T, const char* what>
 struct Given {
   using Python = std::conditional_t<std::is_integral_v<T>, py::int_, py::str>;
@@ -60,9 +60,9 @@ struct Given {
   T value;
 };
 
-/// Text by others, a plugin's say, as it can be shown.
+/// Return a foreign text, such as that of a plugin, for display.
 py::str text(const std::string& text);
-/// A file's name, which need not be UTF-8, as Python has it.
+/// Return a file name, which need not be UTF-8, as a Python string.
 py::str file_name(const std::string& path);
 
 }  // namespace quadcore::bindings
@@ -82,11 +82,11 @@ struct type_caster<quadcore::bindings::Given<T, what>> {
   bool load(handle source, bool convert) {
     make_caster<T> caster;
     if (!caster.load(source, convert)) {
-      std::string told = std::string(what) + ": give " + Given::kind;
+      std::string message = std::string(what) + " must be " + Given::kind;
       if (!isinstance<typename Given::Python>(source)) {
-        told += quadcore::bindings::not_a(source);
+        message += quadcore::bindings::not_a(source);
       }
-      throw quadcore::InputError(told);
+      throw quadcore::InputError(message + ".");
     }
     value.value = cast_op<T&&>(std::move(caster));
     return true;

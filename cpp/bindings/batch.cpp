@@ -15,13 +15,13 @@
 namespace quadcore::bindings {
 namespace {
 
-/// Signals are looked at after about so many steps of single vehicles, some hundredths of a second;
-/// not after each step of very many, whose numbers would go through the cache once for each.
+/// Number of single-vehicle steps between checks for signals, some hundredths of a second. Checking
+/// after each step of many vehicles would load their data into the cache each time.
 constexpr std::int64_t between_signals = 100000, steps_between_signals = 10;
 
 constexpr char vehicle_number[] = "vehicle";
 
-/// A batch that refuses to be used by two Python threads at once.
+/// A batch that rejects simultaneous use by two Python threads.
 struct GuardedBatch {
   Batch batch;
   std::atomic<bool> busy{false};
@@ -31,7 +31,8 @@ class BatchLock {
  public:
   explicit BatchLock(GuardedBatch& guarded) : guarded_(guarded) {
     if (guarded.busy.exchange(true)) {
-      throw InputError("this batch is being used by another thread; give each its own");
+      throw InputError(
+          "this batch is in use by another thread. Use a separate batch for each thread.");
     }
   }
   ~BatchLock() { guarded_.busy = false; }
@@ -58,8 +59,9 @@ std::shared_ptr<GuardedBatch> create_batch(
     const Numbers& spawn, const Seeds& seeds, unsigned threads) {
   const auto n = static_cast<py::ssize_t>(models.size());
   if (parameters.size() != models.size()) {
-    throw InputError("there are " + std::to_string(models.size()) + " models, but parameters of " +
-                     std::to_string(parameters.size()) + " vehicles. Give as many.");
+    throw InputError("there are " + std::to_string(models.size()) + " models, but parameters for " +
+                     std::to_string(parameters.size()) +
+                     " vehicles. Give one set of parameters for each model.");
   }
   check_shape(spawn, {n, 6}, "spawn");
   check_shape(seeds, {n}, "seeds");
@@ -121,7 +123,7 @@ void reset(GuardedBatch& self, const py::object& mask, const std::optional<Seeds
   using Flags = py::array_t<bool, py::array::c_style>;
   const py::array given = py::array::ensure(mask);
   if (!given || !py::isinstance<py::array_t<bool>>(given)) {
-    throw InputError("mask is not an array of booleans. Give one for each vehicle.");
+    throw InputError("mask is not an array of booleans. Give one boolean for each vehicle.");
   }
   check_shape(given, row_of_each(self), "mask");
   if (seeds) check_shape(*seeds, row_of_each(self), "seeds");
@@ -140,26 +142,27 @@ auto of_each(const GuardedBatch& self, const Get& get) {
 }  // namespace
 
 void bind_batch(py::module_& m) {
-  py::class_<BatchSnapshot, std::shared_ptr<BatchSnapshot>>(
-      m, "BatchSnapshot", "Everything that the future of a batch depends on.");
+  py::class_<BatchSnapshot, std::shared_ptr<BatchSnapshot>>(m, "BatchSnapshot",
+                                                            "Complete state of a batch.");
   py::class_<GuardedBatch, std::shared_ptr<GuardedBatch>>(
-      m, "Batch", "Many vehicles, stepped together; use quadcore.BatchSimulation.")
+      m, "Batch", "Several vehicles that are stepped together; use quadcore.BatchSimulation.")
       .def(py::init(&create_batch), py::arg("models"), py::arg("world"), py::arg("engine"),
            py::arg("dt"), py::arg("parameters"), py::arg("spawn"), py::arg("seeds"),
            py::arg("threads"))
       .def("step", &step, py::arg("commands"), py::arg("steps"),
-           "Advances all vehicles that have not failed; commands (n, rotors) in rad/s, or None.")
+           "Advance all vehicles that have not failed. Commands have the shape (n, rotors) in "
+           "rad/s; None keeps the previous ones.")
       .def("_write_state", &write_state, py::arg("out"))
       .def("_take_state", &take_state, py::arg("states"))
       .def("reset", &reset, py::arg("mask"), py::arg("seeds"),
-           "Takes the vehicles of a mask back to their start, with other seeds unless None.")
+           "Reset the vehicles selected by a mask to their start, with new seeds unless None.")
       .def(
           "snapshot",
           [](GuardedBatch& self) {
             const BatchLock lock(self);
             return self.batch.snapshot();
           },
-          "Take down all that the future of every vehicle depends on, for `restore`.")
+          "Return the complete state of every vehicle for `restore`.")
       .def(
           "restore",
           [](GuardedBatch& self, const Built<BatchSnapshot>& snapshot) {
@@ -181,27 +184,27 @@ InputError
       .def_property_readonly(
           "n", [](const GuardedBatch& self) { return self.batch.size(); }, "Number of vehicles.")
       .def_property_readonly(
-          "dt", [](const GuardedBatch& self) { return self.batch.dt(); }, "Length of a step, s.")
+          "dt", [](const GuardedBatch& self) { return self.batch.dt(); }, "Time step, s.")
       .def_property_readonly(
           "command_width", [](const GuardedBatch& self) { return self.batch.command_width(); },
-          "Numbers of a vehicle's command.")
+          "Number of values in a vehicle's command.")
       .def_property_readonly(
           "state_width", [](const GuardedBatch& self) { return self.batch.state_width(); },
-          "Numbers of a vehicle's state, 13 + 2 rotors.")
+          "Number of values in a vehicle's state, 13 + 2 rotors.")
       .def_property_readonly(
           "time",
           [](GuardedBatch& self) {
             const BatchLock lock(self);
             return of_each(self, [&](std::size_t i) { return self.batch.time(i); });
           },
-          "Of each vehicle, s; shape (n,).")
+          "Simulation time of each vehicle, s; shape (n,).")
       .def_property_readonly(
           "failures",
           [](GuardedBatch& self) {
             const BatchLock lock(self);
             return self.batch.failures();
           },
-          "Why each flight ended, list of str; \"\" while it goes on.")
+          "Reason why each flight failed, list of str; \"\" while it continues.")
       .def(
           "warnings",
           [](GuardedBatch& self, const Given<std::int64_t, vehicle_number>& vehicle) {

@@ -17,8 +17,8 @@ void bind_flight(py::module_& m);
 void bind_batch(py::module_& m);
 void bind_reference(py::module_& m);
 void bind_control(py::module_& m);
-/// Makes errors of what would crash: objects of bound classes whose constructor has not run, and
-/// old protocols of pickle. To be called when all classes are bound.
+/// Turn crashes into errors: objects of bound classes without a completed constructor, and old
+/// pickle protocols. Call this when all classes are bound.
 void guard_classes(py::module_& m);
 
 struct Guarded;

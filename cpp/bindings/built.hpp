@@ -7,16 +7,16 @@
 #include "quadcore/plugin/error.hpp"
 
 /// \file
-/// Arguments that are objects of bound classes.
+/// Arguments of bound classes.
 
 namespace quadcore::bindings {
 
-/// Error about an object whose __init__ or __setstate__ was not called.
+/// Error message for an object without a call of __init__ or __setstate__.
 constexpr char empty_object[] =
-    "the object is empty, because its constructor has not run. In a subclass, call "
+    "the object is empty because its constructor has not run. In a subclass, call "
     "super().__init__() first.";
 
-/// What a Python object of a bound class holds, never null.
+/// The C++ object in a Python object of a bound class, never null.
 template <class T>
 struct Built {
   std::shared_ptr<T> held;
@@ -25,18 +25,18 @@ struct Built {
   const T* operator->() const { return held.get(); }
 };
 
-/// Of what type an object is that should be of another, behind "give a Model".
+/// Return the end of an error about an object of the wrong type: ", not a 'str'".
 inline std::string not_a(pybind11::handle object) {
   return std::string(", not a '") + Py_TYPE(object.ptr())->tp_name + "'";
 }
 
-/// Reads what an object holds. Throws InputError for another class, or if it holds nothing.
+/// Read the C++ object in a Python object. Throw InputError for another class or an empty object.
 template <class T>
 bool load_built(pybind11::handle source, bool convert, std::shared_ptr<T>& held) {
   if (!pybind11::isinstance<T>(source)) {
     const pybind11::handle wanted = pybind11::detail::get_type_handle(typeid(T), true);
-    throw InputError("give a " + pybind11::cast<std::string>(wanted.attr("__name__")) +
-                     not_a(source));
+    throw InputError("expected a " + pybind11::cast<std::string>(wanted.attr("__name__")) +
+                     not_a(source) + ".");
   }
   auto* const instance = reinterpret_cast<pybind11::detail::instance*>(source.ptr());
   const pybind11::detail::type_info* const type = pybind11::detail::get_type_info(typeid(T));

@@ -7,8 +7,8 @@
 #include "quadcore/control/controller.hpp"
 #include "quadcore/control/gains_file.hpp"
 #include "quadcore/control/inner_loop.hpp"
+#include "quadcore/control/modelled_vehicle_file.hpp"
 #include "quadcore/control/rotor_health.hpp"
-#include "quadcore/control/second_vehicle.hpp"
 #include "quadcore/control/start.hpp"
 #include "quadcore/rotor_shares.hpp"
 #include "reference.hpp"
@@ -20,9 +20,9 @@ using control::Controller;
 using control::ReferenceShape;
 using control::Values;
 
-/// What commands rotors, and its memory.
+/// A controller with its state.
 template <class Controller>
-struct Flown {
+struct Bound {
   Controller controller;
   std::vector<double> state;
 
@@ -33,19 +33,19 @@ struct Flown {
     return speeds;
   }
 };
-using FlownInnerLoop = Flown<control::InnerLoop>;
+using BoundInnerLoop = Bound<control::InnerLoop>;
 
 /// A controller that reads the health of the rotors if a plugin publishes it.
-struct FlownLaw : Flown<Controller> {
+struct BoundController : Bound<Controller> {
   Self flown;
   control::RotorHealth health;
-  int topic;  ///< of the health; -1: none
+  int topic;  ///< topic of the rotor health; -1: none
 
-  /// Call it with the vehicle locked.
-  void hear() {
+  /// Update the controller with the rotor health. Call it with the vehicle locked.
+  void read_health() {
     if (topic < 0) return;
     const Topic& said = flown->topics()[static_cast<std::size_t>(topic)];
-    health.tell(said, flown->time(), controller, state.data());
+    health.update(said, flown->time(), controller, state.data());
   }
 };
 
@@ -56,24 +56,28 @@ VehicleDescription describe(const Self& self) {
 
 void refuse_velocity_in_body(const std::string& who, const Self& flown) {
   if (!flown->has_velocity_in_body()) return;
-  throw InputError(who + " needs velocities in the world; set <twistFrame> to world");
+  throw InputError(who + " requires velocities in world axes. Set <twistFrame> to world.");
 }
 
-/// A vehicle, driven as the one that flies, which it may be itself.
-VehicleDescription describe_as(const Self& believed, const Self& flown) {
+/// Return the description of the modelled vehicle, which may be the simulated one, with the
+/// latter's command order.
+VehicleDescription describe_model(const Self& believed, const Self& flown) {
   if (&*believed == &*flown) return describe(flown);
-  return control::driven_as(describe(flown), describe(believed), "the belief ");
+  return control::match_rotors(describe(flown), describe(believed), "the modelled vehicle ");
 }
 
 Vector3d vector(const py::object& object, const char* what) {
   const Numbers array = numbers(object, 1, what);
-  if (array.size() != 3) throw InputError(std::string(what) + " has not three numbers");
+  if (array.size() != 3)
+    throw InputError(std::string(what) + " does not have three numbers. Give x, y, z.");
   return Eigen::Map<const Vector3d>(array.data());
 }
 
 Quaterniond orientation(const py::object& object, const char* what) {
   const Numbers array = numbers(object, 1, what);
-  if (array.size() != 4) throw InputError(std::string(what) + " has not four numbers");
+  if (array.size() != 4)
+    throw InputError(std::string(what) +
+                     " does not have four numbers. Give a quaternion x, y, z, w.");
   return Quaterniond(Eigen::Map<const Eigen::Vector4d>(array.data()));
 }
 
@@ -86,8 +90,9 @@ messages::Odometry odometry(const py::object& state) {
   return now;
 }
 
-/// The same from what stands on a topic and from a shape, with no Python object between.
-py::array_t<double> command_at(FlownLaw& flown, double period, const Self& self,
+/// Return the command for the odometry on a topic and a reference, without intermediate Python
+/// objects.
+py::array_t<double> command_at(BoundController& flown, double period, const Self& self,
                                const std::string& sensed, const ReferenceShape& shape) {
   const Lock lock(*self);
   static const MessageKind odometry = messages::kind_of<messages::Odometry>();
@@ -95,10 +100,10 @@ py::array_t<double> command_at(FlownLaw& flown, double period, const Self& self,
   const std::size_t topic = topics.at(sensed);
   const MessageKind& kind = topics[topic].kind;
   if (kind.name != odometry.name || kind.fields.size() != odometry.fields.size()) {
-    throw InputError("topic '" + sensed + "' holds no odometry. Name one that does.");
+    throw InputError("topic '" + sensed + "' does not carry odometry. Name an odometry topic.");
   }
   const auto now = topics.read<messages::Odometry>(topic);
-  flown.hear();
+  flown.read_health();
   return flown.command(period, now, shape.at(self->time()));
 }
 
@@ -117,86 +122,89 @@ py::dict start(const Self& self, const py::object& wanted, const std::vector<dou
 }  // namespace
 
 void bind_control(py::module_& m) {
-  py::class_<TagSpec>(m, "ParameterSpec", "A parameter of a law or a reference.")
-      .def_readonly("name", &TagSpec::name, "Of the parameter.")
-      .def_readonly("unit", &TagSpec::unit, "\"\" without one.")
-      .def_readonly("default", &TagSpec::fallback, "As text.")
-      .def_readonly("meaning", &TagSpec::meaning, "In one line.")
-      .def_readonly("equation", &TagSpec::equation,
-                    "Where it stands in the source; \"\" if nowhere.")
+  py::class_<TagSpec>(m, "ParameterSpec", "Parameter of a controller or a reference.")
+      .def_readonly("name", &TagSpec::name, "Name of the parameter.")
+      .def_readonly("unit", &TagSpec::unit, "Unit, or \"\".")
+      .def_readonly("default", &TagSpec::fallback, "Default value as text.")
+      .def_readonly("meaning", &TagSpec::meaning, "Meaning in one line.")
+      .def_readonly("equation", &TagSpec::equation, "Equation or source, or \"\".")
       .def_property_readonly(
           "is_flag", [](const TagSpec& spec) { return spec.kind == TagKind::flag; },
-          "Whether it is true or false.")
+          "Whether the parameter is a boolean.")
       .def_property_readonly(
           "range", [](const TagSpec& spec) { return spec.range(); },
-          "Values that it may have, for a person.");
+          "Valid values as readable text.");
 
-  py::class_<FlownLaw>(m, "Controller", "A law that flies one vehicle.")
-      .def(
-          py::init([](const std::string& law, const Self& believed, const Self& flown,
-                      const Values& values, const std::vector<double>& spins) {
-            refuse_velocity_in_body("law '" + law + "'", flown);
-            Controller made(law, describe_as(believed, flown), values, spins);
-            const std::size_t size = Controller::state_size(law, made.rotors());
-            return std::make_unique<FlownLaw>(FlownLaw{{std::move(made), std::vector<double>(size)},
-                                                       flown,
-                                                       control::RotorHealth(describe(flown)),
-                                                       flown->topics().find(health_topic)});
-          }),
-          py::arg("law"), py::arg("believed"), py::arg("flown"), py::arg("values"),
-          py::arg("spins"))
+  py::class_<BoundController>(m, "Controller", "Built-in controller of one vehicle.")
+      .def(py::init([](const std::string& law, const Self& believed, const Self& flown,
+                       const Values& values, const std::vector<double>& spins) {
+             refuse_velocity_in_body("controller '" + law + "'", flown);
+             Controller made(law, describe_model(believed, flown), values, spins);
+             const std::size_t size = Controller::state_size(law, made.rotors());
+             return std::make_unique<BoundController>(
+                 BoundController{{std::move(made), std::vector<double>(size)},
+                                 flown,
+                                 control::RotorHealth(describe(flown)),
+                                 flown->topics().find(health_topic)});
+           }),
+           py::arg("law"), py::arg("believed"), py::arg("flown"), py::arg("values"),
+           py::arg("spins"))
       .def(
           "command",
-          [](FlownLaw& flown, double period, const py::object& state, const py::object& wanted) {
+          [](BoundController& flown, double period, const py::object& state,
+             const py::object& wanted) {
             {
               const Lock lock(*flown.flown);
-              flown.hear();
+              flown.read_health();
             }
             return flown.command(period, odometry(state), to_reference(wanted));
           },
           py::arg("period"), py::arg("state"), py::arg("reference"),
-          "Rotor speeds to command for a period [s], signed, rad/s; shape (n,). The state is what "
-          "an odometry says.")
+          "Return the rotor speeds to command for a period [s], signed, rad/s; shape (n,). The "
+          "state has the form of odometry.")
       .def("command_at", &command_at, py::arg("period"), py::arg("simulation"), py::arg("sensed"),
            py::arg("shape"),
-           "The same from what stands on a topic and from a shape at the simulation's time.")
+           "Return the rotor speeds for the odometry on a topic and a reference at the simulation "
+           "time.")
       .def_property_readonly(
           "saturated",
-          [](const FlownLaw& flown) { return Controller::saturated(flown.state.data()); },
-          "Whether the rotors could not do what was asked of them last.");
+          [](const BoundController& flown) { return Controller::saturated(flown.state.data()); },
+          "Whether the rotors could not meet the last demand.");
 
-  py::class_<FlownInnerLoop>(m, "InnerLoop", "An inner loop that flies one vehicle.")
+  py::class_<BoundInnerLoop>(m, "InnerLoop", "Attitude and rate controller of one vehicle.")
       .def(py::init([](const Self& believed, const Self& flown, const Values& values,
                        const std::vector<double>& spins) {
              refuse_velocity_in_body("inner loop", flown);
-             control::InnerLoop made(describe_as(believed, flown), values, spins);
+             control::InnerLoop made(describe_model(believed, flown), values, spins);
              const std::size_t size = control::InnerLoop::state_size(made.rotors());
-             return std::make_unique<FlownInnerLoop>(
-                 FlownInnerLoop{std::move(made), std::vector<double>(size)});
+             return std::make_unique<BoundInnerLoop>(
+                 BoundInnerLoop{std::move(made), std::vector<double>(size)});
            }),
            py::arg("believed"), py::arg("flown"), py::arg("values"), py::arg("spins"))
       .def(
           "attitude",
-          [](FlownInnerLoop& flown, double period, const py::object& state,
+          [](BoundInnerLoop& flown, double period, const py::object& state,
              const py::object& wanted, double thrust) {
             return flown.command(
                 period, odometry(state),
                 control::AttitudeThrust{orientation(wanted, "orientation"), thrust});
           },
           py::arg("period"), py::arg("state"), py::arg("orientation"), py::arg("thrust"),
-          "Rotor speeds, rad/s, shape (n,), for an orientation (quaternion x, y, z, w) and a "
-          "thrust [N].")
+          "Return the rotor speeds, rad/s, shape (n,), for an orientation (quaternion x, y, z, w) "
+          "and a thrust [N].")
       .def(
           "rates",
-          [](FlownInnerLoop& flown, double period, const py::object& state,
+          [](BoundInnerLoop& flown, double period, const py::object& state,
              const py::object& wanted, double thrust) {
             return flown.command(period, odometry(state),
                                  control::RatesThrust{vector(wanted, "angular_velocity"), thrust});
           },
           py::arg("period"), py::arg("state"), py::arg("angular_velocity"), py::arg("thrust"),
-          "Rotor speeds, rad/s, shape (n,), for an angular velocity (body axes, rad/s) and a "
-          "thrust [N].");
-  m.def("inner_loop", [] { return control::InnerLoop::table(); }, "Parameters of the inner loop.");
+          "Return the rotor speeds, rad/s, shape (n,), for an angular velocity (body axes, rad/s) "
+          "and a thrust [N].");
+  m.def(
+      "inner_loop", [] { return control::InnerLoop::table(); },
+      "Return the parameters of the inner loop.");
 
   m.def(
       "hover_commands",
@@ -204,10 +212,11 @@ void bind_control(py::module_& m) {
         return control::hover_commands(describe(self), spins);
       },
       py::arg("simulation"), py::arg("spins"),
-      "Speeds with which the vehicle hovers level, signed, rad/s; shape (n,).");
+      "Return the signed rotor speeds for level hover, rad/s; shape (n,).");
   m.def("start_on", &start, py::arg("simulation"), py::arg("reference"), py::arg("spins"),
-        "Members of the state of a vehicle that follows a reference exactly.");
-  m.def("timing", &control::timing_table, "When a controller is called, and how late it acts.");
+        "Return the state members of a vehicle that follows a reference exactly.");
+  m.def("timing", &control::timing_table,
+        "Return the parameters of a controller's rate and delay.");
   m.def(
       "is_timing",
       [](const std::string& name, double value) {
@@ -218,24 +227,25 @@ void bind_control(py::module_& m) {
         }
         return true;
       },
-      py::arg("name"), py::arg("value"), "Whether this can be one of timing().");
+      py::arg("name"), py::arg("value"),
+      "Return whether the value is valid for a parameter of timing().");
   m.def(
       "read_gains",
       [](const std::string& path) {
         const control::Gains gains = control::read_gains(path);
         return py::make_tuple(gains.law, gains.vehicle, gains.rate, gains.delay, gains.values);
       },
-      py::arg("path"), "Law, vehicle, rate, delay and parameters of a gains file.");
+      py::arg("path"), "Return controller, vehicle, rate, delay and parameters of a gains file.");
   m.def(
       "controllers",
       [] {
         py::list all;
-        for (const control::LawInfo& law : control::laws()) {
+        for (const control::ControllerInfo& law : control::list_controllers()) {
           all.append(py::make_tuple(law.name, law.summary, Controller::table(law.name)));
         }
         return all;
       },
-      "Name, summary and parameters of every law.");
+      "Return name, summary and parameters of every controller.");
 }
 
 }  // namespace quadcore::bindings

@@ -6,7 +6,7 @@
 namespace quadcore::bindings {
 namespace {
 
-// Python's types live as long as the interpreter; these references are never given back.
+// Python's types live as long as the interpreter; these references are never released.
 PyObject* error_type;
 PyObject* input_error_type;
 PyObject* flight_error_type;
@@ -19,7 +19,7 @@ PyObject* new_type(py::module_& m, const char* name, PyObject* base, const char*
   return type;
 }
 
-/// What an error says, as one line also where Python code has made it of what somebody gave.
+/// Return an error message as one line, even if Python code has created it.
 py::str shown(const py::object& error) {
   const py::str text = py::handle(PyExc_RuntimeError).attr("__str__")(error);
   const py::bytes bytes = text.attr("encode")("utf-8", "replace");
@@ -44,14 +44,15 @@ void translate(std::exception_ptr thrown) {
 
 void bind_errors(py::module_& m) {
   error_type = new_type(m, "QuadcoreError", PyExc_RuntimeError,
-                        "Base of every error that quadcore raises; str() is one line that carries "
-                        "``FILE:LINE`` where input is at fault.");
+                        "Base class of all quadcore errors. str() is one line and gives "
+                        "``FILE:LINE`` for invalid input.");
   m.attr("QuadcoreError").attr("__str__") =
       py::cpp_function(&shown, py::name("__str__"), py::is_method(m.attr("QuadcoreError")));
-  input_error_type = new_type(m, "InputError", error_type,
-                              "The input is at fault; the refused call changed nothing.");
-  flight_error_type = new_type(m, "FlightError", error_type,
-                               "The flight itself failed. Attribute `time` (s) says when.");
+  input_error_type =
+      new_type(m, "InputError", error_type, "Invalid input. The rejected call changed nothing.");
+  flight_error_type =
+      new_type(m, "FlightError", error_type,
+               "Failure of the flight. Attribute `time` is the time of the failure in s.");
   py::register_exception_translator(&translate);
 }
 

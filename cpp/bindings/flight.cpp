@@ -17,7 +17,7 @@ struct BoundFlight {
   py::ssize_t columns;
 };
 
-/// The time in which a run flies a simulation, and refuses whoever else would move it.
+/// The duration of a run, in which only the run may advance the simulation.
 class Run {
  public:
   explicit Run(const Self& self) : guarded_(self.guarded) { const Lock lock(*guarded_, "run()"); }
@@ -40,7 +40,7 @@ class Run {
   bool is_begun_ = false;
 };
 
-/// Names of the columns of a flight that logs these topics.
+/// Return the column names of a flight that logs these topics.
 std::vector<std::string> columns(const Self& self, const std::vector<std::string>& topics) {
   std::vector<std::string> names = log_columns(self->model().joints.size());
   for (const std::size_t topic : self->topics().at(topics)) {
@@ -76,7 +76,7 @@ void command(const BoundFlight& bound, const ArrayLike& speeds) {
   bound.guarded->simulation.command(array.data(), static_cast<std::size_t>(array.size()));
 }
 
-/// An array that owns the numbers: rows of a log are many, and are copied nowhere.
+/// Return an array that owns the numbers, because a log is too large to copy.
 py::array_t<double> array_of(std::vector<double>&& numbers, std::vector<py::ssize_t> shape) {
   auto* const owned = new std::vector<double>(std::move(numbers));
   const py::capsule owner(owned,
@@ -109,21 +109,22 @@ py::bytes csv_rows(const py::object& rows) {
 }  // namespace
 
 void bind_flight(py::module_& m) {
-  py::class_<BoundFlight>(m, "Flight", "One logged run, advanced piece by piece.")
+  py::class_<BoundFlight>(m, "Flight", "Logged run that is advanced in pieces.")
       .def(py::init(&create_flight), py::arg("simulation"), py::arg("commands"),
            py::arg("log_every"), py::arg("wrenches") = true,
            py::arg("topics") = std::vector<std::string>{})
-      .def("advance", &advance, py::arg("n"), "Flies n steps; raises as `Simulation.step` does.")
+      .def("advance", &advance, py::arg("n"),
+           "Simulate n steps; raises the same errors as `Simulation.step`.")
       .def("command", &command, py::arg("speeds"),
-           "As `Simulation.command`, which is refused while a run flies.")
+           "Set the command like `Simulation.command`, which is not allowed during a run.")
       .def("take", &take,
-           "Hands over what was logged since the last call: table (rows, columns) and wrenches "
-           "(rows, terms, 6), the latter without rows unless asked for.");
+           "Return the rows logged since the last call: table (rows, columns) and wrenches (rows, "
+           "terms, 6), which are empty unless requested.");
 
-  py::class_<Run>(m, "Run", "The time in which a run flies a simulation, for a with statement.")
+  py::class_<Run>(m, "Run", "Context manager for the duration of a run.")
       .def(py::init<const Self&>(), py::arg("simulation"))
       .def("__enter__", &Run::begin,
-           "Refuses from now on what moves the simulation, but for its flight.")
+           "Allow only this flight to advance the simulation from now on.")
       .def("__exit__", [](Run& run, const py::args&) { run.end(); });
 
   m.def(
@@ -135,9 +136,10 @@ void bind_flight(py::module_& m) {
         if (!fault) return std::nullopt;
         return std::pair{fault->row, fault->what};
       },
-      py::arg("table"), "Row and reason why a table (rows, 1 + n) is none of commands, or None.");
+      py::arg("table"),
+      "Return row and reason if a table (rows, 1 + n) is not a valid command table, else None.");
   m.def("log_columns", py::overload_cast<std::size_t>(&log_columns), py::arg("rotor_count"),
-        "Names of the columns of a log's table for so many rotors, as they head a CSV file.");
+        "Return the column names of a log for a number of rotors, as in the header of a CSV file.");
   m.def(
       "flight_columns",
       [](const Self& self, const std::vector<std::string>& topics) {
@@ -145,11 +147,11 @@ void bind_flight(py::module_& m) {
         return columns(self, topics);
       },
       py::arg("simulation"), py::arg("topics"),
-      "Names of the columns of a flight that logs these topics.");
+      "Return the column names of a flight that logs these topics.");
   m.def("log_remark", &log_remark, py::arg("ignored"),
-        "Comment of a log on what was ignored; \"\" if nothing was.");
+        "Return a log's comment on ignored elements, or \"\".");
   m.def("csv_rows", &csv_rows, py::arg("table"),
-        "Rows of a table as CSV with the fewest digits that restore every bit.");
+        "Format the rows of a table as CSV with the fewest digits that restore every bit.");
 }
 
 }  // namespace quadcore::bindings

@@ -12,34 +12,36 @@
 #include "quadcore/simulation.hpp"
 
 /// \file
-/// What keeps Python's threads apart.
+/// Protection of simulations against simultaneous use by Python threads.
 
 namespace quadcore::bindings {
 
 namespace py = pybind11;
 
-/// A simulation that refuses to be used by two Python threads at once: the GIL does not guard it
-/// while it steps. Nor may what a run calls back, such as a controller, move what is being flown.
+/// A simulation that rejects simultaneous use by two Python threads, because the GIL is released
+/// during steps. Callbacks of a run, such as controllers, may not advance it either.
 struct Guarded {
   Simulation simulation;
   std::atomic<bool> busy{false};
-  std::optional<unsigned long> flown_by;  ///< the thread that is within a run; by the GIL
+  std::optional<unsigned long> flown_by;  ///< thread of the present run; protected by the GIL
 
   Guarded(const Model& model, const World& world, const SimulationOptions& options)
       : simulation(model, world, options) {}
 };
 
 [[noreturn]] inline void refuse_another_thread() {
-  throw InputError("this simulation is being used by another thread; give each its own");
+  throw InputError(
+      "this simulation is in use by another thread. Use a separate simulation for each thread.");
 }
 
-/// Throws InputError within a run: `call` is what was called, and is the run's alone.
+/// Throw InputError within a run, because only the run may use the function `call`.
 inline void refuse_in_flight(const Guarded& guarded, const char* call) {
   if (!guarded.flown_by) return;
   if (*guarded.flown_by != PyThread_get_thread_ident()) refuse_another_thread();
-  throw InputError(std::string(call) +
-                   ": a run is flying this simulation, and what it calls back may only read it and "
-                   "publish; return the command, and try things out on a simulation of its own");
+  throw InputError(
+      std::string(call) +
+      ": this simulation is running, and callbacks may only read it and publish. Return the "
+      "command from the callback, and use a separate simulation for predictions.");
 }
 
 class Lock {
@@ -47,7 +49,7 @@ class Lock {
   explicit Lock(Guarded& guarded) : guarded_(guarded) {
     if (guarded.busy.exchange(true)) refuse_another_thread();
   }
-  /// To do what is the run's alone while one flies.
+  /// Lock for functions that only the run may use during a run.
   Lock(Guarded& guarded, const char* call) : Lock((refuse_in_flight(guarded, call), guarded)) {}
   ~Lock() { guarded_.busy = false; }
   Lock(const Lock&) = delete;
@@ -57,8 +59,9 @@ class Lock {
   Guarded& guarded_;
 };
 
-/// Calls `function` without the GIL. Not by pybind11's guard: a daemon thread may find the
-/// interpreter gone when it comes back, Python then unwinds it, and no destructor survives that.
+/// Call `function` without the GIL. pybind11's guard is not suitable: the interpreter may have
+/// ended when a daemon thread returns, and Python then unwinds the thread, which no destructor
+/// survives.
 template <class Function>
 void without_gil(const Function& function) {
   PyThreadState* const thread = PyEval_SaveThread();
@@ -72,14 +75,14 @@ void without_gil(const Function& function) {
   if (thrown) std::rethrow_exception(thrown);
 }
 
-/// Raises in Python, as warnings, what a simulation warns of during a call, also where that fails.
+/// Issue the simulation's warnings of a call as Python warnings, even if the call fails.
 template <class Call>
 void raising_warnings(const Guarded& guarded, const Call& call) {
   const Simulation& simulation = guarded.simulation;
   const std::size_t before = simulation.warnings().size();
   const auto raise = [&] {
     for (std::size_t i = before; i < simulation.warnings().size(); ++i) {
-      // Raises where the user has made an error of it.
+      // Raises if the user has turned the warning into an error.
       py::module_::import("quadcore.support.warning").attr("warn")(simulation.warnings()[i]);
     }
   };
@@ -92,7 +95,7 @@ void raising_warnings(const Guarded& guarded, const Call& call) {
   if (simulation.warnings().size() > before) raise();
 }
 
-/// The simulation that a bound function is called on.
+/// The simulation of a bound function.
 struct Self {
   std::shared_ptr<Guarded> guarded;
 

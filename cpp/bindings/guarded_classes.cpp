@@ -6,8 +6,8 @@
 namespace quadcore::bindings {
 namespace {
 
-/// pybind11 calls this for the C++ part of an object that no constructor has run for. Otherwise it
-/// would hand out memory that nothing was built in.
+/// pybind11 calls this for the C++ part of an object without a completed constructor. Otherwise it
+/// would use uninitialised memory.
 void* refuse_empty(std::size_t) { throw InputError(empty_object); }
 
 /// Pickling with protocols 0 and 1 would call a constructor of pybind11 that ends the process.
@@ -27,7 +27,7 @@ void guard_classes(py::module_& m) {
     if (!PyType_Check(held.ptr())) continue;
     auto* const type = reinterpret_cast<PyTypeObject*>(held.ptr());
     py::detail::type_info* const bound = py::detail::get_type_info(type);
-    if (!bound) continue;  // an exception
+    if (!bound) continue;  // it is an exception
     bound->operator_new = &refuse_empty;
     held.attr("__reduce__") =
         py::cpp_function(&reduced, py::name("__reduce__"), py::is_method(held));

@@ -1,7 +1,7 @@
 #include "bindings.hpp"
 
 PYBIND11_MODULE(_core, m) {
-  m.doc() = "The C++ core of quadcore; use the package quadcore instead.";
+  m.doc() = "C++ core of quadcore; use the package quadcore instead.";
   quadcore::bindings::bind_errors(m);
   quadcore::bindings::bind_model(m);
   quadcore::bindings::bind_plugins(m);

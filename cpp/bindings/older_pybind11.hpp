@@ -3,7 +3,7 @@
 #include <pybind11/pybind11.h>
 
 /// \file
-/// Names that pybind11 did not have yet when Ubuntu 20.04 packaged it.
+/// Names that are missing in the pybind11 package of Ubuntu 20.04.
 
 #if PYBIND11_VERSION_MAJOR == 2 && PYBIND11_VERSION_MINOR < 6
 namespace pybind11 {

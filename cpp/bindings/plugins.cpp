@@ -8,12 +8,12 @@
 namespace quadcore::bindings {
 namespace {
 
-/// The bytes of a folder's name.
+/// Return the bytes of a folder's name.
 std::string path_of(const py::object& folder) {
   return py::cast<py::bytes>(py::module_::import("os").attr("fsencode")(folder));
 }
 
-/// Name of a tag's kind.
+/// Return the name of a tag's kind.
 const char* kind_of(const Parameter& parameter) {
   switch (parameter.spec.kind) {
     case TagKind::number:
@@ -36,7 +36,7 @@ const char* kind_of(const Parameter& parameter) {
   return "";
 }
 
-/// Name of what scales with a tag.
+/// Return the name of the property that scales with a tag.
 const char* effect_of(const Parameter& parameter) {
   switch (parameter.spec.effect) {
     case Effect::none:
@@ -54,75 +54,77 @@ const char* effect_of(const Parameter& parameter) {
 }  // namespace
 
 void bind_plugins(py::module_& m) {
-  py::class_<Parameter>(m, "ParameterInfo", "One effective parameter of a plugin.")
+  py::class_<Parameter>(m, "ParameterInfo", "Effective parameter of a plugin.")
       .def("__repr__",
            [](const Parameter& p) {
              return py::str("<ParameterInfo {} = {}>")
                  .format(text(p.spec.name), text(p.text.empty() ? p.spec.absent : p.text));
            })
       .def_property_readonly(
-          "name", [](const Parameter& p) { return text(p.spec.name); }, "Of the tag.")
+          "name", [](const Parameter& p) { return text(p.spec.name); }, "Name of the tag.")
       .def_property_readonly(
           "value", [](const Parameter& p) { return p.text.empty() ? p.spec.absent : p.text; },
-          "That is in effect, as text.")
+          "Effective value as text.")
       .def_property_readonly(
           "kind", &kind_of,
-          "What it is written as: number, numbers, flag, choice, text, file, link or joints.")
+          "Type of the value: number, numbers, flag, choice, text, file, link or joints.")
       .def_property_readonly(
           "text", [](const Parameter& p) { return text(p.text); },
-          "As the file or the caller has it; \"\" where neither does.")
+          "Text given by the file or the caller, or \"\".")
       .def_property_readonly(
           "file", [](const Parameter& p) { return file_name(p.file); },
-          "Path that it leads to; \"\" unless its kind is file.")
+          "Resolved path; \"\" unless the kind is file.")
       .def_property_readonly(
-          "unit", [](const Parameter& p) { return text(p.spec.unit); }, "\"\" without one.")
+          "unit", [](const Parameter& p) { return text(p.spec.unit); }, "Unit, or \"\".")
       .def_property_readonly(
           "default",
           [](const Parameter& p) -> std::optional<std::string> {
             if (p.spec.required) return std::nullopt;
             return p.spec.fallback.empty() ? p.spec.absent : p.spec.fallback;
           },
-          "Value without the tag; None if the tag is required.")
+          "Default value; None if the tag is required.")
       .def_property_readonly(
           "range", [](const Parameter& p) { return p.spec.range(); },
-          "Values that it may have, for a person.")
+          "Valid values as readable text.")
       .def_property_readonly(
-          "meaning", [](const Parameter& p) { return text(p.spec.meaning); }, "In one line.")
+          "meaning", [](const Parameter& p) { return text(p.spec.meaning); },
+          "Meaning in one line.")
       .def_property_readonly(
           "equation", [](const Parameter& p) { return text(p.spec.equation); },
-          "Where it stands in the source; \"\" if nowhere.")
+          "Equation or source, or \"\".")
       .def_property_readonly(
           "alias", [](const Parameter& p) { return text(p.spec.alias); },
-          "Second name of the tag; \"\" without one.")
-      .def_property_readonly("effect", &effect_of,
-                             "Property of the vehicle that scales with the number: thrust, drag or "
-                             "lag; \"\" for none of these.")
+          "Second name of the tag, or \"\".")
+      .def_property_readonly(
+          "effect", &effect_of,
+          "Property of the vehicle that the number scales: thrust, drag or lag; \"\" for none.")
       .def_property_readonly(
           "power", [](const Parameter& p) { return p.spec.power; },
-          "Exponent: multiplying `effect` by f takes f**power on the number.")
+          "Exponent: scaling `effect` by f multiplies the number by f**power.")
       .def_readonly("origin", &Parameter::origin,
-                    "Where the value is from: FILE:LINE, \"default\", or \"set\" by the caller.");
+                    "Origin of the value: FILE:LINE, \"default\", or \"set\" by the caller.");
 
-  py::class_<LoadedPlugin>(m, "PluginInfo", "A loaded plugin.")
+  py::class_<LoadedPlugin>(m, "PluginInfo", "Loaded plugin.")
       .def("__repr__",
            [](const LoadedPlugin& p) {
              return py::str("<PluginInfo '{}', {}>").format(text(p.name), text(p.filename));
            })
       .def_readonly("name", &LoadedPlugin::name,
-                    "The plugin tag's attribute, which PLUGIN.TAG begins with.")
-      .def_readonly("filename", &LoadedPlugin::filename, "Of the module, as the tag has it.")
+                    "Name attribute of the plugin tag, the PLUGIN in PLUGIN.TAG.")
+      .def_readonly("filename", &LoadedPlugin::filename,
+                    "File name of the module as given in the tag.")
       .def_property_readonly(
           "path", [](const LoadedPlugin& p) { return file_name(p.path); },
-          "Of the module that was loaded.")
+          "Path of the loaded module.")
       .def_property_readonly(
           "summary", [](const LoadedPlugin& p) { return text(p.descriptor->summary); },
-          "What it does, in one line.")
+          "Summary in one line.")
       .def_property_readonly(
           "wrenches", [](const LoadedPlugin& p) { return p.descriptor->wrenches; },
-          "Names of the wrenches that it reports, list of str.")
+          "Names of the wrenches that the plugin reports, list of str.")
       .def_property_readonly(
           "parameters", [](const LoadedPlugin& p) { return p.parameters.all(); },
-          "Every tag that it knows, list of ParameterInfo.");
+          "All tags of the plugin, list of ParameterInfo.");
 
   m.def(
       "load_plugin_path", [](const py::object& folder) { load_plugin_path(path_of(folder)); },
@@ -144,7 +146,7 @@ InputError
         for (const std::string& folder : plugin_folders()) folders.append(file_name(folder));
         return folders;
       },
-      "Name the folders searched for plugins, in order, list of str.");
+      "Return the folders that are searched for plugins, in order, list of str.");
 }
 
 }  // namespace quadcore::bindings

@@ -1,4 +1,4 @@
-# Finds what the Python module is built with; `python_missing` says what there is not.
+# Finds the requirements of the Python module; `python_missing` names a missing one.
 set(python_missing "")
 if(CMAKE_VERSION VERSION_LESS 3.18)
   find_package(Python COMPONENTS Interpreter Development QUIET)
@@ -9,7 +9,7 @@ if(Python_FOUND)
   find_package(pybind11 CONFIG QUIET)
 endif()
 if(NOT Python_FOUND)
-  set(python_missing "the headers of Python (Debian, Ubuntu: python3-dev)")
+  set(python_missing "Python headers (Debian, Ubuntu: python3-dev)")
 elseif(NOT pybind11_FOUND)
   set(python_missing "pybind11 (Debian, Ubuntu: pybind11-dev)")
 endif()

@@ -21,7 +21,7 @@ using control::Values;
 
 namespace {
 
-/// Reads the members that get(name) gives.
+/// Read the members that get(name) returns.
 template <class Get>
 Reference read_members(const Get& get) {
   Reference read;
@@ -30,8 +30,8 @@ Reference read_members(const Get& get) {
         const std::string what = std::string("reference.") + name;
         const Numbers array = numbers(get(name), fields.size() == 1 ? 0 : 1, what.c_str());
         if (array.size() != static_cast<py::ssize_t>(fields.size())) {
-          throw InputError(what + " holds " + std::to_string(array.size()) + " numbers; give " +
-                           std::to_string(fields.size()));
+          throw InputError(what + " has " + std::to_string(array.size()) + " numbers. Give " +
+                           std::to_string(fields.size()) + ".");
         }
         std::copy_n(array.data(), fields.size(), data);
       });
@@ -48,7 +48,7 @@ Reference reference_of(const ArrayLike& position, const ArrayLike& velocity,
   return read_members([&next](const char*) { return **next++; });
 }
 
-/// Position and yaw at each of these times, shape (n, 4).
+/// Return position and yaw at each of these times, shape (n, 4).
 control::Rows places(const ReferenceShape& shape, const py::object& given) {
   const Numbers times = numbers(given, 1, "times");
   control::Rows rows(times.shape(0), 4);
@@ -75,14 +75,15 @@ messages::Reference to_reference(const py::object& object) {
     } catch (const py::error_already_set& error) {
       if (!error.matches(PyExc_AttributeError)) throw;
       throw InputError(std::string("the reference has no member ") + name +
-                       "; give a quadcore.Reference, or what has the members of one");
+                       ". Give a quadcore.Reference or an object with the same members.");
     }
   });
 }
 
 void bind_reference(py::module_& m) {
   const Vector3d zero = Vector3d::Zero();
-  py::class_<Reference>(m, "Reference", "Where a vehicle is to be, with derivatives, world axes.")
+  py::class_<Reference>(m, "Reference",
+                        "Desired position and yaw with their derivatives, world axes.")
       .def("__repr__",
            [](const Reference& r) {
              return py::str("Reference(position={}, velocity={}, acceleration={}, yaw={:.6g}, ...)")
@@ -91,26 +92,27 @@ void bind_reference(py::module_& m) {
       .def(py::init(&reference_of), py::arg("position") = zero, py::arg("velocity") = zero,
            py::arg("acceleration") = zero, py::arg("jerk") = zero, py::arg("snap") = zero,
            py::arg("yaw") = 0, py::arg("yaw_rate") = 0, py::arg("yaw_acceleration") = 0)
-      .def_readwrite("position", &Reference::position, "Of the frame's origin, m; shape (3,).")
-      .def_readwrite("velocity", &Reference::velocity, "m/s; shape (3,).")
-      .def_readwrite("acceleration", &Reference::acceleration, "m/s^2; shape (3,).")
-      .def_readwrite("jerk", &Reference::jerk, "m/s^3; shape (3,).")
-      .def_readwrite("snap", &Reference::snap, "m/s^4; shape (3,).")
+      .def_readwrite("position", &Reference::position,
+                     "Position of the frame's origin, m; shape (3,).")
+      .def_readwrite("velocity", &Reference::velocity, "Velocity, m/s; shape (3,).")
+      .def_readwrite("acceleration", &Reference::acceleration, "Acceleration, m/s^2; shape (3,).")
+      .def_readwrite("jerk", &Reference::jerk, "Jerk, m/s^3; shape (3,).")
+      .def_readwrite("snap", &Reference::snap, "Snap, m/s^4; shape (3,).")
       .def_readwrite("yaw", &Reference::yaw, "rad.")
       .def_readwrite("yaw_rate", &Reference::yaw_rate, "rad/s.")
       .def_readwrite("yaw_acceleration", &Reference::yaw_acceleration, "rad/s^2.");
 
-  py::class_<ReferenceShape>(m, "ReferenceShape", "A reference at any time.")
+  py::class_<ReferenceShape>(m, "ReferenceShape", "Reference as a function of time.")
       .def(py::init([](const std::string& name, const Values& values, const py::object& rows) {
              return control::make_reference(name, values, rows_of(rows));
            }),
            py::arg("name"), py::arg("values"), py::arg("rows") = py::none())
-      .def("at", &ReferenceShape::at, py::arg("t"), "Where the vehicle is to be at a time [s].")
+      .def("at", &ReferenceShape::at, py::arg("t"), "Return the reference at a time [s].")
       .def("places", &places, py::arg("times"),
-           "Position [m] and yaw [rad] at each of some times [s]; shape (n, 4).")
+           "Return position [m] and yaw [rad] at several times [s]; shape (n, 4).")
       .def_property_readonly(
           "end", &ReferenceShape::end,
-          "From when on nothing moves any more, s; infinite if that never comes.");
+          "Time from which the reference is at rest, s; infinite if it never is.");
 
   m.def(
       "on_vehicle",
@@ -119,8 +121,9 @@ void bind_reference(py::module_& m) {
         return control::on_vehicle(name, values, simulation->model());
       },
       py::arg("name"), py::arg("values"), py::arg("simulation"),
-      "Parameters of a reference, and what a vehicle says where they do not.");
-  m.def("read_rows", &control::read_rows, py::arg("path"), "Rows of a .csv or .yaml file.");
+      "Complete the parameters of a reference with values of a vehicle.");
+  m.def("read_rows", &control::read_rows, py::arg("path"),
+        "Read the rows of a .csv or .yaml file.");
   m.def(
       "references",
       [] {
@@ -130,7 +133,7 @@ void bind_reference(py::module_& m) {
         }
         return all;
       },
-      "Name, summary, parameters of every reference, and whether it takes rows.");
+      "Return name, summary and parameters of every reference, and whether it requires rows.");
 }
 
 }  // namespace quadcore::bindings

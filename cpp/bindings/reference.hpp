@@ -4,12 +4,12 @@
 #include "quadcore/plugin/messages.hpp"
 
 /// \file
-/// References on their way between Python and the core.
+/// Conversion of references between Python and the core.
 
 namespace quadcore::bindings {
 
-/// Reads the members of an object that has those of a Reference. Throws InputError if one is
-/// missing or of another size.
+/// Read a Reference from an object with the same members. Throws InputError if one is missing or
+/// has another size.
 messages::Reference to_reference(const pybind11::object& object);
 
 }  // namespace quadcore::bindings

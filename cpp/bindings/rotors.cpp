@@ -26,36 +26,37 @@ Speeds are those of a command, rad/s, before the division by `slowdown`.)")
           "joint", [](const Rotor& r) { return text(r.joint); }, "Name of the joint.")
       .def_property_readonly(
           "position", [](const Rotor& r) -> Vector3d { return r.p_FR_F; },
-          "Origin of the rotor's link from that of the frame link, frame axes, m; shape (3,).")
+          "Origin of the rotor's link relative to the frame link's, frame axes, m; shape (3,).")
       .def_property_readonly(
           "axis", [](const Rotor& r) -> Vector3d { return r.axis_F; },
           "Unit vector of the joint's axis, frame axes; shape (3,).")
       .def_readonly("spin", &Rotor::spin,
-                    "Sense about `axis` in which the rotor turns in a hover: 1 by the right-hand "
-                    "rule, -1 against it, 0 if unknown.")
+                    "Direction of rotation about `axis` in hover: 1 by the right-hand rule, -1 "
+                    "opposite, 0 if unknown.")
       .def_readonly("thrust_coefficient", &Rotor::thrust_coefficient,
                     "Thrust along `axis` per squared speed, N s^2/rad^2.")
-      .def_readonly("torque_coefficient", &Rotor::torque_coefficient,
-                    "Size of the air's torque about `axis` per squared speed, N m s^2/rad^2.")
+      .def_readonly(
+          "torque_coefficient", &Rotor::torque_coefficient,
+          "Magnitude of the aerodynamic torque about `axis` per squared speed, N m s^2/rad^2.")
       .def_readonly("torque_sense", &Rotor::torque_sense,
-                    "Sense of that torque on the frame: -1 against the spin, as in nature, 1 along "
-                    "it, as the thesis has it (2.11), 0 without torque.")
+                    "Direction of that torque on the frame: -1 opposing the spin (physical), 1 "
+                    "along it (thesis (2.11)), 0 without torque.")
       .def_readonly("max_speed", &Rotor::max_speed,
-                    "Fastest commanded speed that the motor follows, rad/s; inf without a limit.")
+                    "Maximum speed that the motor follows, rad/s; inf without a limit.")
       .def_readonly("slowdown", &Rotor::slowdown,
-                    "Speed over the joint's velocity: 10 at a sim_slow of 10.")
+                    "Rotor speed divided by the joint's velocity: 10 for a sim_slow of 10.")
       .def_readonly("rate_per_command", &Rotor::rate_per_command,
-                    "Velocity of the joint in the long run per commanded speed; negative if a "
-                    "positive command turns it backwards.")
+                    "Steady-state joint velocity per commanded speed; negative if a positive "
+                    "command turns it backwards.")
       .def_readonly("time_constant", &Rotor::time_constant,
-                    "Lag with which the rotor follows a command, s: the longer one where rising "
-                    "and falling differ; nan if unknown.")
+                    "Time constant with which the rotor follows a command, s: the longer one if "
+                    "rising and falling differ; nan if unknown.")
       .def_property_readonly(
           "command_index",
           [](const Rotor& r) {
             return r.place == not_driven ? std::nullopt : std::optional<int>(r.place);
           },
-          "Index of its speed in a command; None if it follows none.");
+          "Index of the rotor's speed in a command; None if it follows no command.");
 
   simulation.def_property_readonly(
       "rotors",

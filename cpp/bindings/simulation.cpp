@@ -16,7 +16,7 @@
 namespace quadcore::bindings {
 namespace {
 
-/// Signals are looked at about this often during a long step().
+/// Interval between checks for signals during a long step().
 constexpr std::chrono::milliseconds between_signals(20);
 
 std::shared_ptr<Guarded> create_simulation(const Built<Model>& model, const Built<World>& world,
@@ -42,13 +42,13 @@ void step(const Self& self, const Given<std::int64_t, step_count>& steps) {
   std::int64_t n = steps.value;
   using Clock = std::chrono::steady_clock;
   const Lock lock(*self, "step()");
-  // A single step is over sooner than the GIL is handed over and back.
+  // A single step takes less time than releasing and reacquiring the GIL.
   if (n == 1) return raising_warnings(*self, [&] { self->step(); });
   do {
     raising_warnings(*self, [&] {
       without_gil([&] {
         const Clock::time_point begin = Clock::now();
-        std::int64_t piece = 1;  // grows, because a step may take a microsecond or a second
+        std::int64_t piece = 1;  // grows, because a step takes between a microsecond and a second
         do {
           piece = std::min(n, 2 * piece);
           self->step(piece);
@@ -60,7 +60,7 @@ void step(const Self& self, const Given<std::int64_t, step_count>& steps) {
   } while (n > 0);
 }
 
-/// A getter of what a step may change.
+/// Return a getter of a value that a step may change.
 template <class Get>
 auto locked(const Get& get) {
   return [get](const Self& self) {
@@ -69,7 +69,8 @@ auto locked(const Get& get) {
   };
 }
 
-/// Lets Python move the vehicle: motion(dt, command, members) gives the state at a step's end.
+/// Let Python move the vehicle: motion(dt, command, members) returns the state at the end of a
+/// step.
 void move_by(const Self& self, const py::function& motion) {
   const Lock lock(*self, "_move_by()");
   self->move_by([motion](double dt, const VectorXd& command, VehicleState& state) {
@@ -78,7 +79,9 @@ void move_by(const Self& self, const py::function& motion) {
       VehicleState moved = to_state(motion(dt, command, copies(state)));
       if (moved.rotor_velocity.size() != state.rotor_velocity.size() ||
           moved.rotor_angle.size() != state.rotor_angle.size()) {
-        throw Error("the motion gave a state of another number of rotors. Give each rotor's.");
+        throw Error(
+            "the motion returned a state with another number of rotors. Return values for each "
+            "rotor.");
       }
       state = std::move(moved);
     } catch (const py::error_already_set& error) {
@@ -161,7 +164,7 @@ Snapshot
             self->restore(*snapshot, Allowed::of(allow));
           },
           py::arg("snapshot"), py::arg("allow"),
-          "Go back to a snapshot; `allow` names what may differ.")
+          "Restore a snapshot; `allow` names the parts that may differ.")
       .def(
           "reset",
           [](const Self& self, const std::optional<std::uint64_t>& seed) {
@@ -169,24 +172,24 @@ Snapshot
             seed ? self->reset(*seed) : self->reset();
           },
           py::arg("seed"),
-          "Go back to the moment of construction, as if made with `seed`; None keeps it.")
+          "Reset to the state after construction with `seed`; None keeps the seed.")
       .def_property_readonly(
           "time", [](const Self& self) { return self->time(); }, "Simulation time, s.")
       .def_property_readonly(
-          "dt", [](const Self& self) { return self->dt(); }, "Length of a step, s.")
+          "dt", [](const Self& self) { return self->dt(); }, "Time step, s.")
       .def_property_readonly(
           "engine", [](const Self& self) { return self->engine_name(); }, "Name of the engine.")
       .def_property_readonly("method", locked([](const Simulation& s) { return s.method(); }),
-                             "How the engine takes its steps, in one line.")
+                             "Integration method of the engine, in one line.")
       .def_property_readonly(
           "model", locked([](const Simulation& s) { return s.model(); }),
-          "The vehicle as the engine flies it, with what rides on its frame now.")
+          "Model as the engine simulates it, including bodies that are attached now.")
       .def_property_readonly(
           "warnings", [](const Self& self) { return self->warnings(); },
-          "What was perhaps not meant, of the model and of this flight, list of str.")
+          "Warnings about the model and this flight, list of str.")
       .def_property_readonly(
           "ignored", [](const Self& self) { return self->ignored(); },
-          "What was left out of model and world at the user's wish, list of str.")
+          "Elements of model and world that the user ignored, list of str.")
       .def_property_readonly(
           "plugins", [](const Self& self) { return &self->plugins(); },
           py::return_value_policy::reference_internal,
@@ -196,28 +199,29 @@ Snapshot
           "Number of rotor joints.")
       .def_property_readonly(
           "rotor_names", [](const Self& self) { return self->rotor_names(); },
-          "Of the rotor joints, in the order of all that is said of rotors, list of str.")
+          "Names of the rotor joints, in the order of all rotor quantities, list of str.")
       .def_property_readonly(
           "command_width", [](const Self& self) { return self->command_width(); },
-          "Numbers of a command. Raises InputError if no plugin takes one.")
+          "Number of values in a command. Raises InputError if no plugin accepts one.")
       .def_property_readonly(
           "mass", locked([](const Simulation& s) { return mass_properties(s.model()).mass; }),
-          "Of the whole vehicle, kg.")
-      .def_property_readonly(
-          "center_of_mass",
-          locked([](const Simulation& s) -> Vector3d { return mass_properties(s.model()).p_FCcm; }),
-          "Of the whole vehicle, from the frame's origin, frame axes, m; shape (3,).")
+          "Mass of the whole vehicle, kg.")
+      .def_property_readonly("center_of_mass", locked([](const Simulation& s) -> Vector3d {
+                               return mass_properties(s.model()).p_FCcm;
+                             }),
+                             "Centre of mass of the whole vehicle relative to the frame's origin, "
+                             "frame axes, m; shape (3,).")
       .def_property_readonly("inertia", locked([](const Simulation& s) {
                                return mass_properties(s.model()).inertia_Ccm_F;
                              }),
-                             "Of the whole vehicle, rotors included, about its centre of mass, "
-                             "frame axes, kg m^2; shape (3, 3).")
+                             "Inertia of the whole vehicle including the rotors, about its centre "
+                             "of mass, frame axes, kg m^2; shape (3, 3).")
       .def_property_readonly(
           "gravity", [](const Self& self) -> Vector3d { return self->world().gravity_W; },
-          "World axes, m/s^2; shape (3,).")
+          "Gravity in world axes, m/s^2; shape (3,).")
       .def_property_readonly(
           "wrench_terms", [](const Self& self) { return self->wrench_terms(); },
-          "Names of the wrenches that a log can have, list of str.")
+          "Names of the wrenches that a log can contain, list of str.")
       .def("_views", &views)
       .def("_move_by", &move_by, py::arg("motion"));
   bind_rotors(m, simulation);
@@ -230,7 +234,7 @@ Snapshot
         for (const EngineInfo& info : engines()) list.emplace_back(info.name, info.summary);
         return list;
       },
-      "Name and summary of every engine, list of pairs of str.");
+      "Return name and summary of every engine, list of pairs of str.");
 }
 
 }  // namespace quadcore::bindings

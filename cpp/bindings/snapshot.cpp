@@ -11,7 +11,7 @@
 namespace quadcore::bindings {
 namespace {
 
-/// Of what a pickled snapshot holds; another quadcore may hold something else.
+/// Version of the pickle format of snapshots, which may differ in another quadcore.
 constexpr int version = 1;
 
 using Row = py::array_t<double, py::array::c_style | py::array::forcecast>;
@@ -87,7 +87,7 @@ std::shared_ptr<Snapshot> read(const py::object& state) {
 }
 
 std::shared_ptr<Snapshot> restored(const py::object& state) {
-  return unpickled("a snapshot", "take", [&state] { return read(state); });
+  return unpickled("the snapshot", "Take", [&state] { return read(state); });
 }
 
 }  // namespace
@@ -95,8 +95,7 @@ std::shared_ptr<Snapshot> restored(const py::object& state) {
 void bind_snapshot(py::module_& m) {
   py::class_<Snapshot, std::shared_ptr<Snapshot>>(
       m, "Snapshot",
-      "Everything that the future of a simulation depends on. Pickled, it holds numbers and texts "
-      "and no path.")
+      "Complete state of a simulation. Its pickle contains numbers and texts but no paths.")
       .def("__repr__",
            [](const Built<Snapshot>& held) {
              return py::str("<Snapshot, {} steps from t = {:g} s>")

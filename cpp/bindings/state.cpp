@@ -11,7 +11,7 @@
 namespace quadcore::bindings {
 namespace {
 
-/// Calls f(name, data, size) for each vector of a state.
+/// Call f(name, data, size) for each vector of a state.
 template <class Function>
 void for_each_vector(const VehicleState& s, const Function& f) {
   f("position", s.position.data(), 3);
@@ -60,7 +60,7 @@ VehicleState to_state(const py::object& object) {
       given = object.attr(name);
     } catch (const py::error_already_set& error) {
       if (!error.matches(PyExc_AttributeError)) throw;
-      throw InputError(std::string("the state has no member ") + name + "; give a State");
+      throw InputError(std::string("the state has no member ") + name + ". Give a State.");
     }
     return numbers(given, dimensions, (std::string("state.") + name).c_str());
   };
@@ -71,8 +71,8 @@ VehicleState to_state(const py::object& object) {
   const auto sized = [&vector](const char* name, Eigen::Index size) -> VectorXd {
     VectorXd v = vector(name);
     if (v.size() != size) {
-      throw InputError(std::string("state.") + name + " holds " + std::to_string(v.size()) +
-                       " numbers; give " + std::to_string(size));
+      throw InputError(std::string("state.") + name + " has " + std::to_string(v.size()) +
+                       " numbers. Give " + std::to_string(size) + ".");
     }
     return v;
   };

@@ -4,18 +4,18 @@
 #include "quadcore/state.hpp"
 
 /// \file
-/// A vehicle's state on its way between Python and the core.
+/// Conversion of a vehicle's state between Python and the core.
 
 namespace quadcore::bindings {
 
-/// Read-only arrays onto the simulation's own state, and a function that copies all of it at one
-/// moment. They own a share of the simulation, not of its Python object, so that no reference cycle
-/// keeps it alive.
+/// Bind read-only arrays that view the simulation's state, and a function that copies the whole
+/// state. They own the C++ simulation, not its Python object, so that no reference cycle keeps it
+/// alive.
 py::dict views(const Self& self);
-/// The members of a state by name, as arrays of their own.
+/// Return the members of a state by name as separate arrays.
 py::dict copies(const VehicleState& state);
-/// Reads the members of an object that has those of a state. Throws InputError if one is missing or
-/// of another size.
+/// Read a state from an object with the same members. Throws InputError if one is missing or has
+/// another size.
 VehicleState to_state(const py::object& object);
 
 }  // namespace quadcore::bindings

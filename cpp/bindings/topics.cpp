@@ -9,11 +9,11 @@
 namespace quadcore::bindings {
 namespace {
 
-/// What plugins have declared of a topic.
+/// Declaration of a topic by the plugins.
 struct TopicInfo {
   std::string name, kind, meaning;
   std::vector<std::string> fields;
-  std::optional<std::string> writer;  ///< nothing for the caller
+  std::optional<std::string> writer;  ///< empty for the caller
   std::vector<std::string> readers;
 };
 
@@ -63,25 +63,25 @@ void publish(const Self& self, const Given<std::string, topic_name>& given,
 }  // namespace
 
 void bind_topics(py::module_& m, py::class_<Guarded, std::shared_ptr<Guarded>>& simulation) {
-  py::class_<TopicInfo>(m, "TopicInfo", "What plugins have declared of a topic.")
+  py::class_<TopicInfo>(m, "TopicInfo", "Declaration of a topic by the plugins.")
       .def("__repr__",
            [](const TopicInfo& t) {
              return py::str("<TopicInfo '{}', {}>").format(text(t.name), text(t.kind));
            })
-      .def_readonly("name", &TopicInfo::name, "Of the topic.")
+      .def_readonly("name", &TopicInfo::name, "Name of the topic.")
       .def_property_readonly(
           "kind", [](const TopicInfo& t) { return text(t.kind); },
-          "Of its messages, such as \"odometry\".")
+          "Kind of its messages, such as \"odometry\".")
       .def_property_readonly(
           "meaning", [](const TopicInfo& t) { return text(t.meaning); },
-          "What the numbers are, with their units.")
+          "Meaning of the values, with their units.")
       .def_readonly("fields", &TopicInfo::fields,
-                    "Names of a message's numbers, in order, list of str.")
+                    "Names of the values of a message, in order, list of str.")
       .def_readonly("writer", &TopicInfo::writer,
-                    "Plugin that publishes on it; None: the caller may.")
-      .def_readonly("readers", &TopicInfo::readers, "Plugins that take it, list of str.");
+                    "Plugin that publishes the topic; None if the caller may publish it.")
+      .def_readonly("readers", &TopicInfo::readers, "Plugins that read the topic, list of str.");
   m.def("odometry_parts", &messages::parts_of<messages::Odometry>,
-        "Quantities of an odometry message and the fields that each is.");
+        "Quantities of an odometry message and the fields of each.");
   simulation.attr("command_topic") = Simulation::command_topic;
   simulation
       .def("topic", &topic, py::arg("name"), R"(Give the message that stands on a topic.
@@ -101,9 +101,9 @@ Raises
 ------
 InputError
     There is no such topic.)")
-      .def(
-          "publish", &publish, py::arg("topic"), py::arg("values"),
-          "Publish a message on a topic that no plugin writes; numbers in the order of its fields.")
+      .def("publish", &publish, py::arg("topic"), py::arg("values"),
+           "Publish a message on a topic that no plugin writes, with values in the order of its "
+           "fields.")
       .def_property_readonly("topics", &topics, "Every topic by name, dict of str to TopicInfo.");
 }
 

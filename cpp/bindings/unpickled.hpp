@@ -7,21 +7,22 @@
 
 namespace quadcore::bindings {
 
-/// Thrown where what was pickled is of another version.
+/// Thrown for a pickle of another version.
 struct OtherVersion {};
 
-/// Reads what was pickled of a thing, which somebody may have damaged: whatever is wrong with it is
-/// an InputError of one line, with what to do to have it anew.
+/// Read a pickle, which may be damaged. Every problem becomes an InputError of one line.
+/// \param what  the pickled object, for errors
+/// \param redo  imperative that obtains the object again, such as "Read"
 template <class Read>
-auto unpickled(const std::string& what, const std::string& anew, const Read& read) {
+auto unpickled(const std::string& what, const std::string& redo, const Read& read) {
   try {
     return read();
   } catch (const OtherVersion&) {
-    throw InputError(what + " was pickled by another version of quadcore; " + anew + " it anew");
+    throw InputError(what + " was pickled by another version of quadcore. " + redo + " it again.");
   } catch (const Error&) {
     throw;
-  } catch (const std::exception&) {  // also Python's own, as pybind11 passes them on
-    throw InputError(what + " that was pickled is damaged; " + anew + " it anew");
+  } catch (const std::exception&) {  // including Python's exceptions, which pybind11 passes on
+    throw InputError(what + " has a damaged pickle. " + redo + " it again.");
   }
 }
 

@@ -17,8 +17,9 @@ struct Lead {
 
 const Settings<Lead>& lead_settings() {
   static const Settings<Lead> all = {
-      {T::flag("lead", "true", "whether the lag of the motors is inverted"), &Lead::lead},
-      {T::number("lead_time", "s", "0.01", "time constant that is left of it").above(0),
+      {T::flag("lead", "true", "whether to compensate the motors' lag"), &Lead::lead},
+      {T::number("lead_time", "s", "0.01", "time constant that remains after the compensation")
+           .above(0),
        &Lead::time},
   };
   return all;
@@ -31,8 +32,8 @@ const std::vector<TagSpec>& Actuation::table() {
   return all;
 }
 
-Actuation::Actuation(const Belief& belief, const Values& values)
-    : rotors_(belief.rotors), allocation_(belief) {
+Actuation::Actuation(const ModelledVehicle& model, const Values& values)
+    : rotors_(model.rotors), allocation_(model) {
   Lead lead{};
   configure(lead, lead_settings(), values);
   leads_ = lead.lead;
@@ -40,12 +41,12 @@ Actuation::Actuation(const Belief& belief, const Values& values)
 }
 
 Actuation::Now Actuation::now(const double* state, double* scratch) const {
-  const double* const believed = state + kRotors;
+  const double* const modelled = state + kRotors;
   Now now{state[kBegun] == 0, saturated(state), {}, Vector3d::Zero()};
   for (std::size_t i = 0; i < rotors_.size(); ++i) {
-    const BelievedRotor& rotor = rotors_[i];
-    now.h_F += rotor.momentum * rotor.spin * believed[i] * rotor.axis_F;
-    scratch[i] = believed[i] * believed[i];
+    const ModelledRotor& rotor = rotors_[i];
+    now.h_F += rotor.momentum * rotor.spin * modelled[i] * rotor.axis_F;
+    scratch[i] = modelled[i] * modelled[i];
   }
   now.exerted = allocation_.exerted(scratch, lost(state));
   return now;
@@ -60,35 +61,36 @@ void Actuation::command(double period, const Demand& demand, double* state, doub
   state[kSaturated] = met && reached ? 0 : 1;
 }
 
-bool Actuation::keeps_yaw(double thrust, const double* state) const {
+bool Actuation::can_control_yaw(double thrust, const double* state) const {
   const double* const lost_now = lost(state);
   const bool are_whole =
       std::all_of(lost_now, lost_now + rotors_.size(), [](double share) { return share == 0; });
-  return are_whole || allocation_.keeps_yaw(thrust, lost_now);
+  return are_whole || allocation_.can_control_yaw(thrust, lost_now);
 }
 
-/// Makes commands of wanted speeds and follows what the rotors make of them: speeds that approach a
-/// command with their lag tau, dw/dt = (command - w)/tau, approach the wanted speed with lead_time.
-/// Says whether the commands can be followed.
+/// Turn wanted speeds into commands and update the modelled speeds. Rotors approach a command with
+/// their lag tau, dw/dt = (command - w)/tau; the commands make them approach the wanted speed with
+/// lead_time. Returns whether the commands are within the limits.
 bool Actuation::lead(double period, bool begins, double* state, double* speeds) const {
   constexpr double rounding = 1e-6;  // rad/s
-  double* const believed = state + kRotors;
+  double* const modelled = state + kRotors;
   bool all = true;
   for (std::size_t i = 0; i < rotors_.size(); ++i) {
-    const BelievedRotor& rotor = rotors_[i];
-    if (begins) believed[i] = speeds[i];
+    const ModelledRotor& rotor = rotors_[i];
+    if (begins) modelled[i] = speeds[i];
     if (rotor.lag == 0 || lost(state)[i] == 1) {
-      believed[i] = speeds[i];
+      modelled[i] = speeds[i];
       continue;
     }
-    const double share = 1 - elementary::exp(-period / rotor.lag);  // of the way, in a period
+    const double share =
+        1 - elementary::exp(-period / rotor.lag);  // fraction of the change within a period
     if (leads_ && lead_time_ < rotor.lag) {
       const double wanted_share = 1 - elementary::exp(-period / lead_time_);
-      const double ahead = believed[i] + wanted_share / share * (speeds[i] - believed[i]);
+      const double ahead = modelled[i] + wanted_share / share * (speeds[i] - modelled[i]);
       speeds[i] = std::clamp(ahead, rotor.slowest, rotor.fastest);
       all &= std::abs(speeds[i] - ahead) <= rounding;
     }
-    believed[i] += share * (speeds[i] - believed[i]);
+    modelled[i] += share * (speeds[i] - modelled[i]);
   }
   return all;
 }

@@ -14,10 +14,10 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Keeps the sums below finite: a flight counts as diverged at this speed.
+/// Keeps the sums below finite; a flight counts as diverged at this speed.
 constexpr double largest_square = Simulation::max_rate * Simulation::max_rate;
 
-/// What is orthogonal to three vectors of four numbers.
+/// Return a vector orthogonal to three vectors of four numbers.
 Eigen::Vector4d orthogonal(const Eigen::Matrix<double, 4, 3>& vectors) {
   Eigen::Vector4d normal;
   for (int i = 0; i < 4; ++i) {
@@ -28,7 +28,7 @@ Eigen::Vector4d orthogonal(const Eigen::Matrix<double, 4, 3>& vectors) {
   return normal;
 }
 
-/// Of numbers for each rotor, with what is left of the rotors.
+/// Return numbers for each rotor, multiplied by the remaining fractions.
 double left_of(const VectorXd& numbers, const double* lost) {
   double sum = 0;
   for (Eigen::Index i = 0; i < numbers.size(); ++i) sum += (1 - lost[i]) * numbers[i];
@@ -37,11 +37,11 @@ double left_of(const VectorXd& numbers, const double* lost) {
 
 }  // namespace
 
-Allocation::Allocation(const Belief& belief) {
-  const Eigen::Index n = belief.effectiveness.cols();
-  effect_ = belief.effectiveness.bottomRows<4>();  // z, then the torques
+Allocation::Allocation(const ModelledVehicle& model) {
+  const Eigen::Index n = model.effectiveness.cols();
+  effect_ = model.effectiveness.bottomRows<4>();  // z, then the torques
   inverse_.resize(n, 4);
-  // In units in which thrust and torques are of one size, so that the rank can be told.
+  // Scaled such that thrust and torques have the same magnitude, which makes the rank well defined.
   size_ = effect_.rowwise().norm();
   const bool spans = n >= 4 && (size_.array() > 0).all();
   if (spans) {
@@ -53,7 +53,7 @@ Allocation::Allocation(const Belief& belief) {
       least_.resize(n);
       most_.resize(n);
       for (Eigen::Index i = 0; i < n; ++i) {
-        const BelievedRotor& rotor = belief.rotors[static_cast<std::size_t>(i)];
+        const ModelledRotor& rotor = model.rotors[static_cast<std::size_t>(i)];
         least_[i] = rotor.slowest * rotor.slowest;
         most_[i] = std::min(rotor.fastest * rotor.fastest, largest_square);
       }
@@ -63,8 +63,8 @@ Allocation::Allocation(const Belief& belief) {
     }
   }
   throw InputError(
-      "the rotors do not exert thrust and torques about all axes independently of each other; add "
-      "rotors or force laws, or give the spins that turn them against each other");
+      "the rotors cannot produce thrust and the torques about all axes independently. Add rotors "
+      "or force laws, or give spins with opposite signs.");
 }
 
 void Allocation::find_facets() {
@@ -81,7 +81,7 @@ void Allocation::find_facets() {
       }
     }
   }
-  for (int i = 0; n == 4 && i < n; ++i) {  // each rotor's own limits
+  for (int i = 0; n == 4 && i < n; ++i) {  // limits of each rotor
     facets_.push_back(
         {inverse_.row(i), least_[i] * VectorXd::Unit(n, i), most_[i] * VectorXd::Unit(n, i)});
   }
@@ -89,13 +89,13 @@ void Allocation::find_facets() {
 
 void Allocation::add_facets(std::vector<Facets>& facets, Eigen::Vector4d scaled_normal) const {
   constexpr double parallel = 1e-6, rounding = 1e-10;
-  if (scaled_normal.norm() < parallel) return;  // they span no facet
+  if (scaled_normal.norm() < parallel) return;  // the rotors span no facet
   scaled_normal.normalize();
   scaled_normal = (scaled_normal.array().abs() < rounding).select(0, scaled_normal);
   Facets made{scaled_normal.cwiseQuotient(size_), nothing_, nothing_};
   for (Eigen::Index l = 0; l < scaled_.cols(); ++l) {
     const double along = scaled_normal.dot(scaled_.col(l));
-    if (std::abs(along) < rounding * scaled_.col(l).norm()) continue;  // l is in the plane
+    if (std::abs(along) < rounding * scaled_.col(l).norm()) continue;  // l lies in the plane
     made.least[l] = along * (along > 0 ? least_[l] : most_[l]);
     made.most[l] = along * (along > 0 ? most_[l] : least_[l]);
   }
@@ -112,8 +112,8 @@ bool Allocation::allocate(const Demand& demand, double* squares, const double* l
     }
     return true;
   };
-  // Columns, not a product with a matrix, whose order of summation would depend on where the
-  // caller's numbers lie in memory.
+  // By columns, because the summation order of a matrix product depends on the memory alignment of
+  // the caller's numbers.
   u = demand.torque_F.x() * inverse_.col(1) + demand.torque_F.y() * inverse_.col(2);
   u += demand.torque_F.z() * inverse_.col(3) + demand.thrust * inverse_.col(0);
   bool met = fits();
@@ -150,14 +150,14 @@ bool Allocation::is_within(const Eigen::Vector4d& demand, const double* lost) co
   });
 }
 
-/// What the rotors exert is a zonotope, see the class. The demands of a share of the roll and pitch
-/// torques with any thrust are a plane through it. There two parallel facets are two parallel
-/// lines, one of which bounds the thrust from below, the other from above: all of them leave a
-/// convex polygon. Its largest share is at a corner, where a lower line rises above an upper one.
-/// Few rotors have few facets, so every pair of lines is tried.
+/// The attainable demands form a zonotope, see the class. Demands of a fraction of the roll and
+/// pitch torques with any thrust form a plane through it. In this plane, two parallel facets are
+/// two parallel lines that bound the thrust from below and above; together they enclose a convex
+/// polygon. Its maximum fraction is at a corner, where a lower line rises above an upper one. There
+/// are few facets, so every pair of lines is tried.
 Allocation::Share Allocation::fit(const Demand& demand, const double* lost, bool at_any_yaw) const {
   struct Line {
-    double thrust, slope;  // at a share of 0; change with the share
+    double thrust, slope;  // at a fraction of 0; change with the fraction
     double at(double share) const { return thrust + share * slope; }
   };
   const std::vector<Facets>& facets = at_any_yaw ? level_ : facets_;
@@ -171,7 +171,7 @@ Allocation::Share Allocation::fit(const Demand& demand, const double* lost, bool
   };
   Share share{1, 0, 0};
   for (const Facets& pair : facets) {
-    if (pair.normal[0] == 0) {  // the same at any thrust
+    if (pair.normal[0] == 0) {  // independent of the thrust
       const double torque = along_normal(pair);
       const VectorXd& limit = torque > 0 ? pair.most : pair.least;
       if (torque != 0) {
@@ -194,7 +194,7 @@ Allocation::Share Allocation::fit(const Demand& demand, const double* lost, bool
     least = std::max(least, bound(pair, false).at(share.roll_pitch));
     most = std::min(most, bound(pair, true).at(share.roll_pitch));
   }
-  // At a corner the two bounds are equal but for rounding.
+  // At a corner the two bounds are equal up to rounding.
   share.thrust = std::max(least, std::min(demand.thrust, most));
   const auto [low, high] = yaw_beside(share.thrust, share.roll_pitch * demand.torque_F.x(),
                                       share.roll_pitch * demand.torque_F.y(), lost);
@@ -216,21 +216,21 @@ Allocation::Interval Allocation::yaw_beside(double thrust, double roll, double p
   return yaw;
 }
 
-bool Allocation::keeps_yaw(double thrust, const double* lost) const {
-  constexpr double share = 0.01;  // of what turns the one way that must turn the other
+bool Allocation::can_control_yaw(double thrust, const double* lost) const {
+  constexpr double share = 0.01;  // minimum torque in one direction relative to the other
   const auto [least, most] = yaw_beside(thrust, 0, 0, lost);
   return std::min(-least, most) > share * std::max(-least, most);
 }
 
 /// The least squares are clamp(B^T x) for the x that maximises a concave function (the dual), whose
-/// gradient is what is missing of the demand: Newton's method with a line search. A touch of `give`
-/// keeps it well posed where too few rotors are off their limits.
+/// gradient is the unmet part of the demand. It is found by Newton's method with a line search. A
+/// small `give` keeps the problem well posed if too few rotors are off their limits.
 void Allocation::redistribute(const Eigen::Vector4d& demand, double* squares,
                               const double* lost) const {
   constexpr double give = 1e-14, close = 1e-12;
   constexpr int rounds = 60, halvings = 60;
   const Eigen::Vector4d wanted = demand.cwiseQuotient(size_);
-  /// What is missing at x, whose squares are written down.
+  /// Return the unmet part of the demand at x and store the squares.
   const auto missing = [&](const Eigen::Vector4d& x) {
     Eigen::Vector4d rest = wanted - give * x;
     for (Eigen::Index i = 0; i < scaled_.cols(); ++i) {

@@ -2,16 +2,16 @@
 
 #include <optional>
 
+#include "quadcore/control/control_law.hpp"
 #include "quadcore/control/flat_state.hpp"
-#include "quadcore/control/law.hpp"
 
 namespace quadcore::control {
 
-/// The cascade of thesis chapter 2: an outer loop on the position commands roll, pitch and thrust,
-/// an inner one on roll, pitch and yaw the torques, with feedback linearisation. Without
-/// compensation it is eqs. (2.43)-(2.51), with it (2.52)-(2.57); with integrals the PID of
-/// section 6.2.
-class Cascade final : public Law {
+/// The cascaded controller of thesis chapter 2 with feedback linearisation. An outer position loop
+/// commands roll, pitch and thrust; an inner loop on roll, pitch and yaw commands the torques.
+/// Without compensation these are eqs. (2.43)-(2.51), with it (2.52)-(2.57), and with integrals the
+/// PID of section 6.2.
+class Cascade final : public ControlLaw {
  public:
   struct Gains {
     double scale;
@@ -22,19 +22,19 @@ class Cascade final : public Law {
   static const Settings<Gains>& settings();
   static constexpr std::size_t memory_size = 6;
 
-  Cascade(const Belief& belief, const Gains& gains);
+  Cascade(const ModelledVehicle& model, const Gains& gains);
 
-  Demand demand(const Instant& instant, double* memory) const override;
+  Demand demand(const LawInput& input, double* memory) const override;
 
  private:
-  /// Integrals of the errors of position and angles.
+  /// Integrals of the position and angle errors.
   enum : std::size_t { kPosition, kAngles = 3 };
 
-  Vector3d acceleration(const Instant& instant, double* memory) const;
-  Vector3d torque(const Instant& instant, const std::optional<FlatState>& flat, const Vector3d& rpy,
+  Vector3d acceleration(const LawInput& input, double* memory) const;
+  Vector3d torque(const LawInput& input, const std::optional<FlatState>& flat, const Vector3d& rpy,
                   const Vector3d& wanted_rpy, double* memory) const;
 
-  Belief belief_;
+  ModelledVehicle model_;
   Gains gains_;
   Vector3d outer_p_, outer_i_, outer_d_, inner_p_, inner_i_, inner_d_;
 };

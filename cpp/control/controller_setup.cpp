@@ -2,8 +2,8 @@
 
 #include <utility>
 
+#include "quadcore/control/modelled_vehicle_file.hpp"
 #include "quadcore/control/rows_file.hpp"
-#include "quadcore/control/second_vehicle.hpp"
 #include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
 #include "tags.hpp"
@@ -12,7 +12,7 @@ namespace quadcore::control {
 namespace {
 
 using T = TagSpec;
-using Tables = std::vector<std::pair<std::string, std::vector<TagSpec>>>;  ///< by who has them
+using Tables = std::vector<std::pair<std::string, std::vector<TagSpec>>>;  ///< by name of the owner
 
 std::vector<std::string> names_of(const Tables& tables) {
   std::vector<std::string> names;
@@ -20,16 +20,17 @@ std::vector<std::string> names_of(const Tables& tables) {
   return names;
 }
 
-const Tables& of_laws() {
+const Tables& controller_tables() {
   static const Tables tables = [] {
     Tables all;
-    for (const LawInfo& law : laws()) all.emplace_back(law.name, Controller::table(law.name));
+    for (const ControllerInfo& law : list_controllers())
+      all.emplace_back(law.name, Controller::table(law.name));
     return all;
   }();
   return tables;
 }
 
-const Tables& of_references() {
+const Tables& reference_tables() {
   static const Tables tables = [] {
     Tables all;
     for (const ReferenceInfo& info : references()) {
@@ -48,28 +49,28 @@ std::vector<TagSpec> with(std::vector<TagSpec> tags, const std::vector<TagSpec>&
 std::vector<TagSpec> timing_tags() {
   std::vector<TagSpec> tags;
   for (const TagSpec& spec : timing_table()) {
-    tags.push_back(spec.or_absent("that of the gains, or " + spec.fallback));
+    tags.push_back(spec.or_absent("the value of the gains file, else " + spec.fallback));
   }
   return tags;
 }
 
-/// What the tags ask for; what they leave open is that of the gains file.
-Gains chosen(const Parameters& tags) {
+/// Return the gains of the tags, completed with those of the gains file.
+Gains choose_gains(const Parameters& tags) {
   Gains gains;
   if (tags.has("gains")) {
     gains = read_gains(tags.file("gains"));
     if (tags.has("law") && tags.choice("law") != gains.law) {
-      throw InputError("<law> is " + tags.choice("law") + ", but the gains of " +
-                       tags.text("gains") + " are those of " + gains.law + "; leave <law> out");
+      throw InputError("<law> is " + tags.choice("law") + ", but the gains file " +
+                       tags.text("gains") + " is for " + gains.law + ". Remove <law>.");
     }
   } else if (tags.has("law")) {
     gains.law = tags.choice("law");
   } else {
-    throw InputError("no law is named; write <law> or <gains>");
+    throw InputError("no controller is named. Write <law> or <gains>.");
   }
   if (tags.has("rate")) gains.rate = tags.number("rate");
   if (tags.has("delay")) gains.delay = tags.number("delay");
-  gains.values = completed(values_of(tags, tags_of(of_laws())), gains.values);
+  gains.values = complete(values_of(tags, merge_tags(controller_tables())), gains.values);
   return gains;
 }
 
@@ -77,49 +78,50 @@ Gains chosen(const Parameters& tags) {
 
 const std::vector<TagSpec>& ControllerSetup::tags() {
   static const std::vector<TagSpec> all = with(
-      {T::choice("law", names_of(of_laws()), "the law that is flown")
-           .or_absent("that of the gains"),
-       T::file("gains", "a gains file; what other tags set wins")
-           .or_absent("every parameter at its default"),
+      {T::choice("law", names_of(controller_tables()), "the controller")
+           .or_absent("the controller of the gains file"),
+       T::file("gains", "a gains file; other tags override it")
+           .or_absent("default values of all parameters"),
        T::file("belief",
-               "URDF of the vehicle that the law believes to fly; of its plugins only "
-               "what exerts forces is asked")
-           .or_absent("what flies"),
-       T::numbers("spins", "", "", "1 or -1: the sense in which each rotor turns about its axis")
-           .or_absent("neighbours around the vehicle turn against each other"),
+               "URDF of the vehicle that the controller models; only its plugins that exert forces "
+               "are used")
+           .or_absent("the simulated vehicle"),
+       T::numbers("spins", "", "", "direction of rotation of each rotor about its axis, 1 or -1")
+           .or_absent("alternating around the vehicle"),
        T::choice("twistFrame", {"world", "body"}, "axes of the odometry's linear velocity")
            .agreed()},
-      with(timing_tags(), tags_of(of_laws())));
+      with(timing_tags(), merge_tags(controller_tables())));
   return all;
 }
 
 ControllerSetup::ControllerSetup(const Parameters& parameters)
-    : gains(chosen(parameters)),
+    : gains(choose_gains(parameters)),
       spins(parameters.numbers("spins")),
-      belief(parameters.file("belief")),
+      model_path(parameters.file("belief")),
       in_body(parameters.choice("twistFrame") == "body") {}
 
-VehicleDescription ControllerSetup::believed(const VehicleDescription& flown) const {
-  return belief.empty() ? flown : second_vehicle(belief, flown);
+VehicleDescription ControllerSetup::describe_model(const VehicleDescription& flown) const {
+  return model_path.empty() ? flown : read_modelled_vehicle(model_path, flown);
 }
 
 const std::vector<TagSpec>& reference_tags() {
   static const std::vector<TagSpec> all = [] {
-    std::vector<std::string> of_rows;
+    std::vector<std::string> with_rows;
     for (const ReferenceInfo& info : references()) {
-      if (info.takes_rows) of_rows.push_back(info.name);
+      if (info.takes_rows) with_rows.push_back(info.name);
     }
-    return with({T::choice("shape", names_of(of_references()), "where the vehicle is to be"),
-                 T::file("rows", "of " + joined(of_rows) + ": times and places, .csv or .yaml")
-                     .or_absent("none, for the other shapes")},
-                tags_of(of_references()));
+    return with({T::choice("shape", names_of(reference_tables()), "shape of the reference"),
+                 T::file("rows", "for " + joined(with_rows) +
+                                     ": file of times and positions, .csv or .yaml")
+                     .or_absent("none; for the other shapes")},
+                merge_tags(reference_tables()));
   }();
   return all;
 }
 
 std::unique_ptr<ReferenceShape> reference_of(const Parameters& parameters, const Model& model) {
   const std::string& name = parameters.choice("shape");
-  const Values values = values_of(parameters, tags_of(of_references()));
+  const Values values = values_of(parameters, merge_tags(reference_tables()));
   return make_reference(name, on_vehicle(name, values, model),
                         parameters.has("rows") ? read_rows(parameters.file("rows")) : Rows());
 }

@@ -9,25 +9,25 @@
 #include "schedule.hpp"
 
 /// \file
-/// Controllers and references as tags tell of them: those of the plugins, and the parameters of the
-/// ROS node.
+/// Controllers and references defined by tags: those of the plugins, and the parameters of the ROS
+/// node.
 
 namespace quadcore QUADCORE_EXPORT {
 namespace control {
 
-/// A law with its parameters, and when it is called.
+/// A controller with its parameters and its timing.
 struct ControllerSetup {
   static const std::vector<TagSpec>& tags();
 
   explicit ControllerSetup(const Parameters& parameters);
 
-  /// What the law believes to fly.
-  VehicleDescription believed(const VehicleDescription& flown) const;
+  /// Return the vehicle that the controller models.
+  VehicleDescription describe_model(const VehicleDescription& flown) const;
   Controller controller(const VehicleDescription& flown) const {
-    return {gains.law, believed(flown), gains.values, spins};
+    return {gains.law, describe_model(flown), gains.values, spins};
   }
   Schedule schedule(std::size_t rotors) const { return {gains.rate, gains.delay, rotors}; }
-  /// The odometry with its velocity in W.
+  /// Return the odometry with its velocity in W.
   Odometry in_world(Odometry now) const {
     if (in_body) now.linear_velocity = now.orientation * now.linear_velocity;
     return now;
@@ -35,13 +35,13 @@ struct ControllerSetup {
 
   Gains gains;
   std::vector<double> spins;
-  std::string belief;  ///< path of the vehicle that is believed to fly; "": what flies
-  bool in_body;        ///< whether the odometry's velocity is along the axes of F
+  std::string model_path;  ///< path of the modelled vehicle; "": the simulated vehicle
+  bool in_body;            ///< whether the odometry's velocity is in axes of F
 };
 
-/// The tags of a shape.
+/// Return the tags of all references.
 const std::vector<TagSpec>& reference_tags();
-/// What they are set to, for a vehicle.
+/// Create the reference that the tags define, for a vehicle.
 std::unique_ptr<ReferenceShape> reference_of(const Parameters& parameters, const Model& model);
 
 }  // namespace control

@@ -7,7 +7,7 @@
 
 namespace quadcore::control {
 
-/// W of thesis eq. (2.9): w_WF_F = W d(rpy)/dt, and its time derivative.
+/// W of thesis eq. (2.9), w_WF_F = W d(rpy)/dt, and its time derivative.
 struct EulerRates {
   Matrix3d W, dW;
 };
@@ -27,7 +27,8 @@ inline EulerRates euler_rates(const Vector3d& rpy, const Vector3d& rates) {
   return e;
 }
 
-/// d(rpy)/dt of a frame that turns with w_WF_F; infinite or NaN at a pitch of 90 degrees.
+/// Return d(rpy)/dt of a frame with angular velocity w_WF_F; infinite or NaN at a pitch of 90
+/// degrees.
 inline Vector3d rates_of(const Vector3d& rpy, const Vector3d& w_WF_F) {
   const auto [s_roll, c_roll] = elementary::sincos(rpy.x());
   const auto [s_pitch, c_pitch] = elementary::sincos(rpy.y());
@@ -36,7 +37,7 @@ inline Vector3d rates_of(const Vector3d& rpy, const Vector3d& w_WF_F) {
           across / c_pitch};
 }
 
-/// The angle in [-pi, pi] that differs by whole turns.
-inline double wrapped(double angle) { return std::remainder(angle, 2 * M_PI); }
+/// Return the equivalent angle in [-pi, pi].
+inline double wrap_angle(double angle) { return std::remainder(angle, 2 * M_PI); }
 
 }  // namespace quadcore::control

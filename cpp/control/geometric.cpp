@@ -7,12 +7,11 @@ const Settings<Geometric::Gains>& Geometric::settings() {
   return all;
 }
 
-Demand Geometric::demand(const Instant& instant, double* memory) const {
-  const std::optional<FlatState> flat = tracking_.fed_forward(instant);
-  const Vector3d f_W = tracking_.force_W(instant, flat, tracking_.acceleration(instant, memory));
-  const Vector3d z_W = instant.now.orientation * Vector3d::UnitZ();
-  return {f_W.dot(z_W),
-          tracking_.torque(instant, tracking_.angular_acceleration(instant, flat, f_W))};
+Demand Geometric::demand(const LawInput& input, double* memory) const {
+  const std::optional<FlatState> flat = tracking_.fed_forward(input);
+  const Vector3d f_W = tracking_.force_W(input, flat, tracking_.acceleration(input, memory));
+  const Vector3d z_W = input.now.orientation * Vector3d::UnitZ();
+  return {f_W.dot(z_W), tracking_.torque(input, tracking_.angular_acceleration(input, flat, f_W))};
 }
 
 }  // namespace quadcore::control

@@ -4,17 +4,17 @@
 
 namespace quadcore::control {
 
-/// Tracking control on SE(3) (Lee, Leok, McClamroch, CDC 2010), with the error of the attitude as a
-/// quaternion, and with what the reference asks for fed forward.
-class Geometric final : public Law {
+/// Tracking control on SE(3) (Lee, Leok, McClamroch, CDC 2010) with a quaternion attitude error and
+/// feed-forward of the reference.
+class Geometric final : public ControlLaw {
  public:
   using Gains = TrackingGains;
   static const Settings<Gains>& settings();
 
-  Geometric(const Belief& belief, const Gains& gains) : tracking_(belief, gains) {}
+  Geometric(const ModelledVehicle& model, const Gains& gains) : tracking_(model, gains) {}
 
   static constexpr std::size_t memory_size = 3;
-  Demand demand(const Instant& instant, double* memory) const override;
+  Demand demand(const LawInput& input, double* memory) const override;
 
  private:
   Tracking tracking_;

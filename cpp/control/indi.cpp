@@ -7,16 +7,16 @@
 namespace quadcore::control {
 namespace {
 
-/// What the model says of force, roll and pitch is measured here.
+/// Force, roll and pitch are measured here instead of modelled.
 Settings<Indi::Gains> of_what_is_measured(Settings<Indi::Gains> settings) {
   for (Setting<Indi::Gains>& setting : settings) {
     std::string& meaning = setting.spec.meaning;
     if (setting.spec.name == "drag") {
       meaning =
-          "makes up for the believed torque of the air about z, and bends the reference's "
-          "flat state; the rest is measured";
+          "compensates the modelled aerodynamic torque about z and adjusts the reference's flat "
+          "state; all other effects are measured";
     } else if (setting.spec.name == "gyroscopic") {
-      meaning = "makes up for the rotors' gyroscopic torque about z; the rest is measured";
+      meaning = "compensates the rotors' gyroscopic torque about z; the other axes are measured";
     }
   }
   return settings;
@@ -28,49 +28,50 @@ const Settings<Indi::Gains>& Indi::settings() {
   static const Settings<Gains> all = of_what_is_measured(with_tracking<Gains>(
       {{TagSpec::number(
             "filter", "rad/s", "40",
-            "bandwidth up to which accelerations and what the rotors exert are compared")
+            "cut-off frequency of the filters on the accelerations and the rotors' wrench")
             .above(0),
         &Gains::filter}}));
   return all;
 }
 
-Demand Indi::demand(const Instant& instant, double* memory) const {
-  const Belief& belief = tracking_.belief();
-  const Odometry& now = instant.now;
+Demand Indi::demand(const LawInput& input, double* memory) const {
+  const ModelledVehicle& model = tracking_.model();
+  const Odometry& now = input.now;
   const Vector3d z_W = now.orientation * Vector3d::UnitZ();
-  const std::optional<FlatState> flat = tracking_.fed_forward(instant);
-  const Vector3d a_W = tracking_.acceleration(instant, memory + kIntegral);
+  const std::optional<FlatState> flat = tracking_.fed_forward(input);
+  const Vector3d a_W = tracking_.acceleration(input, memory + kIntegral);
   const auto filtered = [memory](std::size_t at) { return Eigen::Map<Vector3d>(memory + at); };
 
-  const double share = 1 - elementary::exp(-filter_ * instant.period);
-  if (instant.begins) {  // nothing was measured yet: as the model has it, accelerations included
-    const Vector3d f_W = tracking_.force_W(instant, flat, a_W);
-    const Vector3d dw_F = tracking_.angular_acceleration(instant, flat, f_W);
-    const Demand demand{f_W.dot(z_W), tracking_.torque(instant, dw_F)};
-    const double behind = instant.period * (1 / share - 1);  // a filter is that of a ramp
+  const double share = 1 - elementary::exp(-filter_ * input.period);
+  if (input.begins) {  // start with modelled values, including the accelerations, before the first
+                       // measurement
+    const Vector3d f_W = tracking_.force_W(input, flat, a_W);
+    const Vector3d dw_F = tracking_.angular_acceleration(input, flat, f_W);
+    const Demand demand{f_W.dot(z_W), tracking_.torque(input, dw_F)};
+    const double behind = input.period * (1 / share - 1);  // lag of a filter on a ramp
     filtered(kVelocity) = now.linear_velocity - behind * a_W;
     filtered(kRate) = now.angular_velocity - behind * dw_F;
     filtered(kForce) = demand.thrust * z_W;
     filtered(kTorque) = demand.torque_F;
     return demand;
   }
-  // One filter for all, so that what is compared is of one age.
+  // The same filter for all signals, so that the compared values have the same delay.
   const auto follow = [&](std::size_t at, const Vector3d& x) -> Vector3d {
     const Vector3d change = share * (x - filtered(at));
     filtered(at) += change;
-    return change / instant.period;
+    return change / input.period;
   };
   const Vector3d measured_a_W = follow(kVelocity, now.linear_velocity);
   const Vector3d measured_dw_F = follow(kRate, now.angular_velocity);
-  follow(kForce, instant.exerted.thrust * z_W);
-  follow(kTorque, instant.exerted.torque_F);
+  follow(kForce, input.exerted.thrust * z_W);
+  follow(kTorque, input.exerted.torque_F);
 
-  // Both accelerations are those of the origin of F: what the centre of mass has beside them is in
-  // the force already.
-  const Vector3d f_W = filtered(kForce) + belief.mass * (a_W - measured_a_W);
-  const Vector3d dw_F = tracking_.angular_acceleration(instant, flat, f_W);
-  Demand demand{f_W.dot(z_W), tracking_.torque(instant, dw_F)};
-  const Vector3d incremental_F = filtered(kTorque) + belief.inertia_Ccm_F * (dw_F - measured_dw_F);
+  // Both accelerations refer to the origin of F; the force already includes the relative
+  // acceleration of the centre of mass.
+  const Vector3d f_W = filtered(kForce) + model.mass * (a_W - measured_a_W);
+  const Vector3d dw_F = tracking_.angular_acceleration(input, flat, f_W);
+  Demand demand{f_W.dot(z_W), tracking_.torque(input, dw_F)};
+  const Vector3d incremental_F = filtered(kTorque) + model.inertia_Ccm_F * (dw_F - measured_dw_F);
   demand.torque_F.head<2>() = incremental_F.head<2>();
   return demand;
 }

@@ -5,10 +5,10 @@
 namespace quadcore::control {
 
 /// Incremental nonlinear dynamic inversion (Smeur, Chu, de Croon, JGCD 2016; Tal, Karaman, IEEE
-/// TCST 2021): instead of computing what the vehicle needs it adds to what the rotors exert now
-/// what is still missing of the wanted accelerations, which are measured. Yaw, where the rotors'
-/// own spin-up acts first, is left to the model.
-class Indi final : public Law {
+/// TCST 2021). Instead of computing the demand from the model, it adds the difference between
+/// wanted and measured accelerations to the present wrench of the rotors. Yaw uses the model,
+/// because the rotors' acceleration acts on it first.
+class Indi final : public ControlLaw {
  public:
   struct Gains : TrackingGains {
     double filter;
@@ -16,13 +16,13 @@ class Indi final : public Law {
   static const Settings<Gains>& settings();
   static constexpr std::size_t memory_size = 15;
 
-  Indi(const Belief& belief, const Gains& gains)
-      : tracking_(belief, gains), filter_(gains.filter) {}
+  Indi(const ModelledVehicle& model, const Gains& gains)
+      : tracking_(model, gains), filter_(gains.filter) {}
 
-  Demand demand(const Instant& instant, double* memory) const override;
+  Demand demand(const LawInput& input, double* memory) const override;
 
  private:
-  /// The integral of the position's error, then what is filtered.
+  /// The integral of the position error, then the filtered signals.
   enum : std::size_t { kIntegral, kVelocity = 3, kRate = 6, kForce = 9, kTorque = 12 };
 
   Tracking tracking_;

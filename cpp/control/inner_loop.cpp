@@ -26,7 +26,7 @@ const Values& checked(const Values& values) {
 const std::vector<TagSpec>& InnerLoop::table() {
   static const std::vector<TagSpec> all = [] {
     std::vector<TagSpec> table = table_of(attitude_settings());
-    for (const std::vector<TagSpec>& more : {Actuation::table(), Belief::table()}) {
+    for (const std::vector<TagSpec>& more : {Actuation::table(), ModelledVehicle::table()}) {
       table.insert(table.end(), more.begin(), more.end());
     }
     return table;
@@ -36,10 +36,10 @@ const std::vector<TagSpec>& InnerLoop::table() {
 
 InnerLoop::InnerLoop(const VehicleDescription& vehicle, const Values& values,
                      const std::vector<double>& spins)
-    : InnerLoop(Belief::of(vehicle, spins, checked(values)), values) {}
+    : InnerLoop(ModelledVehicle::of(vehicle, spins, checked(values)), values) {}
 
-InnerLoop::InnerLoop(const Belief& belief, const Values& values)
-    : loop_(belief, gains_of(values)), actuation_(belief, values) {}
+InnerLoop::InnerLoop(const ModelledVehicle& model, const Values& values)
+    : loop_(model, gains_of(values)), actuation_(model, values) {}
 
 void InnerLoop::command(double period, const Odometry& now, const AttitudeThrust& wanted,
                         double* state, double* speeds) const {

@@ -31,7 +31,7 @@ inline ScalarJet dot(const Jet& a, const Jet& b) {
   return {a.x.dot(b.x), a.dx.dot(b.x) + a.x.dot(b.dx),
           a.ddx.dot(b.x) + 2 * a.dx.dot(b.dx) + a.x.dot(b.ddx)};
 }
-/// Square root of a positive number.
+/// Return the square root of a positive number.
 inline ScalarJet sqrt(const ScalarJet& s) {
   const double root = std::sqrt(s.x), d_root = s.dx / (2 * root);
   return {root, d_root, (s.ddx / 2 - d_root * d_root) / root};
@@ -41,7 +41,7 @@ inline ScalarJet inverse(const ScalarJet& s) {
   return {i, di, (-s.ddx * i - 2 * s.dx * di) * i};
 }
 inline ScalarJet norm(const Jet& a) { return sqrt(dot(a, a)); }
-/// The unit vector along one that is not zero.
+/// Return the unit vector of a nonzero vector.
 inline Jet unit(const Jet& a) { return inverse(norm(a)) * a; }
 
 }  // namespace quadcore::control

@@ -1,14 +1,14 @@
 #pragma once
 
-#include "quadcore/control/law.hpp"
+#include "quadcore/control/control_law.hpp"
 
 namespace quadcore::control {
 
-/// A linear regulator around the reference's flat state, optimal for the vehicle in hover, which
-/// falls apart into four chains: along x and y integral, position, velocity, tilt, rate; along z
-/// integral, position, velocity; yaw and its rate (Bouabdallah, Noth, Siegwart, IROS 2004, with the
-/// reference's attitude and what it asks for fed forward).
-class Lqr final : public Law {
+/// A linear-quadratic regulator around the reference's flat state, optimal in hover, with
+/// feed-forward of the reference (Bouabdallah, Noth, Siegwart, IROS 2004). The hovering vehicle
+/// separates into four chains: integral, position, velocity, tilt and rate along x and along y;
+/// integral, position and velocity along z; yaw and its rate.
+class Lqr final : public ControlLaw {
  public:
   struct Gains {
     double q_integral, q_position, q_velocity, q_tilt, q_rate, r_tilt;
@@ -19,17 +19,17 @@ class Lqr final : public Law {
   };
   static const Settings<Gains>& settings();
 
-  Lqr(const Belief& belief, const Gains& gains);
+  Lqr(const ModelledVehicle& model, const Gains& gains);
 
   static constexpr std::size_t memory_size = 3;
-  Demand demand(const Instant& instant, double* memory) const override;
+  Demand demand(const LawInput& input, double* memory) const override;
 
  private:
-  Belief belief_;
+  ModelledVehicle model_;
   Gains gains_;
-  Eigen::Matrix<double, 1, 5> level_;   ///< of integral, position, velocity, tilt and rate
-  Eigen::Matrix<double, 1, 3> height_;  ///< of integral, position and velocity
-  Eigen::Matrix<double, 1, 2> yaw_;     ///< of yaw and its rate
+  Eigen::Matrix<double, 1, 5> level_;   ///< gains of integral, position, velocity, tilt and rate
+  Eigen::Matrix<double, 1, 3> height_;  ///< gains of integral, position and velocity
+  Eigen::Matrix<double, 1, 2> yaw_;     ///< gains of yaw and its rate
 };
 
 }  // namespace quadcore::control

@@ -18,14 +18,17 @@ Eigen::RowVectorXd optimal_gain(const Eigen::MatrixXd& A, const Eigen::VectorXd&
   double change = 1;
   for (int round = 0; change > 1e-13 && round < 100; ++round) {
     const Eigen::PartialPivLU<Eigen::MatrixXd> lu(Z);
-    // Scaled by the determinant, so that a few rounds do (Byers, Linear Algebra Appl. 1987).
+    // Scaling by the determinant makes a few iterations sufficient (Byers, Linear Algebra Appl.
+    // 1987).
     const double size = std::abs(lu.determinant());
     const double scale = elementary::exp(-elementary::log(size) / static_cast<double>(2 * n));
     const Eigen::MatrixXd next = (scale * Z + lu.inverse() / scale) / 2;
     change = (next - Z).norm() / next.norm();
     Z = next;
   }
-  if (!(change <= 1e-9)) throw InputError("law 'lqr': no gain comes of these weights; take others");
+  if (!(change <= 1e-9))
+    throw InputError(
+        "controller 'lqr': these weights give no stabilising gain. Use other weights.");
   Eigen::MatrixXd left(2 * n, n), right(2 * n, n);
   left << Z.topRightCorner(n, n), Z.bottomRightCorner(n, n) + one;
   right << Z.topLeftCorner(n, n) + one, Z.bottomLeftCorner(n, n);

@@ -6,12 +6,12 @@ namespace quadcore::control {
 
 RotorHealth::RotorHealth(const VehicleDescription& flown) : joints_(flown.driven()) {}
 
-void RotorHealth::tell(const Topic& health, double time, const Controller& controller,
-                       double* state) const {
+void RotorHealth::update(const Topic& health, double time, const Controller& controller,
+                         double* state) const {
   if (health.count == 0) return;
   check_shares(health, time);
   for (std::size_t i = 0; i < joints_.size(); ++i) {
-    controller.know(i, health.values[joints_[i]], state);
+    controller.set_remaining(i, health.values[joints_[i]], state);
   }
 }
 

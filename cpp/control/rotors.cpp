@@ -9,11 +9,11 @@
 namespace quadcore::control {
 namespace {
 
-/// A torque below this share of the thrust's moment, which it is measured with, counts as zero.
+/// Torques below this fraction of the thrust's moment count as zero.
 constexpr double rounding = 1e-12;
 
-/// By turns, in the order in which the rotors stand around the vehicle: of the two ways that in
-/// which they yaw it more, and if both are equal that in which the first is positive.
+/// Alternate the directions in the order of the rotors around the vehicle. Of the two ways, return
+/// the one with the stronger yaw, or the one with a positive first rotor if they are equal.
 std::vector<double> alternate(const VehicleDescription& vehicle,
                               const std::vector<std::size_t>& joints) {
   const std::size_t n = joints.size();

@@ -8,8 +8,8 @@
 
 namespace quadcore::control {
 
-/// When a controller is asked and when its commands act: at a rate, and after a delay. Immutable;
-/// its state is numbers of its caller, all zero at the beginning.
+/// Timing of a controller: calls at a rate, commands that act after a delay. Immutable; the caller
+/// owns the state, which is all zero at the start.
 class Schedule {
  public:
   Schedule(double rate, double delay, std::size_t rotors)
@@ -20,22 +20,23 @@ class Schedule {
 
   std::size_t state_size() const { return kUnderWay + places_ * place_size(); }
 
-  /// Takes part in a step.
-  /// \param step  since the beginning, whose number is 0; some may be left out
-  /// \param dt    length of a step [s]
-  /// \param ask   called as ask(period, speeds) where a call is due, with the seconds since the
-  ///              last one and until the next
-  /// Returns the speeds of the command that arrives, (rotors,), or null.
+  /// Call the controller if it is due in this step.
+  /// \param step  number of the step, counted from 0; steps may be skipped
+  /// \param dt    time step [s]
+  /// \param ask   called as ask(period, speeds) when due, with the seconds since the last call and
+  /// until
+  ///              the next
+  /// Returns the speeds of the command that takes effect, (rotors,), or null.
   template <class Ask>
   const double* update(double step, double dt, double* state, const Ask& ask) const {
-    // By the count of steps: the sum of their times would slip.
+    // By the number of steps, because a sum of times would drift.
     const double due = std::floor(step * (rate_ * dt) + rounding) + 1;
     if (due > state[kAsked]) {
       state[kAsked] = due;
       double* const order = place(state, state[kSent]);
-      // The first command acts at once, for nothing precedes it.
+      // The first command acts at once, because no other command precedes it.
       order[0] = step + (step > 0 ? std::max(std::ceil(delay_ / dt - rounding), 0.0) : 0);
-      ask(std::max(1 / rate_, dt), order + 1);  // called once a step at most
+      ask(std::max(1 / rate_, dt), order + 1);  // at most one call per step
       state[kSent] += 1;
     }
     const double* arrived = nullptr;
@@ -49,11 +50,11 @@ class Schedule {
   }
 
  private:
-  /// Periods asked plus one, commands sent and commands that arrived; then a ring of commands under
-  /// way, each the step of its arrival and the speeds.
+  /// Number of calls plus one, commands sent and commands that took effect; then a ring buffer of
+  /// pending commands, each with the step of its effect and the speeds.
   enum Memory : std::size_t { kAsked, kSent, kArrived, kUnderWay };
 
-  static constexpr double rounding = 1e-6;  ///< of a period, or of a step
+  static constexpr double rounding = 1e-6;  ///< tolerance as a fraction of a period or a step
 
   std::size_t place_size() const { return 1 + rotors_; }
   double* place(double* state, double count) const {

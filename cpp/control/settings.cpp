@@ -10,7 +10,7 @@
 namespace quadcore::control {
 namespace {
 
-/// In as few digits as read back exactly.
+/// Format a number with the fewest digits that read back exactly.
 std::string written(double value) {
   std::string shortest;
   for (int digits = 1; digits <= 17; ++digits) {
@@ -40,13 +40,13 @@ void check_values(const std::string& who, const std::vector<TagSpec>& table, con
     if (row == table.end()) {
       std::vector<std::string> names;
       for (const TagSpec& spec : table) names.push_back(spec.name);
-      throw InputError(who + " has no parameter '" + name + "'" + did_you_mean(name, names) +
-                       "; it knows " + joined(names));
+      throw InputError(who + " has no parameter '" + name + "'." + suggest(name, names) +
+                       " Choose one of " + joined(names) + ".");
     }
     if (!is_in_range(*row, value)) {
       throw InputError(
-          who + ": '" + name + "' is " + written(value) + "; give " +
-          (row->kind == TagKind::flag ? "true or false" : "a finite number " + row->range()));
+          who + ": '" + name + "' is " + written(value) + ". Give " +
+          (row->kind == TagKind::flag ? "true or false" : "a finite number " + row->range()) + ".");
     }
   }
 }
@@ -66,7 +66,7 @@ std::vector<TagSpec> with_defaults(std::vector<TagSpec> table, const Values& def
   return table;
 }
 
-Values in_table(const std::vector<TagSpec>& table, const Values& values) {
+Values select_values(const std::vector<TagSpec>& table, const Values& values) {
   Values known;
   for (const TagSpec& spec : table) {
     const auto given = values.find(spec.name);
@@ -75,7 +75,7 @@ Values in_table(const std::vector<TagSpec>& table, const Values& values) {
   return known;
 }
 
-Values completed(Values values, const Values& others) {
+Values complete(Values values, const Values& others) {
   values.insert(others.begin(), others.end());
   return values;
 }

@@ -10,12 +10,12 @@
 #include "quadcore/text.hpp"
 
 /// \file
-/// The tables of several laws or shapes as the tags of one plugin.
+/// Merges the tables of several controllers or references into the tags of one plugin.
 
 namespace quadcore::control {
 
-/// What is said of a parameter, and of whose.
-struct Said {
+/// Texts on a parameter with the names of the controllers or references that they apply to.
+struct MergedText {
   std::vector<std::pair<std::string, std::vector<std::string>>> texts;  ///< text, names
 
   void add(const std::string& text, const std::string& who) {
@@ -24,8 +24,8 @@ struct Said {
     }
     texts.push_back({text, {who}});
   }
-  /// "2.4 (pd, pid), 9 (indi)", or the text alone where all of so many names have it. What is empty
-  /// is left out.
+  /// Return "2.4 (pd, pid), 9 (indi)", or only the text if it applies to all names. Empty texts are
+  /// omitted.
   std::string text(std::size_t all) const {
     std::string text;
     for (const auto& [said, names] : texts) {
@@ -36,13 +36,14 @@ struct Said {
   }
 };
 
-/// The rows of all tables, each name once, with what each table says of it; what is absent has the
-/// default of the one that is chosen. Throws std::logic_error if a name has two units or ranges.
-/// \param tables  (who has it, table)
-inline std::vector<TagSpec> tags_of(
+/// Return the rows of all tables, each name once with the merged texts. Absent tags have the
+/// default of the chosen controller or reference. Throws std::logic_error if a name has two units
+/// or ranges.
+/// \param tables  (name of the owner, table)
+inline std::vector<TagSpec> merge_tags(
     const std::vector<std::pair<std::string, std::vector<TagSpec>>>& tables) {
   struct Merged {
-    Said defaults, meanings, equations;
+    MergedText defaults, meanings, equations;
     std::size_t count = 0;
   };
   std::vector<TagSpec> tags;
@@ -65,7 +66,7 @@ inline std::vector<TagSpec> tags_of(
     }
   }
   for (std::size_t i = 0; i < tags.size(); ++i) {
-    // A parameter that few have is told with their names once, by its default.
+    // For a parameter of only some owners, the default lists their names.
     tags[i] = tags[i].or_absent(merged[i].defaults.text(tables.size()));
     tags[i].meaning = merged[i].meanings.text(merged[i].count);
     tags[i].equation = merged[i].equations.text(merged[i].count);

@@ -4,19 +4,19 @@
 #include <utility>
 
 #include "attitude_settings.hpp"
+#include "quadcore/control/control_law.hpp"
 #include "quadcore/control/flat_state.hpp"
-#include "quadcore/control/law.hpp"
 
 namespace quadcore::control {
 
-/// What the laws on rotations have in common: gains, and the loops around position and attitude.
+/// Common parts of the controllers on SE(3): gains, position control and attitude control.
 struct TrackingGains : AttitudeGains {
   double kp_xy, ki_xy, kd_xy, kp_z, ki_z, kd_z;
   double integral_limit;
   bool feed_forward, flat_rates, integral;
 };
 
-/// The settings of gains that have those for a base.
+/// Add the tracking gains to the settings of a class derived from TrackingGains.
 template <class G>
 Settings<G> with_tracking(Settings<G> settings) {
   using T = TagSpec;
@@ -25,19 +25,21 @@ Settings<G> with_tracking(Settings<G> settings) {
     return T::number(name, unit, fallback, meaning).at_least(0);
   };
   const Settings<G> tracking = {
-      {gain("kp_xy", "1/s^2", "9", "of the position along x and y"), &G::kp_xy},
-      {gain("ki_xy", "1/s^3", "6", "of its integral"), &G::ki_xy},
-      {gain("kd_xy", "1/s", "5.4", "of the velocity along x and y"), &G::kd_xy},
-      {gain("kp_z", "1/s^2", "16", "of the position along z"), &G::kp_z},
-      {gain("ki_z", "1/s^3", "12", "of its integral"), &G::ki_z},
-      {gain("kd_z", "1/s", "8", "of the velocity along z"), &G::kd_z},
-      {gain("integral_limit", "m/s^2", "1.5", "largest acceleration along an axis by the integral"),
+      {gain("kp_xy", "1/s^2", "9", "gain of the position error along x and y"), &G::kp_xy},
+      {gain("ki_xy", "1/s^3", "6", "gain of the integral of the position error along x and y"),
+       &G::ki_xy},
+      {gain("kd_xy", "1/s", "5.4", "gain of the velocity error along x and y"), &G::kd_xy},
+      {gain("kp_z", "1/s^2", "16", "gain of the position error along z"), &G::kp_z},
+      {gain("ki_z", "1/s^3", "12", "gain of the integral of the position error along z"), &G::ki_z},
+      {gain("kd_z", "1/s", "8", "gain of the velocity error along z"), &G::kd_z},
+      {gain("integral_limit", "m/s^2", "1.5", "maximum acceleration along an axis by the integral"),
        &G::integral_limit},
-      {T::flag("feed_forward", "true", "the acceleration of the reference"), &G::feed_forward},
+      {T::flag("feed_forward", "true", "feeds the reference's acceleration forward"),
+       &G::feed_forward},
       {T::flag("flat_rates", "true",
-               "angular velocity and acceleration that the reference asks for"),
+               "feeds the reference's angular velocity and acceleration forward"),
        &G::flat_rates},
-      {T::flag("integral", "true", "of the error of position"), &G::integral},
+      {T::flag("integral", "true", "integrates the position error"), &G::integral},
   };
   settings.insert(settings.end(), tracking.begin(), tracking.end());
   return with_attitude<G>(std::move(settings));
@@ -45,23 +47,24 @@ Settings<G> with_tracking(Settings<G> settings) {
 
 class Tracking {
  public:
-  Tracking(const Belief& belief, const TrackingGains& gains);
+  Tracking(const ModelledVehicle& model, const TrackingGains& gains);
 
-  const Belief& belief() const { return attitude_.belief(); }
+  const ModelledVehicle& model() const { return attitude_.model(); }
 
-  /// What the reference asks for, if it is to be fed forward.
-  std::optional<FlatState> fed_forward(const Instant& instant) const;
-  /// Acceleration that makes up for the errors of position and velocity, in W [m/s^2].
-  /// \param integral  three numbers of memory [m s]
-  Vector3d acceleration(const Instant& instant, double* integral) const;
-  /// Force of the rotors that accelerates the origin of F so, in W [N].
-  Vector3d force_W(const Instant& instant, const std::optional<FlatState>& flat,
+  /// Return the reference's flat state if it is fed forward.
+  std::optional<FlatState> fed_forward(const LawInput& input) const;
+  /// Return the acceleration that corrects position and velocity errors, in W [m/s^2].
+  /// \param integral  three memory values [m s]
+  Vector3d acceleration(const LawInput& input, double* integral) const;
+  /// Return the force of the rotors for an acceleration of the origin of F, in W [N].
+  Vector3d force_W(const LawInput& input, const std::optional<FlatState>& flat,
                    const Vector3d& a_WF_W) const;
-  /// Angular acceleration that turns z of F into a direction and x to the yaw, in F [rad/s^2].
-  Vector3d angular_acceleration(const Instant& instant, const std::optional<FlatState>& flat,
+  /// Return the angular acceleration that rotates z of F to a direction and x to the yaw, in F
+  /// [rad/s^2].
+  Vector3d angular_acceleration(const LawInput& input, const std::optional<FlatState>& flat,
                                 const Vector3d& z_W) const;
-  /// Torque of the rotors that turns the vehicle so, in F [N m].
-  Vector3d torque(const Instant& instant, const Vector3d& dw_WF_F) const;
+  /// Return the torque of the rotors for an angular acceleration, in F [N m].
+  Vector3d torque(const LawInput& input, const Vector3d& dw_WF_F) const;
 
  private:
   AttitudeLoop attitude_;

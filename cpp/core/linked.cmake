@@ -1,4 +1,4 @@
-# What the core links. A program that links a static core links it, too.
+# Libraries of the core. A program that links a static core also links them.
 find_package(Threads REQUIRED)
 find_package(PkgConfig QUIET)
 set(quadcore_missing "")
@@ -20,6 +20,6 @@ quadcore_find(ODE ode libode-dev)
 quadcore_find(TINYXML2 tinyxml2 libtinyxml2-dev)
 quadcore_find(YAML_CPP yaml-cpp libyaml-cpp-dev)
 if(quadcore_missing)
-  message(FATAL_ERROR "quadcore needs what is not there; on Debian and Ubuntu:\n"
+  message(FATAL_ERROR "Required packages are missing. On Debian and Ubuntu, run:\n"
                       "  apt-get install${quadcore_missing}")
 endif()

@@ -7,10 +7,10 @@
 namespace quadcore {
 namespace {
 
-/// Of the semi-implicit Euler step: v' = (1 - r dt) v.
+/// Stability limit of the semi-implicit Euler step, v' = (1 - r dt) v.
 constexpr double decay_limit_of_euler = 2;
-/// Of the classical Runge-Kutta method: 1 - z + z^2/2 - z^3/6 + z^4/24 = 1 at z = r dt (Hairer,
-/// Wanner, "Solving Ordinary Differential Equations II", ch. IV.2).
+/// Stability limit of the classical Runge-Kutta method: 1 - z + z^2/2 - z^3/6 + z^4/24 = 1 at z = r
+/// dt (Hairer, Wanner, "Solving Ordinary Differential Equations II", ch. IV.2).
 constexpr double decay_limit_of_rk4 = 2.785293563405282;
 
 struct EngineEntry {
@@ -20,19 +20,20 @@ struct EngineEntry {
 
 const std::vector<EngineEntry>& table() {
   static const std::vector<EngineEntry> entries = {
-      {{"gazebo11", "ODE set up to do what Gazebo 11 does to the last digit, faults included",
+      {{"gazebo11", "ODE as in Gazebo 11: bit-identical results, including its known errors",
         decay_limit_of_euler, false},
        [](const Model& model, const World& world) -> std::unique_ptr<Engine> {
          return std::make_unique<OdeEngine>(model, world, gazebo11_recipe);
        }},
-      {{"ode", "the same ODE world with the right gyroscopic torque and the URDF's own numbers",
+      {{"ode",
+        "the same ODE world with the correct gyroscopic torque and the URDF's unrounded numbers",
         decay_limit_of_euler, false},
        [](const Model& model, const World& world) -> std::unique_ptr<Engine> {
          return std::make_unique<OdeEngine>(model, world, ode_recipe);
        }},
       {{"eigen",
-        "exact reduced coordinates, fourth order: the accurate and the fast one, approximate on "
-        "the ground",
+        "reduced coordinates, fourth order: the most accurate and fastest engine; approximate "
+        "ground contact",
         decay_limit_of_rk4, true},
        [](const Model& model, const World& world) -> std::unique_ptr<Engine> {
          return std::make_unique<EigenEngine>(model, world);
@@ -47,8 +48,8 @@ const EngineEntry& entry(const std::string& name) {
     if (entry.info.name == name) return entry;
     names.push_back(entry.info.name);
   }
-  throw InputError("engine '" + name + "' is not there" + did_you_mean(name, names) +
-                   "; choose one of " + joined(names));
+  throw InputError("engine '" + name + "' does not exist." + suggest(name, names) +
+                   " Choose one of " + joined(names) + ".");
 }
 
 }  // namespace

@@ -12,18 +12,18 @@ namespace {
 
 constexpr int version = 2;
 
-/// In the order of Variable::Kind.
+/// Names in the order of Variable::Kind.
 constexpr std::array<const char*, 8> kinds = {"state",     "topic", "wrench", "input",
                                               "parameter", "file",  "spawn",  "seed"};
 
-/// In the order of Variable::Type.
+/// Names in the order of Variable::Type.
 constexpr std::array<const char*, 4> types = {"Real", "Integer", "Boolean", "String"};
 
-/// The place of a name among others.
+/// Return the index of a name.
 template <class Enum, std::size_t n>
 Enum place(const std::string& name, const std::array<const char*, n>& names) {
   const auto* const found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) throw InputError("no kind or type of variable is called " + name);
+  if (found == names.end()) throw InputError("unknown kind or type of variable '" + name + "'");
   return static_cast<Enum>(found - names.begin());
 }
 
@@ -38,7 +38,8 @@ Document document_of(const YAML::Node& node) {
 
 FlightFile read(const std::string& folder) {
   const YAML::Node root = YAML::LoadFile(folder + "/flight.yaml");
-  if (root["version"].as<int>() != version) throw InputError("it is of another version");
+  if (root["version"].as<int>() != version)
+    throw InputError("its version differs from this library's");
   FlightFile file;
   file.folder = folder;
   file.guid = root["guid"].as<std::string>();
@@ -78,7 +79,7 @@ FlightFile read_flight_file(const std::string& resources) {
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {
-    throw InputError(resources + "/flight.yaml: " + error.what() + "; export the FMU anew");
+    throw InputError(resources + "/flight.yaml: " + error.what() + ". Export the FMU again.");
   }
 }
 

@@ -10,7 +10,7 @@
 
 namespace quadcore::fmu {
 
-/// What a variable is; its value reference is its place in FlightFile::variables.
+/// A variable; its value reference is its index in FlightFile::variables.
 struct Variable {
   enum Kind {
     state,      ///< `index` in a row of the log
@@ -18,36 +18,37 @@ struct Variable {
     wrench,     ///< `index` in the row of all wrenches
     input,      ///< `index` among the fields of topic `key`
     parameter,  ///< tag `key`
-    file,       ///< tag `key`, which names a file among the resources
+    file,       ///< tag `key` with the name of a resource file
     spawn,      ///< `index` in the pose
     seed,
   };
-  /// FMI's.
+  /// FMI type.
   enum Type { real, integer, boolean, string };
-  std::string name;  ///< for importers
+  std::string name;  ///< name for importers
   Kind kind;
   std::string key;
   std::size_t index = 0;
-  bool is_fixed = false;  ///< when the flight has begun
+  bool is_fixed = false;  ///< cannot change once the flight has begun
   Type type = real;
 };
 
-/// What `quadcore export-fmu` writes for this library: resources/flight.yaml.
+/// Content of resources/flight.yaml, which `quadcore export-fmu` writes for this library.
 struct FlightFile {
   std::string guid;
   Model model;
   World world;
   SimulationOptions options;
-  std::map<std::string, std::string> tags;  ///< PLUGIN.TAG -> text, of all that are variables
+  std::map<std::string, std::string> tags;  ///< PLUGIN.TAG -> text, for all tags that are variables
   std::vector<Variable> variables;
-  std::map<std::string, std::vector<double>> inputs;  ///< topic -> what it holds at first
-  std::string folder;                                 ///< of the resources
+  std::map<std::string, std::vector<double>> inputs;  ///< topic -> initial values
+  std::string folder;                                 ///< folder of the resources
 };
 
-/// FMI's name of a type.
+/// Return the FMI name of a type.
 const char* name_of(Variable::Type type);
 
-/// Throws InputError on a file that `quadcore export-fmu` of this version did not write.
+/// Read the file. Throws InputError for a file that this version of `quadcore export-fmu` did not
+/// write.
 FlightFile read_flight_file(const std::string& resources);
 
 }  // namespace quadcore::fmu

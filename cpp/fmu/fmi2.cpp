@@ -1,5 +1,5 @@
 /// \file
-/// The functions of FMI 2.0 for co-simulation. Each catches what is thrown, tells it through the
+/// The functions of FMI 2.0 for co-simulation. Each catches exceptions, reports them through the
 /// importer's logger and returns the status.
 
 #include "fmi2.hpp"
@@ -17,7 +17,7 @@ using quadcore::fmu::Instance;
 using quadcore::fmu::SavedState;
 using quadcore::fmu::Variable;
 
-/// What an importer holds.
+/// The component of an importer.
 struct Component {
   std::string name;
   fmi2CallbackFunctions callbacks = {};
@@ -27,13 +27,13 @@ struct Component {
 void say(const std::string& name, const fmi2CallbackFunctions& callbacks, fmi2Status status,
          const std::string& what) {
   if (!callbacks.logger) return;
-  std::string escaped;  // the logger takes it for a format
+  std::string escaped;  // the logger treats the text as a format
   for (const char c : what) escaped.append(c == '%' ? 2 : 1, c);
   callbacks.logger(callbacks.environment, name.c_str(), status,
                    status == fmi2Warning ? "logStatusWarning" : "logStatusError", escaped.c_str());
 }
 
-/// Calls f(instance) and says what it throws, or what the flight warned of.
+/// Call f(instance) and log its exception or the flight's warnings.
 template <class Function>
 fmi2Status guarded(fmi2Component c, const Function& f) {
   if (!c) return fmi2Error;
@@ -50,7 +50,7 @@ fmi2Status guarded(fmi2Component c, const Function& f) {
   return fmi2OK;
 }
 
-/// Calls f(instance, i) for each of n values.
+/// Call f(instance, i) for each of n values.
 template <class Function>
 fmi2Status for_each(fmi2Component c, std::size_t n, const Function& f) {
   return guarded(c, [&](Instance& instance) {
@@ -64,7 +64,7 @@ int hex(char c) {
                                                   : -1;
 }
 
-/// The folder that a file URI names.
+/// Return the folder of a file URI.
 std::string path_of(const std::string& uri) {
   std::string path = uri;
   if (path.rfind("file:", 0) == 0) path.erase(0, 5);
@@ -81,12 +81,14 @@ std::string path_of(const std::string& uri) {
 
 fmi2Status unsupported(fmi2Component c, const char* what) {
   return guarded(c, [what](Instance&) {
-    throw quadcore::InputError(std::string(what) + " is not offered; see modelDescription.xml");
+    throw quadcore::InputError(std::string(what) +
+                               " is not supported. See the capabilities in modelDescription.xml.");
   });
 }
 
 SavedState& state_of(fmi2FMUstate state) {
-  if (!state) throw quadcore::InputError("no state was saved there");
+  if (!state)
+    throw quadcore::InputError("the given FMU state does not exist. Call fmi2GetFMUstate first.");
   return *static_cast<SavedState*>(state);
 }
 
@@ -103,9 +105,14 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
   if (!name) name = "";
   const fmi2CallbackFunctions callbacks = given ? *given : fmi2CallbackFunctions();
   try {
-    if (type != fmi2CoSimulation) throw quadcore::InputError("this FMU is for co-simulation");
-    if (!resources) throw quadcore::InputError("no folder of resources was named");
-    if (!guid) throw quadcore::InputError("no GUID was named; give that of modelDescription.xml");
+    if (type != fmi2CoSimulation)
+      throw quadcore::InputError(
+          "this FMU supports only co-simulation. Instantiate it with fmi2CoSimulation.");
+    if (!resources)
+      throw quadcore::InputError(
+          "the resource location is missing. Pass the URI of the FMU's resources folder.");
+    if (!guid)
+      throw quadcore::InputError("the GUID is missing. Pass the GUID of modelDescription.xml.");
     auto component = std::make_unique<Component>();
     component->name = name;
     component->callbacks = callbacks;
@@ -119,7 +126,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
 
 void fmi2FreeInstance(fmi2Component c) { delete static_cast<Component*>(c); }
 
-/// Errors and warnings are always told.
+/// Errors and warnings are always logged.
 fmi2Status fmi2SetDebugLogging(fmi2Component, fmi2Boolean, std::size_t, const fmi2String*) {
   return fmi2OK;
 }
@@ -217,7 +224,9 @@ fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte* 
                                  std::size_t size) {
   return guarded(c, [=](Instance&) {
     const std::string bytes = serialised(state_of(state));
-    if (bytes.size() > size) throw quadcore::InputError("there is too little room for the state");
+    if (bytes.size() > size)
+      throw quadcore::InputError(
+          "the buffer is too small for the state. Use the size from fmi2SerializedFMUstateSize.");
     bytes.copy(to, bytes.size());
   });
 }
@@ -228,7 +237,7 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte* bytes, std::
   });
 }
 
-// What is not offered
+// Unsupported functions
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference*, std::size_t,
                                         const fmi2ValueReference*, std::size_t, const fmi2Real*,

@@ -23,7 +23,7 @@ enum fmi2Status { fmi2OK, fmi2Warning, fmi2Discard, fmi2Error, fmi2Fatal, fmi2Pe
 enum fmi2Type { fmi2ModelExchange, fmi2CoSimulation };
 enum fmi2StatusKind { fmi2DoStepStatus, fmi2PendingStatus, fmi2LastSuccessfulTime, fmi2Terminated };
 
-/// Only `logger` and `environment` are used: memory and steps need no help.
+/// Only `logger` and `environment` are used.
 struct fmi2CallbackFunctions {
   void (*logger)(fmi2ComponentEnvironment, fmi2String instance, fmi2Status, fmi2String category,
                  fmi2String message, ...);

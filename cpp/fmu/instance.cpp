@@ -10,9 +10,9 @@
 namespace quadcore::fmu {
 namespace {
 
-/// Of a step, by which a communication step may be no multiple of it.
+/// Tolerance of a communication step as a multiple of the time step, as a fraction of a time step.
 constexpr double roundness = 1e-6;
-/// Of a communication step; a double counts no further one by one.
+/// Maximum number of steps of a communication step, up to which a double counts exactly.
 constexpr double most_steps = 9007199254740992;
 
 }  // namespace
@@ -20,15 +20,16 @@ constexpr double most_steps = 9007199254740992;
 Instance::Instance(const std::string& resources, const std::string& guid)
     : file_(read_flight_file(resources)), settings_(file_) {
   if (guid != file_.guid) {
-    throw InputError("the GUID is " + guid + ", this FMU's is " + file_.guid +
-                     "; read its modelDescription.xml anew");
+    throw InputError("the GUID is " + guid + ", but this FMU has " + file_.guid +
+                     ". Read modelDescription.xml again.");
   }
-  // The core may be that of the same FMU in another folder, which is gone.
+  // The core may belong to the same FMU in another folder, which no longer exists.
   load_plugin_path(resources + "/../binaries/linux64");
 }
 
 void Instance::start_at(double time) {
-  if (!std::isfinite(time)) throw InputError("the start time is no finite number; give one, in s");
+  if (!std::isfinite(time))
+    throw InputError("the start time is not a finite number. Give a time in s.");
   start_time_ = time;
 }
 
@@ -41,7 +42,10 @@ void Instance::initialise() {
 }
 
 void Instance::begin() {
-  if (!simulation_) throw InputError("an end of the initialisation before its begin");
+  if (!simulation_)
+    throw InputError(
+        "fmi2ExitInitializationMode was called before fmi2EnterInitializationMode. Enter the "
+        "initialisation mode first.");
   tune();
   is_flying_ = true;
 }
@@ -62,20 +66,23 @@ void Instance::tune() {
 }
 
 void Instance::step(double time, double length) {
-  if (!is_flying_) throw InputError("a step before the end of the initialisation; end it first");
+  if (!is_flying_)
+    throw InputError(
+        "fmi2DoStep was called before the end of the initialisation. Call "
+        "fmi2ExitInitializationMode first.");
   const double dt = simulation_->dt();
   const double count = std::round(length / dt);
   const bool is_counted = count >= 1 && count <= most_steps;
   if (!is_counted || std::abs(length - count * dt) > roundness * dt) {
-    std::string text = "a communication step of ";
+    std::string text = "the communication step is ";
     append_shortest(length, text);
-    text += " s; give a whole multiple of the step of ";
+    text += " s. Use a whole multiple of the time step of ";
     append_shortest(dt, text);
-    throw InputError(text + " s" + (count > most_steps ? ", 2^53 of them at most" : ""));
+    throw InputError(text + " s" + (count > most_steps ? ", at most 2^53 of them." : "."));
   }
   if (!(std::abs(time - this->time()) < dt / 2)) {
-    throw InputError("a step from " + seconds(time) + ", but the flight is at " +
-                     seconds(this->time()) + "; go on from there");
+    throw InputError("the step starts at " + seconds(time) + ", but the flight is at " +
+                     seconds(this->time()) + ". Continue from there.");
   }
   outputs_.forget();
   tune();
@@ -106,25 +113,28 @@ double Instance::time() const { return start_time_ + (simulation_ ? simulation_-
 
 const Variable& Instance::variable(unsigned reference, Variable::Type type) const {
   if (reference >= file_.variables.size()) {
-    throw InputError("no variable has the value reference " + std::to_string(reference));
+    throw InputError("no variable has the value reference " + std::to_string(reference) +
+                     ". Use one of modelDescription.xml.");
   }
   const Variable& v = file_.variables[reference];
   if (v.type == type) return v;
-  throw InputError("variable " + v.name + ": is of type " + name_of(v.type) + ", no " +
-                   name_of(type) + "; call the function of that");
+  throw InputError("variable " + v.name + ": its type is " + name_of(v.type) + ", not " +
+                   name_of(type) + ". Call the function for its type.");
 }
 
 const Variable& Instance::settable(unsigned reference, Variable::Type type) const {
   const Variable& v = variable(reference, type);
   if (!is_flying_ || !v.is_fixed) return v;
   throw InputError("variable " + v.name +
-                   ": is fixed once the flight is initialised; set it before, or reset");
+                   ": it cannot change after the initialisation. Set it before, or reset the FMU.");
 }
 
 double Instance::number(unsigned reference, Variable::Type type) {
   const Variable& v = variable(reference, type);
   if (!is_output(v)) return fmu::number(settings_, v);
-  if (!simulation_) throw InputError("an output before the initialisation; initialise first");
+  if (!simulation_)
+    throw InputError(
+        "an output was requested before the initialisation. Initialise the FMU first.");
   if (!is_flying_) tune();
   return outputs_.at(*simulation_, v);
 }
@@ -139,7 +149,8 @@ void Instance::set_number(unsigned reference, Variable::Type type, double value)
 
 void Instance::set_text(unsigned reference, const char* value) {
   const Variable& v = settable(reference, Variable::string);
-  if (!value) throw InputError("variable " + v.name + ": is to be no text; give one");
+  if (!value)
+    throw InputError("variable " + v.name + ": the value is a null pointer. Give a text.");
   fmu::set_text(settings_, file_, v, value);
   tuned_ = true;
 }
@@ -156,7 +167,7 @@ void Instance::restore(const SavedState& state) {
   try {
     std::unique_ptr<Simulation> other;
     if (state.snapshot) {
-      // Parameters that were set after the last step are not in the simulation yet.
+      // Parameters that were set after the last step are not yet in the simulation.
       const bool same = simulation_ && !tuned_ && before.tags == state.settings.tags;
       if (!same) other = made();
       Allowed allowed;

@@ -10,27 +10,27 @@
 
 namespace quadcore::fmu {
 
-/// One instance of an FMU: a simulation that is made when the initialisation begins, and made anew
-/// when a parameter changes: in the initialisation from the start, in flight, where tunable ones
-/// alone can be set, going on from where it is. All functions throw Error.
+/// One instance of an FMU. It creates a simulation at the start of the initialisation, and creates
+/// it again when a parameter changes: from the start during the initialisation, or with the present
+/// state in flight, where only tunable parameters can change. All functions throw Error.
 class Instance {
  public:
   /// \param resources  folder of the FMU's resources
-  /// Throws InputError if the importer knows the FMU by another guid.
+  /// Throws InputError if the importer's GUID differs.
   Instance(const std::string& resources, const std::string& guid);
 
   void start_at(double time);
-  /// Begins the initialisation: makes the simulation.
+  /// Begin the initialisation and create the simulation.
   void initialise();
-  /// Ends it.
+  /// End the initialisation.
   void begin();
-  /// Publishes what was set, and flies whole steps.
+  /// Publish the inputs and simulate whole steps.
   void step(double time, double length);
   void reset();
-  /// s, of the importer.
+  /// Return the importer's time [s].
   double time() const;
 
-  /// \name Values of variables; the type is that of the function by which they are asked for
+  /// \name Values of variables; `type` is that of the called FMI function
   /// @{
   double number(unsigned reference, Variable::Type type);
   const std::string& text(unsigned reference);
@@ -42,18 +42,18 @@ class Instance {
   void restore(const SavedState& state);
   const FlightFile& file() const { return file_; }
 
-  /// What the simulation warned of since the last call.
+  /// Return the simulation's warnings since the last call.
   std::vector<std::string> take_warnings();
 
  private:
   const Variable& variable(unsigned reference, Variable::Type type) const;
-  /// The same, of one that can be set now.
+  /// Return a variable that can be set now.
   const Variable& settable(unsigned reference, Variable::Type type) const;
   std::unique_ptr<Simulation> made() const;
-  /// Makes the simulation anew if a parameter changed.
+  /// Create the simulation again if a parameter has changed.
   void tune();
-  /// Whether a message says something. Before the first step importers that know of no input
-  /// without a value set each to its start: that says nothing, but of speeds.
+  /// Return whether an input message is relevant. Before the first step, some importers set all
+  /// inputs to their start values, which is relevant only for speeds.
   bool is_said(const std::string& topic, const Waiting& message) const;
 
   const FlightFile file_;
@@ -61,9 +61,9 @@ class Instance {
   double start_time_ = 0;
   std::unique_ptr<Simulation> simulation_;
   Outputs outputs_;
-  bool is_flying_ = false;  ///< the initialisation has ended
-  bool tuned_ = false;      ///< a parameter changed since the simulation was made
-  std::size_t told_ = 0;    ///< warnings of the simulation
+  bool is_flying_ = false;  ///< whether the initialisation has ended
+  bool tuned_ = false;      ///< whether a parameter has changed since the simulation was created
+  std::size_t told_ = 0;    ///< number of reported warnings of the simulation
 };
 
 }  // namespace quadcore::fmu

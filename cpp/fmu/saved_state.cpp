@@ -8,8 +8,8 @@
 namespace quadcore::fmu {
 namespace {
 
-/// Puts values one behind the other; each f(archive, x) below visits what x is made of, so that
-/// writer and reader cannot disagree.
+/// Writes values consecutively. Each f(archive, x) below visits the members of x for both writer
+/// and reader, so that they agree.
 class Writer {
  public:
   static constexpr bool reads = false;
@@ -24,7 +24,7 @@ class Reader {
 
   explicit Reader(const std::string& bytes) : bytes_(bytes) {}
   void raw(void* data, std::size_t size) {
-    if (size > left()) throw InputError("the saved state is damaged; save it anew");
+    if (size > left()) throw InputError("the saved state is damaged. Save it again.");
     std::memcpy(data, bytes_.data() + at_, size);
     at_ += size;
   }
@@ -41,22 +41,22 @@ void visit(Archive& archive, T& number) {
   archive.raw(&number, sizeof number);
 }
 
-/// Only 0 and 1 are values of one.
+/// Read a boolean, which must be 0 or 1.
 template <class Archive>
 void visit(Archive& archive, bool& flag) {
   unsigned char byte = flag ? 1 : 0;
   visit(archive, byte);
-  if (byte > 1) throw InputError("the saved state is damaged; save it anew");
+  if (byte > 1) throw InputError("the saved state is damaged. Save it again.");
   flag = byte == 1;
 }
 
-/// Changes the length of a row to that which is read.
+/// Resize a row to the length that is read.
 template <class Archive, class Row>
 void visit_length(Archive& archive, Row& row) {
   auto length = static_cast<std::uint64_t>(row.size());
   visit(archive, length);
   if constexpr (Archive::reads) {
-    if (length > archive.left()) throw InputError("the saved state is damaged; save it anew");
+    if (length > archive.left()) throw InputError("the saved state is damaged. Save it again.");
     row.resize(static_cast<std::size_t>(length));
   }
 }
@@ -110,7 +110,7 @@ void visit(Archive& archive, Snapshot& snapshot) {
   visit(archive, snapshot.failure);
 }
 
-/// The keys are the file's.
+/// The keys come from the file.
 template <class Archive>
 void visit(Archive& archive, Settings& settings) {
   visit(archive, settings.seed);
@@ -150,9 +150,10 @@ SavedState deserialised(const FlightFile& file, const std::string& bytes) {
   Reader reader(bytes);
   SavedState state{"", Settings(file), 0, nullptr, false};
   visit(reader, state.guid);
-  if (state.guid != file.guid) throw InputError("the saved state is of another FMU; save it anew");
+  if (state.guid != file.guid)
+    throw InputError("the saved state belongs to another FMU. Save it again with this one.");
   visit(reader, state);
-  if (reader.left() != 0) throw InputError("the saved state is damaged; save it anew");
+  if (reader.left() != 0) throw InputError("the saved state is damaged. Save it again.");
   return state;
 }
 

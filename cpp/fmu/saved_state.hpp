@@ -8,18 +8,19 @@
 
 namespace quadcore::fmu {
 
-/// All that an instance's future depends on.
+/// Complete state of an instance.
 struct SavedState {
-  std::string guid;  ///< of the FMU
+  std::string guid;  ///< GUID of the FMU
   Settings settings;
-  double start_time = 0;                     ///< s, of the importer when the simulation's is 0
-  std::shared_ptr<const Snapshot> snapshot;  ///< null before the simulation is made
-  bool is_flying = false;                    ///< the initialisation has ended
+  double start_time = 0;                     ///< importer's time at simulation time 0 [s]
+  std::shared_ptr<const Snapshot> snapshot;  ///< null before the simulation is created
+  bool is_flying = false;                    ///< whether the initialisation has ended
 };
 
-/// As bytes, which are the same for the same state and mean the same in another process.
+/// Return the state as bytes, which are reproducible and valid in other processes.
 std::string serialised(const SavedState& state);
-/// Reads them. Throws InputError if they are damaged, or of another FMU than `file`'s.
+/// Read the state. Throws InputError if the bytes are damaged or belong to another FMU than that of
+/// `file`.
 SavedState deserialised(const FlightFile& file, const std::string& bytes);
 
 }  // namespace quadcore::fmu

@@ -10,9 +10,9 @@
 namespace quadcore::fmu {
 namespace {
 
-constexpr double largest_seed = 2147483647;  // of an fmi2Integer
+constexpr double largest_seed = 2147483647;  // maximum of an fmi2Integer
 
-/// Of a pose.
+/// Return a component of a pose.
 double& component(Pose& pose, std::size_t index) {
   const auto i = static_cast<Eigen::Index>(index % 3);
   return index < 3 ? pose.xyz[i] : pose.rpy[i];
@@ -36,7 +36,8 @@ SimulationOptions options_of(const FlightFile& file, const Settings& settings) {
   options.spawn = settings.spawn;
   options.seed = settings.seed;
   for (const auto& [tag, text] : settings.tags) {
-    if (text != file.tags.at(tag)) options.parameters[tag] = text;  // else as the model has it
+    if (text != file.tags.at(tag))
+      options.parameters[tag] = text;  // otherwise the value of the model applies
   }
   return options;
 }
@@ -74,19 +75,21 @@ double number(const Settings& settings, const Variable& variable) {
       const std::string& value = text(settings, variable);
       if (const auto number = parse_number(value)) return *number;
       if (value == "true" || value == "false") return value == "true" ? 1 : 0;
-      refuse(variable, "is a text; ask for a string");
+      refuse(variable, "it is a string. Use the function for strings.");
     }
   }
 }
 
 const std::string& text(const Settings& settings, const Variable& variable) {
   const auto found = settings.tags.find(variable.key);
-  if (found == settings.tags.end()) refuse(variable, "is a number; ask for one");
+  if (found == settings.tags.end())
+    refuse(variable, "it is a number. Use the function for its type.");
   return found->second;
 }
 
 bool set_number(Settings& settings, const Variable& variable, double value) {
-  if (!std::isfinite(value)) refuse(variable, "is to be no finite number; give one");
+  if (!std::isfinite(value))
+    refuse(variable, "the value is not a finite number. Give a finite number.");
   switch (variable.kind) {
     case Variable::input: {
       Waiting& message = settings.inputs.at(variable.key);
@@ -98,7 +101,7 @@ bool set_number(Settings& settings, const Variable& variable, double value) {
       return std::exchange(component(settings.spawn, variable.index), value) != value;
     case Variable::seed:
       if (!(value >= 0 && value <= largest_seed && value == std::floor(value))) {
-        refuse(variable, "is no seed; give a whole number from 0 to 2147483647");
+        refuse(variable, "the seed is invalid. Give a whole number from 0 to 2147483647.");
       }
       if (static_cast<std::uint64_t>(value) == settings.seed) return false;
       settings.seed = static_cast<std::uint64_t>(value);
@@ -116,14 +119,14 @@ bool set_number(Settings& settings, const Variable& variable, double value) {
       return true;
     }
     default:
-      refuse(variable, "cannot be set to a number");
+      refuse(variable, "it cannot be set to a number. See its type in modelDescription.xml.");
   }
 }
 
 void set_text(Settings& settings, const FlightFile& file, const Variable& variable,
               const std::string& value) {
   if (variable.kind != Variable::parameter && variable.kind != Variable::file) {
-    refuse(variable, "is a number; set one");
+    refuse(variable, "it is a number. Use the function for its type.");
   }
   const bool within = variable.kind == Variable::file && !value.empty() && value.front() != '/';
   settings.tags.at(variable.key) = within ? file.folder + "/" + value : value;

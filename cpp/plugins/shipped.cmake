@@ -1,4 +1,4 @@
-# The shipped plugins, and which of them have laws in lanes.
+# The shipped plugins, and those with force laws for several rotors at once.
 set(QUADCORE_PLUGINS aerodynamic barometer battery controller fault gps ground_effect imu magnetometer
   motor motorpid odometry payload push reference wind)
 set(aerodynamic_lanes aerodynamic/rotor_forces_lanes.cpp)
@@ -7,7 +7,7 @@ foreach(plugin ${QUADCORE_PLUGINS})
   set(${plugin}_source ${plugin}/${plugin}_plugin.cpp)
   set(${plugin}_module ${plugin}_plugin)
 endforeach()
-# Those that do what RotorS' modules do have their names.
+# Replacements of RotorS' modules have the same names.
 foreach(source motor_model controller_interface multirotor_base gps imu magnetometer odometry
                pressure wind)
   list(APPEND QUADCORE_PLUGINS rotors_${source})

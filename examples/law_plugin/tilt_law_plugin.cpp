@@ -2,7 +2,7 @@
 #include <cmath>
 #include <optional>
 #include <quadcore/control/allocation.hpp>
-#include <quadcore/control/belief.hpp>
+#include <quadcore/control/modelled_vehicle.hpp>
 #include <quadcore/plugin.hpp>
 
 namespace {
@@ -37,7 +37,7 @@ class TiltLawPlugin final : public quadcore::Plugin {
   std::size_t state_size() const override { return 2; }
 
   void prepare(const quadcore::VehicleDescription& vehicle) override {
-    belief_ = control::Belief::of(vehicle, {}, {});
+    belief_ = control::ModelledVehicle::of(vehicle, {}, {});
     allocation_.emplace(*belief_);
   }
 
@@ -80,7 +80,7 @@ class TiltLawPlugin final : public quadcore::Plugin {
 
   double rate_, kp_, kd_, k_tilt_, k_rate_, k_yaw_, k_yaw_rate_;
   std::size_t odometry_, reference_, command_;
-  std::optional<control::Belief> belief_;
+  std::optional<control::ModelledVehicle> belief_;
   std::optional<control::Allocation> allocation_;
 };
 

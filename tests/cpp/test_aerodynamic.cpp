@@ -170,8 +170,8 @@ TEST_CASE("a joint takes one rate at a time, which must be finite") {
   CHECK(loads.any_rate());
   CHECK(loads.all_finite());
   CHECK_THROWS_WITH_AS(loads.prescribe_joint_rate(1, {3, 0}),
-                       "the rate of joint 1, counted from 0, is prescribed a second time; let one "
-                       "plugin drive each joint",
+                       "the rate of joint 1, counted from 0, is prescribed twice. Let only one "
+                       "plugin drive each joint.",
                        Error);
   CHECK_THROWS_AS(loads.prescribe_joint_rate(rotor_count, {3, 0}), Error);
   loads.clear();
@@ -204,10 +204,10 @@ TEST_CASE("a rotor on a hinge that turns more than half a turn per step ends the
     motion.rotors.number(MotionRow::rate, 1) = sign * 3.1417 / dt;  // not one of its rotors
     bench.update(motion, 1.5, dt);
     motion.rotors.number(MotionRow::rate, 2) = sign * 3.1417 / dt;
-    CHECK_THROWS_WITH_AS(bench.update(motion, 1.5, dt),
-                         "rotor 'c' turns more than half a turn per step; take a smaller step or a "
-                         "slower command",
-                         FlightError);
+    CHECK_THROWS_WITH_AS(
+        bench.update(motion, 1.5, dt),
+        "rotor 'c' turns more than half a turn per step. Use a smaller step or a slower command.",
+        FlightError);
   }
 }
 

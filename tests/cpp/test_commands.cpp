@@ -49,18 +49,18 @@ TEST_CASE("tables that are none are refused") {
   const auto refused = [](const Commands::Table& rows, std::size_t width) {
     return refusal([&] { Commands(rows, width); });
   };
-  CHECK(contains(refused(table(), 3), "write rows of time and 3 rotor speeds"));
+  CHECK(contains(refused(table(), 3), "Write rows of time and 3 rotor speeds"));
   CHECK(contains(refused(Commands::Table(0, 3), 2), "0 rows"));
   CHECK(contains(Commands::fault(Commands::Table(3, 0))->what, "there is no time"));
   CHECK(!Commands::fault(Commands::Table(0, 0)));
   Commands::Table rows = table();
   rows(1, 0) = 0;
-  CHECK(contains(refused(rows, 2), "row 1: t = 0 does not come after 0"));
+  CHECK(contains(refused(rows, 2), "row 1: t = 0 is not later than 0"));
   rows(1, 0) = std::numeric_limits<double>::quiet_NaN();
-  CHECK(contains(refused(rows, 2), "row 1: t is nan; write a finite number"));
+  CHECK(contains(refused(rows, 2), "row 1: t is nan. Write a finite number"));
   rows = table();
   rows(2, 2) = -std::numeric_limits<double>::infinity();
-  CHECK(contains(refused(rows, 2), "row 2: w2 is -inf; write a finite number"));
+  CHECK(contains(refused(rows, 2), "row 2: w2 is -inf. Write a finite number"));
 }
 
 TEST_CASE(
@@ -68,10 +68,11 @@ TEST_CASE(
   const double speeds[] = {400, -2e6};
   check_command(speeds, 2, 2);
   check_command(speeds, 1, 1, 1e6);
-  CHECK(refusal([&] { check_command(speeds, 2, 3); }) == "command holds 2 rotor speeds; give 3");
+  CHECK(refusal([&] { check_command(speeds, 2, 3); }) == "the command has 2 rotor speeds. Give 3.");
   CHECK(refusal([&] { check_command(speeds, 2, 2, 1e6); }) ==
-        "command for rotor 2 is beyond 1e+06 rad/s, where a flight counts as diverged; give rad/s");
+        "the command for rotor 2 is beyond 1e+06 rad/s, the limit at which a flight counts as "
+        "diverged. Give a speed in rad/s.");
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK(refusal([&] { check_command(&nan, 1, 1); }) ==
-        "command for rotor 1 is not a finite number; give rad/s");
+        "the command for rotor 1 is not a finite number. Give a speed in rad/s.");
 }

@@ -18,18 +18,19 @@ TEST_CASE("a file that cannot be read is named") {
 }
 
 TEST_CASE("only a regular file of a bounded size is read") {
-  CHECK(contains(refusal([] { read_text_file("/dev/zero"); }), "/dev/zero: is no regular file"));
+  CHECK(contains(refusal([] { read_text_file("/dev/zero"); }),
+                 "/dev/zero: this is not a regular file"));
   CHECK(contains(refusal([] { read_text_file("/"); }), "/: is a folder"));
   const std::string world = std::string(TEST_DATA) + "/../../worlds/empty.world";
-  CHECK(contains(refusal([&] { read_text_file(world, 5); }), "is larger than 5e-06 MB"));
+  CHECK(contains(refusal([&] { read_text_file(world, 5); }), "exceeds the limit of 5e-06 MB"));
   CHECK(read_text_file(world).find("<sdf") != std::string::npos);
 }
 
 TEST_CASE("malformed XML is refused with its line") {
-  CHECK(refused("").rfind("a.urdf:1: is empty; write a <robot> element", 0) == 0);
+  CHECK(refused("").rfind("a.urdf:1: the file is empty. Write a <robot> element", 0) == 0);
   CHECK(refused("<robot name='a'>\n<link>\n</robot>").rfind("a.urdf:2: malformed XML", 0) == 0);
   CHECK(refused("no xml").rfind("a.urdf:1: ", 0) == 0);
-  CHECK(refused("\n<sdf/>") == "a.urdf:2: expected <robot> as the outermost element, not <sdf>");
+  CHECK(refused("\n<sdf/>") == "a.urdf:2: the outermost element is <sdf>. Use <robot>.");
 }
 
 TEST_CASE("a document type is refused wherever it stands, and no entity is expanded") {

@@ -72,11 +72,10 @@ TEST_CASE("the velocities that a force law sees are the rates of the places it s
 TEST_CASE("the normal of a rotor that turns about another axis turns with it") {
   std::string turning = joint("turn", "continuous", "frame", "rotor");
   turning.replace(turning.find("0 0 1\"/>"), 5, "1 0 0");
-  const Model m = model(link("frame", 1, skew_body) +
-                        link("rotor", 0.01,
-                             "ixx=\"2e-5\" iyy=\"1e-5\" izz=\"1e-5\" ixy=\"0\" ixz=\"0\" "
-                             "iyz=\"0\"") +
-                        turning);
+  const Model m = model(
+      link("frame", 1, skew_body) +
+      link("rotor", 0.01, "ixx=\"2e-5\" iyy=\"1e-5\" izz=\"1e-5\" ixy=\"0\" ixz=\"0\" iyz=\"0\"") +
+      turning);
   for (const EngineInfo& info : engines()) {
     CAPTURE(info.name);
     const auto engine = make_engine(info.name, m, weightless());
@@ -129,10 +128,10 @@ TEST_CASE("an engine may be stepped in another thread than that which made it") 
 }
 
 TEST_CASE("the lowest point of a tilted cylinder is that of its rims") {
-  const Model m = model(
-      "<link name=\"frame\"><inertial><mass value=\"1\"/><inertia " + skew_body +
-      "/></inertial><collision><origin xyz=\"0.1 -0.05 0.02\" rpy=\"0.9 0.4 -0.3\"/><geometry>"
-      "<cylinder radius=\"0.3\" length=\"0.1\"/></geometry></collision></link>\n");
+  const Model m = model("<link name=\"frame\"><inertial><mass value=\"1\"/><inertia " + skew_body +
+                        "/></inertial><collision><origin xyz=\"0.1 -0.05 0.02\" rpy=\"0.9 0.4 "
+                        "-0.3\"/><geometry><cylinder radius=\"0.3\" "
+                        "length=\"0.1\"/></geometry></collision></link>\n");
   const auto engine = make_engine("eigen", m, World{});
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const VehicleState state = random_state(seed, 0);
@@ -161,26 +160,23 @@ TEST_CASE("whether sweeps converge is found for each vehicle, and told") {
     return make_engine(engine, model, world)->method();
   };
   CHECK(contains(method("gazebo11", shipped, 50), "direct solver, to which Gazebo's 50 sweeps"));
-  CHECK(contains(method("gazebo11", shipped, 20), "Gazebo's own 20 sweeps, which leave"));
+  CHECK(contains(method("gazebo11", shipped, 20), "20 iterations of Gazebo's solver, which leave"));
   CHECK(contains(method("ode", shipped, 20), "direct solver"));
   // A light rotor far out on a heavy frame.
-  const Model heavy = model(link("frame", 3,
-                                 "ixx=\"0.03\" iyy=\"0.04\" izz=\"0.06\" ixy=\"0\" "
-                                 "ixz=\"0\" iyz=\"0\"") +
-                            link("rotor", 0.005,
-                                 "ixx=\"1e-7\" iyy=\"1e-5\" izz=\"1e-5\" "
-                                 "ixy=\"0\" ixz=\"0\" iyz=\"0\"") +
-                            joint("turn", "continuous", "frame", "rotor"));
-  CHECK(contains(method("gazebo11", heavy, 50), "Gazebo's own 50 sweeps"));
+  const Model heavy = model(
+      link("frame", 3, "ixx=\"0.03\" iyy=\"0.04\" izz=\"0.06\" ixy=\"0\" ixz=\"0\" iyz=\"0\"") +
+      link("rotor", 0.005, "ixx=\"1e-7\" iyy=\"1e-5\" izz=\"1e-5\" ixy=\"0\" ixz=\"0\" iyz=\"0\"") +
+      joint("turn", "continuous", "frame", "rotor"));
+  CHECK(contains(method("gazebo11", heavy, 50), "50 iterations of Gazebo's solver"));
   CHECK(contains(method("gazebo11", heavy, 50, 1e6), "direct solver, to which"));  // soft hinges
   CHECK(contains(method("gazebo11", heavy, 100000), "direct solver, to which"));
 }
 
 TEST_CASE("solver type world on the ground is warned of where it is written") {
-  const Document document{"a.world",
-                          "<sdf><world>\n<physics><ode><solver>\n<type>world</type>"
-                          "</solver></ode></physics>\n<include><uri>model://ground_plane</uri>"
-                          "</include></world></sdf>"};
+  const Document document{
+      "a.world",
+      "<sdf><world>\n<physics><ode><solver>\n<type>world</type></solver></ode></"
+      "physics>\n<include><uri>model://ground_plane</uri></include></world></sdf>"};
   World world = read_world(document);
   const auto warnings = make_engine("gazebo11", hexarotor(), world)->warnings();
   REQUIRE(warnings.size() == 1);
@@ -233,7 +229,7 @@ TEST_CASE("a load counts once in the sum and in its term, about the centre of ma
 
   const Vector3d one = Vector3d::Ones();
   CHECK_THROWS_WITH(loads.add_rotor_force(0, 1, one),
-                    "a load on rotor 1, but rotors count from 0 and there are 1");
+                    "a load acts on rotor 1, but rotors are numbered from 0 and there are 1");
   CHECK_THROWS_AS(loads.add_joint_torque(std::size_t(-1), 1), Error);
   for (const std::size_t term : {std::size_t(2), std::size_t(-1)}) {
     CHECK_THROWS_AS(loads.add_rotor_force(term, 0, one), Error);

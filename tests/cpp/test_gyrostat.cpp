@@ -25,7 +25,7 @@ TEST_CASE("eigen takes a rotor within a nanometre of its axis, and as round as f
   };
   // Of the norm of the inertia, 2.45e-5; the deviation is split between x and y.
   CHECK(warnings("1.0000033e-5").empty());
-  CHECK(contains(warnings("1.0000037e-5").at(0), "the inertia of rotor is taken as its mean"));
+  CHECK(contains(warnings("1.0000037e-5").at(0), "averages the inertia of rotor over a turn"));
 }
 
 TEST_CASE("eigen refuses the least friction in a joint") {

@@ -122,7 +122,8 @@ TEST_CASE("the axis is rounded as it is written and only then made a unit vector
   CHECK(axis("ode", "0 0.1 1") == exact);
   CHECK(axis("ode", "0 0.10000004 0.99999996") != exact);
   const std::string message = refusal([&] { axis("gazebo11", "0 0 4e-7"); });
-  CHECK(message.rfind("test.urdf:4: joint 'turn': rounded to 6 decimals, as Gazebo does,", 0) == 0);
+  CHECK(message.rfind("test.urdf:4: joint 'turn': after rounding to 6 decimals, as in Gazebo,",
+                      0) == 0);
   CHECK(axis("ode", "0 0 4e-7") == Vector3d::UnitZ());
 }
 
@@ -132,7 +133,8 @@ TEST_CASE("an inertia that Gazebo's rounding spoils is refused by the engine tha
                              "ixx=\"0.0031882112957345205\" ixy=\"-0.0046601953832341786\" "
                              "ixz=\"0\" iyy=\"0.006811788804265481\" iyz=\"0\" izz=\"0.01\""));
   const std::string message = refusal([&] { make_engine("gazebo11", m, World{}); });
-  CHECK(message.rfind("test.urdf:2: link 'frame': rounded to 6 digits, as Gazebo does,", 0) == 0);
+  CHECK(message.rfind("test.urdf:2: link 'frame': after rounding to 6 digits, as in Gazebo,", 0) ==
+        0);
   CHECK(contains(message, "use the engine ode"));
   make_engine("ode", m, World{});
   make_engine("eigen", m, World{});
@@ -203,8 +205,8 @@ TEST_CASE("Gazebo's order is depth first, joints by name, through links that are
 TEST_CASE("collision shapes move with the links that are lumped") {
   const Model m = model(
       link("frame", 1, round_body) +
-      "<link name=\"foot\"><collision><origin xyz=\"0 0 -0.1\"/><geometry><sphere radius=\"0.02\"/>"
-      "</geometry></collision></link>\n" +
+      "<link name=\"foot\"><collision><origin xyz=\"0 0 -0.1\"/><geometry><sphere "
+      "radius=\"0.02\"/></geometry></collision></link>\n" +
       joint("weld", "fixed", "frame", "foot", "xyz=\"1 0 0\" rpy=\"1.5707963267948966 0 0\""));
   REQUIRE(m.links[0].collisions.size() == 1);
   const Collision& foot = m.links[0].collisions[0];

@@ -99,5 +99,5 @@ TEST_CASE("a message is sent at each multiple of the period, and at once after a
 
 TEST_CASE("a seed is a whole number") {
   const std::string message = refusal([] { Odometry(tag("seed", "1.5")); });
-  CHECK(contains(message, "<seed> is not a whole number; write one"));
+  CHECK(contains(message, "<seed> is not a whole number. Write a whole number."));
 }

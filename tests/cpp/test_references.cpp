@@ -93,7 +93,8 @@ TEST_CASE("a felt tag that names nothing that feels it, or has no such value, is
             inside + "</gazebo>\n");
     });
   };
-  CHECK(contains(refused("fram", "<mu1>1</mu1>"), "test.urdf:5: <mu1> acts on a link, but 'fram'"));
+  CHECK(contains(refused("fram", "<mu1>1</mu1>"),
+                 "test.urdf:5: <mu1> applies to a link, but the model has no link 'fram'"));
   CHECK(contains(refused("fram", "<mu1>1</mu1>"), "did you mean 'frame'?"));
   CHECK(contains(refused("turn", "<implicitSpringDamper>1</implicitSpringDamper><mu1>1</mu1>"),
                  "'turn' is no link"));
@@ -137,9 +138,10 @@ TEST_CASE("damping takes its part of what is faster than 1 cm/s or 0.01 rad/s, e
 }
 
 TEST_CASE("tags are rounded to six digits, a direction to six decimals") {
-  const Model m = model(shaped("frame", shape(ball), inertial("1", round_body)) + turning_rotor +
-                        "<gazebo reference=\"frame\"><mu1>0.12345678</mu1><kp>1234567.8</kp>"
-                        "<fdir1>0.12345678 0 1234.56789</fdir1></gazebo>\n");
+  const Model m =
+      model(shaped("frame", shape(ball), inertial("1", round_body)) + turning_rotor +
+            "<gazebo reference=\"frame\"><mu1>0.12345678</mu1><kp>1234567.8</kp><fdir1>0.12345678 "
+            "0 1234.56789</fdir1></gazebo>\n");
   CHECK(m.links[0].collisions[0].surface.mu1 == 0.12345678);
   const Surface surface = converted_to_sdf(m).links[0].collisions[0].surface;
   CHECK(surface.mu1 == 0.123457);

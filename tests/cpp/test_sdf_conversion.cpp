@@ -17,13 +17,14 @@ const std::string odd =
         "frame",
         shape("<box size=\"0.12345678 0.2 0.0333333333\"/>", "xyz=\"0 0 -0.01\" rpy=\"3 2.2 0.1\""),
         inertial("1.2", skew_body, "xyz=\"0.01 -0.02 0.03\" rpy=\"0.1 0.2 0.3\"")) +
-    shaped("z_arm",
-           shape("<cylinder radius=\"0.012345678\" length=\"0.1\"/>",
-                 "xyz=\"0.1 0 0\" rpy=\"0.3 0 0.2\""),
-           inertial("0.3",
-                    "ixx=\"0.0002\" iyy=\"0.0003\" izz=\"0.00025\" ixy=\"1e-5\" ixz=\"2e-5\" "
-                    "iyz=\"-3e-5\"",
-                    "xyz=\"0.05 0.02 0.1\" rpy=\"0.4 1.5668 -0.7\"")) +
+    shaped(
+        "z_arm",
+        shape("<cylinder radius=\"0.012345678\" length=\"0.1\"/>",
+              "xyz=\"0.1 0 0\" rpy=\"0.3 0 0.2\""),
+        inertial(
+            "0.3",
+            "ixx=\"0.0002\" iyy=\"0.0003\" izz=\"0.00025\" ixy=\"1e-5\" ixz=\"2e-5\" iyz=\"-3e-5\"",
+            "xyz=\"0.05 0.02 0.1\" rpy=\"0.4 1.5668 -0.7\"")) +
     joint("b_weld", "fixed", "frame", "z_arm", "xyz=\"0.1 0.05 0.02\" rpy=\"0.2 1.5668 0.5\"") +
     shaped(
         "a_foot", shape(ball),
@@ -234,7 +235,7 @@ TEST_CASE("a locked joint needs an axis in Gazebo alone") {
   const Model m = model(link("frame", 1, round_body) + link("eye", 0.1, round_rotor) +
                         locked("weld", "frame", "eye", "xyz=\"0 0 0\"", "0 0 0"));
   CHECK(m.links.size() == 1);
-  CHECK(contains(refusal([&] { sdf_bodies(m); }), "joint 'weld': rounded to 6 decimals"));
+  CHECK(contains(refusal([&] { sdf_bodies(m); }), "joint 'weld': after rounding to 6 decimals"));
 }
 
 TEST_CASE("a link behind a locked joint that no torque can turn stays lumped, with a warning") {

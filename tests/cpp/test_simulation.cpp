@@ -29,7 +29,7 @@ TEST_CASE("a snapshot is restored by a simulation of the same engine and step on
     still(info.name, 1e-3).restore(snapshot);
     Simulation finer = still(info.name, 5e-4);
     CHECK(contains(refusal([&] { finer.restore(snapshot); }),
-                   "snapshot: was taken from another step ('0.001' there, '0.0005' here)"));
+                   "snapshot: it was taken with a different step ('0.001' there, '0.0005' here)"));
     for (const EngineInfo& other : engines()) {
       if (other.name == info.name) continue;
       Simulation elsewhere = still(other.name, 1e-3);
@@ -47,8 +47,8 @@ TEST_CASE("another world is taken on purpose, another model never") {
   world.wind_W.x() = 2.5;
   Simulation windy(model, world, {});
   CHECK(refusal([&] { windy.restore(snapshot); }) ==
-        "snapshot: was taken from another world ('wind 0 0 0' there, 'wind 2.5 0 0' here); restore "
-        "one of this simulation, or allow world to differ");
+        "snapshot: it was taken with a different world ('wind 0 0 0' there, 'wind 2.5 0 0' here). "
+        "Restore a snapshot of this simulation, or allow world to differ.");
   windy.restore(snapshot, Allowed::of({"world"}));
   CHECK(contains(refusal([] { Allowed::of({"model"}); }), "only world, parameters may differ"));
   model.links[2].inertial.mass *= 1.5;

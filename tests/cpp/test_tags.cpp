@@ -87,7 +87,7 @@ TEST_CASE("the ends of a range belong to it unless they are excluded") {
   const auto rate = [](const char* text) -> PluginTag { return {"rate", text, "test.urdf:11"}; };
   CHECK(read({{"gain", "0", "test.urdf:10"}}).number("gain") == 0);
   CHECK(read({gain, rate("100")}).number("rate") == 100);
-  CHECK(contains(refused({gain, rate("0")}), "<rate> '0' is out of range; write a number > 0"));
+  CHECK(contains(refused({gain, rate("0")}), "<rate> '0' is out of range. Use a number > 0"));
   CHECK(contains(refused({gain, rate("100.001")}), "> 0, <= 100"));
 }
 
@@ -102,7 +102,7 @@ TEST_CASE("a range reads as a person would write it") {
                           "any text",
                           "3 numbers, each >= 0",
                           "finite numbers",
-                          "a file, relative to the document"};
+                          "a file, relative to the model"};
   for (std::size_t i = 0; i < specs.size(); ++i) CHECK(specs[i].range() == ranges[i]);
 }
 
@@ -111,14 +111,15 @@ TEST_CASE("a refusal names place, plugin and tag") {
   CHECK(refused({gain, {"gian", "1", "test.urdf:11"}})
             .rfind("test.urdf:11: plugin 'p': unknown tag <gian> (did you mean 'gain'?)", 0) == 0);
   CHECK(refused({gain, {"gain", "1", "test.urdf:11"}}).rfind("test.urdf:11: plugin 'p': ", 0) == 0);
-  CHECK(contains(refused({gain, {"rate", "1", "a:1"}, {"updateRate", "1", "a:2"}}), "second time"));
+  CHECK(contains(refused({gain, {"rate", "1", "a:1"}, {"updateRate", "1", "a:2"}}), "is repeated"));
   CHECK(refused({gain}, {{"rate", "fast"}}).rfind("set p.rate: plugin 'p': <rate> 'fast'", 0) == 0);
   CHECK(refused({gain}, {{"rte", "1"}}).rfind("set p.rte: plugin 'p': unknown tag <rte>", 0) == 0);
 }
 
 TEST_CASE("a tag is set by one of its names, and a refusal names both") {
   CHECK(refused({gain}, {{"rate", "1"}, {"updateRate", "1"}}) ==
-        "set p.updateRate: plugin 'p': is the same tag as <rate>, which is set, too; keep one");
+        "set p.updateRate: plugin 'p': is the same tag as <rate>, which is also set. Keep one of "
+        "them.");
   CHECK(read({gain, {"rate", "1", "a:1"}}, {{"updateRate", "2"}}).number("rate") == 2);
 }
 
@@ -135,18 +136,20 @@ TEST_CASE("a row of numbers has the length, the numbers and the range of its tab
   CHECK(read({gain, row("row", "-1")}).numbers("row") == std::vector<double>{-1});
   CHECK(read({gain}, {{"row", "4 -5"}}).numbers("row") == std::vector<double>{4, -5});
   CHECK(refused({gain, row("gains", "1 2")}) ==
-        "test.urdf:11: plugin 'p': <gains> '1 2' is a row of 2; write 3 numbers, each >= 0, in N, "
-        "blanks between them");
-  CHECK(contains(refused({gain, row("gains", "1 -2 3")}), "holds -2, out of range; write 3"));
+        "test.urdf:11: plugin 'p': <gains> '1 2' has 2 numbers. Write 3 numbers, each >= 0, in N, "
+        "separated by blanks.");
+  CHECK(contains(refused({gain, row("gains", "1 -2 3")}),
+                 "contains -2, which is out of range. Write 3"));
   CHECK(contains(refused({gain, row("gains", "1 2,5 3")}), "holds '2,5', which is not a finite"));
   CHECK(contains(refused({gain, row("row", "nan")}), "holds 'nan', which is not a finite number"));
-  CHECK(contains(refused({gain, row("row", "")}), "is a row of 0; write finite numbers, blanks"));
+  CHECK(
+      contains(refused({gain, row("row", "")}), "has 0 numbers. Write finite numbers, separated"));
   CHECK(refused({gain}, {{"gains", "1"}}).rfind("set p.gains: plugin 'p': <gains> '1'", 0) == 0);
 }
 
 TEST_CASE("a text is anything but nothing") {
   CHECK(read({gain, {"label", " two words\n", "test.urdf:11"}}).text("label") == "two words");
-  CHECK(contains(refused({gain, {"label", " ", "test.urdf:11"}}), "<label> '' is empty; write"));
+  CHECK(contains(refused({gain, {"label", " ", "test.urdf:11"}}), "<label> '' is empty. Write"));
 }
 
 TEST_CASE("a file counts from its document, one that is set from where the program runs") {
@@ -162,10 +165,11 @@ TEST_CASE("a file counts from its document, one that is set from where the progr
   CHECK(read({gain}, {{"table", table}}).file("table") == table);
   CHECK(refused({gain, given("command.csv", document)}) ==
         document + ": plugin 'p': <table> 'command.csv' cannot be read: " + folder +
-            "command.csv; give the path of an existing file, relative to the document that holds "
-            "the tag");
-  CHECK(contains(refused({gain, given("..", document)}), "<table> '..' is a folder; name a file"));
-  CHECK(contains(refused({gain, given("commands.csv", "robot_description:7")}),
-                 "is relative, but the model comes from no file; write a path from / on"));
+            "command.csv. Give the path of an existing file, relative to the document that "
+            "contains the tag.");
+  CHECK(contains(refused({gain, given("..", document)}), "<table> '..' is a folder. Name a file"));
+  CHECK(contains(
+      refused({gain, given("commands.csv", "robot_description:7")}),
+      "is a relative path, but the model was not read from a file. Write an absolute path."));
   CHECK(contains(refused({gain}, {{"table", "commands.csv"}}), "set p.table: plugin 'p': <table>"));
 }

@@ -58,12 +58,12 @@ TEST_CASE("blanks around and between words do not matter") {
 
 TEST_CASE("the nearest name is proposed, and none that is far") {
   const std::vector<std::string> names = {"kp", "ki", "sim_slow", "rotorThrustCoeff"};
-  CHECK(did_you_mean("simslow", names) == " (did you mean 'sim_slow'?)");
-  CHECK(did_you_mean("SIM_SLOW", names) == " (did you mean 'sim_slow'?)");
-  CHECK(did_you_mean("rotorTrustCoef", names) == " (did you mean 'rotorThrustCoeff'?)");
-  CHECK(did_you_mean("kI", names) == " (did you mean 'ki'?)");
-  CHECK(did_you_mean("propeller", names) == "");
-  CHECK(did_you_mean("x", {}) == "");
+  CHECK(suggest("simslow", names) == " Did you mean 'sim_slow'?");
+  CHECK(suggest("SIM_SLOW", names) == " Did you mean 'sim_slow'?");
+  CHECK(suggest("rotorTrustCoef", names) == " Did you mean 'rotorThrustCoeff'?");
+  CHECK(suggest("kI", names) == " Did you mean 'ki'?");
+  CHECK(suggest("propeller", names) == "");
+  CHECK(suggest("x", {}) == "");
 }
 
 namespace {

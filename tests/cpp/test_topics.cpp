@@ -56,7 +56,7 @@ TEST_CASE("all that declare a topic mean the same one") {
   CHECK(topics.find("wind") == static_cast<int>(first));
   CHECK(topics.find("rain") == -1);
   CHECK(refusal([&] { topics.at("wnd"); }) ==
-        "topic 'wnd' is not declared by any plugin (did you mean 'wind'?); declared are wind");
+        "topic 'wnd' does not exist. Did you mean 'wind'? Choose one of wind.");
   CHECK(topics[first].writer == 1);
   CHECK(topics[first].readers == std::vector<int>{0});
 }
@@ -67,9 +67,10 @@ TEST_CASE("plugins that disagree about the kind of a topic are refused by name")
   topics.publishes("air", wind);
   topics.plugin("two");
   topics.takes("air", heat);
-  CHECK(refusal([&] { topics.settle(); }) ==
-        "a.urdf:2: plugin 'two' has topic 'air' as 'heat' (degrees), but a.urdf:1: plugin 'one' "
-        "has it as 'wind' (east, north); make them agree");
+  CHECK(
+      refusal([&] { topics.settle(); }) ==
+      "a.urdf:2: plugin 'two' declares topic 'air' as 'heat' (degrees), but a.urdf:1: plugin 'one' "
+      "declares it as 'wind' (east, north). Make the declarations agree.");
 }
 
 TEST_CASE("before the first message a topic holds what its takers go by") {
@@ -108,8 +109,8 @@ TEST_CASE("takers that go by other numbers before the first message are refused 
     topics.plugin("two");
     topics.takes("riding", {"switch", {"riding"}, other});
     CHECK(refusal([&] { topics.settle(); }) ==
-          "a.urdf:2: plugin 'two' has other numbers of topic 'riding' before the first message "
-          "than a.urdf:1: plugin 'one'; give one for each field, and let them agree");
+          "a.urdf:2: plugin 'two' and a.urdf:1: plugin 'one' assume different values of topic "
+          "'riding' before the first message. Give both the same value for each field.");
   }
 }
 
@@ -125,8 +126,8 @@ TEST_CASE("a topic has one writer") {
   topics.publish(air, 1);
   topics.write_as(1);
   CHECK(refusal([&] { topics.publish(air, 2); }) ==
-        "a.urdf:2: plugin 'two' writes topic 'air', which a.urdf:1: plugin 'one' writes already; "
-        "keep one of the two");
+        "a.urdf:2: plugin 'two' writes topic 'air', which a.urdf:1: plugin 'one' already writes. "
+        "Keep one of the two.");
   topics.write_as(the_caller);
   CHECK(contains(refusal([&] { topics.publish(air, 2); }), "the caller writes topic 'air'"));
   CHECK(topics[air].count == 2);
@@ -139,8 +140,8 @@ TEST_CASE("two plugins that declare themselves writers of a topic are refused by
   topics.plugin("two");
   topics.publishes("air", wind);
   CHECK(refusal([&] { topics.settle(); }) ==
-        "a.urdf:2: plugin 'two' writes topic 'air', which a.urdf:1: plugin 'one' writes already; "
-        "keep one of the two");
+        "a.urdf:2: plugin 'two' writes topic 'air', which a.urdf:1: plugin 'one' already writes. "
+        "Keep one of the two.");
 }
 
 TEST_CASE("who takes a topic does not write it undeclared") {
@@ -157,8 +158,8 @@ TEST_CASE("names that a log or ROS could not carry are refused") {
   Declared topics;
   topics.plugin("one");
   for (const char* name : {"", "a b", "2nd", "/odom", "_x", "w\xc3\xa4rme"}) {
-    CHECK(contains(refusal([&] { topics.publishes(name, heat); }), "is no plain word; write"));
-    CHECK(contains(refusal([&] { topics.publishes("air", {"any", {name}}); }), "no plain word"));
+    CHECK(contains(refusal([&] { topics.publishes(name, heat); }), "is not a valid name. Start"));
+    CHECK(contains(refusal([&] { topics.publishes("air", {"any", {name}}); }), "not a valid name"));
   }
 }
 
@@ -172,7 +173,7 @@ TEST_CASE("a name may have parts, which are one word where names have none") {
   CHECK(topics.at("ground_truth_imu_2") == truth);
   CHECK(topics.takes("ground_truth_imu_2", heat) == truth);
   for (const char* name : {"/imu", "imu/", "ground//imu", "2/imu"}) {
-    CHECK(contains(refusal([&] { topics.publishes(name, heat); }), "is no plain word; write"));
+    CHECK(contains(refusal([&] { topics.publishes(name, heat); }), "is not a valid name. Start"));
   }
 }
 

@@ -137,7 +137,7 @@ def refusal(call, *arguments, **options) -> str:
 
 # A module that there is not, and the warning of what is passed over.
 PUSHER = '<plugin name="pusher" filename="libpusher.so"><force>1<n>2</n></force></plugin>'
-UNFELT = "passed over, since nothing that flies feels it: "
+UNFELT = "ignored, because it does not affect the motion: "
 
 
 def at(name, part):

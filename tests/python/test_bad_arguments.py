@@ -22,11 +22,14 @@ pytestmark = pytest.mark.usefixtures("toy")
         ({"air.sim_slow": math.nan}, "set air.sim_slow: plugin 'air': <sim_slow> 'nan' is not"),
         ({"air.sim_slow": -1}, "set air.sim_slow: plugin 'air': <sim_slow> '-1' is out of range"),
         ({"air.rotorThrustCoeff": None}, "set air.rotorThrustCoeff: plugin 'air'"),
-        ({"air.rotorRadios": 1}, "unknown tag <rotorRadios> (did you mean 'rotorRadius'?)"),
+        ({"air.rotorRadios": 1}, "unknown tag <rotorRadios>. Did you mean 'rotorRadius'?"),
         ({"air.rotorJoints": ["rotr"]}, "set air.rotorJoints: plugin 'air': <rotorJoints> names"),
-        ({"ar.sim_slow": 1}, "set ar.sim_slow: the model has no plugin 'ar' (did you mean 'air'?)"),
-        ({"sim_slow": 1}, "set sim_slow: is not PLUGIN.TAG; write, for example, air.sim_slow"),
-        ({"air.": 1}, "set air.: is not PLUGIN.TAG"),
+        ({"ar.sim_slow": 1}, "set ar.sim_slow: the model has no plugin 'ar'. Did you mean 'air'?"),
+        (
+            {"sim_slow": 1},
+            "set sim_slow: the name is not of the form PLUGIN.TAG. Write, for example, air.",
+        ),
+        ({"air.": 1}, "set air.: the name is not of the form PLUGIN.TAG"),
         ({"air.sim_slow": 1}, "toy.urdf:37: <sim_slow> is 1 in 'air' (set) but 10.0 in 'motor'"),
         ({"air.sim_slow": 1, "motor.sim_slow": 2}, "1 in 'air' (set) but 2 in 'motor' (set)"),
     ],
@@ -38,18 +41,18 @@ def test_parameters_that_are_wrong(parameters, says):
 @pytest.mark.parametrize(
     ("option", "value", "says"),
     [
-        ("dt", 0, "dt is 0; write a step in s, from 1e-09 up"),
-        ("dt", -0.001, "dt is -0.001; write a step in s, from 1e-09 up"),
-        ("dt", 5e-324, "dt is 4.94066e-324; write a step in s, from 1e-09 up"),
-        ("dt", 0.99e-9, "dt is 9.9e-10; write a step in s, from 1e-09 up"),
-        ("dt", math.nan, "dt is nan; write a step in s, from 1e-09 up"),
-        ("dt", math.inf, "dt is inf; write a step in s, from 1e-09 up"),
+        ("dt", 0, "dt is 0 s. Use a step of at least 1e-09 s."),
+        ("dt", -0.001, "dt is -0.001 s. Use a step of at least 1e-09 s."),
+        ("dt", 5e-324, "dt is 4.94066e-324 s. Use a step of at least 1e-09 s."),
+        ("dt", 0.99e-9, "dt is 9.9e-10 s. Use a step of at least 1e-09 s."),
+        ("dt", math.nan, "dt is nan s. Use a step of at least 1e-09 s."),
+        ("dt", math.inf, "dt is inf s. Use a step of at least 1e-09 s."),
         ("spawn", (0, 0), "spawn is (0, 0); give x, y, z[, roll, pitch, yaw] in m and rad"),
         ("spawn", (0, 0, 0, 0), "give x, y, z[, roll, pitch, yaw] in m and rad"),
         ("spawn", (0, 0, "up"), "give x, y, z[, roll, pitch, yaw] in m and rad"),
-        ("spawn", (0, 0, math.nan), "write x,y,z[,roll,pitch,yaw]"),
+        ("spawn", (0, 0, math.nan), "Write x,y,z[,roll,pitch,yaw]"),
         ("spawn", (0, 0, 1e12), "spawn: the distance from the origin is 1e+12 m, but a flight"),
-        ("engine", "gazebo", "engine 'gazebo' is not there (did you mean 'gazebo11'?)"),
+        ("engine", "gazebo", "engine 'gazebo' does not exist. Did you mean 'gazebo11'?"),
         (
             "engine",
             "lagrange",
@@ -83,33 +86,45 @@ def state_of(simulation, **changed):
 @pytest.mark.parametrize(
     ("call", "says"),
     [
-        (lambda s: s.command([]), "command holds 0 rotor speeds; give 1"),
-        (lambda s: s.command([1, 2]), "command holds 2 rotor speeds; give 1"),
-        (lambda s: s.command([math.nan]), "command for rotor 1 is not a finite number; give rad/s"),
-        (lambda s: s.command([math.inf]), "command for rotor 1 is not a finite number; give rad/s"),
+        (lambda s: s.command([]), "the command has 0 rotor speeds. Give 1."),
+        (lambda s: s.command([1, 2]), "the command has 2 rotor speeds. Give 1."),
+        (
+            lambda s: s.command([math.nan]),
+            "the command for rotor 1 is not a finite number. Give a speed",
+        ),
+        (
+            lambda s: s.command([math.inf]),
+            "the command for rotor 1 is not a finite number. Give a speed",
+        ),
         (lambda s: s.command([[1]]), "command is not a 1-dimensional array of numbers"),
         (lambda s: s.command("x"), "command is not a 1-dimensional array of numbers"),
-        (lambda s: s.step(-1), "step count is -1; give one >= 0"),
+        (lambda s: s.step(-1), "the step count is -1. Give a whole number >= 0."),
         (lambda s: s.run(-1), "duration is -1; give seconds, from 0 to 1e+09"),
         (lambda s: s.run(math.nan), "duration is nan; give seconds, from 0 to 1e+09"),
-        (lambda s: s.run(1, log_every=0), "log_every is 0; give a whole number >= 1"),
-        (lambda s: s.run(1, commands=[[0, math.nan]]), "w1 is nan; write a finite number"),
+        (lambda s: s.run(1, log_every=0), "log_every is 0. Give a whole number >= 1."),
+        (lambda s: s.run(1, commands=[[0, math.nan]]), "w1 is nan. Write a finite number."),
         (lambda s: s.run(1, commands=[[0, 1, 2]]), "takes (rows, 2): t,w1"),
         (lambda s: s.run(1, commands=np.zeros((0, 2))), "commands: holds no commands"),
-        (lambda s: s.run(1, commands=[[0, 1], [0, 2]]), "does not come after"),
+        (lambda s: s.run(1, commands=[[0, 1], [0, 2]]), "is not later than"),
         (lambda s: s.set_state(state_of(s, position=[0, 0])), "state.position holds 2 numbers"),
         (lambda s: s.set_state(state_of(s, position=[0, 0, math.nan])), "not a finite number"),
-        (lambda s: s.set_state(state_of(s, orientation=[0, 0, 0, 0])), "is no quaternion"),
+        (lambda s: s.set_state(state_of(s, orientation=[0, 0, 0, 0])), "is not a unit quaternion"),
         (lambda s: s.set_state(state_of(s, rotor_velocity=[1, 2])), "this vehicle has 1 rotors"),
         (lambda s: s.set_state(state_of(s, rotor_velocity=[1e7])), "rotor is 1e+07 rad/s, but a"),
         (lambda s: s.set_state(state_of(s, linear_velocity=[0, 2e6, 0])), "velocity is 2e+06 m/s"),
         (lambda s: s.set_state(state_of(s, position=[0, 0, 1e9])), "origin is 1e+09 m, but a"),
         (lambda s: s.set_state(state_of(s, time=math.inf)), "not a finite number"),
         (lambda s: s.set_state(state_of(s, time="now")), "state.time is not a number"),
-        (lambda s: s.restore(qc.Simulation("quadrotor").snapshot()), "was taken from another"),
-        (lambda s: s.restore(like_it("toy.urdf", mass="1.01")), "was taken from another"),
-        (lambda s: s.restore(like_it("toy.urdf", rotor="spinner")), "was taken from another"),
-        (lambda s: s.topic("odometry"), "topic 'odometry' is not declared by any plugin"),
+        (
+            lambda s: s.restore(qc.Simulation("quadrotor").snapshot()),
+            "it was taken with a different",
+        ),
+        (lambda s: s.restore(like_it("toy.urdf", mass="1.01")), "it was taken with a different"),
+        (
+            lambda s: s.restore(like_it("toy.urdf", rotor="spinner")),
+            "it was taken with a different",
+        ),
+        (lambda s: s.topic("odometry"), "topic 'odometry' does not exist."),
     ],
 )
 def test_a_refused_call_changes_nothing(call, says):
@@ -237,7 +252,7 @@ def test_lists_that_come_one_by_one_are_read_once():
 
 
 def test_numbers_and_names_that_cannot_be_meant_are_told():
-    with pytest.raises(qc.InputError, match=r"^steps: give a whole number below 2\^63$"):
+    with pytest.raises(qc.InputError, match=r"^steps must be a whole number below 2\^63\.$"):
         quadrotor("eigen").step(2**63)
     with pytest.raises(qc.InputError, match=r"^topic: give a name in UTF-8$"):
         quadrotor("eigen").topic("\udc80")

@@ -65,35 +65,35 @@ def k(value):
 
 MODELS = {
     "a mass that is none": [
-        fault(MASS, mass("-1"), "link 'propeller'", "mass -1", "write a mass in kg, > 0"),
-        fault(MASS, mass("nan"), "value of <mass> is 'nan'", "write one finite number"),
-        fault(MASS, mass("inf"), "value of <mass> is 'inf'", "write one finite number"),
-        fault(MASS, mass("1kg"), "value of <mass> is '1kg'", "write one finite number"),
-        fault(MASS, mass("0,01"), "value of <mass> is '0,01'", "write one finite number"),
-        fault(MASS, mass(""), '<mass> needs the attribute value="..."'),
-        fault(MASS, "<mass/>", '<mass> needs the attribute value="..."'),
-        fault(MASS, mass(1) + "\n" + mass(2), "a second <mass>", "keep one of them", at=mass(2)),
+        fault(MASS, mass("-1"), "link 'propeller'", "mass -1", "Use a positive mass in kg."),
+        fault(MASS, mass("nan"), "value of <mass> is 'nan'", "Write one finite number"),
+        fault(MASS, mass("inf"), "value of <mass> is 'inf'", "Write one finite number"),
+        fault(MASS, mass("1kg"), "value of <mass> is '1kg'", "Write one finite number"),
+        fault(MASS, mass("0,01"), "value of <mass> is '0,01'", "Write one finite number"),
+        fault(MASS, mass(""), "<mass> requires the attribute value"),
+        fault(MASS, "<mass/>", "<mass> requires the attribute value"),
+        fault(MASS, mass(1) + "\n" + mass(2), "a second <mass>", "Keep one of them", at=mass(2)),
         fault(MASS, mass("0"), "'propeller' moves", "no mass", "in kg, > 0", at=PROPELLER),
-        fault(MASS, "", "<inertial> needs a <mass>; add one", at="<inertial>\n      \n"),
-        fault(INERTIAL, "", "'propeller' moves", "no <inertial>; add one", at=PROPELLER),
+        fault(MASS, "", "<inertial> requires a <mass>. Add one", at="<inertial>\n      \n"),
+        fault(INERTIAL, "", "'propeller' moves", "no <inertial>. Add one", at=PROPELLER),
     ],
     "a link on a fixed joint may be massless but not negative": [
-        fault(MOUNT, mount("-1"), "link 'mount'", "mass -1", "write a mass in kg, > 0"),
-        fault(MOUNT, mount("nan"), "value of <mass> is 'nan'", "write one finite number"),
-        fault(MOUNT, mount("1", "-1"), "link 'mount'", "negative", "write a positive"),
+        fault(MOUNT, mount("-1"), "link 'mount'", "mass -1", "Use a positive mass in kg."),
+        fault(MOUNT, mount("nan"), "value of <mass> is 'nan'", "Write one finite number"),
+        fault(MOUNT, mount("1", "-1"), "link 'mount'", "negative", "Write a positive"),
     ],
     "an inertia that no body can have": [
-        fault(INERTIA, inertia(ixx="-1e-5"), "'propeller'", "negative", "write a positive"),
-        fault(INERTIA, inertia(ixy="2e-5"), "'propeller'", "negative", "write a positive"),
+        fault(INERTIA, inertia(ixx="-1e-5"), "'propeller'", "negative", "Write a positive"),
+        fault(INERTIA, inertia(ixy="2e-5"), "'propeller'", "negative", "Write a positive"),
         fault(INERTIA, inertia(izz="nan"), "izz of <inertia> is 'nan'", "one finite number"),
         fault(INERTIA, inertia(iyz="inf"), "iyz of <inertia> is 'inf'", "one finite number"),
-        fault(INERTIA, '<inertia ixx="1"/>', '<inertia> needs the attribute iyy="..."'),
+        fault(INERTIA, '<inertia ixx="1"/>', "<inertia> requires the attribute iyy"),
         fault(INERTIA, inertia(ixx="0", izz="1e-5"), "moment", "> 0", at=PROPELLER),
         fault(
             INERTIA,
             inertia(ixx="1e9"),
             "the principal moments of inertia 1e-05, 2e-05, 1000000000 kg m^2",
-            "none of them next to nothing beside another",
+            "All of them must be positive and of comparable size.",
             at=PROPELLER,
         ),
         fault(INERTIA, inertia(ixx="0", iyy="0", izz="0"), "moment", "> 0", at=PROPELLER),
@@ -101,29 +101,29 @@ MODELS = {
     ],
     "a collision shape that is none": [
         fault(SHAPE, "<cone/>", "<cone> in <geometry>", "takes box, cylinder, mesh, sphere"),
-        fault(SHAPE, '<cylinder radius="1"/>', '<cylinder> needs the attribute length="..."'),
-        fault(SHAPE, '<cylinder radius="0" length="1"/>', "<cylinder>", "lengths in m, > 0"),
-        fault(SHAPE, '<sphere radius="-1"/>', "<sphere>", "lengths in m, > 0"),
-        fault(SHAPE, '<box size="1 1"/>', "size of <box> is '1 1'", "write three finite numbers"),
-        fault(SHAPE, "<box/>", '<box> needs the attribute size="..."'),
-        fault(SHAPE, "", "<geometry> takes exactly one shape"),
-        fault(SHAPE, SHAPE + '<sphere radius="1"/>', "<geometry> takes exactly one shape"),
+        fault(SHAPE, '<cylinder radius="1"/>', "<cylinder> requires the attribute length"),
+        fault(SHAPE, '<cylinder radius="0" length="1"/>', "<cylinder>", "positive lengths in m"),
+        fault(SHAPE, '<sphere radius="-1"/>', "<sphere>", "positive lengths in m"),
+        fault(SHAPE, '<box size="1 1"/>', "size of <box> is '1 1'", "Write three finite numbers"),
+        fault(SHAPE, "<box/>", "<box> requires the attribute size"),
+        fault(SHAPE, "", "<geometry> must contain exactly one shape"),
+        fault(SHAPE, SHAPE + '<sphere radius="1"/>', "<geometry> must contain exactly one shape"),
     ],
     "links and joints that make no tree": [
         fault(MOUNT, '<link name="frame"/>', "second link named 'frame'", "toy.urdf:2", "another"),
         fault(WELD, WELD.replace("weld", "rotor"), "second joint named 'rotor'", at=ROTOR),
-        fault(PROPELLER, "<link>", '<link> needs the attribute name="..."'),
-        fault('<robot name="toy">', "<robot>", '<robot> needs the attribute name="..."'),
-        fault(TO_MOUNT, "<parent/>", '<parent> needs the attribute link="..."'),
-        fault(TO_MOUNT, "", "<joint> needs a <parent>; add one", at=ROTOR),
-        fault(TURNING, "", "<joint> needs a <child>; add one", at=ROTOR),
+        fault(PROPELLER, "<link>", "<link> requires the attribute name"),
+        fault('<robot name="toy">', "<robot>", "<robot> requires the attribute name"),
+        fault(TO_MOUNT, "<parent/>", "<parent> requires the attribute link"),
+        fault(TO_MOUNT, "", "<joint> requires a <parent>. Add one", at=ROTOR),
+        fault(TURNING, "", "<joint> requires a <child>. Add one", at=ROTOR),
         fault(TO_MOUNT, '<parent link="mont"/>', "parent link 'mont'", "'mount'?", at=ROTOR),
-        fault(TURNING, '<child link="hub"/>', "child link 'hub'", "name a link", at=ROTOR),
-        fault(WELDED, TURNING, "'propeller' hangs on joint 'rotor' and on 'weld'", at=ROTOR),
-        fault(MOUNT, f"{MOUNT}\n{LOOSE}", "'loose' is a second root", "connect it", at=LOOSE),
+        fault(TURNING, '<child link="hub"/>', "child link 'hub'", "Name a link", at=ROTOR),
+        fault(WELDED, TURNING, "'propeller' is the child of joint 'rotor' and of 'weld'", at=ROTOR),
+        fault(MOUNT, f"{MOUNT}\n{LOOSE}", "'loose' is a second root", "Connect it", at=LOOSE),
         fault(TO_FRAME, '<parent link="propeller"/>', "'weld' closes a loop", "a tree", at=WELD),
-        fault(TO_FRAME, TO_MOUNT, "'weld' closes a loop", "must be a tree", at=WELD),
-        fault(MOUNT, f"{MOUNT}<lnk/>", "<lnk> in <robot>", "did you mean 'link'?"),
+        fault(TO_FRAME, TO_MOUNT, "'weld' closes a loop", "make the model a tree", at=WELD),
+        fault(MOUNT, f"{MOUNT}<lnk/>", "<lnk> in <robot>", "Did you mean 'link'?"),
         fault(MOUNT, '<link name="mount"><x/></link>', "<x> in <link>", "takes collision"),
     ],
     "a joint that the engines do not model": [
@@ -131,9 +131,9 @@ MODELS = {
             fault(ROTOR, ROTOR.replace("continuous", kind), f"'rotor' is of type '{kind}'", "write")
             for kind in ("revolute", "prismatic", "floating", "planar", "hinge")
         ),
-        fault(ROTOR, '<joint name="rotor">', '<joint> needs the attribute type="..."'),
-        fault(AXIS, '<axis xyz="0 0 0"/>', "joint 'rotor' has no axis", "such as 0 0 1"),
-        fault(AXIS, '<axis xyz="up"/>', "xyz of <axis> is 'up'", "write three finite numbers"),
+        fault(ROTOR, '<joint name="rotor">', "<joint> requires the attribute type"),
+        fault(AXIS, '<axis xyz="0 0 0"/>', "joint 'rotor' has a zero axis", "such as 0 0 1"),
+        fault(AXIS, '<axis xyz="up"/>', "xyz of <axis> is 'up'", "Write three finite numbers"),
         fault(ORIGIN, '<origin xyz="0 0"/>', "xyz of <origin> is '0 0'", "three finite numbers"),
         fault(ORIGIN, '<origin rpy="0 0 nan"/>', "rpy of <origin>", "three finite numbers"),
         fault(DAMPING, '<dynamics damping="-1"/>', "'rotor' has a negative damping", ">= 0"),
@@ -153,7 +153,7 @@ MODELS = {
         fault("<inertial>\n      " + MASS, '<inertial mass="1">' + MASS, "mass of <inertial>"),
         fault("<collision>", '<collision size="1">', "size of <collision>", "takes name"),
         fault("<geometry>", '<geometry scale="2">', "scale of <geometry>", "remove it"),
-        fault("<gazebo>", '<gazebo refernce="rotor">', "refernce", "did you mean 'reference'?"),
+        fault("<gazebo>", '<gazebo refernce="rotor">', "refernce", "Did you mean 'reference'?"),
         fault("<kp>", '<kp unit="N m s">', "unit of <kp>", "remove it"),
         fault('<robot name="toy">', '<robot name="toy" nmae="x">', "nmae of <robot>", "'name'?"),
     ],
@@ -165,7 +165,7 @@ MODELS = {
         fault(MASS, '<mass value="1"><value>2</value></mass>', "<value> in <mass>", "remove it"),
         fault(DAMPING, 'dynamics damping="1"/>', "stray text 'dynamics", "in <joint>; remove it"),
         fault(DAMPING, '<limit effort="nan"/>', "effort of <limit> is 'nan'", "finite number"),
-        fault("<kp>5e-4", "<kp>5e-4<!-- a -->7", "the text of <kp> is in pieces", "comment out"),
+        fault("<kp>5e-4", "<kp>5e-4<!-- a -->7", "the text of <kp> is interrupted", "comment out"),
     ],
     "XML that is malformed or dangerous": [
         fault('<robot name="toy">', '<robt name="toy">', "mismatched tag", at="</robot>"),
@@ -184,18 +184,18 @@ MODELS = {
     ],
     "a tag that is wrong": [
         *(
-            fault(K, k(value), f"'air': <rotorThrustCoeff> '{value}'", "plain number in N s^2")
+            fault(K, k(value), f"'air': <rotorThrustCoeff> '{value}'", "Write a number in N s^2")
             for value in ("nan", "inf", "-inf", "1e999", "1e-5 N", "1e-5 1e-5", "0x1", "k", "")
         ),
-        fault(K, k("-1"), "'air': <rotorThrustCoeff> '-1'", "write a number >= 0"),
+        fault(K, k("-1"), "'air': <rotorThrustCoeff> '-1'", "Use a number >= 0"),
         fault(K, "", "'air': required tag <rotorThrustCoeff>", "add", "in N s^2/rad^2", at=AIR),
         fault(KP, "", "'motor': required tag <kp>", "add <kp>", "N m s/rad", at=MOTOR),
         fault(K, K + "\n" + k(2), "<rotorThrustCoeff>", "toy.urdf:31", "keep one", at=k(2)),
         fault(K, "<rotorTrustCoeff>1</rotorTrustCoeff>", "'air'", "mean 'rotorThrustCoeff'?"),
-        fault(KP, f"{KP}<kI>1</kI>", "'motor': unknown tag <kI>", "did you mean 'ki'?"),
+        fault(KP, f"{KP}<kI>1</kI>", "'motor': unknown tag <kI>", "Did you mean 'ki'?"),
         fault(K, k("<b>1</b>"), "unknown tag <rotorThrustCoeff/b>", "mean 'rotorThrustCoeff'"),
         fault(K, f"{K}1", "stray text '1'", 'name="air"', "<tag>value</tag>", at=AIR),
-        fault(AIR_SLOW, "<sim_slow>0</sim_slow>", "'air': <sim_slow> '0'", "write a number > 0"),
+        fault(AIR_SLOW, "<sim_slow>0</sim_slow>", "'air': <sim_slow> '0'", "Use a number > 0"),
         fault(K, f"{K}<rotorRadius>0</rotorRadius>", "<rotorRadius> '0'", "a number > 0"),
         fault(K, f"{K}<dragModel>none</dragModel>", "'none'", "write appendix | chapter2"),
         fault(K, f"{K}<reactionTorque>-1</reactionTorque>", "'-1'", "write thesis | opposing"),
@@ -210,15 +210,15 @@ MODELS = {
         fault(RATE, "<positionNoise>-1</positionNoise>", "<positionNoise> '-1'", ">= 0"),
         fault(RATE, "<twistFrame>drone</twistFrame>", "'drone'", "write world | body"),
         fault(RATE, "<seed>-1</seed>", "'odometry': <seed> '-1'", "a number >= 0"),
-        fault(RATE, "<seed>1.5</seed>", "<seed> is not a whole number; write one", at=ODOMETRY),
+        fault(RATE, "<seed>1.5</seed>", "<seed> is not a whole number.", at=ODOMETRY),
     ],
     "a tag that names what is not there": [
         fault(K, f"{K}<frameLink>fram</frameLink>", "'air': <frameLink> 'fram'", "'frame'?"),
-        fault(K, f"{K}<frameLink>propeller</frameLink>", "'propeller'", "name the root link"),
-        fault(K, f"{K}<rotorJoints>rotr</rotorJoints>", "'rotr'", "did you mean 'rotor'?"),
+        fault(K, f"{K}<frameLink>propeller</frameLink>", "'propeller'", "Name the root link"),
+        fault(K, f"{K}<rotorJoints>rotr</rotorJoints>", "'rotr'", "Did you mean 'rotor'?"),
         fault(K, f"{K}<rotorJoints>weld</rotorJoints>", "'weld'", "the model has rotor"),
-        fault(K, f"{K}<rotorJoints>rotor rotor</rotorJoints>", "'rotor' twice", "name it once"),
-        fault(K, f"{K}<rotorJoints> </rotorJoints>", "<rotorJoints>", "name at least one"),
+        fault(K, f"{K}<rotorJoints>rotor rotor</rotorJoints>", "'rotor' twice", "Name it once"),
+        fault(K, f"{K}<rotorJoints> </rotorJoints>", "<rotorJoints>", "Name at least one"),
     ],
     "two sim slow that disagree": [
         fault(MOTOR_SLOW, "<sim_slow>8</sim_slow>", "10 in 'air'", "8 in 'motor'", "same value"),
@@ -226,18 +226,22 @@ MODELS = {
         fault(AIR_SLOW, "", "1 in 'air' (default)", "10.0 in 'motor'", "same", at=MOTOR_SLOW),
     ],
     "a plugin element that is wrong": [
-        fault(MOTOR, '<plugin filename="a.so">', '<plugin> needs the attribute name="..."'),
-        fault(MOTOR, '<plugin name="motor">', '<plugin> needs the attribute filename="..."'),
-        fault(MOTOR, MOTOR.replace("motor", "air", 1), "second plugin named 'air'", "another name"),
-        fault(MOTOR, MOTOR.replace("lib", "../lib"), "'motor'", "is a path", "file name alone"),
-        fault(MOTOR, MOTOR.replace("lib", "/lib/lib"), "'motor'", "is a path", "file name alone"),
-        fault("<gazebo>", f"{MOTOR}</plugin><gazebo>", "<plugin> stands outside", "wrap it in"),
+        fault(MOTOR, '<plugin filename="a.so">', "<plugin> requires the attribute name"),
+        fault(MOTOR, '<plugin name="motor">', "<plugin> requires the attribute filename"),
+        fault(
+            MOTOR, MOTOR.replace("motor", "air", 1), "second plugin is named 'air'", "another name"
+        ),
+        fault(MOTOR, MOTOR.replace("lib", "../lib"), "'motor'", "is a path", "only the file name"),
+        fault(
+            MOTOR, MOTOR.replace("lib", "/lib/lib"), "'motor'", "is a path", "only the file name"
+        ),
+        fault("<gazebo>", f"{MOTOR}</plugin><gazebo>", "<plugin> stands outside", "Wrap it in"),
         fault(AIR, f"<static/>{AIR}", "<static> in <gazebo> is not supported", "takes plugin"),
         fault(
             ODOMETRY,
             f"{GALE}{K}<rotorTorqueCoeff>0</rotorTorqueCoeff>{AIR_SLOW}</plugin>{ODOMETRY}",
             "plugin 'gale' reports the wrench 'thrust'",
-            "load only one of them",
+            "Load only one of them",
         ),
     ],
 }
@@ -259,8 +263,8 @@ def air(inside):
 
 WORLDS = {
     "a value that is none": [
-        fault(STEP, STEP.replace("0.001", "0"), "<max_step_size>", "write a number >= 1e-09"),
-        fault(STEP, STEP.replace("0.001", "-1"), "<max_step_size>", "write a number >= 1e-09"),
+        fault(STEP, STEP.replace("0.001", "0"), "<max_step_size>", "Use a number >= 1e-09"),
+        fault(STEP, STEP.replace("0.001", "-1"), "<max_step_size>", "Use a number >= 1e-09"),
         fault(STEP, STEP.replace("0.001", "1e-200"), "<max_step_size>", "a number >= 1e-09"),
         fault(STEP, STEP.replace("0.001", "1ms"), "<max_step_size> is '1ms'", "finite number"),
         fault(STEP, STEP.replace("0.001", "nan"), "<max_step_size> is 'nan'", "finite number"),
@@ -271,14 +275,14 @@ WORLDS = {
         fault(GRAVITY, "<gravity>-9.8</gravity>", "<gravity> is '-9.8'", "three finite numbers"),
         fault("<iters>50", "<iters>0", "<iters>", "whole number from 1 to"),
         fault("<iters>50", "<iters>2.5", "<iters>", "whole number from 1 to"),
-        fault("<sor>1.3", "<sor>0", "<sor>", "write a number > 0, <= 2"),
-        fault("<sor>1.3", "<sor>2.5", "<sor>", "write a number > 0, <= 2"),
-        fault("<erp>0.2", "<erp>1.5", "<erp>", "write a number >= 0, <= 1"),
-        fault("<cfm>0", "<cfm>-1", "<cfm>", "write a number >= 0"),
+        fault("<sor>1.3", "<sor>0", "<sor>", "Use a number > 0, <= 2"),
+        fault("<sor>1.3", "<sor>2.5", "<sor>", "Use a number > 0, <= 2"),
+        fault("<erp>0.2", "<erp>1.5", "<erp>", "Use a number >= 0, <= 1"),
+        fault("<cfm>0", "<cfm>-1", "<cfm>", "Use a number >= 0"),
         fault("<type>quick", "<type>slow", "<type> is 'slow'", "write quick or world"),
         fault(WIND, WIND.replace("1 0 0", "1 0 fast"), "'1 0 fast'", "three finite numbers"),
         fault(GRAVITY, air("<temperature>0</temperature>"), "<temperature>", "a number > 0"),
-        fault(GRAVITY, air("<pressure>-1</pressure>"), "<pressure>", "write a number >= 0"),
+        fault(GRAVITY, air("<pressure>-1</pressure>"), "<pressure>", "Use a number >= 0"),
         fault(GRAVITY, air("<temperature_gradient>x</temperature_gradient>"), "finite number"),
     ],
     "an element that is not honoured": [
@@ -291,9 +295,9 @@ WORLDS = {
             )
             for name in ("state", "population", "joint")
         ),
-        fault(GRAVITY, "<plugin/>", '<plugin> needs the attribute name="..."'),
+        fault(GRAVITY, "<plugin/>", "<plugin> requires the attribute name"),
         fault("<sor>1.3</sor>", "<use_dynamic_moi_rescaling>1</use_dynamic_moi_rescaling>", "0"),
-        fault(GRAVITY, "<gravty>0 0 1</gravty>", "<gravty> in <world>", "did you mean 'gravity'?"),
+        fault(GRAVITY, "<gravty>0 0 1</gravty>", "<gravty> in <world>", "Did you mean 'gravity'?"),
         fault(GRAVITY, '<atmosphere type="thick"/>', "atmosphere type 'thick'", "write adiabatic"),
         fault(GRAVITY, air("<density>1</density>"), "<density> in <atmosphere>", "pressure"),
         fault(PHYSICS, '<physics type="bullet">', "physics type 'bullet'", "write ode"),
@@ -302,10 +306,10 @@ WORLDS = {
         fault(WIND, "<angular_velocity/>", "<angular_velocity> in <wind>", "'linear_velocity'?"),
     ],
     "what would be passed over": [
-        fault(PHYSICS, '<physics typ="ode">', "typ of <physics>", "did you mean 'type'?"),
+        fault(PHYSICS, '<physics typ="ode">', "typ of <physics>", "Did you mean 'type'?"),
         fault("<erp>", '<erp unit="1">', "unit of <erp>", "remove it"),
         fault("<wind>", '<wind mode="gust">', "mode of <wind>", "remove it"),
-        fault(GRAVITY, "<gravity>0 0<!-- z --> -9.8</gravity>", "<gravity> is in pieces"),
+        fault(GRAVITY, "<gravity>0 0<!-- z --> -9.8</gravity>", "<gravity> is interrupted"),
     ],
     "what is said twice": [
         fault(GRAVITY, f"{GRAVITY}\n{GRAVITY}<!---->", "second <gravity>", "keep", at="<!---->"),
@@ -316,18 +320,23 @@ WORLDS = {
             "keep one",
         ),
         fault(STEP, f"{STEP}<gravity>0 0 0</gravity>", "<gravity> beside", "toy.world:3", "keep"),
-        fault(END, f"{END}<physics/>", "a second <physics>", "keep one of them"),
-        fault(END, f"{END}<physics:ode/>", "<physics:ode> beside <physics>", "keep one of them"),
-        fault("</world>", "</world><world/>", "a second <world>", "keep one of them"),
+        fault(END, f"{END}<physics/>", "a second <physics>", "Keep one of them"),
+        fault(
+            END,
+            f"{END}<physics:ode/>",
+            "<physics:ode> sets the same value as <physics>",
+            "Keep one of them",
+        ),
+        fault("</world>", "</world><world/>", "a second <world>", "Keep one of them"),
     ],
     "a model that is no ground plane": [
-        fault(WIND, "", "<wind> needs a <linear_velocity>; add one", at="<wind>"),
-        fault(END, f"{END}<include/>", "<include> needs a <uri>; add one"),
+        fault(WIND, "", "<wind> requires a <linear_velocity>. Add one", at="<wind>"),
+        fault(END, f"{END}<include/>", "<include> requires a <uri>. Add one"),
         fault(
             END,
             f"{END}<include><uri>model://cessna</uri></include>",
             "'model://cessna' is not supported",
-            "may include model://ground_plane and model://sun",
+            "Include only model://ground_plane or model://sun",
         ),
         fault(
             END,
@@ -335,7 +344,7 @@ WORLDS = {
             "<pose> in <include>",
             "takes uri",
         ),
-        fault(END, END + PLANE.replace("0 0 1", "0 1 1"), "a level plane", "write 0 0 1"),
+        fault(END, END + PLANE.replace("0 0 1", "0 1 1"), "a level plane", "Write 0 0 1"),
         fault(END, END + PLANE.replace("true", "false"), "a static model", "write true"),
         fault(END, END + PLANE.replace("<static>true</static>", ""), "<model> needs a <static>"),
         fault(END, END + PLANE.replace("plane", "sphere"), "<sphere> in <geometry>", "plane"),
@@ -377,7 +386,7 @@ def test_a_root_that_gazebo_would_pin_to_the_world(toy):
     text = (toy / "toy.urdf").read_text()
     (toy / "toy.urdf").write_text(text.replace('"frame"', '"world"'))
     message = refusal(qc.Simulation, "toy.urdf")
-    assert message.startswith("toy.urdf:2: Gazebo pins a root link named 'world'")
+    assert message.startswith("toy.urdf:2: Gazebo fixes a root link named 'world'")
 
 
 def test_elements_nested_without_end(toy):
@@ -408,8 +417,8 @@ def test_whatever_is_cut_or_doubled_is_flown_or_refused_with_its_place(toy, data
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("<gazebo/>", "toy.world:1: expected <sdf> as the outermost element, not <gazebo>"),
-        ("<sdf/>", "toy.world:1: <sdf> needs a <world>; add one"),
+        ("<gazebo/>", "toy.world:1: the outermost element is <gazebo>. Use <sdf>."),
+        ("<sdf/>", "toy.world:1: <sdf> requires a <world>. Add one"),
         ("", "toy.world:1: "),
     ],
 )
@@ -431,7 +440,7 @@ def test_a_plugin_that_is_not_found_names_every_folder_searched(toy, monkeypatch
         "libmotorpid_plugin.so",
         "libmotor.so",
         "'motor'",
-        f"libmotor.so was not found in {', '.join(folders)}; correct the filename or add its "
+        f"libmotor.so was not found in {', '.join(folders)}. Correct the file name or add its "
         "folder to QUADCORE_PLUGIN_PATH",
     )
     assert_refused("toy.urdf", absent)
@@ -449,7 +458,7 @@ def test_a_file_that_is_no_plugin_is_refused_by_what_it_lacks(toy, monkeypatch):
 
 def test_a_folder_of_plugins_that_is_none():
     for path in ("nowhere", "toy.urdf"):
-        assert refusal(qc.load_plugin_path, path).startswith(f"{path}: is not a folder; give")
+        assert refusal(qc.load_plugin_path, path).startswith(f"{path}: this is not a folder. Give")
 
 
 def test_a_model_without_motor_cannot_be_commanded(toy):
@@ -457,7 +466,7 @@ def test_a_model_without_motor_cannot_be_commanded(toy):
     start, end = text.index(MOTOR), text.index(ODOMETRY)
     (toy / "toy.urdf").write_text(text[:start] + text[end:])
     simulation = qc.Simulation("toy.urdf", parameters={"air.sim_slow": 1})
-    assert "add libmotorpid_plugin.so" in refusal(simulation.command, [1])
+    assert "Add libmotorpid_plugin.so" in refusal(simulation.command, [1])
 
 
 def test_an_integral_gain_without_limits_is_warned_of():

@@ -260,7 +260,7 @@ def test_the_state_is_written_into_the_callers_array():
         (lambda: BatchSimulation(n=2).reset([1, 0]), "mask is not an array of booleans"),
         (lambda: BatchSimulation(n=64).warnings(64), "vehicle is 64. Give a number from 0 to 63"),
         (lambda: BatchSimulation(n=64).warnings(-1), "vehicle is -1. Give a number from 0 to 63"),
-        (lambda: BatchSimulation(n=2).warnings("a"), "vehicle: give a whole number"),
+        (lambda: BatchSimulation(n=2).warnings("a"), "vehicle must be a whole number"),
         (lambda: BatchSimulation(n=2, engine="eigne"), "eigne"),
     ],
 )
@@ -281,7 +281,9 @@ def test_the_number_of_vehicles_is_that_of_the_core_whatever_python_does():
     assert batch.n == len(batch.state.position) == len(batch.time) == 200
     with pytest.raises(InputError, match=r"of \(200, 21\) float64"):
         batch.read_state(np.empty((1, 21)))
-    with pytest.raises(InputError, match=r"out is not a writable, contiguous array of \(3, 21\)"):
+    with pytest.raises(
+        InputError, match=r"out is not a writable, contiguous float64 array of shape \(3, 21\)"
+    ):
         _ = Renumbered(n=3).state
 
 

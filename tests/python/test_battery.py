@@ -143,5 +143,5 @@ def test_a_battery_that_does_not_sag_flies_the_same_bytes_and_survives_a_snapsho
 
 
 def test_voltages_the_wrong_way_round_are_refused(hangar):
-    with pytest.raises(qc.InputError, match="<emptyVoltage> exceeds <fullVoltage>; swap them"):
+    with pytest.raises(qc.InputError, match=r"<emptyVoltage> exceeds <fullVoltage>\. Swap them"):
         hangar(powered(emptyVoltage=13))

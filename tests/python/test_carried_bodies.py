@@ -85,9 +85,9 @@ def test_a_flight_is_taken_up_again_across_a_release(engine, hangar):
     [
         (
             {"name": "frame"},
-            "it carries a body 'frame' that has the name of a link; give it another",
+            "the carried body 'frame' has the name of a link. Give it another",
         ),
-        ({"mass": 1e300, "radius": 1e10}, "it carries a body 'cargo' whose inertia is none"),
+        ({"mass": 1e300, "radius": 1e10}, "the carried body 'cargo' has an impossible inertia"),
     ],
 )
 def test_what_cannot_be_carried_is_refused_with_the_plugin(tags, says, hangar):

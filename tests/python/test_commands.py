@@ -71,7 +71,7 @@ def test_blanks_and_a_byte_order_mark_do_not_matter(csv):
         (("t,w1,w2", "0,1,\u0662"), ":2: column 'w2' holds '\u0662'; write a number"),
         (("t,w1,w2", "0,1,nan"), ":2: w2 is nan"),
         (("t,w1,w2", "0,1,2", "0.1,-inf,2"), ":3: w1 is -inf"),
-        (("t,w1,w2", "0,1,2", "1,1,2", "1,1,2"), ":4: t = 1 does not come after 1"),
+        (("t,w1,w2", "0,1,2", "1,1,2", "1,1,2"), ":4: t = 1 is not later than 1"),
         (("t,w1,w2",), ": holds no commands"),
     ],
 )
@@ -89,7 +89,7 @@ def test_a_fault_in_a_csv_file_names_file_and_line(csv, lines, message):
         ({"t": [0], "w1": [1], "w2": [1], "w3": [1]}, "takes t, w1, w2"),
         ({"t": [0, 1], "w1": [1, 2], "w2": [1]}, "w2 has 1 values, t has 2"),
         ({"t": [0, 1], "w1": [1, 2], "w2": [1, np.nan]}, "row 2: w2 is nan"),
-        ({"t": [1, 0], "w1": [1, 2], "w2": [1, 2]}, "row 2: t = 0 does not come after 1"),
+        ({"t": [1, 0], "w1": [1, 2], "w2": [1, 2]}, "row 2: t = 0 is not later than 1"),
         ({"t": [0, 1], "w1": [1, 2], "w2": np.eye(2)}, "w2 is no vector"),
         ({"t": [0], "w1": [1j], "w2": [1]}, "w1 is no vector of real numbers"),
         ({"t": [0], "w1": "text", "w2": [1]}, "w1 is no vector of real numbers"),
@@ -130,7 +130,7 @@ def test_arrays_and_paths_are_taken_alike(csv):
         (TABLE[0], r"shape \(3,\)"),
         ([[0, 1], [1]], "not a table of numbers"),
         ([[0, 1, np.inf]], "row 0: w2 is inf"),
-        (TABLE[::-1], "row 1: t = 0 does not come after 0.5"),
+        (TABLE[::-1], "row 1: t = 0 is not later than 0.5"),
         (TABLE[:0], "holds no commands"),
     ],
 )

@@ -227,7 +227,7 @@ def test_references_and_laws_can_be_pickled():
         ({"controller": controllers.pd(spins=[1, 1, 1, 1]), "reference": "hover"}, "independently"),
         (
             {"controller": controllers.pd(spins=[1, -1]), "reference": "hover"},
-            "spins are no 4 signs",
+            "spins are not 4 signs",
         ),
     ],
 )

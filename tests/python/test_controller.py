@@ -50,7 +50,7 @@ def test_a_law_is_told_what_stands_on_any_topic():
     simulation.run(0.01, controller=law)
     assert [row[2] for row in heard] == list(range(len(heard))) and len(heard) == 5
     assert all(time == stamp for time, stamp, _ in heard)
-    with pytest.raises(qc.InputError, match="topic 'odm' is not declared"):
+    with pytest.raises(qc.InputError, match="topic 'odm' does not exist"):
         simulation.run(0.01, controller=lambda t, state, reference: state.topic("odm"))
 
 
@@ -123,10 +123,10 @@ def wrong_after(t0, speeds):
 @pytest.mark.parametrize(
     ("speeds", "told"),
     [
-        ([471] * 3, "[471, 471, 471]: command holds 3 rotor speeds"),
+        ([471] * 3, "[471, 471, 471]: the command has 3 rotor speeds"),
         (
             [471, np.nan, 471, 471],
-            "[471, nan, 471, 471]: command for rotor 2 is not a finite number",
+            "[471, nan, 471, 471]: the command for rotor 2 is not a finite number",
         ),
         (None, "None: command is not a 1-dimensional array of numbers"),
         ("fast", "'fast': command is not a 1-dimensional array of numbers"),
@@ -138,8 +138,8 @@ def test_what_is_no_command_ends_the_flight_and_its_log_stays(speeds, told, t0):
     with pytest.raises(qc.FlightError) as failed:
         simulation.run(1, controller=wrong_after(t0, speeds))
     assert str(failed.value) == (
-        f"the flight failed at t = {t0:f} s: the controller returned {told}; return 4 rotor speeds "
-        "(rad/s)"
+        f"the flight failed at t = {t0:f} s: the controller returned {told}. Return 4 rotor speeds "
+        "in rad/s."
     )
     assert failed.value.time == simulation.time == pytest.approx(t0)
     assert len(failed.value.log) == 1 + round(1000 * t0)

@@ -98,7 +98,7 @@ def test_a_law_believes_in_the_vehicle_of_a_second_file(tmp_path, hangar):
     other = called.run(0.5, controller=law, reference=circle())
     assert one.table.tobytes() == other.table.tobytes()
     believed.write_text(vehicle(CROSS[:3], air=LIFT, motor=MOTOR))
-    with pytest.raises(qc.InputError, match="has 3 rotors; the vehicle that flies has 4"):
+    with pytest.raises(qc.InputError, match="has 3 rotors, but the simulated vehicle has 4"):
         hangar(guided({"law": "geometric", "belief": believed}), G)
 
 
@@ -125,28 +125,36 @@ def test_a_reference_of_rows_is_read_from_a_file(shape, kind, tmp_path, hangar):
 @pytest.mark.parametrize(
     ("name", "text", "says"),
     [
-        ("rows.csv", "t,x,y\n", "rows.csv:1: the header is 't,x,y'; write t,x,y,z"),
+        ("rows.csv", "t,x,y\n", "rows.csv:1: the header is 't,x,y'. Use t,x,y,z"),
         ("rows.csv", "t,x,y,z\n0,0,0,1\n1,0,0\n", "rows.csv:3: 3 columns instead of 4"),
-        ("rows.csv", "t,x,y,z\n0,0,nan,1\n", "rows.csv:2: 'nan' is no finite number"),
+        ("rows.csv", "t,x,y,z\n0,0,nan,1\n", "rows.csv:2: 'nan' is not a finite number"),
         ("rows.csv", "t,x,y,z\n0,0,0,1,\n1,0,0,1\n", "rows.csv:2: 5 columns instead of 4"),
         ("rows.csv", "t,x,y,z\n0,0,0,1\n\n0,0,0,1\n", "rows.csv:4: the row is not later than"),
-        ("rows.csv", "t,x,y,z\n0,0,0,1\n", "rows.csv: holds fewer than two rows"),
-        ("rows.yaml", "columns: {a: 1}\nrows: []\n", r"rows.yaml:1: write `columns: \[t, x, y"),
+        ("rows.csv", "t,x,y,z\n0,0,0,1\n", "rows.csv: the file has fewer than two rows"),
+        (
+            "rows.yaml",
+            "columns: {a: 1}\nrows: []\n",
+            r"rows.yaml:1: 'columns' is invalid. Write `columns: \[t, x",
+        ),
         (
             "rows.yaml",
             "columns: [t, x, y, z]\nrows:\n  - [1, 0, 0, 1]\n  - [0, 0, 0, 1]\n",
             "rows.yaml:4: the row is not later than the row before",
         ),
-        ("rows.yaml", "rows: []\n", r"rows.yaml:1: write `columns: \[t, x, y, z\]`"),
-        ("rows.yaml", "columns: [t, x, y, z]\n", "rows.yaml:1: 'rows' is no list"),
-        ("rows.yaml", "columns: [t, x, y, z]\nrows:\n  - [0, 1]\n", "rows.yaml:3: is no row of 4"),
+        ("rows.yaml", "rows: []\n", r"rows.yaml:1: 'columns' is invalid. Write `columns: \[t, x"),
+        ("rows.yaml", "columns: [t, x, y, z]\n", "rows.yaml:1: 'rows' is not a list"),
+        (
+            "rows.yaml",
+            "columns: [t, x, y, z]\nrows:\n  - [0, 1]\n",
+            "rows.yaml:3: the row does not have 4",
+        ),
         (
             "rows.yaml",
             "columns: [t, x, y, z]\nrows:\n  - [0, a, 0, 1]\n",
             "rows.yaml:3: 'x' is 'a'",
         ),
         ("rows.yaml", "columns: [t, x, y, z]\nrow: 1\n", "rows.yaml:2: .* has no 'row'"),
-        ("rows.txt", "t,x,y,z\n", "rows are read from .csv and .yaml files"),
+        ("rows.txt", "t,x,y,z\n", "rows can be read only from .csv and .yaml files"),
     ],
 )
 def test_rows_that_cannot_be_read_are_told_with_their_line(name, text, says, tmp_path, hangar):
@@ -173,11 +181,11 @@ def test_a_log_is_a_series_with_the_yaw_of_its_orientation(hangar, tmp_path):
 
 
 def test_rows_and_shapes_that_need_none_are_told_apart(hangar, tmp_path):
-    with pytest.raises(qc.InputError, match="'waypoints' needs rows"):
+    with pytest.raises(qc.InputError, match="'waypoints' requires rows"):
         hangar(guided({"law": "pd"}, {"shape": "waypoints"}), G)
     rows = tmp_path / "rows.csv"
     rows.write_text("t,x,y,z\n0,0,0,1\n1,0,0,1\n")
-    with pytest.raises(qc.InputError, match="'hover' takes no rows"):
+    with pytest.raises(qc.InputError, match="'hover' accepts no rows"):
         hangar(guided({"law": "pd"}, {"shape": "hover", "rows": rows}), G)
 
 
@@ -194,9 +202,13 @@ def test_the_reference_stands_on_its_topic(hangar):
     ("controller", "reference", "says"),
     [
         ({"law": "pdd"}, CIRCLE, "pdd"),
-        ({"law": "geometric", "scale": 2}, CIRCLE, "law 'geometric' has no parameter 'scale'"),
+        (
+            {"law": "geometric", "scale": 2},
+            CIRCLE,
+            "controller 'geometric' has no parameter 'scale'",
+        ),
         ({"law": "pd", "kp_xy": -1}, CIRCLE, "<kp_xy>"),
-        ({"law": "pd", "spins": "1 1 -1"}, CIRCLE, "the spins are no 4 signs"),
+        ({"law": "pd", "spins": "1 1 -1"}, CIRCLE, "the spins are not 4 signs"),
         ({"law": "pd"}, {"shape": "hover", "radius": 1}, "'hover' has no parameter 'radius'"),
     ],
 )

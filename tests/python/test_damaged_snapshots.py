@@ -41,7 +41,7 @@ def test_a_damaged_snapshot_is_refused_and_changes_nothing(changed):
     simulation = quadrotor("eigen")
     simulation.step(10)
     snapshot, before = simulation.snapshot(), bits(simulation)
-    with pytest.raises(qc.InputError, match="snapshot: is damaged; take it anew"):
+    with pytest.raises(qc.InputError, match=r"snapshot: it is damaged\. Take a new snapshot"):
         simulation.restore(damaged(snapshot, **changed))
     assert bits(simulation) == before
     simulation.restore(damaged(snapshot))  # whole
@@ -66,7 +66,7 @@ def test_any_number_in_a_plugins_memory_flies_or_ends_the_flight(vehicle, number
             simulation.step(3)
         except qc.FlightError as error:
             told.add(str(error))
-    assert any("a count in the plugin's memory is damaged" in why for why in told)
+    assert any("a counter in the plugin's state is damaged" in why for why in told)
     simulation.restore(snapshot)
     simulation.step(3)
 
@@ -115,7 +115,7 @@ def test_objects_that_nothing_was_read_into_are_refused(name):
 @pytest.mark.parametrize("name", ["Model", "World", "Snapshot"])
 def test_a_damaged_pickle_is_one_line(name, state):
     empty = getattr(_core, name).__new__(getattr(_core, name))
-    with pytest.raises(qc.InputError, match="that was pickled is damaged"):
+    with pytest.raises(qc.InputError, match="has a damaged pickle"):
         empty.__setstate__(state)
 
 

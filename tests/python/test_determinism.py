@@ -132,7 +132,7 @@ def test_one_simulation_refuses_a_second_thread_at_once():
     while simulation.time == 0:
         pass
     for call in (simulation.step, simulation.snapshot, lambda: simulation.command(HOVER)):
-        with pytest.raises(qc.QuadcoreError, match="used by another thread; give each its own"):
+        with pytest.raises(qc.QuadcoreError, match=r"in use by another thread\. Use a separate"):
             call()
     worker.join()
     simulation.step()

@@ -233,7 +233,7 @@ OFF_AXIS = '<link name="propeller1"><inertial><origin xyz="{} 0.0 0.0"/>'
             "rotor1",
             "not symmetric about the axis",
         ),
-        ("</robot>", NESTED, "flap", "hangs on the moving link 'propeller1'"),
+        ("</robot>", NESTED, "flap", "its parent is the moving link 'propeller1'"),
     ],
     ids=["off its axis", "leaning axis", "nested"],
 )
@@ -254,4 +254,4 @@ def test_a_flight_that_begins_in_the_ground_ends_at_once_and_says_where_to_begin
     assert main([*flight, "--spawn", "0,0,0"]) == 3
     said = capsys.readouterr().err
     assert "0.0125 m deep in the ground" in said
-    assert "begin at z = 0.0125 or above" in said
+    assert "Start at z = 0.0125 or above" in said

@@ -18,7 +18,7 @@ BOUND = [
 
 
 def test_there_are_bound_classes_to_try():
-    assert {"Batch", "Flight", "Run", "ReferenceShape", "Controller", "PassedOver"} < {
+    assert {"Batch", "Flight", "Run", "ReferenceShape", "Controller", "IgnoredElements"} < {
         kind.__name__ for kind in BOUND
     }
 
@@ -69,7 +69,7 @@ def built():
     model = qc.read_model("quadrotor")
     law = _core.Controller("geometric", simulation, simulation, {}, [])
     some = [simulation, qc.BatchSimulation(n=2), qc.BatchSimulation(n=2).snapshot(), law]
-    some += [model.document, model.passed_over, model.links[0], model.joints[0]]
+    some += [model.document, model.ignored_elements, model.links[0], model.joints[0]]
     some += [simulation.plugins[0], simulation.plugins[0].parameters[0], simulation.topics["odom"]]
     some += [_core.Run(simulation), _core.Flight(simulation, None, 1), _core.Reference()]
     some += [_core.ReferenceShape("hover", {}), _core.InnerLoop(simulation, simulation, {}, [])]

@@ -120,11 +120,17 @@ def test_a_fault_survives_a_snapshot(engine, hangar):
     [
         ({"losses": "1 2"}, "<losses> has 2 numbers; write three numbers for each"),
         ({"cuts": "1 2 3"}, "<cuts> has 3 numbers; write two numbers for each"),
-        ({"cuts": "-1 2"}, "<cuts> event 1 is before the start; write a time >= 0"),
-        ({"cuts": "1 2 1 5"}, "<cuts> event 2 is of no rotor; they count from 1 to 4"),
-        ({"cuts": "1 2.5"}, "<cuts> event 1 is of no rotor"),
-        ({"losses": "1 2 1.5"}, "<losses> event 1 leaves no share; write one from 0 to 1"),
-        ({"losses": "1 2 0.5 1 3 0.5 1 2 0"}, "<losses> event 3 is a second one of rotor 2 at its"),
+        ({"cuts": "-1 2"}, "<cuts> event 1 is before the start. Use a time >= 0"),
+        (
+            {"cuts": "1 2 1 5"},
+            "<cuts> event 2 names a rotor that does not exist. Use a number from 1 to 4",
+        ),
+        ({"cuts": "1 2.5"}, "<cuts> event 1 names a rotor that does not exist"),
+        (
+            {"losses": "1 2 1.5"},
+            "<losses> event 1 has an invalid remaining fraction. Use a number from 0 to 1",
+        ),
+        ({"losses": "1 2 0.5 1 3 0.5 1 2 0"}, "<losses> event 3 repeats rotor 2 at the same time"),
     ],
 )
 def test_a_fault_that_cannot_be_is_refused_with_its_line(tags, says, hangar):
@@ -138,7 +144,11 @@ def test_a_fault_that_cannot_be_is_refused_with_its_line(tags, says, hangar):
     ("topic", "values", "says"),
     [
         ("effectiveness", [1, 1, -1, 1], "topic 'effectiveness': s3 is out of range"),
-        ("power", [1, 2, 1, 1], "topic 'power': s2 is out of range; publish a share from 0 to 1"),
+        (
+            "power",
+            [1, 2, 1, 1],
+            "topic 'power': s2 is out of range. Publish a fraction from 0 to 1",
+        ),
     ],
 )
 def test_a_share_that_is_none_ends_the_flight(topic, values, says, hangar):
@@ -214,7 +224,9 @@ def test_a_motor_in_flight_survives_a_snapshot_and_is_cut(engine, hangar):
 
 
 def test_what_a_motor_cannot_do_is_told(hangar):
-    with pytest.raises(qc.InputError, match=r"<delay> 0.0015 is no whole number of steps of 0.001"):
+    with pytest.raises(
+        qc.InputError, match=r"<delay> 0.0015 is not a whole number of steps of 0.001"
+    ):
         hangar(lagging({"delay": 0.0015}))
     with pytest.warns(qc.QuadcoreWarning, match="a time constant is too short for the step"):
         hangar(lagging({"timeConstantUp": 0.0001}))
@@ -278,5 +290,5 @@ def test_two_faults_on_one_topic_before_one_step_end_the_flight(hangar):
     simulation = hangar(with_plugins(motored(), plugin("fault", {})), G)
     simulation.publish("fault", (1, 0, 0))
     simulation.publish("fault", (2, 0, 0))
-    with pytest.raises(qc.FlightError, match="two messages since the last step"):
+    with pytest.raises(qc.FlightError, match="two messages were published in one step"):
         simulation.step()

@@ -314,7 +314,9 @@ def test_states_of_a_batch_may_be_set():
         assert batch.time[i] == simulation.time
     before = batch.read_state()
     rows[4, 3:7] = 0
-    with pytest.raises(qc.InputError, match="vehicle 4: state: the orientation is no quaternion"):
+    with pytest.raises(
+        qc.InputError, match="vehicle 4: state: the orientation is not a unit quaternion"
+    ):
         batch.set_state(rows)
     with pytest.raises(qc.InputError, match="states is not a 2-dimensional array of numbers"):
         batch.set_state([1, 2, 3])

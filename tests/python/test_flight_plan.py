@@ -89,7 +89,10 @@ def test_the_fingerprint_is_of_what_flies_not_of_where_it_lies(toy, tmp_path):
 def test_what_is_wrong_with_a_plan_is_said_before_it_flies(toy):
     for options, says in (
         ({"model": "nope.urdf"}, "nope.urdf: no such file"),
-        ({"ignore": ["blob"]}, "ignore blob: nothing goes by that name"),
+        (
+            {"ignore": ["blob"]},
+            "ignore blob: neither the model nor the world has anything of that name",
+        ),
         ({"spawn": (1, 2)}, "spawn is"),
         ({"seed": -1}, "seed is -1"),
         ({"commands": [[0, 1, 2]]}, "takes \\(rows, 2\\): t,w1"),

@@ -137,10 +137,10 @@ def test_a_damaged_or_foreign_state_is_refused(imported):
     for damaged in (data[:-3], data + b"1", data[:102] + b"\xff" * 8 + data[110:]):
         with pytest.raises(Exception, match="fmi2DeSerializeFMUstate"):
             instance.slave.deSerializeFMUstate(damaged)
-        assert "the saved state is damaged; save it anew" in instance.said[-1][1]
+        assert "the saved state is damaged. Save it again." in instance.said[-1][1]
     with pytest.raises(Exception, match="fmi2DeSerializeFMUstate"):
         other.slave.deSerializeFMUstate(data)
-    assert "is of another FMU" in other.said[-1][1]
+    assert "belongs to another FMU" in other.said[-1][1]
 
 
 def test_parameters_are_those_of_the_simulation(imported):
@@ -186,9 +186,17 @@ def test_what_is_wrong_is_told_through_the_logger(imported, fmus):
     instance.slave.reset()
     instance.initialise()
     for time, length, says in (
-        (0.0, 0.0015, "a communication step of 0.0015 s; give a whole multiple of the step of 0.0"),
-        (0.0, 0.0, "a communication step of 0 s"),
-        (0.5, 0.001, "a step from 0.500000 s, but the flight is at 0.000000 s; go on from there"),
+        (
+            0.0,
+            0.0015,
+            "the communication step is 0.0015 s. Use a whole multiple of the time step of 0.0",
+        ),
+        (0.0, 0.0, "the communication step is 0 s"),
+        (
+            0.5,
+            0.001,
+            "the step starts at 0.500000 s, but the flight is at 0.000000 s. Continue from there.",
+        ),
     ):
         with pytest.raises(Exception, match="fmi2DoStep"):
             instance.slave.doStep(time, length)

@@ -69,7 +69,7 @@ def test_what_is_not_tunable_is_fixed_in_flight(instance):
         ("seed", 7),
     ):
         said = refusal(instance, instance.set, name, value)
-        assert f"variable {name}: is fixed once the flight is initialised" in said
+        assert f"variable {name}: it cannot change after the initialisation" in said
     instance.slave.reset()
     instance.set("spawn.z", 3.0)
     instance.initialise()
@@ -98,7 +98,7 @@ def test_parameters_are_fixed_after_the_initialisation_and_not_before(fmu, tmp_p
     said = refusal(instance, instance.slave.exitInitializationMode)
     assert "plugin 'drone_plugin': <rotorThrustCoeff>" in said
     said = refusal(instance, instance.step)
-    assert "a step before the end of the initialisation; end it first" in said
+    assert "fmi2DoStep was called before the end of the initialisation." in said
     instance.slave.setFMUstate(state)
     instance.set("spawn.y", 1.0)  # the state is one of the initialisation
     instance.set("spawn.y", 0.0)
@@ -109,7 +109,7 @@ def test_parameters_are_fixed_after_the_initialisation_and_not_before(fmu, tmp_p
     simulation.step(100)
     assert instance.get("x", "z") == [simulation.state.position[0], simulation.state.position[2]]
     assert instance.get("odom.x") == [simulation.topic("odom")["x"]]
-    assert "is fixed once" in refusal(instance, instance.set, "spawn.z", 3.0)
+    assert "it cannot change after" in refusal(instance, instance.set, "spawn.z", 3.0)
     instance.close()
 
 
@@ -132,16 +132,16 @@ def test_a_parameter_set_to_the_value_that_it_has_is_no_change(tmp_path):
 def test_steps_beyond_all_counting_are_refused(instance):
     for length in (1e16, 1e30, float("inf"), float("nan")):
         said = refusal(instance, instance.slave.doStep, 0.0, length)
-        assert "give a whole multiple of the step of 0.001" in said
-        assert (", 2^53 of them at most" in said) == (length > 0)
+        assert "Use a whole multiple of the time step of 0.001" in said
+        assert (", at most 2^53 of them" in said) == (length > 0)
 
 
 def test_variables_are_called_by_their_names_in_errors(instance):
     instance.slave.reset()
     said = refusal(instance, instance.set, "seed", -1)
-    assert "variable seed: is no seed; give a whole number from 0 to 2147483647" in said
+    assert "variable seed: the seed is invalid. Give a whole number from 0 to 2147483647" in said
     for name, value, says in (
-        ("spawn.yaw", float("nan"), "is to be no finite number"),
+        ("spawn.yaw", float("nan"), "the value is not a finite number"),
         ("z", 1.0, "cannot be set to a number"),
         ("odom.x", 1.0, "cannot be set to a number"),
     ):
@@ -152,7 +152,7 @@ def test_variables_are_called_by_their_names_in_errors(instance):
 def test_a_start_that_is_no_time_is_refused(instance):
     for start in (float("nan"), float("inf")):
         said = refusal(instance, lambda at=start: instance.slave.setupExperiment(startTime=at))
-        assert "the start time is no finite number" in said
+        assert "the start time is not a finite number" in said
 
 
 def test_an_instance_needs_no_name(instance):
@@ -187,7 +187,7 @@ def test_a_variable_is_asked_for_by_its_type(instance):
     reference = byref(fmi2.fmi2ValueReference(instance.reference("drone_plugin.dragModel")))
     nothing = (c_char_p * 1)(None)
     said = refusal(instance, slave.fmi2SetString, slave.component, reference, 1, nothing)
-    assert "variable drone_plugin.dragModel: is to be no text; give one" in said
+    assert "variable drone_plugin.dragModel: the value is a null pointer. Give a text." in said
 
 
 def test_an_importer_may_have_nothing_to_be_told_by(instance):
@@ -236,7 +236,7 @@ def test_a_flag_of_a_saved_state_is_0_or_1(instance):
     [at] = [k for k, (a, b) in enumerate(zip(before, after)) if a != b]
     damaged = after[:at] + b"\x02" + after[at + 1 :]
     said = refusal(instance, slave.deSerializeFMUstate, damaged)
-    assert "the saved state is damaged; save it anew" in said
+    assert "the saved state is damaged. Save it again." in said
 
 
 def test_the_folder_that_a_vehicle_lies_in_is_not_in_the_file(tmp_path):

@@ -42,17 +42,17 @@ def test_numbers_are_read_as_people_write_them(tmp_path):
 @pytest.mark.parametrize(
     ("text", "line", "says"),
     [
-        ("law: geometrik\n", 1, "did you mean 'geometric'"),
-        ("rate: 500\n", 1, "names no law; write `law: NAME`"),
-        ("law: pd\nrates: 5\n", 2, "a gains file has no 'rates'.*did you mean 'rate'"),
-        ("law: pd\nlaw: pid\n", 2, "'law' stands there twice; leave one"),
-        ("law: pd\nrate: fast\n", 2, "'rate' is 'fast'; write a number"),
-        ("law: pd\nrate: 0\n", 2, "'rate' is 0; give a finite number >= 1e-06"),
-        ("law: pd\ndelay: -1\n", 2, "'delay' is -1; give a finite number >= 0, <= 10"),
+        ("law: geometrik\n", 1, "Did you mean 'geometric'"),
+        ("rate: 500\n", 1, "no controller is named. Write `law: NAME`"),
+        ("law: pd\nrates: 5\n", 2, "unknown key 'rates'.*Did you mean 'rate'"),
+        ("law: pd\nlaw: pid\n", 2, "'law' is repeated. Keep one of them"),
+        ("law: pd\nrate: fast\n", 2, "'rate' is 'fast'. Write a number"),
+        ("law: pd\nrate: 0\n", 2, "'rate' is 0. Give a finite number >= 1e-06"),
+        ("law: pd\ndelay: -1\n", 2, "'delay' is -1. Give a finite number >= 0, <= 10"),
         ("law: pd\nparameters:\n  kp_xy: 2\n  kp: 3\n", 4, "law 'pd' has no parameter 'kp'"),
-        ("law: pd\nparameters:\n  kp_xy: -2\n", 3, "'kp_xy' is -2; give a finite number >= 0"),
+        ("law: pd\nparameters:\n  kp_xy: -2\n", 3, "'kp_xy' is -2. Give a finite number >= 0"),
         ("law: pd\nparameters:\n  drag: 2\n", 3, "'drag' is 2; give true or false"),
-        ("law: pd\nparameters: [1]\n", 2, "'parameters' is a list; write lines"),
+        ("law: pd\nparameters: [1]\n", 2, "'parameters' is a list. Write lines"),
         ("law: pd\nhistory: long\n", 2, "'history' is neither"),
         ("law: pd\nrate: [\n", 3, "not YAML"),
         ("- pd\n", 1, "a gains file is a list"),
@@ -100,8 +100,11 @@ def test_the_plugin_flies_the_gains_of_a_file_and_what_tags_set_wins(tmp_path, h
 @pytest.mark.parametrize(
     ("tags", "says"),
     [
-        ({}, "no law is named; write <law> or <gains>"),
-        ({"law": "pd", "gains": "gains.yaml"}, "<law> is pd, but the gains of .* of geometric"),
+        ({}, "no controller is named. Write <law> or <gains>"),
+        (
+            {"law": "pd", "gains": "gains.yaml"},
+            "<law> is pd, but the gains file .* is for geometric",
+        ),
         ({"gains": "gains.yaml", "scale": 2}, "law 'geometric' has no parameter 'scale'"),
     ],
 )
@@ -135,5 +138,5 @@ def test_gains_of_another_vehicle_are_warned_of(tmp_path):
 
 def test_a_slowest_speed_that_no_rotor_attains_is_refused():
     sim = quadrotor("eigen", parameters={"motorpid_plugin.maxVelocity": 1e9})
-    with pytest.raises(qc.InputError, match="'slowest' is not below the fastest speed"):
+    with pytest.raises(qc.InputError, match="'slowest' is not below the maximum speed"):
         sim.run(0.01, controller=controllers.geometric(slowest=2e6), reference="hover")

@@ -175,4 +175,4 @@ def test_eigen_warns_of_tags_of_contact_that_it_does_not_feel(tmp_path):
     assert warnings_of("<mu1>0.3</mu1><fdir1>1 0 0</fdir1><kp>1e5</kp>") == []
     (warning,) = warnings_of("<kd>7</kd>")
     assert "box.urdf:8: " in warning
-    assert "feels no <kd>" in warning
+    assert "ignores <kd>" in warning

@@ -170,8 +170,8 @@ def test_updates_that_reach_the_limit_of_the_motors_are_counted(capsys):
         ("--controller own:Asks", 2, "missing 1 required positional argument"),
         ("--controller own:Slotted --delay 0.1", 2, "its delay cannot be set"),
         ("--controller own:Raises", 3, "t = 0.000000 s: controller: ValueError: no idea (/"),
-        ("--controller own:Nan", 3, "command for rotor 1 is not a finite number; return 4"),
-        ("--controller own:Short", 3, "holds 2 rotor speeds; return 4"),
+        ("--controller own:Nan", 3, "the command for rotor 1 is not a finite number. Return 4"),
+        ("--controller own:Short", 3, "has 2 rotor speeds. Return 4"),
         (
             "--controller geometrc",
             2,

@@ -45,7 +45,7 @@ WALL = (
 def test_what_is_foreign_in_a_world_is_left_out_on_request(flown, foreign, names):
     message = refusal(flown, world=foreign)
     assert message.startswith(at("toy.world", foreign[:9]))
-    assert message.count("--ignore") == 1 and message.endswith(f"--ignore {names[0]}")
+    assert message.count("--ignore") == 1 and message.endswith(f"--ignore {names[0]}.")
     for name in names:
         assert flown(world=foreign, ignore=[name]).ignored == [name]
 
@@ -133,7 +133,7 @@ def test_of_compared_models_one_may_hold_what_is_ignored(two, capsys):
     assert "# ignored: pusher" in Path("out/logs/2.csv").read_text()
     assert "pusher" in Path("out/comparison.json").read_text()
     assert main([*command, "--ignore", "pushr"]) == 2
-    assert "did you mean 'pusher'?" in capsys.readouterr().err
+    assert "Did you mean 'pusher'?" in capsys.readouterr().err
 
 
 def test_a_gazebo_file_is_expanded_and_its_lines_are_named(toy):
@@ -145,4 +145,4 @@ def test_a_gazebo_file_is_expanded_and_its_lines_are_named(toy):
     )
     with pytest.warns(qc.QuadcoreWarning):
         (warning,) = qc.Simulation("toy.gazebo").warnings
-    assert warning == f"{UNFELT}<sensor> ({at('toy.gazebo', '<sensor')})"
+    assert warning == f"{UNFELT}<sensor> ({at('toy.gazebo', '<sensor')})."

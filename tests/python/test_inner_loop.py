@@ -158,8 +158,8 @@ def test_parameters_of_the_inner_loop_are_checked_and_documented():
         return qc.RatesThrust([0, 0, 0], WEIGHT)
 
     for loop, says in (
-        (qc.InnerLoop(kr_pr=1), r"inner loop has no parameter 'kr_pr' \(did you mean 'kr_rp'\?\)"),
-        (qc.InnerLoop(spins=[1, 1]), "the spins are no 4 signs"),
+        (qc.InnerLoop(kr_pr=1), r"inner loop has no parameter 'kr_pr'\. Did you mean 'kr_rp'\?"),
+        (qc.InnerLoop(spins=[1, 1]), "the spins are not 4 signs"),
         ("stiff", "its inner_loop is 'stiff'; give a quadcore.InnerLoop"),
     ):
         law.inner_loop = loop

@@ -69,22 +69,20 @@ def test_a_belief_is_matched_by_the_names_of_the_joints(hangar, tmp_path):
         assert largest(logs[-1], circle) < 2e-3
     assert logs[0].position.tobytes() == logs[1].position.tobytes()
     file.write_text(odd().replace("rotor4", "fourth"))
-    with pytest.raises(
-        qc.InputError, match="has a rotor 'fourth'; those of the vehicle that flies"
-    ):
+    with pytest.raises(qc.InputError, match="has a rotor 'fourth', but the simulated vehicle has"):
         hangar(guided(odd(), circle, law="geometric", belief=file), G)
 
 
 def test_a_xacro_file_to_believe_in_is_refused_with_what_to_do(hangar, tmp_path):
     file = tmp_path / "believed.urdf.xacro"
     file.write_text(odd())
-    with pytest.raises(qc.InputError, match="expand it, `xacro FILE > URDF`"):
+    with pytest.raises(qc.InputError, match="Expand the file: `xacro FILE > URDF`"):
         hangar(guided(odd(), references.circle(), law="pd", belief=file), G)
 
 
 def test_a_law_without_motors_that_say_their_order_is_refused(hangar):
     still = with_plugins(vehicle(CROSS, air=AIR), plugin("odometry", {}))
-    with pytest.raises(qc.InputError, match="no plugin says which rotor follows which number"):
+    with pytest.raises(qc.InputError, match="no plugin defines which rotor follows which number"):
         hangar(still, G).run(1, controller="pd", reference="hover")
 
 

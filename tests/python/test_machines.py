@@ -96,7 +96,7 @@ def test_what_touches_the_ground_flies_the_same_bytes_too():
 def test_a_width_that_no_lanes_have_is_refused():
     with pytest.raises(subprocess.CalledProcessError) as refused:
         fly("quadrotor", QUADCORE_LANES="3")
-    assert "QUADCORE_LANES is '3'; write 1, 2, 4 or 8" in refused.value.stderr
+    assert "QUADCORE_LANES is '3'. Use 1, 2, 4 or 8." in refused.value.stderr
 
 
 @pytest.mark.parametrize("library", LIBRARIES, ids=lambda library: library.name)

@@ -150,4 +150,4 @@ def test_the_frame_feels_through_its_motor_what_brakes_a_rotor(hangar, engine):
 def test_air_cannot_drive_the_rotor_that_it_brakes(hangar):
     air = {**AIR, "reactionOn": "rotor", "reactionTorque": "thesis"}
     message = refusal(hangar, vehicle(air=air))
-    assert message.endswith("cannot be thesis; write opposing, or leave it out")
+    assert message.endswith("is thesis. Write opposing, or remove it.")

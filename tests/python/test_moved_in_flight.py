@@ -20,8 +20,8 @@ MOVES = {
     "publish()": lambda sim: sim.publish("vel_cmd", HOVER),
 }
 SAYS = (
-    "{}: a run is flying this simulation, and what it calls back may only read it and publish; "
-    "return the command, and try things out on a simulation of its own"
+    "{}: this simulation is running, and callbacks may only read it and publish. "
+    "Return the command from the callback, and use a separate simulation for predictions."
 )
 
 
@@ -84,7 +84,7 @@ def test_a_controller_may_put_the_vehicle_where_the_flight_begins():
 
 def test_a_reference_that_moves_the_vehicle_which_is_put_onto_it_is_refused():
     simulation = quadrotor("eigen")
-    with pytest.raises(qc.InputError, match=r"^step\(\): a run is flying this simulation"):
+    with pytest.raises(qc.InputError, match=r"^step\(\): this simulation is running"):
         simulation.run(0.1, controller="pd", reference=lambda t: simulation.step(), on_reference=1)
     assert simulation.time == 0
 
@@ -159,7 +159,7 @@ def test_another_thread_is_told_that_it_is_another_one():
 
     simulation.run(0.01, controller=controller)
     assert told == [
-        "this simulation is being used by another thread; give each its own"
+        "this simulation is in use by another thread. Use a separate simulation for each thread."
     ] * len(MOVES)  # fmt: skip
 
 
@@ -197,4 +197,4 @@ def test_an_evaluated_controller_that_moves_the_vehicle_is_a_row_that_failed():
             return HOVER
 
     found = qc.evaluate([Moves()], ["hover"], engines=["eigen"], duration=0.1, processes=1)
-    assert "step(): a run is flying this simulation" in found.table[0]["failure"]
+    assert "step(): this simulation is running" in found.table[0]["failure"]

@@ -196,7 +196,7 @@ def test_a_law_reads_odometry_and_no_other_topic():
     law = qc._core.Controller("geometric", simulation, simulation, {}, [])
     hover = qc._core.ReferenceShape("hover", {})
     assert len(law.command_at(0.002, simulation, "odom", hover)) == 4
-    with pytest.raises(qc.InputError, match=r"^topic 'vel_cmd' holds no odometry\. Name"):
+    with pytest.raises(qc.InputError, match=r"^topic 'vel_cmd' does not carry odometry\. Name"):
         law.command_at(0.002, simulation, "vel_cmd", hover)
 
 

@@ -98,13 +98,13 @@ def test_the_twist_may_be_given_in_body_axes():
 @pytest.mark.parametrize(
     ("controller", "who"),
     [
-        ("geometric", "law 'geometric'"),
+        ("geometric", "controller 'geometric'"),
         (lambda t, state, reference: qc.AttitudeThrust((0, 0, 0, 1), 10.0), "inner loop"),
     ],
 )
 def test_who_needs_velocities_in_the_world_refuses_those_in_body_axes(controller, who):
     simulation = tumbling(**{"odometry.twistFrame": "body"})
-    with pytest.raises(qc.QuadcoreError, match=f"{who} needs velocities in the world"):
+    with pytest.raises(qc.QuadcoreError, match=f"{who} requires velocities in world axes"):
         simulation.run(0.1, controller=controller, reference="hover")
 
 

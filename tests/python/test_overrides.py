@@ -131,7 +131,7 @@ def test_a_model_that_is_read_takes_values_of_links_but_no_arguments(model):
 
 def test_a_tag_that_goes_by_two_names_is_set_by_one_of_them(capsys):
     both = {"odometry.updateRate": 100, "odometry.rate": 50}
-    says = "set odometry.updateRate: plugin 'odometry': is the same tag as <rate>, which is set"
+    says = "set odometry.updateRate: plugin 'odometry': is the same tag as <rate>, which is also"
     for make in (qc.Simulation, qc.BatchSimulation):
         with pytest.raises(qc.InputError, match=says):
             make(parameters=both)

@@ -102,7 +102,7 @@ def test_faults_of_a_controller_are_rows_and_the_other_flights_finish(capsys):
         "nomodule:X": "there is no module 'nomodule'",
         "own:Raises": "ValueError: no idea",
         "own:Nan": "rotor 1 is not a finite number",
-        "own:Short": "holds 2 rotor speeds; return 4",
+        "own:Short": "has 2 rotor speeds. Return 4",
         "own:Wrong": "cannot be called as controller(t, state, reference)",
         "own:Asks": "missing 1 required positional argument",
         "own:Nope": "module 'own' has no 'Nope'",
@@ -162,7 +162,7 @@ def test_a_controller_that_returns_nothing_fails_its_first_flight_with_status_3(
     assert main(command) == 3
     assert capsys.readouterr().err.startswith(
         "error: the flight failed at t = 0.000000 s: the controller returned None: command is "
-        "not a 1-dimensional array of numbers; return 4 rotor speeds (rad/s)"
+        "not a 1-dimensional array of numbers. Return 4 rotor speeds in rad/s."
     )
 
 

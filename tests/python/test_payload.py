@@ -141,9 +141,9 @@ def test_a_flight_is_taken_up_again_across_a_release(engine, hangar):
     [
         ({"mass": 0}, "<mass> '0' is out of range"),
         ({"release": -1}, "<release> '-1' is out of range"),
-        ({"release": 0.5, "pickUp": 0.5}, "<pickUp> and <release> are at one time; write two"),
-        ({"inertia": "1 0 0 -1 0 1"}, "<inertia> is no body's"),
-        ({"inertia": "1 0 0 0.1 0 0.1"}, "<inertia> is no body's"),
+        ({"release": 0.5, "pickUp": 0.5}, "<pickUp> and <release> are at the same time"),
+        ({"inertia": "1 0 0 -1 0 1"}, "<inertia> is not physically possible"),
+        ({"inertia": "1 0 0 0.1 0 0.1"}, "<inertia> is not physically possible"),
         ({"xyz": "1 2"}, "<xyz>"),
     ],
 )

@@ -124,11 +124,14 @@ def test_the_cpp_example_flies_as_its_python_twin(tmp_path):
 @pytest.mark.parametrize(
     ("variant", "says"),
     [
-        ("nameless", "cannot describe itself: what am I?"),
-        ("undescribed", "has no descriptor; give it one and rebuild it"),
-        ("uncreatable", "has no create in its descriptor; give it one and rebuild it"),
-        ("outdated", "was built for force laws of old, this is "),
-        ("twofold", "does not fit: its descriptor names 'fault' twice; keep one"),
+        ("nameless", "failed to return its descriptor: what am I?"),
+        ("undescribed", "has no descriptor. Add one and rebuild it."),
+        ("uncreatable", "has no create in its descriptor. Add one and rebuild it."),
+        ("outdated", "was built for force laws of old, but this quadcore has "),
+        (
+            "twofold",
+            "has an invalid descriptor: its descriptor names 'fault' twice. Keep one of them.",
+        ),
     ],
 )
 def test_a_library_that_does_not_fit_is_refused_by_plugin_and_file(bad, faulty, variant, says):
@@ -160,18 +163,21 @@ def test_a_plugin_built_from_a_changed_header_is_refused_by_name(tmp_path, toy, 
     with_plugin(SIDE_FORCE.format("libchanged.so", 0.5))
     message = refusal(qc.Simulation, "toy.urdf")
     named = re.escape(f"toy.urdf:{LINE}: plugin 'push': libchanged.so in {folder} was built for")
-    says = " plugin interface [0-9a-f]{16}, this is [0-9a-f]{16}; rebuild it against the installed "
-    assert re.fullmatch(f"{named}{says}quadcore", message)
+    says = (
+        " plugin interface [0-9a-f]{16}, but this quadcore has [0-9a-f]{16}. "
+        "Rebuild it against the installed quadcore."
+    )
+    assert re.fullmatch(named + says, message)
 
 
 @pytest.mark.parametrize(
     ("fault", "says"),
     [
         ("create", "out of luck"),
-        ("create_number", "threw something that is no std::exception"),
+        ("create_number", "an exception was thrown that is not a std::exception"),
         ("null", "its create() returned no plugin"),
         ("tag", "the plugin's table has no tag 'speed'"),
-        ("state", "its state_size() is 1152921504606846976; ask for at most 1000000"),
+        ("state", "its state_size() is 1152921504606846976. Use at most 1000000."),
     ],
 )
 def test_a_plugin_that_fails_to_be_made_is_named_and_others_fly_on(bad, faulty, fault, says):
@@ -190,7 +196,7 @@ def test_a_plugin_that_fails_to_be_made_is_named_and_others_fly_on(bad, faulty, 
 def test_a_plugin_that_throws_in_flight_is_named_and_the_flight_can_be_taken_up_again(
     bad, faulty, engine, hook, thrown
 ):
-    what = "threw something that is no std::exception" if thrown else "out of luck"
+    what = "an exception was thrown that is not a std::exception" if thrown else "out of luck"
     named = f"plugin 'bad' ({faulty}/libfaulty_plugin.so): {what}"
     simulation = bad(hook + thrown, 0.0095, engine=engine)
     with pytest.raises(qc.FlightError) as failed:
@@ -199,7 +205,7 @@ def test_a_plugin_that_throws_in_flight_is_named_and_the_flight_can_be_taken_up_
     assert message.startswith("the flight failed at t = 0.0") and message.endswith(named)
     assert 0.009 <= failed.value.time == simulation.time <= 0.011
     assert failed.value.log.time[-1] <= failed.value.time
-    with pytest.raises(qc.FlightError, match="reset, restore or set a state to go on"):
+    with pytest.raises(qc.FlightError, match="To continue, call reset, restore or set_state"):
         simulation.step()
 
     sound = bad("none", engine=engine)
@@ -216,11 +222,17 @@ def test_a_plugin_that_throws_in_flight_is_named_and_the_flight_can_be_taken_up_
         ("nan", "a force or torque is not a finite number"),
         ("infinity", "a force or torque is not a finite number"),
         ("air_nan", "the velocity of the air is not a finite number"),
-        ("massless", "it carries a body 'cargo' without mass; give kg, > 0"),
-        ("rotor_force", "a load on rotor 99, but rotors count from 0 and there are 1"),
-        ("rotor_torque", "a load on rotor 99, but rotors count from 0 and there are 1"),
-        ("term_force", "a load for wrench term 5, but terms count from 0 and the descriptor names"),
-        ("term_torque", "a load for wrench term 1, but terms count from 0 and the descriptor nam"),
+        ("massless", "the carried body 'cargo' has no mass. Give a positive mass in kg."),
+        ("rotor_force", "a load acts on rotor 99, but rotors are numbered from 0 and there are 1"),
+        ("rotor_torque", "a load acts on rotor 99, but rotors are numbered from 0 and there are 1"),
+        (
+            "term_force",
+            "a load refers to wrench term 5, but terms are numbered from 0 and the descriptor",
+        ),
+        (
+            "term_torque",
+            "a load refers to wrench term 1, but terms are numbered from 0 and the descriptor",
+        ),
     ],
 )
 def test_a_plugin_whose_loads_make_no_sense_is_named_and_the_log_stays_whole(
@@ -254,12 +266,12 @@ def test_two_plugins_that_write_one_topic_are_refused_by_name(toy):
     with_plugin('<plugin name="first" filename="libodometry_plugin.so"/>')
     message = refusal(qc.Simulation, "toy.urdf")
     assert "plugin 'odometry' writes topic 'odom', which toy.urdf" in message
-    assert message.endswith(f":{LINE}: plugin 'first' writes already; keep one of the two")
+    assert message.endswith(f":{LINE}: plugin 'first' already writes. Keep one of the two.")
 
 
 def test_a_plugin_that_commands_and_a_caller_who_commands_are_told_of_each_other(bad):
     simulation = bad("command")
-    says = f"command() writes topic 'vel_cmd', which {AT} writes already; keep one of the two"
+    says = f"command() writes topic 'vel_cmd', which {AT} already writes. Keep one of the two."
     assert refusal(simulation.command, [300]) == says  # also before the plugin has written
     simulation.step()
     assert refusal(simulation.command, [300]) == says

@@ -131,5 +131,5 @@ def test_a_push_survives_a_snapshot(engine, hangar):
 
 
 def test_a_link_that_is_not_there_is_refused_with_the_nearest(hangar):
-    with pytest.raises(qc.InputError, match=r"<link> 'arn' is none .*did you mean 'arm'"):
+    with pytest.raises(qc.InputError, match=r"<link> 'arn' is not a link .*Did you mean 'arm'"):
         hangar(pushed(link="arn"))

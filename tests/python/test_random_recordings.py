@@ -60,7 +60,9 @@ def test_a_vehicle_of_any_kind_flies_and_lands_as_recorded(case):
 
 @pytest.mark.parametrize("case", LOST, ids=name_of)
 def test_a_vehicle_of_which_gazebo_loses_a_rotor_is_refused(case):
-    with pytest.raises(qc.InputError, match=r"Gazebo loses it .* or use the engine ode or eigen"):
+    with pytest.raises(
+        qc.InputError, match=r"Gazebo silently drops it .* or use the engine ode or eigen"
+    ):
         spawned(case)
     spawned(case, "ode").step(10)
 
@@ -68,14 +70,14 @@ def test_a_vehicle_of_which_gazebo_loses_a_rotor_is_refused(case):
 def test_self_collide_of_a_model_is_warned_of():
     case = next(case for case in FLOWN if case.name == "C_selfcol_3100")
     (warning,) = (w for w in spawned(case).warnings if "self_collide" in w)
-    assert "nothing that flies feels it: <self_collide> (" in warning
+    assert "does not affect the motion: <self_collide> (" in warning
     assert "model.urdf:25" in warning
 
 
 @pytest.mark.parametrize("name", ["F_onrotor_03", "F_twoblade_04c"])
 def test_fifty_sweeps_that_do_not_converge_are_told(name):
     case = next(case for case in FLOWN if case.name == name)
-    assert "Gazebo's own 50 sweeps, which leave" in spawned(case).method
+    assert "50 iterations of Gazebo's solver, which leave" in spawned(case).method
     assert "direct solver" in spawned(case, "ode").method
 
 

@@ -62,13 +62,13 @@ def test_what_is_no_reference_is_told_in_one_line(controller, given):
     with pytest.raises(qc.QuadcoreError) as error:
         simulation.run(0.1, controller=controller, reference=lambda t: given)
     assert "\n" not in str(error.value)
-    assert "give a quadcore.Reference" in str(error.value)
+    assert "Give a quadcore.Reference" in str(error.value)
 
 
 @pytest.mark.parametrize(
     "name, value, told",
     [
-        ("snap", None, "the reference has no member snap; give a quadcore.Reference"),
+        ("snap", None, "the reference has no member snap. Give a quadcore.Reference"),
         ("jerk", (1.0, 2.0), "reference.jerk holds 2 numbers; give 3"),
     ],
 )

@@ -74,7 +74,7 @@ def test_flights_of_which_some_flew_are_flights_that_failed(capsys, command):
     assert " flights failed; the first, " in capsys.readouterr().err
 
 
-LATE = "the flight failed at t = 0.060000 s: step(): a run is flying this simulation"
+LATE = "the flight failed at t = 0.060000 s: step(): this simulation is running"
 
 
 @pytest.mark.parametrize(

@@ -175,7 +175,7 @@ def test_eigen_is_what_rotors_approaches_with_small_steps_and_far_nearer_at_its_
 
 def test_eigen_averages_blades_over_their_turns_and_says_so(edited):
     simulation = firefly("eigen")
-    (said,) = [w for w in simulation.warnings if "mean over a turn" in w]
+    (said,) = [w for w in simulation.warnings if "over a turn about the joint" in w]
     assert re.search(r"multirotor\.xacro:\d+: the inertia of firefly/rotor_0, .*rotor_5 ", said)
     moments = np.diag(simulation.model.links[1].inertia)
     assert moments[0] == moments[1]
@@ -228,22 +228,22 @@ PID = '<plugin name="pid" filename="libmotorpid_plugin.so"><kp>1e-4</kp></plugin
         (
             "<turningDirection>ccw</turningDirection>",
             "<turningDirection>left</turningDirection>",
-            ("<turningDirection> 'left' is not a choice; write ccw | cw",),
+            ("<turningDirection> 'left' is not a valid value. Use ccw | cw",),
         ),
         (
             "<motorNumber>5</motorNumber>",
             "<motorNumber>6</motorNumber>",
-            ("<motorNumber> 6 is no number of a motor; the model has 6, counted from 0",),
+            ("<motorNumber> 6 is not a valid motor number: the model has 6 motors,",),
         ),
         (
             "<linkName>firefly/rotor_2</linkName>",
             "<linkName>firefly/base_link</linkName>",
-            ("'firefly/base_link' is not what joint", "write firefly/rotor_2"),
+            ("'firefly/base_link' is not the child of joint", "Write firefly/rotor_2"),
         ),
         (
             "<motorConstant>8.54858e-06</motorConstant>",
             "<motorConstnt>8.54858e-06</motorConstnt>",
-            ("unknown tag <motorConstnt> (did you mean 'motorConstant'?)",),
+            ("unknown tag <motorConstnt>. Did you mean 'motorConstant'?",),
         ),
         (
             MOTOR_0,
@@ -308,7 +308,7 @@ def test_motors_of_one_number_follow_one_command_and_that_is_said(edited):
 def test_without_bounds_a_motor_holds_no_angle_as_in_gazebo_and_that_is_said(edited):
     gains = "<joint_control_pid><p>2e-3</p><d>4e-4</d></joint_control_pid>"
     simulation = edited((KIND, KIND + "<motorType>position</motorType>" + gains))
-    (said,) = [w for w in simulation.warnings if "holds no angle" in w]
+    (said,) = [w for w in simulation.warnings if "produces no torque" in w]
     assert "motor 'motor_0'" in said
     simulation.command([0.5, 0, 0, 0, 0, 0])
     simulation.step(100)

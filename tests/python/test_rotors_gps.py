@@ -91,12 +91,15 @@ WORLD = '<sdf version="1.6"><world name="w"><spherical_coordinates>{}</spherical
     ("tags", "says"),
     [
         ("<heading_deg>30</heading_deg>", r"'rotors_gazebo_gps_plugin' .*<heading_deg>.*write 0"),
-        ("<latitude_deg>90</latitude_deg>", r"<latitude_deg> is at a pole.*write one from -89"),
+        (
+            "<latitude_deg>90</latitude_deg>",
+            r"<latitude_deg> is at a pole.*Use a latitude from -89",
+        ),
         (
             "\n<surface_model>MOON</surface_model>",
             r"w\.world:2: <surface_model> is 'MOON'; write EARTH_WGS84",
         ),
-        ("\n<latitude_deg>99</latitude_deg>", r"w\.world:2: <latitude_deg> is out of range; write"),
+        ("\n<latitude_deg>99</latitude_deg>", r"w\.world:2: <latitude_deg> is out of range. Use"),
     ],
 )
 def test_a_place_on_earth_that_means_nothing_here_is_refused(tmp_path, tags, says):
@@ -114,8 +117,12 @@ def test_a_place_on_earth_that_means_nothing_here_is_refused(tmp_path, tags, say
             "<mean>0.3</mean>",
             "position_sensing/horizontal/noise/mean> '0.3' is",
         ),
-        ('type="gaussian"', 'type="none"', "horizontal/noise/type> 'none' is not a choice; write"),
-        ("<linkName>mast<", "<linkName>mats<", r"did you mean 'mast'"),
+        (
+            'type="gaussian"',
+            'type="none"',
+            "horizontal/noise/type> 'none' is not a valid value. Use",
+        ),
+        ("<linkName>mast<", "<linkName>mats<", r"Did you mean 'mast'"),
         ("<update_rate>5<", "<update_rate>often<", "sensor/update_rate> 'often' is not a finite"),
     ],
 )
@@ -128,7 +135,7 @@ def test_what_a_receiver_cannot_be_is_refused_with_its_line(tmp_path, old, new, 
 def test_other_sensors_are_passed_over_and_a_receiver_may_be_left_out(tmp_path):
     camera = '<gazebo reference="mast"><sensor type="camera" name="eye"/></gazebo>'
     simulation = firefly_with(tmp_path, camera)
-    (said,) = [w for w in simulation.warnings if "passed over" in w]
+    (said,) = [w for w in simulation.warnings if "does not affect the motion" in w]
     assert re.search(r"<sensor> \(.*fitted\.urdf:\d+\)", said)
     without = firefly_with(tmp_path, receiver(), ignore=["librotors_gazebo_gps_plugin.so"])
     assert "gps" not in without.topics

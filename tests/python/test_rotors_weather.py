@@ -70,7 +70,7 @@ def test_wind_that_blows_is_felt_by_the_rotors_drag_alone(fitted, engine):
 def test_a_sensor_on_a_link_that_turns_or_is_not_there_is_refused(fitted):
     for link, says in (
         ("firefly/rotor_0", "not part of the frame"),
-        ("mats", "did you mean 'mast'"),
+        ("mats", "Did you mean 'mast'"),
     ):
         unit = plugin("unit", "imu_plugin", linkName=link, imuTopic="unit")
         with pytest.raises(qc.InputError, match=says):
@@ -81,8 +81,8 @@ def test_two_sensors_of_one_name_both_tell(fitted):
     pair = [plugin("unit", "imu_plugin", linkName="mast", imuTopic=topic) for topic in "ab"]
     simulation = fitted(*pair)
     (said,) = [w for w in simulation.warnings if "goes by" in w]
-    assert "a second plugin named 'unit' (first at " in said
-    assert said.endswith("goes by the name 'unit_2'")
+    assert "a second plugin is named 'unit' (first at " in said
+    assert said.endswith("It is renamed 'unit_2'.")
     log = simulation.run(0.01, topics=["a", "b"])
     assert np.array_equal(log.topics["a"]["ax"][1:], log.topics["b"]["ax"][1:])  # as in RotorS
 
@@ -140,7 +140,7 @@ def test_a_tag_that_a_fork_has_added_to_a_sensor_is_refused_with_the_option_that
 
 def test_a_second_wind_is_refused_with_its_line_and_a_remedy(fitted):
     winds = [plugin(name, "wind_plugin", linkName="mast") for name in ("wind", "more_wind")]
-    with pytest.raises(qc.InputError, match=r":\d+: plugin 'wind' .*load only one"):
+    with pytest.raises(qc.InputError, match=r":\d+: plugin 'wind' .*Load only one"):
         fitted(*winds)
 
 

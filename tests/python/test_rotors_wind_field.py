@@ -104,7 +104,7 @@ def test_the_rotors_feel_a_field_and_nothing_pushes_beside_it(windy):
     ones = np.ones((*SHAPE, 4))
     text = field(np.zeros(SHAPE), np.full(SHAPE, 50), [2 * ones, 0 * ones, 0 * ones])
     simulation = windy(text, windForceMean=5)
-    (said,) = [w for w in simulation.warnings if "beside a field of wind" in w]
+    (said,) = [w for w in simulation.warnings if "together with a wind field" in w]
     assert "<windForceMean> has no effect" in said
     state = simulation.state.copy()
     state.rotor_velocity = 54 * np.array([1, -1, 1, -1, 1, -1])
@@ -120,16 +120,21 @@ GOOD = field(np.zeros(SHAPE), np.ones(SHAPE), np.zeros((3, *SHAPE, 4)))
 @pytest.mark.parametrize(
     ("old", "new", "where", "says"),
     [
-        ("n_x:\n3.0", "n_x:\n2.5", 5, "n_x is no number of points; write a whole number from 2"),
-        ("res_x:\n4.0", "res_x:\n0", 9, "res_x is not positive; write a distance in m, > 0"),
-        ("res_y:", "rez_y:", 11, r"'rez_y' is no quantity .*\(did you mean 'res_y'\?\)"),
-        ("0.2 0.5", "0.5 0.2", 13, "vertical_spacing_factors do not rise from 0 to 1; write"),
-        ("top_z:\n1.0", "top_z:\n-1.0", 17, "top_z of column 0.*not above its bottom_z; write"),
-        ("bottom_z:\n0.0", "bottom_z:\n", 15, "bottom_z has 11 numbers, but the grid asks for 12"),
-        ("u:\n0.0", "u:\nnan", 20, "'nan' is no finite number; write NAME:"),
+        (
+            "n_x:\n3.0",
+            "n_x:\n2.5",
+            5,
+            "n_x is not a valid number of points. Use a whole number from 2",
+        ),
+        ("res_x:\n4.0", "res_x:\n0", 9, "res_x is not positive. Use a positive distance in m"),
+        ("res_y:", "rez_y:", 11, r"'rez_y' is not a quantity .*Did you mean 'res_y'\?"),
+        ("0.2 0.5", "0.5 0.2", 13, "vertical_spacing_factors do not rise from 0 to 1. Write"),
+        ("top_z:\n1.0", "top_z:\n-1.0", 17, "top_z of column 0.*not above its bottom_z. Use"),
+        ("bottom_z:\n0.0", "bottom_z:\n", 15, "bottom_z has 11 numbers, but the grid requires 12"),
+        ("u:\n0.0", "u:\nnan", 20, "'nan' is not a finite number. Write NAME:"),
         ("v:\n", "u:\n", 21, r"a second u \(first at .*field.txt:19\); keep one"),
-        ("min_x:\n", "", 1, "'-4.0' is no finite number of a quantity; write NAME:"),
-        ("w:\n", "", None, "w is missing; write w: and its numbers"),
+        ("min_x:\n", "", 1, "'-4.0' is not a finite number of a quantity. Write NAME:"),
+        ("w:\n", "", None, "w is missing. Write w: followed by its numbers"),
     ],
 )
 def test_what_is_wrong_with_a_field_is_told_with_its_line(windy, old, new, where, says):
@@ -144,8 +149,8 @@ def test_what_is_wrong_with_a_field_is_told_with_its_line(windy, old, new, where
 
 def test_a_field_without_a_file_is_refused(windy, tmp_path):
     for path, says in (
-        ("", "no <customWindFieldPath> names the file; add it"),
-        ("elsewhere.txt", r"elsewhere\.txt: cannot be read; give the path of an existing file"),
+        ("", "<customWindFieldPath> is missing. Add the path"),
+        ("elsewhere.txt", r"elsewhere\.txt: the file cannot be read. Give the path of an existing"),
     ):
         message = refusal(windy, GOOD, **{"customWindFieldPath": path})
         assert re.search(says, message), message

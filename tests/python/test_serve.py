@@ -90,7 +90,7 @@ def test_no_command_keeps_the_one_before_and_no_step_shows_the_row(served):
 @pytest.mark.parametrize(
     ("ask", "what"),
     [
-        (lambda client: client.step([1.0, 2.0]), "command holds 2 rotor speeds"),
+        (lambda client: client.step([1.0, 2.0]), "the command has 2 rotor speeds"),
         (lambda client: client.step([float("nan")] * 4), "not a finite number"),
         (lambda client: client.step(SPEEDS[0], 1.5), "the number of steps is 1.5"),
         (lambda client: client.step(SPEEDS[0], -1), "the number of steps is -1"),

@@ -173,7 +173,7 @@ def test_a_small_vehicle_saturates_in_eigen_at_more_than_half_a_turn_per_step():
         if dt < 1e-3:
             simulation.step(1000)
             return simulation
-        with pytest.warns(qc.QuadcoreWarning, match="more than half a turn per step, so that its"):
+        with pytest.warns(qc.QuadcoreWarning, match="more than half a turn per step, so its"):
             simulation.step(250)
         simulation.step(250)
         return simulation
@@ -213,9 +213,9 @@ def test_a_failed_flight_keeps_its_log_and_can_be_taken_up_again(engine):
     snapshot = simulation.snapshot()
     with pytest.raises(qc.FlightError) as failed:
         simulation.run(1, too_fast)
-    message, late = "turns more than half a turn per step; take a smaller step", 0.0
+    message, late = "turns more than half a turn per step. Use a smaller step", 0.0
     if engine == "eigen":  # whose last step ends where nothing can be logged
-        message, late = "the motion diverged, as this flight was warned: ", simulation.dt
+        message, late = "the motion diverged. This warning came before: ", simulation.dt
     assert message in str(failed.value)
     assert "plugin 'drone_plugin'" in str(failed.value)
     assert 0.1 < failed.value.time < 0.7
@@ -223,7 +223,7 @@ def test_a_failed_flight_keeps_its_log_and_can_be_taken_up_again(engine):
     assert failed.value.time == simulation.time
     began = quadrotor(engine, parameters=parameters).run(0.1, too_fast)
     assert np.array_equal(failed.value.log.table[:101], began.table)
-    with pytest.raises(qc.FlightError, match="reset, restore or set a state to go on"):
+    with pytest.raises(qc.FlightError, match="To continue, call reset, restore or set_state"):
         simulation.step()
 
     expected = hold_height(quadrotor(engine, parameters=parameters), 100)
@@ -263,7 +263,7 @@ def test_log_state_and_topics_cannot_be_read_while_another_thread_writes_them():
     while simulation.time == 0:
         pass
     for read in (flight.take, simulation.state.copy, lambda: simulation.topic("odom")):
-        with pytest.raises(qc.InputError, match="is being used by another thread"):
+        with pytest.raises(qc.InputError, match="is in use by another thread"):
             read()
     flying.join()
     table, wrenches = flight.take()

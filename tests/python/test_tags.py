@@ -58,7 +58,7 @@ def test_info_tells_tags_of_every_kind(relays, capsys):
     assert "none" in table
     assert main(["info", "toy.urdf", "--set", "one.own=4 500"]) == 2
     assert (
-        "set one.own: plugin 'one': <own> '4 500' holds 500, out of range; write 2 numbers, "
+        "set one.own: plugin 'one': <own> '4 500' contains 500, which is out of range. Write 2 "
         in (capsys.readouterr().err)
     )
 

@@ -55,8 +55,8 @@ def test_a_command_is_a_message_on_vel_cmd():
 @pytest.mark.parametrize(
     ("topic", "values", "says"),
     [
-        ("vel_cmb", [1], "topic 'vel_cmb' is not declared by any plugin (did you mean 'vel_cmd'?)"),
-        ("rain", {"x": 1}, "topic 'rain' is not declared by any plugin; declared are effect"),
+        ("vel_cmb", [1], "topic 'vel_cmb' does not exist. Did you mean 'vel_cmd'?"),
+        ("rain", {"x": 1}, "topic 'rain' does not exist. Choose one of effect"),
         ("vel_cmd", [1, 2], "publish: topic 'vel_cmd': 2 numbers; give 4: w1, w2, w3, w4"),
         ("vel_cmd", [1, 2, np.nan, 4], "publish: topic 'vel_cmd': w3 is not a finite number"),
         ("vel_cmd", "fast", "publish: topic 'vel_cmd' is not a 1-dimensional array of numbers"),
@@ -72,8 +72,8 @@ def test_a_message_that_cannot_be_is_refused_and_changes_nothing(topic, values, 
 def test_a_caller_who_publishes_what_a_plugin_writes_is_told_of_it(relays):
     simulation = relays(element("out", publishes="push"))
     assert refusal(simulation.publish, "push", [1, 2]) == (
-        f"publish() writes topic 'push', which toy.urdf:{FIRST}: plugin 'out' writes already; "
-        "keep one of the two"
+        f"publish() writes topic 'push', which toy.urdf:{FIRST}: plugin 'out' already writes. "
+        "Keep one of the two."
     )
 
 
@@ -139,21 +139,24 @@ def test_two_that_write_one_topic_are_refused_by_name(relays):
     twice = [element("one", publishes="push"), element("two", publishes="push")]
     assert refusal(relays, *twice) == (
         f"toy.urdf:{FIRST + 1}: plugin 'two' writes topic 'push', which toy.urdf:{FIRST}: plugin "
-        "'one' writes already; keep one of the two"
+        "'one' already writes. Keep one of the two."
     )
 
 
 def test_two_that_mean_different_kinds_are_refused_by_name(relays):
     message = refusal(relays, element("one", publishes="odometer"), element("two", takes="odom"))
-    assert f"toy.urdf:{FIRST + 1}: plugin 'two' has topic 'odom' as 'relay' (a, b), but" in message
-    assert message.endswith("; make them agree")
+    assert (
+        f"toy.urdf:{FIRST + 1}: plugin 'two' declares topic 'odom' as 'relay' (a, b), but"
+        in message
+    )
+    assert message.endswith(". Make the declarations agree.")
 
 
 def test_a_name_that_no_log_could_carry_is_refused(relays):
     message = refusal(relays, element("one", publishes="/push"))
     assert message.startswith(f"toy.urdf:{FIRST}: plugin 'one' ")
     assert message.endswith(
-        "topic '/push' is no plain word; write letters, digits and _, a letter first"
+        "topic '/push' is not a valid name. Start with a letter and use only letters, digits and _."
     )
 
 
@@ -242,9 +245,7 @@ def test_the_command_line_logs_topics_as_python_does(logged, tmp_path, monkeypat
     variables = scipy.io.loadmat("log.mat", simplify_cells=True)
     assert np.array_equal(variables["topic_odom"]["z"], logged.topics["odom"]["z"])
     assert main(["run", "quadrotor", *options, "--log-topics", "odo"]) == 2
-    assert "topic 'odo' is not declared by any plugin (did you mean 'odom'?)" in (
-        capsys.readouterr().err
-    )
+    assert "topic 'odo' does not exist. Did you mean 'odom'?" in (capsys.readouterr().err)
 
 
 def test_topics_to_log_are_names_each_once():

@@ -177,7 +177,7 @@ def test_flights_that_fail_are_rows_with_a_reason(tmp_path, capsys):
     warning, error = printed.err.splitlines()
     assert "more than half a turn per step, so that" in warning
     assert error.startswith("error: 1 of 4 flights failed; the first (ode, sim_slow 1, ")
-    assert "more than half a turn per step; take a smaller step" in error
+    assert "more than half a turn per step. Use a smaller step" in error
     assert re.search(r"ode +1 +failed\node +8 +[\d.e-]+\n", printed.out)
     rows = list(csv.DictReader((tmp_path / "errors.csv").open()))
     assert [bool(row["failure"]) for row in rows] == [True, False, False, False]

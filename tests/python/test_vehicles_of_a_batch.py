@@ -88,7 +88,7 @@ def test_an_argument_that_makes_other_rotors_makes_no_batch(tmp_path):
     path.write_text(TWO_OR_FOUR.format(_inside(four), _inside(two)))
     own = {"xacro.many": np.array([True, True, False])}
     rotors = Simulation(path).rotor_count
-    told = f"set xacro.many: vehicle 2 has 2 rotors, vehicle 0 has {rotors}; make a batch of each"
+    told = f"set xacro.many: vehicle 2 has 2 rotors, but vehicle 0 has {rotors}. Make a separate"
     with pytest.raises(InputError, match=told):
         BatchSimulation(path, 3, parameters=own)
 

@@ -117,7 +117,7 @@ def test_a_vehicle_without_any_drag_tag_is_told_what_the_thesis_had_compiled_in(
 
 @pytest.mark.parametrize(
     ("model", "harm"),
-    [("appendix", "its reaction torque takes the wrong sign"), ("chapter2", "its thrust points")],
+    [("appendix", "its reaction torque has the wrong sign"), ("chapter2", "its thrust points")],
 )
 def test_an_axis_against_the_lift_is_told(hangar, model, harm):
     urdf = vehicle(air={**AIR, **DRAG, "dragModel": model}).splitlines()
@@ -125,13 +125,13 @@ def test_an_axis_against_the_lift_is_told(hangar, model, harm):
     urdf[line] = urdf[line].replace('axis xyz="0 0 1"', 'axis xyz="0.1 0 -1"')
     [message] = told(lambda: hangar("\n".join(urdf)))
     assert "joint 'rotor2' (" in message and f".urdf:{line + 1})" in message
-    assert "against the z of link 'propeller2'" in message and harm in message
-    assert "write the axis along the lift" in message
+    assert "opposite to the z of link 'propeller2'" in message and harm in message
+    assert "Point the axis along the thrust" in message
 
 
 def stiff(call):
     """Messages of motors that are too stiff for the step."""
-    return [message for message in told(call) if "<kp> is too stiff for the step" in message]
+    return [message for message in told(call) if "<kp> is too large for the step" in message]
 
 
 @pytest.mark.parametrize("dt", [1e-3, 5e-4])
@@ -160,7 +160,7 @@ def test_joint_damping_counts_as_stiffness(hangar):
     assert stiff(lambda: hangar(vehicle(damped, motor=MOTOR))) == []
     messages = stiff(lambda: hangar(vehicle(damped, motor={"kp": 0.02})))
     assert len(messages) == 4
-    assert "take <kp> below 0.01625 N m s/rad" in messages[0]
+    assert "Use <kp> below 0.01625 N m s/rad" in messages[0]
 
 
 INCOMPLETE = """<robot name="incomplete" xmlns:xacro="http://www.ros.org/wiki/xacro">

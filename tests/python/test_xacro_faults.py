@@ -56,8 +56,8 @@ def test_a_file_for_xacro_that_is_called_a_urdf_is_told_to_be_renamed(tmp_path):
     path = tmp_path / "x.urdf"
     path.write_text(MODEL)
     message = refusal(qc.Simulation, path)
-    assert message.startswith(f"{path}:2: <xacro:property> is for xacro to expand, as files are")
-    assert message.endswith("whose names end in .xacro; name this one so")
+    assert message.startswith(f"{path}:2: <xacro:property> is an xacro element, which is")
+    assert message.endswith("expanded only in files named *.xacro. Rename the file.")
     link = '<robot name="x"><link name="a"><xacro:box/></link></robot>'
     path.write_text(link)
-    assert "name this one so" in refusal(qc.Simulation, path)
+    assert "Rename the file." in refusal(qc.Simulation, path)

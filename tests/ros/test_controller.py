@@ -148,7 +148,7 @@ class TestController(unittest.TestCase):
     def test_what_cannot_be_flown_is_refused_in_one_line(self):
         flown = with_controller(description(), {"law": "pd"}, CIRCLE)
         cases = [
-            ({"lew": "pd"}, "parameter ~lew: does not exist (did you mean 'law'?)"),
+            ({"lew": "pd"}, "parameter ~lew: does not exist. Did you mean 'law'?"),
             ({"law": "geometrik"}, "parameter ~law: plugin 'controller_node': <law> 'geometrik'"),
             ({"kp_xy": -1}, "parameter ~kp_xy: plugin 'controller_node': <kp_xy> '-1' is out of"),
             ({"kp_xy": "much"}, "<kp_xy> 'much' is not a finite number"),

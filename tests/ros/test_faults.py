@@ -42,7 +42,7 @@ class TestFaults(unittest.TestCase):
                 send(speeds)
             diagnostic("rejected commands", lambda count: count == 3)
             node.end()
-        for kind in ("command holds 1 rotor speeds", "not a finite number", "beyond 1e+06 rad/s"):
+        for kind in ("the command has 1 rotor speeds", "not a finite number", "beyond 1e+06 rad/s"):
             self.assertEqual(node.error.count(kind), 1, kind)
 
     def test_bad_commands_are_reported_once_a_second(self):
@@ -54,7 +54,7 @@ class TestFaults(unittest.TestCase):
             seconds = time.monotonic() - begun
             node.end()
         # Of each of the three kinds one in each second that has begun.
-        self.assertLessEqual(node.error.count("command holds"), 3 * (seconds + 1))
+        self.assertLessEqual(node.error.count("the command has"), 3 * (seconds + 1))
 
     def test_a_model_without_motors_takes_no_commands(self):
         urdf = re.sub(
@@ -165,7 +165,7 @@ class TestFaults(unittest.TestCase):
         for argument, message in (
             (
                 "_lockstp:=true",
-                "parameter ~lockstp: does not exist (did you mean 'lockstep'?). It stays on the "
+                "parameter ~lockstp: does not exist. Did you mean 'lockstep'? It stays on the "
                 "parameter server until you run: rosparam delete /quadcore/lockstp",
             ),
             ("_paused:=1", "parameter ~paused: give true or false"),
@@ -173,7 +173,7 @@ class TestFaults(unittest.TestCase):
             ("_real_time_factor:=-1", "parameter ~real_time_factor: give a number >= 0"),
             ("_seed:=1e30", "parameter ~seed: give a whole number from 0 to 9007199254740992"),
             ("_dt:=-1", "parameter ~dt: give a step from 1e-9 to 0.1 s"),
-            ("_engine:=gazebo12", "engine 'gazebo12' is not there (did you mean 'gazebo11'?)"),
+            ("_engine:=gazebo12", "engine 'gazebo12' does not exist. Did you mean 'gazebo11'?"),
             ("_world:=/none.world", "/none.world: cannot be read"),
             ("_log:=/none/log.csv", "/none/log.csv: cannot be written"),
             ("_clock:=both", "parameter ~clock: give auto, lead or follow"),

@@ -89,7 +89,7 @@ class TestParameters(unittest.TestCase):
 
     def test_wrong_drags_are_refused(self):
         error = refusal("_drag:=profil")
-        self.assertIn("parameter ~drag: 'profil' does not exist in this model (did you mean", error)
+        self.assertIn("parameter ~drag: 'profil' does not exist in this model. Did you mean", error)
         for effect in ("none", "all", *EFFECTS):
             self.assertIn(effect, error.split("Choose one of")[1])
         error = refusal("_drag:=none", "_set:=drone_plugin.profileDragCoeff=1")
@@ -147,7 +147,10 @@ class TestParameters(unittest.TestCase):
         self.assertIn("libforeign_plugin.so", refusal(urdf=urdf))
         with flight("_ignore:=libforeign_plugin.so", "_paused:=true", urdf=urdf):
             step(1)
-        self.assertIn("ignore nothing: nothing goes by that name", refusal("_ignore:=nothing"))
+        self.assertIn(
+            "ignore nothing: neither the model nor the world has anything of that name",
+            refusal("_ignore:=nothing"),
+        )
 
     def test_two_odometries_are_refused_by_name(self):
         second = '<plugin name="other" filename="libodometry_plugin.so"/>'
@@ -157,7 +160,7 @@ class TestParameters(unittest.TestCase):
             status, error = node.result()
         self.assertEqual(status, 2)
         self.assertIn("plugin 'other' writes topic 'odom', which", error)
-        self.assertIn("plugin 'odometry' writes already", error)
+        self.assertIn("plugin 'odometry' already writes", error)
 
 
 if __name__ == "__main__":

@@ -227,7 +227,7 @@ class TestSetPoints(unittest.TestCase):
             ("/command/pose", pose(0, 0, 10, frame="map"), "frame_id is 'map'"),
             ("/command/pose", PoseStamped(), "is not a quaternion of length 1"),
             ("/command/pose", pose(float("nan"), 0, 10), "position contains a number"),
-            ("/command/trajectory", MultiDOFJointTrajectory(), "a path without points"),
+            ("/command/trajectory", MultiDOFJointTrajectory(), "the path has no points"),
             ("/command/trajectory", MultiDOFJointTrajectory(points=[two]), "Give one transform"),
             ("/command/trajectory", MultiDOFJointTrajectory(points=late), "not later than"),
             ("/command/velocity", Twist(angular=Vector3(1, 0, 0)), "angular is not about z"),

@@ -18,10 +18,10 @@ const std::vector<std::string> keys = {"law", "vehicle", "rate", "delay", "param
 const std::vector<TagSpec>& timing_table() {
   using T = TagSpec;
   static const std::vector<TagSpec> table = {
-      T::number("rate", "1/s", "500", "calls per second; at most one per step")
+      T::number("rate", "1/s", "500", "controller calls per second, at most one per step")
           .at_least(1e-6)
           .at_most(1e9),
-      T::number("delay", "s", "0", "from a call to the first step that it commands")
+      T::number("delay", "s", "0", "delay from a call to the first step with its command")
           .at_least(0)
           .at_most(10),
   };
@@ -37,7 +37,7 @@ double default_timing(const std::string& name) {
 
 Gains read_gains(const std::string& path) {
   const YamlFile file(path);
-  const auto entries = file.mapping(file.root(), "a gains file");
+  const auto entries = file.mapping(file.root(), "the gains file");
   const auto entry = [&](const std::string& key) {
     const auto found = std::find_if(entries.begin(), entries.end(),
                                     [&](const auto& other) { return other.first == key; });
@@ -45,13 +45,13 @@ Gains read_gains(const std::string& path) {
   };
   for (const auto& [key, node] : entries) {
     if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
-      file.refuse(node, "a gains file has no '" + key + "'" + did_you_mean(key, keys) +
-                            "; it knows " + joined(keys));
+      file.refuse(node, "unknown key '" + key + "'." + suggest(key, keys) + " Choose one of " +
+                            joined(keys) + ".");
     }
   }
   const auto check = [&](const YAML::Node& node, const std::string& law, const Values& values) {
     try {
-      check_values("law '" + law + "'", Controller::table(law), values);
+      check_values("controller '" + law + "'", Controller::table(law), values);
     } catch (const InputError& error) {
       file.refuse(node, error.what());
     }
@@ -59,16 +59,16 @@ Gains read_gains(const std::string& path) {
 
   Gains gains;
   const YAML::Node* const law = entry("law");
-  if (!law) file.refuse(file.root(), "names no law; write `law: NAME`");
-  gains.law = file.text(*law, "the law");
+  if (!law) file.refuse(file.root(), "no controller is named. Write `law: NAME`.");
+  gains.law = file.text(*law, "'law'");
   check(*law, gains.law, {});
-  if (const YAML::Node* node = entry("vehicle")) gains.vehicle = file.text(*node, "the vehicle");
+  if (const YAML::Node* node = entry("vehicle")) gains.vehicle = file.text(*node, "'vehicle'");
   for (const auto& [name, member] : {std::pair{"rate", &Gains::rate}, {"delay", &Gains::delay}}) {
     const YAML::Node* const node = entry(name);
     if (!node) continue;
     gains.*member = file.number(*node, name);
     try {
-      check_values("a gains file", timing_table(), {{name, gains.*member}});
+      check_values("the gains file", timing_table(), {{name, gains.*member}});
     } catch (const InputError& error) {
       file.refuse(*node, error.what());
     }
@@ -81,7 +81,8 @@ Gains read_gains(const std::string& path) {
   }
   if (const YAML::Node* node = entry("history")) {
     if (!node->IsMap() && !node->IsSequence()) {
-      file.refuse(*node, "'history' is neither a mapping nor a list; write one, or leave it out");
+      file.refuse(*node,
+                  "'history' is neither a mapping nor a list. Write one of them or remove it.");
     }
   }
   return gains;

@@ -17,15 +17,15 @@ const std::vector<std::string> columns = {"t", "x", "y", "z"};
 const std::vector<std::string> of_orientation = {"qx", "qy", "qz", "qw"};
 constexpr const char* yaw_column = "yaw";
 
-/// Where the columns stand that are read: those of place, and yaw or an orientation or neither.
+/// Indices of the columns to read: time and position, and optionally yaw or an orientation.
 struct Header {
   std::vector<std::size_t> places, yaw;
 
   std::size_t width() const { return places.size() + (yaw.empty() ? 0 : 1); }
 };
 
-/// Of columns t, x, y, z, and perhaps yaw, in any order, or of a log, which has an orientation and
-/// whatever else. Nothing for other names.
+/// Return the header for the columns t, x, y, z and optionally yaw in any order, or for a log,
+/// which has an orientation and other columns; nullopt for other names.
 std::optional<Header> header_of(const std::vector<std::string>& names) {
   const auto places = [&](const std::vector<std::string>& wanted) {
     std::vector<std::size_t> found;
@@ -44,18 +44,18 @@ std::optional<Header> header_of(const std::vector<std::string>& names) {
   return {};
 }
 
-/// Gathers rows, and refuses what is no path with the place where it stands.
-class Gathered {
+/// Collects rows and rejects those that form no path.
+class RowCollector {
  public:
-  explicit Gathered(const Header& header) : header_(header) {}
+  explicit RowCollector(const Header& header) : header_(header) {}
 
-  /// \param number   of a column of the file
-  /// \param refuse   throws
+  /// \param number   returns the value of a column of the file
+  /// \param refuse   throws an error with the location of the row
   template <class Number, class Refuse>
   void add(const Number& number, const Refuse& refuse) {
     const double t = number(header_.places.front());
     if (rows_ > 0 && !(t > last_)) {
-      refuse("is not later than the row before; order them by time");
+      refuse("is not later than the row before. Sort the rows by time.");
     }
     last_ = t;
     rows_ += 1;
@@ -71,7 +71,7 @@ class Gathered {
 
   Rows rows(const std::string& path) const {
     if (rows_ < 2) {
-      throw InputError(path + ": holds fewer than two rows, between which a path would lead");
+      throw InputError(path + ": the file has fewer than two rows. Give at least two.");
     }
     const auto width = static_cast<Eigen::Index>(header_.width());
     return Eigen::Map<const Rows>(values_.data(), rows_, width);
@@ -87,34 +87,37 @@ class Gathered {
 Rows read_yaml_rows(const std::string& path) {
   const YamlFile file(path);
   YAML::Node named, rows;
-  for (const auto& [key, node] : file.mapping(file.root(), "a file of rows")) {
+  for (const auto& [key, node] : file.mapping(file.root(), "the file")) {
     if (key != "columns" && key != "rows") {
-      file.refuse(node, "a file of rows has no '" + key + "'; it knows columns, rows");
+      file.refuse(node, "unknown key '" + key + "'. Use only columns and rows.");
     }
     (key == "rows" ? rows : named).reset(node);
   }
   std::vector<std::string> names;
   if (named.IsSequence()) {
-    for (const YAML::Node& name : named) names.push_back(file.text(name, "a column"));
+    for (const YAML::Node& name : named) names.push_back(file.text(name, "the column"));
   }
   const std::optional<Header> header = header_of(names);
   if (!header) {
     file.refuse(named.IsNull() ? file.root() : named,
-                "write `columns: [t, x, y, z]`, or yaw besides, and `rows`");
+                "'columns' is invalid. Write `columns: [t, x, y, z]` or `columns: [t, x, y, z, "
+                "yaw]`, and `rows`.");
   }
-  if (!rows.IsSequence()) file.refuse(file.root(), "'rows' is no list; write rows of numbers");
-  Gathered gathered(*header);
+  if (!rows.IsSequence())
+    file.refuse(file.root(), "'rows' is not a list. Write a list of rows of numbers.");
+  RowCollector collector(*header);
   for (const YAML::Node& row : rows) {
     if (!row.IsSequence() || row.size() != names.size()) {
-      file.refuse(row, "is no row of " + std::to_string(names.size()) + " numbers");
+      file.refuse(row, "the row does not have " + std::to_string(names.size()) +
+                           " numbers. Write one number for each column.");
     }
-    gathered.add([&](std::size_t i) { return file.number(row[i], names[i]); },
-                 [&](const char* what) { file.refuse(row, std::string("the row ") + what); });
+    collector.add([&](std::size_t i) { return file.number(row[i], names[i]); },
+                  [&](const char* what) { file.refuse(row, std::string("the row ") + what); });
   }
-  return gathered.rows(path);
+  return collector.rows(path);
 }
 
-std::vector<std::string> cells(const std::string& line) {
+std::vector<std::string> split_cells(const std::string& line) {
   std::vector<std::string> cells;
   for (std::size_t begin = 0; begin <= line.size();) {
     const std::size_t end = std::min(line.find(',', begin), line.size());
@@ -128,29 +131,30 @@ Rows read_csv_rows(const std::string& path) {
   std::istringstream text(read_text_file(path));
   std::string line;
   std::getline(text, line);
-  const std::vector<std::string> names = cells(line);
+  const std::vector<std::string> names = split_cells(line);
   const std::optional<Header> header = header_of(names);
   if (!header) {
     throw InputError(path + ":1: the header is '" + trimmed(line) +
-                     "'; write t,x,y,z or t,x,y,z,yaw, or give a log");
+                     "'. Use t,x,y,z or t,x,y,z,yaw, or give a log.");
   }
-  Gathered gathered(*header);
+  RowCollector collector(*header);
   for (int number = 2; std::getline(text, line); ++number) {
     if (trimmed(line).empty()) continue;
     const std::string where = path + ":" + std::to_string(number) + ": ";
-    const std::vector<std::string> row = cells(line);
+    const std::vector<std::string> row = split_cells(line);
     if (row.size() != names.size()) {
       throw InputError(where + std::to_string(row.size()) + " columns instead of " +
-                       std::to_string(names.size()));
+                       std::to_string(names.size()) + ". Write one number for each column.");
     }
     const auto value = [&](std::size_t i) {
       const auto parsed = parse_number(row[i]);
-      if (!parsed) throw InputError(where + "'" + row[i] + "' is no finite number; write one");
+      if (!parsed)
+        throw InputError(where + "'" + row[i] + "' is not a finite number. Write a finite number.");
       return *parsed;
     };
-    gathered.add(value, [&](const char* what) { throw InputError(where + "the row " + what); });
+    collector.add(value, [&](const char* what) { throw InputError(where + "the row " + what); });
   }
-  return gathered.rows(path);
+  return collector.rows(path);
 }
 
 }  // namespace
@@ -161,7 +165,7 @@ Rows read_rows(const std::string& path) {
   };
   if (ends_with(".csv")) return read_csv_rows(path);
   if (ends_with(".yaml") || ends_with(".yml")) return read_yaml_rows(path);
-  throw InputError(path + ": rows are read from .csv and .yaml files; give one of these");
+  throw InputError(path + ": rows can be read only from .csv and .yaml files. Give one of these.");
 }
 
 }  // namespace quadcore::control

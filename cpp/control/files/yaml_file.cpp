@@ -22,7 +22,7 @@ YamlFile::YamlFile(const std::string& path) : path_(path) {
     root_ = YAML::Load(text);
   } catch (const YAML::Exception& error) {
     const std::string line = error.mark.is_null() ? "" : ":" + std::to_string(error.mark.line + 1);
-    throw InputError(path + line + ": not YAML: " + error.msg);
+    throw InputError(path + line + ": invalid YAML (" + error.msg + "). Correct this line.");
   }
 }
 
@@ -33,13 +33,13 @@ void YamlFile::refuse(const YAML::Node& node, const std::string& what) const {
 
 std::vector<std::pair<std::string, YAML::Node>> YamlFile::mapping(const YAML::Node& node,
                                                                   const std::string& name) const {
-  if (!node.IsMap()) refuse(node, name + " is " + shown(node) + "; write lines `NAME: VALUE`");
+  if (!node.IsMap()) refuse(node, name + " is " + shown(node) + ". Write lines `NAME: VALUE`.");
   std::vector<std::pair<std::string, YAML::Node>> entries;
   for (const auto& entry : node) {
     const std::string key = text(entry.first, "a name");
     const auto same = [&](const auto& other) { return other.first == key; };
     if (std::any_of(entries.begin(), entries.end(), same)) {
-      refuse(entry.first, "'" + key + "' stands there twice; leave one");
+      refuse(entry.first, "'" + key + "' is repeated. Keep one of them.");
     }
     entries.emplace_back(key, entry.second);
   }
@@ -48,14 +48,14 @@ std::vector<std::pair<std::string, YAML::Node>> YamlFile::mapping(const YAML::No
 
 std::string YamlFile::text(const YAML::Node& node, const std::string& name) const {
   if (!node.IsScalar() || node.Scalar().empty()) {
-    refuse(node, name + " is " + shown(node) + "; write a name");
+    refuse(node, name + " is " + shown(node) + ". Write a name.");
   }
   return node.Scalar();
 }
 
 double YamlFile::number(const YAML::Node& node, const std::string& name) const {
   const auto value = node.IsScalar() ? parse_number(node.Scalar()) : std::nullopt;
-  if (!value) refuse(node, "'" + name + "' is " + shown(node) + "; write a number");
+  if (!value) refuse(node, "'" + name + "' is " + shown(node) + ". Write a number.");
   return *value;
 }
 

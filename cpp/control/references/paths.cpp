@@ -13,19 +13,19 @@ namespace {
 
 using T = TagSpec;
 
-constexpr Eigen::Index with_own_yaw = 5;  ///< columns
+constexpr Eigen::Index with_own_yaw = 5;  ///< number of columns
 
-struct RowSettings : YawLaw {
+struct RowSettings : YawMotion {
   double tolerance = 0;  ///< m, rad
 };
 
-/// A path whose rows say no yaw.
+/// A path with rows without yaw.
 class PathWithoutYaw final : public ReferenceShape {
  public:
-  PathWithoutYaw(const SepticPath& path, const YawLaw& yaw) : path_(path), yaw_(yaw) {
+  PathWithoutYaw(const SepticPath& path, const YawMotion& yaw) : path_(path), yaw_(yaw) {
     const Reference first = path.at(path.begin());
     const Reference last = path.at(std::nextafter(path.end(), path.begin()));
-    // From rest it leaves along the snap, and into rest it comes against it.
+    // A path leaves rest along the snap and reaches rest against it.
     const auto direction = [](const Vector3d& v_W, const Vector3d& at_rest_W) {
       const Vector3d& d = v_W.head<2>().norm() > 1e-6 ? v_W : at_rest_W;
       return elementary::atan2(d.y(), d.x());
@@ -45,23 +45,23 @@ class PathWithoutYaw final : public ReferenceShape {
 
  private:
   SepticPath path_;
-  YawLaw yaw_;
+  YawMotion yaw_;
   double leaves_, comes_;  ///< headings at rest [rad]
 };
 
-std::unique_ptr<ReferenceShape> with_yaw_law(const std::string& name, SepticPath path,
-                                             const YawLaw& yaw, const Values& values,
-                                             const Rows& rows) {
+std::unique_ptr<ReferenceShape> with_yaw_motion(const std::string& name, SepticPath path,
+                                                const YawMotion& yaw, const Values& values,
+                                                const Rows& rows) {
   if (rows.cols() != with_own_yaw) return std::make_unique<PathWithoutYaw>(path, yaw);
   for (const char* own : {"yaw", "yaw_rate", "along"}) {
     if (values.count(own) == 0) continue;
-    throw InputError("reference '" + name + "': its rows say the yaw; leave '" + own +
-                     "' out, or the column");
+    throw InputError("reference '" + name + "': its rows and '" + own +
+                     "' both set the yaw. Remove one of them.");
   }
   return std::make_unique<SepticPath>(std::move(path));
 }
 
-/// Times from the first row on, and a yaw without the jumps of one that is told from -pi to pi.
+/// Shift the times to start at the first row and remove jumps of the yaw between -pi and pi.
 Rows of_motion(Rows rows) {
   if (rows.rows() > 0) rows.col(0).array() -= rows(0, 0);
   for (Eigen::Index i = 1; i < rows.rows() && rows.cols() == with_own_yaw; ++i) {
@@ -84,51 +84,52 @@ struct TakeoffLand : Place {
 }  // namespace
 
 ReferenceInfo waypoints() {
-  const Settings<YawLaw> settings = with_yaw<YawLaw>({});
-  return {"waypoints", "the smoothest path (minimum snap) through places at times", true,
+  const Settings<YawMotion> settings = with_yaw<YawMotion>({});
+  return {"waypoints", "minimum-snap path through positions at given times", true,
           table_of(settings), [settings](const Values& values, const Rows& rows) {
-            YawLaw yaw;
+            YawMotion yaw;
             configure(yaw, settings, values);
-            return with_yaw_law("waypoints", SepticPath::smoothest(rows, SepticPath::Ends::at_rest),
-                                yaw, values, rows);
+            return with_yaw_motion("waypoints",
+                                   SepticPath::smoothest(rows, SepticPath::Ends::at_rest), yaw,
+                                   values, rows);
           }};
 }
 
 ReferenceInfo series() {
-  const Settings<RowSettings> settings = with_yaw<RowSettings>(
-      {{T::number("tolerance", "m", "0",
-                  "how far off the motion its rows may lie, and their yaw in rad, beside the last "
-                  "of their digits")
-            .at_least(0),
-        &RowSettings::tolerance}});
-  return {"series", "a motion as rows of time and place tell it", true, table_of(settings),
+  const Settings<RowSettings> settings =
+      with_yaw<RowSettings>({{T::number("tolerance", "m", "0",
+                                        "error of the rows in position, and in yaw in rad, that "
+                                        "the fit assumes in addition to rounding")
+                                  .at_least(0),
+                              &RowSettings::tolerance}});
+  return {"series", "motion fitted to rows of time and position", true, table_of(settings),
           [settings](const Values& values, const Rows& rows) {
             RowSettings s;
             configure(s, settings, values);
             const Rows motion = of_motion(rows);
             const VectorXd tolerances = last_digits(rows).array() + s.tolerance;
-            return with_yaw_law("series", path_of(motion, tolerances), s, values, motion);
+            return with_yaw_motion("series", path_of(motion, tolerances), s, values, motion);
           }};
 }
 
 ReferenceInfo takeoff_land() {
   const Settings<TakeoffLand> settings = {
-      {T::number("x", "m", "0", "where it stands"), &TakeoffLand::x},
-      {T::number("y", "m", "0", "where it stands"), &TakeoffLand::y},
-      {T::number("yaw", "rad", "0", "at the start"), &TakeoffLand::yaw},
-      {T::number("turn", "rad", "0", "by which it yaws in the hover, from rest to rest"),
+      {T::number("x", "m", "0", "position along x"), &TakeoffLand::x},
+      {T::number("y", "m", "0", "position along y"), &TakeoffLand::y},
+      {T::number("yaw", "rad", "0", "yaw at the start"), &TakeoffLand::yaw},
+      {T::number("turn", "rad", "0", "yaw rotation during the hover, from rest to rest"),
        &TakeoffLand::by},
-      {T::number("height", "m", "1", "of the frame in the hover"), &TakeoffLand::height},
-      {T::number(
-           "ground", "m", "0.0125",
-           "height of the frame where it stands; on a vehicle that is known, where that rests"),
+      {T::number("height", "m", "1", "height of the frame in the hover"), &TakeoffLand::height},
+      {T::number("ground", "m", "0.0125",
+                 "height of the frame on the ground; for a known vehicle, its height at rest"),
        &TakeoffLand::ground},
-      {T::number("wait", "s", "1", "on the ground before").above(0), &TakeoffLand::wait},
-      {T::number("rise", "s", "4", "for the way up, and for the way down").above(0),
+      {T::number("wait", "s", "1", "waiting time on the ground before take-off").above(0),
+       &TakeoffLand::wait},
+      {T::number("rise", "s", "4", "duration of the climb, and of the descent").above(0),
        &TakeoffLand::rise},
-      {T::number("stay", "s", "10", "in the hover").above(0), &TakeoffLand::stay},
+      {T::number("stay", "s", "10", "duration of the hover").above(0), &TakeoffLand::stay},
   };
-  return {"takeoff_land", "up from the ground, a hover, and down again", false, table_of(settings),
+  return {"takeoff_land", "take-off, hover and landing", false, table_of(settings),
           [settings](const Values& values, const Rows&) {
             TakeoffLand s{};
             configure(s, settings, values);

@@ -21,8 +21,8 @@ const ReferenceInfo& reference_info(const std::string& name) {
     if (info.name == name) return info;
     names.push_back(info.name);
   }
-  throw InputError("there is no reference '" + name + "'" + did_you_mean(name, names) +
-                   "; give one of " + joined(names));
+  throw InputError("reference '" + name + "' does not exist." + suggest(name, names) +
+                   " Choose one of " + joined(names) + ".");
 }
 
 Values on_vehicle(const std::string& name, Values values, const Model& model) {
@@ -47,8 +47,8 @@ std::unique_ptr<ReferenceShape> make_reference(const std::string& name, const Va
   const std::string who = "reference '" + name + "'";
   check_values(who, info.table, values);
   if (info.takes_rows != (rows.size() > 0)) {
-    throw InputError(who + (info.takes_rows ? " needs rows of t, x, y, z[, yaw]; give them"
-                                            : " takes no rows; leave them out"));
+    throw InputError(who + (info.takes_rows ? " requires rows of t, x, y, z[, yaw]. Give them."
+                                            : " accepts no rows. Remove them."));
   }
   return info.make(values, rows);
 }

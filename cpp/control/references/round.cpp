@@ -6,7 +6,7 @@ namespace {
 
 using T = TagSpec;
 
-/// Adds amplitude sin(rate t + phase) along an axis, a phase of a quarter turn making it a cosine.
+/// Add amplitude sin(rate t + phase) along an axis. A phase of a quarter turn makes it a cosine.
 void add_wave(Reference& wanted, int axis, double amplitude, double rate, double t, bool cosine) {
   const auto [s, c] = elementary::sincos(rate * t);
   const double wave = amplitude * (cosine ? c : s), slope = amplitude * (cosine ? -s : c);
@@ -49,9 +49,9 @@ struct Eight : ReferenceShape, Place {
 
 Settings<Spiral> spiral_settings() {
   return with_place<Spiral>({
-      {T::number("radius", "m", "2", "of the circle").at_least(0).from("(6.1)"), &Spiral::radius},
-      {T::number("rate", "rad/s", "0.5", "with which the angle grows; negative: clockwise")
-           .from("(6.1)"),
+      {T::number("radius", "m", "2", "radius of the circle").at_least(0).from("(6.1)"),
+       &Spiral::radius},
+      {T::number("rate", "rad/s", "0.5", "angular rate; negative: clockwise").from("(6.1)"),
        &Spiral::rate},
       {T::number("climb", "m/s", "1", "vertical velocity").from("(6.1)"), &Spiral::climb},
   });
@@ -60,21 +60,22 @@ Settings<Spiral> spiral_settings() {
 }  // namespace
 
 ReferenceInfo spiral() {
-  return shape<Spiral>("spiral", "a rising circle, thesis eq. (6.1)", spiral_settings());
+  return shape<Spiral>("spiral", "rising circle, thesis (6.1)", spiral_settings());
 }
 
 ReferenceInfo circle() {
-  return shape<Spiral>("circle", "a level circle", spiral_settings(),
-                       {{"rate", 1.5}, {"climb", 0}});
+  return shape<Spiral>("circle", "level circle", spiral_settings(), {{"rate", 1.5}, {"climb", 0}});
 }
 
 ReferenceInfo eight() {
   return shape<Eight>(
-      "eight", "a level figure eight",
+      "eight", "level figure of eight",
       with_place<Eight>({
-          {T::number("length", "m", "2", "half of it, along x"), &Eight::length},
-          {T::number("width", "m", "1", "half of it, along y"), &Eight::width},
-          {T::number("rate", "rad/s", "1.2", "of the slow wave, along x"), &Eight::rate},
+          {T::number("length", "m", "2", "half of the length, along x"), &Eight::length},
+          {T::number("width", "m", "1", "half of the width, along y"), &Eight::width},
+          {T::number("rate", "rad/s", "1.2",
+                     "angular frequency of the slower oscillation, along x"),
+           &Eight::rate},
       }));
 }
 

@@ -8,19 +8,19 @@
 namespace quadcore::control {
 namespace {
 
-constexpr int order = 8;  ///< of the B-splines: polynomials of the seventh
+constexpr int order = 8;  ///< order of the B-splines: polynomials of degree seven
 constexpr Eigen::Index fewest = 16;
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-/// The B-splines of an order k over equal intervals of length 1 that are not zero at u in [0, 1] of
-/// one interval, the oldest first (de Boor, "A Practical Guide to Splines", ch. X).
+/// Return the nonzero B-splines of order k over equal intervals of length 1 at u in [0, 1] of one
+/// interval, the earliest first (de Boor, "A Practical Guide to Splines", ch. X).
 std::array<double, order> splines(int k, double u) {
   std::array<double, order> values{};
   values[0] = 1;
   for (int n = 2; n <= k; ++n) {
     for (int j = n - 1; j >= 0; --j) {
-      const double begin = j - (n - 1);  // of the j-th
+      const double begin = j - (n - 1);  // start of the j-th
       const double older = j > 0 ? values[static_cast<std::size_t>(j) - 1] : 0;
       values[static_cast<std::size_t>(j)] =
           ((u - begin) * older + (begin + n - u) * values[static_cast<std::size_t>(j)]) / (n - 1);
@@ -29,10 +29,10 @@ std::array<double, order> splines(int k, double u) {
   return values;
 }
 
-/// Unit of the last decimal of the numbers, 1 to 1e-10.
+/// Return the unit of the last decimal of the numbers, 1 to 1e-10.
 double last_digit(const VectorXd& numbers) {
   constexpr double most = 1e10;
-  double inverse = 1;  // a whole number, so that the unit is rounded once
+  double inverse = 1;  // a whole number, so the unit is rounded only once
   for (; inverse < most; inverse *= 10) {
     const double unit = 1 / inverse;
     const auto is_whole = [&](double x) {
@@ -43,7 +43,7 @@ double last_digit(const VectorXd& numbers) {
   return 1 / inverse;
 }
 
-/// Least squares by so many pieces.
+/// Fit so many pieces by least squares.
 class Fit {
  public:
   Fit(const Rows& rows, Eigen::Index pieces)
@@ -64,7 +64,7 @@ class Fit {
     basis_.setFromTriplets(entries.begin(), entries.end());
     const Eigen::SimplicialLDLT<Sparse> solver(Sparse(basis_.transpose() * basis_));
     const VectorXd pivots = solver.info() == Eigen::Success ? solver.vectorD() : VectorXd();
-    // Without rows enough in a part of the time nothing tells its splines.
+    // Splines without enough rows in their interval are undetermined.
     if (pivots.size() == 0 || pivots.minCoeff() < 1e-12 * pivots.maxCoeff()) return;
     const Eigen::MatrixXd places = rows.rightCols(rows.cols() - 1);
     factors_.setZero(basis_.cols(), places.cols());
@@ -88,7 +88,7 @@ class Fit {
       SepticPath::Point knot;
       knot.t = begin_ + static_cast<double>(i) * length_;
       knot.given = {true, true, true};
-      // The factors of a derivative are differences of those before it.
+      // The coefficients of a derivative are differences of the previous ones.
       Eigen::MatrixXd factors = factors_.middleRows(piece, order);
       for (int n = 0; n < 4; ++n) {
         const auto values = splines(order - n, u);

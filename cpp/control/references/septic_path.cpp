@@ -13,15 +13,16 @@ namespace {
 using Matrix48 = Eigen::Matrix<double, 4, 8>;
 using Matrix34 = Eigen::Matrix<double, 3, 4>;
 
-/// (k)(k - 1)...(k - n + 1): what the n-th derivative makes of the power k.
+/// Return k (k - 1)...(k - n + 1), the factor of the n-th derivative of the power k.
 double falling(int k, int n) {
   double product = 1;
   for (int i = 0; i < n; ++i) product *= k - i;
   return product;
 }
 
-/// The upper four coefficients of the piece over [0, 1] that has the derivatives 0 to 3 at its left
-/// (columns 0 to 3) and right end (columns 4 to 7): the lower four are those at the left over k!.
+/// Return the upper four coefficients of the piece over [0, 1] with the derivatives 0 to 3 at its
+/// left (columns 0 to 3) and right end (columns 4 to 7). The lower four are the left derivatives
+/// divided by k!.
 Matrix48 upper_coefficients() {
   Eigen::Matrix4d of_lower, of_upper;
   for (int n = 0; n < 4; ++n) {
@@ -41,11 +42,11 @@ const Matrix48& upper() {
   return coefficients;
 }
 
-/// Factors of the derivatives 0 to 3 that make a piece of length h one of length 1.
+/// Return the factors of the derivatives 0 to 3 that scale a piece of length h to length 1.
 Eigen::Vector4d lengths(double h) { return {1, h, h * h, h * h * h}; }
 
-/// Derivatives 4 to 6 of a piece of length h where it ends or begins, as a linear function of the
-/// derivatives 0 to 3 at its ends.
+/// Return the derivatives 4 to 6 of a piece of length h at its start or end, as a linear function
+/// of the derivatives 0 to 3 at both ends.
 Eigen::Matrix<double, 3, 8> high_derivatives(double h, bool at_its_end) {
   Eigen::Matrix<double, 3, 4> of_upper = Eigen::Matrix<double, 3, 4>::Zero();
   double power = h * h * h * h;
@@ -65,7 +66,7 @@ struct Equation {
                   after = Eigen::Matrix3d::Zero();
   Matrix34 right = Matrix34::Zero();
 
-  /// Makes one of the three equations say what an unknown is.
+  /// Replace one of the three equations by the value of an unknown.
   void fix(int equation, int unknown, const Eigen::RowVector4d& value) {
     before.row(equation).setZero();
     after.row(equation).setZero();
@@ -76,7 +77,9 @@ struct Equation {
 
 std::vector<SepticPath::Point> points_of(const Rows& rows) {
   if (rows.rows() < 2 || (rows.cols() != 4 && rows.cols() != 5)) {
-    throw InputError("a path needs two rows at least of t, x, y, z or t, x, y, z, yaw");
+    throw InputError(
+        "the path has fewer than two rows, or rows of wrong length. Give at least two rows of t, "
+        "x, y, z or t, x, y, z, yaw.");
   }
   std::vector<SepticPath::Point> points;
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
@@ -90,14 +93,14 @@ std::vector<SepticPath::Point> points_of(const Rows& rows) {
 }  // namespace
 
 SepticPath::SepticPath(const std::vector<Point>& points) {
-  if (points.size() < 2) throw InputError("a path needs two points at least");
+  if (points.size() < 2) throw InputError("the path has fewer than two points. Give at least two.");
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!std::isfinite(points[i].t) || !points[i].derivatives.allFinite()) {
-      throw InputError("a path holds a number that is not finite");
+      throw InputError("the path contains a number that is not finite. Give finite numbers.");
     }
     if (i > 0 && !(points[i].t > points[i - 1].t)) {
       throw InputError("row " + std::to_string(i + 1) +
-                       " of a path is not later than the one before; order them by time");
+                       " of the path is not later than the one before. Sort the points by time.");
     }
     times_.push_back(points[i].t);
     knots_.push_back(points[i].derivatives);
@@ -124,7 +127,7 @@ SepticPath SepticPath::smoothest(const std::vector<Point>& points) {
   std::vector<Equation> equations(n);
   for (std::size_t i = 0; i < n; ++i) {
     Equation& e = equations[i];
-    // Where two pieces meet their derivatives 4 to 6 agree; at a free end they are zero.
+    // The derivatives 4 to 6 of adjacent pieces agree; at a free end they are zero.
     if (i > 0) {
       const auto left = high_derivatives(path.times_[i] - path.times_[i - 1], true);
       e.before += left.middleCols<3>(1);
@@ -137,7 +140,7 @@ SepticPath SepticPath::smoothest(const std::vector<Point>& points) {
       e.after -= right.rightCols<3>();
       e.right += right.col(0) * knots[i].row(0) + right.col(4) * knots[i + 1].row(0);
     }
-    // That of derivative 7 - k stands for the freedom of derivative k.
+    // The equation of derivative 7 - k determines the free derivative k.
     for (int k = 1; k < 4; ++k) {
       if (points[i].given[static_cast<std::size_t>(k) - 1]) e.fix(3 - k, k - 1, knots[i].row(k));
     }
@@ -176,7 +179,7 @@ void SepticPath::connect() {
 Reference SepticPath::at(double t) const {
   Reference wanted;
   Eigen::Matrix<double, 5, 4> derivatives = Eigen::Matrix<double, 5, 4>::Zero();
-  if (!(t >= begin() && t < end())) {  // nor is NaN within
+  if (!(t >= begin() && t < end())) {  // false for NaN, too
     derivatives.row(0) = (t < begin() ? knots_.front() : knots_.back()).row(0);
   } else {
     const auto next = std::upper_bound(times_.begin(), times_.end(), t) - times_.begin();

@@ -39,7 +39,7 @@ class Drive final : public ReferenceShape {
     const double time = std::min(t, lasts_), turn = rate * time;
     Reference wanted;
     wanted.yaw = yaw_ + turn;
-    // The mean of a velocity that turns is that of the middle, times sin(turn/2)/(turn/2).
+    // The mean of a rotating velocity is the velocity in the middle, times sin(turn/2)/(turn/2).
     Vector3d way = time * turned(v, yaw_ + turn / 2);
     way.head<2>() *= sinc(turn / 2);
     wanted.position = position_ + way;
@@ -63,7 +63,7 @@ class Drive final : public ReferenceShape {
   double lasts_;
 };
 
-/// The yaw that differs by whole turns and is nearest to another.
+/// Return the equivalent yaw that is nearest to another.
 double near(double yaw, double other) {
   return yaw + 2 * M_PI * std::round((other - yaw) / (2 * M_PI));
 }
@@ -80,12 +80,12 @@ std::unique_ptr<ReferenceShape> drive(const Reference& from, const Heading& head
 
 std::unique_ptr<ReferenceShape> through(const Reference& from,
                                         const std::vector<PathPoint>& points) {
-  if (points.empty()) throw InputError("a path without points; give one at least");
-  if (!(points.front().t >= 0)) throw InputError("a path begins at a negative time; begin at 0");
+  if (points.empty()) throw InputError("the path has no points. Give at least one.");
+  if (!(points.front().t >= 0)) throw InputError("the path starts at a negative time. Start at 0.");
   for (std::size_t i = 1; i < points.size(); ++i) {
     if (points[i].t > points[i - 1].t) continue;
     throw InputError("point " + std::to_string(i + 1) +
-                     " of a path is not later than the one before; order them by time");
+                     " of the path is not later than the one before. Sort the points by time.");
   }
   std::vector<SepticPath::Point> path;
   if (points.front().t > 0) {
@@ -121,7 +121,7 @@ std::unique_ptr<ReferenceShape> through(const Reference& from,
     wanted.yaw_acceleration = d(2, 3);
     return hold(wanted);
   }
-  path.front().given = path.back().given = {true, true, true};  // zero where nothing is given
+  path.front().given = path.back().given = {true, true, true};  // zero by default
   return std::make_unique<SepticPath>(SepticPath::smoothest(path));
 }
 

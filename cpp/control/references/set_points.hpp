@@ -20,23 +20,24 @@ struct Heading {
   Vector3d velocity;  ///< [m/s]
   double yaw_rate;    ///< [rad/s]
 };
-/// A drive for so many seconds, and then a hover.
+/// Create a drive for so many seconds, followed by a hover.
 std::unique_ptr<ReferenceShape> drive(const Reference& from, const Heading& heading, double lasts);
 
-/// A point of a path. What is not given is what is smoothest, and at both ends zero.
+/// A point of a path. Missing derivatives are chosen for the smoothest path; at both ends they are
+/// zero.
 struct PathPoint {
   double t;  ///< [s]
   Vector3d position;
-  double yaw;  ///< any of those that are the same
+  double yaw;  ///< any equivalent angle
   struct Change {
     Vector3d of_position;
     double of_yaw;
   };
   std::optional<Change> velocity, acceleration;
 };
-/// The smoothest path from where something is through points, the last of which is kept. A first
-/// point at 0 begins the path itself, a lone one is held, with what is given of it.
-/// Throws InputError on times that are negative or do not grow.
+/// Create the smoothest path from the present reference through points; the last one is held. A
+/// first point at time 0 starts the path itself, and a single point is held with its given
+/// derivatives. Throws InputError for times that are negative or do not increase.
 std::unique_ptr<ReferenceShape> through(const Reference& from,
                                         const std::vector<PathPoint>& points);
 

@@ -2,18 +2,18 @@
 
 #include <utility>
 
-#include "references/yaw_law.hpp"
+#include "references/yaw_motion.hpp"
 
 namespace quadcore::control {
 
-/// A kind whose class has its settings for members.
+/// Describe a kind of reference of class Shape, whose members are its settings.
 template <class Shape>
 ReferenceInfo shape(const std::string& name, const std::string& summary, Settings<Shape> settings,
                     const Values& defaults = {}) {
   return {name, summary, false, with_defaults(table_of(settings), defaults),
           [settings = std::move(settings), defaults](const Values& values, const Rows&) {
             auto made = std::make_unique<Shape>();
-            configure(*made, settings, completed(values, defaults));
+            configure(*made, settings, complete(values, defaults));
             return made;
           }};
 }

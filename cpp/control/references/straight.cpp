@@ -5,7 +5,7 @@ namespace {
 
 using T = TagSpec;
 
-/// At one place from `time` on, and before that beside it: hover and step.
+/// A position from `time` on and an offset position before: hover and step.
 struct Step : ReferenceShape, Place {
   double dx, dy, dz, dyaw, time;
 
@@ -47,29 +47,32 @@ struct Ramp : ReferenceShape, Place {
 
 }  // namespace
 
-ReferenceInfo hover() { return shape<Hover>("hover", "one place", with_place<Hover>({}, false)); }
+ReferenceInfo hover() {
+  return shape<Hover>("hover", "fixed position", with_place<Hover>({}, false));
+}
 
 ReferenceInfo step() {
-  return shape<Step>("step", "one place, and suddenly another",
-                     with_place<Step>(
-                         {
-                             {T::number("dx", "m", "1", "step along x"), &Step::dx},
-                             {T::number("dy", "m", "0", "step along y"), &Step::dy},
-                             {T::number("dz", "m", "0", "step along z"), &Step::dz},
-                             {T::number("dyaw", "rad", "0", "step of the yaw"), &Step::dyaw},
-                             {T::number("time", "s", "1", "of the step").at_least(0), &Step::time},
-                         },
-                         false));
+  return shape<Step>(
+      "step", "step from one position to another",
+      with_place<Step>(
+          {
+              {T::number("dx", "m", "1", "step along x"), &Step::dx},
+              {T::number("dy", "m", "0", "step along y"), &Step::dy},
+              {T::number("dz", "m", "0", "step along z"), &Step::dz},
+              {T::number("dyaw", "rad", "0", "step in yaw"), &Step::dyaw},
+              {T::number("time", "s", "1", "time of the step").at_least(0), &Step::time},
+          },
+          false));
 }
 
 ReferenceInfo ramp() {
   return shape<Ramp>(
-      "ramp", "one place, and suddenly a constant velocity",
+      "ramp", "fixed position, then a constant velocity from one input on",
       with_place<Ramp>({
           {T::number("vx", "m/s", "1", "velocity along x"), &Ramp::vx},
           {T::number("vy", "m/s", "0", "velocity along y"), &Ramp::vy},
           {T::number("vz", "m/s", "0", "velocity along z"), &Ramp::vz},
-          {T::number("time", "s", "1", "from when on it moves").at_least(0), &Ramp::time},
+          {T::number("time", "s", "1", "time at which the motion starts").at_least(0), &Ramp::time},
       }));
 }
 

@@ -13,19 +13,19 @@
 namespace quadcore {
 namespace {
 
-/// Of the classical Runge-Kutta method: what the sum of rates takes of each stage's, and from where
-/// the step began to the next stage, as a part of it.
+/// Coefficients of the classical Runge-Kutta method: weight of each stage's rate in the sum, and
+/// distance from the start of the step to the next stage, as a fraction of the step.
 constexpr double weights[] = {1, 2, 2, 1}, reaches[] = {0.5, 0.5, 1, 0};
-/// With how much a point may press the ground where a flight begins, in weights of the vehicle.
+/// Maximum force of a point on the ground at the start of a flight, in weights of the vehicle.
 constexpr double hardest_start = 10;
 
 }  // namespace
 
-/// Of a body: its link's axes, and a point of it with its velocity, in the world's axes.
+/// Axes of a body's link, and a point of the body with its velocity, in world axes.
 struct CompliantGround::Motion {
   Matrix3d R_WL;
   Vector3d p_W, v_W, w_W;
-  Vector3d p_WS = {0, 0, 0};  ///< of one of its shapes
+  Vector3d p_WS = {0, 0, 0};  ///< position of one of its shapes
   Vector3d velocity(const Vector3d& q_W) const { return v_W + w_W.cross(q_W - p_W); }
 };
 
@@ -94,14 +94,15 @@ void CompliantGround::refuse_deep(const Kinematics& k, double dt) const {
   }
   if (hardest <= hardest_start * weight_) return;
   std::ostringstream what;
-  what << "the vehicle begins " << deepest
-       << " m deep in the ground, whose contact in the engine eigen would throw it up; begin at "
+  what << "the vehicle starts " << deepest
+       << " m deep in the ground, and the contact of the engine eigen would throw it up. Start at "
           "z = "
-       << k.p_WF.z() + deepest << " or above, or use the engine ode or gazebo11";
+       << k.p_WF.z() + deepest << " or above, or use the engine ode or gazebo11.";
   throw Error(what.str());
 }
 
-/// As stiff as is stable, or as its surface is; one that is softer is damped by the same part.
+/// Return the stiffest stable spring, limited by the surface; a softer one has the same damping
+/// ratio.
 CompliantGround::Spring CompliantGround::spring(double stable, double hardest, double dt) {
   const double stiffness = std::min(stable / (dt * dt), hardest);
   const double relaxation = largest_damping_per_step / largest_square_per_step * dt;
@@ -181,7 +182,8 @@ void CompliantGround::press(Shape& shape, const Kinematics& k, Loads& loads) {
   loads.add_joint_torque(rotor, k.rotors[rotor].axis_F.dot(tau_F));
 }
 
-/// What resists a shape whose bristle is moved at a rate [m/s]; goes on to the next stage.
+/// Return the resistance of a shape with its bristle moving at a rate [m/s], and advance to the
+/// next stage.
 CompliantGround::Bent CompliantGround::rub(Shape& shape, const Bent& rate) {
   const auto& [stiffness, relaxation] = shape.rub;
   const Bent resistance = possible(shape, -stiffness * (shape.bent + relaxation * rate));
@@ -190,7 +192,7 @@ CompliantGround::Bent CompliantGround::rub(Shape& shape, const Bent& rate) {
   return resistance;
 }
 
-/// By the limits of friction, whose axes are its own.
+/// Limit a resistance by friction, in the axes of the friction.
 CompliantGround::Bent CompliantGround::possible(const Shape& shape, const Bent& wanted_W) {
   const double x = shape.axis_W.x(), y = shape.axis_W.y();
   Bent wanted = wanted_W;
@@ -238,9 +240,9 @@ std::vector<std::string> CompliantGround::warnings() const {
         surface.max_vel == usual.max_vel && surface.max_contacts == usual.max_contacts) {
       continue;
     }
-    all.push_back(shape.collision->where + ": the contact of the engine eigen feels no <kd>, " +
-                  "<minDepth>, <maxVel> or <maxContacts>, of which this shape has some; for these "
-                  "use the engine ode or gazebo11");
+    all.push_back(shape.collision->where +
+                  ": the engine eigen ignores <kd>, <minDepth>, <maxVel> and <maxContacts> of this "
+                  "shape. Use the engine ode or gazebo11 to include them.");
   }
   return all;
 }

@@ -10,14 +10,15 @@ namespace {
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-/// Of a spring of 1 N/m in every direction at a point, p_CQ from the vehicle's centre of mass.
+/// Return the stiffness matrix of an isotropic spring of 1 N/m at a point p_CQ from the vehicle's
+/// centre of mass.
 Matrix6d spring_at(const Vector3d& p_CQ) {
-  Eigen::Matrix<double, 3, 6> J;  // of the point's velocity
+  Eigen::Matrix<double, 3, 6> J;  // Jacobian of the point's velocity
   J << Matrix3d::Identity(), -skew(p_CQ);
   return J.transpose() * J;
 }
 
-/// No less than that of a spring anywhere on a ball: |a + b|^2 <= 2 |a|^2 + 2 |b|^2.
+/// Return an upper bound for a spring anywhere on a ball: |a + b|^2 <= 2 |a|^2 + 2 |b|^2.
 Matrix6d spring_on_ball(const Vector3d& p_CB, double radius) {
   Matrix6d spring = 2 * spring_at(p_CB);
   spring.bottomRightCorner<3, 3>() += 2 * radius * radius * Matrix3d::Identity();
@@ -28,8 +29,8 @@ struct Shape {
   std::size_t link;
   const Collision* collision;
   int points = 0;
-  Matrix6d springs = Matrix6d::Zero();  ///< of all points
-  double stiffness = 0;                 ///< relative to the other shapes'
+  Matrix6d springs = Matrix6d::Zero();  ///< sum over all points
+  double stiffness = 0;                 ///< relative to that of the other shapes
 };
 
 Shape measured(const Model& model, std::size_t link, const Collision& collision,
@@ -50,7 +51,7 @@ Shape measured(const Model& model, std::size_t link, const Collision& collision,
   return shape;
 }
 
-/// Largest lever about the joint's axis [m].
+/// Return the maximum lever about the joint's axis [m].
 double lever(const Model& model, const Shape& shape) {
   const Vector3d& axis = model.joints[shape.link - 1].axis;
   return axis.cross(shape.collision->pose.xyz).norm() + reach(*shape.collision);
@@ -94,7 +95,7 @@ std::vector<StableContact> stable_contacts(const Model& model, const Gyrostat& b
   for (const Shape& shape : shapes) {
     StableContact contact{scale * shape.stiffness, scale * shape.stiffness};
     if (shape.link > 0) {
-      // Half of it moves the vehicle, and half turns the rotor, of which it has a share.
+      // Half of it moves the vehicle, and half turns the rotor.
       const auto sharing = static_cast<double>(model.links[shape.link].collisions.size());
       const double arm = lever(model, shape);
       const double turning = largest_square_per_step * moment_about_joint(model, shape.link - 1) /

@@ -11,12 +11,12 @@
 namespace quadcore {
 namespace {
 
-/// What only an engine of separate bodies can feel.
+/// Reject settings that only an engine with separate bodies can model.
 void refuse_tags(const Model& model) {
   const auto refuse = [](const std::string& where, const std::string& what) {
-    throw InputError(where + ": " + what +
-                     ", which the engine eigen does not model; remove it, or use the engine ode or "
-                     "gazebo11");
+    throw InputError(
+        where + ": " + what +
+        ", which the engine eigen does not model. Remove it, or use the engine ode or gazebo11.");
   };
   for (const Link& link : model.links) {
     if (!link.tags.gravity) refuse(link.tags.where, "link '" + link.name + "' has no gravity");
@@ -29,7 +29,7 @@ void refuse_tags(const Model& model) {
   }
 }
 
-/// Of a step at the ground, where what strikes is faster than all else.
+/// Number of substeps at the ground, where impacts are faster than all other motion.
 constexpr int parts_at_ground = 4;
 
 }  // namespace
@@ -171,8 +171,8 @@ void EigenEngine::evaluate_rest() {
   take_given_rates();
 }
 
-/// A rotor whose rate is given turns with the frame, and the torque that this takes is the frame's
-/// to bear only if the rate reacts: then the rotor is, about its axis, a part of the frame.
+/// A rotor with a prescribed rate turns with the frame. The frame takes the torque for this only if
+/// the rate reacts; then the rotor is part of the frame about its axis.
 void EigenEngine::take_given_rates() {
   step_.given_rates = loads_.any_rate() ? given_rates_.data() : nullptr;
   const bool any_reacted = std::find(reacting_.begin(), reacting_.end(), true) != reacting_.end();
@@ -195,7 +195,7 @@ void EigenEngine::take_given_rates() {
   }
 }
 
-/// At the end of a step a given rate is what it is said to be, not what its slopes add up to.
+/// At the end of a step, set prescribed rates exactly instead of integrating their slopes.
 void EigenEngine::end_given_rates() {
   for (std::size_t i = 0; i < reacting_.size(); ++i) {
     const auto& rate = loads_.joint_rate(i);
@@ -248,10 +248,10 @@ void EigenEngine::set_state(const VehicleState& state) {
 }
 
 std::string EigenEngine::method() const {
-  std::string method = "classical Runge-Kutta of fourth order on the reduced equations of motion";
+  std::string method = "classical fourth-order Runge-Kutta on the reduced equations of motion";
   if (ground_) {
-    method += "; on the ground by springs, dampers and bristles, approximate, in " +
-              std::to_string(parts_at_ground) + " parts of a step";
+    method += "; approximate ground contact by springs, dampers and bristles in " +
+              std::to_string(parts_at_ground) + " substeps";
   }
   return method;
 }
@@ -274,7 +274,9 @@ std::vector<double> EigenEngine::save() const {
 
 void EigenEngine::restore(const std::vector<double>& saved) {
   if (saved.size() != state_.size() + (ground_ ? ground_->saved_size() + 1 : 0)) {
-    throw InputError("snapshot: was taken from another model or engine; restore one of its own");
+    throw InputError(
+        "snapshot: it was taken with another model or engine. Restore a snapshot of this "
+        "simulation.");
   }
   const auto from = saved.begin() + static_cast<std::ptrdiff_t>(state_.size());
   std::copy(saved.begin(), from, state_.begin());

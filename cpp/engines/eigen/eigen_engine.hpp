@@ -9,9 +9,9 @@
 
 namespace quadcore {
 
-/// The exact engine: the vehicle as a gyrostat in reduced coordinates, integrated with the
-/// classical fourth-order Runge-Kutta method; force laws are evaluated at every stage. Its contact
-/// with a ground plane is approximate.
+/// The most accurate engine: the vehicle is a gyrostat in reduced coordinates, integrated by the
+/// classical fourth-order Runge-Kutta method with force laws evaluated at every stage. Its ground
+/// contact is approximate.
 class EigenEngine final : public Engine {
  public:
   EigenEngine(const Model& model, const World& world);
@@ -27,7 +27,7 @@ class EigenEngine final : public Engine {
   std::vector<std::string> warnings() const override;
 
  private:
-  /// The step's view of this engine; it points into the members below.
+  /// Data of a step, which points into the members below.
   GyrostatStep view();
   void show();
   void evaluate_rest();
@@ -37,22 +37,22 @@ class EigenEngine final : public Engine {
   bool is_at_ground(double dt) const;
   void step_at_ground(double time, double dt);
 
-  std::vector<std::string> warnings_;  ///< of how the model is taken
+  std::vector<std::string> warnings_;  ///< on the interpretation of the model
   Model model_;
   Gyrostat body_;
   Vector3d gravity_W_;
-  std::optional<CompliantGround> ground_;  ///< none in a world without ground
-  bool placed_ = true;                     ///< and not yet moved on the ground
+  std::optional<CompliantGround> ground_;  ///< empty in a world without ground
+  bool placed_ = true;  ///< whether the state was set and has not moved on the ground
   Kinematics kinematics_;
   Loads loads_;
   LaneNumbers state_, stage_, sum_;
   LaneNumbers joint_torques_, turns_;
   RotorRows<GivenRateRow::count> given_rates_;
-  std::vector<bool> reacting_;  ///< joints of given rates whose rotors the frame turns with it
+  std::vector<bool> reacting_;  ///< joints with prescribed rates that react on the frame
   GyrostatStep step_;
   void (*show_)(const GyrostatStep&, const double*);
   void (*advance_)(const GyrostatStep&, double, double);
-  const ForceField* forces_ = nullptr;  ///< of the step that is under way
+  const ForceField* forces_ = nullptr;  ///< force field of the present step
 };
 
 }  // namespace quadcore

@@ -11,10 +11,10 @@ constexpr double inertia_tolerance = 1e-6;   // relative
 
 [[noreturn]] void refuse(const Joint& joint, const std::string& why) {
   throw InputError(joint.where + ": joint '" + joint.name + "': " + why +
-                   ", which the engine eigen cannot represent; use the engine ode");
+                   ", which the engine eigen cannot represent. Use the engine ode.");
 }
 
-/// An inertia's mean over the turns of its body about an axis, if that is a principal one.
+/// Return the mean of an inertia over rotations about an axis, if that is a principal axis.
 Matrix3d averaged(const Matrix3d& I, const Vector3d& axis) {
   const double axial = axis.dot(I * axis), transverse = (I.trace() - axial) / 2;
   return transverse * Matrix3d::Identity() + (axial - transverse) * axis * axis.transpose();
@@ -28,7 +28,7 @@ void check(const Model& model, std::size_t i) {
   const Joint& joint = model.joints[i];
   const Link& link = model.links[i + 1];
   if (joint.parent != 0) {
-    refuse(joint, "hangs on the moving link '" + model.links[joint.parent].name + "'");
+    refuse(joint, "its parent is the moving link '" + model.links[joint.parent].name + "'");
   }
   if (joint.axis.cross(link.inertial.pose.xyz).norm() > position_tolerance) {
     refuse(joint, "the centre of mass of '" + link.name + "' lies off the axis");
@@ -97,10 +97,10 @@ Model with_round_rotors(const Model& model, std::vector<std::string>& warnings) 
     links.push_back(round.links[i + 1].name);
   }
   if (!links.empty()) {
-    warnings.push_back(model.links[model.body_of_link.at(links.front())].where +
-                       ": the inertia of " + joined(links) +
-                       " is taken as its mean over a turn about the joint; the engine ode flies it "
-                       "as it is written");
+    warnings.push_back(
+        model.links[model.body_of_link.at(links.front())].where +
+        ": the engine eigen averages the inertia of " + joined(links) +
+        " over a turn about the joint. Use the engine ode to simulate it as written.");
   }
   return round;
 }

@@ -11,18 +11,19 @@ namespace quadcore {
 using laws::Four;
 using laws::Vec3;
 
-/// Where a row of rotor i's table in a state lies.
+/// Return the offset of rotor i's table in a state.
 QUADCORE_LAW std::size_t joint(std::size_t row, std::size_t i) {
   return GyrostatState::joints + rotor_offset(GyrostatState::joint_rows, i) + row * widest_lanes;
 }
 
-/// The motion of the frame in a state.
+/// Motion of the frame in a state.
 struct FrameOfState {
   Four q_WF, v_WCcm_W, w_WF_F;
   laws::Rotation R_WF;
   Four v_WCcm_F;
 
-  // Between the stages the quaternion is off unit length, by less than the method's own error.
+  // Between the stages, the length of the quaternion deviates from 1 by less than the method's
+  // error.
   QUADCORE_LAW explicit FrameOfState(const double* state)
       : q_WF(laws::load<Four>(state + GyrostatState::orientation)),
         v_WCcm_W(laws::load<Four>(state + GyrostatState::velocity)),
@@ -35,9 +36,9 @@ struct FrameOfState {
   }
 };
 
-/// The motion of a pack of rotors in a state, from rotor i on: see laws/rotor_forces.hpp. `upright`
-/// ones (GyrostatStep says which) have components that are zero whatever the state, and the
-/// compiler leaves out what these would be multiplied by.
+/// Motion of a pack of rotors in a state, starting at rotor i, see laws/rotor_forces.hpp. If the
+/// rotors are `upright`, see GyrostatStep, some components are always zero, and the compiler omits
+/// their products.
 template <class T, bool upright = false>
 struct RotorsOfState {
   const GyrostatStep& g;
@@ -102,7 +103,7 @@ struct RotorsOfState {
   }
 };
 
-/// Fills the table of turns of a state.
+/// Fill the table of rotations of a state.
 template <int W>
 QUADCORE_LAW void turn(const GyrostatStep& g, const double* state) {
   using T = laws::Pack<W>;
@@ -114,7 +115,7 @@ QUADCORE_LAW void turn(const GyrostatStep& g, const double* state) {
   });
 }
 
-/// Writes the motion of a state where plugins read it.
+/// Write the motion of a state to the tables that plugins read.
 template <int W>
 QUADCORE_LAW void show(const GyrostatStep& g, const double* state) {
   using T = laws::Pack<W>;

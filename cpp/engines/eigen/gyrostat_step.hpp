@@ -8,34 +8,34 @@
 
 namespace quadcore {
 
-/// The layout of a gyrostat's state, or of its rate: p_WC, quaternion of F in W (x, y, z, w),
-/// v_WC_W, w_WF_F, each in four numbers; then a table of joint rates and angles.
+/// Layout of a gyrostat's state or its rate: p_WC, quaternion of F in W (x, y, z, w), v_WC_W and
+/// w_WF_F, each in four numbers; then a table of joint rates and angles.
 struct GyrostatState {
   enum : std::size_t { position = 0, orientation = 4, velocity = 8, rate = 12, joints = 16 };
   enum : std::size_t { joint_rate, joint_angle, joint_rows };
 };
 
-/// Rows of the turns of the rotors' links from where they are at joint angle zero.
+/// Rows of the rotations of the rotors' links from their orientation at joint angle zero.
 struct TurnRow {
   enum : std::size_t { sine, cosine, count };
 };
 
-/// Rows of rotors some of whose joints' rates are given.
+/// Rows for rotors with prescribed rates.
 struct GivenRateRow {
   enum : std::size_t {
-    free,    ///< 1 for a joint that turns as torques make it, else 0
-    slope,   ///< derivative of a given rate [rad/s^2]
-    torque,  ///< of a given rate's joint: what its carrier bears [N m]
+    free,    ///< 1 for a joint driven by torques, else 0
+    slope,   ///< derivative of a prescribed rate [rad/s^2]
+    torque,  ///< reaction of a prescribed rate on the carrier [N m]
     count
   };
 };
 
-/// Rows of what is constant of each rotor.
+/// Rows of each rotor's constants.
 struct RotorConstant {
   enum : std::size_t {
     axis_F = 0,
-    p_CR_F = 3,    ///< the link's origin from the vehicle's centre of mass
-    p_CRcm_F = 6,  ///< the rotor's centre of mass from there
+    p_CR_F = 3,    ///< link's origin from the vehicle's centre of mass
+    p_CRcm_F = 6,  ///< rotor's centre of mass from the vehicle's centre of mass
     moment = 9,
     inverse_moment = 10,
     damping = 11,
@@ -43,13 +43,13 @@ struct RotorConstant {
   };
 };
 
-/// Some laws of one kind.
+/// A list of force laws of one kind.
 template <class Law>
 struct Laws {
   const Law* first;
   std::size_t count;
 
-  /// Does work with each. One is what most vehicles have, and no loop lets it stay in registers.
+  /// Call work with each law. Most vehicles have one, which stays in registers without a loop.
   template <class Work>
   QUADCORE_LAW void for_each(const Work& work) const {
     if (__builtin_expect(count == 1, 1)) {
@@ -60,45 +60,45 @@ struct Laws {
   }
 };
 
-/// All that a step of the gyrostat reads and writes; matrices by columns. The equations stand in
-/// cpp/physics/laws/gyrostat.hpp.
+/// All data that a step of the gyrostat reads and writes; matrices are stored by columns. The
+/// equations are in cpp/physics/laws/gyrostat.hpp.
 struct GyrostatStep {
   std::size_t rotors;
   const double* constants;  ///< table of RotorConstant
-  bool normals_turn;        ///< some rotor's link has its z off the joint's axis
-  bool upright;             ///< each rotor's axis and its link's z lie along the frame's z
+  bool normals_turn;        ///< whether some rotor link's z is off the joint's axis
+  bool upright;             ///< whether each rotor's axis and its link's z are along the frame's z
   double inverse_mass;
-  double p_FCcm_F[4], gravity_W[4];               ///< a 0 behind each
-  double I_C_F[3][4], inverse_reduced_I_F[3][4];  ///< columns, a 0 behind each
+  double p_FCcm_F[4], gravity_W[4];               ///< each followed by 0
+  double I_C_F[3][4], inverse_reduced_I_F[3][4];  ///< columns, each followed by 0
 
   double *state, *stage, *sum;
-  double* joint_torques;  ///< of each rotor, on it
+  double* joint_torques;  ///< torque of each joint on its rotor
   double* turns;          ///< table of TurnRow
 
-  double* frame;                                 ///< the motion of the frame, as FrameNumber says
-  double* motion;                                ///< table of MotionRow
-  double* loads;                                 ///< table of LoadRow
-  const double *frame_force_F, *frame_torque_F;  ///< about F's origin
-  const double* given_rates;  ///< table of GivenRateRow; null while no joint's rate is given
+  double* frame;   ///< motion of the frame in the layout of FrameNumber
+  double* motion;  ///< table of MotionRow
+  double* loads;   ///< table of LoadRow
+  const double *frame_force_F, *frame_torque_F;  ///< wrench about F's origin
+  const double* given_rates;  ///< table of GivenRateRow; null while no rate is prescribed
 
-  bool laws_turn;  ///< some law or normal needs the turns
+  bool laws_turn;  ///< whether some force law or normal requires the rotations
   Laws<RotorForces> rotor_forces;
   Laws<FrameDrag> frame_drags;
   Laws<MotorTorques> motor_torques;
-  /// Evaluates all else in the motion that is shown: clears the frame's loads and adds to them and
-  /// to the rotors'. Null if there is nothing else, and the air stands still.
+  /// Evaluates everything except the force laws in the present motion: clears the frame's loads and
+  /// adds to them and to the rotors' loads. Null if there is nothing else and no wind.
   void (*evaluate_rest)(void* engine);
-  /// Throws, because the loads are not finite in the motion that is shown.
+  /// Throws because the loads are not finite in the present motion.
   void (*refuse)(void* engine);
   void* engine;
 };
 
-/// Shows the motion of a state.
+/// Write the motion of a state to the tables.
 template <int W>
 void show_gyrostat(const GyrostatStep& g, const double* state);
 
-/// One step of dt from a time on [s] of the classical fourth-order Runge-Kutta method, W rotors at
-/// once. Ends with the motion of `state` shown.
+/// Take one step of dt from a time [s] by the classical fourth-order Runge-Kutta method, with W
+/// rotors at once. At the end the tables contain the motion of `state`.
 template <int W>
 void step_gyrostat(const GyrostatStep& g, double time, double dt);
 

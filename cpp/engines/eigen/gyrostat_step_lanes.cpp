@@ -15,7 +15,7 @@ QUADCORE_LAW void share_out(const GyrostatStep& g, const Share& share, std::size
   share_out<stage>(StageNumbers{g.state, g.stage, g.sum, g.state}, share, place, k);
 }
 
-/// Asks for what the laws do not tell.
+/// Evaluate the loads that are not force laws.
 template <int W>
 __attribute__((noinline)) void evaluate_rest(const GyrostatStep& g, const double* state) {
   using T = laws::Pack<W>;
@@ -37,8 +37,8 @@ template <int W>
   __builtin_unreachable();
 }
 
-/// The loads of a pack of rotors.
-// Not const, here and below: GCC leaves constant aggregates in memory.
+/// Loads of a pack of rotors.
+// Not const, here and below: GCC keeps constant aggregates in memory.
 template <class T, bool rest, class Rotors>
 QUADCORE_LAW laws::RotorLoads<T> loads_of(const GyrostatStep& g, const Rotors& rotors) {
   laws::RotorLoads<T> loads{laws::broadcast<T>(Four{}), laws::broadcast<T>(Four{}), T{}};
@@ -78,8 +78,8 @@ QUADCORE_LAW Four drag_of_frame(const GyrostatStep& g, const FrameOfState& frame
   return sum;
 }
 
-/// Shares out the rate of a state, whose turns the table holds, and fills that for the next stage.
-/// `rest` says whether there is anything but laws.
+/// Compute the rate of a state with the rotations in the table, and fill the table for the next
+/// stage. `rest` is whether there are loads other than force laws.
 template <int W, Stage stage, bool rest, bool upright>
 QUADCORE_LAW void differentiate(const GyrostatStep& g, const double* state, const Share& share) {
   using T = laws::Pack<W>;
@@ -106,11 +106,11 @@ QUADCORE_LAW void differentiate(const GyrostatStep& g, const double* state, cons
     tau_F = tau_F + (laws::load_vector(g.frame_torque_F) -
                      laws::cross(laws::load<Four>(g.p_FCcm_F), rest_F));
   }
-  // Every load is in one of the two sums.
+  // Every load is in exactly one of the two sums.
   const Four all = f_F + tau_F;
   if (!laws::is_finite(all[0] + all[1] + all[2])) refuse<W>(g, state);
 
-  // The next stage's angles do not wait for the sums, nor do their sines.
+  // The next stage's angles and their sines do not depend on the sums.
   laws::for_each_pack<W>(g.rotors, [&](std::size_t i) QUADCORE_INLINED {
     const Rotors rotors{g, frame, state, i};
     share_out<stage>(g, share, joint(At::joint_angle, i), rotors.rate());
@@ -143,7 +143,7 @@ QUADCORE_LAW void normalise(const GyrostatStep& g) {
   const Four q = laws::load<Four>(g.state + At::orientation);
   const Four squares = q * q;
   const double square = (squares[0] + squares[1]) + (squares[2] + squares[3]);
-  // Near 1, where steps leave it, 1/sqrt(s) is (3 - s)/2 to the last digit.
+  // Near 1, 1/sqrt(s) equals (3 - s)/2 within rounding, and s stays near 1 in steps.
   const bool is_near = laws::absolute(square - 1) < 1e-8;
   laws::store(g.state + At::orientation,
               __builtin_expect(is_near, 1) ? q * (1.5 - 0.5 * square) : q / __builtin_sqrt(square));
@@ -160,7 +160,7 @@ void show_gyrostat(const GyrostatStep& g, const double* state) {
   show<W>(g, state);
 }
 
-/// Compiled for each case: what few vehicles have would cost all of them registers.
+/// Compiled for each case, because features of few vehicles would cost registers for all.
 template <int W, bool rest, bool upright>
 QUADCORE_LAW void step(const GyrostatStep& g, double time, double dt) {
   double& shown_time = g.frame[FrameNumber::time];

@@ -8,7 +8,7 @@ namespace {
 int rims(const Collision& shape, const Vector3d& p_WS, const Matrix3d& R_WS,
          Vector3d (&points_W)[most_touching_points]) {
   const double radius = shape.size.x(), length = shape.size.y();
-  // Down in the plane of the rims; in the shape's own axes, where it stays in that plane.
+  // Downward direction in the plane of the rims, in the shape's axes.
   double c = -R_WS(2, 0), s = -R_WS(2, 1);
   const double across = std::sqrt(c * c + s * s);
   c = across > 0 ? c / across : 1;

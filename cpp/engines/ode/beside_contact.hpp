@@ -2,8 +2,8 @@
 
 namespace quadcore {
 
-/// So many steps beside a contact the sweeps have not converged: they start from multipliers that
-/// an impact has made large.
+/// Number of steps after a contact in which the sweeps have not converged, because they start from
+/// large multipliers of the impact.
 constexpr int steps_beside_contact = 50;
 
 }  // namespace quadcore

@@ -8,13 +8,13 @@
 
 namespace quadcore {
 
-/// What an ODE engine moves: the links of a model on its joints, some of which may be locked at
-/// angle zero. Those carry no rotor.
+/// The bodies of an ODE engine: the links of a model on its joints. Some joints may be locked at
+/// angle zero; these carry no rotor.
 struct Bodies {
   Model model;
-  std::vector<std::size_t> rotors;  ///< of each rotor, its joint; ascending
+  std::vector<std::size_t> rotors;  ///< joint of each rotor, ascending
 
-  /// None is locked.
+  /// Return whether no joint is locked.
   explicit Bodies(const Model& m) : model(m), rotors(m.joints.size()) {
     std::iota(rotors.begin(), rotors.end(), std::size_t{0});
   }

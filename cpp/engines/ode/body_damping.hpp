@@ -4,8 +4,8 @@
 
 namespace quadcore {
 
-/// The part of a body's velocity or rate that <dampingFactor> leaves in a step. ODE's damping
-/// spares what is slower than a threshold.
+/// Return the fraction of a body's velocity or angular velocity that remains after a step with
+/// <dampingFactor>. ODE does not damp velocities below a threshold.
 inline double part_left_by_damping(const Vector3d& velocity, double factor) {
   constexpr double slow = 0.01;  // m/s, rad/s
   return velocity.squaredNorm() > slow * slow ? 1 - factor : 1;

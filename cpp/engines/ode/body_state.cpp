@@ -22,7 +22,7 @@ void save_pose(dBodyID body, double* to) {
 void restore_pose(dBodyID body, const double* from) {
   std::copy_n(from + 3, 4, writable(dBodyGetQuaternion(body)));
   std::copy_n(from + 7, 12, writable(dBodyGetRotation(body)));
-  dBodySetPosition(body, from[0], from[1], from[2]);  // also tells the body's shapes that it moved
+  dBodySetPosition(body, from[0], from[1], from[2]);  // also updates the body's shapes
 }
 
 void save_velocity(dBodyID body, double* to) {

@@ -6,9 +6,9 @@
 
 namespace quadcore {
 
-/// Numbers of a body's pose in ODE: position 3, quaternion 4, rotation matrix 3 x 4.
+/// Size of a body's pose in ODE: position 3, quaternion 4, rotation matrix 3 x 4.
 constexpr int pose_size = 19;
-/// Numbers of its velocity: linear 3, angular 3.
+/// Size of a body's velocity: linear 3, angular 3.
 constexpr int velocity_size = 6;
 
 /// \name Copies of a body's state, bit for bit
@@ -21,11 +21,12 @@ void save_velocity(dBodyID body, double* to);
 void restore_velocity(dBodyID body, const double* from);
 /// @}
 
-/// Moves a body's pose as ODE's step does: position + dt v, and the quaternion of the body, q, to
-/// q + dt/2 w q, normalised.
+/// Move a body's pose like ODE's step: position + dt v, and the quaternion q to q + dt/2 w q,
+/// normalised.
 void move_pose(dBodyID body, const Vector3d& v_W, const Vector3d& w_W, double dt);
 
-/// Drops the forces and torques added since the last step, as a step does; one that failed did not.
+/// Discard the forces and torques added since the last step. A completed step does this, a failed
+/// one does not.
 void forget_forces(dBodyID body);
 
 }  // namespace quadcore

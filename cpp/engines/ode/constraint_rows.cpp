@@ -15,7 +15,7 @@ laws::Quaternion<double> orientation(dBodyID body) {
   return {q[1], q[2], q[3], q[0]};
 }
 
-/// Of a hinge, from where it is locked [rad].
+/// Return the angle of a hinge from its locked position [rad].
 double angle(const Hinge& hinge, dBodyID child, dBodyID parent) {
   const Quaterniond& q = hinge.q_PC_at_zero;
   const Vector3d& axis = hinge.axis_C;
@@ -56,7 +56,7 @@ const std::vector<ConstraintRow>& ConstraintRows::build(const std::vector<Contac
   hinge_tagged_.assign(hinges_.size(), 0);
   for (const std::size_t newest : newest_first_) {
     if (body_tagged_[newest]) continue;
-    stack_.push_back(newest);  // no tag: the hinges' keep the walk from coming back
+    stack_.push_back(newest);  // no mark needed: the marks of the hinges prevent a return
     while (!stack_.empty()) {
       const std::size_t body = stack_.back();
       stack_.pop_back();
@@ -71,7 +71,7 @@ void ConstraintRows::visit(std::size_t body, const std::vector<Contact>& contact
     if (contact->body == body) add_contact(*contact, dt);
   }
   for (const std::size_t child : newest_first_) {
-    if (child == 0) continue;  // the frame hangs on no hinge
+    if (child == 0) continue;  // the frame has no hinge
     const std::size_t h = child - 1;
     const Hinge& hinge = hinges_[h];
     if (hinge_tagged_[h] || (hinge.child != body && hinge.parent != body)) continue;
@@ -117,7 +117,7 @@ void ConstraintRows::add_hinge(std::size_t index, double dt) {
     rows_.push_back(row);
   }
   if (hinge.friction == 0 && hinge.implicit_damping == 0 && !hinge.locked) return;
-  // The joint stands still, as far as friction can hold it or damping is stiff.
+  // The joint stays at rest as far as friction or implicit damping allows.
   row.J[0] << Vector3d::Zero(), place.axis_W;
   row.J[1] = -row.J[0];
   row.correction = 0;

@@ -16,25 +16,25 @@ struct Hinge {
   double friction = 0;                                 ///< dry, about the axis [N m]
   double implicit_damping = 0;                         ///< about the axis [N m s/rad]
   bool locked = false;                                 ///< held at angle zero
-  Quaterniond q_PC_at_zero = Quaterniond::Identity();  ///< orientation of the child there
+  Quaterniond q_PC_at_zero = Quaterniond::Identity();  ///< orientation of the child at angle zero
 };
 
-/// Where a hinge is; vectors in W.
+/// Present geometry of a hinge; vectors in W.
 struct HingePlace {
   Vector3d anchor_C_W, anchor_P_W;  ///< from each body's centre of mass [m]
-  Vector3d axis_W;                  ///< the child's
-  Vector3d gap_W;                   ///< the parent's anchor from the child's [m]
-  Vector3d tilt_W;                  ///< rotation that lays the child's axis on the parent's [rad]
+  Vector3d axis_W;                  ///< axis of the child
+  Vector3d gap_W;                   ///< parent's anchor from the child's [m]
+  Vector3d tilt_W;                  ///< rotation from the child's axis to the parent's [rad]
 
   HingePlace(const Hinge& hinge, const Vector3d& p_WC, const Matrix3d& R_WC, const Vector3d& p_WP,
              const Matrix3d& R_WP);
 };
 
-/// How a shape and the ground feel each other.
+/// Contact parameters of a shape with the ground.
 struct SurfacePair {
   double stiffness, damping;  ///< N/m, N s/m
   double mu1, mu2;            ///< friction along the first direction and across it
-  double max_correction;      ///< cap of the correction where velocities are solved for [m/s]
+  double max_correction;      ///< limit of the correction in the solution for velocities [m/s]
 };
 
 /// A point where a body touches the ground.
@@ -42,8 +42,8 @@ struct Contact {
   std::size_t body;
   Vector3d position_W;  ///< m
   Vector3d normal_W;    ///< unit, out of the ground
-  Vector3d fdir1_W;     ///< first direction of friction, of any length; zero: ODE's choice
-  double depth;         ///< of the penetration to be corrected [m]
+  Vector3d fdir1_W;     ///< first direction of friction, any length; zero: ODE's choice
+  double depth;         ///< depth of the penetration to correct [m]
   const SurfacePair* surface;
 };
 
@@ -57,31 +57,32 @@ struct ConstraintRow {
   double max_correction = 0;  ///< cap of the correction where velocities are solved for
   double cfm = 0;
   double low = 0, high = 0;  ///< bounds of the multiplier
-  double friction = 0;       ///< of a friction row: bound per multiplier of its normal
-  int normal = -1;           ///< of a friction row: the row of its normal
-  int hinge = -1;            ///< of a hinge row: its hinge
-  int hinge_row = 0;         ///< of a hinge row: which of them
+  double friction = 0;       ///< for a friction row: bound per multiplier of its normal
+  int normal = -1;           ///< for a friction row: the row of its normal
+  int hinge = -1;            ///< for a hinge row: its hinge
+  int hinge_row = 0;         ///< for a hinge row: index within the hinge
 };
 
 /// Rows of a hinge: three for the anchor, two for the axis, one for friction, implicit damping or a
 /// lock.
 constexpr int rows_per_hinge = 6;
 
-/// Writes the rows of hinges and contacts in the order in which Gazebo 11's ODE does: it walks an
-/// island from its newest body and a body's joints from the newest, contacts before hinges. Gazebo
-/// makes bodies and hinges in the order of its SDF.
+/// Writes the rows of hinges and contacts in the order of Gazebo 11's ODE. It traverses an island
+/// from its newest body and a body's joints from the newest, with contacts before hinges. Gazebo
+/// creates bodies and hinges in the order of its SDF.
 class ConstraintRows {
  public:
   struct Options {
     double erp, cfm;
-    double max_hinge_correction;  ///< cap of a hinge's where velocities are solved for [m/s, rad/s]
+    double max_hinge_correction;  ///< limit of a hinge's correction in the solution for velocities
+                                  ///< [m/s, rad/s]
   };
 
-  /// hinges[i] carries bodies[i + 1]; `order` holds the indices of the bodies, the oldest first.
+  /// hinges[i] carries bodies[i + 1]; `order` contains the indices of the bodies, the oldest first.
   ConstraintRows(const std::vector<dBodyID>& bodies, std::vector<Hinge> hinges,
                  const std::vector<std::size_t>& order, const Options& options);
 
-  /// Makes room for so many contacts, so that build() need not.
+  /// Reserve memory for so many contacts, so that build() does not allocate.
   void reserve(std::size_t contacts);
   std::size_t most_rows() const { return rows_.capacity(); }
 

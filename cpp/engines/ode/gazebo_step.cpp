@@ -13,11 +13,12 @@ namespace {
 
 // Measured in Gazebo 11.1.
 constexpr double warm_start_factor = 0.5;
-constexpr double friction_relaxation = 0.25;  ///< of a friction row, on top of the world's
+constexpr double friction_relaxation = 0.25;  ///< of a friction row, in addition to the world's
 constexpr int friction_sweeps = 10;           ///< over the friction rows alone, at the end
-constexpr double contact_smoothing = 0.01;  ///< of contact multipliers, where velocities are solved
+constexpr double contact_smoothing =
+    0.01;  ///< of contact multipliers in the solution for velocities
 
-constexpr int pose = 0, velocity = 1;  ///< which of the two solves
+constexpr int pose = 0, velocity = 1;  ///< indices of the two solutions
 
 bool is_capped(const ConstraintRow& row) { return std::abs(row.correction) > row.max_correction; }
 
@@ -97,7 +98,7 @@ GazeboStep::Vector6 GazeboStep::inverse_mass_J(const ConstraintRow& row, int sid
   return result;
 }
 
-/// Fills the sweeps with the rows.
+/// Fill the sweeps with the rows.
 void GazeboStep::prepare_rows() {
   sweeps_.hinges.clear();
   sweeps_.rows.clear();
@@ -199,7 +200,7 @@ bool GazeboStep::caps_hinges(double dt) {
   return std::any_of(rows.begin(), rows.end(), is_capped);
 }
 
-/// Begins both solves.
+/// Initialise both solutions.
 void GazeboStep::begin(double dt) {
   for (Sweeps::Acceleration& body : sweeps_.bodies) body.fill(Sweeps::Two{});
   for (std::size_t i = 0; i < rows_->size(); ++i) {
@@ -211,7 +212,7 @@ void GazeboStep::begin(double dt) {
       multiplier =
           Sweeps::Two{warm_start_factor * start.pose[k], warm_start_factor * start.velocity[k]};
     }
-    // Gazebo forgets the sign of what it caps.
+    // Gazebo loses the sign of limited values.
     const double kept = is_capped(row) ? row.max_correction : row.correction;
     Sweeps::Two wanted{row.correction / dt, kept / dt};
     for (int side = 0; side < 2 && row.body[side] >= 0; ++side) {
@@ -224,7 +225,7 @@ void GazeboStep::begin(double dt) {
   }
 }
 
-/// Acceleration of a body by the constraints.
+/// Return the acceleration of a body by the constraints.
 GazeboStep::Vector6 GazeboStep::constraint(std::size_t body, int solve) const {
   Vector6 a;
   for (std::size_t k = 0; k < 6; ++k) a[static_cast<int>(k)] = sweeps_.bodies[body][k][solve];
@@ -239,7 +240,7 @@ double GazeboStep::remaining_error(double dt, std::uint64_t seed) {
   for (Sweeps::Acceleration& body : sweeps_.bodies) body.fill(Sweeps::Two{});
   double count = 0;
   for (std::size_t i = 0; i < rows_->size(); ++i) {
-    // In units of the multiplier that would stop the row's bodies by itself.
+    // In units of the multiplier that alone would stop the row's bodies.
     const double multiplier = random_normal(seed, count) * std::sqrt(prepared_[i].relaxation);
     solved_[i]->multiplier = Sweeps::Two{multiplier, multiplier};
     solved_[i]->wanted = Sweeps::Two{};
@@ -267,8 +268,8 @@ double GazeboStep::remaining_error(double dt, std::uint64_t seed) {
   return part;
 }
 
-/// Gazebo damps the velocity with which a pose moves, the correction of a penetration included, and
-/// takes what that loses off the velocity.
+/// Gazebo damps the velocity that moves a pose, including the correction of a penetration, and
+/// subtracts the difference from the velocity.
 void GazeboStep::damp() {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const double factor = options_.damping_factors[i];

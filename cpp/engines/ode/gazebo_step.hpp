@@ -11,13 +11,12 @@
 
 namespace quadcore {
 
-/// A step as Gazebo 11's fork of ODE takes it with its quick solver: projected Gauss-Seidel sweeps
-/// over the constraint rows (Catto, "Iterative dynamics with temporal coherence", GDC 2005) with
-/// Gazebo's order, relaxation and warm start. It solves twice from the same state: poses move with
-/// the full correction of the penetration, velocities come from a solve whose correction is capped.
-/// Upstream's QuickStep has neither that order nor that relaxation, and shuffles its rows by a
-/// random generator that the whole process shares. Against Gazebo's recording of take-off and
-/// landing this stays within 1e-12 m.
+/// A step of Gazebo 11's fork of ODE with its quick solver: projected Gauss-Seidel sweeps over the
+/// constraint rows (Catto, "Iterative dynamics with temporal coherence", GDC 2005) with Gazebo's
+/// order, relaxation and warm start. It solves twice from the same state: poses use the full
+/// correction of the penetration, velocities a limited one. Upstream's QuickStep has neither this
+/// order nor this relaxation, and shuffles its rows by a random generator that the whole process
+/// shares. The result agrees with Gazebo's recording of take-off and landing within 1e-12 m.
 class GazeboStep {
  public:
   struct Options {
@@ -25,32 +24,32 @@ class GazeboStep {
     double sor;
     Vector3d gravity_W;
     ConstraintRows::Options rows;
-    std::vector<double> damping_factors;  ///< of each body
+    std::vector<double> damping_factors;  ///< damping factor of each body
   };
 
   /// Multipliers of a hinge's rows: force, and torque across the axis.
   using Multipliers = std::array<double, rows_per_hinge>;
-  /// What a step starts from, for each hinge, where poses and where velocities are solved for.
+  /// Initial multipliers of a step for each hinge in the solutions for poses and for velocities.
   struct WarmStart {
     Multipliers pose{}, velocity{};
   };
 
-  /// Bodies, hinges and their order as ConstraintRows takes them.
+  /// Bodies, hinges and their order as in ConstraintRows.
   GazeboStep(const std::vector<dBodyID>& bodies, std::vector<Hinge> hinges,
              const std::vector<std::size_t>& order, const Options& options);
 
-  /// Makes room for so many contacts, so that step() need not.
+  /// Reserve memory for so many contacts, so that step() does not allocate.
   void reserve(std::size_t contacts);
 
-  /// Advances the bodies by dt under the forces that have been added to them.
+  /// Advance the bodies by dt under the added forces.
   void step(const std::vector<Contact>& contacts, double dt);
 
-  /// Whether a hinge's correction in the present poses is beyond its cap.
+  /// Return whether a hinge's correction in the present poses exceeds its limit.
   bool caps_hinges(double dt);
 
-  /// The part of an error of the hinges' multipliers that the sweeps leave in the present poses, at
-  /// least 1e-16; measured by the energy of the accelerations that it causes, from the random
-  /// errors of a seed. The warm start is forgotten.
+  /// Return the fraction of an error of the hinges' multipliers that remains after the sweeps in
+  /// the present poses, at least 1e-16. It is measured by the energy of the accelerations of random
+  /// errors from a seed. The warm start is discarded.
   double remaining_error(double dt, std::uint64_t seed);
 
   std::vector<WarmStart> warm_start;
@@ -62,14 +61,14 @@ class GazeboStep {
     double inverse_mass = 0;
     Matrix3d inverse_inertia_W;
     Vector6 velocity;           ///< linear, angular
-    Vector6 free_acceleration;  ///< without constraints
-    Vector6 moving;             ///< velocity with which the pose moves
+    Vector6 free_acceleration;  ///< acceleration without constraints
+    Vector6 moving;             ///< velocity that moves the pose
   };
 
-  /// What the sweeps take of a row, besides itself.
+  /// Additional data of a row for the sweeps.
   struct Prepared {
     Vector6 inverse_mass_J[2];  ///< for each body
-    double relaxation;          ///< over the row's diagonal
+    double relaxation;          ///< relaxation divided by the row's diagonal
   };
 
   void read_bodies();
@@ -90,11 +89,11 @@ class GazeboStep {
   std::vector<Body> bodies_;
   const std::vector<ConstraintRow>* rows_ = nullptr;
   Sweeps sweeps_;
-  std::vector<Sweeps::Solved*> solved_;  ///< of each row, in sweeps_
-  std::vector<int> place_;               ///< of each row, among the rows of sweeps_
-  std::vector<Prepared> prepared_;       ///< of each row
-  bool simple_hinges_ = true;            ///< whether Sweeps::Hinge has all rows of the hinges
-  std::size_t friction_begin_ = 0;       ///< in the order of sweeps_
+  std::vector<Sweeps::Solved*> solved_;  ///< entry of each row in sweeps_
+  std::vector<int> place_;               ///< index of each row among the rows of sweeps_
+  std::vector<Prepared> prepared_;       ///< data of each row
+  bool simple_hinges_ = true;            ///< whether Sweeps::Hinge contains all rows of the hinges
+  std::size_t friction_begin_ = 0;       ///< first friction row in the order of sweeps_
 };
 
 }  // namespace quadcore

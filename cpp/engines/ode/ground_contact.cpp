@@ -29,13 +29,12 @@ dGeomID create_shape(const Collision& collision) {
     case ShapeKind::mesh:
       break;
   }
-  throw InputError(
-      collision.where +
-      ": a collision mesh cannot touch the ground; write a box, cylinder or sphere, or "
-      "fly in empty.world");
+  throw InputError(collision.where +
+                   ": contact of a collision mesh with the ground is not modelled. Use a box, "
+                   "cylinder or sphere, or a world without ground.");
 }
 
-/// Of a shape's points from its centre, or more.
+/// Return an upper bound of the distance of a shape's points from its centre.
 double radius(const Collision& collision) {
   const Vector3d& size = collision.size;
   switch (collision.kind) {
@@ -57,7 +56,7 @@ GroundContact::GroundContact(const Model& model, const std::vector<dBodyID>& bod
     for (const Collision& collision : model.links[i].collisions) {
       const dGeomID geom = create_shape(collision);
       Surface surface = collision.surface;
-      // Gazebo's ODE keeps these two with the body, where the last shape leaves them.
+      // Gazebo's ODE stores these two per body, so the values of the last shape count.
       surface.max_vel = model.links[i].collisions.back().surface.max_vel;
       surface.min_depth = model.links[i].collisions.back().surface.min_depth;
       shapes_.push_back({Geom(geom), i, on_ground(surface, max_correction), surface.fdir1,

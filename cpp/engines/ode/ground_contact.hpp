@@ -10,32 +10,32 @@
 
 namespace quadcore {
 
-/// How far the shapes of a body reach from its centre of mass [m], at most.
+/// Return an upper bound of the reach of a body's shapes from its centre of mass [m].
 struct Reach {
   std::size_t body;
   double length;
 };
 
-/// Finds where a vehicle's collision shapes touch the ground plane z = 0. Links of one model do not
-/// collide with each other.
+/// Finds contacts of a vehicle's collision shapes with the ground plane z = 0. Links of one model
+/// do not collide with each other.
 class GroundContact {
  public:
   /// \param bodies  one per link of the model, each at its link's centre of mass.
-  /// \param max_correction  cap of every contact's correction [m/s].
-  /// Throws InputError on a shape that cannot collide (a mesh).
+  /// \param max_correction  limit of every contact's correction [m/s].
+  /// Throws InputError for a shape without contact model (a mesh).
   GroundContact(const Model& model, const std::vector<dBodyID>& bodies, double max_correction);
 
-  /// As many contacts as there can be.
+  /// Return the maximum number of contacts.
   std::size_t most() const { return contacts_.capacity(); }
 
   /// Of each shape.
   const std::vector<Reach>& reaches() const { return reaches_; }
 
-  /// The contacts of the present poses, at most ten for each shape.
+  /// Return the contacts of the present poses, at most ten for each shape.
   const std::vector<Contact>& find();
 
-  /// Whether a shape may be below the ground within `time` [s], by the present velocities. Shapes
-  /// of rotors count as turning with the frame alone.
+  /// Return whether a shape may be below the ground within `time` [s] at the present velocities.
+  /// Shapes of rotors are treated as turning only with the frame.
   bool is_ahead(double time, double gravity_z) const;
 
  private:
@@ -47,7 +47,7 @@ class GroundContact {
     Geom geom;
     std::size_t body;
     SurfacePair surface;
-    Vector3d fdir1;  ///< in the shape's axes
+    Vector3d fdir1;  ///< direction of mu1 in the shape's axes
     double min_depth;
     int max_contacts;
   };

@@ -9,10 +9,10 @@ void add_torque(dBodyID body, const Vector3d& tau_W) {
   dBodyAddTorque(body, tau_W.x(), tau_W.y(), tau_W.z());
 }
 
-/// -u x (I u), in any axes.
+/// Return -u x (I u) in any axes.
 Vector3d gyroscopic(const Matrix3d& I, const Vector3d& u) { return -u.cross(I * u); }
 
-/// How that changes with u.
+/// Return its derivative with respect to u.
 Matrix3d gyroscopic_slope(const Matrix3d& I, const Vector3d& u) {
   return skew(I * u) - skew(u) * I;
 }
@@ -21,14 +21,14 @@ Vector3d torque(const HingedBody& b, const Vector3d& w_WC_C) {
   return gyroscopic(b.I_Bcm_C, w_WC_C + b.rate * b.axis_C);
 }
 
-/// The part of a torque that the hinge hands on to the carrier.
+/// Return the part of a torque that the hinge transmits to the carrier.
 Matrix3d across(const Vector3d& axis) { return Matrix3d::Identity() - axis * axis.transpose(); }
 
-/// The frame's rate halfway through a step of length dt if no load acted:
+/// Return the frame's angular velocity halfway through a step of dt without loads:
 ///   w_m = w + dt/2 I^-1 tau(w_m), tau the gyroscopic torque on the vehicle, by Newton's method.
 Vector3d halfway_rate(const GyroscopicVehicle& vehicle, const Vector3d& w_WF_F, double dt) {
   constexpr int most = 8;              // 2 or 3 are needed at 50 rad/s and 1 ms
-  constexpr double converged = 1e-15;  // of the rate
+  constexpr double converged = 1e-15;  // relative to the rate
   const Matrix3d half_dt_inverse_I_F = dt / 2 * vehicle.inverse_reduced_I_F;
   Vector3d w_F = w_WF_F;
   for (int n = 0; n < most; ++n) {

@@ -5,8 +5,8 @@
 
 namespace quadcore {
 
-/// Angle of a hinge as ODE's stops see it (getHingeAngle()) [rad]: the whole angle from where the
-/// child is at angle zero to where it is, with the sign of its part about the axis.
+/// Return the angle of a hinge for ODE's stops (getHingeAngle()) [rad]: the whole rotation angle of
+/// the child from angle zero, with the sign of its part about the axis.
 QUADCORE_LAW double hinge_angle(const laws::Quaternion<double>& q_WC,
                                 const laws::Quaternion<double>& q_WP,
                                 const laws::Quaternion<double>& q_PC_at_zero,

@@ -9,29 +9,28 @@
 
 namespace quadcore {
 
-/// What stands side by side.
+/// Number of lanes.
 enum class Lanes { vehicles, rotors };
 
-/// A step as ODE's direct solver (dWorldStep) takes it, in time linear in the number of bodies. ODE
-/// asks of the accelerations a and the multipliers l
+/// A step of ODE's direct solver (dWorldStep) in linear time. For the accelerations a and the
+/// multipliers l, ODE requires
 ///   M a = f + J^T l,   J a + (cfm/dt) l = (ERP/dt error - J v)/dt,
-/// and moves with the velocities at the end of the step. On hinges that form a tree, a child's
-/// acceleration is its carrier's, and what its hinge's rows ask for beyond that, and some turn
-/// about the axis, which no row resists, unless the hinge is locked. Each child, from the leaves
-/// on, hands its carrier the inertia and the force of which that turn is eliminated
-/// (cpp/physics/laws/articulated.hpp), instead of all multipliers being solved for at once. Where
-/// cfm lets the rows give way, each of them is eliminated as a turn is.
-///
-/// Lanes are vehicles, or the rotors of one vehicle whose hinges are all on its frame: then the
-/// frame is the same in all lanes, and what rotors hand it is summed in their order.
+/// and moves with the velocities at the end of the step. On a tree of hinges, a child's
+/// acceleration is the sum of its carrier's, the acceleration that its hinge's rows require, and a
+/// rotation about the axis, which no row resists unless the hinge is locked. Starting at the
+/// leaves, each child passes inertia and force to its carrier with this rotation eliminated
+/// (cpp/physics/laws/articulated.hpp), instead of solving for all multipliers at once. If cfm makes
+/// the rows compliant, each row is eliminated like a rotation. Lanes are vehicles, or the rotors of
+/// one vehicle with all hinges on its frame. In the latter case the frame is the same in all lanes,
+/// and the contributions of the rotors are summed in their order.
 template <class T, Lanes lanes>
 class HingedBodies {
  public:
   using Table = laws::Table<T, widest_lanes>;
   static constexpr bool are_rotors = lanes == Lanes::rotors;
 
-  /// Tables of BodyConstant and BodyRow, and room for each body, for its hinge's rows only if these
-  /// give way.
+  /// Tables of BodyConstant and BodyRow, and work memory for each body; for its hinge's rows only
+  /// if they are compliant.
   QUADCORE_LAW HingedBodies(const HingedTree& tree, const double* constants, double* state,
                             BodyWork<T>* work, SoftRows<T>* soft)
       : tree_(tree), constants_(constants), state_(state), work_(work), soft_(soft) {
@@ -39,7 +38,7 @@ class HingedBodies {
       bodies_ = 1 + (tree.bodies + laws::lanes_of<T> - 2) / laws::lanes_of<T>;
   }
 
-  /// Bodies of each vehicle, or packs of them.
+  /// Return the number of bodies of each vehicle, or of packs of them.
   QUADCORE_LAW std::size_t size() const {
     if constexpr (are_rotors) return bodies_;
     return tree_.bodies;
@@ -55,7 +54,7 @@ class HingedBodies {
     if constexpr (are_rotors && laws::lanes_of<T> > 1) return 0;
     return tree_.carriers[body];
   }
-  /// Adds numbers of the bodies of a pack to what their carrier has.
+  /// Add numbers of the bodies of a pack to those of their carrier.
   QUADCORE_LAW void add_to_carrier([[maybe_unused]] std::size_t body, T& sum, T numbers) const {
     if constexpr (are_rotors && laws::lanes_of<T> > 1) {
       double total = sum[0];
@@ -66,7 +65,7 @@ class HingedBodies {
     }
   }
 
-  /// Finds how the bodies stand.
+  /// Compute the geometry of the bodies.
   QUADCORE_LAW void read() {
     for (std::size_t i = 0; i < size(); ++i) {
       BodyWork<T>& body = work(i);
@@ -76,7 +75,7 @@ class HingedBodies {
     }
   }
 
-  /// Takes the forces off the bodies.
+  /// Set the forces on the bodies to zero.
   QUADCORE_LAW void clear_forces() {
     for (std::size_t i = 0; i < size(); ++i) {
       work(i).force = none();
@@ -88,7 +87,7 @@ class HingedBodies {
     }
   }
 
-  /// The torque -w x (I w) of each body with its own rate: see add_gyroscopic_per_body().
+  /// Add the torque -w x (I w) of each body with its own rate, see add_gyroscopic_per_body().
   QUADCORE_LAW void turn_inertias(bool gyroscopic) {
     for (std::size_t i = 0; i < size(); ++i) {
       BodyWork<T>& body = work(i);
@@ -99,8 +98,8 @@ class HingedBodies {
     }
   }
 
-  /// Finds how the hinges stand in a step of dt. Gives the square of the largest correction that
-  /// one of them asks for [m/s, rad/s].
+  /// Compute the geometry of the hinges in a step of dt. Returns the square of the maximum
+  /// correction that a hinge requires [m/s, rad/s].
   QUADCORE_LAW T read_hinges(double dt) {
     work(0).p_OBcm_W = {T{}, T{}, T{}};
     T largest{};
@@ -110,12 +109,12 @@ class HingedBodies {
     }
     return largest;
   }
-  /// Of corrections that this step makes as Gazebo does.
+  /// Maximum correction for which this step agrees with Gazebo.
   QUADCORE_LAW double max_correction_squared() const {
     return tree_.max_correction * tree_.max_correction;
   }
 
-  /// Advances by dt, for which the hinges were read, under the forces that have been added.
+  /// Advance by the dt for which the hinges were read, under the added forces.
   QUADCORE_LAW void advance(double dt) {
     for (std::size_t i = size(); i-- > 1;) eliminate(i, dt);
     work(0).acceleration = laws::solve(felt(0), at_O(0, {T{}, T{}, T{}}));
@@ -126,16 +125,16 @@ class HingedBodies {
     }
   }
 
-  /// Of the hinge of a body, about its axis [rad/s].
+  /// Return the rate of a body's hinge about its axis [rad/s].
   QUADCORE_LAW T joint_rate(std::size_t i) const {
     return laws::dot(work(i).axis_W,
                      state(i).vector(BodyRow::rate) - state(carrier(i)).vector(BodyRow::rate));
   }
 
-  /// What the hinge of a body has exerted on it and on what it carries, at O, in the last step.
+  /// Return the load of a body's hinge on it and the bodies it carries, at O, in the last step.
   QUADCORE_LAW Spatial<T> load_of_hinge(std::size_t i) const {
     const Spatial<T>& a = work(i).acceleration;
-    // About the axis as it was in the step, whose end has turned it since.
+    // About the axis during the step; the end of the step has rotated it.
     Spatial<T> load = body_load(i, a) - at_O(i, work(i).turn.direction.angular);
     if (tree_.carries[i]) load = load + work(i).carried * a;
     return load;
@@ -146,7 +145,7 @@ class HingedBodies {
     return {state.number(BodyRow::orientation), state.number(BodyRow::orientation + 1),
             state.number(BodyRow::orientation + 2), state.number(BodyRow::orientation + 3)};
   }
-  /// Of the hinge of a body, as ODE's stops see it; lanes have none of these.
+  /// Return the angle of a body's hinge for ODE's stops; lanes have no stops.
   QUADCORE_LAW T joint_angle(std::size_t i) const {
     if constexpr (laws::lanes_of<T> > 1) {
       return T{};
@@ -169,7 +168,7 @@ class HingedBodies {
             laws::dot(y, I_y), laws::dot(y, I_z), laws::dot(z, I_z)};
   }
 
-  /// Gives the square of the largest of its corrections.
+  /// Returns the square of its maximum correction.
   QUADCORE_LAW T read_hinge(std::size_t i, double dt) {
     const Table at = constants(i), child = state(i), parent = state(carrier(i));
     BodyWork<T>& body = work(i);
@@ -178,7 +177,7 @@ class HingedBodies {
     const Vec3<T> anchor_P_W = of_parent.R_WB * at.vector(BodyConstant::anchor_P);
     body.p_OA_W = of_parent.p_OBcm_W + anchor_P_W;
     body.p_OBcm_W = body.p_OA_W - anchor_C_W;
-    // The rows: anchors coincide, axes are parallel.
+    // Rows: the anchors coincide, and the axes are parallel.
     const Vec3<T> gap_W = (anchor_P_W + parent.vector(BodyRow::position)) -
                           (anchor_C_W + child.vector(BodyRow::position));
     const Vec3<T> tilt_W =
@@ -201,7 +200,8 @@ class HingedBodies {
     return (rate * rate) * largest;
   }
 
-  /// Forces on a body itself and by what it carries, at O; about the axis the torque of its joint.
+  /// Return the forces on a body and by the bodies it carries, at O; about the axis the torque of
+  /// its joint.
   QUADCORE_LAW Spatial<T> at_O(std::size_t i, const Vec3<T>& axis_W) const {
     const BodyWork<T>& body = work(i);
     const T weight = constants(i).number(BodyConstant::weight);
@@ -292,7 +292,7 @@ class HingedBodies {
     body.acceleration = a;
   }
 
-  /// ODE's: new velocities, with which the poses move.
+  /// Move like ODE: update the velocities, then the poses with the new velocities.
   QUADCORE_LAW void move(std::size_t i, double dt) {
     const BodyWork<T>& body = work(i);
     const Table from = state(i);
@@ -314,7 +314,7 @@ class HingedBodies {
     put(BodyRow::orientation + 3, by * q.w);
   }
 
-  /// Where a table of so many rows has a body's.
+  /// Return the offset of a body in a table of so many rows.
   QUADCORE_LAW static std::size_t place(std::size_t rows, std::size_t body) {
     if constexpr (!are_rotors) return body * rows * widest_lanes;
     if (body == 0) return 0;

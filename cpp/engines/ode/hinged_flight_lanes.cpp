@@ -20,13 +20,13 @@ QUADCORE_LAW std::size_t packs_of_rotors(const HingedFlight& flight) {
   return (flight.rotors + W - 1) / W;
 }
 
-/// Of the i-th pack of rotors: packs are for vehicles all of whose joints are rotors'.
+/// Work on the i-th pack of rotors. Packs require that all joints belong to rotors.
 template <int W>
 QUADCORE_LAW std::size_t joint_of(const HingedFlight& flight, std::size_t i) {
   return W > 1 ? i : flight.joints[i];
 }
 
-/// Of the frame, which is the same in all lanes.
+/// Work on the frame, which is the same in all lanes.
 template <class T>
 QUADCORE_LAW void store_one(double* to, const Vec3<T>& a) {
   if constexpr (laws::lanes_of<T> == 1) {

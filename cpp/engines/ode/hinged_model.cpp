@@ -47,7 +47,7 @@ HingedModel::HingedModel(const Bodies& bodies)
 }
 
 HingedTree HingedModel::tree(const World& world, double max_correction) const {
-  // Finite, and so is its square: the compiler of the steps may be told that numbers are.
+  // Finite, including its square, because compiler options for the steps may assume finite numbers.
   constexpr double unlimited = 1e100;
   const Vector3d& g_W = world.gravity_W;
   return {carriers.size(), carriers.data(), carries.data(),

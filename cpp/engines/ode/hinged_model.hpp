@@ -8,18 +8,18 @@
 
 namespace quadcore {
 
-/// What a HingedTree takes of bodies.
+/// Data of bodies for a HingedTree.
 struct HingedModel {
   std::vector<std::size_t> carriers;
   std::vector<char> carries, brakes, locks;
 
   explicit HingedModel(const Bodies& bodies);
   HingedTree tree(const World& world, double max_correction) const;
-  /// Whether all hinges are on the frame, and none brakes or is locked.
+  /// Return whether all hinges are on the frame without implicit damping or locks.
   bool is_star() const;
 };
 
-/// Rows of BodyConstant of a body of a model.
+/// Return the rows of BodyConstant of a model's body.
 std::vector<double> body_constants(const Model& model, std::size_t body);
 
 }  // namespace quadcore

@@ -4,7 +4,7 @@
 
 namespace quadcore {
 
-/// The motion of the frames of bodies on hinges that have been read.
+/// Motion of the frames of bodies on hinges, after their geometry has been read.
 template <class T>
 struct HingedFrame {
   Matrix3<T> R_WF;
@@ -20,7 +20,7 @@ struct HingedFrame {
         p_WF(bodies.state(0).vector(BodyRow::position) - R_WF * p_FFcm_F) {}
 };
 
-/// The motion of the i-th rotors, which are the bodies after the frame; vectors in its axes.
+/// Motion of the i-th rotors, which are the bodies after the frame; vectors in frame axes.
 template <class T, Lanes lanes>
 struct HingedRotor {
   const HingedBodies<T, lanes>& bodies;
@@ -36,7 +36,7 @@ struct HingedRotor {
   QUADCORE_LAW Vec3<T> p_FRcm_F() const {
     return in_frame_axes(state().vector(BodyRow::position) - frame.p_WF);
   }
-  /// Of the links' origins, or of their centres of mass.
+  /// Return the velocity of the links' origins or of their centres of mass.
   QUADCORE_LAW Vec3<T> velocity_F(bool of_origins) const {
     const Vec3<T> v_WRcm_W = state().vector(BodyRow::velocity);
     if (!of_origins) return in_frame_axes(v_WRcm_W);
@@ -51,7 +51,8 @@ struct HingedRotor {
   }
 };
 
-/// The centres of mass of whole vehicles, from the origins of their frames, and their velocities.
+/// Compute the centres of mass of whole vehicles from the origins of their frames, and their
+/// velocities.
 template <class T>
 struct HingedCenter {
   Vec3<T> p_FCcm_F, v_WCcm_F;
@@ -78,7 +79,7 @@ struct HingedCenter {
   }
 };
 
-/// Adds loads on the frames, the torque about the origin.
+/// Add loads on the frames, with the torque about the origin.
 template <class T, Lanes lanes>
 QUADCORE_LAW void push_frame(const HingedBodies<T, lanes>& bodies, const HingedFrame<T>& frame,
                              const Vec3<T>& f_F, const Vec3<T>& tau_F) {
@@ -87,7 +88,7 @@ QUADCORE_LAW void push_frame(const HingedBodies<T, lanes>& bodies, const HingedF
   force.angular = force.angular + frame.R_WF * (tau_F - laws::cross(frame.p_FFcm_F, f_F));
 }
 
-/// Adds forces on the i-th rotors, and the torques of their joints.
+/// Add forces on the i-th rotors and the torques of their joints.
 template <class T, Lanes lanes>
 QUADCORE_LAW void push_rotor(const HingedBodies<T, lanes>& bodies, const HingedFrame<T>& frame,
                              std::size_t i, const Vec3<T>& f_F, T joint_torque, T rate) {

@@ -13,17 +13,17 @@ namespace {
 
 using Work = BodyWork<double>;
 
-/// Numbers that tables of so many rows have for a vehicle of so many bodies.
+/// Return the size of tables of so many rows for a vehicle with so many bodies.
 std::size_t table_size(std::size_t rows, std::size_t bodies) {
   return rows * widest_lanes + rotor_offset(rows, bodies + widest_lanes);
 }
 
-/// Where a body's column begins; the frame's are all alike.
+/// Return the start of a body's column; all columns of the frame are equal.
 std::size_t column(std::size_t rows, std::size_t body) {
   return body == 0 ? 0 : rows * widest_lanes + rotor_offset(rows, body - 1);
 }
 
-/// Writes a row of a body, and fills up the columns that have no body of their own.
+/// Write a row of a body and fill the unused columns.
 void put(LaneNumbers& table, std::size_t rows, std::size_t row, std::size_t body,
          std::size_t bodies, double number) {
   const std::size_t lane = body == 0 ? 0 : (body - 1) % widest_lanes;
@@ -159,7 +159,7 @@ void HingedVehicle::show(Kinematics& k) const {
   calls_.show(flight_, {k.numbers(), k.rotors.data()});
   for (std::size_t i = 0; i < k.rotors.size(); ++i) {
     const std::size_t carrier = model_.carriers[rotors_[i] + 1];
-    if (carrier == 0) continue;  // the carrier turns as well
+    if (carrier == 0) continue;  // the carrier also turns
     const Matrix3d R_FP = k.R_WF.transpose() * R_WB(carrier);
     k.rotors.set_matrix(MotionRow::R_FR_at_zero, i, R_FP * R_PC_at_zero_[rotors_[i]]);
   }
@@ -182,7 +182,7 @@ GazeboStep::Multipliers HingedVehicle::multipliers(std::size_t hinge) const {
   const Vector3d f_W = vector(QUADCORE_NUMBER_OF(load_of_hinge));
   const Vector3d tau_W =
       vector(QUADCORE_NUMBER_OF(load_of_hinge) + 3) - vector(QUADCORE_NUMBER_OF(p_OA_W)).cross(f_W);
-  // As it was in the step, whose end has turned it since.
+  // The axis during the step; the end of the step has rotated it.
   const Vector3d axis_W = vector(QUADCORE_NUMBER_OF(turn.direction.angular));
   const auto across_W = plane_space(axis_W);
   return {f_W.x(),          f_W.y(), f_W.z(), tau_W.dot(across_W[0]), tau_W.dot(across_W[1]),
@@ -195,7 +195,7 @@ bool HingedVehicle::is_high(std::size_t i, double reach, double time, double gra
   const double* const w_WF = &state_[BodyRow::rate * widest_lanes];
   const double rate_F = Vector3d(w_WF[0], w_WF[widest_lanes], w_WF[2 * widest_lanes]).norm();
   const double fallen = std::min(0.0, gravity_z) * time * time / 2;
-  // A shape moves with the body's centre of mass, and about that with the frame.
+  // A shape moves with the body's centre of mass and turns with the frame.
   const double sinks = rows[(BodyRow::velocity + 2) * widest_lanes] - 3 * rate_F * reach;
   return lowest > 0 && lowest + fallen + time * sinks > 0;
 }

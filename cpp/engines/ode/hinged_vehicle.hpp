@@ -12,38 +12,39 @@
 
 namespace quadcore {
 
-/// A vehicle's bodies as HingedFlight takes them, beside those in an ODE world.
+/// A vehicle's bodies for HingedFlight, in addition to those in an ODE world.
 class HingedVehicle {
  public:
-  /// \param max_correction  of a hinge [m/s, rad/s]
+  /// \param max_correction  maximum correction of a hinge [m/s, rad/s]
   HingedVehicle(const Bodies& bodies, const World& world, double max_correction);
 
-  /// Takes over the state of bodies in ODE, one for each link.
+  /// Copy the state of bodies in ODE, one for each link.
   void take(const std::vector<dBodyID>& bodies);
-  /// Takes over the forces that have been added to them.
+  /// Copy the forces that have been added to them.
   void take_forces(const std::vector<dBodyID>& bodies);
-  /// Gives them this state, and no forces.
+  /// Set their state to this one, without forces.
   void give(const std::vector<dBodyID>& bodies) const;
 
-  /// Puts loads on the vehicle in place of all forces; joints damp themselves.
+  /// Replace all forces on the vehicle by loads; joint damping is added automatically.
   void push(const Loads& loads);
-  /// Advances by dt, with the gyroscopic torque of each body by itself or without. False, and the
-  /// vehicle stays where it is, if a hinge asks for a larger correction than is solved for.
+  /// Advance by dt, with the gyroscopic torque of each body or without. Returns false without a
+  /// motion if a hinge requires a correction beyond the maximum.
   bool advance(double dt, bool gyroscopic) { return calls_.advance(flight_, dt, gyroscopic); }
-  /// Writes how the vehicle moves.
+  /// Write the motion of the vehicle.
   void show(Kinematics& kinematics) const;
 
-  /// Calls work(i, what hinge i has exerted in the last step) for each hinge.
+  /// Call work(i, load of hinge i in the last step) for each hinge.
   template <class Work>
   void for_each_hinge(const Work& work) const {
     calls_.find_hinge_loads(flight_);
     for (std::size_t i = 0; i + 1 < flight_.tree.bodies; ++i) work(i, multipliers(i));
   }
 
-  /// Orientation of body i in the world.
+  /// Return the orientation of body i in the world.
   Matrix3d R_WB(std::size_t i) const;
 
-  /// Whether body i keeps further than `reach` [m] above the ground for a time [s], falling freely.
+  /// Return whether body i in free fall stays more than `reach` [m] above the ground for a time
+  /// [s].
   bool is_high(std::size_t i, double reach, double time, double gravity_z) const;
 
  private:
@@ -63,8 +64,8 @@ class HingedVehicle {
   double* work_of(std::size_t body, std::size_t number) const;
 
   HingedModel model_;
-  std::vector<std::size_t> rotors_;     ///< of each, its joint
-  std::vector<Matrix3d> R_PC_at_zero_;  ///< of each hinge
+  std::vector<std::size_t> rotors_;     ///< joint of each rotor
+  std::vector<Matrix3d> R_PC_at_zero_;  ///< orientation of each hinge at angle zero
   LaneNumbers constants_, state_, work_, soft_;
   HingedFlight flight_;  ///< points into the members above
   Calls calls_;

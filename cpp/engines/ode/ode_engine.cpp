@@ -18,14 +18,14 @@ const OdeRecipe ode_recipe{false, &add_gyroscopic_from_carrier};
 
 namespace {
 
-/// What the sweeps may leave of an error in a step for the direct solution, which is far faster, to
-/// take their place. Flights of 10 s are 4e-10 m apart where they leave 7e-11, and 0.4
-/// mm where they leave 1e-5; vehicles whose 50 sweeps do not converge leave more than that.
+/// Maximum fraction of an error that remains after the sweeps of a step, for which the much faster
+/// direct solution replaces them. Flights of 10 s differ by 4e-10 m for 7e-11 and by 0.4 mm for
+/// 1e-5. If 50 sweeps do not converge, a larger fraction remains.
 constexpr double converged = 1e-14;
-/// Attitudes in which convergence is tried: it depends on them, a little.
+/// Number of attitudes for the convergence test, which depends slightly on them.
 constexpr std::uint64_t tried_attitudes = 8;
 
-/// Cap of a hinge's correction where velocities are solved for [m/s, rad/s].
+/// Limit of a hinge's correction in the solution for velocities [m/s, rad/s].
 double max_hinge_correction(const World& world, const OdeRecipe& recipe) {
   return recipe.like_gazebo ? world.contact_max_correcting_vel : dInfinity;
 }
@@ -79,7 +79,7 @@ OdeEngine::OdeEngine(const Model& model, const World& world, const OdeRecipe& re
   choose_method(world);
 }
 
-/// Decided once: whether in flight the sweeps that the world asks for are to be made.
+/// Decide once whether to use the world's sweeps in flight.
 void OdeEngine::choose_method(const World& world) {
   std::ostringstream method;
   const bool quick = world.solver_type == "quick";
@@ -89,23 +89,24 @@ void OdeEngine::choose_method(const World& world) {
     method.precision(2);
     method << "in flight ";
     if (iterate_) {
-      method << "Gazebo's own " << world.solver_iterations << " sweeps, which leave " << remaining
-             << " of an error of the hinges' forces in a step";
+      method << world.solver_iterations << " iterations of Gazebo's solver, which leave "
+             << remaining << " of an error of the hinge forces per step";
     } else {
-      method << "the answer of ODE's direct solver, to which Gazebo's " << world.solver_iterations
-             << " sweeps converge";
+      method << "the solution of ODE's direct solver, to which Gazebo's " << world.solver_iterations
+             << " iterations converge";
     }
   } else {
-    method << "in flight the answer of ODE's direct solver";
+    method << "in flight the solution of ODE's direct solver";
   }
-  if (ground_) method << "; on the ground " << world.solver_iterations << " of Gazebo's sweeps";
+  if (ground_)
+    method << "; on the ground " << world.solver_iterations << " iterations of Gazebo's solver";
   method_ = method.str();
   may_float_ = recipe_.like_gazebo && !iterate_ && !rubs_;
   for (const Link& link : bodies_.model.links) may_float_ &= link.tags.damping_factor == 0;
   if (ground_ && !quick) {
     warnings_.push_back(world.solver_type_where +
-                        ": on the ground the solver type world is flown as quick; Gazebo's ends in "
-                        "errors there. Write quick");
+                        ": the solver type world fails on the ground in Gazebo, so quick is used "
+                        "there. Write quick.");
   }
   VehicleState rest;
   rest.rotor_velocity = rest.rotor_angle =
@@ -113,7 +114,7 @@ void OdeEngine::choose_method(const World& world) {
   set_state(rest);
 }
 
-/// The largest in some attitudes.
+/// Return the maximum over some attitudes.
 double OdeEngine::remaining_error(double dt) {
   double largest = 0;
   for (std::uint64_t seed = 0; seed < tried_attitudes; ++seed) {
@@ -139,12 +140,12 @@ void OdeEngine::step(double time, double dt, const ForceField& forces) {
   kinematics_.time = time;
   loads_.clear();
   forces.evaluate(kinematics_, loads_);
-  if (!loads_.all_finite()) forces.refuse(kinematics_, loads_);  // ODE ends the process for less
+  if (!loads_.all_finite()) forces.refuse(kinematics_, loads_);  // ODE would end the process
   if (!is_afloat(dt) || !float_by(dt)) step_in_ode(dt);
   hinged_.show(kinematics_);
 }
 
-/// False, and nothing has moved, if a hinge is so far out that Gazebo caps its correction.
+/// Returns false without a motion if Gazebo limits the correction of a hinge.
 bool OdeEngine::float_by(double dt) {
   hinged_.push(loads_);
   if (!hinged_.advance(dt, true)) return false;
@@ -152,7 +153,7 @@ bool OdeEngine::float_by(double dt) {
   return true;
 }
 
-/// Whether nothing in this step needs the bodies in ODE.
+/// Return whether this step does not require the bodies in ODE.
 bool OdeEngine::is_afloat(double dt) const {
   if (!may_float_ || loads_.any_rate()) return false;
   if (!ground_) return true;
@@ -162,7 +163,7 @@ bool OdeEngine::is_afloat(double dt) const {
   });
 }
 
-/// Lets the bodies in ODE catch up.
+/// Update the bodies in ODE.
 void OdeEngine::settle() const {
   if (!behind_) return;
   hinged_.give(vehicle_->bodies());
@@ -190,15 +191,16 @@ void OdeEngine::step_in_ode(double dt) {
     if (ground_) remember_hinge_forces();
     vehicle_->damp();
   } else {
-    // From nothing, so that the pose and the velocities are all that the step depends on: vehicles
-    // of a batch have no more.
+    // Start from zero multipliers, so that the step depends only on pose and velocities, the
+    // complete state of vehicles in a batch.
     forget_hinge_forces();
     gazebo_step_->step(contacts, dt);
   }
   hinged_.take(vehicle_->bodies());
 }
 
-/// Whether this step is one on the ground or, as Gazebo's sweeps go, beside one.
+/// Return whether this step has contacts or follows such a step within the limit of Gazebo's
+/// sweeps.
 bool OdeEngine::is_near_contact(double dt, bool touching) {
   if (!ground_) return false;
   const bool after = steps_since_contact_ < steps_beside_contact;
@@ -207,12 +209,12 @@ bool OdeEngine::is_near_contact(double dt, bool touching) {
   return recipe_.like_gazebo && (after || ground_->is_ahead(steps_beside_contact * dt, gravity_z_));
 }
 
-/// A step in flight, unless Gazebo caps the correction of a hinge: then false. Where ODE gives up
-/// (see start_ode), it leaves the step half done: jobs and memory.
+/// Take a step in flight; returns false if Gazebo limits the correction of a hinge. If ODE fails
+/// (see start_ode), it leaves jobs and memory of an incomplete step.
 bool OdeEngine::solve(double dt) {
   if (!rubs_) {
     const std::vector<dBodyID>& bodies = vehicle_->bodies();
-    hinged_.take(bodies);  // whose rates may have been prescribed
+    hinged_.take(bodies);  // their rates may have been prescribed
     hinged_.take_forces(bodies);
     if (!hinged_.advance(dt, false)) return false;
     hinged_.give(bodies);
@@ -230,7 +232,7 @@ bool OdeEngine::solve(double dt) {
   }
 }
 
-/// A step with contacts starts from the hinge forces of the step before.
+/// Take a step with contacts, which starts from the hinge forces of the previous step.
 void OdeEngine::remember_hinge_forces() const {
   const auto remember = [this](std::size_t i, const GazeboStep::Multipliers& multipliers) {
     gazebo_step_->warm_start[i] = {multipliers, multipliers};
@@ -239,7 +241,7 @@ void OdeEngine::remember_hinge_forces() const {
   std::size_t rotor = 0;
   for (std::size_t i = 0; i < vehicle_->hinges(); ++i) {
     Matrix3d R_WC = hinged_.R_WB(i + 1);
-    // A rotor's is rounded by way of the frame's.
+    // The pose of a rotor is rounded through that of the frame.
     if (!bodies_.is_locked(i)) R_WC = kinematics_.R_WF * kinematics_.R_FR(rotor++);
     remember(i, vehicle_->multipliers(i, R_WC));
   }
@@ -250,7 +252,7 @@ void OdeEngine::forget_hinge_forces() {
             GazeboStep::WarmStart{});
 }
 
-/// Shows the motion of the bodies in ODE.
+/// Write the motion of the bodies in ODE.
 void OdeEngine::show() {
   behind_ = false;
   hinged_.take(vehicle_->bodies());
@@ -300,7 +302,9 @@ std::vector<double> OdeEngine::save() const {
 
 void OdeEngine::restore(const std::vector<double>& saved) {
   if (saved.size() != saved_size()) {
-    throw InputError("snapshot: was taken from another model or engine; restore one of its own");
+    throw InputError(
+        "snapshot: it was taken with another model or engine. Restore a snapshot of this "
+        "simulation.");
   }
   const double* from = saved.data();
   for (const dBodyID body : vehicle_->bodies()) {

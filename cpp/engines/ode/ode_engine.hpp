@@ -14,20 +14,20 @@
 
 namespace quadcore {
 
-/// How an ODE world is set up.
+/// Set-up of an ODE world.
 struct OdeRecipe {
-  /// Fly what Gazebo's conversion from URDF to SDF leaves, by Gazebo's sweeps wherever they are not
-  /// the direct solver's answer.
+  /// Use the result of Gazebo's conversion from URDF to SDF, and Gazebo's sweeps unless they
+  /// converge to the direct solution.
   bool like_gazebo;
   void (*add_gyroscopic)(GyroscopicVehicle&, double dt);
 };
 
-/// Gazebo 11 to the last digit, faults included.
+/// Gazebo 11 with bit-identical results, including its known errors.
 extern const OdeRecipe gazebo11_recipe;
-/// The same world without Gazebo's faults.
+/// The same world without Gazebo's errors.
 extern const OdeRecipe ode_recipe;
 
-/// Whether a state that an engine has saved remembers no contact that it is beside.
+/// Return whether a saved state of an engine has no recent contact.
 bool is_clear_of_contact(const std::vector<double>& saved);
 
 /// Rigid bodies on hinges in a world of upstream ODE.
@@ -45,11 +45,11 @@ class OdeEngine final : public Engine {
   std::string method() const override { return method_; }
   std::vector<std::string> warnings() const override { return warnings_; }
 
-  /// What moves: the bodies of model(), and in gazebo11 those behind locked joints.
+  /// Return the moving bodies: those of model(), and in gazebo11 also those behind locked joints.
   const Bodies& bodies() const { return bodies_; }
-  /// Whether HingedVehicle alone moves it, while it is well above the ground.
+  /// Return whether only HingedVehicle moves it while it is well above the ground.
   bool may_float() const { return may_float_; }
-  /// Of its shapes, if there is a ground.
+  /// Return the reach of its shapes, if there is a ground.
   const std::vector<Reach>& reaches() const { return ground_->reaches(); }
 
  private:
@@ -77,19 +77,19 @@ class OdeEngine final : public Engine {
   Model model_;
   Bodies bodies_;  ///< see bodies()
   OdeRecipe recipe_;
-  /// The world's own: ODE's default job list is shared by all worlds, without a lock.
+  /// Own job list, because all worlds share ODE's default one without a lock.
   std::unique_ptr<dxThreadingImplementation, FreeThreading> threading_;
   std::unique_ptr<dxWorld, DestroyWorld> world_;
-  bool iterate_ = false;  ///< every step by sweeps, because they do not converge
+  bool iterate_ = false;  ///< whether to use sweeps in every step because they do not converge
   std::string method_;
   std::vector<std::string> warnings_;
   std::unique_ptr<OdeVehicle> vehicle_;
-  bool rubs_ = false;            ///< some hinge has dry friction, whose bounds are inequalities
-  bool may_float_ = false;       ///< see may_float()
-  HingedVehicle hinged_;         ///< moves as the bodies in ODE, or before them
-  mutable bool behind_ = false;  ///< the bodies in ODE are
+  bool rubs_ = false;       ///< whether some hinge has dry friction, which requires inequalities
+  bool may_float_ = false;  ///< see may_float()
+  HingedVehicle hinged_;    ///< same motion as the bodies in ODE, possibly ahead of them
+  mutable bool behind_ = false;            ///< whether the bodies in ODE are behind hinged_
   std::unique_ptr<GroundContact> ground_;  ///< null in a world without ground
-  int steps_since_contact_;                ///< counted no further than it matters
+  int steps_since_contact_;                ///< counted only as far as it matters
   std::unique_ptr<GazeboStep> gazebo_step_;
   std::unique_ptr<GyroscopicVehicle> gyroscopic_;
   double gravity_z_ = 0;

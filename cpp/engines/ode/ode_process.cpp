@@ -12,15 +12,14 @@
 namespace quadcore {
 namespace {
 
-/// ODE's functions are C++ and unwind; its bodies are left in the middle of a step.
+/// Throw through ODE's functions, which are C++; the bodies remain in the middle of a step.
 void throw_error(int, const char* format, std::va_list values) {
   char what[256];
   std::vsnprintf(what, sizeof what, format, values);
-  throw Error("ODE gave up on the motion (" + std::string(what) +
-              "); try a smaller step or weaker commands");
+  throw Error("ODE failed (" + std::string(what) + "). Try a smaller step or weaker commands.");
 }
 
-/// What ODE notes on standard error before it gives up; the Error says it.
+/// Suppress ODE's output on standard error before a failure; the Error contains it.
 void say_nothing(int, const char*, std::va_list) {}
 
 }  // namespace
@@ -34,7 +33,7 @@ void start_ode() {
     dSetMessageHandler(&say_nothing);
   });
   thread_local const int allocated = dAllocateODEDataForThread(dAllocateMaskAll);
-  if (!allocated) throw Error("ODE could not be initialised in this thread");
+  if (!allocated) throw Error("ODE could not be initialised in this thread.");
 }
 
 }  // namespace quadcore

@@ -2,9 +2,8 @@
 
 namespace quadcore {
 
-/// Initialises ODE, once per process and once per thread; call it before any use of ODE in a
-/// thread. From then on whatever ODE takes for fatal, and would end the process for, is thrown as
-/// an Error.
+/// Initialise ODE once per process and once per thread. Call it before any use of ODE in a thread.
+/// Fatal errors of ODE, which would end the process, are then thrown as Error.
 void start_ode();
 
 }  // namespace quadcore

@@ -49,7 +49,7 @@ void OdeVehicle::create_hinges(dWorldID world) {
       dJointSetHingeParam(hinge, dParamLoStop, 0);
       dJointSetHingeParam(hinge, dParamHiStop, 0);
     } else if (const double damping = implicit_damping(joint);
-               damping > 0) {  // a stop on either side of where the joint is
+               damping > 0) {  // a stop on either side of the joint's position
       dJointSetHingeParam(hinge, dParamLoStop, 0);
       dJointSetHingeParam(hinge, dParamHiStop, 0);
       dJointSetHingeParam(hinge, dParamStopERP, 0);
@@ -183,7 +183,7 @@ void OdeVehicle::turn_like_gazebo(const Loads& loads) {
     const Matrix3d R_WP = rotation(dBodyGetRotation(parent));
     const Vector3d w_WP_W = vec(dBodyGetAngularVel(parent));
     const Vector3d w_W = w_WP_W + rate->at_end * (R_WC * joint.axis);
-    // Each body has its own anchor, between which a step leaves a gap.
+    // Each body has its own anchor, and a step leaves a gap between them.
     const Vector3d arm_P_W = R_WP * (joint.pose.xyz - model_.links[joint.parent].inertial.pose.xyz);
     const Vector3d arm_C_W = R_WC * model_.links[hinge + 1].inertial.pose.xyz;
     const Vector3d v_W =

@@ -13,39 +13,39 @@
 
 namespace quadcore {
 
-/// A vehicle's bodies and joints as bodies and hinges of an ODE world, which destroys them: bodies
-/// sit at their centres of mass along their link's axes, hinges are attached as (child, parent).
+/// A vehicle's bodies and joints as bodies and hinges of an ODE world, which destroys them. Bodies
+/// are at their centres of mass with their link's axes, and hinges are attached as (child, parent).
 class OdeVehicle {
  public:
-  /// The vehicle must outlive it.
+  /// The vehicle must outlive this object.
   OdeVehicle(const Bodies& vehicle, dWorldID world);
 
-  /// One for each link.
+  /// Return the bodies, one for each link.
   const std::vector<dBodyID>& bodies() const { return bodies_; }
-  /// One for each joint.
+  /// Return the hinges, one for each joint.
   std::size_t hinges() const { return hinges_.size(); }
-  /// Of the rotors, the hinges that are not locked.
+  /// Return the hinges of the rotors, which are not locked.
   std::size_t rotors() const { return vehicle_.rotors.size(); }
-  /// The hinges as ConstraintRows takes them.
+  /// Return the hinges for ConstraintRows.
   std::vector<Hinge> hinge_rows() const;
 
   void place(const VehicleState& state);
-  /// Adds the loads, the joints' damping, and over a step of dt what prescribed rates react with,
-  /// to the forces on the bodies.
+  /// Add the loads, the joints' damping, and the reactions of prescribed rates over a step of dt to
+  /// the forces on the bodies.
   void apply(const Loads& loads, const Kinematics& kinematics, double dt);
-  /// Gives joints the rates that loads prescribe, about their axes alone.
+  /// Set the prescribed rates of joints, only about their axes.
   void turn(const Loads& loads);
-  /// The same as Gazebo's SetVelocity() does it: overwrites the whole velocity of each such rotor
-  /// by what its carrier's is at the start of the step, so that the carrier bears nothing of what
-  /// turns the rotor along with it.
+  /// Set the rates like Gazebo's SetVelocity(): overwrite the whole velocity of each such rotor
+  /// with that of its carrier at the start of the step. The carrier therefore does not take the
+  /// reaction of turning the rotor along.
   void turn_like_gazebo(const Loads& loads);
-  /// <dampingFactor>: damps the velocities that a step in flight has left.
+  /// Apply <dampingFactor> to the velocities after a step in flight.
   void damp();
 
-  /// ODE's direct solver is to report the forces of the hinges.
+  /// Let ODE's direct solver report the forces of the hinges.
   void report_hinge_forces();
-  /// Of the solver's last step, as reported.
-  /// \param R_WC  of the child as that step began
+  /// Return the reported load of a hinge in the solver's last step.
+  /// \param R_WC  orientation of the child at the start of that step
   GazeboStep::Multipliers multipliers(std::size_t hinge, const Matrix3d& R_WC) const;
 
  private:

@@ -9,7 +9,7 @@
 namespace quadcore {
 namespace {
 
-/// sdformat drops a link that is not heavier than this, and all that hangs on it [kg].
+/// Mass up to which sdformat drops a link and everything attached to it [kg].
 constexpr double lost_mass = 1e-6;
 
 class Conversion {
@@ -31,8 +31,8 @@ class Conversion {
     }
   }
 
-  /// No joint is left to lump but locked ones. These come first: lump() then keeps the others in
-  /// the order of `joints`, also where these hang on links behind locked joints.
+  /// Put locked joints first, the only ones that are still to be lumped. lump() then keeps the
+  /// others in the order of `joints`, even if they are attached to links behind locked joints.
   UrdfTree convert(const std::vector<Joint>& joints) {
     UrdfTree sdf;
     sdf.name = tree_.name;
@@ -58,15 +58,15 @@ class Conversion {
     UrdfLink result{own.name, {}, {}, own.where, own.tags};
     result.tags.damping_factor = sdf_scalar(own.tags.damping_factor);
     const std::optional<SdfInertial> sum = lumped(link);
-    if (!sum || sum->mass <= lost_mass) return result;  // nothing hangs on it
+    if (!sum || sum->mass <= lost_mass) return result;  // nothing is attached to it
     result.inertial =
         Inertial{sdf_scalar(sum->mass), sdf_pose(sum->pose), sum->inertia.unaryExpr(&sdf_scalar)};
     const bool moves = !link.joint || !link.joint->locked;
     if (moves && !result.inertial->is_positive()) {
-      throw InputError(own.where + ": link '" + own.name +
-                       "': rounded to 6 digits, as Gazebo does, its inertia has a zero or negative "
-                       "principal moment; write one whose principal moments differ less, or use "
-                       "the engine ode");
+      throw InputError(
+          own.where + ": link '" + own.name +
+          "': after rounding to 6 digits, as in Gazebo, its inertia has a zero or negative "
+          "principal moment. Make the principal moments differ less, or use the engine ode.");
     }
     for (std::size_t i = 0; i < link.parts.size(); ++i) {
       for (const Collision& shape : by_name_.at(link.parts[i].link)->collisions) {
@@ -85,8 +85,8 @@ class Conversion {
     }
     if (shape.kind != ShapeKind::mesh && !(shape.size.minCoeff() > 0)) {
       throw InputError(shape.where +
-                       ": rounded to 6 decimals, as Gazebo does, the box is flat; write sides of "
-                       "at least 1e-6 m, or use the engine ode");
+                       ": after rounding to 6 decimals, as in Gazebo, the box is flat. Use sides "
+                       "of at least 1e-6 m, or the engine ode.");
     }
     Surface& surface = shape.surface;
     for (double* number : {&surface.mu1, &surface.mu2, &surface.kp, &surface.kd, &surface.min_depth,
@@ -104,15 +104,15 @@ class Conversion {
     joint.axis = sdf_vector(joint.axis);
     if (joint.axis.isZero(0)) {
       throw InputError(joint.where + ": joint '" + joint.name +
-                       "': rounded to 6 decimals, as Gazebo does, its axis is zero; write it with "
-                       "length 1");
+                       "': after rounding to 6 decimals, as in Gazebo, its axis is zero. Write an "
+                       "axis of length 1.");
     }
     joint.damping = sdf_scalar(joint.damping);
     joint.friction = sdf_scalar(joint.friction);
     return joint;
   }
 
-  /// A pose in a part, seen from the link's own part.
+  /// Return a pose in a part relative to the link's own part.
   static SdfPose lifted(const SdfLink& link, std::size_t part, SdfPose pose) {
     for (; part != 0; part = link.parts[part].parent) {
       pose = SdfPose(link.parts[part].joint->pose) * pose;
@@ -120,7 +120,7 @@ class Conversion {
     return pose;
   }
 
-  /// Adds the parts up, the farthest first. A part that has no mass then is lost in Gazebo.
+  /// Sum up the parts, the farthest first. Gazebo drops a part that still has no mass.
   std::optional<SdfInertial> lumped(const SdfLink& link) {
     std::vector<std::optional<SdfInertial>> sums;
     std::vector<std::vector<std::size_t>> fixed_to(link.parts.size());
@@ -141,25 +141,26 @@ class Conversion {
     return sums.front();
   }
 
-  /// Throws if a joint of the model would go with the part.
+  /// Throw InputError if a joint of the model would be dropped with the part.
   void refuse_to_lose(const SdfLink& link, std::size_t part) const {
     const std::string& name = link.parts[part].link;
     const bool turns = link.joint && part == 0 && !link.joint->locked;
     const UrdfJoint* lost = turns ? link.joint : carries_[place_.at(name).first][part];
     if (!lost) return;
     throw InputError(by_name_.at(name)->where + ": link '" + name +
-                     "' has, with what is fixed to it, no more than 1e-6 kg, and Gazebo loses it "
-                     "in silence with joint '" +
+                     "', including the links fixed to it, has at most 1e-6 kg, so Gazebo silently "
+                     "drops it with joint '" +
                      lost->name + "' (" + lost->where +
-                     "); give it an <inertial> of more than 1e-6 kg, attach the joint to another "
-                     "link, or use the engine ode or eigen");
+                     "). Give it more than 1e-6 kg, attach the joint to another link, or use the "
+                     "engine ode or eigen.");
   }
 
   const UrdfTree& tree_;
   std::vector<SdfLink> links_;
   std::map<std::string, const UrdfLink*> by_name_;
-  std::map<std::string, std::pair<std::size_t, std::size_t>> place_;  ///< of each URDF link
-  std::vector<std::vector<const UrdfJoint*>> carries_;  ///< of each part a joint that hangs on it
+  std::map<std::string, std::pair<std::size_t, std::size_t>>
+      place_;                                           ///< position of each URDF link
+  std::vector<std::vector<const UrdfJoint*>> carries_;  ///< a joint attached to each part
 };
 
 }  // namespace
@@ -170,7 +171,7 @@ Model converted_to_sdf(const Model& model) {
   converted.links = std::move(sdf.links);
   converted.joints = std::move(sdf.joints);
   for (const auto& [link, pose] : sdf.pose_of_link) converted.pose_of_link[link] = pose;
-  converted.source.reset();  // which would be read without the rounding
+  converted.source.reset();  // the source would be read without rounding
   return converted;
 }
 
@@ -181,13 +182,13 @@ Bodies sdf_bodies(const Model& model) {
   std::vector<std::string> warnings;
   for (UrdfJoint& joint : sdf.joints) {
     const UrdfLink& link = *links.at(joint.child);
-    if (!joint.locked || !link.inertial) continue;  // without mass Gazebo has no such link
+    if (!joint.locked || !link.inertial) continue;  // Gazebo drops a link without mass
     joint.fixed = !link.inertial->is_positive();
     if (!joint.fixed) continue;
     warnings.push_back(link.where + ": link '" + link.name + "' behind the locked joint '" +
                        joint.name +
-                       "' has a zero or negative principal moment of inertia, and moves as if it "
-                       "were fixed. Write an <inertia> that has all of them > 0");
+                       "' has a zero or negative principal moment of inertia and moves as if it "
+                       "were fixed. Write an <inertia> with positive principal moments.");
   }
   Model bodies = lump(sdf);
   bodies.urdf = model.urdf;
@@ -206,7 +207,7 @@ std::vector<std::size_t> sdf_order(const Model& model) {
   for (const SdfLink& link : sdf_links(*model.urdf)) {
     const std::string& name = link.parts.front().link;
     const std::size_t body = model.body_of_link.at(name);
-    if (model.links[body].name == name) order.push_back(body);  // or it is lumped
+    if (model.links[body].name == name) order.push_back(body);  // otherwise it is lumped
   }
   return order;
 }

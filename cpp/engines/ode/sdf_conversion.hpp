@@ -5,20 +5,20 @@
 
 namespace quadcore {
 
-/// The model after Gazebo 11's conversion from URDF to SDF, which lumps fixed links in its own way
-/// and prints every number (sdf_lumping.hpp, sdf_numbers.hpp). Measured against Gazebo 11.1;
-/// unrounded values put a flight of 10 s up to 1e-4 m off its recording. A link behind a locked
-/// joint, which Gazebo keeps, is rounded by itself and lumped afterwards: this is what users see.
-/// Throws InputError where Gazebo loses a rotor, or where the rounding leaves an inertia or an axis
-/// without meaning.
+/// Return the model after Gazebo 11's conversion from URDF to SDF, which lumps fixed links in its
+/// own way and prints every number (sdf_lumping.hpp, sdf_numbers.hpp). It was verified against
+/// Gazebo 11.1; with unrounded values, a flight of 10 s deviates by up to 1e-4 m from the
+/// recording. A link behind a locked joint, which Gazebo keeps, is rounded separately and lumped
+/// afterwards. Throws InputError if Gazebo drops a rotor, or if the rounding makes an inertia or an
+/// axis invalid.
 Model converted_to_sdf(const Model& model);
 
-/// The bodies that Gazebo makes of the model, each on its joint: those of converted_to_sdf(), but
-/// with the links behind locked joints as bodies of their own. The rotors keep their order. The
-/// warnings of their model name the links that stay lumped.
+/// Return Gazebo's bodies of the model, each on its joint: those of converted_to_sdf(), but with
+/// the links behind locked joints as separate bodies. The rotors keep their order. The warnings of
+/// their model name the links that remain lumped.
 Bodies sdf_bodies(const Model& model);
 
-/// Indices of the model's bodies in the order in which Gazebo makes them.
+/// Return the indices of the model's bodies in the order of their creation in Gazebo.
 std::vector<std::size_t> sdf_order(const Model& model);
 
 }  // namespace quadcore

@@ -5,7 +5,7 @@
 namespace quadcore {
 namespace {
 
-/// The axes of a frame turned by roll, pitch, yaw, as the rows of a matrix: R_FL.
+/// Return the axes of a frame rotated by roll, pitch, yaw as the rows of a matrix: R_FL.
 Matrix3d rows_of_axes(const Vector3d& rpy) {
   const double sr = elementary::sin(rpy.x()), cr = elementary::cos(rpy.x());
   const double sp = elementary::sin(rpy.y()), cp = elementary::cos(rpy.y());
@@ -36,7 +36,7 @@ struct PointInertia {
     center = (R * center).eval();
   }
 
-  /// From axes turned by roll, pitch, yaw to those that they are turned in: one angle at a time.
+  /// Transform from axes rotated by roll, pitch, yaw to the reference axes, one angle at a time.
   void rotate_back(const Vector3d& rpy) {
     for (int i = 0; i < 3; ++i) rotate(rows_of_axes(-rpy[i] * Vector3d::Unit(i)));
   }

@@ -11,7 +11,7 @@ namespace {
 constexpr int urdf_digits = 16, sdf_digits = 6;
 
 double printed(double value, int digits) {
-  // A whole number of so few digits comes back as it is, and most are whole: zeros and ones.
+  // Whole numbers with few digits do not change, and most numbers are zeros and ones.
   if (std::abs(value) < 1e6 && value == std::trunc(value)) return value;
   return with_digits(value, digits);
 }
@@ -24,7 +24,7 @@ double rounded_component(double value) {
   return printed(std::round(printed(value, urdf_digits) * 1e6) / 1e6, sdf_digits);
 }
 
-/// ignition::math's roll, pitch, yaw of a quaternion.
+/// Return the roll, pitch, yaw of a quaternion as in ignition::math.
 Vector3d ignition_rpy(Quaterniond q) {
   const double length = std::sqrt(q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z());
   q = Quaterniond(q.w() / length, q.x() / length, q.y() / length, q.z() / length);

@@ -6,7 +6,7 @@ namespace {
 using Two = Sweeps::Two;
 using laws::broadcast;
 
-/// A body's acceleration while it is solved for, in registers.
+/// A body's acceleration during the solution, in registers.
 struct InRegisters {
   Two x, y, z, turn_x, turn_y, turn_z;
 
@@ -22,16 +22,17 @@ struct InRegisters {
   }
 };
 
-/// Relaxes a row whose bodies accelerate along it so; gives the change of its multiplier.
+/// Relax a row for a given acceleration of its bodies along it. Returns the change of its
+/// multiplier.
 QUADCORE_LAW Two relax(Sweeps::HingeRow& row, Two along_C, Two along_P) {
   const Two residual = row.wanted - along_C - along_P;
   const Two by = row.relaxation * residual;
-  row.multiplier += by;  // nobody waits for it
+  row.multiplier += by;  // not needed by the next row
   return by;
 }
 
-// What a row has of an acceleration: a sum of six products goes (0 + (2 + 4)) + (1 + (3 + 5)),
-// whichever of them are zero.
+// Acceleration along a row: the sum of six products is (0 + (2 + 4)) + (1 + (3 + 5)), even if some
+// are zero.
 QUADCORE_LAW Two of_x(const double* turn, Two linear, const InRegisters& a) {
   return (linear + turn[1] * a.turn_y) + turn[2] * a.turn_z;
 }
@@ -77,7 +78,7 @@ QUADCORE_LAW void relax(Sweeps::Hinge& hinge, Sweeps::Acceleration& child, InReg
 QUADCORE_LAW void relax_all(std::vector<Sweeps::Hinge>& hinges,
                             std::vector<Sweeps::Acceleration>& bodies, int times) {
   if (hinges.empty()) return;
-  // What the hinges meet in stays in registers for as long as it is the same.
+  // The common body of the hinges stays in registers as long as it is the same.
   const auto of = [&](int body) -> Sweeps::Acceleration& {
     return bodies[static_cast<std::size_t>(body)];
   };
@@ -116,7 +117,7 @@ QUADCORE_LAW void relax(Sweeps& sweeps, Sweeps::Row& row) {
       bodies[row.body[side]][k] += by * row.inverse_mass_J[side][k];
     }
   }
-  // Gazebo smooths contact multipliers after it has applied them.
+  // Gazebo smooths contact multipliers after applying them.
   row.multiplier = row.smooth ? (1 - sweeps.smoothing) * next + sweeps.smoothing * old : next;
 }
 

@@ -2,7 +2,7 @@
 
 namespace quadcore::laws {
 
-/// One function, compiled for each width of lanes.
+/// One function compiled for each lane width.
 template <class Function>
 struct ForEachWidth {
   Function *one, *two, *four, *eight;

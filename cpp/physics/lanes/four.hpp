@@ -4,13 +4,13 @@
 
 namespace quadcore::laws {
 
-/// What belongs to the frame side by side: a vector and a 0 behind it, or a quaternion x, y, z, w.
-/// In lanes narrower than four the compiler takes it in pieces; the bytes are the same.
+/// Four numbers of the frame: a vector followed by 0, or a quaternion x, y, z, w. For narrower
+/// lanes, the compiler splits it with bit-identical results.
 using Four = Pack<4>;
 
-/// Of three numbers one behind another.
+/// Create from three adjacent numbers.
 QUADCORE_LAW Four load_vector(const double* a) { return Four{a[0], a[1], a[2], 0}; }
-/// Four of the eight numbers of a and b.
+/// Return four of the eight numbers of a and b.
 template <int i, int j, int k, int l>
 QUADCORE_LAW Four chosen(const Four& a, const Four& b) {
 #ifdef __clang__
@@ -24,7 +24,7 @@ QUADCORE_LAW Four permuted(const Four& a) {
   return chosen<i, j, k, l>(a, a);
 }
 
-/// With the signs turned where a 1 stands.
+/// Return the numbers with the signs inverted where the flag is 1.
 template <int i, int j, int k, int l>
 QUADCORE_LAW Four negated(const Four& a) {
   return from_bits<Four>(bits(a) ^
@@ -45,7 +45,7 @@ QUADCORE_LAW void store_vector(double* to, const Four& a) {
   to[2] = a[2];
 }
 
-/// The vector for every lane.
+/// Return the vector for every lane.
 template <class T>
 QUADCORE_LAW Vec3<T> broadcast(const Four& a) {
   if constexpr (lanes_of<T> == 4) {
@@ -55,7 +55,7 @@ QUADCORE_LAW Vec3<T> broadcast(const Four& a) {
   }
 }
 
-/// A matrix, column by column.
+/// A matrix stored by columns.
 struct Columns {
   Four x, y, z;
 };
@@ -72,14 +72,16 @@ struct Rotation {
   Columns to, from;
 };
 
-/// The matrix with a diagonal d, and s and r off it: (d0, s1, r2), (r0, d1, s2), (s0, r1, d2).
+/// Return the matrix with the diagonal d and off-diagonal s and r: (d0, s1, r2), (r0, d1, s2), (s0,
+/// r1, d2).
 QUADCORE_LAW Columns columns(const Four& d, const Four& s, const Four& r) {
   return {chosen<0, 1, 6, 3>(chosen<0, 5, 2, 3>(d, s), r),
           chosen<4, 1, 2, 3>(chosen<0, 1, 6, 3>(d, s), r),
           chosen<0, 5, 2, 3>(chosen<4, 1, 2, 3>(d, s), r)};
 }
 
-/// Of a unit quaternion q = (u, w): 1 - 2 (u.u 1 - u u^T) + 2 w [u x], and the inverse with -w.
+/// Return the rotation of a unit quaternion q = (u, w): 1 - 2 (u.u 1 - u u^T) + 2 w [u x], and the
+/// inverse with -w.
 QUADCORE_LAW Rotation rotation(const Four& q) {
   const Four next = permuted<1, 2, 0, 3>(q), after = permuted<2, 0, 1, 3>(q);
   const Four twice = q + q, next_twice = next + next, after_twice = after + after;
@@ -91,7 +93,7 @@ QUADCORE_LAW Rotation rotation(const Four& q) {
           columns(diagonal, by_after - w_next, by_next + w_after)};
 }
 
-/// sum + the vectors of a pack of rotors, one after another.
+/// Return sum plus the vectors of a pack of rotors, added in order.
 template <class T>
 QUADCORE_LAW void add_in_order(Four& sum, const Vec3<T>& of_rotors) {
   if constexpr (lanes_of<T> == 8) {

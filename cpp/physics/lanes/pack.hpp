@@ -6,13 +6,12 @@
 #endif
 
 /// \file
-/// Several numbers side by side, on which a law is written once: a pack holds W doubles of W rotors
-/// (or vehicles), and +, -, *, / and sqrt act on each by itself, rounded as IEEE 754 asks. A law
-/// gives the same bytes whatever W is, because nothing here mixes the numbers of a pack.
-///
-/// Files that are compiled for one processor include this and nothing of Eigen or the standard
-/// library that has code in headers: the linker would keep one copy of such code for all files,
-/// perhaps the one that most processors cannot run.
+/// Packs of numbers, so that a force law is written only once. A pack contains W doubles of W
+/// rotors (or vehicles), and +, -, *, / and sqrt act on each separately with IEEE 754 rounding. The
+/// results are bit-identical for all W, because no operation mixes the numbers of a pack. Files
+/// compiled for a specific processor may include this, but neither Eigen nor standard library
+/// headers with code. The linker would keep only one copy of such code, possibly one that other
+/// processors cannot run.
 
 #define QUADCORE_INLINED __attribute__((always_inline))
 #define QUADCORE_LAW inline QUADCORE_INLINED
@@ -27,7 +26,7 @@ struct PackOf<1> {
   using Bits = std::int64_t;
   using InMemory = double;
 };
-// Each by itself: of a size that is a parameter, GCC 10 forgets how an InMemory is aligned.
+// Defined individually: GCC 10 loses the alignment of an InMemory with a size parameter.
 #define QUADCORE_PACK_OF(width)                                                             \
   template <>                                                                               \
   struct PackOf<width> {                                                                    \
@@ -44,7 +43,7 @@ QUADCORE_PACK_OF(8)
 template <int W>
 using Pack = typename PackOf<W>::Numbers;
 
-/// The whole numbers of a pack's size.
+/// Integers with the size of a pack.
 template <class T>
 using BitsOf = typename PackOf<sizeof(T) / sizeof(double)>::Bits;
 
@@ -94,7 +93,7 @@ QUADCORE_LAW T from_bits(BitsOf<T> pattern) {
   }
 }
 
-/// Whole numbers of a pack's size, one behind another.
+/// Consecutive integers with the size of a pack.
 template <class T>
 QUADCORE_LAW BitsOf<T> load_bits(const std::int64_t* from) {
   BitsOf<T> pack;
@@ -109,7 +108,7 @@ QUADCORE_LAW void store_bits(std::int64_t* to, BitsOf<T> pack) {
 template <class T>
 constexpr int lanes_of = sizeof(T) / sizeof(double);
 
-/// Whether a comparison of packs holds in any lane.
+/// Return whether a comparison of packs is true in any lane.
 template <class Mask>
 QUADCORE_LAW bool any(const Mask& mask) {
   if constexpr (sizeof(Mask) <= sizeof(std::int64_t)) {
@@ -128,7 +127,7 @@ QUADCORE_LAW T absolute(T a) {
   return from_bits<T>(bits(a) & ~sign_bit);
 }
 
-/// Of each lane, rounded as IEEE 754 asks.
+/// Return the square root of each lane with IEEE 754 rounding.
 template <class T>
 QUADCORE_LAW T square_root(T a) {
   if constexpr (lanes_of<T> == 1) {
@@ -151,7 +150,7 @@ QUADCORE_LAW T square_root(T a) {
   }
 }
 
-/// a where a comparison of packs holds, else b.
+/// Return a where a comparison of packs is true, else b.
 template <class Mask, class T>
 QUADCORE_LAW T chosen_by(const Mask& mask, T a, T b) {
   if constexpr (lanes_of<T> == 1) {
@@ -161,13 +160,13 @@ QUADCORE_LAW T chosen_by(const Mask& mask, T a, T b) {
   }
 }
 
-/// Told by the bits, because the compiler may be told to take every number for finite.
+/// Test the bits, because compiler options may assume that all numbers are finite.
 QUADCORE_LAW bool is_finite(double a) {
   constexpr std::int64_t exponent = 0x7FF0000000000000;
   return (bits(a) & exponent) != exponent;
 }
 
-/// |a| with the sign of b.
+/// Return |a| with the sign of b.
 template <class T>
 QUADCORE_LAW T with_sign_of(T b, T a) {
   return from_bits<T>((bits(a) & ~sign_bit) | (bits(b) & sign_bit));

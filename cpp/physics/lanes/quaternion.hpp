@@ -10,7 +10,7 @@ struct Quaternion {
   T x, y, z, w;
 };
 
-/// Hamilton's product: the rotation b, then a.
+/// Return Hamilton's product: the rotation b, then a.
 template <class T>
 QUADCORE_LAW Quaternion<T> operator*(const Quaternion<T>& a, const Quaternion<T>& b) {
   return {a.w * b.x + a.x * b.w + (a.y * b.z - a.z * b.y),
@@ -19,7 +19,7 @@ QUADCORE_LAW Quaternion<T> operator*(const Quaternion<T>& a, const Quaternion<T>
           a.w * b.w - (a.x * b.x + a.y * b.y + a.z * b.z)};
 }
 
-/// Of a unit quaternion.
+/// Return the rotation matrix of a unit quaternion.
 template <class T>
 QUADCORE_LAW Matrix3<T> rotation(const Quaternion<T>& q) {
   const T x2 = q.x + q.x, y2 = q.y + q.y, z2 = q.z + q.z;

@@ -4,21 +4,21 @@
 
 namespace quadcore {
 
-/// Which of the four rates of a step: the first, the last, or between.
+/// Stage of a step: the first, the last, or between.
 enum class Stage { first, between, last };
 
-/// What becomes of the rate of a state, k: the sum of rates takes weight k, and the next state is
-/// reach k from where the step began, or after the last stage reach times the sum.
+/// Use of a stage's rate k: the sum of rates increases by weight k, and the next state is the start
+/// plus reach k, or after the last stage the start plus reach times the sum.
 struct Share {
   double weight, reach;
 };
 
-/// The numbers of a step of the classical fourth-order Runge-Kutta method, wherever they lie.
+/// Arrays of a step of the classical fourth-order Runge-Kutta method.
 struct StageNumbers {
-  const double* begin;  ///< the state in which the step begins
-  double* stage;        ///< the state of the next stage
-  double* sum;          ///< of the rates
-  double* end;          ///< the state in which the step ends; may be `begin` or `stage`
+  const double* begin;  ///< state at the start of the step
+  double* stage;        ///< state of the next stage
+  double* sum;          ///< sum of the rates
+  double* end;          ///< state at the end of the step; may be `begin` or `stage`
 };
 
 /// Shares out the rate of the numbers at a place.

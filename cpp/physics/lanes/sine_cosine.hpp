@@ -9,19 +9,19 @@ struct SineCosine {
   T sin, cos;
 };
 
-/// An angle as quadrant pi/2 + y + tail, but for whole turns, |y| <= pi/4. The quadrant is in the
-/// last two bits.
+/// An angle as quadrant pi/2 + y + tail, up to whole turns, with |y| <= pi/4. The quadrant is in
+/// the last two bits.
 template <class T>
 struct QuarterTurns {
   T y, tail;
   BitsOf<T> quadrant;
 };
 
-/// Up to here a whole number of quarter turns has at most 20 bits.
+/// Maximum angle for which the number of quarter turns has at most 20 bits.
 constexpr double largest_medium_angle = 1e6;
 
-/// pi/2 in pieces of 33 bits, and what each leaves (fdlibm 5.3, e_rem_pio2.c; the method is that of
-/// W. J. Cody, W. Waite, "Software Manual for the Elementary Functions", 1980).
+/// pi/2 in pieces of 33 bits, and the remainder of each (fdlibm 5.3, e_rem_pio2.c; the method is
+/// that of W. J. Cody, W. Waite, "Software Manual for the Elementary Functions", 1980).
 namespace half_pi {
 constexpr double inverse = 6.36619772367581382433e-01;
 constexpr double first = 1.57079632673412561417e+00, after_first = 6.07710050650619224932e-11;
@@ -29,8 +29,8 @@ constexpr double second = 6.07710050630396597660e-11, after_second = 2.022266248
 constexpr double third = 2.02226624871116645580e-21, after_third = 8.47842766036889956997e-32;
 }  // namespace half_pi
 
-/// The nearest whole number, ties to even, of a number below 2^51; its last bits are those of the
-/// sum with 1.5 2^52.
+/// Return the nearest whole number, ties to even, of a number below 2^51. Its last bits are those
+/// of the sum with 1.5 2^52.
 template <class T>
 struct Whole {
   T value;
@@ -43,7 +43,7 @@ QUADCORE_LAW Whole<T> nearest(T a) {
   return {sum - to_whole, bits(sum)};
 }
 
-/// Enough for most angles: see loses_digits().
+/// Sufficient for most angles, see loses_digits().
 template <class T>
 QUADCORE_LAW QuarterTurns<T> reduced_once(T x) {
   const Whole<T> n = nearest<T>(x * half_pi::inverse);
@@ -53,16 +53,17 @@ QUADCORE_LAW QuarterTurns<T> reduced_once(T x) {
   return {y, (rest - y) - tail, n.bits};
 }
 
-/// Whether an angle reduced once lies so near to a quarter turn that its digits cancel, or is too
-/// large for that reduction.
+/// Return whether an angle is so close to a quarter turn that its digits cancel after one
+/// reduction, or too large for that reduction.
 template <class T>
 QUADCORE_LAW auto loses_digits(T x, T y) {
   const T size = absolute(x);
   return (absolute(y) < 1e-5 * size) | (size > largest_medium_angle);
 }
 
-/// Sine and cosine of a reduced angle, by the minimax polynomials of fdlibm 5.3 (Sun Microsystems,
-/// 1993, k_sin.c, k_cos.c at netlib.org/fdlibm, which derive them and bound their errors).
+/// Return sine and cosine of a reduced angle, by the minimax polynomials of fdlibm 5.3 (Sun
+/// Microsystems, 1993, k_sin.c, k_cos.c at netlib.org/fdlibm, which derive them and bound their
+/// errors).
 template <class T>
 QUADCORE_LAW SineCosine<T> sine_and_cosine_of(const QuarterTurns<T>& angle) {
   const T y = angle.y, tail = angle.tail;

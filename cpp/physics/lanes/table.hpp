@@ -6,8 +6,8 @@
 
 namespace quadcore::laws {
 
-/// Numbers of a pack of vehicles, from the first of them on: a row for each quantity, three for a
-/// vector, nine (by columns) for a matrix. Rows lie `stride` numbers apart.
+/// Numbers of a pack of vehicles, starting at the first of them: a row for each quantity, three for
+/// a vector, nine (by columns) for a matrix. The distance of rows is `stride` numbers.
 template <class T, std::size_t stride>
 struct Table {
   const double* first;

@@ -4,15 +4,15 @@
 
 namespace quadcore::laws {
 
-/// A vector whose components are numbers or packs of them. Which frame it is expressed in stands in
-/// its name, as everywhere.
+/// A vector with numbers or packs as components. As everywhere, its name contains the frame of its
+/// components.
 template <class T>
 struct Vec3 {
   T x, y, z;
 
   Vec3() = default;
   QUADCORE_LAW Vec3(T of_x, T of_y, T of_z) : x(of_x), y(of_y), z(of_z) {}
-  // Written out, because GCC would move a whole of packs through the general registers.
+  // Written out, because GCC would move packs through general registers.
   QUADCORE_LAW Vec3(const Vec3& a) : x(a.x), y(a.y), z(a.z) {}
   QUADCORE_LAW Vec3& operator=(const Vec3& a) {
     x = a.x;
@@ -36,7 +36,7 @@ QUADCORE_LAW Vec3<T> operator*(S factor, const Vec3<T>& a) {
 }
 template <class T>
 QUADCORE_LAW T dot(const Vec3<T>& a, const Vec3<T>& b) {
-  return a.x * b.x + (a.y * b.y + a.z * b.z);  // in Eigen's order, for the same bytes
+  return a.x * b.x + (a.y * b.y + a.z * b.z);  // in Eigen's order, for bit-identical results
 }
 template <class T>
 QUADCORE_LAW Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
@@ -45,7 +45,7 @@ QUADCORE_LAW Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
 
 QUADCORE_LAW Vec3<double> vec(const double* a) { return {a[0], a[1], a[2]}; }
 
-/// One vector for every lane.
+/// Return one vector for every lane.
 template <class T>
 QUADCORE_LAW Vec3<T> broadcast(const Vec3<double>& a) {
   return {broadcast<T>(a.x), broadcast<T>(a.y), broadcast<T>(a.z)};
@@ -55,7 +55,7 @@ QUADCORE_LAW Vec3<T> broadcast(const double* a) {
   return broadcast<T>(vec(a));
 }
 
-/// A matrix, row by row.
+/// A matrix stored by rows.
 template <class T>
 struct Matrix3 {
   T xx, xy, xz, yx, yy, yz, zx, zy, zz;
@@ -72,14 +72,14 @@ QUADCORE_LAW Vec3<T> operator*(const Matrix3<T>& R, const Vec3<T>& a) {
           R.zx * a.x + (R.zy * a.y + R.zz * a.z)};
 }
 
-/// The transpose of a matrix times a vector: the inverse rotation.
+/// Return the transpose of a matrix times a vector: the inverse rotation.
 template <class T>
 QUADCORE_LAW Vec3<T> inversely(const Matrix3<T>& R, const Vec3<T>& a) {
   return {R.xx * a.x + (R.yx * a.y + R.zx * a.z), R.xy * a.x + (R.yy * a.y + R.zy * a.z),
           R.xz * a.x + (R.yz * a.y + R.zz * a.z)};
 }
 
-/// A matrix that is its own transpose.
+/// A symmetric matrix.
 template <class T>
 struct Symmetric3 {
   T xx, xy, xz, yy, yz, zz;

@@ -4,8 +4,8 @@
 
 namespace quadcore::laws {
 
-/// How far what moves at a speed [m/s] may come within dt [s], and more than that as it is
-/// accelerated [m].
+/// Return an upper bound of the distance [m] travelled at a speed [m/s] within dt [s], with a
+/// margin for acceleration.
 template <class T>
 QUADCORE_LAW T ahead(T speed, double dt) {
   constexpr double acceleration = 100;  // m/s^2

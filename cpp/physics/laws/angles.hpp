@@ -5,7 +5,7 @@
 
 namespace quadcore::laws {
 
-/// Sines and cosines of angles [rad], those of elementary::sincos to the last digit.
+/// Sines and cosines of angles [rad], bit-identical to elementary::sincos.
 template <class T>
 QUADCORE_LAW SineCosine<T> sine_and_cosine(T x) {
   const QuarterTurns<T> once = reduced_once(x);

@@ -3,14 +3,13 @@
 #include "lanes/vec3.hpp"
 
 /// \file
-/// Bodies on joints in time linear in their number: R. Featherstone, "Rigid Body Dynamics
-/// Algorithms", 2008, ch. 7. All vectors are in W and belong to one point O, the same for all
-/// bodies.
+/// Dynamics of bodies on joints in linear time: R. Featherstone, "Rigid Body Dynamics Algorithms",
+/// 2008, ch. 7. All vectors are in W and refer to the same point O for all bodies.
 
 namespace quadcore::laws {
 
-/// Two vectors that belong together: the acceleration at O of whatever moves with a body and its
-/// angular acceleration, or a force and its torque about O.
+/// A spatial vector: the acceleration at O of a point that moves with a body and the angular
+/// acceleration, or a force and its torque about O.
 template <class T>
 struct Spatial {
   Vec3<T> linear, angular;
@@ -28,13 +27,13 @@ template <class T>
 QUADCORE_LAW Spatial<T> operator*(T factor, const Spatial<T>& a) {
   return {factor * a.linear, factor * a.angular};
 }
-/// An acceleration times a load.
+/// Return the product of an acceleration and a load.
 template <class T>
 QUADCORE_LAW T dot(const Spatial<T>& a, const Spatial<T>& b) {
   return dot(a.linear, b.linear) + dot(a.angular, b.angular);
 }
 
-/// The load that an acceleration asks for:
+/// Return the load for an acceleration:
 ///   force = mass a + coupling alpha, torque = coupling^T a + inertia alpha.
 template <class T>
 struct SpatialInertia {
@@ -76,7 +75,7 @@ QUADCORE_LAW void add_product(Matrix3<T>& sum, T factor, const Vec3<T>& a, const
   sum.zz = sum.zz + c.z * b.z;
 }
 
-/// Calls f(of a, of b) for each number of two loads, and of two inertias.
+/// Call f(a_i, b_i) for each pair of numbers of two loads or two inertias.
 template <class T, class Function>
 QUADCORE_LAW void for_each(Spatial<T>& a, const Spatial<T>& b, const Function& f) {
   f(a.linear.x, b.linear.x), f(a.linear.y, b.linear.y), f(a.linear.z, b.linear.z);
@@ -96,7 +95,7 @@ QUADCORE_LAW void for_each(SpatialInertia<T>& a, const SpatialInertia<T>& b, con
   for_each(a.inertia, b.inertia, f);
 }
 
-/// A body's: its centre of mass is p from O, I about that.
+/// Return the inertia of a body with its centre of mass at p from O and the inertia I about it.
 template <class T>
 QUADCORE_LAW SpatialInertia<T> body_inertia(T mass, const Vec3<T>& p, const Symmetric3<T>& I) {
   const T none{};
@@ -112,7 +111,7 @@ QUADCORE_LAW SpatialInertia<T> body_inertia(T mass, const Vec3<T>& p, const Symm
   return sum;
 }
 
-/// The same body's load.
+/// Return the load on the same body.
 template <class T>
 QUADCORE_LAW Spatial<T> body_load(T mass, const Vec3<T>& p, const Symmetric3<T>& I,
                                   const Spatial<T>& a) {
@@ -133,7 +132,7 @@ QUADCORE_LAW Symmetric3<T> inverse(const Symmetric3<T>& m) {
           by * (m.xx * m.yy - m.xy * m.xy)};
 }
 
-/// Acceleration under a load: the Schur complement of the masses.
+/// Return the acceleration under a load by the Schur complement of the masses.
 template <class T>
 QUADCORE_LAW Spatial<T> solve(const SpatialInertia<T>& I, const Spatial<T>& load) {
   const Symmetric3<T> inverse_mass = inverse(I.mass);
@@ -149,12 +148,12 @@ QUADCORE_LAW Spatial<T> solve(const SpatialInertia<T>& I, const Spatial<T>& load
   return {inverse_mass * (f - C * angular), angular};
 }
 
-/// What a body may do besides what carries it does: an acceleration x in one direction, which
-/// follows from the acceleration a of its carrier, x = start - give (load . a).
+/// A degree of freedom of a body relative to its carrier: an acceleration x in one direction, which
+/// depends on the acceleration a of the carrier, x = start - give (load . a).
 template <class T>
 struct Freedom {
   Spatial<T> direction;
-  Spatial<T> load;  ///< that the direction asks for, of the body and of what it carries
+  Spatial<T> load;  ///< load for the direction, of the body and everything it carries
   T give, start;
 
   QUADCORE_LAW void add_to(Spatial<T>& a) const {
@@ -162,7 +161,7 @@ struct Freedom {
   }
 };
 
-/// A freedom that nothing resists: the load along it is `force`'s.
+/// Return a free degree of freedom with the load of `force` along it.
 template <class T>
 QUADCORE_LAW Freedom<T> free_to(const Spatial<T>& direction, const Spatial<T>& load,
                                 const Spatial<T>& force) {
@@ -170,7 +169,7 @@ QUADCORE_LAW Freedom<T> free_to(const Spatial<T>& direction, const Spatial<T>& l
   return {direction, load, give, give * dot(direction, force)};
 }
 
-/// One that gives way to the load l along it: x = wanted - softness l.
+/// Return a compliant degree of freedom with x = wanted - softness l under the load l along it.
 template <class T>
 QUADCORE_LAW Freedom<T> soft_to(const Spatial<T>& direction, const Spatial<T>& load,
                                 const Spatial<T>& force, T wanted, T softness) {
@@ -178,7 +177,7 @@ QUADCORE_LAW Freedom<T> soft_to(const Spatial<T>& direction, const Spatial<T>& l
   return {direction, load, share * softness, share * (wanted + softness * dot(direction, force))};
 }
 
-/// Leaves of what a body asks for, and of the force on it, what its carrier feels.
+/// Reduce the inertia of a body and the force on it to the part that acts on its carrier.
 template <class T>
 QUADCORE_LAW void eliminate(const Freedom<T>& freedom, SpatialInertia<T>& felt, Spatial<T>& force) {
   const Vec3<T>&f = freedom.load.linear, &tau = freedom.load.angular;

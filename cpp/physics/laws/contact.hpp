@@ -6,17 +6,17 @@
 #include "quadcore/plugin/spatial.hpp"
 
 /// \file
-/// A point of a compliant body against the ground.
+/// Contact of a point of a compliant body with the ground.
 
 namespace quadcore::laws {
 
-/// Faster than this a point leaves the ground without being pushed, while it is hardly in it [m/s].
+/// Speed above which a point at small depth leaves the ground without a force [m/s].
 constexpr double parting_speed = 0.01;
 
-/// Force of the ground on a point that is `depth` deep and sinks at `rate` (K. H. Hunt,
-/// F. R. E. Crossley, "Coefficient of restitution interpreted as damping in vibroimpact", J.
-/// Applied Mechanics 42, 1975, eq. (8), exponent 1) [N]. Its damping grows with the depth up to
-/// stiffness * relaxation, and the ground does not pull.
+/// Return the force of the ground on a point at `depth` that sinks at `rate` (K. H. Hunt, F. R. E.
+/// Crossley, "Coefficient of restitution interpreted as damping in vibroimpact", J. Applied
+/// Mechanics 42, 1975, eq. (8), exponent 1) [N]. Its damping grows with the depth up to stiffness *
+/// relaxation, and the ground does not pull.
 /// \param stiffness   N/m
 /// \param relaxation  s
 inline double pressure(double stiffness, double relaxation, double depth, double rate) {
@@ -24,18 +24,18 @@ inline double pressure(double stiffness, double relaxation, double depth, double
   return stiffness * std::max(0.0, depth + std::min(depth / parting_speed, relaxation) * rate);
 }
 
-/// What resists a patch that is moved along the ground, divided by lengths to forces: along the
-/// ground; about the normal, by the patch's radius; about the two directions along the ground, by
-/// the rolling lever.
+/// Resistance of a patch that moves along the ground, as forces: along the ground; about the
+/// normal, divided by the patch's radius; about the two directions along the ground, divided by the
+/// rolling lever.
 using Resistance = Eigen::Matrix<double, 5, 1>;
 
-/// A part of a shape's reach, small so that rolling adds little to what a step has to follow.
+/// A fraction of a shape's reach, small so that rolling hardly affects the required time step.
 constexpr double rolling_lever = 0.1;
-/// How far off what presses may act where a shape rolls, as a part of the shape's reach: the
-/// coefficient of rolling resistance, here that of a tyre on concrete.
+/// Offset of the normal force of a rolling shape as a fraction of its reach: the coefficient of
+/// rolling resistance, here that of a tyre on concrete.
 constexpr double rolling_resistance = 0.01;
 
-/// The part of a vector that is within an ellipsoid; a semiaxis may be 0.
+/// Shorten a vector to an ellipsoid; semiaxes may be 0.
 template <int n>
 Eigen::Matrix<double, n, 1> within(const Eigen::Matrix<double, n, 1>& semiaxes,
                                    const Eigen::Matrix<double, n, 1>& vector) {
@@ -53,9 +53,9 @@ Eigen::Matrix<double, n, 1> within(const Eigen::Matrix<double, n, 1>& semiaxes,
   return allowed;
 }
 
-/// The part of a resistance that is possible [N]: Coulomb's friction within an ellipsoid
-/// (R. D. Howe, M. R. Cutkosky, "Practical force-motion models for sliding manipulation", Int. J.
-/// Robotics Research 15, 1996), that to rolling within a circle.
+/// Limit a resistance [N]: Coulomb friction to an ellipsoid (R. D. Howe, M. R. Cutkosky, "Practical
+/// force-motion models for sliding manipulation", Int. J. Robotics Research 15, 1996), rolling
+/// resistance to a circle.
 /// \param friction  semiaxes of the ellipsoid [N]
 /// \param pressing  the normal force [N]
 inline Resistance possible(const Vector3d& friction, double pressing, const Resistance& wanted) {

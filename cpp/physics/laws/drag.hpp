@@ -5,7 +5,7 @@
 namespace quadcore::laws {
 
 /// Drag that opposes the rotor's velocity in its own plane, linearly, at the rotor's centre of
-/// mass. The plus signs that the thesis prints are a slip: drag opposes motion.
+/// mass. The plus signs printed in the thesis are an error: drag opposes motion.
 template <class T>
 struct InPlaneDrag {
   T K;  ///< N s/m
@@ -31,7 +31,7 @@ struct InducedDrag : InPlaneDrag<T> {
   }
 };
 
-/// Translational drag, thesis eq. (2.29), of which the second branch is left out, as in the thesis.
+/// Translational drag, thesis eq. (2.29), without the second branch, as in the thesis.
 template <class T>
 struct TranslationalDrag : InPlaneDrag<T> {
   static constexpr const char* term = "translational";
@@ -58,8 +58,8 @@ struct ProfileDrag : InPlaneDrag<T> {
   }
 };
 
-/// Parasitic drag of the airframe, thesis eq. (2.31): -K |V| V at the vehicle's centre of mass, V
-/// its velocity through the air.
+/// Return the parasitic drag of the airframe, thesis eq. (2.31): -K |V| V at the vehicle's centre
+/// of mass, where V is its velocity relative to the air.
 /// \param speed        |V| [m/s]
 /// \param coefficient  parasiticDragCoeff [N s^2/m^2]
 /// \return     force on the frame in F [N]
@@ -68,9 +68,9 @@ QUADCORE_LAW Vector parasitic_drag(const Vector& V_F, K speed, K coefficient) {
   return (-coefficient * speed) * V_F;
 }
 
-/// Parasitic drag as the thesis' plugin (appendix A.5) computes it: -K |v_i| v_i of each component
-/// of the frame's WORLD velocity, taken as components in the propeller's own SPINNING axes, once
-/// per propeller, at its centre of mass. Kept because the published results rest on it.
+/// Parasitic drag as computed by the thesis' plugin (appendix A.5): -K |v_i| v_i of each component
+/// of the frame's WORLD velocity, interpreted in the propeller's own SPINNING axes, once per
+/// propeller, at its centre of mass. It is kept because the published results are based on it.
 template <class T>
 struct ParasiticDrag {
   T K;  ///< N s^2/m^2
@@ -80,7 +80,7 @@ struct ParasiticDrag {
   static constexpr Tag tags[] = {{"parasiticDragCoeff", "N s^2/m^2", "0",
                                   "parasitic drag of the airframe, K_par", "(2.31)",
                                   Tag::Scales::drag, Tag::at_least_zero, "0.003"}};
-  /// Of the airframe as a whole.
+  /// Drag of the whole airframe.
   template <class Given>
   static double coefficient(const Given& given) {
     const auto [K] = given.numbers(tags);

@@ -12,7 +12,7 @@ namespace quadcore::laws {
 /// B nu = -s B2 nu - B1 a x nu for the in-plane V and nu: no axes need to be chosen.
 template <class T>
 struct Flapping {
-  T k;           ///< of the thrust [N s^2/rad^2]
+  T k;           ///< thrust coefficient [N s^2/rad^2]
   T A1c, A1s;    ///< rad
   T B1, B2;      ///< s/rad
   T per_radius;  ///< 1/r [1/m]
@@ -20,14 +20,14 @@ struct Flapping {
   static constexpr const char* term = "flapping";
   static constexpr Effect effect = Effect::force;
   static constexpr Tag tags[] = {
-      {"flappingA1c", "rad", "0", "blade flapping, longitudinal; positive opposes motion", "(2.26)",
+      {"flappingA1c", "rad", "0", "longitudinal blade flapping; positive opposes the motion",
+       "(2.26)", Tag::Scales::drag},
+      {"flappingA1s", "rad", "0", "lateral blade flapping", "(2.26)", Tag::Scales::drag},
+      {"flappingB1", "s/rad", "0", "blade flapping by the frame's rates, cross term", "(2.27)",
        Tag::Scales::drag},
-      {"flappingA1s", "rad", "0", "blade flapping, lateral", "(2.26)", Tag::Scales::drag},
-      {"flappingB1", "s/rad", "0", "blade flapping with the frame's rates, cross term", "(2.27)",
+      {"flappingB2", "s/rad", "0", "blade flapping by the frame's rates, direct term", "(2.27)",
        Tag::Scales::drag},
-      {"flappingB2", "s/rad", "0", "blade flapping with the frame's rates, direct term", "(2.27)",
-       Tag::Scales::drag},
-      {"rotorRadius", "m", "0.075", "radius of a rotor, for flapping", "(2.26)", Tag::Scales::none,
+      {"rotorRadius", "m", "0.075", "rotor radius, for blade flapping", "(2.26)", Tag::Scales::none,
        Tag::above_zero},
   };
   template <class Given>

@@ -11,12 +11,12 @@ namespace quadcore::laws {
 ///
 /// Angular momentum about C (e.g. Hughes, "Spacecraft Attitude Dynamics", ch. 6):
 ///   H = I_C w + sum J_i W_i a_i,   dH/dt + w x H = tau,
-/// and of each rotor about its axis, q_i the torque of its joint:
+/// and for each rotor about its axis, with the torque q_i of its joint:
 ///   J_i (dW_i/dt + a_i . dw/dt) = q_i.
 /// Eliminating dW_i/dt leaves (I_C - sum J_i a_i a_i^T) dw/dt = tau - w x H - sum q_i a_i.
 /// \file
 
-/// What a rotor contributes to the torque about C, less q_i a_i and w x J_i W_i a_i [N m].
+/// Return the torque of a rotor about C, without q_i a_i and w x J_i W_i a_i [N m].
 /// \param p_CRcm_F    from C to the rotor's centre of mass [m]
 /// \param f_F         force on it there [N]
 /// \param reaction_F  torque of the rotor on the frame [N m]
@@ -29,8 +29,8 @@ QUADCORE_LAW Vec3<T> rotor_torque(const Vec3<T>& w_WF_F, const Vec3<T>& axis_F,
          cross(p_CRcm_F, f_F);
 }
 
-/// Rate of the quaternion of a frame that turns at w_F, in its own axes [rad/s]: half of the
-/// quaternion times (w_F, 0).
+/// Return the rate of the quaternion of a frame with the angular velocity w_F in its own axes
+/// [rad/s]: half the quaternion times (w_F, 0).
 QUADCORE_LAW Four quaternion_rate(const Four& q, const Four& w_F) {
   const Columns product{negated<0, 0, 1, 1>(permuted<3, 2, 1, 0>(q)),
                         negated<1, 0, 0, 1>(permuted<2, 3, 0, 1>(q)),

@@ -9,29 +9,30 @@
 
 namespace quadcore::laws {
 
-/// Some laws of rotors, each as rotor_law.hpp says. A law has a place in the list, and its
-/// coefficients have rows in tables, one law's behind another's.
+/// A list of rotor force laws, see rotor_law.hpp. Each law has a place in the list, and tables
+/// contain the rows of all laws' coefficients in this order.
 template <template <class> class... Law>
 struct LawList {
-  /// The coefficients of one rotor, or of several side by side.
+  /// Coefficients of one rotor, or of a pack of rotors.
   template <class T>
   struct Coefficients : Law<T>... {};
-  /// Rows of these.
+  /// Number of rows of the coefficients.
   static constexpr std::size_t rows = sizeof(Coefficients<double>) / sizeof(double);
-  static_assert(((sizeof(Law<double>) % sizeof(double) == 0) && ...), "a law consists of its T");
+  static_assert(((sizeof(Law<double>) % sizeof(double) == 0) && ...),
+                "a force law must consist of values of T");
 
-  /// Several laws, a bit for the place of each.
+  /// A set of laws with a bit for the place of each.
   using Places = std::uint32_t;
-  static_assert(sizeof...(Law) <= 32, "Places has no room for so many laws");
+  static_assert(sizeof...(Law) <= 32, "Places supports at most 32 force laws");
 
-  /// The coefficients that tags give.
+  /// Return the coefficients of the tags.
   template <class Given>
   static Coefficients<double> from(const Given& given) {
     return {Law<double>::from(given)...};
   }
 
-  /// The same forces with all in-plane drag in the first law that has such: in steps one does for
-  /// all of them.
+  /// Return coefficients for the same forces with all in-plane drag merged into the first such law,
+  /// which saves evaluations in steps.
   static Coefficients<double> with_one_drag(Coefficients<double> all) {
     double* sum = nullptr;
     for_each(all, [&](auto& law) {
@@ -47,13 +48,13 @@ struct LawList {
     return all;
   }
 
-  /// Calls visit(law) with each law.
+  /// Call visit(law) with each law.
   template <class All, class Visit>
   static void for_each(All&& all, const Visit& visit) {
     (visit(static_cast<Law<double>&>(all)), ...);
   }
 
-  /// Calls visit(law, place) with each of some laws, whose coefficients are in a table.
+  /// Call visit(law, place) with each law of a set, with coefficients from a table.
   template <class T, class Visit>
   QUADCORE_LAW static void for_each(Places places, const Table<T, widest_lanes>& table,
                                     const Visit& visit) {
@@ -61,7 +62,7 @@ struct LawList {
     (visit_if<Law<T>>(places >> place & 1, table, row, place, visit), ...);
   }
 
-  /// The place of a law.
+  /// Return the place of a law.
   template <template <class> class One>
   static constexpr std::size_t place_of() {
     std::size_t place = 0;
@@ -70,12 +71,12 @@ struct LawList {
     return place;
   }
 
-  /// The laws that have an effect.
+  /// Return the laws with a given effect.
   static constexpr Places with(Effect effect) {
     return ((Places{Law<double>::effect == effect} << place_of<Law>()) | ...);
   }
 
-  /// The laws that have a coefficient other than zero.
+  /// Return the laws with a nonzero coefficient.
   static Places acting(const Coefficients<double>& all) {
     return ((Places{is_any(static_cast<const Law<double>&>(all))} << place_of<Law>()) | ...);
   }

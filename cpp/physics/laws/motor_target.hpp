@@ -4,8 +4,8 @@
 
 namespace quadcore::laws {
 
-/// Rate that a joint is to take [rad/s].
-/// \param command  of a real rotor's speed, and the fastest that is followed [rad/s]
+/// Return the target rate of a joint [rad/s].
+/// \param command  commanded speed of the real rotor; `fastest` is its maximum [rad/s]
 QUADCORE_LAW double motor_target(double command, double fastest, double sim_slow) {
   const double followed = command > fastest ? fastest : command < -fastest ? -fastest : command;
   return followed / sim_slow;

@@ -5,9 +5,9 @@
 
 namespace quadcore::laws {
 
-/// Torque of a motor's joint on its rotor, thesis appendix A.4 [N m].
-/// \param active   share of the torque that is left
-/// \param target   of the joint's rate [rad/s]
+/// Return the torque of a motor's joint on its rotor, thesis appendix A.4 [N m].
+/// \param active   remaining fraction of the torque
+/// \param target   target of the joint's rate [rad/s]
 /// \param sampled  torque of integral and derivative [N m]
 template <class T, class K>
 QUADCORE_LAW T motor_torque(T active, K kp, T target, T sampled, T rate) {
@@ -15,7 +15,7 @@ QUADCORE_LAW T motor_torque(T active, K kp, T target, T sampled, T rate) {
   return active * (-kp * error + sampled);
 }
 
-/// The same of a pack of rotors, from rotor i on.
+/// Return the torques of a pack of rotors, starting at rotor i.
 template <class T>
 QUADCORE_LAW T motor_torque(const MotorTorques& law, std::size_t i, T rate) {
   const double* rows = law.memory + rotor_offset(MemoryRow::count, i);

@@ -5,26 +5,26 @@
 #include "rotors.hpp"
 
 /// \file
-/// What all laws of a pack of rotors exert together. The rotors are those of one vehicle, from
-/// rotor i on, or the i-th of several vehicles. Their motion may lie in tables or in registers: a
-/// Motion of packs T has
+/// Total loads of all force laws on a pack of rotors. The rotors belong to one vehicle, starting at
+/// rotor i, or are rotor i of several vehicles. Their motion is in tables or registers: a Motion of
+/// packs T has
 ///   rate(), axis_F(), normal_F(), velocity_F(bool of_origins)   as RotorKinematics,
 ///   in_frame(f_R)   a vector, given in the axes of the rotors' links, in the frame's,
 ///   windy(), v_WA_F(), w_WF_F(), v_WF_W()   air and frame.
 
 namespace quadcore::laws {
 
-/// The laws of a pack of rotors.
+/// Force laws of a pack of rotors.
 template <class T>
 struct LawsOfRotors {
   const RotorConventions& conventions;
   RotorLaws::Places acting;
   Table<T, widest_lanes> coefficients;  ///< rows of RotorLaws
-  T share;                              ///< of thrust and reaction torque that is left
+  T share;                              ///< remaining fraction of thrust and reaction torque
   T sim_slow;
 };
 
-/// The same of one vehicle, from rotor i on.
+/// Return the laws of one vehicle, starting at rotor i.
 template <class T>
 QUADCORE_LAW LawsOfRotors<T> laws_of_rotors(const RotorForces& law, std::size_t i) {
   return {law.conventions,
@@ -43,7 +43,7 @@ QUADCORE_LAW RotorDisc<T> disc_of(const LawsOfRotors<T>& laws, const Motion& mot
   return {normal_F, motion.rate() * laws.sim_slow, laws.share, across(normal_F, v_AR_F)};
 }
 
-/// The force of a law, whatever axes it is written in.
+/// Return the force of a law in frame axes.
 template <class T, class Law, class Motion>
 QUADCORE_LAW Vec3<T> force_F(const Law& law, const RotorDisc<T>& disc, const Motion& motion) {
   if constexpr (Law::effect == Effect::force_in_link_axes) {
@@ -53,7 +53,7 @@ QUADCORE_LAW Vec3<T> force_F(const Law& law, const RotorDisc<T>& disc, const Mot
   }
 }
 
-/// What acts on a pack of rotors, as LoadRow says.
+/// Loads on a pack of rotors, see LoadRow.
 template <class T>
 struct RotorLoads {
   Vec3<T> f_F, reaction_F;
@@ -72,10 +72,10 @@ QUADCORE_LAW void add_reaction(const RotorConventions& conventions, const RotorD
   if (conventions.on_rotor) loads.joint_torque = loads.joint_torque + torque;
 }
 
-/// The laws that need the turns of the links.
+/// The laws that require the orientation of the links.
 constexpr RotorLaws::Places in_link_axes = RotorLaws::with(Effect::force_in_link_axes);
 
-/// Adds what the laws exert on a pack.
+/// Add the loads of the laws on a pack.
 template <class T, class Motion>
 QUADCORE_LAW void add_rotor_forces(const LawsOfRotors<T>& laws, const Motion& motion,
                                    RotorLoads<T>& loads) {
@@ -88,7 +88,7 @@ QUADCORE_LAW void add_rotor_forces(const LawsOfRotors<T>& laws, const Motion& mo
     }
   };
   RotorLaws::for_each(laws.acting & ~in_link_axes, laws.coefficients, add);
-  // Last, because they wait for the turns of the links.
+  // Last, because they depend on the orientation of the links.
   RotorLaws::for_each(laws.acting & in_link_axes, laws.coefficients, add);
 }
 

@@ -7,8 +7,8 @@
 
 namespace quadcore::laws {
 
-/// The laws of rotors, in the order of their wrench terms. To add one, write a struct as those in
-/// drag.hpp are and name it here.
+/// All rotor force laws in the order of their wrench terms. To add one, write a struct like those
+/// in drag.hpp and name it here.
 using RotorLaws =
     LawList<Thrust, Reaction, InducedDrag, TranslationalDrag, ProfileDrag, ParasiticDrag, Flapping>;
 

@@ -5,8 +5,8 @@
 
 namespace quadcore::laws {
 
-/// Does what is to be done from every W-th rotor on. Most vehicles fit in one pack, for which all
-/// places in the tables are constants.
+/// Call a function for each pack of W rotors. Most vehicles fit in one pack, for which all offsets
+/// in the tables are constants.
 template <int W, class Work>
 QUADCORE_LAW void for_each_pack(std::size_t rotors, const Work& work) {
   if (__builtin_expect(rotors - 1 < W, 1)) {
@@ -16,7 +16,7 @@ QUADCORE_LAW void for_each_pack(std::size_t rotors, const Work& work) {
   }
 }
 
-/// A vector of each lane from three rows of a table.
+/// Return a vector of each lane from three rows of a table.
 template <class T>
 QUADCORE_LAW Vec3<T> load3(const double* row) {
   return {load<T>(row), load<T>(row + widest_lanes), load<T>(row + 2 * widest_lanes)};

@@ -12,8 +12,8 @@ struct Thrust {
   static constexpr const char* term = "thrust";
   static constexpr Effect effect = Effect::force;
   static constexpr Tag tags[] = {{"rotorThrustCoeff", "N s^2/rad^2", required,
-                                  "thrust of a rotor per squared speed, k", "(2.10)",
-                                  Tag::Scales::thrust, Tag::at_least_zero}};
+                                  "thrust coefficient of a rotor, k: thrust per squared speed",
+                                  "(2.10)", Tag::Scales::thrust, Tag::at_least_zero}};
   template <class Given>
   static Thrust from(const Given& given) {
     const auto [k] = given.numbers(tags);
@@ -26,17 +26,18 @@ struct Thrust {
   }
 };
 
-/// Reaction torque, thesis eq. (2.11) without its inertial part (the engine has that): b w^2 with
-/// the sign of the spin, as the thesis has it; real air drags the frame the other way (b < 0).
+/// Reaction torque, thesis eq. (2.11) without its inertial part, which the engine models: b w^2
+/// with the sign of the spin, as in the thesis. The physical sign is the opposite (b < 0).
 template <class T>
 struct Reaction {
   T b;  ///< N m s^2/rad^2, negative for the opposing sign
 
   static constexpr const char* term = "reaction";
   static constexpr Effect effect = Effect::reaction_torque;
-  static constexpr Tag tags[] = {{"rotorTorqueCoeff", "N m s^2/rad^2", required,
-                                  "reaction torque of a rotor per squared speed, b", "(2.11)",
-                                  Tag::Scales::thrust, Tag::at_least_zero}};
+  static constexpr Tag tags[] = {
+      {"rotorTorqueCoeff", "N m s^2/rad^2", required,
+       "torque coefficient of a rotor, b: reaction torque per squared speed", "(2.11)",
+       Tag::Scales::thrust, Tag::at_least_zero}};
   template <class Given>
   static Reaction from(const Given& given) {
     const auto [b] = given.numbers(tags);

@@ -4,8 +4,8 @@
 
 namespace quadcore::laws {
 
-/// ODE's step of a pose (dxStepBody): q + dt/2 w q, of the length that it comes to.
-/// \param h_W  dt/2 times the body's rate, in W
+/// Return the orientation after ODE's step (dxStepBody): q + dt/2 w q, not normalised.
+/// \param h_W  dt/2 times the body's angular velocity, in W
 template <class T>
 QUADCORE_LAW Quaternion<T> turned_by(const Vec3<T>& h_W, const Quaternion<T>& q) {
   return {q.x + (h_W.x * q.w + (h_W.y * q.z - h_W.z * q.y)),

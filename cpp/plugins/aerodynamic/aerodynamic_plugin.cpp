@@ -16,14 +16,14 @@
 namespace quadcore::aerodynamic {
 namespace {
 
-/// Which warnings this flight has heard, behind the shares; filled up to a whole block, so that the
-/// tables of other plugins begin where a pack can be read at once.
-enum Memory { kDriven, kUnfelt, kAliased, kMemorySize = widest_lanes - 1 };
+/// Warnings already given in this flight, stored after the fractions. They are padded to a whole
+/// block, so that the tables of other plugins remain aligned.
+enum Memory { kDriven, kIgnoresWind, kAliased, kMemorySize = widest_lanes - 1 };
 
 /// rad
 constexpr double surely_below_half_a_turn = 3;
 
-/// A model made for the thesis' plugin flies another vehicle without the drag compiled in there.
+/// Warn about missing drag tags: the thesis' plugin has the drag compiled in.
 void warn_without_drag(const PluginSetup& setup) {
   std::string values;
   bool is_set = false;
@@ -34,30 +34,31 @@ void warn_without_drag(const PluginSetup& setup) {
   });
   if (is_set) return;
   setup.warnings.push_back(
-      "no drag is set, so that nothing slows the vehicle; the thesis' plugin (A.5) had " + values +
-      " compiled in: write these tags, or one of them with 0 to fly without drag");
+      "no drag is set, so nothing slows the vehicle down. The thesis' plugin (A.5) had " + values +
+      " compiled in. Write these tags, or one of them with 0 to simulate without drag.");
 }
 
-/// What a joint hands on must reach the frame.
+/// Reject joints whose reaction cannot reach the frame.
 void refuse_rotors_on_rotors(const PluginSetup& setup, const Config& config) {
   for (const std::size_t i : config.rotors) {
     const Joint& joint = setup.model.joints[i];
     if (joint.parent == 0) continue;
-    throw InputError("<reactionOn> rotor: joint '" + joint.name + "' (" + joint.where +
-                     ") hangs on a link that moves; write frame, or hang it on the frame");
+    throw InputError(
+        "<reactionOn> rotor: joint '" + joint.name + "' (" + joint.where +
+        ") is attached to a moving link. Use frame, or attach the joint to the frame.");
   }
 }
 
-/// The laws take the propeller's z for up.
+/// Warn about axes opposite to the propeller's z, which the force laws take as up.
 void warn_of_axes_against_lift(const PluginSetup& setup, const Config& config) {
   for (const std::size_t i : config.rotors) {
     const Joint& joint = setup.model.joints[i];
     if (joint.axis.z() >= 0) continue;
     setup.warnings.push_back(
-        "joint '" + joint.name + "' (" + joint.where + ") has its axis against the z of link '" +
-        setup.model.links[i + 1].name + "', so that " +
-        (config.appendix ? "its reaction torque takes the wrong sign" : "its thrust points down") +
-        "; write the axis along the lift and give the sense of rotation by the sign of the "
+        "joint '" + joint.name + "' (" + joint.where +
+        ") has its axis opposite to the z of link '" + setup.model.links[i + 1].name + "', so " +
+        (config.appendix ? "its reaction torque has the wrong sign" : "its thrust points down") +
+        ". Point the axis along the thrust and set the direction of rotation by the sign of the "
         "command");
   }
 }
@@ -91,25 +92,25 @@ class AerodynamicPlugin final : public Plugin {
     for (const std::size_t i : config_.rotors) rotors[i].slowdown = config_.sim_slow;
   }
 
-  /// The thesis' plugin falls silent for a rotor that turns more than half a turn per step. Here
-  /// such a speed ends the flight of an engine that turns rotors by hinges; others warn.
+  /// The thesis' plugin stops working for a rotor that turns more than half a turn per step. Here,
+  /// such a speed ends the flight in engines with hinged rotors; the others warn.
   void update(const Sample& sample, PluginState state) const override {
     effectiveness_.follow(sample, state);
     auto memory = state.tail<kMemorySize>();
     if (!sample.kinematics.rotors.slower_than(surely_below_half_a_turn / sample.dt))
       look_for_half_turns(sample, memory[kAliased]);
-    if (memory[kUnfelt] == 0 && config_.appendix && !sample.kinematics.v_WA_F.isZero(0)) {
-      memory[kUnfelt] = 1;
+    if (memory[kIgnoresWind] == 0 && config_.appendix && !sample.kinematics.v_WA_F.isZero(0)) {
+      memory[kIgnoresWind] = 1;
       sample.warnings.push_back(
-          "the air moves, and <dragModel> appendix feels nothing of it, as in the thesis; set "
-          "<dragModel> to chapter2 for a flight in wind");
+          "the air moves, but <dragModel> appendix ignores wind, as in the thesis. Set <dragModel> "
+          "to chapter2 for a flight in wind.");
     }
     if (memory[kDriven] == 0 && drag_drives(sample.kinematics)) {
       memory[kDriven] = 1;
       sample.warnings.push_back(
           "a propeller tilts beyond 90 degrees, where the parasitic drag of <dragModel> appendix "
-          "drives the vehicle with the square of its speed instead of slowing it; set <dragModel> "
-          "to chapter2, or <parasiticDragCoeff> to 0, for such a flight");
+          "accelerates the vehicle instead of slowing it down. Set <dragModel> to chapter2, or "
+          "<parasiticDragCoeff> to 0, for such a flight.");
     }
   }
 
@@ -133,7 +134,7 @@ class AerodynamicPlugin final : public Plugin {
 
   void laws(ConstPluginState state, ForceLaws& laws) const override {
     laws.rotor_forces.push_back(config_.summed());
-    laws.rotor_forces.back().shares = state.data();  // as they are once a step has begun
+    laws.rotor_forces.back().shares = state.data();  // valid once a step has begun
     const double* const memory = state.data() + effectiveness_.size();
     laws.quiet.push_back({fastest_, drag_may_drive(),
                           follows_any_turn_ ? memory + kAliased : nullptr, memory + kDriven});
@@ -146,7 +147,7 @@ class AerodynamicPlugin final : public Plugin {
     return law;
   }
 
-  /// The same loads, rotor by rotor and law by law.
+  /// Add the same loads rotor by rotor and law by law.
   void record(const RotorForces& law, const ShownMotion& shown, Loads& loads) const {
     for (const std::size_t i : config_.rotors) {
       const ShownPack<double> motion{shown, i};
@@ -174,23 +175,22 @@ class AerodynamicPlugin final : public Plugin {
       const std::string what =
           "rotor '" + joint_names_[i] + "' turns more than half a turn per step";
       if (!follows_any_turn_) {
-        throw FlightError(sample.time, what + "; take a smaller step or a slower command");
+        throw FlightError(sample.time, what + ". Use a smaller step or a slower command.");
       }
       has_warned = 1;
-      sample.warnings.push_back(
-          what +
-          ", so that its angles from step to step do not show its sense of rotation; take a "
-          "smaller step if you need them");
+      sample.warnings.push_back(what +
+                                ", so its angles from step to step do not show its direction of "
+                                "rotation. Use a smaller step if you need them.");
       return;
     }
   }
 
-  /// Whether any rotor has the parasitic drag of appendix A.5.
+  /// Return whether any rotor has the parasitic drag of appendix A.5.
   bool drag_may_drive() const {
     return config_.summed().acting >> RotorLaws::place_of<laws::ParasiticDrag>() & 1;
   }
 
-  /// Whether the vertical part of that drag points along the motion.
+  /// Return whether the vertical part of that drag points along the motion.
   bool drag_drives(const Kinematics& kinematics) const {
     if (!drag_may_drive()) return false;
     const Vector3d up_F = kinematics.R_WF.row(2);
@@ -201,7 +201,7 @@ class AerodynamicPlugin final : public Plugin {
 
   Config config_;
   std::vector<std::string> joint_names_;
-  double fastest_;  ///< rate of a joint below which update() does not look at it [rad/s]
+  double fastest_;  ///< joint rate below which update() ignores the joint [rad/s]
   bool follows_any_turn_;
   Effectiveness effectiveness_;
   void (*add_)(const RotorForces&, const ShownMotion&);
@@ -209,38 +209,37 @@ class AerodynamicPlugin final : public Plugin {
 
 PluginDescriptor describe() {
   using T = TagSpec;
-  const std::string no_effect = "the thesis' tag, without effect there and here";
+  const std::string no_effect = "tag of the thesis; no effect there or here";
   return {
-      "thrust, reaction torque and drag of the rotors (thesis eqs. 2.10-2.32, appendix A.5)",
+      "rotor aerodynamics: thrust, reaction torque and drag (thesis eqs. 2.10-2.32, appendix A.5)",
       tags_of_laws_and({
           T::number("sim_slow", "", "1",
-                    "rotors turn this much slower in the engine than the forces assume")
+                    "slowdown: factor by which the joints turn slower than the forces assume")
               .above(0)
               .from("chapter 4")
               .agreed(),
           T::choice("dragModel", {"appendix", "chapter2"},
-                    "forces as the thesis' plugin computes them, or as its chapter 2 says; the "
-                    "parasitic drag of appendix drives a vehicle tilted beyond 90 degrees, and it "
-                    "feels no wind")
+                    "drag as in the thesis' plugin (appendix) or its chapter 2; appendix ignores "
+                    "wind, and its parasitic drag accelerates a vehicle tilted beyond 90 degrees")
               .from("A.5, (2.28)-(2.31)"),
           T::number("airDensity", "kg/m^3", "",
-                    "density of the air for which the thrust, torque and drag coefficients are: "
-                    "they become those of the world's <atmosphere> at z = 0")
+                    "air density for which the thrust, torque and drag coefficients hold; they are "
+                    "scaled to the world's <atmosphere> at z = 0")
               .above(0)
-              .or_absent("they hold as they are"),
-          T::choice(
-              "reactionTorque", {"thesis", "opposing"},
-              "sign of the reaction torque: with the rotor's spin as in the thesis, or against")
+              .or_absent("not scaled"),
+          T::choice("reactionTorque", {"thesis", "opposing"},
+                    "sign of the reaction torque: along the rotor's spin as in the thesis, or "
+                    "opposing it")
               .from("(2.11), (2.13)"),
           T::choice("reactionOn", {"frame", "rotor"},
-                    "what the reaction torque acts on: the frame as in the thesis, or the rotors, "
-                    "which the air brakes and whose motors hand it on; they coast to a stop, and "
-                    "it always opposes the spin")
+                    "body that takes the reaction torque: the frame as in the thesis, or the "
+                    "rotors with transmission to the frame by the motors; with `rotor`, it opposes "
+                    "the spin and unpowered rotors coast to a stop")
               .from("(2.11)"),
           T::link("frameLink", "link that takes the reaction torque; part of the root body"),
           T::joints("rotorJoints", "the rotors"),
           T::text("effectiveness", "effectiveness",
-                  "topic: of each rotor the share of thrust and reaction torque that is left, 1 "
+                  "topic with the remaining fraction of each rotor's thrust and reaction torque; 1 "
                   "before the first message"),
           T::number("updateRate", "1/s", "", no_effect).at_least(0).or_absent("no effect"),
           T::flag("publishTf", "false", no_effect),

@@ -14,14 +14,14 @@ namespace quadcore::aerodynamic {
 
 using laws::RotorLaws;
 
-/// What the laws take their coefficients from.
+/// Source of the force laws' coefficients.
 struct Given {
   const Parameters& parameters;
-  double density_ratio;  ///< of the air, to that for which the coefficients are
-  double reaction_sign;  ///< 1 for a reaction torque with the spin, -1 against it
+  double density_ratio;  ///< air density divided by that of the coefficients
+  double reaction_sign;  ///< 1 for a reaction torque along the spin, -1 opposing it
   bool appendix;         ///< dragModel
 
-  /// The numbers of a law's tags.
+  /// Return the values of a force law's tags.
   template <std::size_t n>
   std::array<double, n> numbers(const laws::Tag (&tags)[n]) const {
     std::array<double, n> numbers;
@@ -30,7 +30,7 @@ struct Given {
   }
 };
 
-/// The laws of all rotors, which do not act on the rotors of others.
+/// Force laws of all rotors; they do not act on rotors of other plugins.
 struct RotorTable {
   RotorLaws::Places acting;
   RotorRows<RotorLaws::rows> coefficients;
@@ -48,7 +48,7 @@ struct RotorTable {
   }
 };
 
-/// What the tags say, as the force laws take it.
+/// Configuration of the force laws by the tags.
 class Config {
  public:
   Config(const Parameters& p, std::size_t rotor_count, const Atmosphere& air)
@@ -58,11 +58,11 @@ class Config {
   bool appendix;  ///< dragModel
   bool on_rotor;  ///< reactionOn
   std::vector<std::size_t> rotors;
-  double frame_drag;  ///< of chapter 2, on the airframe [N s^2/m^2]
+  double frame_drag;  ///< parasitic drag of chapter 2 on the airframe [N s^2/m^2]
 
-  /// The laws as steps evaluate them. Points into this, and to no shares.
+  /// Return the laws for evaluation in steps. They point into this object, and to no fractions.
   RotorForces summed() const { return law(summed_); }
-  /// The same forces law by law.
+  /// The same forces, law by law.
   RotorForces separate() const { return law(separate_); }
 
  private:
@@ -81,17 +81,18 @@ class Config {
     const bool as_in_thesis = p.choice("reactionTorque") == "thesis";
     if (reacts_on_rotor(p) && as_in_thesis && p.is_set("reactionTorque")) {
       throw InputError(
-          "<reactionOn> rotor lets the air brake the rotors, so that <reactionTorque> cannot be "
-          "thesis; write opposing, or leave it out");
+          "<reactionOn> rotor requires a reaction torque that opposes the spin, but "
+          "<reactionTorque> is thesis. Write opposing, or remove it.");
     }
     return {p, p.has("airDensity") ? air.density() / p.number("airDensity") : 1,
             as_in_thesis && !reacts_on_rotor(p) ? 1.0 : -1.0, p.choice("dragModel") == "appendix"};
   }
 
-  /// Chapter 2: the disc stands across the joint's axis and meets the moving air. Appendix A.5: it
-  /// stands across the propeller link's z, the air is still everywhere, and the reaction turns the
-  /// frame about its own z. On a rotor, whose joint hands it to the frame, the reaction takes that
-  /// back, so that the air's torque is on the vehicle once.
+  /// In chapter 2, the disc is perpendicular to the joint's axis and wind acts on it. In appendix
+  /// A.5, it is perpendicular to the propeller link's z, there is no wind, and the reaction acts on
+  /// the frame about its own z. If the reaction acts on a rotor, the joint transmits it to the
+  /// frame, and the load on the frame is removed, so that the aerodynamic torque acts on the
+  /// vehicle only once.
   RotorForces law(const RotorTable& table) const {
     RotorForces law;
     law.conventions.across_link_z = appendix;

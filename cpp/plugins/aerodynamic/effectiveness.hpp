@@ -8,9 +8,9 @@
 
 namespace quadcore::aerodynamic {
 
-/// The rotors' shares of thrust and reaction torque that are left. They lie at the beginning of the
-/// plugin's state, a number for each rotor of the vehicle, and behind them the number of the
-/// message that they follow, plus one.
+/// The remaining fractions of the rotors' thrust and reaction torque. They are at the start of the
+/// plugin's state, one for each rotor of the vehicle, followed by the number of their message plus
+/// one.
 class Effectiveness {
  public:
   Effectiveness(const PluginSetup& setup, const std::vector<std::size_t>& rotors)
@@ -21,7 +21,7 @@ class Effectiveness {
     for (const std::size_t i : rotors) whole_.number(0, i) = 1;
   }
 
-  /// Numbers of state.
+  /// Return the number of state values.
   Eigen::Index size() const { return size_ + 1; }
 
   void follow(const Sample& sample, PluginState state) const {
@@ -34,7 +34,7 @@ class Effectiveness {
     }
   }
 
-  /// The shares in force: all of each rotor until a step begins.
+  /// Return the effective fractions, which are 1 until a step begins.
   const double* in_force(ConstPluginState state) const {
     return state[size_] != 0 ? state.data() : whole_.data();
   }
@@ -42,7 +42,7 @@ class Effectiveness {
  private:
   std::vector<std::size_t> rotors_;
   RotorRows<1> whole_;
-  Eigen::Index size_;  ///< of the table
+  Eigen::Index size_;  ///< size of the table
   std::size_t topic_;
 };
 

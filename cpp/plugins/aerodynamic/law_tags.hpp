@@ -7,13 +7,13 @@
 #include "quadcore/plugin/tags.hpp"
 
 /// \file
-/// What the laws contribute to the descriptor of the plugin.
+/// The force laws' part of the plugin descriptor.
 
 namespace quadcore::aerodynamic {
 
 using laws::RotorLaws;
 
-/// Calls visit(tag) with each tag of each law.
+/// Call visit(tag) with each tag of each law.
 template <class Visit>
 void for_each_tag(const Visit& visit) {
   RotorLaws::for_each(RotorLaws::Coefficients<double>{}, [&](const auto& law) {
@@ -30,7 +30,7 @@ inline TagSpec spec_of(const laws::Tag& tag) {
   return tag.fallback ? spec : spec.must();
 }
 
-/// The tags of the laws, and behind them others.
+/// Return the tags of the laws, followed by others.
 inline std::vector<TagSpec> tags_of_laws_and(const std::vector<TagSpec>& others) {
   std::vector<TagSpec> tags;
   for_each_tag([&](const laws::Tag& tag) { tags.push_back(spec_of(tag)); });
@@ -38,7 +38,7 @@ inline std::vector<TagSpec> tags_of_laws_and(const std::vector<TagSpec>& others)
   return tags;
 }
 
-/// The names of the laws' wrenches.
+/// Return the names of the laws' wrenches.
 inline std::vector<std::string> terms_of_laws() {
   std::vector<std::string> terms;
   RotorLaws::for_each(RotorLaws::Coefficients<double>{},

@@ -8,13 +8,13 @@ namespace quadcore::aerodynamic {
 
 using laws::Vec3;
 
-/// The motion that an engine shows: its tables, and the frame's numbers.
+/// The motion provided by an engine: its tables and the frame's numbers.
 struct ShownMotion {
   RotorLanes rotors;
   const double* frame;  ///< FrameNumber
 };
 
-/// Of a pack of rotors from rotor i on: see laws/rotor_forces.hpp.
+/// The motion of a pack of rotors starting at rotor i, see laws/rotor_forces.hpp.
 template <class T>
 struct ShownPack {
   const ShownMotion& shown;
@@ -53,7 +53,7 @@ struct ShownPack {
   }
 };
 
-/// Adds forces and reactions of all rotors to their loads, W rotors at once.
+/// Add forces and reactions of all rotors to their loads, W rotors at once.
 template <int W>
 void add_rotor_forces(const RotorForces& law, const ShownMotion& shown);
 

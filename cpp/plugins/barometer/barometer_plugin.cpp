@@ -10,7 +10,7 @@ namespace {
 
 using Errors = sensing::NoiseAndDrift<1>;
 
-/// Static pressure of the world's atmosphere where a link of the frame is.
+/// Static pressure of the world's atmosphere at a link of the frame.
 class BarometerPlugin final
     : public sensing::MountedSensor<messages::Pressure, Errors::kMemorySize> {
  public:
@@ -26,16 +26,16 @@ class BarometerPlugin final
     return messages::Pressure{pressure(sample, height) + error, errors_.variance().value()};
   }
 
-  /// Of a layer whose temperature changes linearly, T = T0 + L z: p = p0 (T/T0)^(-g/(R L)), and
-  /// p0 exp(-g z/(R T0)) of one that is isothermal (ISO 2533).
+  /// Return the pressure of a layer with a linear temperature T = T0 + L z, p = p0 (T/T0)^(-g/(R
+  /// L)), or of an isothermal layer, p0 exp(-g z/(R T0)) (ISO 2533).
   static double pressure(const Sample& sample, double height) {
     const Atmosphere& air = sample.world.atmosphere;
     const double gradient = air.temperature_gradient;
     const double warmth = 1 + gradient * height / air.temperature;
     if (!(warmth > 0)) {
       throw FlightError(sample.time,
-                        "the world's atmosphere is at absolute zero at this height; "
-                        "give it a smaller <temperature_gradient>");
+                        "the world's atmosphere is at absolute zero at this height. Use a smaller "
+                        "<temperature_gradient>.");
     }
     const double g_by_R = 9.80665 / Atmosphere::gas_constant;
     const double exponent = gradient == 0 ? -g_by_R * height / air.temperature
@@ -43,21 +43,21 @@ class BarometerPlugin final
     return air.pressure * elementary::exp(exponent);
   }
 
-  Vector3d p_FS_F_;  ///< of the link's origin [m]
+  Vector3d p_FS_F_;  ///< position of the link's origin [m]
   Errors errors_;
 };
 
 PluginDescriptor describe() {
   using T = TagSpec;
   std::vector<TagSpec> tags = {
-      T::link("link", "where it is mounted"),
+      T::link("link", "link that carries the sensor"),
       T::number("rate", "1/s", "50", "messages per second; at most one per step").above(0),
-      T::text("topic", "pressure", "where the messages are published"),
+      T::text("topic", "pressure", "topic of the messages"),
   };
   Errors::add_tags(tags, "Pa", "the pressure");
   tags.push_back(sensing::Channel::delay_tag());
   tags.push_back(sensing::Channel::dropout_tag());
-  return {"a barometer on a link of the frame", tags, {}, create<BarometerPlugin>};
+  return {"barometer on a link of the frame", tags, {}, create<BarometerPlugin>};
 }
 
 }  // namespace

@@ -7,14 +7,14 @@
 namespace quadcore::battery {
 namespace {
 
-/// What it remembers: whether it has begun, and the charge that is left [A h].
+/// State: whether it has begun, and the remaining charge [A h].
 enum Memory { kBegun, kCharge, kMemorySize };
 
-/// A battery whose voltage falls with its charge and with the current, as Gazebo's
-/// LinearBatteryPlugin has it, E = Ee + (Ef - Ee) q/Q and U = E - R I. Speed controllers that
-/// switch it onto motors at a duty cycle, and measure no speed, turn a rotor in proportion to the
-/// voltage (Bangura, Mahony, IEEE T-RO 33 (2017)): at U/Ef of the speed that is commanded, so that
-/// (U/Ef)^2 is left of thrust and reaction torque, and (U/Ef)^3 of their power.
+/// A battery with a voltage that falls with its charge and with the current, as in Gazebo's
+/// LinearBatteryPlugin: E = Ee + (Ef - Ee) q/Q and U = E - R I. Speed controllers that set a duty
+/// cycle without measuring the speed turn a rotor in proportion to the voltage (Bangura, Mahony,
+/// IEEE T-RO 33 (2017)): at U/Ef of the commanded speed. This leaves (U/Ef)^2 of thrust and
+/// reaction torque and (U/Ef)^3 of their power.
 class BatteryPlugin final : public Plugin {
  public:
   explicit BatteryPlugin(const PluginSetup& setup)
@@ -35,7 +35,7 @@ class BatteryPlugin final : public Plugin {
     if (has_faults_) {
       faults_ = setup.topics.takes(setup.parameters.text("faults"), shares(rotors_.size()));
     }
-    if (empty_ > full_) throw InputError("<emptyVoltage> exceeds <fullVoltage>; swap them");
+    if (empty_ > full_) throw InputError("<emptyVoltage> exceeds <fullVoltage>. Swap them.");
   }
 
   std::size_t state_size() const override { return kMemorySize; }
@@ -74,8 +74,8 @@ class BatteryPlugin final : public Plugin {
   }
 
  private:
-  /// Power of the air's torque at the speed that is commanded, by the cubed joint rate, turning
-  /// either way [W s^3/rad^3].
+  /// Aerodynamic power at the commanded speed divided by the cubed joint rate, for both directions
+  /// of rotation [W s^3/rad^3].
   struct Coefficients {
     double forward, backward;
   };
@@ -84,7 +84,7 @@ class BatteryPlugin final : public Plugin {
     return has_faults_ ? sample.topics[faults_].values[j] : 1;
   }
 
-  /// What the rotors would take from a full battery [W].
+  /// Return the power that the rotors would draw from a full battery [W].
   double power(const Sample& sample) const {
     double power = 0;
     for (std::size_t j = 0; j < rotors_.size(); ++j) {
@@ -101,7 +101,7 @@ class BatteryPlugin final : public Plugin {
   double full_, empty_;  ///< voltages [V]
   double capacity_;      ///< A h
   double resistance_;    ///< ohm
-  double at_start_;      ///< share of the capacity
+  double at_start_;      ///< fraction of the capacity
   double efficiency_;
   std::size_t topic_, effectiveness_, power_, faults_ = 0;
   bool has_faults_;
@@ -112,38 +112,38 @@ PluginDescriptor describe() {
   using T = TagSpec;
   const std::string gazebo = "Gazebo's LinearBatteryPlugin";
   return {
-      "a battery whose voltage falls: rotors lift less at the same command",
+      "battery with falling voltage, which reduces the thrust for a given command",
       {
           T::number("fullVoltage", "V", "",
-                    "open-circuit voltage of a full battery, at which rotors turn as commanded")
+                    "open-circuit voltage of the full battery, at which the rotors follow their "
+                    "commands exactly")
               .must()
               .above(0)
               .from(gazebo),
           T::number("emptyVoltage", "V", "",
-                    "open-circuit voltage of an empty one, linear in the charge in between")
+                    "open-circuit voltage of the empty battery; linear in the charge in between")
               .must()
               .above(0)
               .from(gazebo),
           T::number("capacity", "A h", "",
-                    "charge of a full one; when it is gone, rotors lift "
-                    "nothing any more")
+                    "charge of the full battery; once it is empty, the thrust is zero")
               .must()
               .above(0),
-          T::number("resistance", "ohm", "", "inner resistance").must().at_least(0).from(gazebo),
-          T::number("charge", "", "1", "share of the charge at the start").at_least(0).at_most(1),
+          T::number("resistance", "ohm", "", "internal resistance").must().at_least(0).from(gazebo),
+          T::number("charge", "", "1", "state of charge at the start").at_least(0).at_most(1),
           T::number("efficiency", "", "1",
-                    "of motors and speed controllers: power of the air's reaction torque on the "
-                    "rotors by that of the battery")
+                    "efficiency of motors and speed controllers: aerodynamic rotor power divided "
+                    "by battery power")
               .above(0)
               .at_most(1),
-          T::text("topic", "battery", "where voltage, current and charge are published"),
-          T::text("effectiveness", "effectiveness", "topic that the aerodynamics take"),
+          T::text("topic", "battery", "topic of voltage, current and charge"),
+          T::text("effectiveness", "effectiveness", "topic that the aerodynamics plugin reads"),
           power_tag(),
           T::text("faults", "",
-                  "topic of shares by which the battery multiplies its own: that of the tag "
-                  "effectiveness of libfault_plugin.so, if there is one")
+                  "topic of fractions that multiply the battery's own: use the effectiveness topic "
+                  "of libfault_plugin.so, if present")
               .or_absent("none"),
-          T::joints("rotorJoints", "the rotors that it feeds"),
+          T::joints("rotorJoints", "rotors that the battery supplies"),
       },
       {},
       create<BatteryPlugin>,

@@ -12,7 +12,7 @@ namespace {
 using control::Controller;
 using control::ControllerSetup;
 
-/// Flies a law at a rate of its own: reads odometry and reference, commands the rotors.
+/// Runs a controller at its own rate: reads odometry and reference, and commands the rotors.
 class ControllerPlugin final : public Plugin {
  public:
   explicit ControllerPlugin(const PluginSetup& setup)
@@ -22,13 +22,14 @@ class ControllerPlugin final : public Plugin {
     const Parameters& p = setup.parameters;
     odometry_ = setup.topics.takes(p.text("odometry"), messages::kind_of<messages::Odometry>());
     reference_ = setup.topics.takes(p.text("reference"), messages::kind_of<messages::Reference>());
-    // Late, as whoever flies the law from outside hears of it.
+    // One sample late, like a controller outside the simulation.
     health_ = setup.topics.takes(p.text("health"), shares(rotors_), true);
     command_ = setup.topics.publishes_as_taken(p.text("command"), messages::speeds(rotors_));
     const std::string& vehicle = setup_.gains.vehicle;
     if (!vehicle.empty() && vehicle != setup.model.name) {
-      setup.warnings.push_back("the gains of " + p.text("gains") + " are those of vehicle '" +
-                               vehicle + "', this one is '" + setup.model.name + "'");
+      setup.warnings.push_back("the gains file " + p.text("gains") + " is for vehicle '" + vehicle +
+                               "', but this vehicle is '" + setup.model.name +
+                               "'. Check the gains.");
     }
   }
 
@@ -60,11 +61,11 @@ class ControllerPlugin final : public Plugin {
   }
 
  private:
-  /// Steps flown; then the schedule's and the controller's.
+  /// Number of steps; then the states of schedule and controller.
   enum Memory { kSteps, kSchedule };
 
   ControllerSetup setup_;
-  std::size_t rotors_;  ///< joints, of which some may not be driven
+  std::size_t rotors_;  ///< number of joints, including those without a command
   control::Schedule schedule_;
   std::size_t odometry_, reference_, health_, command_;
   std::unique_ptr<const Controller> controller_;
@@ -74,12 +75,13 @@ class ControllerPlugin final : public Plugin {
 PluginDescriptor describe() {
   using T = TagSpec;
   std::vector<TagSpec> tags = ControllerSetup::tags();
-  tags.insert(tags.end(), {T::text("odometry", "odom", "topic of what is measured"),
-                           T::text("reference", "reference", "topic of where the vehicle is to be"),
-                           T::text("health", health_topic,
-                                   "topic of what is left of the rotors, as the law is told"),
-                           T::text("command", "vel_cmd", "topic of the rotors' speeds")});
-  return {"flies a control law", tags, {}, create<ControllerPlugin>};
+  tags.insert(tags.end(),
+              {T::text("odometry", "odom", "topic of the measured state"),
+               T::text("reference", "reference", "topic of the reference"),
+               T::text("health", health_topic,
+                       "topic of the remaining rotor effectiveness known to the controller"),
+               T::text("command", "vel_cmd", "topic of the commanded rotor speeds")});
+  return {"runs a built-in controller", tags, {}, create<ControllerPlugin>};
 }
 
 }  // namespace

@@ -10,37 +10,40 @@
 namespace quadcore::fault {
 namespace {
 
-/// What is left of a rotor's lift, or of its motor's torque, from a time on.
+/// The remaining fraction of a rotor's thrust, or of its motor's torque, from a given time on.
 struct Event {
   double time;        ///< s
-  std::size_t rotor;  ///< from 0
+  std::size_t rotor;  ///< counted from 0
   double share;
 };
 
-/// The events that a tag lists: time and rotor, and the share unless it is 0.
+/// Return the events of a tag: time and rotor, and the remaining fraction unless it is always 0.
 std::vector<Event> events(const Parameters& p, const std::string& tag, std::size_t numbers,
                           std::size_t rotors) {
   const std::vector<double>& n = p.numbers(tag);
-  const std::string row = numbers == 3 ? "three numbers for each: time, rotor, share"
-                                       : "two numbers for each: time, rotor";
+  const std::string row = numbers == 3
+                              ? "three numbers for each fault: time, rotor, remaining fraction"
+                              : "two numbers for each fault: time, rotor";
   const auto refuse = [&](const std::string& why) { throw InputError("<" + tag + "> " + why); };
   if (n.size() % numbers != 0) {
-    refuse("has " + std::to_string(n.size()) + " numbers; write " + row);
+    refuse("has " + std::to_string(n.size()) + " numbers. Write " + row + ".");
   }
   std::vector<Event> events;
   for (std::size_t i = 0; i < n.size(); i += numbers) {
     const std::string which = "event " + std::to_string(i / numbers + 1);
     const double rotor = n[i + 1], share = numbers == 3 ? n[i + 2] : 0;
-    if (n[i] < 0) refuse(which + " is before the start; write a time >= 0");
+    if (n[i] < 0) refuse(which + " is before the start. Use a time >= 0.");
     if (!(rotor >= 1 && rotor <= static_cast<double>(rotors) && rotor == std::floor(rotor))) {
-      refuse(which + " is of no rotor; they count from 1 to " + std::to_string(rotors));
+      refuse(which + " names a rotor that does not exist. Use a number from 1 to " +
+             std::to_string(rotors) + ".");
     }
-    if (!(share >= 0 && share <= 1)) refuse(which + " leaves no share; write one from 0 to 1");
+    if (!(share >= 0 && share <= 1))
+      refuse(which + " has an invalid remaining fraction. Use a number from 0 to 1.");
     const Event event{n[i], static_cast<std::size_t>(rotor) - 1, share};
     for (const Event& other : events) {
       if (other.time == event.time && other.rotor == event.rotor) {
-        refuse(which + " is a second one of rotor " + std::to_string(event.rotor + 1) +
-               " at its time; keep one of them");
+        refuse(which + " repeats rotor " + std::to_string(event.rotor + 1) +
+               " at the same time. Keep one of them.");
       }
     }
     events.push_back(event);
@@ -50,12 +53,12 @@ std::vector<Event> events(const Parameters& p, const std::string& tag, std::size
   return events;
 }
 
-/// What it remembers: whether it has begun, how many events of each kind are past, and how many
-/// messages it has followed; then of each rotor what it is like, and since when.
+/// State: whether it has begun, the number of past events of each kind, and the number of processed
+/// messages; then the state of each rotor and the time of its last change.
 enum Memory { kBegun, kLossesPast, kCutsPast, kFollowed, kRotors };
 enum OfRotor { kLost, kSince, kOfRotor };
 
-/// Rotors that lose thrust, and motors that are cut, by time or by topic.
+/// Loss of rotor thrust and motor failures, by time or by topic.
 class FaultPlugin final : public Plugin {
  public:
   explicit FaultPlugin(const PluginSetup& setup)
@@ -67,7 +70,7 @@ class FaultPlugin final : public Plugin {
             {"fault",
              {"rotor", "effectiveness", "power"},
              {},
-             "a rotor, counted from 1, and the shares that it keeps from now on"})),
+             "a rotor, counted from 1, and the fractions that remain from now on"})),
         effectiveness_(
             setup.topics.publishes(setup.parameters.text("effectiveness"),
                                    shares(rotors_, "each rotor's thrust and reaction torque"))),
@@ -97,27 +100,29 @@ class FaultPlugin final : public Plugin {
   }
 
  private:
-  /// What is published of one rotor.
+  /// Message on one rotor.
   void follow(const Sample& sample, double& followed) const {
     const Topic& said = sample.topics[topic_];
     if (said.count == followed) return;
     if (said.count > followed + 1) {
       throw FlightError(sample.time, "topic '" + said.name +
-                                         "': two messages since the last step, of which the first "
-                                         "is lost; publish one per step");
+                                         "': two messages were published in one step, so the first "
+                                         "is lost. Publish one per step.");
     }
     followed = said.count;
     const double rotor = said.values[0];
     if (!(rotor >= 1 && rotor <= static_cast<double>(rotors_) && rotor == std::floor(rotor))) {
-      throw FlightError(sample.time, "topic '" + said.name + "': rotor is none; publish 1 to " +
-                                         std::to_string(rotors_));
+      throw FlightError(sample.time,
+                        "topic '" + said.name +
+                            "': this rotor does not exist. Publish a number from 1 to " +
+                            std::to_string(rotors_));
     }
     const std::size_t j = static_cast<std::size_t>(rotor) - 1;
     sample.topics.publish(effectiveness_, sample.time)[j] = said.values[1];
     sample.topics.publish(power_, sample.time)[j] = said.values[2];
   }
 
-  /// Tells control laws of each rotor that has been as it is for the time of detection.
+  /// Publish the state of each rotor to controllers once it has lasted for the detection time.
   void detect(const Sample& sample, PluginState state) const {
     const Topic& health = sample.topics[*health_];
     if (health.count == 0) {
@@ -135,47 +140,47 @@ class FaultPlugin final : public Plugin {
     }
   }
 
-  /// A message holds what the last one held, but for what happened since.
+  /// Publish the last values, changed by the events since.
   static void let_happen(const std::vector<Event>& events, std::size_t topic, const Sample& sample,
                          double& past) {
     for (std::size_t i = count_of(past, events.size()); i < events.size(); ++i, ++past) {
       const Event& event = events[i];
-      if (sample.time < event.time - 1e-9) return;  // the clock is a sum of steps
+      if (sample.time < event.time - 1e-9) return;  // the time is a sum of steps
       sample.topics.publish(topic, sample.time)[event.rotor] = event.share;
     }
   }
 
   std::size_t rotors_;
-  std::vector<Event> losses_, cuts_;  ///< by time
+  std::vector<Event> losses_, cuts_;  ///< sorted by time
   std::size_t topic_, effectiveness_, power_;
-  std::vector<std::size_t> joints_;    ///< of the rotors
-  std::optional<std::size_t> health_;  ///< none: no controller reads it
+  std::vector<std::size_t> joints_;    ///< joints of the rotors
+  std::optional<std::size_t> health_;  ///< topic; none if no controller reads it
   double detection_ = 0;               ///< s
 };
 
 PluginDescriptor describe() {
   using T = TagSpec;
   return {
-      "faults of rotors: lost thrust, cut motors",
+      "rotor faults: loss of thrust and motor failures",
       {
           T::numbers("losses", "s", "",
-                     "three numbers for each: when, which rotor, counted from 1, and the share of "
-                     "its thrust and reaction torque that is left from then on, 0 to 1")
+                     "three numbers for each fault: time, rotor (counted from 1), and the fraction "
+                     "of its thrust and reaction torque that remains, 0 to 1")
               .or_absent("none"),
           T::numbers("cuts", "s", "",
-                     "two numbers for each: when, and of which rotor, counted from 1, the motor "
-                     "is cut: the rotor turns freely")
+                     "two numbers for each motor failure: time and rotor (counted from 1); the "
+                     "rotor then turns freely")
               .or_absent("none"),
           T::text("topic", "fault",
-                  "where a rotor, counted from 1, its effectiveness and its power are published, "
-                  "to be so at once"),
-          T::text("effectiveness", "effectiveness", "topic that the aerodynamics take"),
-          T::text("power", "power", "topic that the motors take"),
-          T::number("detection", "s", "", "time from a change of a rotor until controllers read it")
+                  "topic with a rotor (counted from 1), its effectiveness and its power, which "
+                  "take effect at once"),
+          T::text("effectiveness", "effectiveness", "topic that the aerodynamics plugin reads"),
+          T::text("power", "power", "topic that the motor plugin reads"),
+          T::number("detection", "s", "", "time from a fault until controllers receive it")
               .at_least(0)
               .or_absent("never"),
-          T::text("health", health_topic, "topic that controllers take"),
-          T::joints("rotorJoints", "the rotors, in the order in which they are counted"),
+          T::text("health", health_topic, "topic that controllers read"),
+          T::joints("rotorJoints", "the rotors, in the order in which they are numbered"),
       },
       {},
       create<FaultPlugin>,

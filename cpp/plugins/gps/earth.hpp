@@ -8,8 +8,8 @@
 
 namespace quadcore::gps {
 
-/// The ellipsoid of WGS 84 (NIMA TR8350.2) where a world lies on it, taken as level: its radii of
-/// curvature say how many degrees a metre is.
+/// The WGS 84 ellipsoid (NIMA TR8350.2) at the world's origin, treated as level. Its radii of
+/// curvature convert metres to degrees.
 class Earth {
  public:
   explicit Earth(const Origin& origin) : origin_(origin) {
@@ -20,7 +20,7 @@ class Earth {
     east_ = degrees / ((a / w + origin.altitude) * cos);
   }
 
-  /// Says where on Earth the position of a fix is.
+  /// Set the position on Earth of a fix from its position in the world.
   void locate(messages::Fix& fix) const {
     fix.latitude = origin_.latitude + north_ * fix.position.y();
     fix.longitude = std::remainder(origin_.longitude + east_ * fix.position.x(), 360);

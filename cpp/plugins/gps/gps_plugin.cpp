@@ -8,7 +8,7 @@ namespace {
 
 using Errors = sensing::NoiseAndDrift<3>;
 
-/// Position and velocity of a link of the frame as a satellite receiver measures them.
+/// Position and velocity of a link of the frame as measured by a GPS receiver.
 class GpsPlugin final : public sensing::MountedSensor<messages::Fix, Errors::kMemorySize> {
  public:
   explicit GpsPlugin(const PluginSetup& setup)
@@ -38,9 +38,9 @@ class GpsPlugin final : public sensing::MountedSensor<messages::Fix, Errors::kMe
     return fix;
   }
 
-  Vector3d p_FS_F_;  ///< of the link's origin [m]
+  Vector3d p_FS_F_;  ///< position of the link's origin [m]
   Earth earth_;
-  Errors errors_;          ///< of the position, along the world's axes [m]
+  Errors errors_;          ///< errors of the position in world axes [m]
   double velocity_noise_;  ///< m/s
 };
 
@@ -50,23 +50,23 @@ PluginDescriptor describe() {
     return T::number(name, unit, "0", std::string("standard deviation of ") + of).at_least(0);
   };
   return {
-      "a satellite receiver on a link of the frame",
+      "GPS receiver on a link of the frame",
       {
-          T::link("link", "where its antenna is"),
+          T::link("link", "link with the antenna at its origin"),
           T::number("rate", "1/s", "10", "messages per second; at most one per step").above(0),
-          T::text("topic", "fix", "where the messages are published"),
-          T::number("latitude", "deg", "0", "of the world's origin, positive north")
+          T::text("topic", "fix", "topic of the messages"),
+          T::number("latitude", "deg", "0", "latitude of the world's origin, positive north")
               .at_least(-89)
               .at_most(89),
-          T::number("longitude", "deg", "0", "of the world's origin, positive east")
+          T::number("longitude", "deg", "0", "longitude of the world's origin, positive east")
               .at_least(-180)
               .at_most(180),
-          T::number("altitude", "m", "0", "of the world's origin").at_least(-1000),
-          deviation("horizontalNoise", "m", "the white noise on x and y each"),
+          T::number("altitude", "m", "0", "altitude of the world's origin").at_least(-1000),
+          deviation("horizontalNoise", "m", "the white noise on each of x and y"),
           deviation("verticalNoise", "m", "the white noise on z"),
           deviation("horizontalDrift", "m",
-                    "an error of x and y each that drifts, a Gauss-Markov process"),
-          deviation("verticalDrift", "m", "an error of z that drifts likewise"),
+                    "a drifting error of each of x and y, a Gauss-Markov process"),
+          deviation("verticalDrift", "m", "a drifting error of z, a Gauss-Markov process"),
           Errors::drift_time_tag(),
           deviation("velocityNoise", "m/s", "the white noise on each component of the velocity"),
           sensing::Channel::delay_tag(),

@@ -7,11 +7,11 @@
 namespace quadcore::ground_effect {
 namespace {
 
-/// Lowest height of a rotor for which the formula holds, in radii.
+/// Minimum height of a rotor for the formula, in radii.
 constexpr double lowest = 0.5;
 
-/// What the ground adds to the thrust of a rotor of radius R at height z (Cheeseman, Bennett, 1955,
-/// in hover): T/T0 = 1/(1 - (R/4z)^2).
+/// Additional thrust of a rotor of radius R at height z (Cheeseman, Bennett, 1955, in hover):
+/// T/T0 = 1/(1 - (R/4z)^2).
 class GroundEffectPlugin final : public Plugin {
  public:
   explicit GroundEffectPlugin(const PluginSetup& setup)
@@ -21,14 +21,14 @@ class GroundEffectPlugin final : public Plugin {
             setup.topics.takes(setup.parameters.text("effectiveness"), shares(rotors_.size()))) {
     if (!setup.world.ground_plane) {
       setup.warnings.push_back(
-          "the world has no ground plane, and what has none near has no "
-          "ground effect; take a world with one");
+          "the world has no ground plane, so there is no ground effect. Use a world with a ground "
+          "plane.");
     }
     ground_ = setup.world.ground_plane;
   }
 
-  /// Of each rotor the share of its thrust that is left; all 0 until a step begins, so that the
-  /// vehicle is described as it is far from the ground.
+  /// Relative thrust of each rotor; all 0 until a step begins, such that the description of the
+  /// vehicle is that far from the ground.
   std::size_t state_size() const override { return rotors_.size(); }
 
   void prepare(const VehicleDescription& vehicle) override {
@@ -68,14 +68,14 @@ class GroundEffectPlugin final : public Plugin {
 PluginDescriptor describe() {
   using T = TagSpec;
   return {
-      "ground effect: near the ground a rotor lifts more",
+      "ground effect: increased thrust near the ground",
       {
           T::number("rotorRadius", "m", "0.075",
-                    "radius of a rotor, R; T/T0 = 1/(1 - (R/4z)^2) at the height z of its centre "
-                    "of mass, below R/2 as at R/2")
+                    "rotor radius R; T/T0 = 1/(1 - (R/4z)^2) at the height z of the rotor's centre "
+                    "of mass, constant below R/2")
               .above(0)
               .from("Cheeseman, Bennett, ARC R&M 3021 (1955)"),
-          T::text("effectiveness", "effectiveness", "topic that the aerodynamics take"),
+          T::text("effectiveness", "effectiveness", "topic that the aerodynamics plugin reads"),
           T::joints("rotorJoints", "the rotors"),
       },
       {"ground_effect"},

@@ -6,8 +6,8 @@
 namespace quadcore::imu {
 namespace {
 
-/// What it remembers: whether it is turned on; time, velocity (world axes) and orientation of the
-/// last sample; how many random numbers it has drawn; the errors.
+/// State: whether it is turned on; time, velocity (world axes) and orientation of the last sample;
+/// the number of random numbers drawn; the errors.
 enum Memory {
   kOn,
   kTime,
@@ -19,8 +19,8 @@ enum Memory {
   kMemorySize = kAccelerometer + Triad::kMemorySize
 };
 
-/// Angular velocity and specific force of a link of the frame, in the link's axes: the mean over
-/// the time since the last sample, as a unit that integrates its rates reports them.
+/// Angular velocity and specific force of a link of the frame, in the link's axes: the means over
+/// the time since the last sample, as reported by a sensor that integrates its rates.
 class ImuPlugin final : public sensing::MountedSensor<messages::Imu, kMemorySize> {
  public:
   explicit ImuPlugin(const PluginSetup& setup)
@@ -39,7 +39,7 @@ class ImuPlugin final : public sensing::MountedSensor<messages::Imu, kMemorySize
     }
     const Vector3d v_WS_W = sample.kinematics.v_WS_W(X_FS_.xyz);
     const Quaterniond q_WS = sample.kinematics.q_WF * q_FS_;
-    // A motion that was set has no time over which the unit could take the mean.
+    // There is no interval to average over after the motion was set.
     std::optional<messages::Imu> message;
     if (!sample.jumped) message = mean(sample, v_WS_W, q_WS, memory);
     memory[kTime] = sample.time;
@@ -52,7 +52,7 @@ class ImuPlugin final : public sensing::MountedSensor<messages::Imu, kMemorySize
     return {memory.data() + begin, Triad::kMemorySize};
   }
 
-  /// What the unit measures over the time since the last sample.
+  /// Return the measurement over the time since the last sample.
   messages::Imu mean(const Sample& sample, const Vector3d& v_WS_W, const Quaterniond& q_WS,
                      PluginState memory) const {
     const double period = sample.time - memory[kTime];
@@ -70,9 +70,9 @@ class ImuPlugin final : public sensing::MountedSensor<messages::Imu, kMemorySize
     return message;
   }
 
-  /// The vector that, constant in axes that turn steadily, has a mean in those axes where they
-  /// stood at the beginning: the inverse of the integral of the rotation, the left Jacobian of
-  /// SO(3) (T. D. Barfoot, "State Estimation for Robotics", 2017, eq. (7.76b)).
+  /// Return the vector that is constant in steadily rotating axes and has a given mean in the
+  /// initial axes: the inverse of the integral of the rotation, the left Jacobian of SO(3) (T. D.
+  /// Barfoot, "State Estimation for Robotics", 2017, eq. (7.76b)).
   static Vector3d of_turning_axes(const Vector3d& turn, const Vector3d& mean) {
     const double square = turn.squaredNorm();
     double factor = 1.0 / 12 + square * (1.0 / 720 + square / 30240);
@@ -83,7 +83,7 @@ class ImuPlugin final : public sensing::MountedSensor<messages::Imu, kMemorySize
     return mean - turn.cross(mean) / 2 + factor * turn.cross(turn.cross(mean));
   }
 
-  /// Axis times angle, at most pi, of a rotation.
+  /// Return axis times angle of a rotation, with an angle of at most pi.
   static Vector3d turn(const Quaterniond& q) {
     const double sine = q.vec().norm();
     if (sine == 0) return Vector3d::Zero();
@@ -91,25 +91,25 @@ class ImuPlugin final : public sensing::MountedSensor<messages::Imu, kMemorySize
     return sign * 2 * elementary::atan2(sine, sign * q.w()) / sine * q.vec();
   }
 
-  Pose X_FS_;         ///< of the link in the frame
-  Quaterniond q_FS_;  ///< the same turn
+  Pose X_FS_;         ///< pose of the link in the frame
+  Quaterniond q_FS_;  ///< orientation of the link in the frame
   Triad gyroscope_, accelerometer_;
 };
 
 PluginDescriptor describe() {
   using T = TagSpec;
   std::vector<TagSpec> tags = {
-      T::link("link", "where it is mounted; its axes are the unit's"),
+      T::link("link", "link that carries the sensor; its axes are the sensor's axes"),
       T::number("rate", "1/s", "200", "samples per second; at most one per step").above(0),
-      T::text("topic", "imu", "where the messages are published"),
+      T::text("topic", "imu", "topic of the messages"),
   };
   Triad::add_tags(tags, "gyro", "the angular velocity", "rad/s");
   Triad::add_tags(tags, "accelerometer", "the specific force", "m/s^2");
   tags.push_back(sensing::Channel::delay_tag());
   tags.push_back(sensing::Channel::dropout_tag());
   return {
-      "an inertial measurement unit on a link of the frame; in gazebo11 and ode it measures the "
-      "rate at the end of each step, with which the step turns the vehicle",
+      "inertial measurement unit on a link of the frame; in gazebo11 and ode it measures the "
+      "angular velocity at the end of each step, with which that step rotates the vehicle",
       tags,
       {},
       create<ImuPlugin>};

@@ -7,8 +7,8 @@
 
 namespace quadcore::imu {
 
-/// The errors of three like sensors at right angles, in the units of data sheets. Their memory: the
-/// bias that was there when they were turned on, the one that drifts and the one that walks.
+/// Errors of three orthogonal sensors of one kind, in the units of data sheets. Their memory
+/// consists of the constant bias, the drifting bias and the random-walk bias.
 class Triad {
  public:
   enum Memory { kBias, kDrift = kBias + 3, kWalk = kDrift + 3, kMemorySize = kWalk + 3 };
@@ -20,17 +20,17 @@ class Triad {
         drift_time_(p.number(name + "DriftTime")),
         walk_(p.number(name + "Walk")) {}
 
-  /// Of the noise on the mean over a period [s].
+  /// Return the standard deviation of the noise on the mean over a period [s].
   double variance(double period) const { return noise_ * noise_ / period; }
 
-  /// As they are turned on; the drift is stationary.
+  /// Initialise the errors; the drift starts in its stationary state.
   void begin(std::uint64_t seed, double& draws, Eigen::Ref<VectorXd> memory) const {
     memory.segment<3>(kBias) = bias_ * sensing::normal_vector(seed, draws);
     memory.segment<3>(kDrift) = drift_ * sensing::normal_vector(seed, draws);
     memory.segment<3>(kWalk).setZero();
   }
 
-  /// Adds the errors to a mean over a period.
+  /// Add the errors to a mean over a period.
   Vector3d apply(const Vector3d& truth, double period, std::uint64_t seed, double& draws,
                  Eigen::Ref<VectorXd> memory) const {
     const double decay = elementary::exp(-period / drift_time_);
@@ -42,36 +42,36 @@ class Triad {
            noise_ / std::sqrt(period) * sensing::normal_vector(seed, draws);
   }
 
-  /// Rows of the plugin's table; `unit` without what a density or a walk has in addition.
+  /// Add rows to the plugin's table. `unit` is the unit without the factor of a density or a random
+  /// walk.
   static void add_tags(std::vector<TagSpec>& tags, const std::string& name, const std::string& of,
                        const std::string& unit) {
     using T = TagSpec;
-    tags.push_back(T::number(name + "Noise", unit + "/sqrt(Hz)", "0",
-                             "density of the white noise of " + of +
-                                 ", N; its Allan deviation is "
-                                 "N/sqrt(tau)")
-                       .at_least(0)
-                       .from("IEEE 952, C.1.1"));
-    tags.push_back(T::number(name + "Bias", unit, "0",
-                             "standard deviation of the bias of " + of + " from flight to flight")
-                       .at_least(0));
     tags.push_back(
-        T::number(name + "Drift", unit, "0",
-                  "standard deviation of a bias of " + of +
-                      " that drifts, one Gauss-"
-                      "Markov process; its Allan deviation is at most 0.618 of it, at 1.89 "
-                      "of its time: for a bias instability B, 1.075 B")
+        T::number(name + "Noise", unit + "/sqrt(Hz)", "0",
+                  "density of the white noise of " + of + ", N; its Allan deviation is N/sqrt(tau)")
+            .at_least(0)
+            .from("IEEE 952, C.1.1"));
+    tags.push_back(
+        T::number(name + "Bias", unit, "0",
+                  "standard deviation of the constant bias of " + of + " over all flights")
+            .at_least(0));
+    tags.push_back(
+        T::number(
+            name + "Drift", unit, "0",
+            "standard deviation of the drifting bias of " + of +
+                ", a Gauss-Markov process. Its Allan deviation has the maximum 0.618 times this "
+                "value at 1.89 times the correlation time; for a bias instability B, use 1.075 B")
             .at_least(0)
             .from("IEEE 952, C.1.5"));
-    tags.push_back(T::number(name + "DriftTime", "s", "1000", "correlation time of that drift")
+    tags.push_back(T::number(name + "DriftTime", "s", "1000", "correlation time of the drift")
                        .above(0)
                        .from("IEEE 952, C.1.5"));
-    tags.push_back(T::number(name + "Walk", unit + "/sqrt(s)", "0",
-                             "random walk of the bias of " + of +
-                                 ", K; its Allan deviation is K "
-                                 "sqrt(tau/3)")
-                       .at_least(0)
-                       .from("IEEE 952, C.1.4"));
+    tags.push_back(
+        T::number(name + "Walk", unit + "/sqrt(s)", "0",
+                  "random walk of the bias of " + of + ", K; its Allan deviation is K sqrt(tau/3)")
+            .at_least(0)
+            .from("IEEE 952, C.1.4"));
   }
 
  private:

@@ -7,7 +7,7 @@ namespace {
 
 using Errors = sensing::NoiseAndDrift<3>;
 
-/// The world's magnetic field, which is the same everywhere, in the axes of a link of the frame.
+/// The uniform magnetic field of the world in the axes of a link of the frame.
 class MagnetometerPlugin final
     : public sensing::MountedSensor<messages::Field, Errors::kMemorySize> {
  public:
@@ -21,21 +21,21 @@ class MagnetometerPlugin final
     return messages::Field{B_S + errors_.next(sample, memory), errors_.variance().x()};
   }
 
-  Matrix3d R_FS_;  ///< of the link in the frame
+  Matrix3d R_FS_;  ///< orientation of the link in the frame
   Errors errors_;
 };
 
 PluginDescriptor describe() {
   using T = TagSpec;
   std::vector<TagSpec> tags = {
-      T::link("link", "where it is mounted; its axes are the unit's"),
+      T::link("link", "link that carries the sensor; its axes are the sensor's axes"),
       T::number("rate", "1/s", "50", "messages per second; at most one per step").above(0),
-      T::text("topic", "magnetic_field", "where the messages are published"),
+      T::text("topic", "magnetic_field", "topic of the messages"),
   };
   Errors::add_tags(tags, "T", "each component of the field");
   tags.push_back(sensing::Channel::delay_tag());
   tags.push_back(sensing::Channel::dropout_tag());
-  return {"a magnetometer on a link of the frame", tags, {}, create<MagnetometerPlugin>};
+  return {"magnetometer on a link of the frame", tags, {}, create<MagnetometerPlugin>};
 }
 
 }  // namespace

@@ -11,12 +11,11 @@
 namespace quadcore::motor {
 namespace {
 
-/// Steps that a delay may hold.
+/// Maximum delay in steps.
 constexpr double longest_delay = 10000;
 
-/// Motors with a lag of first order behind a speed controller that answers late: the torque about
-/// the joint is J (W* - W)/tau, tau being one while the rotor speeds up and another while it slows
-/// down.
+/// Motors with a first-order lag and a delayed speed controller. The torque about the joint is J
+/// (W* - W)/tau, with different tau for acceleration and deceleration.
 class MotorPlugin final : public Plugin {
  public:
   explicit MotorPlugin(const PluginSetup& setup)
@@ -32,14 +31,14 @@ class MotorPlugin final : public Plugin {
     if (1 / std::min(up_, down_) > setup.fastest_decay) {
       std::ostringstream what;
       what << "a time constant is too short for the step: below " << 1 / setup.fastest_decay
-           << " s this engine makes an error of the speed grow; write a longer one, or take a "
-              "smaller step";
+           << " s the rotor speed becomes unstable in this engine. Use a longer time constant or a "
+              "smaller step.";
       setup.warnings.push_back(what.str());
     }
   }
 
-  /// Whether a command is followed, and of each rotor its target [rad/s] and the share of its
-  /// torque; then the commands of the last steps, in a ring, and how many steps have begun.
+  /// Whether a command is followed; target [rad/s] and remaining torque fraction of each rotor;
+  /// then a ring buffer of the last steps' commands and the number of steps begun.
   std::size_t state_size() const override { return 1 + 2 * rotors_.size() + ring_size() + 1; }
 
   void describe_rotors(std::vector<RotorDescription>& rotors) const override {
@@ -66,7 +65,7 @@ class MotorPlugin final : public Plugin {
     now[0] = command.count > 0 ? 1 : 0;
     for (Eigen::Index j = 0; j < n; ++j) now[1 + j] = command.values[static_cast<std::size_t>(j)];
     if (command.count > 0) limit_.count(sample, command.values);
-    const auto then = slot(steps + 1);  // the oldest; of zeros until the ring is full
+    const auto then = slot(steps + 1);  // the oldest command; zeros until the ring is full
     state[0] = then[0];
     for (std::size_t j = 0; j < rotors_.size(); ++j) {
       const auto at = static_cast<Eigen::Index>(j);
@@ -77,7 +76,7 @@ class MotorPlugin final : public Plugin {
   }
 
   void forces(const Kinematics& kinematics, ConstPluginState state, Loads& loads) const override {
-    if (state[0] == 0) return;  // the motors are free until the first command
+    if (state[0] == 0) return;  // the motors turn freely until the first command
     const auto n = static_cast<Eigen::Index>(rotors_.size());
     for (std::size_t j = 0; j < rotors_.size(); ++j) {
       const auto at = static_cast<Eigen::Index>(j);
@@ -93,8 +92,8 @@ class MotorPlugin final : public Plugin {
     const double steps = std::floor(delay / dt + 0.5);
     if (std::abs(steps * dt - delay) > 1e-6 * dt || steps > longest_delay) {
       std::ostringstream what;
-      what << "<delay> " << delay << " is no whole number of steps of " << dt << " s, at most "
-           << longest_delay << "; write " << std::min(steps, longest_delay) * dt;
+      what << "<delay> " << delay << " is not a whole number of steps of " << dt << " s, at most "
+           << longest_delay << ". Use " << std::min(steps, longest_delay) * dt << '.';
       throw InputError(what.str());
     }
     return static_cast<std::size_t>(steps);
@@ -102,7 +101,7 @@ class MotorPlugin final : public Plugin {
   std::size_t ring_size() const { return (late_ + 1) * (rotors_.size() + 1); }
 
   std::vector<std::size_t> rotors_;
-  std::vector<double> moments_;  ///< about the joints' axes [kg m^2]
+  std::vector<double> moments_;  ///< moments of inertia about the joints' axes [kg m^2]
   double up_, down_;             ///< s
   double sim_slow_;
   SpeedLimit limit_;
@@ -114,27 +113,27 @@ PluginDescriptor describe() {
   using T = TagSpec;
   const std::string rotors = "RotorS";
   return {
-      "motors that follow their commands with a lag of first order, in place of a PID",
+      "motors that follow their commands with a first-order lag; replaces the PID",
       {
-          T::number("timeConstantUp", "s", "0.0125", "time constant of a rotor that speeds up")
+          T::number("timeConstantUp", "s", "0.0125", "time constant while the rotor accelerates")
               .above(0)
               .from(rotors)
               .scaling(Effect::lag),
-          T::number("timeConstantDown", "s", "0.025", "time constant of a rotor that slows down")
+          T::number("timeConstantDown", "s", "0.025", "time constant while the rotor decelerates")
               .above(0)
               .from(rotors)
               .scaling(Effect::lag),
           T::number("delay", "s", "0",
-                    "time that a command takes to the motors, a whole number of steps")
+                    "delay from a command to the motors, a whole number of steps")
               .at_least(0),
-          T::number("sim_slow", "", "1", "commands are divided by this")
+          T::number("sim_slow", "", "1", "slowdown: commands are divided by this factor")
               .above(0)
               .from("chapter 4")
               .agreed(),
           SpeedLimit::limit_tag(),
           SpeedLimit::topic_tag(),
           power_tag(),
-          T::joints("rotorJoints", "the rotors, in the order of the command's numbers"),
+          T::joints("rotorJoints", "the rotors, in the order of the command"),
       },
       {},
       create<MotorPlugin>,

@@ -5,7 +5,7 @@
 
 namespace quadcore::motorpid {
 
-/// Adds the torques of all rotors to their loads, W rotors at once.
+/// Add the torques of all rotors to their loads, W rotors at once.
 template <int W>
 void add_motor_torques(const MotorTorques& law, const RotorLanes& rotors);
 

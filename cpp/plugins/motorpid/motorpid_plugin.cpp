@@ -18,8 +18,8 @@ namespace {
 
 struct Config {
   double kp, ki, kd, i_max, i_min, sim_slow;
-  bool samples;            ///< whether integral or derivative act
-  double command_timeout;  ///< s; infinite if there is none
+  bool samples;            ///< whether the integral or the derivative acts
+  double command_timeout;  ///< s; infinite without a timeout
   std::vector<std::size_t> rotors;
 
   explicit Config(const Parameters& p)
@@ -34,10 +34,11 @@ struct Config {
         rotors(p.joints("rotorJoints")) {}
 };
 
-/// Joint-velocity PID as Gazebo's JointController runs it for the thesis' appendix A.4, in slowed
-/// units: e = W - W_target, torque = -kp e - I - kd (e - e_previous)/dt with I = ki sum(e dt)
-/// clamped to [iMin, iMax]. The proportional law is continuous, part of the force law; integral and
-/// derivative are sampled once per step. Until the first command the motors are free.
+/// PID on the joint velocity as run by Gazebo's JointController for the thesis' appendix A.4, in
+/// slowed-down units: e = W - W_target, torque = -kp e - I - kd (e - e_previous)/dt with I = ki
+/// sum(e dt) clamped to [iMin, iMax]. The proportional part is continuous and part of the force
+/// law; integral and derivative are sampled once per step. Until the first command the motors turn
+/// freely.
 class MotorPidPlugin final : public Plugin {
  public:
   static constexpr const char* law_interface = quadcore::law_interface;
@@ -55,11 +56,11 @@ class MotorPidPlugin final : public Plugin {
     static constexpr laws::ForEachWidth<void(const MotorTorques&, const RotorLanes&)> widths{
         &add_motor_torques<1>, &add_motor_torques<2>, &add_motor_torques<4>, &add_motor_torques<8>};
     add_ = widths[lane_width(setup.model.joints.size())];
-    if (config_.i_min > config_.i_max) throw InputError("<iMin> exceeds <iMax>; swap them");
+    if (config_.i_min > config_.i_max) throw InputError("<iMin> exceeds <iMax>. Swap them.");
     if (config_.ki != 0 && config_.i_min == 0 && config_.i_max == 0) {
       setup.warnings.push_back(
-          "<ki> has no effect while <iMax> and <iMin> are 0, as in the thesis; set them to the "
-          "largest and smallest integral torque in N m");
+          "<ki> has no effect while <iMax> and <iMin> are 0, as in the thesis. Set them to the "
+          "maximum and minimum integral torque in N m.");
     }
     for (const std::size_t i : config_.rotors) {
       warn_if_stiff(setup, i);
@@ -87,14 +88,15 @@ class MotorPidPlugin final : public Plugin {
     if (command.count == 0) return;
     const bool stale = sample.time - command.stamp > config_.command_timeout;
     const Topic& power = sample.topics[power_];
-    // Counts only grow: a message on either topic makes another number.
+    // The counts only increase, so a message on either topic changes this number.
     const double number = stale ? -1 - power.count : command.count + power.count;
     if (!stale) limit_.count(sample, command.values);
     for (std::size_t j = 0; j < config_.rotors.size(); ++j) {
       const std::size_t i = config_.rotors[j];
       double* rows = state.data() + rotor_offset(MemoryRow::count, i);
       const auto memory = [rows](std::size_t row) -> double& { return rows[row * widest_lanes]; };
-      if (memory(MemoryRow::followed) == number && !config_.samples) return;  // so do all rotors
+      if (memory(MemoryRow::followed) == number && !config_.samples)
+        return;  // the same for all rotors
       if (j == 0) check_shares(power, sample.time);
       memory(MemoryRow::followed) = number;
       const double wanted = stale ? 0 : command.values[j];
@@ -136,17 +138,18 @@ class MotorPidPlugin final : public Plugin {
     const double decay = (config_.kp + joint.damping) / moment;
     if (decay <= setup.fastest_decay) return;
     std::ostringstream what;
-    what << "<kp> is too stiff for the step: an error of the speed of joint '" << joint.name
-         << "' decays at (kp + damping)/J = " << decay << " 1/s, and beyond " << setup.fastest_decay
-         << " 1/s this engine makes it grow; take <kp> below "
-         << setup.fastest_decay * moment - joint.damping << " N m s/rad, or a smaller step";
+    what << "<kp> is too large for the step: the speed error of joint '" << joint.name
+         << "' decays at (kp + damping)/J = " << decay
+         << " 1/s, which is unstable in this engine above " << setup.fastest_decay
+         << " 1/s. Use <kp> below " << setup.fastest_decay * moment - joint.damping
+         << " N m s/rad, or a smaller step.";
     setup.warnings.push_back(what.str());
   }
 
   Config config_;
-  std::size_t rotor_count_;       ///< of the model
-  std::vector<double> dampings_;  ///< of the joints of config_.rotors [N m s/rad]
-  std::vector<int> places_;       ///< of each rotor of the model, as MotorTorques has them
+  std::size_t rotor_count_;       ///< rotors of the model
+  std::vector<double> dampings_;  ///< damping of the joints of config_.rotors [N m s/rad]
+  std::vector<int> places_;       ///< MotorTorques::places of each rotor of the model
   void (*add_)(const MotorTorques&, const RotorLanes&);
   std::size_t topic_;
   std::size_t power_;  ///< topic
@@ -156,32 +159,32 @@ class MotorPidPlugin final : public Plugin {
 PluginDescriptor describe() {
   using T = TagSpec;
   return {
-      "speed control of the rotors: a PID on each joint's velocity (thesis appendix A.4)",
+      "rotor speed control: a PID on each joint's velocity (thesis appendix A.4)",
       {
-          T::number("kp", "N m s/rad", "", "proportional gain on the slowed joint velocity")
+          T::number("kp", "N m s/rad", "", "proportional gain on the slowed-down joint velocity")
               .must()
               .at_least(0)
               .from("A.4")
               .scaling(Effect::lag, -1),
-          T::number("ki", "N m/rad", "0", "integral gain; needs iMax, iMin")
+          T::number("ki", "N m/rad", "0", "integral gain; requires iMax and iMin")
               .at_least(0)
               .from("A.4"),
           T::number("kd", "N m s^2/rad", "0", "derivative gain, sampled once per step")
               .at_least(0)
               .from("A.4"),
-          T::number("iMax", "N m", "0", "largest integral torque").at_least(0),
-          T::number("iMin", "N m", "0", "smallest integral torque").at_most(0),
-          T::number("sim_slow", "", "1", "commands are divided by this")
+          T::number("iMax", "N m", "0", "maximum integral torque").at_least(0),
+          T::number("iMin", "N m", "0", "minimum integral torque").at_most(0),
+          T::number("sim_slow", "", "1", "slowdown: commands are divided by this factor")
               .above(0)
               .from("chapter 4")
               .agreed(),
           SpeedLimit::limit_tag(),
-          T::number("commandTimeout", "s", "", "a command older than this counts as 0")
+          T::number("commandTimeout", "s", "", "age from which a command counts as 0")
               .above(0)
               .or_absent("off"),
           SpeedLimit::topic_tag(),
           power_tag(),
-          T::joints("rotorJoints", "the rotors, in the order of the command's numbers"),
+          T::joints("rotorJoints", "the rotors, in the order of the command"),
       },
       {},
       create<MotorPidPlugin>,

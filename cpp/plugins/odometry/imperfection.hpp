@@ -6,8 +6,8 @@
 
 namespace quadcore::odometry {
 
-/// Errors of a measured vector: white noise, a bias that walks at random, quantisation. Its memory
-/// is the bias.
+/// Errors of a measured vector: white noise, a random-walk bias and quantisation. The memory is the
+/// bias.
 class Imperfection {
  public:
   Imperfection(const Parameters& p, const std::string& quantity, bool has_resolution)
@@ -17,7 +17,7 @@ class Imperfection {
 
   bool is_none() const { return noise_ == 0 && walk_ == 0 && step_ == 0; }
 
-  /// Of each component, but for the walk, which no reader can know.
+  /// Return the variance of each component without the random walk, which no reader can know.
   double variance() const { return noise_ * noise_ + step_ * step_ / 12; }
 
   Vector3d apply(const Vector3d& truth, double since, std::uint64_t seed, double& draws,
@@ -36,7 +36,7 @@ class Imperfection {
 
  private:
   double noise_;  ///< standard deviation
-  double walk_;   ///< standard deviation after a second
+  double walk_;   ///< standard deviation after 1 s
   double step_;
 };
 

@@ -9,13 +9,13 @@
 namespace quadcore::odometry {
 namespace {
 
-/// What the sensor remembers: when it measured, how many random numbers it has drawn, the biases of
-/// position, orientation and velocities.
+/// State: time of measurement, number of random numbers drawn, and the biases of position,
+/// orientation and velocities.
 enum Memory { kTime, kDraws, kBiases, kMemorySize = kBiases + 12 };
 
-/// Odometry of the frame (thesis appendix A.6): pose in the world, linear velocity in the world (or
-/// in body axes, as nav_msgs/Odometry defines it), angular velocity in body axes, each with its
-/// errors. Those of the orientation are small rotations about the body axes.
+/// Odometry of the frame (thesis appendix A.6): pose in the world, linear velocity in world axes
+/// (or in body axes, as nav_msgs/Odometry defines it), and angular velocity in body axes, each with
+/// errors. The errors of the orientation are small rotations about the body axes.
 class OdometryPlugin final : public sensing::MountedSensor<messages::Odometry, kMemorySize> {
  public:
   explicit OdometryPlugin(const PluginSetup& setup)
@@ -29,7 +29,8 @@ class OdometryPlugin final : public sensing::MountedSensor<messages::Odometry, k
                     angular_velocity_.is_none() && channel().is_direct()) {
     const bool own_seed = setup.parameters.has("seed");
     const double seed = own_seed ? setup.parameters.number("seed") : 0;
-    if (seed != std::floor(seed)) throw InputError("<seed> is not a whole number; write one");
+    if (seed != std::floor(seed))
+      throw InputError("<seed> is not a whole number. Write a whole number.");
     if (own_seed) seed_ = stream_seed(static_cast<std::uint64_t>(seed), setup.name);
     variances_.position_variance = position_.variance();
     variances_.orientation_variance = orientation_.variance();
@@ -75,9 +76,9 @@ class OdometryPlugin final : public sensing::MountedSensor<messages::Odometry, k
 
   Imperfection position_, orientation_, linear_velocity_, angular_velocity_;
   bool twist_in_body_;
-  bool is_perfect_;                    ///< each message is the truth, and arrives at once
-  messages::Odometry variances_;       ///< a message without what moves
-  std::optional<std::uint64_t> seed_;  ///< its own, if it has one
+  bool is_perfect_;                    ///< messages are exact and arrive at once
+  messages::Odometry variances_;       ///< a message that contains only the variances
+  std::optional<std::uint64_t> seed_;  ///< its own seed, if any
 };
 
 PluginDescriptor describe() {
@@ -90,27 +91,28 @@ PluginDescriptor describe() {
   const auto walk = [](const char* name, const char* unit, const char* of) {
     return T::number(name, unit, "0",
                      std::string("random walk of the bias of ") + of +
-                         ": its standard deviation after a second, which grows as sqrt(t)")
+                         ": standard deviation after 1 s; it grows with sqrt(t)")
         .at_least(0);
   };
   const auto resolution = [](const char* name, const char* unit, const char* of) {
     return T::number(name, unit, "0",
                      "quantisation step of " + std::string(of) +
-                         ", 0: none; adds step^2/12 to the variance")
+                         "; 0: none; adds step^2/12 to the variance")
         .at_least(0);
   };
   const char *position = "each position component", *turn = "the rotation about each body axis",
              *linear = "each linear velocity component",
              *angular = "each angular velocity component";
   return {
-      "pose and velocity of the frame, with noise (thesis appendix A.6)",
+      "odometry: pose and velocity of the frame, with noise (thesis appendix A.6)",
       {
           T::number("rate", "1/s", "1000", "messages per second; at most one per step")
               .above(0)
               .also_called("updateRate")
               .from("A.6"),
-          T::text("topic", "odom", "where the messages are published").from("A.6"),
-          T::flag("publishTf", "true", "whether a ROS node sends tf world->drone with topic odom")
+          T::text("topic", "odom", "topic of the messages").from("A.6"),
+          T::flag("publishTf", "true",
+                  "whether the ROS node publishes tf world->drone for topic odom")
               .from("A.6"),
           deviation("positionNoise", "m", position),
           deviation("orientationNoise", "rad", turn),
@@ -126,7 +128,7 @@ PluginDescriptor describe() {
           sensing::Channel::delay_tag(),
           sensing::Channel::dropout_tag(),
           T::choice("twistFrame", {"world", "body"},
-                    "axes of the linear velocity: world as in the thesis, body as nav_msgs says")
+                    "axes of the linear velocity: world as in the thesis, body as nav_msgs defines")
               .agreed()
               .from("A.6"),
           T::number("seed", "", "", "seed of the noise, a whole number")

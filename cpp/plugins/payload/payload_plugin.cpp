@@ -7,19 +7,19 @@
 namespace quadcore::payload {
 namespace {
 
-/// A body that rides on the frame: its mass, 0 if there is none, and its place in the frame.
+/// An attached body: its mass, 0 if none is attached, and its position in the frame.
 MessageKind carried_kind() {
   return {"carried",
           {"mass", "x", "y", "z"},
           {},
-          "mass of the payload, kg, 0 without one; its position in the frame, m"};
+          "mass of the attached payload, kg, or 0; its position in the frame, m"};
 }
 
-/// What it remembers: whether the body rides on the frame, once a step has begun.
+/// State: whether the body is attached, once a step has begun.
 enum Carrying { as_at_the_start, riding, gone };
 
-/// A body that rides on the frame until it is released, or from when it is picked up: by time or by
-/// topic, of which the later one holds.
+/// A body that is attached to the frame until its release or after its pick-up, by time or by
+/// topic, whichever is later.
 class PayloadPlugin final : public Plugin {
  public:
   explicit PayloadPlugin(const PluginSetup& setup)
@@ -32,7 +32,7 @@ class PayloadPlugin final : public Plugin {
             setup.topics.publishes(setup.parameters.text("topic") + "_carried", carried_kind())) {
     const Parameters& p = setup.parameters;
     if (pick_up_ == release_ && p.has("release")) {
-      throw InputError("<pickUp> and <release> are at one time; write two");
+      throw InputError("<pickUp> and <release> are at the same time. Use different times.");
     }
     body_.name = name_;
     body_.pose.xyz = Vector3d(p.numbers("xyz").data());
@@ -46,7 +46,7 @@ class PayloadPlugin final : public Plugin {
   std::size_t state_size() const override { return 1; }
 
   void update(const Sample& sample, PluginState state) const override {
-    const double now = sample.time + 1e-9;  // the clock is a sum of steps
+    const double now = sample.time + 1e-9;  // the time is a sum of steps
     const bool is_picked_up = now >= pick_up_, is_released = now >= release_;
     const double last = std::max(is_picked_up ? pick_up_ : 0, is_released ? release_ : 0);
     const Topic& said = sample.topics[topic_];
@@ -55,7 +55,7 @@ class PayloadPlugin final : public Plugin {
     if (said.count > 0 && said.stamp >= last) {
       if (word != 0 && word != 1) {
         throw FlightError(sample.time, "topic '" + said.name +
-                                           "': riding is neither 1 nor 0; publish one of them");
+                                           "': riding is neither 1 nor 0. Publish one of them.");
       }
       rides = word == 1;
     } else if (is_picked_up || is_released) {
@@ -80,44 +80,47 @@ class PayloadPlugin final : public Plugin {
   static double event(const Parameters& p, const std::string& tag) {
     return p.has(tag) ? p.number(tag) : INFINITY;
   }
-  /// Its moments are those of a body: none below 0, none above the sum of the others.
+  /// Throw InputError for an impossible inertia: a negative moment, or one above the sum of the
+  /// others.
   void check_inertia() const {
     const Vector3d moments = body_.inertial.principal_moments();
     const double rounding = 1e-6 * moments[2];
     if (moments[0] >= -rounding && moments[2] <= moments[0] + moments[1] + rounding) return;
     throw InputError(
-        "<inertia> is no body's: a principal moment is below 0 or above the sum of the others; "
-        "write ixx ixy ixz iyy iyz izz about the centre of mass");
+        "<inertia> is not physically possible: a principal moment is negative or exceeds the sum "
+        "of the others. Write ixx ixy ixz iyy iyz izz about the centre of mass.");
   }
 
-  /// What is picked up first was not there before.
+  /// Return whether the body is attached at the start, which excludes a body that is picked up
+  /// first.
   bool rides_at_the_start() const { return !(pick_up_ < release_); }
 
   std::string name_;
   CarriedBody body_;
-  double pick_up_, release_;  ///< s; infinite if there is none
+  double pick_up_, release_;  ///< s; infinite if never
   std::size_t topic_, carried_;
 };
 
 PluginDescriptor describe() {
   using T = TagSpec;
   return {
-      "a payload: a body that rides on the frame, is released, or picked up",
+      "payload: a body that is attached to the frame, released or picked up",
       {
-          T::number("mass", "kg", "", "its mass").must().above(0),
+          T::number("mass", "kg", "", "mass of the payload").must().above(0),
           T::numbers("inertia", "kg m^2", "0 0 0 0 0 0",
-                     "ixx ixy ixz iyy iyz izz about its centre of mass, its own axes; all 0: a "
-                     "point")
+                     "ixx ixy ixz iyy iyz izz about the payload's centre of mass, payload axes; "
+                     "all 0: a point")
               .of(6),
-          T::numbers("xyz", "m", "0 0 0", "its centre of mass in the frame").of(3),
-          T::numbers("rpy", "rad", "0 0 0", "its axes in the frame").of(3),
-          T::number("release", "s", "", "when it is let go").at_least(0).or_absent("never"),
-          T::number("pickUp", "s", "", "when it is taken up, at rest in the frame")
+          T::numbers("xyz", "m", "0 0 0", "payload's centre of mass in the frame").of(3),
+          T::numbers("rpy", "rad", "0 0 0", "payload's axes in the frame").of(3),
+          T::number("release", "s", "", "time of the release").at_least(0).or_absent("never"),
+          T::number("pickUp", "s", "", "time of the pick-up, at rest in the frame")
               .at_least(0)
-              .or_absent("it rides from the start"),
-          T::text("topic", "payload",
-                  "where 1 takes it up and 0 lets it go, at once; with _carried at its end, of its "
-                  "mass, 0 while it does not ride, and its place in the frame"),
+              .or_absent("attached from the start"),
+          T::text(
+              "topic", "payload",
+              "topic on which 1 attaches and 0 releases the payload at once; the same name with "
+              "_carried publishes the attached mass (0 if none) and its position in the frame"),
       },
       {},
       create<PayloadPlugin>,

@@ -13,26 +13,26 @@ namespace {
 /// A force and a torque.
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-/// What it remembers: what is published and what the tag lists, as they act in this step.
+/// State: the published push and the pushes of the tag that act in this step.
 enum Memory { kPublished, kListed = kPublished + 6, kMemorySize = kListed + 6 };
 
-/// A push that a tag lists.
+/// A push of the tag.
 struct Push {
   double begin, duration;  ///< s
   Vector6d wrench;
 
-  bool acts(double time) const {  // the clock is a sum of steps
+  bool acts(double time) const {  // the time is a sum of steps
     return time >= begin - 1e-9 && time < begin + duration - 1e-9;
   }
 
-  /// Numbers of the tag that are one push.
+  /// Number of values of one push in the tag.
   static constexpr std::size_t numbers = 8;
   static std::vector<Push> all(const Parameters& p) {
     const std::vector<double>& n = p.numbers("pushes");
     if (n.size() % numbers != 0) {
-      throw InputError("<pushes> has " + std::to_string(n.size()) +
-                       " numbers; write eight for each push: begin duration, three of the force, "
-                       "three of the torque");
+      throw InputError(
+          "<pushes> has " + std::to_string(n.size()) +
+          " numbers. Write eight for each push: start, duration, force (3) and torque (3).");
     }
     std::vector<Push> pushes;
     for (auto i = n.begin(); i != n.end(); i += numbers) {
@@ -40,8 +40,8 @@ struct Push {
       std::copy_n(i + 2, 6, push.wrench.data());
       if (push.begin < 0 || push.duration <= 0) {
         throw InputError("push " + std::to_string(pushes.size() + 1) +
-                         " of <pushes> begins before the start or lasts no time; write begin >= 0 "
-                         "and duration > 0");
+                         " of <pushes> starts before the flight or has no duration. Use a start >= "
+                         "0 and a duration > 0.");
       }
       pushes.push_back(push);
     }
@@ -49,7 +49,7 @@ struct Push {
   }
 };
 
-/// A force at a point of a link, and a torque, that somebody publishes or a tag lists.
+/// A force at a point of a link and a torque, from a topic or a tag.
 class PushPlugin final : public Plugin {
  public:
   explicit PushPlugin(const PluginSetup& setup)
@@ -66,8 +66,8 @@ class PushPlugin final : public Plugin {
     if (body == model.body_of_link.end()) {
       std::vector<std::string> names;
       for (const auto& entry : model.body_of_link) names.push_back(entry.first);
-      throw InputError("<link> '" + link + "' is none of the model's" + did_you_mean(link, names) +
-                       "; it has " + joined(names));
+      throw InputError("<link> '" + link + "' is not a link of the model." + suggest(link, names) +
+                       " The model has " + joined(names) + ".");
     }
     const Pose& X_BL = model.pose_of_link.at(link);
     R_BL_ = X_BL.rotation().toRotationMatrix();
@@ -82,7 +82,7 @@ class PushPlugin final : public Plugin {
   void update(const Sample& sample, PluginState state) const override {
     state.setZero();
     const Topic& said = sample.topics[topic_];
-    const double age = sample.time - said.stamp;  // negative once the time was set back
+    const double age = sample.time - said.stamp;  // negative after the time was set back
     if (said.count > 0 && age > -1e-9 && age < duration_ - 1e-9) {
       const auto push = sample.topics.read<messages::Wrench>(topic_);
       state.segment<6>(kPublished) << push.force, push.torque;
@@ -91,7 +91,8 @@ class PushPlugin final : public Plugin {
   }
 
   void forces(const Kinematics& k, ConstPluginState state, Loads& loads) const override {
-    // A step takes what acts as it begins, all of it; a row of a log what acts from there on.
+    // A push that acts at the start of a step acts during the whole step; a row of a log shows the
+    // push that acts from there on.
     const Vector6d wrench =
         state.segment<6>(kPublished) + (loads.terms() ? listed(k.time) : state.segment<6>(kListed));
     if (wrench.isZero(0)) return;
@@ -104,8 +105,8 @@ class PushPlugin final : public Plugin {
       loads.add_frame_torque(0, tau_F);
       return;
     }
-    // What does not turn the rotor about its axis its bearing hands on to the frame; of what does,
-    // the joint's reaction takes the frame's share back.
+    // The bearing transmits all torques across the rotor's axis to the frame; for the torque about
+    // the axis, the joint's reaction cancels the part on the frame.
     tau_F += (R_FB * p_BQ_B_).cross(f_F);
     loads.add_rotor_force(0, *rotor_, f_F);
     loads.add_frame_torque(0, tau_F);
@@ -125,8 +126,8 @@ class PushPlugin final : public Plugin {
   double duration_;  ///< s
   std::vector<Push> pushes_;
   std::size_t topic_;
-  std::optional<std::size_t> rotor_;  ///< that carries the link; none: the frame does
-  Matrix3d R_BL_;                     ///< of the link in the body that carries it
+  std::optional<std::size_t> rotor_;  ///< rotor that carries the link; none: the frame
+  Matrix3d R_BL_;                     ///< orientation of the link in the body that carries it
   Vector3d p_BQ_B_;                   ///< the point, from the frame's origin or the rotor's centre
                                       ///< of mass [m]
 };
@@ -134,19 +135,19 @@ class PushPlugin final : public Plugin {
 PluginDescriptor describe() {
   using T = TagSpec;
   return {
-      "a push: a force at a point of a link and a torque, by time or published from outside",
+      "push: a force at a point of a link and a torque, by time or from a topic",
       {
-          T::text("link", "", "what is pushed, a rotor's link too").or_absent("the root"),
+          T::text("link", "", "link on which the push acts; may belong to a rotor")
+              .or_absent("the root"),
           T::numbers("xyz", "m", "0 0 0", "point where the force acts, in the link's axes").of(3),
-          T::choice("axes", {"world", "link"}, "of the force and the torque"),
-          T::number("duration", "s", "", "how long a message acts")
+          T::choice("axes", {"world", "link"}, "axes of the force and the torque"),
+          T::number("duration", "s", "", "duration of the push from a message")
               .above(0)
               .or_absent("until the next one"),
           T::numbers("pushes", "s s N N N N m N m N m", "",
-                     "eight numbers for each: when it begins, how long it acts, the force, the "
-                     "torque")
+                     "eight numbers for each push: start, duration, force and torque")
               .or_absent("none"),
-          T::text("topic", "push", "where force and torque are published"),
+          T::text("topic", "push", "topic from which force and torque are read"),
       },
       {"push"},
       create<PushPlugin>,

@@ -4,7 +4,7 @@
 namespace quadcore::reference {
 namespace {
 
-/// Says where the vehicle is to be, at every step.
+/// Publishes the reference in every step.
 class ReferencePlugin final : public Plugin {
  public:
   explicit ReferencePlugin(const PluginSetup& setup)
@@ -23,8 +23,8 @@ class ReferencePlugin final : public Plugin {
 
 PluginDescriptor describe() {
   std::vector<TagSpec> tags = control::reference_tags();
-  tags.push_back(TagSpec::text("topic", "reference", "where the messages are published"));
-  return {"a reference for a controller", tags, {}, create<ReferencePlugin>};
+  tags.push_back(TagSpec::text("topic", "reference", "topic of the messages"));
+  return {"publishes a reference for a controller", tags, {}, create<ReferencePlugin>};
 }
 
 }  // namespace

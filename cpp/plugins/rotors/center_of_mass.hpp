@@ -8,8 +8,8 @@
 
 namespace quadcore::rotors {
 
-/// Centre of mass of a link of the frame with all that is fixed to it, in the link's frame [m].
-/// Gazebo, and so RotorS, has what hangs on a locked joint as a link of its own.
+/// Return the centre of mass of a link of the frame including the links fixed to it, in the link's
+/// frame [m]. Links on locked joints are separate in Gazebo and therefore in RotorS.
 inline Vector3d center_of_mass(const Model& model, const std::string& link) {
   if (!model.urdf) return Vector3d::Zero();
   std::set<std::string> parts = {link};

@@ -6,7 +6,7 @@
 namespace quadcore::rotors {
 namespace {
 
-/// Forwards speeds from controllers to the motors, where they arrive with the next step.
+/// Forwards rotor speeds from controllers to the motors with a delay of one step.
 class ControllerInterface final : public Plugin {
  public:
   explicit ControllerInterface(const PluginSetup& setup)
@@ -32,17 +32,18 @@ class ControllerInterface final : public Plugin {
 PluginDescriptor describe() {
   using T = TagSpec;
   return {
-      "RotorS' way from controllers to motors: speeds arrive a step later",
+      "RotorS' controller interface: forwards rotor speeds from controllers to motors, one step "
+      "later",
       {
           T::text("commandMotorSpeedSubTopic", "command/motor_speed",
-                  "where controllers publish speeds, rad/s, in the motors' order")
+                  "topic of the controllers' rotor speeds, rad/s, in the motors' order")
               .from("RotorS"),
           T::text("motorSpeedCommandPubTopic", "gazebo/command/motor_speed",
-                  "where they are forwarded")
+                  "topic of the forwarded rotor speeds")
               .from("RotorS"),
-          idle("commandAttitudeThrustSubTopic", "nothing listens to it in RotorS, either"),
-          idle("commandRateThrustSubTopic", "nothing listens to it in RotorS, either"),
-          idle("imuSubTopic", "nothing listens to it in RotorS, either"),
+          idle("commandAttitudeThrustSubTopic", "RotorS does not use it either"),
+          idle("commandRateThrustSubTopic", "RotorS does not use it either"),
+          idle("imuSubTopic", "RotorS does not use it either"),
           namespace_tag(),
       },
       {},

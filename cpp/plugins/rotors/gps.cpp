@@ -10,17 +10,17 @@
 namespace quadcore::rotors {
 namespace {
 
-/// What it remembers: when it measured, and numbers of chance drawn.
+/// State: time of measurement and number of random numbers drawn.
 enum Memory { kSamples, kDraws, kMemorySize };
 
-/// The tag of the noise on a sensor's position, of Gazebo's format SDF.
+/// Return the SDF tag of the noise on a sensor's position.
 std::string noise_tag(const std::string& quantity, const std::string& direction,
                       const std::string& what) {
   return "sensor/gps/" + quantity + "_sensing/" + direction + "/noise/" + what;
 }
 
-/// A satellite receiver: Gazebo's sensor spoils the place, RotorS' module the velocity, each along
-/// the world's axes.
+/// A GPS receiver: Gazebo's sensor adds noise to the position, RotorS' module to the velocity, both
+/// in world axes.
 class Gps final : public Plugin {
  public:
   explicit Gps(const PluginSetup& setup)
@@ -67,13 +67,13 @@ class Gps final : public Plugin {
   static const Origin& checked(const Origin& origin) {
     if (origin.heading != 0) {
       throw InputError(
-          "the world's <heading_deg> turns its axes from east and north, which is not modelled; "
-          "write 0");
+          "the world's <heading_deg> is not 0, and a rotation from east and north is not modelled. "
+          "Write 0.");
     }
     if (std::abs(origin.latitude) > 89) {
       throw InputError(
-          "the world's <latitude_deg> is at a pole, where east has no meaning; write one from -89 "
-          "to 89");
+          "the world's <latitude_deg> is at a pole, where east is undefined. Use a latitude from "
+          "-89 to 89.");
     }
     return origin;
   }
@@ -84,7 +84,7 @@ class Gps final : public Plugin {
     return {level, level, setup.parameters.number(vertical)};
   }
 
-  Vector3d p_FS_F_;  ///< of the antenna [m]
+  Vector3d p_FS_F_;  ///< position of the antenna [m]
   sensing::Rate rate_;
   bool each_step_;
   gps::Earth earth_;
@@ -99,50 +99,53 @@ PluginDescriptor describe() {
     return T::number(name, unit, fallback, "standard deviation of " + of).at_least(0);
   };
   std::vector<TagSpec> tags = {
-      T::link("linkName", "the link that it sits on").must(),
-      T::text("gpsTopic", "gps", "where the places are published"),
-      T::text("groundSpeedTopic", "ground_speed", "where the velocities are published"),
-      deviation("horPosStdDev", "m", "3",
-                "x and y each that messages tell; the noise is the sensor's"),
-      deviation("verPosStdDev", "m", "6", "z that messages tell"),
-      deviation("horVelStdDev", "m/s", "0.1", "the noise on the velocity along x and y each"),
+      T::link("linkName", "link that carries the sensor").must(),
+      T::text("gpsTopic", "gps", "topic of the positions"),
+      T::text("groundSpeedTopic", "ground_speed", "topic of the velocities"),
+      deviation(
+          "horPosStdDev", "m", "3",
+          "each of x and y as stated in the messages; the tags of <sensor> set the noise itself"),
+      deviation("verPosStdDev", "m", "6", "z as stated in the messages"),
+      deviation("horVelStdDev", "m/s", "0.1", "the noise on the velocity along each of x and y"),
       deviation("verVelStdDev", "m/s", "0.1", "the noise on the velocity along z"),
   };
   for (TagSpec& tag : tags) tag.equation = "RotorS";
   tags.push_back(namespace_tag());
   std::vector<TagSpec> of_sensor = {
-      T::numbers("sensor/pose", "m, rad", "0 0 0 0 0 0", "of the antenna in the link").of(6),
+      T::numbers("sensor/pose", "m, rad", "0 0 0 0 0 0", "pose of the antenna in the link").of(6),
       T::number("sensor/update_rate", "1/s", "0",
-                "messages per second, at most one per step; 0: each step")
+                "messages per second, at most one per step; 0: every step")
           .at_least(0),
   };
   for (const char* idle_tag : {"always_on", "visualize", "topic"}) {
-    of_sensor.push_back(idle("sensor/" + std::string(idle_tag), "it always measures"));
+    of_sensor.push_back(idle("sensor/" + std::string(idle_tag), "the sensor is always on"));
   }
   for (const char* direction : {"horizontal", "vertical"}) {
-    const std::string axes = direction == std::string("vertical") ? "z" : "x and y each";
+    const std::string axes = direction == std::string("vertical") ? "z" : "each of x and y";
     of_sensor.push_back(deviation(noise_tag("position", direction, "stddev"), "m", "0",
-                                  "the noise on the place along " + axes));
+                                  "the noise on the position along " + axes));
     of_sensor.push_back(
-        T::choice(noise_tag("position", direction, "type"), {"gaussian"}, "of that noise"));
+        T::choice(noise_tag("position", direction, "type"), {"gaussian"}, "type of this noise"));
     for (const char* what : {"mean", "bias_mean", "bias_stddev"}) {
       of_sensor.push_back(T::number(noise_tag("position", direction, what), "m", "0",
-                                    "of an error that stays, which is not modelled")
+                                    "constant error, which is not modelled")
                               .at_least(0)
                               .at_most(0));
     }
   }
   for (const char* direction : {"horizontal", "vertical"}) {
     for (const char* what : {"stddev", "type", "mean", "bias_mean", "bias_stddev"}) {
-      of_sensor.push_back(idle(noise_tag("velocity", direction, what),
-                               "RotorS takes the link's velocity, and horVelStdDev, verVelStdDev"));
+      of_sensor.push_back(
+          idle(noise_tag("velocity", direction, what),
+               "RotorS uses the link's velocity with horVelStdDev and verVelStdDev"));
     }
   }
   for (TagSpec& tag : of_sensor) {
     tag.equation = "SDF";
     tags.push_back(tag);
   }
-  return {"RotorS' satellite receiver, with the sensor that it hangs on", tags, {}, create<Gps>};
+  return {
+      "RotorS' GPS receiver, including the Gazebo sensor that contains it", tags, {}, create<Gps>};
 }
 
 }  // namespace

@@ -10,26 +10,27 @@
 namespace quadcore::rotors {
 namespace {
 
-/// The errors of three like sensors. Their memory: the bias at turn-on and the one that drifts.
+/// Errors of three sensors of one kind. Their memory consists of the turn-on bias and the drifting
+/// bias.
 struct Errors {
   enum Memory { kTurnOn, kDrift = 3, kMemorySize = kDrift + 3 };
 
   double density, turn_on;
   double white;         ///< standard deviation of a sample's noise
-  double kept, spread;  ///< of the drift in a step: what stays, and what comes to it
+  double kept, spread;  ///< of the drift in a step: decay factor and added standard deviation
 
   Errors(const PluginSetup& setup, const std::string& name, const std::string& walk_name)
       : density(setup.parameters.number(name + "NoiseDensity")),
         turn_on(setup.parameters.number(name + "TurnOnBiasSigma")),
         white(density / std::sqrt(setup.dt)) {
-    // The exact discretisation (Maybeck, 1979, eq. (4-114)).
+    // Exact discretisation (Maybeck, 1979, eq. (4-114)).
     const double walk = setup.parameters.number(walk_name);
     const double time = setup.parameters.number(name + "BiasCorrelationTime");
     kept = elementary::exp(-setup.dt / time);
     spread = std::sqrt(walk * walk * time / 2 * (1 - elementary::exp(-2 * setup.dt / time)));
   }
 
-  /// What one axis has at the end of a step.
+  /// Return the error of one axis at the end of a step.
   template <class Draw>
   double of_axis(int axis, Eigen::Ref<VectorXd> memory, const Draw& draw) const {
     double& drift = memory[kDrift + axis];
@@ -38,8 +39,8 @@ struct Errors {
   }
 };
 
-/// What it remembers: whether it is turned on, the velocity a step before (world axes), how far
-/// its numbers of chance are drawn, the errors.
+/// State: whether it is turned on, the velocity one step before (world axes), the number of random
+/// numbers drawn, and the errors.
 enum Memory {
   kOn,
   kVelocity,
@@ -50,8 +51,8 @@ enum Memory {
   kMemorySize = kAccelerometer + Errors::kMemorySize
 };
 
-/// Rates and specific force at the start of each step, the latter from the change of the velocity
-/// of the link's centre of mass since the step before, both with RotorS' errors.
+/// Angular velocity and specific force at the start of each step with RotorS' errors. The specific
+/// force comes from the change of the velocity of the link's centre of mass since the step before.
 class Imu final : public Plugin {
  public:
   explicit Imu(const PluginSetup& setup)
@@ -98,7 +99,7 @@ class Imu final : public Plugin {
     for (int i = 0; i < 3; ++i) {
       message.specific_force[i] += accelerometer_.of_axis(i, accelerometer, draw);
     }
-    // As RotorS tells them, of the densities and not of the samples.
+    // As in RotorS, the published variances are those of the densities, not of the samples.
     message.angular_velocity_variance = gyroscope_.density * gyroscope_.density;
     message.specific_force_variance = accelerometer_.density * accelerometer_.density;
     sample.topics.publish(topic_, sample.time + sample.dt, message);
@@ -106,7 +107,7 @@ class Imu final : public Plugin {
 
  private:
   Matrix3d R_SF_;
-  Vector3d p_FScm_F_;  ///< of the link's centre of mass [m]
+  Vector3d p_FScm_F_;  ///< position of the link's centre of mass [m]
   Errors gyroscope_, accelerometer_;
   bool as_rotors_;
   std::size_t topic_;
@@ -119,33 +120,38 @@ PluginDescriptor describe() {
     return T::number(name, unit, fallback, meaning).at_least(0).at_most(1e6).from("RotorS");
   };
   return {
-      "RotorS' inertial measurement unit: of the state a step before its stamp, each step",
+      "RotorS' inertial measurement unit: measures every step, from the state one step before the "
+      "time stamp",
       {
-          T::link("linkName", "the link that it sits on; its axes are the unit's").must(),
-          T::text("imuTopic", "imu", "where the messages are published").from("RotorS"),
+          T::link("linkName", "link that carries the sensor; its axes are the sensor's axes")
+              .must(),
+          T::text("imuTopic", "imu", "topic of the messages").from("RotorS"),
           add("gyroscopeNoiseDensity", "rad/s/sqrt(Hz)", "0.0003393695767766752",
-              "density of the white noise of the rates"),
+              "density of the white noise of the angular velocity"),
           add("gyroscopeBiasRandomWalk", "rad/s^2/sqrt(Hz)", "3.8785094488762879e-05",
-              "random walk of their bias"),
-          add("gyroscopeBiasCorrelationTime", "s", "1000", "correlation time of that bias")
+              "random walk of the angular velocity's bias"),
+          add("gyroscopeBiasCorrelationTime", "s", "1000",
+              "correlation time of the angular velocity's bias")
               .above(0)
               .at_most(1e12),
           add("gyroscopeTurnOnBiasSigma", "rad/s", "0.008726646259971648",
               "standard deviation of the bias at turn-on"),
           add("accelerometerNoiseDensity", "m/s^2/sqrt(Hz)", "0.004",
               "density of the white noise of the specific force"),
-          add("accelerometerRandomWalk", "m/s^3/sqrt(Hz)", "0.006", "random walk of its bias"),
-          add("accelerometerBiasCorrelationTime", "s", "300", "correlation time of that bias")
+          add("accelerometerRandomWalk", "m/s^3/sqrt(Hz)", "0.006",
+              "random walk of the specific force's bias"),
+          add("accelerometerBiasCorrelationTime", "s", "300",
+              "correlation time of the specific force's bias")
               .above(0)
               .at_most(1e12),
           add("accelerometerTurnOnBiasSigma", "m/s^2", "0.196",
               "standard deviation of the bias at turn-on"),
           T::choice("noise", {"rotors", "seeded"},
-                    "quadcore's own: rotors, the same numbers of chance in each flight and each "
-                    "unit, as RotorS has them; or those of the flight's seed"),
+                    "quadcore extension: `rotors` draws the same random numbers in every flight "
+                    "and sensor, as RotorS does; `seeded` uses the flight's seed"),
           idle("gyroscopeRandomWalk",
-               "RotorS does not read it, either, though its vehicles set it; "
-               "gyroscopeBiasRandomWalk counts"),
+               "RotorS does not read it either, although its vehicles set it; use "
+               "gyroscopeBiasRandomWalk"),
           namespace_tag(),
       },
       {},

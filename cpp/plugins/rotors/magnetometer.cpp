@@ -5,11 +5,12 @@
 namespace quadcore::rotors {
 namespace {
 
-/// What it remembers: whether it is turned on, numbers of chance drawn, the bias, world axes [T].
+/// State: whether it is turned on, the number of random numbers drawn, and the bias in world axes
+/// [T].
 enum Memory { kOn, kDraws, kBias, kMemorySize = kBias + 3 };
 
-/// The Earth's field along a link's axes at the start of each step. Noise and bias are errors along
-/// the world's axes, which RotorS turns with the field.
+/// The Earth's field in a link's axes at the start of each step. Noise and bias are errors in world
+/// axes, which RotorS rotates together with the field.
 class Magnetometer final : public Plugin {
  public:
   explicit Magnetometer(const PluginSetup& setup)
@@ -47,26 +48,28 @@ class Magnetometer final : public Plugin {
 PluginDescriptor describe() {
   using T = TagSpec;
   std::vector<TagSpec> tags = {
-      T::link("linkName", "the link that it sits on").must(),
-      T::text("magnetometerTopic", "magnetic_field", "where the messages are published"),
-      T::number("refMagNorth", "T", "0.000021493", "the field's component along the world's x"),
+      T::link("linkName", "link that carries the sensor").must(),
+      T::text("magnetometerTopic", "magnetic_field", "topic of the messages"),
+      T::number("refMagNorth", "T", "0.000021493", "component of the field along the world's x"),
       T::number("refMagEast", "T", "0.000000815",
-                "along y; the world's y points west where x points north, but so RotorS has it"),
-      T::number("refMagDown", "T", "0.000042795", "along z, which points up, as RotorS has it"),
+                "component along y, as in RotorS; note that y points west where x points north"),
+      T::number("refMagDown", "T", "0.000042795",
+                "component along z, as in RotorS; note that z points up"),
       T::numbers("noiseNormal", "T", "0 0 0", "standard deviations of the noise, world axes")
           .of(3)
           .at_least(0),
       T::numbers("noiseUniformInitialBias", "T", "0 0 0",
-                 "bounds of a bias that is drawn at turn-on, world axes")
+                 "bounds of the random bias at turn-on, world axes")
           .of(3)
           .at_least(0),
   };
   for (TagSpec& tag : tags) tag.equation = "RotorS";
   tags.push_back(namespace_tag());
-  return {"RotorS' magnetometer: of the state a step before its stamp, each step",
-          tags,
-          {},
-          create<Magnetometer>};
+  return {
+      "RotorS' magnetometer: measures every step, from the state one step before the time stamp",
+      tags,
+      {},
+      create<Magnetometer>};
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 namespace quadcore::rotors {
 namespace {
 
-/// What a command is: a speed, an angle, or a torque.
+/// Quantity that a command sets: speed, angle or torque.
 enum class Type { velocity, position, force };
 Type type_of(const std::string& name) {
   if (name == "position") return Type::position;
@@ -22,10 +22,9 @@ Type type_of(const std::string& name) {
 
 enum Term { kThrust, kRotorDrag, kReaction, kRolling };
 
-/// What it remembers: its input, the messages that it has heard, the speed at the start of the step
-/// and at its end [rad/s], the time of the start [s], the share of the thrust that is lost, the
-/// speed that it is driven to [rad/s] or its torque [N m], and what the position's controller
-/// holds.
+/// State: the input, the number of messages read, the speed at the start and end of the step
+/// [rad/s], the time of the start [s], the lost fraction of the thrust, the target speed [rad/s] or
+/// the torque [N m], and the state of the position controller.
 enum Memory {
   kInput,
   kDirect,
@@ -39,11 +38,11 @@ enum Memory {
   kControl
 };
 
-/// A rotor and its motor as RotorS has them (Furrer, Burri, Achtelik, Siegwart, "RotorS - a modular
+/// A rotor and its motor as in RotorS (Furrer, Burri, Achtelik, Siegwart, "RotorS - a modular
 /// Gazebo MAV simulator framework", 2016, eqs. (1)-(4); drag and rolling moment after Martin,
 /// Salaun, "The true role of accelerometer feedback in quadrotor control", ICRA 2010). The speed
-/// follows its command with a lag of first order, and the joint turns as the lag says: what the
-/// rotor's moment of inertia takes comes from nowhere, unless a tag lets it act on the frame.
+/// follows its command with a first-order lag, and the lag prescribes the joint's rate. The
+/// reaction to the rotor's acceleration acts on nothing unless a tag lets it act on the frame.
 class MotorModel final : public Plugin {
  public:
   explicit MotorModel(const PluginSetup& setup)
@@ -71,12 +70,12 @@ class MotorModel final : public Plugin {
     if (type_ == Type::position && control_.is_mute()) {
       setup.warnings.push_back(
           "motor '" + setup.name +
-          "' holds no angle: without <cmdMax> and <cmdMin> Gazebo's PID lets no "
-          "torque through; write bounds, or <cmdMax>-1</cmdMax> for none");
+          "' produces no torque: without <cmdMax> and <cmdMin>, Gazebo's PID limits the torque to "
+          "0. Write bounds, or <cmdMax>-1</cmdMax> for none.");
     }
     for (const PluginElement& other : setup.model.plugins) {
       if (other.filename != controller_interface_file) continue;
-      // As RotorS' own messages do, what it forwards arrives with the next step.
+      // Forwarded messages arrive with the next step, as in RotorS.
       forwarded_ = setup.topics.takes(topic_of(setup, "commandSubTopic"),
                                       messages::speeds(motor_count(setup.model)), true);
       break;
@@ -112,7 +111,7 @@ class MotorModel final : public Plugin {
           left * control_.torque(sample.kinematics.angle(joint_), input, sample.dt,
                                  state.segment<PositionControl::kMemorySize>(kControl));
     } else {
-      // The air's torque, which the motor's balances, grows with the square of the speed.
+      // The aerodynamic torque, which the motor balances, grows with the square of the speed.
       state[kDriven] = std::sqrt(left) * input;
       state[kSpeed] = state[kNext];
       state[kNext] = lag_.after(sample.dt, state[kSpeed], state[kDriven]);
@@ -125,7 +124,7 @@ class MotorModel final : public Plugin {
   }
 
   void sense(const Sample& sample, PluginState state) const override {
-    if (!sample.jumped) return;  // the motor goes on from a speed that was set
+    if (!sample.jumped) return;  // after the motion was set, the motor continues from that speed
     state[kNext] = sense_ * sample.kinematics.rotors.number(MotionRow::rate, joint_) * slowdown_;
   }
 
@@ -151,19 +150,19 @@ class MotorModel final : public Plugin {
   static std::size_t joint_of(const PluginSetup& setup) {
     const std::vector<std::size_t>& joints = setup.parameters.joints("jointName");
     if (joints.size() != 1) {
-      throw InputError("<jointName> names several joints; write one motor for each");
+      throw InputError("<jointName> names several joints. Write one motor for each.");
     }
     const std::size_t joint = joints.front();
     const Model& model = setup.model;
     const std::string& link = setup.parameters.text("linkName");
     if (model.links[joint + 1].name != link) {
-      throw InputError("<linkName> '" + link + "' is not what joint '" + model.joints[joint].name +
-                       "' turns; write " + model.links[joint + 1].name);
+      throw InputError("<linkName> '" + link + "' is not the child of joint '" +
+                       model.joints[joint].name + "'. Write " + model.links[joint + 1].name + ".");
     }
     if (model.joints[joint].parent != 0) {
-      throw InputError("joint '" + model.joints[joint].name + "' hangs on the moving link '" +
+      throw InputError("joint '" + model.joints[joint].name + "' is attached to the moving link '" +
                        model.links[model.joints[joint].parent].name +
-                       "', which this module does not model; let the frame carry it");
+                       "', which this module does not model. Attach it to the frame.");
     }
     return joint;
   }
@@ -172,11 +171,11 @@ class MotorModel final : public Plugin {
     const double number = setup.parameters.number("motorNumber");
     const auto motors = static_cast<double>(motor_count(setup.model));
     if (number != std::floor(number) || number >= motors) {
-      throw InputError(
-          "<motorNumber> " + setup.parameters.text("motorNumber") +
-          " is no number of a motor; the model has " + std::to_string(motor_count(setup.model)) +
-          ", counted from 0; number them without a gap, and cut one that is to stand still "
-          "with libfault_plugin.so");
+      throw InputError("<motorNumber> " + setup.parameters.text("motorNumber") +
+                       " is not a valid motor number: the model has " +
+                       std::to_string(motor_count(setup.model)) +
+                       " motors, counted from 0. Number them without gaps. To stop a motor, use "
+                       "libfault_plugin.so.");
     }
     return static_cast<std::size_t>(number);
   }
@@ -188,13 +187,14 @@ class MotorModel final : public Plugin {
 
   bool turns() const { return type_ == Type::velocity; }
 
-  /// What came last counts, be it for the motors directly or by way of the controller's interface.
+  /// The latest message counts, whether it is for the motors or comes through the controller
+  /// interface.
   void listen(const Sample& sample, PluginState state) const {
     const auto hear = [&](std::size_t topic, Memory heard) {
       const Topic& message = sample.topics[topic];
       if (message.count == state[heard]) return;
       state[heard] = message.count;
-      // Messages of RotorS carry single precision.
+      // RotorS' messages have single precision.
       const double input = static_cast<float>(message.values[number_]);
       state[kInput] = turns() ? std::min(input, fastest_) : input;
     };
@@ -204,7 +204,7 @@ class MotorModel final : public Plugin {
 
   std::size_t joint_;
   Type type_;
-  double sense_;  ///< 1 or -1: of a positive command about the joint's axis
+  double sense_;  ///< direction of a positive command about the joint's axis, 1 or -1
   std::size_t number_;
   double fastest_;                           ///< rad/s
   double motor_constant_, moment_constant_;  ///< N s^2/rad^2, m
@@ -215,63 +215,60 @@ class MotorModel final : public Plugin {
   PositionControl control_;
   std::size_t command_;                   ///< topic
   std::size_t effectiveness_, power_;     ///< topics
-  std::optional<std::size_t> forwarded_;  ///< of the controller's interface, if there is one
+  std::optional<std::size_t> forwarded_;  ///< topic of the controller interface, if there is one
   std::optional<std::size_t> speed_;      ///< topic
 };
 
 PluginDescriptor describe() {
   using T = TagSpec;
   std::vector<TagSpec> tags = {
-      T::joints("jointName", "the joint that it turns").must(),
-      T::text("linkName", "", "the link on that joint").must(),
+      T::joints("jointName", "joint that the motor turns").must(),
+      T::text("linkName", "", "child link of the joint").must(),
       T::choice("turningDirection", {"ccw", "cw"},
-                "sense about the joint's axis in which a positive command turns it")
+                "direction about the joint's axis in which a positive command turns the rotor")
           .must(),
-      T::number("motorNumber", "", "", "its place in a command, from 0 on").must().at_least(0),
+      T::number("motorNumber", "", "", "index in the command, counted from 0").must().at_least(0),
       T::choice("motorType", {"velocity", "position", "force"},
-                "what a command is: a speed, rad/s; an angle, rad; a torque, N m"),
-      T::number("motorConstant", "N s^2/rad^2", "8.54858e-06",
-                "thrust is this times the square of "
-                "the speed")
+                "quantity that the command sets: speed, rad/s; angle, rad; torque, N m"),
+      T::number("motorConstant", "N s^2/rad^2", "8.54858e-06", "thrust per squared speed")
           .at_least(0)
           .scaling(Effect::thrust),
-      T::number("momentConstant", "m", "0.016", "reaction torque by thrust"),
-      T::number(
-          "rotorDragCoefficient", "N s^2/(rad m)", "1e-4",
-          "drag is this times the speed and the velocity of the link's origin across the axis")
+      T::number("momentConstant", "m", "0.016", "reaction torque divided by thrust"),
+      T::number("rotorDragCoefficient", "N s^2/(rad m)", "1e-4",
+                "drag divided by the rotor speed and the link origin's velocity perpendicular to "
+                "the axis")
           .at_least(0)
           .scaling(Effect::drag),
       T::number("rollingMomentCoefficient", "N s^2/rad", "1e-6",
-                "the like torque on the frame, along that velocity")
+                "rolling moment on the frame, divided by the rotor speed and the same velocity")
           .at_least(0)
           .scaling(Effect::drag),
-      T::number("maxRotVelocity", "rad/s", "838", "fastest command that is followed").above(0),
-      T::number("timeConstantUp", "s", "0.0125", "of the lag while the speed rises")
+      T::number("maxRotVelocity", "rad/s", "838", "maximum speed that the motor follows").above(0),
+      T::number("timeConstantUp", "s", "0.0125", "time constant of the lag while the speed rises")
           .above(0)
           .scaling(Effect::lag),
-      T::number("timeConstantDown", "s", "0.025", "of the lag while it falls")
+      T::number("timeConstantDown", "s", "0.025", "time constant of the lag while the speed falls")
           .above(0)
           .scaling(Effect::lag),
-      T::number("rotorVelocitySlowdownSim", "", "10", "the joint turns slower by this factor")
+      T::number("rotorVelocitySlowdownSim", "", "10",
+                "factor by which the joint turns slower than the rotor")
           .above(0),
       T::flag("reactionTorque", "false",
-              "quadcore's own: whether the frame bears the torque that speeds the rotor up; not so "
-              "in RotorS"),
+              "quadcore extension: whether the frame takes the reaction to the rotor's "
+              "acceleration; RotorS omits it"),
       T::text("effectiveness", "effectiveness",
-              "quadcore's own: topic of each joint's share of thrust and reaction torque that is "
-              "left; 1 before the first message"),
-      T::text(
-          "power", "power",
-          "quadcore's own: topic of each joint's share of the motor's torque that is left, 0 to "
-          "1; it reaches that share of the commanded speed's square; 1 before the first message"),
+              "quadcore extension: topic with the remaining fraction of each joint's thrust and "
+              "reaction torque; 1 before the first message"),
+      T::text("power", "power",
+              "quadcore extension: topic with the remaining fraction of each motor's torque, 0 to "
+              "1, which scales the square of the commanded speed; 1 before the first message"),
       T::text("commandSubTopic", "gazebo/command/motor_speed",
-              "where the controller's interface forwards commands, if the model has one; else "
-              "commands come on vel_cmd alone"),
-      T::text("motorSpeedPubTopic", "", "where the joint's rate is published")
-          .or_absent("not published"),
-      idle("motorPositionPubTopic", "the log and the state hold the angles"),
-      idle("motorForcePubTopic", "wrenches hold the forces"),
-      idle("windSpeedSubTopic", "the air is what the wind module and all others make it"),
+              "topic on which the controller interface forwards commands, if the model has one; "
+              "otherwise commands arrive only on vel_cmd"),
+      T::text("motorSpeedPubTopic", "", "topic of the joint's rate").or_absent("not published"),
+      idle("motorPositionPubTopic", "the log and the state contain the angles"),
+      idle("motorForcePubTopic", "the wrenches contain the forces"),
+      idle("windSpeedSubTopic", "the wind plugins set the air velocity directly"),
       namespace_tag(),
   };
   for (TagSpec& tag : tags) {
@@ -279,7 +276,8 @@ PluginDescriptor describe() {
   }
   PositionControl::add_tags(tags);
   return {
-      "RotorS' motor and rotor: a speed that lags, thrust, drag, reaction and rolling moment",
+      "RotorS' motor and rotor: first-order lag of the speed, thrust, drag, reaction torque and "
+      "rolling moment",
       tags,
       {"thrust", "rotor_drag", "reaction", "rolling"},
       create<MotorModel>,

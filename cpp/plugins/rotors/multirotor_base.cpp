@@ -6,8 +6,8 @@
 namespace quadcore::rotors {
 namespace {
 
-/// Tells how fast the rotors turn, as they do before this step's motors act; and, for the laws of
-/// quadcore, how the frame moves, unless an odometry of quadcore does.
+/// Publishes the rotor speeds before this step's motor torques act. For quadcore's controllers, it
+/// also publishes the motion of the frame unless a quadcore odometry plugin does.
 class MultirotorBase final : public Plugin {
  public:
   explicit MultirotorBase(const PluginSetup& setup)
@@ -52,22 +52,23 @@ class MultirotorBase final : public Plugin {
 PluginDescriptor describe() {
   using T = TagSpec;
   return {
-      "RotorS' base: publishes the speeds of the rotors",
+      "RotorS' base plugin: publishes the rotor speeds",
       {
-          T::number("rotorVelocitySlowdownSim", "", "10", "rates of the joints are told times this")
+          T::number("rotorVelocitySlowdownSim", "", "10",
+                    "factor by which the published joint rates are multiplied")
               .above(0)
               .from("RotorS"),
           T::text("motorPubTopic", "motor_speed",
-                  "where the rotors' speeds are published, signed, in the joints' order")
+                  "topic of the signed rotor speeds, in the joints' order")
               .from("RotorS"),
           T::text("truth", "odom",
-                  "quadcore's own: where pose and velocity of the frame are published without "
-                  "error, the linear velocity along the world's axes, for quadcore's laws; nowhere "
-                  "if the model has a libodometry_plugin.so"),
+                  "quadcore extension: topic of the frame's exact pose and velocity for quadcore's "
+                  "controllers, with the linear velocity in world axes; unused if the model has a "
+                  "libodometry_plugin.so"),
           T::flag("publishTf", "true",
-                  "quadcore's own: whether a ROS node sends tf of the frame with that topic"),
-          idle("jointStatePubTopic", "a ROS node publishes joint_states by itself"),
-          T::link("linkName", "the frame that a ROS node names with the speeds").from("RotorS"),
+                  "quadcore extension: whether the ROS node also publishes the frame's pose on tf"),
+          idle("jointStatePubTopic", "the ROS node publishes joint_states itself"),
+          T::link("linkName", "frame_id of the rotor speeds in the ROS node").from("RotorS"),
           idle("frameId", "speeds have no frame"),
           namespace_tag(),
       },

@@ -8,15 +8,14 @@
 #include "quadcore/text.hpp"
 
 /// \file
-/// What RotorS' modules have in common: names of topics, and tags that mean nothing here.
+/// Common parts of RotorS' modules: topic names, and tags without effect.
 
 namespace quadcore::rotors {
 
 constexpr const char* motor_model_file = "librotors_gazebo_motor_model.so";
 constexpr const char* controller_interface_file = "librotors_gazebo_controller_interface.so";
 
-/// A name of ROS as one of quadcore, which knows parts of names, but no signs beyond letters,
-/// digits and _.
+/// Convert a ROS name to a quadcore name, which allows only letters, digits, _ and the separator /.
 inline std::string topic_path(std::string name) {
   name.erase(0, name.find_first_not_of('/'));
   const auto is_plain = [](char c) {
@@ -27,15 +26,15 @@ inline std::string topic_path(std::string name) {
   return name;
 }
 
-/// A namespace without the slashes around it.
+/// Return a namespace without surrounding slashes.
 inline std::string namespace_word(const std::string& name) {
   const std::size_t first = name.find_first_not_of('/');
   if (first == std::string::npos) return "";
   return name.substr(first, name.find_last_not_of('/') - first + 1);
 }
 
-/// The vehicle's own namespace: the shortest that its motors name, the first of several; of a model
-/// whose motors name none, that its other plugins do.
+/// Return the vehicle's namespace: the shortest (and first) of its motors, or else of its other
+/// plugins.
 inline std::string vehicle_namespace(const Model& model) {
   std::string of_motors, of_any;
   const auto shorten = [](std::string& shortest, const std::string& name) {
@@ -53,7 +52,8 @@ inline std::string vehicle_namespace(const Model& model) {
   return of_motors.empty() ? of_any : of_motors;
 }
 
-/// The topic that a tag names, with what the plugin's namespace has beyond the vehicle's.
+/// Return the topic of a tag, prefixed with the part of the plugin's namespace beyond the
+/// vehicle's.
 inline std::string topic_of(const PluginSetup& setup, const std::string& tag) {
   const std::string own = namespace_word(setup.parameters.text("robotNamespace"));
   const std::string vehicle = vehicle_namespace(setup.model);
@@ -62,26 +62,26 @@ inline std::string topic_of(const PluginSetup& setup, const std::string& tag) {
   return topic_path((beyond.empty() ? "" : beyond + "/") + setup.parameters.text(tag));
 }
 
-/// Motors of a model: numbers that a command carries.
+/// Return the number of motors of a model, which is the size of a command.
 inline std::size_t motor_count(const Model& model) {
   return static_cast<std::size_t>(
       std::count_if(model.plugins.begin(), model.plugins.end(),
                     [](const PluginElement& p) { return p.filename == motor_model_file; }));
 }
 
-/// A tag that RotorS knows and that has no effect here.
+/// Specify a tag of RotorS that has no effect here.
 inline TagSpec idle(const std::string& name, const std::string& why) {
-  return TagSpec::text(name, "", "without effect: " + why).or_absent("none");
+  return TagSpec::text(name, "", "no effect: " + why).or_absent("none");
 }
 inline TagSpec namespace_tag() {
   return TagSpec::text("robotNamespace", "",
-                       "what it has beyond the shortest of the model's stands before the names of "
-                       "topics")
+                       "namespace; the part beyond the model's shortest namespace is prefixed to "
+                       "the topic names")
       .from("RotorS")
       .or_absent("the vehicle's");
 }
 
-/// Where a link of the frame that a tag names sits in it.
+/// Return the pose in the frame of the link that a tag names.
 inline Pose place_of(const PluginSetup& setup, const std::string& tag) {
   return setup.model.pose_of_link.at(setup.parameters.text(tag));
 }

@@ -12,7 +12,7 @@ inline Vector3d vector_of(const Parameters& p, const std::string& tag) {
   return Vector3d(p.numbers(tag).data());
 }
 
-/// Uniform between -bound and bound.
+/// Return a uniform number between -bound and bound.
 inline double uniform_within(double bound, std::uint64_t seed, double& draws) {
   if (bound == 0) return 0;
   const std::uint64_t bits = random_bits(seed, count_of(draws));
@@ -20,12 +20,12 @@ inline double uniform_within(double bound, std::uint64_t seed, double& draws) {
   return bound * (static_cast<double>(bits >> 11) / 4503599627370496.0 - 1);  // 2^52
 }
 
-/// Of a standard deviation.
+/// Return a normal number with a standard deviation.
 inline double normal_of(double deviation, std::uint64_t seed, double& draws) {
   return deviation == 0 ? 0 : deviation * random_normal(seed, draws);
 }
 
-/// Normal noise beside uniform noise, on three numbers.
+/// Normal plus uniform noise on three numbers.
 struct Noise {
   Vector3d normal, uniform;  ///< standard deviation, and bound
 

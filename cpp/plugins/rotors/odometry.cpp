@@ -9,12 +9,11 @@
 namespace quadcore::rotors {
 namespace {
 
-/// What it remembers: steps so far, numbers of chance drawn; then the messages that wait, in a
-/// ring.
+/// State: number of steps and of random numbers drawn; then a ring buffer of pending messages.
 enum Memory { kSteps, kDraws, kRing };
 
-/// Pose of a link's centre of mass in the world and velocity of its origin along its own axes, at
-/// the start of a step.
+/// Pose of a link's centre of mass in the world and velocity of its origin in link axes, at the
+/// start of a step.
 class Odometry final : public Plugin {
  public:
   explicit Odometry(const PluginSetup& setup)
@@ -35,7 +34,8 @@ class Odometry final : public Plugin {
         row_(static_cast<Eigen::Index>(messages::kind_of<messages::Odometry>().fields.size()) + 1) {
     for (const char* tag : {"measurementDivisor", "measurementDelay"}) {
       if (setup.parameters.number(tag) != std::floor(setup.parameters.number(tag))) {
-        throw InputError(std::string("<") + tag + "> is no whole number of steps; write one");
+        throw InputError(std::string("<") + tag +
+                         "> is not a whole number of steps. Write a whole number.");
       }
     }
   }
@@ -52,7 +52,7 @@ class Odometry final : public Plugin {
     now[0] = std::fmod(step, divisor_) == 0 ? 1 : 0;
     if (now[0] != 0) {
       messages::Odometry message = truth(sample.kinematics);
-      message.position_variance = stamp;  // until it is due
+      message.position_variance = stamp;  // holds the stamp until the message is due
       messages::write(message, now.data() + 1);
     }
     if (step < delay_) return;
@@ -65,7 +65,7 @@ class Odometry final : public Plugin {
   }
 
   void sense(const Sample& sample, PluginState state) const override {
-    if (sample.jumped) state[kSteps] = 0;  // what waits is of another motion
+    if (sample.jumped) state[kSteps] = 0;  // pending messages belong to the previous motion
   }
 
  private:
@@ -110,27 +110,28 @@ class Odometry final : public Plugin {
   std::uint64_t seed_;
   Noise position_, turn_, linear_, angular_;
   std::size_t topic_;
-  Eigen::Index row_;  ///< numbers of a message that waits
+  Eigen::Index row_;  ///< size of a pending message
 };
 
 PluginDescriptor describe() {
   using T = TagSpec;
   std::vector<TagSpec> tags = {
-      T::link("linkName", "the link that it tells of").must(),
-      T::text("odometryTopic", "odometry", "where the messages are published"),
-      T::text("poseTopic", "pose", "where a ROS node publishes its pose alone"),
-      T::text("poseWithCovarianceTopic", "pose_with_covariance", "the same with its variances"),
-      T::text("positionTopic", "position", "where a ROS node publishes its place"),
-      T::text("transformTopic", "transform", "where a ROS node publishes it as a transform"),
-      T::text("childFrameId", "odometry_sensor", "tf's name of what a ROS node tells the pose of"),
-      T::number("measurementDivisor", "", "1", "steps from one measurement to the next")
+      T::link("linkName", "link of the published motion").must(),
+      T::text("odometryTopic", "odometry", "topic of the messages"),
+      T::text("poseTopic", "pose", "ROS topic of the pose alone"),
+      T::text("poseWithCovarianceTopic", "pose_with_covariance",
+              "ROS topic of the pose with covariance"),
+      T::text("positionTopic", "position", "ROS topic of the position"),
+      T::text("transformTopic", "transform", "ROS topic of the pose as a transform"),
+      T::text("childFrameId", "odometry_sensor", "child_frame_id of the ROS messages"),
+      T::number("measurementDivisor", "", "1", "number of steps between measurements")
           .at_least(1)
           .at_most(1e9),
-      T::number("measurementDelay", "", "0", "steps that a measurement is held back")
+      T::number("measurementDelay", "", "0", "delay of a measurement in steps")
           .at_least(0)
           .at_most(10000),
       T::number("unknownDelay", "s", "0",
-                "added to the stamps; as in RotorS whole seconds count alone")
+                "offset of the time stamps; only whole seconds count, as in RotorS")
           .at_least(-1e6)
           .at_most(1e6),
       T::number("randomEngineSeed", "", "", "seed of the noise, a whole number")
@@ -140,26 +141,28 @@ PluginDescriptor describe() {
   };
   const auto add = [&](const std::string& of, const char* unit, const char* what) {
     tags.push_back(T::numbers("noiseNormal" + of, unit, "0 0 0",
-                              std::string("standard deviations of normal noise on ") + what)
+                              std::string("standard deviations of the normal noise on ") + what)
                        .of(3)
                        .at_least(0));
     tags.push_back(T::numbers("noiseUniform" + of, unit, "0 0 0",
-                              std::string("bounds of uniform noise on ") + what)
+                              std::string("bounds of the uniform noise on ") + what)
                        .of(3)
                        .at_least(0));
   };
   add("Position", "m", "the position");
-  add("Quaternion", "rad", "the orientation, a small turn about the link's axes");
+  add("Quaternion", "rad", "the orientation, a small rotation about the link's axes");
   add("LinearVelocity", "m/s", "the linear velocity, link axes");
   add("AngularVelocity", "rad/s", "the angular velocity, link axes");
   for (TagSpec& tag : tags) tag.equation = "RotorS";
   for (const char* image : {"covarianceImage", "covarianceImageScale"}) {
-    tags.push_back(idle(image, "messages come everywhere, not only where a picture is white"));
+    tags.push_back(
+        idle(image, "messages are published everywhere, not only where an image is white"));
   }
-  tags.push_back(T::choice("parentFrameId", {"world"}, "poses are told in the world"));
+  tags.push_back(T::choice("parentFrameId", {"world"}, "frame of the poses"));
   tags.push_back(namespace_tag());
   return {
-      "RotorS' odometry: of the state a step before its stamp, velocities along the link's axes",
+      "RotorS' odometry: measures the state one step before the time stamp, with velocities in "
+      "link axes",
       tags,
       {},
       create<Odometry>};

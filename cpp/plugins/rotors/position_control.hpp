@@ -7,9 +7,9 @@
 
 namespace quadcore::rotors {
 
-/// The controller of a motor that holds an angle, as Gazebo's class PID: sampled once per step,
+/// The position controller of a motor, like Gazebo's class PID, sampled once per step:
 ///   torque = -p e - clamp(i sum(e dt), iMin, iMax) - d (e - e_last)/dt,
-/// e being the angle less the one that is wanted, between -pi and pi.
+/// where e is the angle minus the wanted angle, between -pi and pi.
 class PositionControl {
  public:
   enum Memory { kSum, kLast, kMemorySize };
@@ -23,7 +23,7 @@ class PositionControl {
         largest_(p.number(name("cmdMax"))),
         smallest_(p.number(name("cmdMin"))) {
     if (i_min_ > i_max_) {
-      throw InputError("<joint_control_pid> has its <iMin> above its <iMax>; swap them");
+      throw InputError("<iMin> of <joint_control_pid> exceeds <iMax>. Swap them.");
     }
   }
 
@@ -36,24 +36,24 @@ class PositionControl {
     return is_bounded() ? std::clamp(torque, smallest_, largest_) : torque;
   }
 
-  /// Whether bounds, as they are given or left out, let no torque through.
+  /// Return whether the given or default bounds limit the torque to zero.
   bool is_mute() const { return is_bounded() && smallest_ == 0 && largest_ == 0; }
 
   static void add_tags(std::vector<TagSpec>& tags) {
     const auto add = [&](const char* gain, const char* unit, const std::string& meaning) {
       tags.push_back(TagSpec::number(name(gain), unit, "0", meaning).from("Gazebo's PID"));
     };
-    add("p", "N m/rad", "of motorType position: proportional gain");
-    add("i", "N m/(rad s)", "its integral gain");
-    add("d", "N m s/rad", "its derivative gain");
-    add("iMax", "N m", "largest integral torque");
-    add("iMin", "N m", "smallest integral torque");
-    add("cmdMax", "N m", "largest torque; below cmdMin: no bounds");
-    add("cmdMin", "N m", "smallest torque; 0 and 0: no torque");
+    add("p", "N m/rad", "proportional gain, for motorType position");
+    add("i", "N m/(rad s)", "integral gain, for motorType position");
+    add("d", "N m s/rad", "derivative gain, for motorType position");
+    add("iMax", "N m", "maximum integral torque");
+    add("iMin", "N m", "minimum integral torque");
+    add("cmdMax", "N m", "maximum torque; below cmdMin: no bounds");
+    add("cmdMin", "N m", "minimum torque; if both bounds are 0: no torque");
   }
 
  private:
-  /// Gazebo takes bounds the wrong way round for none.
+  /// Gazebo treats reversed bounds as no bounds.
   bool is_bounded() const { return smallest_ <= largest_; }
   static std::string name(const char* gain) { return std::string("joint_control_pid/") + gain; }
 

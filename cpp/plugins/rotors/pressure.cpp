@@ -23,8 +23,8 @@ double standard_pressure(double height) {
                                       elementary::log(temperature / temperature_0));
 }
 
-/// The pressure of the air at the frame's origin at the start of each step. Its memory: numbers of
-/// chance drawn.
+/// The air pressure at the frame's origin at the start of each step. Its memory is the number of
+/// random numbers drawn.
 class Pressure final : public Plugin {
  public:
   explicit Pressure(const PluginSetup& setup)
@@ -32,7 +32,7 @@ class Pressure final : public Plugin {
         variance_(setup.parameters.number("pressureVariance")),
         topic_(setup.topics.publishes(topic_of(setup, "pressureTopic"),
                                       messages::kind_of<messages::Pressure>())) {
-    place_of(setup, "linkName");  // RotorS takes the vehicle's height, but wants the link
+    place_of(setup, "linkName");  // RotorS uses the vehicle's height but requires the link
   }
 
   std::size_t state_size() const override { return 1; }
@@ -54,12 +54,14 @@ class Pressure final : public Plugin {
 PluginDescriptor describe() {
   using T = TagSpec;
   return {
-      "RotorS' sensor of the air's pressure: of the state a step before its stamp, each step",
+      "RotorS' air-pressure sensor: measures every step, from the state one step before the time "
+      "stamp",
       {
-          T::link("linkName", "a link of the frame").must().from("RotorS"),
-          T::text("pressureTopic", "air_pressure", "where the messages are published")
+          T::link("linkName", "link that carries the sensor, part of the frame")
+              .must()
               .from("RotorS"),
-          T::number("referenceAltitude", "m", "500", "of the world's origin above the sea")
+          T::text("pressureTopic", "air_pressure", "topic of the messages").from("RotorS"),
+          T::number("referenceAltitude", "m", "500", "height of the world's origin above sea level")
               .at_least(-1000)
               .at_most(10000)
               .from("RotorS"),

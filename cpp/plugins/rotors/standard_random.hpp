@@ -9,10 +9,10 @@
 
 namespace quadcore::rotors {
 
-/// The numbers of chance of a program that never seeds its generator: those of GCC's
-/// std::default_random_engine (Lewis, Goodman, Miller, 1969: x' = 16807 x mod 2^31 - 1, from 1 on)
-/// and of its std::normal_distribution, which is Marsaglia's polar method, two numbers at a time.
-/// The C++ standard leaves the latter open; here it is the same everywhere.
+/// Random numbers of a program that never seeds its generator: those of GCC's
+/// std::default_random_engine (Lewis, Goodman, Miller, 1969: x' = 16807 x mod 2^31 - 1, starting at
+/// 1) and its std::normal_distribution (Marsaglia's polar method, two numbers at a time). The C++
+/// standard does not define the latter; this implementation is identical everywhere.
 class StandardRandom {
  public:
   enum Memory { kBegun, kEngine, kHasSpare, kSpare, kMemorySize };
@@ -22,7 +22,7 @@ class StandardRandom {
     memory_[kBegun] = memory_[kEngine] = 1;
   }
 
-  /// Of mean 0 and standard deviation 1.
+  /// Return a normal number with mean 0 and standard deviation 1.
   double normal() {
     if (memory_[kHasSpare] != 0) {
       memory_[kHasSpare] = 0;
@@ -41,15 +41,15 @@ class StandardRandom {
   }
 
  private:
-  /// One of 2^31 - 2 numbers from 0 on.
+  /// Return one of 2^31 - 2 numbers, starting at 0.
   double next() {
     constexpr std::uint64_t modulus = 2147483647;
-    // Less 1, because from 0 the generator would give 0 for ever.
+    // Minus 1, because the generator never returns 0.
     const std::uint64_t engine = 1 + count_of(memory_[kEngine] - 1, modulus - 2);
     memory_[kEngine] = static_cast<double>(16807 * engine % modulus);
     return memory_[kEngine] - 1;
   }
-  /// From 0 to below 1, of as many bits as a double has: two of the engine's.
+  /// Return a number in [0, 1) with the precision of a double, from two numbers of the engine.
   double uniform() {
     constexpr double range = 2147483646.0;
     const double low = next(), high = next();

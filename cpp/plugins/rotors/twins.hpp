@@ -7,7 +7,7 @@
 
 namespace quadcore::rotors {
 
-/// Warns if a motor before this one has its number.
+/// Warn if an earlier motor has the same number.
 inline void look_at_twins(const PluginSetup& setup) {
   const auto of = [](const PluginElement& plugin, const std::string& name) {
     for (const PluginTag& tag : plugin.tags) {
@@ -20,9 +20,10 @@ inline void look_at_twins(const PluginSetup& setup) {
     if (other.filename != motor_model_file) continue;
     const PluginTag number = of(other, "motorNumber");
     if (number.text == setup.parameters.text("motorNumber")) {
-      setup.warnings.push_back("motors '" + other.name + "' and '" + setup.name +
-                               "' have the same <motorNumber> " + number.text + " (" +
-                               number.where + "): one number of a command drives both");
+      setup.warnings.push_back(
+          "motors '" + other.name + "' and '" + setup.name + "' have the same <motorNumber> " +
+          number.text + " (" + number.where +
+          "), so one number of the command drives both. Give each motor its own number.");
     }
   }
 }

@@ -11,8 +11,8 @@
 namespace quadcore::rotors {
 namespace {
 
-/// A force that stays and a gust that comes and goes, on the frame; and a wind that the rotors'
-/// drag feels. Or a field of wind, and then neither force nor gust.
+/// A constant force and a gust on the frame, and a wind on the rotors' drag; or a wind field
+/// without force and gust.
 class Wind final : public Plugin {
  public:
   explicit Wind(const PluginSetup& setup)
@@ -31,8 +31,9 @@ class Wind final : public Plugin {
     field_.emplace(path_of_field(setup.parameters));
     for (const char* tag : {"windForceMean", "windGustForceMean"}) {
       if (setup.parameters.number(tag) == 0) continue;
-      setup.warnings.push_back(std::string("<") + tag +
-                               "> has no effect beside a field of wind, as in RotorS");
+      setup.warnings.push_back(
+          std::string("<") + tag +
+          "> has no effect together with a wind field, as in RotorS. Remove it.");
     }
     force_W_ = gust_W_ = Vector3d::Zero();
   }
@@ -40,7 +41,7 @@ class Wind final : public Plugin {
   std::size_t state_size() const override { return 1; }
 
   void update(const Sample& sample, PluginState gusty) const override {
-    const double now = sample.time + sample.dt;  // RotorS' clock has moved on already
+    const double now = sample.time + sample.dt;  // RotorS' clock has already advanced
     gusty[0] = now >= begin_ - 1e-9 && now < end_ - 1e-9 ? 1 : 0;
     sample.topics.publish(speed_topic_, now, messages::WindSpeed{wind(sample.kinematics)});
     if (field_) return;
@@ -56,7 +57,7 @@ class Wind final : public Plugin {
   }
 
  private:
-  /// Where the link's origin is; beyond the field, the wind that the tags give.
+  /// Return the wind at the link's origin; outside the field, the wind of the tags.
   Vector3d wind(const Kinematics& k) const {
     Vector3d v_WA_W = v_WA_W_;
     if (field_) field_->at(k.p_WF + k.R_WF * p_FS_F_, v_WA_W);
@@ -64,8 +65,8 @@ class Wind final : public Plugin {
   }
   Vector3d force(double gusty) const { return force_W_ + gusty * gust_W_; }
 
-  /// Relative to the document that the tag stands in, or, set from outside, to where the program
-  /// runs.
+  /// Return the path relative to the document of the tag or, if set by the caller, to the working
+  /// directory.
   static std::string path_of_field(const Parameters& parameters) {
     for (const Parameter& parameter : parameters.all()) {
       if (parameter.spec.name != "customWindFieldPath" || parameter.text.empty()) continue;
@@ -76,7 +77,8 @@ class Wind final : public Plugin {
       return (document.parent_path() / path).lexically_normal().string();
     }
     throw InputError(
-        "<useCustomStaticWindField> is true, but no <customWindFieldPath> names the file; add it");
+        "<useCustomStaticWindField> is true, but <customWindFieldPath> is missing. Add the path of "
+        "the file.");
   }
 
   static Vector3d point(const PluginSetup& setup) {
@@ -91,12 +93,13 @@ class Wind final : public Plugin {
     const Vector3d axis(setup.parameters.numbers(direction).data());
     const double length = axis.norm();
     if (!(length > 0)) {
-      throw InputError(std::string("<") + direction + "> has no direction; write such as 1 0 0");
+      throw InputError(std::string("<") + direction +
+                       "> is zero. Write a direction such as 1 0 0.");
     }
     return setup.parameters.number(strength) / length * axis;
   }
 
-  Vector3d p_FQ_F_;            ///< where the forces act [m]
+  Vector3d p_FQ_F_;            ///< point of application of the forces [m]
   Vector3d p_FS_F_;            ///< origin of the link [m]
   Vector3d force_W_, gust_W_;  ///< N
   double begin_, end_;         ///< s
@@ -107,29 +110,31 @@ class Wind final : public Plugin {
 
 PluginDescriptor describe() {
   using T = TagSpec;
-  const char* const unused = "RotorS reads it and never uses it, either";
+  const char* const unused = "RotorS reads but does not use it either";
   std::vector<TagSpec> tags = {
-      T::link("linkName", "the link that the forces act on").must(),
+      T::link("linkName", "link on which the forces act").must(),
       T::numbers("xyzOffset", "m", "0 0 0",
-                 "where they act, from the link's centre of mass, along its axes")
+                 "point of application relative to the link's centre of mass, link axes")
           .of(3),
       T::numbers("windDirection", "", "1 0 0",
-                 "of the force and of the wind, world axes, of any "
-                 "length")
+                 "direction of the force and of the wind, world axes, any length")
           .of(3),
-      T::number("windForceMean", "N", "0", "the force that stays"),
-      T::number("windSpeedMean", "m/s", "0", "speed of the wind that the rotors' drag feels"),
-      T::numbers("windGustDirection", "", "0 1 0", "of the gust, world axes, of any length").of(3),
+      T::number("windForceMean", "N", "0", "constant force"),
+      T::number("windSpeedMean", "m/s", "0", "wind speed that acts on the rotors' drag"),
+      T::numbers("windGustDirection", "", "0 1 0", "direction of the gust, world axes, any length")
+          .of(3),
       T::number("windGustForceMean", "N", "0", "force of the gust"),
-      T::number("windGustStart", "s", "10", "when it begins"),
-      T::number("windGustDuration", "s", "0", "how long it lasts").at_least(0),
-      T::text("windForcePubTopic", "external_force", "where force and gust are published, N"),
+      T::number("windGustStart", "s", "10", "start of the gust"),
+      T::number("windGustDuration", "s", "0", "duration of the gust").at_least(0),
+      T::text("windForcePubTopic", "external_force", "topic of the force including the gust, N"),
       T::text("windSpeedPubTopic", "wind_speed",
-              "where the wind is published, m/s; all that feels the air feels it"),
-      T::text("frameId", "world", "tf's name of the axes that a ROS node names with both"),
+              "topic of the wind velocity, m/s; it acts on all aerodynamic effects"),
+      T::text("frameId", "world", "frame_id of both messages in the ROS node"),
       T::flag("useCustomStaticWindField", "false",
-              "a field of wind from a file, in place of force and gust; beyond it, windSpeedMean"),
-      T::text("customWindFieldPath", "", "that file, relative to the document that holds the tag")
+              "whether to read a wind field from a file, which replaces force and gust; outside "
+              "it, windSpeedMean applies"),
+      T::text("customWindFieldPath", "",
+              "file of the wind field, relative to the document that contains the tag")
           .or_absent("none"),
   };
   for (TagSpec& tag : tags) tag.equation = "RotorS";
@@ -137,7 +142,7 @@ PluginDescriptor describe() {
     tags.push_back(idle(name, unused));
   }
   tags.push_back(namespace_tag());
-  return {"RotorS' wind: a force, a gust, and a wind on the rotors",
+  return {"RotorS' wind: a constant force, a gust, and wind on the rotors",
           tags,
           {"wind_force"},
           create<Wind>};

@@ -15,10 +15,9 @@
 
 namespace quadcore::rotors {
 
-/// A wind that differs from place to place and stays as it is, on a grid that follows the terrain:
-/// columns that stand evenly in x and y, each from its own bottom to its own top, and points in
-/// them at the same shares of that height (RotorS' wiki, "Adding a custom wind field to your
-/// world"). In rows, x counts fastest, then y, then z.
+/// A static wind field on a grid that follows the terrain: columns at equal distances in x and y,
+/// each with its own bottom and top, and points at the same fractions of that height (RotorS' wiki,
+/// "Adding a custom wind field to your world"). In rows, x varies fastest, then y, then z.
 class WindField {
  public:
   /// Throws InputError with FILE:LINE.
@@ -38,16 +37,16 @@ class WindField {
     for (std::size_t i = 0; i < columns; ++i) {
       if (bottom_[i] < top_[i]) continue;
       fail(row("top_z"), "top_z of column " + std::to_string(i) +
-                             ", counted from 0, is not above its bottom_z; write a greater height");
+                             ", counted from 0, is not above its bottom_z. Use a greater height.");
     }
     const std::array<const char*, 3> axes = {"u", "v", "w"};
     for (std::size_t axis = 0; axis < 3; ++axis) velocity_[axis] = rows_of(axes[axis], points);
     rows_.clear();
   }
 
-  /// Whether the field has a wind at a place, and which: linear along each column, of which the
-  /// lowest or highest piece goes on beyond its ends, then between the four columns around. The
-  /// field ends where the outer columns stand, above all four tops and below all four bottoms.
+  /// Return the wind at a position, or nothing outside the field. It is interpolated linearly along
+  /// each column, with extrapolation beyond its ends, then between the four columns around. The
+  /// field ends at the outer columns, above all four tops and below all four bottoms.
   bool at(const Vector3d& p_W, Vector3d& v_WA_W) const {
     const double x = (p_W.x() - min_x_) / res_x_, y = (p_W.y() - min_y_) / res_y_;
     const auto last_x = static_cast<double>(n_x_ - 1), last_y = static_cast<double>(n_y_ - 1);
@@ -82,7 +81,7 @@ class WindField {
     throw InputError(row.where + ": " + what);
   }
 
-  /// A name and a colon, and the numbers up to the next name.
+  /// Read a name with a colon and the numbers up to the next name.
   void read(const std::string& path) {
     const std::vector<std::string> names = {
         "min_x",    "min_y", "n_x", "n_y", "res_x", "res_y", "vertical_spacing_factors",
@@ -96,27 +95,28 @@ class WindField {
         if (word.back() == ':') {
           const std::string name = word.substr(0, word.size() - 1);
           if (std::find(names.begin(), names.end(), name) == names.end()) {
-            throw InputError(where + ": '" + name + "' is no quantity of a field of wind" +
-                             did_you_mean(name, names) + "; write one of " + joined(names));
+            throw InputError(where + ": '" + name + "' is not a quantity of a wind field." +
+                             suggest(name, names) + " Use one of " + joined(names) + ".");
           }
           const auto [added, first] = rows_.emplace(name, Row{where, {}});
           row = &added->second;
           if (first) continue;
           throw InputError(where + ": a second " + name + " (first at " + row->where +
-                           "); keep one of them");
+                           "). Keep one of them.");
         }
         const auto value = parse_number(word);
         if (!value || !row) {
-          throw InputError(where + ": '" + word + "' is no finite number" +
+          throw InputError(where + ": '" + word + "' is not a finite number" +
                            (row ? "" : " of a quantity") +
-                           "; write NAME: and, after it, its numbers with blanks between them");
+                           ". Write NAME: followed by its numbers, separated by blanks.");
         }
         row->numbers.push_back(*value);
       }
     }
     for (const std::string& name : names) {
       if (rows_.count(name)) continue;
-      throw InputError(path + ": " + name + " is missing; write " + name + ": and its numbers");
+      throw InputError(path + ": " + name + " is missing. Write " + name +
+                       ": followed by its numbers.");
     }
   }
 
@@ -125,18 +125,20 @@ class WindField {
     const Row& found = row(name);
     if (found.numbers.size() == count) return found.numbers;
     fail(found, name + " has " + std::to_string(found.numbers.size()) +
-                    " numbers, but the grid asks for " + std::to_string(count) + "; write as many");
+                    " numbers, but the grid requires " + std::to_string(count) +
+                    ". Write as many.");
   }
   double number(const std::string& name) const { return rows_of(name, 1).front(); }
   double positive(const std::string& name) const {
     const double value = number(name);
-    if (!(value > 0)) fail(row(name), name + " is not positive; write a distance in m, > 0");
+    if (!(value > 0)) fail(row(name), name + " is not positive. Use a positive distance in m.");
     return value;
   }
   std::size_t whole(const std::string& name) const {
     const double value = number(name);
     if (value != std::floor(value) || value < 2 || value > 1e4) {
-      fail(row(name), name + " is no number of points; write a whole number from 2 to 10000");
+      fail(row(name),
+           name + " is not a valid number of points. Use a whole number from 2 to 10000.");
     }
     return static_cast<std::size_t>(value);
   }
@@ -145,11 +147,11 @@ class WindField {
         std::is_sorted(shares_.begin(), shares_.end(), [](double a, double b) { return a <= b; });
     if (shares_.size() >= 2 && grows && shares_.front() == 0 && shares_.back() == 1) return;
     fail(row("vertical_spacing_factors"),
-         "vertical_spacing_factors do not rise from 0 to 1; write shares of a column's height, at "
-         "least 0 1");
+         "vertical_spacing_factors do not rise from 0 to 1. Write fractions of a column's height, "
+         "at least 0 1.");
   }
 
-  /// Of a column, at a share of its height.
+  /// Return the height at a fraction of a column.
   Vector3d along(std::size_t column, double share) const {
     const auto above = std::upper_bound(shares_.begin() + 1, shares_.end() - 1, share);
     const auto k = static_cast<std::size_t>(above - shares_.begin()) - 1;
@@ -163,12 +165,12 @@ class WindField {
     return v;
   }
 
-  std::map<std::string, Row> rows_;  ///< while it is read
+  std::map<std::string, Row> rows_;  ///< rows during reading
   double min_x_ = 0, min_y_ = 0;     ///< m
   std::size_t n_x_ = 0, n_y_ = 0;
   double res_x_ = 0, res_y_ = 0;                 ///< m
-  std::vector<double> shares_;                   ///< of a column's height, from 0 to 1
-  std::vector<double> bottom_, top_;             ///< of each column [m]
+  std::vector<double> shares_;                   ///< fractions of a column's height, from 0 to 1
+  std::vector<double> bottom_, top_;             ///< bottom and top of each column [m]
   std::array<std::vector<double>, 3> velocity_;  ///< world axes [m/s]
 };
 

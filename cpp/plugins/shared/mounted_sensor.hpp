@@ -9,7 +9,8 @@
 namespace quadcore::sensing {
 
 /// A sensor on the vehicle that measures at the `rate` of its tag and sends messages of one type
-/// through a Channel. Its state: when it measured, the N numbers of measure(), what is on the way.
+/// through a Channel. Its state consists of the time of measurement, N numbers for measure(), and
+/// the messages in the Channel.
 template <class Message, Eigen::Index N>
 class MountedSensor : public Plugin {
  public:
@@ -33,13 +34,13 @@ class MountedSensor : public Plugin {
   }
 
  protected:
-  /// Where the link of the frame that the tag `link` names sits in it.
+  /// Return the pose in the frame of the link that the tag `link` names.
   static Pose mounting(const PluginSetup& setup) {
     return setup.model.pose_of_link.at(setup.parameters.choice("link"));
   }
 
   /// \param memory  N numbers, zero at the start
-  /// \return the message; or none after the motion was set, where that cannot be measured
+  /// \return the message, or none if the motion has just been set and cannot be measured
   virtual std::optional<Message> measure(const Sample& sample, PluginState memory) const = 0;
 
   const Channel& channel() const { return channel_; }

@@ -10,28 +10,27 @@
 
 namespace quadcore::sensing {
 
-/// White noise, and an error that drifts, a Gauss-Markov process that is stationary from the start:
-/// on n numbers that are measured together.
+/// Errors of n numbers that are measured together: white noise, and a drifting error, which is a
+/// Gauss-Markov process in its stationary state from the start.
 template <int n>
 class NoiseAndDrift {
  public:
   using Numbers = Eigen::Matrix<double, n, 1>;
-  /// Whether it is turned on, the time, how far its random numbers are drawn, the error that
-  /// drifts.
+  /// Whether it is turned on, the time, the number of random numbers drawn, and the drifting error.
   enum Memory { kOn, kTime, kDraws, kDrift, kMemorySize = kDrift + n };
 
   /// \param noise, drift  standard deviations
   /// \param drift_time    correlation time [s]
   NoiseAndDrift(const Numbers& noise, const Numbers& drift, double drift_time)
       : noise_(noise), drift_(drift), drift_time_(drift_time) {}
-  /// From the tags of add_tags(), which are of each number.
+  /// Create from the tags of add_tags(), which apply to each number.
   explicit NoiseAndDrift(const Parameters& p)
       : NoiseAndDrift(Numbers::Constant(p.number("noise")), Numbers::Constant(p.number("drift")),
                       p.number("driftTime")) {}
 
   Numbers variance() const { return noise_.cwiseAbs2() + drift_.cwiseAbs2(); }
 
-  /// The error of a measurement.
+  /// Return the error of a measurement.
   Numbers next(const Sample& sample, Eigen::Ref<VectorXd> memory) const {
     auto drift = memory.template segment<n>(kDrift);
     if (memory[kOn] == 0) {
@@ -47,7 +46,7 @@ class NoiseAndDrift {
     return drift + noise_.cwiseProduct(draw(sample, memory));
   }
 
-  /// Further standard normal numbers from the same stream.
+  /// Draw further standard normal numbers from the same stream.
   static Numbers draw(const Sample& sample, Eigen::Ref<VectorXd> memory) {
     Numbers numbers;
     for (int i = 0; i < n; ++i) numbers[i] = random_normal(sample.seed, memory[kDraws]);
@@ -55,16 +54,16 @@ class NoiseAndDrift {
   }
 
   static TagSpec drift_time_tag() {
-    return TagSpec::number("driftTime", "s", "60", "correlation time of that drift").above(0);
+    return TagSpec::number("driftTime", "s", "60", "correlation time of the drift").above(0);
   }
-  /// \param of  what is measured
+  /// \param of  the measured quantity
   static void add_tags(std::vector<TagSpec>& tags, const std::string& unit, const std::string& of) {
     tags.push_back(
         TagSpec::number("noise", unit, "0", "standard deviation of the white noise of " + of)
             .at_least(0));
     tags.push_back(TagSpec::number("drift", unit, "0",
-                                   "standard deviation of an error of " + of +
-                                       " that drifts, a Gauss-Markov process")
+                                   "standard deviation of a drifting error of " + of +
+                                       ", a Gauss-Markov process")
                        .at_least(0));
     tags.push_back(drift_time_tag());
   }

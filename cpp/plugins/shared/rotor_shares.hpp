@@ -5,11 +5,11 @@
 
 namespace quadcore {
 
-/// Of plugins that drive rotors.
+/// Return the tag for the remaining motor torque of plugins that drive rotors.
 inline TagSpec power_tag() {
   return TagSpec::text("power", "power",
-                       "topic: of each rotor the share of the motor's torque that is left, 0 to 1; "
-                       "1 before the first message, 0 lets the rotor turn freely");
+                       "topic with the remaining fraction of each motor's torque, 0 to 1; 1 before "
+                       "the first message, 0: the rotor turns freely");
 }
 
 }  // namespace quadcore

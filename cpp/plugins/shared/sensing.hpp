@@ -11,8 +11,7 @@
 #include "quadcore/plugin/random.hpp"
 
 /// \file
-/// What sensors have in common: when they measure, their noise, and the way of a measurement to its
-/// readers.
+/// Common parts of sensors: timing, noise, and the transmission of measurements.
 
 namespace quadcore::sensing {
 
@@ -22,8 +21,8 @@ inline Vector3d normal_vector(std::uint64_t seed, double& draws) {
   return v;
 }
 
-/// When a sensor measures: at most once per step, and when the motion was set. Its memory is one
-/// number.
+/// Timing of a sensor: it measures at most once per step, and whenever the motion is set. Its
+/// memory is one number.
 class Rate {
  public:
   explicit Rate(double rate) : rate_(rate) {}
@@ -39,30 +38,30 @@ class Rate {
   double rate_;  ///< 1/s
 };
 
-/// The way from a sensor to its topic, on which messages get lost and arrive late. A message
-/// carries the time of its measurement. The first one after the motion was set arrives at once.
+/// Transmission from a sensor to its topic with losses and a delay. A message contains the time of
+/// its measurement. The first one after the motion was set arrives at once.
 class Channel {
  public:
-  /// Reads the tags `topic`, `rate`, `delay` and `dropout`.
+  /// Create from the tags `topic`, `rate`, `delay` and `dropout`.
   Channel(const PluginSetup& setup, const MessageKind& kind)
       : topic_(setup.topics.publishes(setup.parameters.text("topic"), kind)),
         row_(kind.fields.size() + 1),
         delay_(setup.parameters.number("delay")),
         dropout_(setup.parameters.number("dropout")) {
-    // A message arrives with the first step that ends when it is old enough.
+    // A message arrives at the first end of a step at which it is old enough.
     const double waiting = std::ceil((delay_ + 2 * setup.dt) *
                                          std::min(setup.parameters.number("rate"), 1 / setup.dt) +
                                      1e-6) +
                            1;
     if (waiting * static_cast<double>(row_) > most_numbers) {
-      throw InputError("<delay> lets more messages wait than can be kept; write a shorter one");
+      throw InputError("<delay> is too long for the message buffer. Use a shorter delay.");
     }
     places_ = delay_ > 0 ? static_cast<std::size_t>(waiting) : 0;
   }
 
   std::size_t state_size() const { return kRing + places_ * row_; }
 
-  /// Whether every message arrives, at once.
+  /// Return whether every message arrives at once.
   bool is_direct() const { return delay_ == 0 && dropout_ == 0; }
 
   template <class M>
@@ -80,17 +79,17 @@ class Channel {
     memory[kWaiting] += 1;
   }
 
-  /// Forgets what is on the way, because the motion was set.
+  /// Discard pending messages because the motion was set.
   void clear(PluginState memory) const {
     if (!is_direct()) memory[kWaiting] = 0;
   }
 
-  /// Publishes what has arrived; at the end of each step.
+  /// Publish the messages that have arrived; called at the end of each step.
   void deliver(const Sample& sample, PluginState memory) const {
     if (delay_ == 0) return;
     for (auto waiting = count_of(memory[kWaiting], places_); waiting > 0; --waiting) {
       const double* row = at(memory, memory[kFirst]);
-      if (sample.time < row[0] + delay_ - 1e-9) return;  // the clock is a sum of steps
+      if (sample.time < row[0] + delay_ - 1e-9) return;  // the time is a sum of steps
       std::copy_n(row + 1, row_ - 1, sample.topics.publish(topic_, row[0]));
       memory[kFirst] = static_cast<double>(ring_index(memory[kFirst] + 1, places_));
       memory[kWaiting] -= 1;
@@ -98,20 +97,20 @@ class Channel {
   }
 
   static TagSpec delay_tag() {
-    return TagSpec::number("delay", "s", "0",
-                           "age of a message when it arrives; its stamp is the time it was "
-                           "measured")
+    return TagSpec::number(
+               "delay", "s", "0",
+               "age of a message when it arrives; its stamp is the time it was measured")
         .at_least(0);
   }
   static TagSpec dropout_tag() {
-    return TagSpec::number("dropout", "", "0", "probability that a message gets lost")
+    return TagSpec::number("dropout", "", "0", "probability that a message is lost")
         .at_least(0)
         .at_most(1);
   }
 
  private:
-  /// How many random numbers it has drawn, the place of the message that has waited longest, how
-  /// many wait; then their places, each a time and a message.
+  /// Number of random numbers drawn, index of the oldest pending message, and number of pending
+  /// messages; then the entries, each a time and a message.
   enum Memory : std::size_t { kDraws, kFirst, kWaiting, kRing };
   static constexpr double most_numbers = 500000;
 
@@ -125,7 +124,7 @@ class Channel {
   }
 
   std::size_t topic_;
-  std::size_t row_, places_;  ///< numbers of a place, and places
+  std::size_t row_, places_;  ///< size of an entry, and number of entries
   double delay_;              ///< s
   double dropout_;
 };

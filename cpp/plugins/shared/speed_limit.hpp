@@ -8,25 +8,25 @@
 
 namespace quadcore {
 
-/// The fastest speed that motors follow, and the topic that counts the steps whose command reached
-/// it; without a limit there is none.
+/// The maximum speed of the motors, and the topic with the number of steps in which a command
+/// reached it; without a limit there is no topic.
 class SpeedLimit {
  public:
   explicit SpeedLimit(const PluginSetup& setup) {
     if (!setup.parameters.has("maxVelocity")) return;
     fastest_ = setup.parameters.number("maxVelocity");
-    topic_ =
-        setup.topics.publishes(setup.parameters.text("saturation"),
-                               {"saturation",
-                                {"steps"},
-                                {},
-                                "steps so far whose command reached the motors' `maxVelocity`"});
+    topic_ = setup.topics.publishes(
+        setup.parameters.text("saturation"),
+        {"saturation",
+         {"steps"},
+         {},
+         "number of steps so far with a command at the motors' `maxVelocity`"});
   }
 
   double fastest() const { return fastest_; }
   double clamped(double speed) const { return std::clamp(speed, -fastest_, fastest_); }
   void count(const Sample& sample, const std::vector<double>& command) const {
-    if (!topic_) return;  // an infinite command would reach no limit, too
+    if (!topic_) return;  // a command without a finite limit reaches none
     const bool is_reached = std::any_of(command.begin(), command.end(), [this](double speed) {
       return std::abs(speed) >= fastest_;
     });
@@ -35,18 +35,18 @@ class SpeedLimit {
     *sample.topics.publish(*topic_, sample.time) = steps + 1;
   }
 
-  /// \name Of the plugins' tables
+  /// \name Tags
   /// @{
   static TagSpec limit_tag() {
     return TagSpec::number("maxVelocity", "rad/s", "",
-                           "fastest rotor speed the motor follows; faster commands saturate")
+                           "maximum rotor speed; faster commands saturate")
         .above(0)
         .or_absent("none");
   }
   static TagSpec topic_tag() {
-    return TagSpec::text("saturation", "saturation",
-                         "topic, where there is a maxVelocity: steps so far whose command reached "
-                         "it");
+    return TagSpec::text(
+        "saturation", "saturation",
+        "topic, if maxVelocity is set: number of steps so far with a command that reached it");
   }
   /// @}
 

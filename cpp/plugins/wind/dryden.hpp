@@ -9,14 +9,14 @@
 #include "quadcore/plugin/spatial.hpp"
 
 /// \file
-/// Turbulence with the spectra of Dryden, MIL-F-8785C, low altitude (3.7.2.2, 3.7.3), discretised
-/// exactly: at any step the samples have the covariance that the continuous process has. Plain
-/// numbers throughout, so that all of it can lie in a plugin's state.
+/// Turbulence with Dryden spectra, MIL-F-8785C, low altitude (3.7.2.2, 3.7.3). The discretisation
+/// is exact: for any time step, the samples have the covariance of the continuous process. It
+/// consists of plain numbers, which can be part of a plugin's state.
 
 namespace quadcore::wind {
 
-/// Scale lengths [m] and standard deviations [m/s] of the gusts along (and across) the mean wind,
-/// and of the vertical ones.
+/// Scale lengths [m] and standard deviations [m/s] of the gusts along (and across) the mean wind
+/// and of the vertical gusts.
 struct DrydenScales {
   double length_uv, length_w, sigma_uv, sigma_w;
 };
@@ -31,7 +31,7 @@ inline DrydenScales low_altitude(double height, double W20) {
           sigma_w / elementary::exp(0.4 * log_term), sigma_w};
 }
 
-/// Phi_u = sigma^2 2L/(pi V) / (1 + (L w/V)^2): white noise through a lag, of unit variance.
+/// Phi_u = sigma^2 2L/(pi V) / (1 + (L w/V)^2): white noise through a lag, with unit variance.
 struct LongitudinalFilter {
   double decay, kick, x;
 
@@ -43,18 +43,18 @@ struct LongitudinalFilter {
   double advance(double noise) { return x = decay * x + kick * noise; }
 };
 
-/// Phi_v,w = sigma^2 L/(pi V) (1 + 3 (L w/V)^2) / (1 + (L w/V)^2)^2, of unit variance: with
-/// a = V/L and white noise n, x' = -a x + sqrt(a) n, y' = -a y + a x, and sqrt(3) x + (1 - sqrt(3))
-/// y comes out. The stationary covariance of x, y is 1/2, 1/4, 1/4.
+/// Phi_v,w = sigma^2 L/(pi V) (1 + 3 (L w/V)^2) / (1 + (L w/V)^2)^2, of unit variance: with a = V/L
+/// and white noise n, x' = -a x + sqrt(a) n, y' = -a y + a x, and sqrt(3) x + (1 - sqrt(3)) y is
+/// the output. The stationary covariance of x, y is 1/2, 1/4, 1/4.
 struct TransverseFilter {
-  double decay, carry;  ///< over a step
-  double xx, xy, yy;    ///< lower triangle that makes the noise of a step from white noise
+  double decay, carry;  ///< factors over a step
+  double xx, xy, yy;    ///< lower triangle that maps white noise to the noise of a step
   double x, y;
 
   static TransverseFilter of(double length, double airspeed, double dt) {
     const double d = airspeed / length * dt, decay = elementary::exp(-d);
-    // The step's noise has the covariance E S1/2, E S2/4, E S3/4 with E = exp(-z) and
-    // Sn = z^n/n! + z^(n+1)/(n+1)! + ..., z = 2d: as written, no digits are lost at small steps.
+    // The step's noise has the covariance E S1/2, E S2/4, E S3/4 with E = exp(-z) and Sn = z^n/n! +
+    // z^(n+1)/(n+1)! + ..., z = 2d: this form loses no digits at small steps.
     const double z = std::min(2 * d, 300.0), E = elementary::exp(-z);
     double term = 1, S3 = 0;
     for (int n = 1; n < 3 || term > 1e-17 * S3; ++n) {
@@ -76,17 +76,17 @@ struct TransverseFilter {
   double out() const { return std::sqrt(3.0) * x + (1 - std::sqrt(3.0)) * y; }
 };
 
-/// The turbulence of a flight: the state of its filters, which run at one airspeed all along, and
-/// the direction of u.
+/// The turbulence of a flight: the state of its filters, which use a constant airspeed, and the
+/// direction of u.
 struct Turbulence {
   double draws, begun;
   double along_x, along_y;  ///< unit: u in the world; v is to its left, w up
   LongitudinalFilter u;
   TransverseFilter v, w;
 
-  /// As it begins, drawn from the stationary process, so that it needs no time to grow.
+  /// Initialise the turbulence from the stationary process.
   /// \param v_VA_W  mean wind relative to the vehicle [m/s]
-  /// \param airspeed  at least
+  /// \param airspeed  minimum airspeed [m/s]
   void begin(const DrydenScales& scales, const Vector3d& v_VA_W, double airspeed, double dt,
              std::uint64_t seed) {
     const double level = std::sqrt(v_VA_W.x() * v_VA_W.x() + v_VA_W.y() * v_VA_W.y());

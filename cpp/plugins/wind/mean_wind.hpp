@@ -10,7 +10,7 @@
 
 namespace quadcore::wind {
 
-/// How the mean wind grows with height.
+/// Growth of the mean wind with height.
 class Shear {
  public:
   explicit Shear(const Parameters& p)
@@ -22,13 +22,13 @@ class Shear {
         roughness_(p.number("roughness")) {
     if (law_ != Law::logarithmic) return;
     if (roughness_ >= reference_) {
-      throw InputError("<roughness> is not below <referenceHeight>; write a smaller one");
+      throw InputError("<roughness> is not below <referenceHeight>. Use a smaller value.");
     }
     scale_ = 1 / elementary::log(reference_ / roughness_);
   }
 
   bool acts() const { return law_ != Law::none; }
-  /// Of the wind at the reference height, at a height above the ground [m].
+  /// Return the factor on the wind at the reference height, for a height above the ground [m].
   double factor(double height) const {
     if (law_ == Law::none) return 1;
     if (law_ == Law::power) {
@@ -42,9 +42,9 @@ class Shear {
   double reference_, exponent_, roughness_, scale_ = 0;
 };
 
-/// v = V/2 (1 - cos(2 pi (t - begin)/duration)) within its time.
+/// A gust with v = V/2 (1 - cos(2 pi (t - begin)/duration)) for its duration.
 struct Gust {
-  Vector3d V_W;            ///< at its largest [m/s]
+  Vector3d V_W;            ///< maximum velocity [m/s]
   double begin, duration;  ///< s
 
   void blow(double time, Vector3d& v_WA_W) const {
@@ -53,21 +53,21 @@ struct Gust {
     v_WA_W += (1 - elementary::cos(6.283185307179586 * t / duration)) / 2 * V_W;
   }
 
-  /// Numbers of the tag that are one gust.
+  /// Number of values of one gust in the tag.
   static constexpr std::size_t numbers = 5;
   static std::vector<Gust> all(const Parameters& p) {
     const std::vector<double>& n = p.numbers("gusts");
     if (n.size() % numbers != 0) {
       throw InputError("<gusts> has " + std::to_string(n.size()) +
-                       " numbers; write five for each gust: x y z begin duration");
+                       " numbers. Write five for each gust: x y z start duration.");
     }
     std::vector<Gust> gusts;
     for (std::size_t i = 0; i < n.size(); i += numbers) {
       const Gust gust{{n[i], n[i + 1], n[i + 2]}, n[i + 3], n[i + 4]};
       if (gust.begin < 0 || gust.duration <= 0) {
         throw InputError("gust " + std::to_string(i / numbers + 1) +
-                         " of <gusts> begins before the start or lasts no time; write x y z "
-                         "begin duration with begin >= 0 and duration > 0");
+                         " of <gusts> starts before the flight or has no duration. Use a start >= "
+                         "0 and a duration > 0.");
       }
       gusts.push_back(gust);
     }

@@ -12,10 +12,10 @@ constexpr std::size_t turbulence_numbers = sizeof(Turbulence) / sizeof(double);
 static_assert(std::is_trivially_copyable_v<Turbulence> &&
               turbulence_numbers * sizeof(double) == sizeof(Turbulence));
 
-/// What it remembers: the turbulence of this step, and the filters.
+/// State: the turbulence of this step, and the filters.
 enum Memory { kAir, kFilters = kAir + 3 };
 
-/// Mean wind, gusts and turbulence: the velocity of the air where the frame is.
+/// Mean wind, gusts and turbulence at the frame's position.
 class WindPlugin final : public Plugin {
  public:
   explicit WindPlugin(const PluginSetup& setup)
@@ -31,8 +31,7 @@ class WindPlugin final : public Plugin {
             messages::kind_of<messages::Vector>(messages::WindSpeed::meaning))) {
     if (!shear_.acts() || !velocity_W_.isZero(0)) return;
     setup.warnings.push_back(
-        "<shear> has no effect while <velocity> is 0; write the wind at "
-        "<referenceHeight>");
+        "<shear> has no effect while <velocity> is 0; write the wind at <referenceHeight>");
   }
 
   std::size_t state_size() const override { return kFilters + turbulence_numbers; }
@@ -82,40 +81,41 @@ PluginDescriptor describe() {
   using T = TagSpec;
   const std::string mil = "MIL-F-8785C 3.7.3";
   return {
-      "wind: mean, shear, gusts and turbulence; felt by <dragModel> chapter2, by appendix not",
+      "wind: mean, shear, gusts and turbulence; acts with <dragModel> chapter2, not with appendix",
       {
           T::numbers("velocity", "m/s", "0 0 0", "mean velocity of the air, world axes").of(3),
           T::choice("shear", {"none", "power", "logarithmic"},
-                    "how the mean wind grows with the height above the world's z = 0: not at all, "
+                    "growth of the mean wind with the height above the world's z = 0: none, "
                     "(z/referenceHeight)^exponent, ln(z/roughness)/ln(referenceHeight/roughness)")
               .from(mil + ".2"),
-          T::number("referenceHeight", "m", "6.096", "where the mean wind is <velocity>; 20 ft")
+          T::number("referenceHeight", "m", "6.096",
+                    "height at which the mean wind is <velocity>; 20 ft")
               .above(0)
               .from(mil + ".2"),
-          T::number("exponent", "", "0.14285714285714285", "of power").at_least(0),
+          T::number("exponent", "", "0.14285714285714285", "exponent of shear power").at_least(0),
           T::number("roughness", "m", "0.04572",
-                    "of logarithmic: length below which the air stands still; 0.04572 (0.15 ft) "
-                    "on an airfield, 0.6096 (2 ft) elsewhere")
+                    "roughness length of shear logarithmic, below which the air is still; 0.04572 "
+                    "(0.15 ft) on an airfield, 0.6096 (2 ft) elsewhere")
               .above(0)
               .from(mil + ".2"),
           T::numbers("gusts", "m/s m/s m/s s s", "",
-                     "five numbers for each: the largest velocity along the world's x, y, z, when "
-                     "it begins, how long it lasts; V/2 (1 - cos(2 pi (t - begin)/duration))")
+                     "five numbers for each gust: maximum velocity along the world's x, y, z, "
+                     "start, duration; V/2 (1 - cos(2 pi (t - start)/duration))")
               .or_absent("none"),
           T::number("turbulence", "m/s", "0",
-                    "wind at 20 ft by which turbulence goes, W20: 7.717 light (15 kt), 15.433 "
-                    "moderate, 23.15 severe, 0 none")
+                    "wind speed at 20 ft that defines the turbulence, W20: 7.717 light (15 kt), "
+                    "15.433 moderate, 23.15 severe, 0 none")
               .at_least(0)
               .from(mil),
-          T::number("height", "m", "10", "height for which the turbulence is")
+          T::number("height", "m", "10", "height at which the turbulence is evaluated")
               .at_least(3.048)
               .at_most(304.8)
               .from(mil),
           T::number("airspeed", "m/s", "5",
-                    "smallest speed at which turbulence passes the vehicle; larger is the mean "
-                    "wind's relative to it as the flight begins, and so it stays")
+                    "minimum speed at which turbulence passes the vehicle; the relative speed of "
+                    "the mean wind at the start of the flight applies if it is larger")
               .above(0),
-          T::text("topic", "wind", "where its velocity of the air, world axes, is published"),
+          T::text("topic", "wind", "topic of the air velocity, world axes"),
       },
       {},
       create<WindPlugin>,

@@ -35,8 +35,8 @@ class ControllerNode {
   ControllerNode(ros::NodeHandle& nh, ControllerSettings settings)
       : setup_(settings.setup),
         controller_(setup_.controller(settings.vehicle)),
-        inner_loop_(setup_.believed(settings.vehicle),
-                    control::in_table(control::InnerLoop::table(), setup_.gains.values),
+        inner_loop_(setup_.describe_model(settings.vehicle),
+                    control::select_values(control::InnerLoop::table(), setup_.gains.values),
                     setup_.spins),
         schedule_(setup_.schedule(controller_.rotors())),
         active_aim_(settings.reference),

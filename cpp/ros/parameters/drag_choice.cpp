@@ -42,8 +42,8 @@ void choose_drag(const std::string& drag, const Model& model,
     }
   }
   if (std::find(choices.begin(), choices.end(), drag) != choices.end()) return;
-  throw InputError("parameter ~drag: '" + drag + "' does not exist in this model" +
-                   did_you_mean(drag, choices) + ". Choose one of " + joined(choices) + ".");
+  throw InputError("parameter ~drag: '" + drag + "' does not exist in this model." +
+                   suggest(drag, choices) + " Choose one of " + joined(choices) + ".");
 }
 
 }  // namespace quadcore::node

@@ -149,9 +149,9 @@ std::vector<std::string> PrivateParameters::all() const {
 void PrivateParameters::check_all_known() const {
   for (const std::string& own : all()) {
     if (known_.count(own) > 0) continue;
-    throw InputError("parameter " + full_name(own) + ": does not exist" +
-                     did_you_mean(own, {known_.begin(), known_.end()}) +
-                     ". It stays on the parameter server until you run: rosparam delete " +
+    throw InputError("parameter " + full_name(own) + ": does not exist." +
+                     suggest(own, {known_.begin(), known_.end()}) +
+                     " It stays on the parameter server until you run: rosparam delete " +
                      nh_.getNamespace() + "/" + own);
   }
 }

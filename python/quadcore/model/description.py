@@ -98,7 +98,7 @@ def read_both(
         raise InputError("xacro_args: the model is read already; give them to its reader")
     if not isinstance(world, World):
         world = read_world(world, names)
-    _core.check_ignored(names, [model.passed_over, world.passed_over])
+    _core.check_ignored(names, [model.ignored_elements, world.ignored_elements])
     return model, world
 
 

@@ -144,7 +144,7 @@ def _change_values(model: Model, values: Mapping[str, str]) -> Model:
         text = text[:begin] + new + text[end:]
     changed = Document(document.name, text.decode(), document.lines)
     try:
-        return _core.read_model(changed, list(model.passed_over.ignored))
+        return _core.read_model(changed, list(model.ignored_elements.ignored))
     except InputError as error:
         raise InputError(f"set {', '.join(values)}: {error}") from None
 

@@ -198,11 +198,11 @@ class _PilotedFlight:
         except _core.InputError as error:
             if not self._takes_commands:  # not what was given is at fault
                 raise
-            simulation, fault = self._simulation, str(error).partition("; give")[0]
+            simulation, fault = self._simulation, str(error).partition(". Give")[0]
             failure = _core.FlightError(
                 f"the flight failed at t = {simulation.time:f} s: the controller returned "
-                f"{shorten(speeds)}: {fault}; return {simulation.command_width} rotor speeds "
-                "(rad/s)"
+                f"{shorten(speeds)}: {fault}. Return {simulation.command_width} rotor speeds in "
+                "rad/s."
             )
             failure.time = simulation.time
             raise failure from error

@@ -314,7 +314,7 @@ class FlightPlan:
     def _describe(self) -> Dict[str, Any]:
         told = {item.name: getattr(self, item.name) for item in fields(self)}
         for name in ("model", "world"):
-            told[name] = [told[name].document.text, told[name].passed_over.ignored]
+            told[name] = [told[name].document.text, told[name].ignored_elements.ignored]
         for name, own in (("controller", BuiltInController), ("reference", references.Shape)):
             if told[name] is None:
                 del told[name]  # as plans of before had none

@@ -117,7 +117,7 @@ class Scenario:
         if not added:
             return model, parameters
         document = _insert_plugins(model.document, end, added, self._file)
-        return read_model(document, list(model.passed_over.ignored)), parameters
+        return read_model(document, list(model.ignored_elements.ignored)), parameters
 
     def describe_late_events(self, end: float) -> str:
         """Tell which events come when a flight has ended, in one line; "" if none does.
@@ -172,7 +172,7 @@ def add_wind(model: Model, velocity: Sequence[float]) -> Tuple[Model, Dict[str, 
         return model, {"wind.velocity": text}
     wind = PluginEntry("wind", "libwind_plugin.so", 1, [Tag("velocity", text, 1)])
     document = _insert_plugins(model.document, end, [wind], "--wind")
-    return read_model(document, list(model.passed_over.ignored)), {}
+    return read_model(document, list(model.ignored_elements.ignored)), {}
 
 
 def read_scenario(scenario: Union[str, Path, Scenario, None]) -> Optional[Scenario]:

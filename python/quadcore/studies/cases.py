@@ -104,7 +104,7 @@ class Cases(Sequence[Case]):
             world = read_world(world, options.ignore)
         everything = [*self.variation.models, world, *self.variation.worlds.values()]
         ignored = check_names_argument("ignore", options.ignore)
-        check_ignored(ignored, [each.passed_over for each in everything])
+        check_ignored(ignored, [each.ignored_elements for each in everything])
         where = {} if options.spawn is None else {"spawn": options.spawn}
         common: Dict[str, Any] = {"dt": options.dt, "duration": options.duration, **where}
         self._plans = [

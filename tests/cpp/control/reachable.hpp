@@ -4,26 +4,26 @@
 #include <functional>
 #include <vector>
 
-#include "quadcore/control/belief.hpp"
+#include "quadcore/control/modelled_vehicle.hpp"
 
 /// \file
 /// What rotors can exert, found without an allocation.
 
 namespace quadcore::test {
 
-using control::Belief;
+using control::ModelledVehicle;
 
 /// Largest c . x under A x <= b with a unique solution, by trying every corner. NaN: there is none.
 inline double largest(const Eigen::MatrixXd& A, const VectorXd& b, const VectorXd& c) {
   const Eigen::Index n = A.cols(), m = A.rows();
   const double slack = 1e-9 * (1 + b.cwiseAbs().maxCoeff());
   double best = NAN;
-  std::vector<Eigen::Index> chosen(static_cast<std::size_t>(n));
+  std::vector<Eigen::Index> choose_gains(static_cast<std::size_t>(n));
   const std::function<void(std::size_t, Eigen::Index)> choose = [&](std::size_t depth,
                                                                     Eigen::Index from) {
-    if (depth < chosen.size()) {
+    if (depth < choose_gains.size()) {
       for (Eigen::Index i = from; i < m; ++i) {
-        chosen[depth] = i;
+        choose_gains[depth] = i;
         choose(depth + 1, i + 1);
       }
       return;
@@ -31,8 +31,8 @@ inline double largest(const Eigen::MatrixXd& A, const VectorXd& b, const VectorX
     Eigen::MatrixXd corner(n, n);
     VectorXd at(n);
     for (Eigen::Index i = 0; i < n; ++i) {
-      corner.row(i) = A.row(chosen[static_cast<std::size_t>(i)]);
-      at[i] = b[chosen[static_cast<std::size_t>(i)]];
+      corner.row(i) = A.row(choose_gains[static_cast<std::size_t>(i)]);
+      at[i] = b[choose_gains[static_cast<std::size_t>(i)]];
     }
     const Eigen::FullPivLU<Eigen::MatrixXd> solver(corner);
     if (!solver.isInvertible()) return;
@@ -48,8 +48,8 @@ struct Reachable {
   Eigen::MatrixXd inverse, freedom;
   double most;
 
-  Reachable(const Belief& belief, double fastest) : most(fastest * fastest) {
-    const Eigen::MatrixXd B = belief.effectiveness.bottomRows<4>();
+  Reachable(const ModelledVehicle& model, double fastest) : most(fastest * fastest) {
+    const Eigen::MatrixXd B = model.effectiveness.bottomRows<4>();
     inverse = B.transpose() * (B * B.transpose()).inverse() / most;
     if (B.cols() > 4) {
       freedom = Eigen::FullPivLU<Eigen::MatrixXd>(B).kernel();

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "../plugin_bench.hpp"
-#include "beliefs.hpp"
+#include "modelled_vehicles.hpp"
 #include "quadcore/control/allocation.hpp"
 #include "reachable.hpp"
 
@@ -13,10 +13,10 @@ using namespace quadcore::control;
 namespace {
 
 /// What the squares exert, rotor by rotor.
-Eigen::Vector4d sum(const Belief& belief, const VectorXd& squares) {
+Eigen::Vector4d sum(const ModelledVehicle& model, const VectorXd& squares) {
   Eigen::Vector4d total = Eigen::Vector4d::Zero();
   for (Eigen::Index i = 0; i < squares.size(); ++i) {
-    total += squares[i] * belief.effectiveness.col(i).tail<4>();
+    total += squares[i] * model.effectiveness.col(i).tail<4>();
   }
   return total;
 }
@@ -27,8 +27,8 @@ using test::Reachable;
 
 TEST_CASE("a demand that fits is met with the least squares") {
   for (const int n : {4, 5, 6, 8}) {
-    const Belief belief = test::odd_belief(n);
-    const Allocation allocation(belief);
+    const ModelledVehicle model = test::odd_belief(n);
+    const Allocation allocation(model);
     test::Draw draw{static_cast<std::uint64_t>(n)};
     for (int trial = 0; trial < 50; ++trial) {
       const Demand demand{13 + draw.number(), 0.1 * draw.vector()};
@@ -36,12 +36,12 @@ TEST_CASE("a demand that fits is met with the least squares") {
       if (!allocation.allocate(demand, squares.data())) continue;
       const Eigen::Vector4d wanted(demand.thrust, demand.torque_F.x(), demand.torque_F.y(),
                                    demand.torque_F.z());
-      if ((Reachable(belief, 1).inverse * wanted).minCoeff() < 0) continue;  // see below
-      const Eigen::Vector4d got = sum(belief, squares);
+      if ((Reachable(model, 1).inverse * wanted).minCoeff() < 0) continue;  // see below
+      const Eigen::Vector4d got = sum(model, squares);
       CHECK(got[0] == doctest::Approx(demand.thrust).epsilon(1e-12));
       CHECK((got.tail<3>() - demand.torque_F).norm() < 1e-12);
       // Least: across everything that exerts nothing.
-      const Eigen::MatrixXd B = belief.effectiveness.bottomRows<4>();
+      const Eigen::MatrixXd B = model.effectiveness.bottomRows<4>();
       const Eigen::MatrixXd nothing = Eigen::FullPivLU<Eigen::MatrixXd>(B).kernel();
       if (n > 4) CHECK((nothing.transpose() * squares).norm() < 1e-7 * squares.norm());
     }
@@ -50,9 +50,9 @@ TEST_CASE("a demand that fits is met with the least squares") {
 
 TEST_CASE("a demand that does not fit keeps roll and pitch, then thrust, then yaw") {
   for (const int n : {4, 5, 6}) {
-    const Belief belief = test::odd_belief(n, 700);
-    const Allocation allocation(belief);
-    const Reachable reachable(belief, 700);
+    const ModelledVehicle model = test::odd_belief(n, 700);
+    const Allocation allocation(model);
+    const Reachable reachable(model, 700);
     const Eigen::Vector4d up = Eigen::Vector4d::UnitX();
     test::Draw draw{7};
     int saturated = 0, freed = 0;
@@ -64,7 +64,7 @@ TEST_CASE("a demand that does not fit keeps roll and pitch, then thrust, then ya
       const bool met = allocation.allocate({thrust, torque}, squares.data());
       CHECK(squares.minCoeff() >= 0);
       CHECK(squares.maxCoeff() <= 700.0 * 700.0);
-      const Eigen::Vector4d got = sum(belief, squares);
+      const Eigen::Vector4d got = sum(model, squares);
       const Eigen::Vector4d level(0, torque.x(), torque.y(), 0), yaw(0, 0, 0, torque.z());
       const double share = reachable.over(Eigen::Vector4d::Zero(), {level, up}, 1);
       REQUIRE(share >= 0);
@@ -103,8 +103,8 @@ TEST_CASE("a demand that does not fit keeps roll and pitch, then thrust, then ya
 
 TEST_CASE("more rotors than needed meet every demand that some speeds meet") {
   for (const int n : {5, 6, 8, 12}) {
-    const Belief belief = test::odd_belief(n, 700);
-    const Allocation allocation(belief);
+    const ModelledVehicle model = test::odd_belief(n, 700);
+    const Allocation allocation(model);
     test::Draw draw{static_cast<std::uint64_t>(n)};
     for (int trial = 0; trial < 2000; ++trial) {
       VectorXd some(n), squares(n);
@@ -121,10 +121,10 @@ TEST_CASE("more rotors than needed meet every demand that some speeds meet") {
 }
 
 TEST_CASE("rotors that cannot turn the vehicle about an axis are refused") {
-  Belief belief = test::odd_belief(4);
-  for (BelievedRotor& rotor : belief.rotors) rotor.spin = 1;
-  belief.effectiveness.row(5).setZero();
-  CHECK(test::contains(test::refusal([&] { Allocation{belief}; }), "independently"));
+  ModelledVehicle model = test::odd_belief(4);
+  for (ModelledRotor& rotor : model.rotors) rotor.spin = 1;
+  model.effectiveness.row(5).setZero();
+  CHECK(test::contains(test::refusal([&] { Allocation{model}; }), "independently"));
   CHECK(test::contains(test::refusal([] { Allocation{test::odd_belief(3)}; }), "independently"));
 }
 

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "beliefs.hpp"
+#include "modelled_vehicles.hpp"
 #include "quadcore/control/flat_state.hpp"
 
 using namespace quadcore;
@@ -23,28 +23,28 @@ Body operator*(double s, const Body& a) { return {s * a.p, s * a.v, s * a.R, s *
 }  // namespace
 
 TEST_CASE("a body that is turned and lifted as the flat state says flies the reference") {
-  Belief belief = test::odd_belief(4);
-  belief.p_FCcm_F.setZero();
-  belief.air.linear.diagonal() << 0.07, 0.07, 0.01, 0, 0, 0;
-  belief.air.quadratic = 0.02;
-  belief.air.of_components = {0, 0, 0.012};
+  ModelledVehicle model = test::odd_belief(4);
+  model.p_FCcm_F.setZero();
+  model.air.linear.diagonal() << 0.07, 0.07, 0.01, 0, 0, 0;
+  model.air.quadratic = 0.02;
+  model.air.of_components = {0, 0, 0.012};
   for (const char* name : {"eight", "circle", "spiral"}) {
     CAPTURE(name);
     for (const bool with_drag : {false, true}) {
       const auto shape = make_reference(name, {{"rate", 1.9}, {"yaw_rate", 0.7}, {"yaw", 2}});
-      // Newton's law with the air's force written out here, not taken from the belief.
+      // Newton's law with the air's force written out here, not taken from the model.
       const auto derivative = [&](const Body& b, double t) {
-        const FlatState flat = flat_state(shape->at(t), belief, with_drag);
-        Vector3d f_W = flat.thrust * b.R.col(2) + Vector3d(0, 0, -belief.mass * belief.gravity);
+        const FlatState flat = flat_state(shape->at(t), model, with_drag);
+        Vector3d f_W = flat.thrust * b.R.col(2) + Vector3d(0, 0, -model.mass * model.gravity);
         if (with_drag) {
           const Vector3d v_F = b.R.transpose() * b.v;
           f_W -= b.R * Vector3d(0.07 * v_F.x(), 0.07 * v_F.y(), 0.01 * v_F.z());
           f_W -= 0.02 * b.v.norm() * b.v;
           f_W -= 0.012 * std::abs(b.v.z()) * b.v.z() * b.R.col(2);
         }
-        return Body{b.v, f_W / belief.mass, b.R * skew(b.w), flat.dw_WF_F};
+        return Body{b.v, f_W / model.mass, b.R * skew(b.w), flat.dw_WF_F};
       };
-      const FlatState flat = flat_state(shape->at(0), belief, with_drag);
+      const FlatState flat = flat_state(shape->at(0), model, with_drag);
       Body body{shape->at(0).position, shape->at(0).velocity, flat.R_WF, flat.w_WF_F};
       constexpr double h = 1e-3;
       for (int step = 0; step < 2000; ++step) {
@@ -57,7 +57,7 @@ TEST_CASE("a body that is turned and lifted as the flat state says flies the ref
       const Reference wanted = shape->at(2);
       CHECK((body.p - wanted.position).norm() < 1e-8);
       CHECK((body.v - wanted.velocity).norm() < 1e-8);
-      const FlatState then = flat_state(wanted, belief, with_drag);
+      const FlatState then = flat_state(wanted, model, with_drag);
       CHECK((body.R - then.R_WF).norm() < 1e-8);
       CHECK((body.w - then.w_WF_F).norm() < 1e-8);
     }
@@ -66,9 +66,9 @@ TEST_CASE("a body that is turned and lifted as the flat state says flies the ref
 
 TEST_CASE(
     "a vehicle with its mass off the origin of its frame flies the reference with the origin") {
-  Belief belief = test::odd_belief(4);
-  belief.p_FCcm_F = {0.05, -0.02, 0.01};
-  belief.air.linear.diagonal() << 0.07, 0.07, 0.01, 0, 0, 0;
+  ModelledVehicle model = test::odd_belief(4);
+  model.p_FCcm_F = {0.05, -0.02, 0.01};
+  model.air.linear.diagonal() << 0.07, 0.07, 0.01, 0, 0, 0;
   struct Way {
     const char* name;
     Values values;
@@ -83,28 +83,27 @@ TEST_CASE(
       // The forces on the centre of mass, which differences of its place tell.
       const auto centre = [&](double at) -> Vector3d {
         return shape->at(at).position +
-               flat_state(shape->at(at), belief, true).R_WF * belief.p_FCcm_F;
+               flat_state(shape->at(at), model, true).R_WF * model.p_FCcm_F;
       };
       constexpr double h = 1e-3;
       const Vector3d a_W = (centre(t + h) - 2 * centre(t) + centre(t - h)) / (h * h);
       const Vector3d v_W = (centre(t + h) - centre(t - h)) / (2 * h);
-      const FlatState flat = flat_state(shape->at(t), belief, true);
+      const FlatState flat = flat_state(shape->at(t), model, true);
       const Vector3d v_F = flat.R_WF.transpose() * v_W;
       const Vector3d air_W =
           -(flat.R_WF * Vector3d(0.07 * v_F.x(), 0.07 * v_F.y(), 0.01 * v_F.z()));
       const Vector3d rotors_W = flat.thrust * flat.R_WF.col(2);
-      const Vector3d rest_W =
-          belief.mass * (a_W + Vector3d(0, 0, belief.gravity)) - air_W - rotors_W;
-      CHECK(rest_W.norm() < way.bar * belief.mass);
+      const Vector3d rest_W = model.mass * (a_W + Vector3d(0, 0, model.gravity)) - air_W - rotors_W;
+      CHECK(rest_W.norm() < way.bar * model.mass);
     }
   }
 }
 
 TEST_CASE("the yaw of the flat state is that of roll, pitch and yaw") {
-  const Belief belief = test::odd_belief(4);
+  const ModelledVehicle model = test::odd_belief(4);
   const auto shape = make_reference("eight", {{"yaw", 1.1}, {"yaw_rate", 0.5}});
   for (const double t : {0.0, 0.4, 1.3}) {
-    const FlatState flat = flat_state(shape->at(t), belief, false);
+    const FlatState flat = flat_state(shape->at(t), model, false);
     CHECK(rpy_from_quaternion(Quaterniond(flat.R_WF)).z() ==
           doctest::Approx(1.1 + 0.5 * t).epsilon(1e-12));
   }
@@ -114,5 +113,6 @@ TEST_CASE("a reference that falls freely has no attitude") {
   Reference falling;
   falling.acceleration.z() = -9.7;
   CHECK_THROWS_WITH(flat_state(falling, test::odd_belief(4), false),
-                    "the reference has no attitude: it falls freely, or along its own x");
+                    "the reference has no defined attitude: it is in free fall, or its thrust "
+                    "points along its own x axis.");
 }

@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "../plugin_bench.hpp"
-#include "beliefs.hpp"
+#include "modelled_vehicles.hpp"
 #include "quadcore/control/actuation.hpp"
 #include "reachable.hpp"
 
@@ -14,23 +14,23 @@ namespace {
 using test::Reachable;
 
 /// The vehicle that is left.
-Belief what_is_left(Belief belief, const std::vector<double>& lost) {
+ModelledVehicle what_is_left(ModelledVehicle model, const std::vector<double>& lost) {
   for (std::size_t i = 0; i < lost.size(); ++i) {
-    belief.effectiveness.col(static_cast<Eigen::Index>(i)) *= 1 - lost[i];
+    model.effectiveness.col(static_cast<Eigen::Index>(i)) *= 1 - lost[i];
   }
-  return belief;
+  return model;
 }
 
 /// Rotors around a regular polygon, the first at +x.
-Belief regular(const std::vector<double>& spins) {
-  Belief belief = test::odd_belief(static_cast<int>(spins.size()));
+ModelledVehicle regular(const std::vector<double>& spins) {
+  ModelledVehicle model = test::odd_belief(static_cast<int>(spins.size()));
   for (std::size_t i = 0; i < spins.size(); ++i) {
     const double angle = 2 * M_PI * static_cast<double>(i) / static_cast<double>(spins.size());
     const Vector3d p(0.2 * std::cos(angle), 0.2 * std::sin(angle), 0), up(0, 0, 1.1e-5);
-    belief.effectiveness.col(static_cast<Eigen::Index>(i)) << up,
+    model.effectiveness.col(static_cast<Eigen::Index>(i)) << up,
         p.cross(up) - spins[i] * Vector3d(0, 0, 2e-7);
   }
-  return belief;
+  return model;
 }
 
 constexpr double fastest = 700;
@@ -39,14 +39,14 @@ constexpr double fastest = 700;
 
 TEST_CASE("what is left of the rotors meets what it can: roll and pitch, thrust, yaw") {
   for (const int n : {5, 6, 8}) {
-    const Belief belief = test::odd_belief(n, fastest);
-    const Allocation allocation(belief);
+    const ModelledVehicle model = test::odd_belief(n, fastest);
+    const Allocation allocation(model);
     test::Draw draw{static_cast<std::uint64_t>(n)};
     int met = 0, saturated = 0;
     for (int trial = 0; trial < 60; ++trial) {
       std::vector<double> lost(static_cast<std::size_t>(n), 0);
       lost[static_cast<std::size_t>(trial % n)] = trial % 3 == 0 ? 1 : 0.4;
-      const Belief left = what_is_left(belief, lost);
+      const ModelledVehicle left = what_is_left(model, lost);
       const Reachable reachable(left, fastest);
       const double thrust = 13 + 8 * draw.number(), size = trial % 2 == 0 ? 1 : 0.2;
       const Vector3d torque = size * Vector3d(draw.number(), draw.number(), 0.1 * draw.number());
@@ -88,7 +88,7 @@ TEST_CASE("a hexarotor keeps yaw without one of some rotors, if neighbours turn 
     const Allocation allocation(regular(spins));
     std::vector<double> lost(spins.size(), 0);
     lost[gone] = 1;
-    return allocation.keeps_yaw(weight, lost.data());
+    return allocation.can_control_yaw(weight, lost.data());
   };
   for (std::size_t gone = 0; gone < 6; ++gone) {
     CHECK(!keeps({1, -1, 1, -1, 1, -1}, gone));
@@ -106,12 +106,12 @@ TEST_CASE("a rotor that is told to be whole again is commanded as before, a lost
   const auto command = [&](std::vector<double>& state, VectorXd& into) {
     actuation.command(0.002, demand, state.data(), into.data());
   };
-  actuation.know(2, 0.3, told.data());
-  actuation.know(2, 1, told.data());
+  actuation.set_remaining(2, 0.3, told.data());
+  actuation.set_remaining(2, 1, told.data());
   command(told, speeds);
   command(untold, same);
   CHECK(speeds == same);
-  actuation.know(2, 0, told.data());
+  actuation.set_remaining(2, 0, told.data());
   command(told, speeds);
   CHECK(speeds[2] == 0);
   for (int call = 0; call < 500; ++call) command(told, speeds);  // the others take over

@@ -229,7 +229,7 @@ TEST_CASE("paths through rows have a yaw law where their rows say no yaw") {
     }
     CHECK(along->at(30).yaw == along->at(10.4).yaw);
     CHECK(test::contains(test::refusal([&] { make_reference(name, {{"along", 1}}, told(10, 6)); }),
-                         "its rows say the yaw; leave 'along' out"));
+                         "its rows and 'along' both set the yaw"));
   }
 }
 
@@ -265,9 +265,9 @@ TEST_CASE("what is no reference is refused with what to write instead") {
   CHECK(test::contains(refused("spiral", {{"radios", 1}}), "did you mean 'radius'?"));
   CHECK(test::contains(refused("spiral", {{"radius", -1}}), "'radius' is -1; give"));
   CHECK(test::contains(refused("circle", {{"along", 2}}), "'along' is 2; give true or false"));
-  CHECK(test::contains(refused("waypoints", {}), "needs rows"));
-  CHECK(test::contains(refused("hover", {}, five_waypoints()), "takes no rows"));
+  CHECK(test::contains(refused("waypoints", {}), "requires rows"));
+  CHECK(test::contains(refused("hover", {}, five_waypoints()), "accepts no rows"));
   Rows rows = five_waypoints();
   rows(3, 0) = 4.2;
-  CHECK(test::contains(refused("waypoints", {}, rows), "row 4 of a path is not later"));
+  CHECK(test::contains(refused("waypoints", {}, rows), "row 4 of the path is not later"));
 }

@@ -108,10 +108,10 @@ TEST_CASE("a lone point is held, with what is given of it") {
 TEST_CASE("points that make no path are refused") {
   const PathPoint late{2, {1, 2, 3}, 0, {}, {}}, soon{1, {1, 2, 3}, 0, {}, {}},
       before{-1, {1, 2, 3}, 0, {}, {}};
-  CHECK_THROWS_WITH_AS(through({}, {}), "a path without points; give one at least", InputError);
-  CHECK_THROWS_WITH_AS(through({}, {before}), "a path begins at a negative time; begin at 0",
+  CHECK_THROWS_WITH_AS(through({}, {}), "the path has no points. Give at least one.", InputError);
+  CHECK_THROWS_WITH_AS(through({}, {before}), "the path starts at a negative time. Start at 0.",
                        InputError);
-  CHECK_THROWS_WITH_AS(through({}, {late, soon}),
-                       "point 2 of a path is not later than the one before; order them by time",
-                       InputError);
+  CHECK_THROWS_WITH_AS(
+      through({}, {late, soon}),
+      "point 2 of the path is not later than the one before. Sort the points by time.", InputError);
 }

@@ -32,7 +32,7 @@ def target() -> Callable[[random.Random], None]:
     built += [*simulation.plugins[:1], *simulation.plugins[0].parameters[:1]]
     built += [simulation.topics["odom"], qc.BatchSimulation(n=2), _core.Reference()]
     built += [_core.Run(simulation), _core.Flight(simulation, None, 1)]
-    built += [_core.ReferenceShape("hover", {}), simulation.model.passed_over]
+    built += [_core.ReferenceShape("hover", {}), simulation.model.ignored_elements]
 
     def run(chance: random.Random) -> None:
         if chance.randrange(2):

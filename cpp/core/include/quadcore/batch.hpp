@@ -13,66 +13,68 @@ namespace quadcore QUADCORE_EXPORT {
 
 /// One vehicle of a batch.
 struct BatchVehicle {
-  std::shared_ptr<const Model> model;                  ///< what flies
-  std::map<std::string, std::string> parameters = {};  ///< as in SimulationOptions
-  Pose spawn = {};                                     ///< of the frame in the world, at the start
-  std::uint64_t seed = 0;                              ///< of all random numbers
+  std::shared_ptr<const Model> model;                  ///< model of the vehicle
+  std::map<std::string, std::string> parameters = {};  ///< like SimulationOptions::parameters
+  Pose spawn = {};                                     ///< initial pose of the frame in the world
+  std::uint64_t seed = 0;                              ///< seed of all random numbers
 };
 
-/// Everything that the future of a batch depends on.
+/// Complete state of a batch.
 struct BatchSnapshot {
   struct Content;
-  std::shared_ptr<const Content> content;  ///< for restore() alone to read
+  std::shared_ptr<const Content> content;  ///< internal, read only by restore()
 };
 
-/// Many vehicles, each in a world of its own, stepped together. Each moves, to the last bit, as a
-/// Simulation of it does, whatever others there are and however many threads. In the engine eigen
-/// several share each instruction as long as nothing but laws acts on them (see ForceLaws).
+/// Several vehicles, each in its own world, that are stepped together. The results are
+/// bit-identical to separate Simulations, for any batch size and number of threads. In the engine
+/// eigen, several vehicles share each instruction as long as only ForceLaws act on them.
 class Batch {
  public:
-  /// \param options  what all have in common: engine and dt; the rest is each vehicle's own
-  /// \param threads  that step; 0: one for each processor
-  /// Throws InputError on what a Simulation of one would refuse, or rotors of different numbers.
+  /// \param options  common options: engine and dt; the others belong to each vehicle
+  /// \param threads  number of threads; 0: one for each processor
+  /// Throws InputError like Simulation, and for vehicles with different numbers of rotors.
   Batch(std::vector<BatchVehicle> vehicles, const World& world, const SimulationOptions& options,
         unsigned threads = 0);
   ~Batch();
-  /// What was moved from can only be destroyed.
+  /// A moved-from batch can only be destroyed.
   Batch(Batch&&) noexcept;
 
-  std::size_t size() const;           ///< vehicles
-  std::size_t command_width() const;  ///< numbers of a vehicle's command
-  double dt() const;                  ///< length of a step, s
+  std::size_t size() const;           ///< number of vehicles
+  std::size_t command_width() const;  ///< number of values in a vehicle's command
+  double dt() const;                  ///< time step [s]
 
-  /// Advances all that have not failed by so many steps.
-  /// \param commands  rotor speeds [rad/s], a row of command_width() for each vehicle; null: as
-  ///                  before, or as plugins command
-  /// Throws InputError, nothing changed, on a number that is not finite, or on commands if a plugin
+  /// Advance all vehicles that have not failed by so many steps.
+  /// \param commands  rotor speeds [rad/s], a row of command_width() for each vehicle; null: the
+  /// previous
+  ///                  commands, or those of plugins
+  /// Throws InputError without changes for a number that is not finite, or for commands if a plugin
   /// gives them.
   void step(const double* commands, std::int64_t count = 1);
 
-  /// Numbers of a row of get_state().
+  /// Return the number of values in a row of get_state().
   std::size_t state_width() const;
-  /// Writes a row for each vehicle: p_WF [m], the quaternion of F in W (x, y, z, w), v_WF_W [m/s],
-  /// w_WF_F [rad/s], then all joint rates [rad/s], then all joint angles [rad].
+  /// Write a row for each vehicle: p_WF [m], the quaternion of F in W (x, y, z, w), v_WF_W [m/s],
+  /// w_WF_F [rad/s], all joint rates [rad/s], and all joint angles [rad].
   void get_state(double* rows) const;
-  /// Takes all vehicles to such states at time 0, as Simulation::set_state() does one; a flight
-  /// that failed goes on. Commands stay. Throws InputError, nothing changed, on a number that is
-  /// not finite or a quaternion that is none.
+  /// Set the states of all vehicles at time 0, like Simulation::set_state(). Failed flights
+  /// continue, and commands remain. Throws InputError without changes for a number that is not
+  /// finite or an invalid quaternion.
   void set_state(const double* rows);
   double time(std::size_t vehicle) const;  ///< s
-  /// Why each flight ended; "" while it goes on. One that ended stays where it did.
+  /// Return the reason why each flight failed; "" while it continues. A failed vehicle stays where
+  /// it is.
   const std::vector<std::string>& failures() const;
-  /// What was said of each flight.
+  /// Return the warnings of each flight.
   const std::vector<std::string>& warnings(std::size_t vehicle) const;
 
-  /// Takes vehicles back to their start.
-  /// \param mask   of each, whether it is one of them
-  /// \param seeds  of each, or null: as it had
+  /// Reset vehicles to their start.
+  /// \param mask   whether to reset each vehicle
+  /// \param seeds  seed of each vehicle; null: the previous seeds
   void reset(const bool* mask, const std::uint64_t* seeds = nullptr);
 
-  /// Everything that the future of all depends on.
+  /// Return the complete state of all vehicles.
   BatchSnapshot snapshot() const;
-  /// Throws InputError, nothing changed, on the snapshot of another batch.
+  /// Restore a snapshot. Throws InputError without changes for a snapshot of another batch.
   void restore(const BatchSnapshot& snapshot);
 
  private:

@@ -3,23 +3,24 @@
 #include "quadcore/plugin/model.hpp"
 
 /// \file
-/// What every picture of a vehicle draws of it.
+/// Geometry for drawing a vehicle.
 
 namespace quadcore QUADCORE_EXPORT {
 
-/// The homogeneous box that has the mass and the inertia of a body.
+/// Equivalent inertia box: the homogeneous box with the mass and inertia of a body.
 struct InertiaBox {
-  Vector3d center;          ///< in the link's axes, from its origin [m]
-  Quaterniond orientation;  ///< of its edges in the link
-  Vector3d edges;           ///< along its own axes [m]
+  Vector3d center;          ///< centre in the link's axes, from its origin [m]
+  Quaterniond orientation;  ///< orientation of the edges in the link
+  Vector3d edges;           ///< lengths of the edges [m]
 };
 
-/// Edges are sqrt(6 (Iy + Iz - Ix) / m) and so on, along the principal axes; one that no body can
-/// have is 0.
+/// Return the equivalent inertia box. Its edges along the principal axes are sqrt(6 (Iy + Iz - Ix)
+/// / m) and so on; impossible edges are 0.
 InertiaBox inertia_box(const Inertial& inertial);
 
-/// Radius of the rotors' discs, so that none covers another: 0.4 of the way between the nearest two
-/// that are not coaxial, all joints at angle zero [m]; 0.1 of a single one.
+/// Return a radius for the rotor discs such that none overlaps another [m]: 0.4 times the distance
+/// of the nearest two rotors that are not coaxial, with all joints at angle zero; 0.1 for a single
+/// rotor.
 double drawn_disc_radius(const Model& model);
 
 }  // namespace quadcore

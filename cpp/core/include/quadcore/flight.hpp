@@ -14,30 +14,30 @@ namespace quadcore QUADCORE_EXPORT {
 /// A piece of a log.
 struct LogRows {
   std::int64_t count = 0;  ///< rows
-  /// (count, columns) in row-major order, columns as log_columns() names them: of the state, then
-  /// of each topic asked for.
+  /// (count, columns) in row-major order with the columns of log_columns(): the state, then each
+  /// requested topic.
   std::vector<double> table;
-  /// (count, terms, 6) in row-major order, terms as Simulation::wrench_terms() names them: force
-  /// then torque, frame axes, about the vehicle's centre of mass, as they act from the logged state
-  /// on. Empty unless asked for.
+  /// (count, terms, 6) in row-major order with the terms of Simulation::wrench_terms(): force and
+  /// torque in frame axes about the vehicle's centre of mass, acting from the logged state on.
+  /// Empty unless requested.
   std::vector<double> wrenches;
 };
 
-/// One logged run of a simulation, advanced piece by piece so that a caller can show progress,
-/// interrupt it without losing what is logged, and put the rows where they belong as they come.
+/// One logged run of a simulation that is advanced in pieces. The caller can show progress,
+/// interrupt it without losing the log, and store the rows as they are produced.
 class Flight {
  public:
-  /// Logs the present state at once, then after every `log_every` steps.
-  /// \param topics  names of those to log, too
-  /// Throws InputError if log_every < 1, or if a topic is not declared or named twice.
+  /// Log the present state at once, then after every `log_every` steps.
+  /// \param topics  names of topics to log
+  /// Throws InputError if log_every < 1, or if a topic does not exist or is named twice.
   Flight(Simulation& simulation, std::optional<Commands> commands, std::int64_t log_every,
          bool wrenches, const std::vector<std::string>& topics = {});
 
-  /// Flies n steps, each with the command that is due at its start. Throws what step() throws;
-  /// what was logged stays.
+  /// Simulate n steps, each with the command that is due at its start. Throws like step(); logged
+  /// rows remain.
   void advance(std::int64_t n);
 
-  /// Hands over what was logged since the last call.
+  /// Return the rows logged since the last call.
   LogRows take();
 
  private:
@@ -48,7 +48,7 @@ class Flight {
   std::int64_t log_every_;
   bool log_wrenches_;
   std::vector<std::size_t> topics_;
-  std::size_t row_size_ = 0, wrenches_size_ = 0;  ///< numbers of a row
+  std::size_t row_size_ = 0, wrenches_size_ = 0;  ///< number of values in a row
   std::int64_t steps_ = 0;
   LogRows rows_;
 };

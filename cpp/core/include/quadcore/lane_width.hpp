@@ -6,10 +6,10 @@
 
 namespace quadcore QUADCORE_EXPORT {
 
-/// How many rotors this processor should take at once in a vehicle of so many: 2, 4 or 8, no more
-/// than it has registers for and no more than are needed. The environment variable QUADCORE_LANES
-/// (1, 2, 4 or 8) asks for another number. Every width gives the same bytes. Throws InputError on
-/// another value of that variable.
+/// Return the number of rotors that this processor evaluates at once for a vehicle with so many
+/// rotors: 2, 4 or 8, limited by its registers and by the number of rotors. The environment
+/// variable QUADCORE_LANES (1, 2, 4 or 8) overrides it. All widths give bit-identical results.
+/// Throws InputError for another value of the variable.
 int lane_width(std::size_t rotors);
 
 }  // namespace quadcore

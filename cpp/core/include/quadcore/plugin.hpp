@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// All that a plugin may include: the headers of quadcore/plugin.
+/// Includes all headers for plugins, those of quadcore/plugin.
 
 #include "quadcore/plugin/carried_body.hpp"
 #include "quadcore/plugin/counts.hpp"
@@ -11,11 +11,11 @@
 #include "quadcore/plugin/error.hpp"
 #include "quadcore/plugin/export.hpp"
 #include "quadcore/plugin/hooks.hpp"
+#include "quadcore/plugin/ignored_elements.hpp"
 #include "quadcore/plugin/kinematics.hpp"
 #include "quadcore/plugin/loads.hpp"
 #include "quadcore/plugin/messages.hpp"
 #include "quadcore/plugin/model.hpp"
-#include "quadcore/plugin/passed_over.hpp"
 #include "quadcore/plugin/random.hpp"
 #include "quadcore/plugin/rotor_layout.hpp"
 #include "quadcore/plugin/rotor_rows.hpp"

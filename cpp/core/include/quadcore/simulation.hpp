@@ -18,167 +18,165 @@
 
 namespace quadcore QUADCORE_EXPORT {
 
-/// A plugin tag of the model, loaded.
+/// A loaded plugin of the model.
 struct LoadedPlugin {
   std::string name;                    ///< PluginElement::name, made unique
   std::string filename;                ///< PluginElement::filename
   std::string path;                    ///< PluginLibrary::path
-  const PluginDescriptor* descriptor;  ///< what its module says of itself
-  Parameters parameters;               ///< effective ones
-  std::unique_ptr<Plugin> plugin;      ///< no longer changed once the simulation is made
-  Eigen::Index state_begin = 0;        ///< of its numbers in Snapshot::plugin_state
-  Eigen::Index state_size = 0;         ///< how many they are
-  std::size_t term_begin = 0;          ///< first of its wrench terms among all
-  std::string who = {};                ///< for errors: FILE:LINE: plugin 'name'
-  std::uint64_t seed = 0;              ///< of its random numbers
+  const PluginDescriptor* descriptor;  ///< description by its module
+  Parameters parameters;               ///< effective parameters
+  std::unique_ptr<Plugin> plugin;      ///< constant once the simulation is created
+  Eigen::Index state_begin = 0;        ///< start of its values in Snapshot::plugin_state
+  Eigen::Index state_size = 0;         ///< number of its values
+  std::size_t term_begin = 0;          ///< index of its first wrench term
+  std::string who = {};                ///< name for errors: FILE:LINE: plugin 'name'
+  std::uint64_t seed = 0;              ///< seed of its random numbers
 };
 
-/// Everything that the future of a simulation depends on, as plain numbers and texts.
+/// Complete state of a simulation as plain numbers and texts.
 struct Snapshot {
-  std::shared_ptr<const Fingerprint> taken_from;  ///< of the simulation
-  double start_time = 0;                          ///< when the steps began [s]
-  std::int64_t steps = 0;                         ///< since then
-  std::uint64_t seed = 0;                         ///< of all random numbers
-  std::vector<double> engine;                     ///< what Engine::save() told
-  VectorXd plugin_state;                          ///< of all plugins, see LoadedPlugin::state_begin
-  std::vector<Message> messages;                  ///< of each topic
-  std::vector<std::string> warnings;              ///< of the flight
-  std::string failure;                            ///< why the flight ended; "" while it goes on
+  std::shared_ptr<const Fingerprint> taken_from;  ///< fingerprint of the simulation
+  double start_time = 0;                          ///< time of the first step [s]
+  std::int64_t steps = 0;                         ///< number of steps since then
+  std::uint64_t seed = 0;                         ///< seed of all random numbers
+  std::vector<double> engine;                     ///< result of Engine::save()
+  VectorXd plugin_state;              ///< state of all plugins, see LoadedPlugin::state_begin
+  std::vector<Message> messages;      ///< last message of each topic
+  std::vector<std::string> warnings;  ///< warnings of the flight
+  std::string failure;                ///< reason of a failure, or ""
 };
 
-/// How a simulation is made, beside its model and its world.
+/// Options of a simulation.
 struct SimulationOptions {
   std::string engine = "gazebo11";  ///< one of engines()
-  std::optional<double> dt = {};    ///< s, from 1e-9; the world's max_step_size if absent
-  std::uint64_t seed = 0;           ///< of all random numbers
-  /// "PLUGIN.TAG" -> value, wins over the URDF.
+  std::optional<double> dt =
+      {};                  ///< time step, at least 1e-9 [s]; the world's max_step_size if absent
+  std::uint64_t seed = 0;  ///< seed of all random numbers
+  /// "PLUGIN.TAG" -> value, which overrides the URDF.
   std::map<std::string, std::string> parameters = {};
-  Pose spawn = {};  ///< of the frame in the world, at the start
+  Pose spawn = {};  ///< initial pose of the frame in the world
 };
 
-/// One vehicle in one world: plugins and an engine, stepped from outside.
+/// One vehicle in one world with plugins and an engine. The caller advances it.
 class Simulation : private ForceField {
  public:
-  /// Anything that turns faster [rad/s] counts as diverged.
+  /// Limit of angular velocities and joint rates at which a flight counts as diverged [rad/s].
   static constexpr double max_rate = 1e6;
-  /// Of command().
+  /// Topic of command().
   static constexpr const char* command_topic = "vel_cmd";
 
-  /// Loads the plugins that the model names, and stands at the start of the flight.
-  /// Throws InputError, with FILE:LINE where a document is at fault.
+  /// Load the model's plugins and prepare the start of the flight. Throws InputError, with
+  /// FILE:LINE for errors in a document.
   Simulation(Model model, const World& world, const SimulationOptions& options);
 
-  /// Publishes rotor speeds [rad/s], signed, on topic `vel_cmd`.
-  /// Throws InputError, nothing changed, on a wrong count, a number that is not finite, or if a
-  /// plugin writes the topic.
+  /// Publish signed rotor speeds [rad/s] on topic `vel_cmd`. Throws InputError without changes for
+  /// a wrong count, a number that is not finite, or if a plugin writes the topic.
   void command(const double* speeds, std::size_t count);
-  /// Publishes a message on a topic that no plugin writes, for those that take it.
-  /// Throws InputError, nothing changed, on a topic that is not declared or that a plugin writes, a
-  /// wrong count, or a number that is not finite.
+  /// Publish a message on a topic that no plugin writes. Throws InputError without changes for a
+  /// topic that does not exist or that a plugin writes, a wrong count, or a number that is not
+  /// finite.
   void publish(const std::string& topic, const double* values, std::size_t count);
-  /// Moves the vehicle over a step of dt [s] from the state it stands in to that at the end of the
-  /// step, under the command of so many speeds [rad/s] that was published last; zero before.
+  /// A function that changes the state to that after a step of dt [s] under the last published
+  /// command of rotor speeds [rad/s], which is zero before the first.
   using Motion = std::function<void(double dt, const VectorXd& command, VehicleState& state)>;
-  /// Takes the place of the engine's steps: plugins hear and sense as ever, but none of their
-  /// forces acts, and nothing touches.
+  /// Replace the engine's steps by a motion. Plugins still update and sense, but their forces have
+  /// no effect, and there is no contact.
   void move_by(Motion motion);
-  /// Advances by n steps. Throws FlightError if the flight fails; then only restore, reset and
+  /// Advance by n steps. Throws FlightError if the flight fails; afterwards only restore, reset and
   /// set_state make the simulation usable again.
   void step(std::int64_t n = 1);
-  /// Whether command() reaches a plugin.
+  /// Return whether a plugin accepts command().
   bool takes_commands() const;
-  /// Numbers that a command carries. Throws InputError if no plugin listens.
+  /// Return the number of values in a command. Throws InputError if no plugin accepts commands.
   std::size_t command_width() const;
 
-  /// Of the state, s.
+  /// Return the simulation time [s].
   double time() const { return start_time_ + static_cast<double>(steps_) * dt_; }
-  /// Length of a step, s.
+  /// Return the time step [s].
   double dt() const { return dt_; }
-  /// One of engines().
+  /// Return the name of the engine.
   const std::string& engine_name() const { return engine_name_; }
-  /// How the engine takes its steps, in one line for a person.
+  /// Return the integration method of the engine in one line.
   std::string method() const { return engine_->method(); }
-  /// As the engine flies it, with what rides on its frame now.
+  /// Return the model as the engine simulates it, including attached bodies.
   const Model& model() const { return engine_->model(); }
-  /// Rotor joints.
+  /// Return the number of rotor joints.
   std::size_t rotor_count() const { return model_.joints.size(); }
-  /// Of the rotor joints, in the order of all that is said of rotors.
+  /// Return the names of the rotor joints, in the order of all rotor quantities.
   std::vector<std::string> rotor_names() const { return model_.joint_names(); }
-  /// As it was given.
+  /// Return the world.
   const World& world() const { return world_; }
-  /// Of all that a flight depends on beside its state.
+  /// Return the fingerprint of everything that a flight depends on in addition to its state.
   const Fingerprint& fingerprint() const { return *fingerprint_; }
-  /// As it stands now; the next step changes it.
+  /// Return the present state. The next step changes it.
   const VehicleState& state() const { return state_; }
-  /// What plugins and callers have published.
+  /// Return the topics of plugins and callers.
   const Topics& topics() const { return topics_; }
-  /// In the order of the URDF.
+  /// Return the plugins in the order of the URDF.
   const std::vector<LoadedPlugin>& plugins() const { return plugins_; }
-  /// Whether odometry has its linear velocity along the axes of the frame; plugins that have the
-  /// tag `twistFrame` agree on it.
+  /// Return whether odometry gives the linear velocity in frame axes. All plugins with the tag
+  /// `twistFrame` agree on it.
   bool has_velocity_in_body() const;
-  /// What was perhaps not meant: first what the model and its plugins said as they were loaded,
-  /// then, growing as it happens, what plugins said of this flight. The latter are part of a
-  /// snapshot; a reset leaves the former.
+  /// Return the warnings: first those of loading the model and its plugins, then those of this
+  /// flight. The latter are part of a snapshot, and a reset removes them.
   const std::vector<std::string>& warnings() const { return warnings_; }
-  /// Names that the user gave of what model and world hold and this simulation left out.
+  /// Return the names of elements of model and world that the user ignored.
   const std::vector<std::string>& ignored() const { return ignored_; }
 
-  /// Throws InputError on a state that is not finite or whose sizes differ.
+  /// Set the state. Throws InputError for a state that is not finite or has wrong sizes.
   void set_state(const VehicleState& state);
-  /// Everything that the future depends on.
+  /// Return the complete state.
   Snapshot snapshot() const;
-  /// Throws InputError, nothing changed, if the snapshot's simulation had another fingerprint,
-  /// apart from what is allowed to differ.
+  /// Restore a snapshot. Throws InputError without changes if the snapshot's fingerprint differs in
+  /// parts that may not differ.
   void restore(const Snapshot& snapshot, const Allowed& allowed = {});
-  /// Back to the moment of construction, bit for bit, as if it had been made with the seed.
+  /// Reset exactly to the state after construction with this seed.
   void reset(std::uint64_t seed);
-  /// The same with the seed that it has.
+  /// Reset with the present seed.
   void reset() { reset(seed_); }
 
-  /// Laws that plugins hand out beside their forces(). Valid as long as this simulation.
+  /// Return the force laws that plugins provide. Valid for the lifetime of this simulation.
   const ForceLaws& force_laws() const { return laws_; }
-  /// What flies, as force laws and engine have it now. Takes some milliseconds; nothing changes.
+  /// Return a description of the vehicle. Takes some milliseconds and changes nothing.
   VehicleDescription describe_vehicle();
 
-  /// Names of all wrench terms, in the order of wrenches().
+  /// Return the names of all wrench terms, in the order of wrenches().
   const std::vector<std::string>& wrench_terms() const { return wrench_terms_; }
-  /// What each term exerts in the present state, in the frame's axes about the vehicle's centre of
-  /// mass.
+  /// Return the wrench of each term in the present state, in frame axes about the vehicle's centre
+  /// of mass.
   const std::vector<Wrench>& wrenches();
 
  private:
   void evaluate(Kinematics& kinematics, Loads& loads) const override;
   const ForceLaws& laws() const override { return laws_; }
   void evaluate_rest(Kinematics& kinematics, Loads& loads) const override;
-  /// Blames the first plugin that makes the sum infinite or NaN.
+  /// Throw Error that names the first plugin with loads that are not finite.
   [[noreturn]] void refuse(const Kinematics& kinematics, Loads& loads) const override;
-  void warn(const std::string& warning);  ///< nothing if empty
+  void warn(const std::string& warning);  ///< ignores ""
   std::string describe_idle(const Model& model) const;
   void load_plugins(const Model& model, const SimulationOptions& options);
-  void check_drivers();  ///< throws if two plugins drive one joint
-  void note_hooks();     ///< who has which, and in which order they are called
+  void check_drivers();  ///< throws if two plugins drive the same joint
+  void note_hooks();     ///< collects the plugins with each hook in calling order
   void gather_laws();
-  void prepare_plugins();  ///< tells those that ask what they fly
+  void prepare_plugins();  ///< calls the plugins' prepare()
   Wrench probe(const VehicleState& state);
   AirResistance probe_air(const VehicleDescription& vehicle);
   void plant_seed(std::uint64_t seed);
   void place(const VehicleState& state);
-  /// The engine for what rides on the frame with this state of the plugins; null if that is the
-  /// present one.
+  /// Return a new engine if this plugin state attaches other bodies to the frame, else null.
   std::unique_ptr<Engine> another_engine(const VectorXd& plugin_state);
   void change_to(std::unique_ptr<Engine> engine);
-  /// Lets another engine, if there must be one, go on as the frame moves.
+  /// Continue with a new engine if the attached bodies have changed.
   void take_along();
-  /// Who is to blame, and why.
+  /// Return the current exception's message with the plugin that raised it.
   std::string blamed() const;
-  void begin();  ///< lets the sensors know where the motion begins
+  void begin();  ///< runs the sensors at the start of the motion
   void check_flight() const;
-  /// What to do about a motion that got out of hand, or the warning that told it.
+  /// Return advice on a diverged motion, or the last warning of this flight.
   std::string advice() const;
-  void move();          ///< makes a step by motion_
-  void show_state();    ///< brings state_ up to date
-  void show_instant();  ///< writes time and air into the engine's motion
+  void move();          ///< advances one step by motion_
+  void show_state();    ///< updates state_
+  void show_instant();  ///< writes time and air velocity into the engine's motion
   void blow(Kinematics& kinematics) const;
   void push(const std::vector<const LoadedPlugin*>& plugins, const Kinematics& kinematics,
             Loads& loads) const;
@@ -188,7 +186,7 @@ class Simulation : private ForceField {
   ConstPluginState state_of(const LoadedPlugin& p) const {
     return {plugin_state_.data() + p.state_begin, p.state_size};
   }
-  /// The hook of a plugin runs next: who to blame, and whose messages those are.
+  /// Set the plugin that runs next, for errors and published messages.
   void enter(const LoadedPlugin& p) {
     active_ = &p;
     topics_.write_as(static_cast<int>(&p - plugins_.data()));
@@ -198,49 +196,49 @@ class Simulation : private ForceField {
     topics_.write_as(the_caller);
   }
   void publish(const char* call, std::size_t topic, const double* values);
-  /// Calls a hook of those that have it.
+  /// Call a hook of the given plugins.
   template <auto hook>
   void sample(const std::vector<const LoadedPlugin*>& plugins, bool jumped);
   void update();
   void sense(bool jumped);
-  /// Adds to warnings() what the active plugin has said in a hook.
+  /// Add the active plugin's new warnings to warnings().
   void collect_warnings();
-  /// Records why the flight ended and throws FlightError.
+  /// Record the reason of the failure and throw FlightError.
   [[noreturn]] void fail(const std::string& what);
 
   std::string engine_name_;
-  const Model model_;  ///< as the URDF has it
+  const Model model_;  ///< model of the URDF
   const World world_;
   double dt_;
   std::uint64_t seed_ = 0;
   std::shared_ptr<const Fingerprint> fingerprint_;
   std::vector<std::string> warnings_;
-  std::size_t warnings_at_load_ = 0;  ///< the first of warnings_, which are not of a flight
-  std::vector<std::string> said_;     ///< by the plugin whose hook is running
+  std::size_t warnings_at_load_ = 0;  ///< number of warnings_ from loading
+  std::vector<std::string> said_;     ///< new warnings of the plugin whose hook is running
   std::vector<std::string> ignored_;
   Topics topics_;
   std::vector<LoadedPlugin> plugins_;
-  /// Those that have a hook, in the order in which it is called: of update and sense that of
-  /// topics, else by name.
+  /// Plugins with each hook in calling order: update and sense in the order of topics, others by
+  /// name.
   struct {
     std::vector<const LoadedPlugin*> update, sense, forces, forces_without_laws, air, carried;
   } with_;
   ForceLaws laws_;
-  bool windy_ = false;  ///< whether anything moves the air
+  bool windy_ = false;  ///< whether the air may move
   std::vector<std::string> wrench_terms_;
   std::unique_ptr<Engine> engine_;
-  std::vector<CarriedBody> carried_;  ///< by the engine's vehicle
-  std::vector<CarriedBody> asked_;    ///< for, most recently
+  std::vector<CarriedBody> carried_;  ///< bodies attached in the engine's model
+  std::vector<CarriedBody> asked_;    ///< bodies that plugins attached most recently
   int command_topic_ = -1;
-  Motion motion_;  ///< in the engine's place, if there is one
+  Motion motion_;  ///< replaces the engine's steps, if set
 
   double start_time_ = 0;
   std::int64_t steps_ = 0;
   VectorXd plugin_state_;
   VehicleState state_;
-  std::string failure_;                           ///< why the flight ended; "" while it goes on
-  mutable const LoadedPlugin* active_ = nullptr;  ///< whose hook is running, to blame it
-  Snapshot initial_;                              ///< before anything was sensed
+  std::string failure_;                           ///< reason of a failure, or ""
+  mutable const LoadedPlugin* active_ = nullptr;  ///< plugin whose hook is running, for errors
+  Snapshot initial_;                              ///< state before the sensors ran
 
   Loads wrench_loads_;
   std::vector<Wrench> wrenches_;

@@ -8,35 +8,35 @@
 #include "quadcore/plugin/spatial.hpp"
 
 /// \file
-/// Reading and writing numbers and names strictly, whatever the locale.
+/// Strict reading and writing of numbers and names, independent of the locale.
 
 namespace quadcore QUADCORE_EXPORT {
 
-/// A finite number and nothing else; blanks around it are allowed.
+/// Return the finite number in a text with nothing else except surrounding blanks.
 std::optional<double> parse_number(const std::string& text);
-/// Exactly three finite numbers, separated by blanks.
+/// Return exactly three finite numbers, separated by blanks.
 std::optional<Vector3d> parse_vector(const std::string& text);
-/// A text without the blanks and ends of lines around it.
+/// Return a text without surrounding white space.
 std::string trimmed(const std::string& text);
-/// With small letters of ASCII in place of capitals.
+/// Return a text with ASCII capitals converted to lower case.
 std::string lower(std::string text);
-/// The words of a text, between blanks and ends of lines.
+/// Return the words of a text, separated by white space.
 std::vector<std::string> split(const std::string& text);
 
-/// Bytes of the well-formed UTF-8 character that begins at `at`, or 0 if none does.
+/// Return the size in bytes of the well-formed UTF-8 character at `at`, or 0 if there is none.
 std::size_t character_size(const std::string& text, std::size_t at);
 
-/// " (did you mean 'x'?)" for the candidate nearest to `name`, or "" if none is near.
-std::string did_you_mean(const std::string& name, const std::vector<std::string>& candidates);
-/// Whether two names differ in a few letters only.
-bool is_slip(const std::string& a, const std::string& b);
-/// "1.250000 s", which std::to_string would write with a comma in some locales.
+/// Return " Did you mean 'x'?" for the candidate nearest to `name`, or "" if none is close.
+std::string suggest(const std::string& name, const std::vector<std::string>& candidates);
+/// Return whether two names differ in only a few letters.
+bool is_similar(const std::string& a, const std::string& b);
+/// Format a time, such as "1.250000 s", independent of the locale.
 std::string seconds(double time);
-/// What comes back of a number that is written with so many significant digits, 17 at most.
+/// Return a number rounded to so many significant digits, at most 17.
 double with_digits(double number, int digits);
-/// Appends a number with the fewest digits that read back exactly, laid out as by printf's %.17g.
+/// Append a number with the fewest digits that read back exactly, in the layout of printf's %.17g.
 void append_shortest(double number, std::string& text);
-/// "a, b, c"
+/// Join names as "a, b, c".
 std::string joined(const std::vector<std::string>& names);
 
 }  // namespace quadcore

@@ -7,12 +7,11 @@
 
 namespace quadcore QUADCORE_EXPORT {
 
-/// Reads a whole file that a user named, without its byte-order mark. Throws InputError if it
-/// cannot be read, is empty or too large, or is no regular file: a pipe could be waited for without
-/// end.
+/// Read a file given by the user, without its byte-order mark. Throws InputError if it cannot be
+/// read, is empty or too large, or is not a regular file, because a pipe could block forever.
 ///
-/// \param path      of the file
-/// \param largest   bytes that it may have; by default more than any that people write
+/// \param path      path of the file
+/// \param largest   maximum size in bytes; the default exceeds any handwritten file
 std::string read_text_file(const std::string& path, std::size_t largest = 100000000);
 
 }  // namespace quadcore

@@ -9,7 +9,7 @@
 namespace quadcore::elementary {
 namespace {
 
-/// Takes further pieces of pi/2 as long as digits are lost.
+/// Subtract further pieces of pi/2 as long as digits are lost.
 Reduced reduced_medium(double x) {
   namespace half_pi = laws::half_pi;
   const auto once = laws::reduced_once(x);
@@ -56,7 +56,7 @@ constexpr std::uint64_t two_over_pi[] = {
 
 __extension__ typedef unsigned __int128 Wide;
 
-/// 64 of those digits, from the one numbered `begin` on.
+/// Return 64 of those digits, starting at `begin`.
 std::uint64_t digits(int begin) {
   const int word = begin / 64, shift = begin % 64;
   const std::uint64_t high = two_over_pi[word];
@@ -67,7 +67,7 @@ struct Product {
   double rounded, error;
 };
 
-/// a b without a rounding error (T. J. Dekker, "A floating-point technique for extending the
+/// Return a b without a rounding error (T. J. Dekker, "A floating-point technique for extending the
 /// available precision", Numerische Mathematik 18, 1971).
 Product multiplied(double a, double b) {
   constexpr double splitter = 134217729;  // 2^27 + 1
@@ -77,9 +77,9 @@ Product multiplied(double a, double b) {
   return {p, ((a_high * b_high - p) + a_high * b_low + a_low * b_high) + a_low * b_low};
 }
 
-/// The quarter turns of |x|, a whole number times 2^exponent, but for whole turns: the
-/// digits of 2/pi that would only add whole turns are left out (M. H. Payne, R. N. Hanek,
-/// "Radian reduction for trigonometric functions", ACM SIGNUM Newsletter 18, 1983).
+/// Return the quarter turns of |x|, a whole number times 2^exponent, without whole turns: the
+/// digits of 2/pi that would only add whole turns are omitted (M. H. Payne, R. N. Hanek, "Radian
+/// reduction for trigonometric functions", ACM SIGNUM Newsletter 18, 1983).
 Reduced reduced_large(double x) {
   std::uint64_t bits;
   std::memcpy(&bits, &x, sizeof bits);
@@ -87,13 +87,13 @@ Reduced reduced_large(double x) {
   const int exponent = static_cast<int>(bits >> 52 & 0x7FF) - 1075;
   const int begin = exponent + 62;  // >= 0, because x is large
 
-  // The product's 192 digits after those of whole turns; the first two count quarter turns.
+  // The product's 192 digits after the whole turns; the first two count quarter turns.
   const Wide low = static_cast<Wide>(whole) * digits(begin + 128);
   const Wide middle = static_cast<Wide>(whole) * digits(begin + 64) + (low >> 64);
   const std::uint64_t top = whole * digits(begin) + static_cast<std::uint64_t>(middle >> 64);
   int quadrant = static_cast<int>(top >> 62);
 
-  // The fraction of a quarter turn, 128 digits of it, to the nearest quarter turn.
+  // The signed distance to the nearest quarter turn, in 128 digits.
   Wide fraction = static_cast<Wide>(top << 2 | static_cast<std::uint64_t>(middle) >> 62) << 64;
   fraction |= static_cast<std::uint64_t>(middle) << 2 | static_cast<std::uint64_t>(low) >> 62;
   const bool negative = fraction >> 127 != 0;
@@ -103,7 +103,7 @@ Reduced reduced_large(double x) {
   }
   double unit = 1;
   for (; fraction >> 127 == 0 && fraction != 0; fraction <<= 1) unit /= 2;
-  // The fraction and pi/2 as sums of two doubles each.
+  // The fraction and pi/2, each as the sum of two doubles.
   constexpr double two_to_53 = 9007199254740992.0;
   constexpr double half_pi = 1.5707963267948966192e+00, rest_of_half_pi = 6.1232339957367658860e-17;
   const auto double_of = [](std::uint64_t digits_53) { return static_cast<double>(digits_53); };

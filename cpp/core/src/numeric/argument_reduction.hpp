@@ -2,14 +2,14 @@
 
 namespace quadcore::elementary {
 
-/// x = quadrant pi/2 + y + tail, but for whole turns: |y| <= pi/4, quadrant 0 to 3, the sum y +
-/// tail good to 2^-70 or better, relatively.
+/// x = quadrant pi/2 + y + tail, up to whole turns. |y| <= pi/4, quadrant is 0 to 3, and the
+/// relative error of y + tail is at most 2^-70.
 struct Reduced {
   double y, tail;
   int quadrant;
 };
 
-/// Takes any x; one that is not finite gives NaN.
+/// Accepts any x. A value that is not finite gives NaN.
 Reduced reduced(double x);
 
 }  // namespace quadcore::elementary

@@ -25,7 +25,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double ln2_high = 6.93147180369123816490e-01;  // 32 bits: a whole multiple is exact
 constexpr double ln2_low = 1.90821492927058770002e-10;
 
-/// Arc tangent of x >= 0.
+/// Return the arc tangent of x >= 0.
 double atan_of_positive(double x) {
   // Reduced by atan(x) = atan(c) + atan((x - c)/(1 + c x)), c = 0.5, 1, 1.5, infinity.
   double high = 0, low = 0;
@@ -86,7 +86,8 @@ double atan2(double y, double x) {
   const double ay = std::abs(y), ax = std::abs(x);
   const double ratio = ay == 0 ? 0 : std::isinf(ay) && std::isinf(ax) ? 1 : ay / ax;
   const double angle = atan_of_positive(ratio);
-  const bool left = std::signbit(x) && ratio < two_to_60;  // beyond, it is a quarter turn
+  const bool left =
+      std::signbit(x) && ratio < two_to_60;  // beyond it, the result is a quarter turn
   return std::copysign(left ? pi_high - (angle - pi_low) : angle, y);
 }
 
@@ -137,7 +138,7 @@ double exp(double x) {
                     z * (6.61375632143793436117e-05 +
                          z * (-1.65339022054652515390e-06 + z * 4.13813679705723846039e-08))));
   const double y = 1 - ((low - r * c / (2 - c)) - high);
-  const int half = static_cast<int>(k) / 2;  // twice, for the ends of the range
+  const int half = static_cast<int>(k) / 2;  // applied in two halves near the ends of the range
   return y * power_of_two(half) * power_of_two(static_cast<int>(k) - half);
 }
 

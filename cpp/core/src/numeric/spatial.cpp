@@ -20,7 +20,8 @@ Vector3d rpy_from_quaternion(const Quaterniond& q) {
   const Matrix3d R = q.toRotationMatrix();
   const double sin_pitch = std::clamp(-R(2, 0), -1.0, 1.0);
   const double pitch = elementary::asin(sin_pitch);
-  // At +-90 degrees roll and yaw turn about the same axis: all of it is given to yaw.
+  // At a pitch of +-90 degrees, roll and yaw rotate about the same axis; yaw takes the whole
+  // rotation.
   if (std::abs(sin_pitch) > 1 - 1e-12) return {0, pitch, elementary::atan2(-R(0, 1), R(1, 1))};
   return {elementary::atan2(R(2, 1), R(2, 2)), pitch, elementary::atan2(R(1, 0), R(0, 0))};
 }

@@ -7,8 +7,8 @@
 
 namespace quadcore {
 
-/// The plugins that a static core has inside, by the file names they have elsewhere; none in a
-/// shared core. Made by the build.
+/// The plugins linked into a static core, by the file names of their modules; empty in a shared
+/// core. The build generates this table.
 const std::map<std::string, const PluginModule*>& built_in_plugins();
 
 }  // namespace quadcore

@@ -17,7 +17,7 @@ namespace {
   throw InputError(where + ": plugin '" + plugin + "': " + what);
 }
 
-/// A value to be checked: the tag's own, where it stands, and for whom.
+/// A value to check, with its location and its plugin.
 struct Given {
   Parameter& parameter;
   const std::string& where;
@@ -37,12 +37,11 @@ void interpret_number(const Given& given) {
   const TagSpec& spec = given.spec;
   const auto value = parse_number(given.parameter.text);
   if (!value) {
-    given.refuse("is not a finite number; write " +
-                 (spec.unit.empty() ? "a plain number" : "a plain number in " + spec.unit) + ", " +
-                 spec.range());
+    given.refuse("is not a finite number. Write a number" +
+                 (spec.unit.empty() ? "" : " in " + spec.unit) + ": " + spec.range() + ".");
   }
   if (!is_within(spec, *value)) {
-    given.refuse("is out of range; write a number " + spec.range());
+    given.refuse("is out of range. Use a number " + spec.range() + ".");
   }
   given.parameter.numbers = {*value};
 }
@@ -50,37 +49,38 @@ void interpret_number(const Given& given) {
 void interpret_numbers(const Given& given) {
   const TagSpec& spec = given.spec;
   const std::vector<std::string> words = split(given.parameter.text);
-  const std::string instead = "; write " + spec.range() +
+  const std::string instead = ". Write " + spec.range() +
                               (spec.unit.empty() ? "" : ", in " + spec.unit) +
-                              ", blanks between them";
+                              ", separated by blanks.";
   if (words.empty() || (spec.count != any_count && words.size() != spec.count)) {
-    given.refuse("is a row of " + std::to_string(words.size()) + instead);
+    given.refuse("has " + std::to_string(words.size()) + " numbers" + instead);
   }
   for (const std::string& word : words) {
     const auto value = parse_number(word);
-    if (!value) given.refuse("holds '" + word + "', which is not a finite number" + instead);
-    if (!is_within(spec, *value)) given.refuse("holds " + word + ", out of range" + instead);
+    if (!value) given.refuse("contains '" + word + "', which is not a finite number" + instead);
+    if (!is_within(spec, *value))
+      given.refuse("contains " + word + ", which is out of range" + instead);
     given.parameter.numbers.push_back(*value);
   }
 }
 
 void interpret_choice(const Given& given) {
-  // xacro writes what Python does: True.
+  // xacro writes booleans as Python does: True.
   if (given.spec.kind == TagKind::flag) given.parameter.text = lower(given.parameter.text);
   const std::vector<std::string>& choices = given.spec.choices;
   if (std::find(choices.begin(), choices.end(), given.parameter.text) == choices.end()) {
-    given.refuse("is not a choice; write " + given.spec.range());
+    given.refuse("is not a valid value. Use " + given.spec.range() + ".");
   }
 }
 
 void interpret_text(const Given& given) {
-  // Where a tag may be absent, one without text is as good as that.
+  // An optional tag without text counts as absent.
   if (!given.parameter.text.empty() || !given.spec.absent.empty()) return;
-  given.refuse("is empty; write something or leave it out");
+  given.refuse("is empty. Write a value or remove the tag.");
 }
 
-/// A path counts from the folder of the document that the tag stands in; one that is set from
-/// outside counts from where the program runs.
+/// A path in a document is relative to the document's folder. A path set by the caller is relative
+/// to the current working directory.
 void interpret_file(const Given& given) {
   namespace fs = std::filesystem;
   Parameter& parameter = given.parameter;
@@ -90,20 +90,23 @@ void interpret_file(const Given& given) {
     const fs::path document = given.where.substr(0, given.where.rfind(':'));
     std::error_code ignored;
     if (!fs::exists(document, ignored)) {
-      given.refuse("is relative, but the model comes from no file; write a path from / on");
+      given.refuse(
+          "is a relative path, but the model was not read from a file. Write an absolute path.");
     }
     path = document.parent_path() / path;
   }
   parameter.file = path.lexically_normal().string();
   std::error_code ignored;
-  if (fs::is_directory(path, ignored)) given.refuse("is a folder; name a file in it");
+  if (fs::is_directory(path, ignored)) given.refuse("is a folder. Name a file in it.");
   if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
-    given.refuse("is no regular file; save what it gives in one");
+    given.refuse("is not a regular file. Save its content in a regular file.");
   }
   if (!std::ifstream(path)) {
-    given.refuse(
-        "cannot be read: " + parameter.file + "; give the path of an existing file" +
-        (path == fs::path(parameter.text) ? "" : ", relative to the document that holds the tag"));
+    given.refuse("cannot be read: " + parameter.file + ". Give the path of an existing file" +
+                 (path == fs::path(parameter.text)
+                      ? ""
+                      : ", relative to the document that contains the tag") +
+                 ".");
   }
 }
 
@@ -112,19 +115,19 @@ void interpret_link(const Given& given, const Model& model) {
   if (body == model.body_of_link.end()) {
     std::vector<std::string> names;
     for (const auto& entry : model.body_of_link) names.push_back(entry.first);
-    given.refuse("is not a link of the model" + did_you_mean(given.parameter.text, names) +
-                 "; its links are " + joined(names));
+    given.refuse("is not a link of the model." + suggest(given.parameter.text, names) +
+                 " The model has " + joined(names) + ".");
   }
   if (body->second != 0) {
-    given.refuse("is not part of the frame; name the root link '" + model.links[0].name +
-                 "' or one that is fixed to it");
+    given.refuse("is not part of the frame. Name the root link '" + model.links[0].name +
+                 "' or a link that is fixed to it.");
   }
 }
 
 void interpret_joints(const Given& given, const Model& model) {
   Parameter& parameter = given.parameter;
   if (parameter.text.empty()) {
-    given.refuse("names no joint; name at least one or leave the tag out");
+    given.refuse("names no joint. Name at least one or remove the tag.");
   }
   const std::string tag = "<" + given.spec.name + "> names '";
   const std::vector<std::string> names = model.joint_names();
@@ -132,19 +135,19 @@ void interpret_joints(const Given& given, const Model& model) {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
       fail(given.where, given.plugin,
-           tag + name + "', which is not a continuous joint" + did_you_mean(name, names) +
-               "; the model has " + joined(names));
+           tag + name + "', which is not a continuous joint." + suggest(name, names) +
+               " The model has " + joined(names) + ".");
     }
     const auto index = static_cast<std::size_t>(found - names.begin());
     if (std::find(parameter.joints.begin(), parameter.joints.end(), index) !=
         parameter.joints.end()) {
-      fail(given.where, given.plugin, tag + name + "' twice; name it once");
+      fail(given.where, given.plugin, tag + name + "' twice. Name it once.");
     }
     parameter.joints.push_back(index);
   }
 }
 
-/// Checks a value against its spec and fills in what it means.
+/// Check a value against its specification and interpret it.
 void interpret(const Given& given, const Model& model) {
   switch (given.spec.kind) {
     case TagKind::number:
@@ -165,7 +168,7 @@ void interpret(const Given& given, const Model& model) {
   }
 }
 
-/// What an absent optional tag stands for.
+/// Fill in the value that an absent optional tag stands for.
 void complete(Parameter& parameter, const Model& model) {
   if (parameter.spec.kind == TagKind::link) parameter.text = model.links[0].name;
   if (parameter.spec.kind != TagKind::joints) return;
@@ -193,27 +196,28 @@ Parameters::Parameters(const std::vector<TagSpec>& table, const PluginElement& e
       }
     }
     fail(where, element.name,
-         "unknown tag <" + tag + ">" + did_you_mean(tag, names) + "; it knows " + joined(names));
+         "unknown tag <" + tag + ">." + suggest(tag, names) + " The plugin accepts " +
+             joined(names) + ".");
   };
 
   for (const PluginTag& tag : element.tags) {
     Parameter& parameter = find(tag.name, tag.where);
     if (!parameter.origin.empty()) {
       fail(tag.where, element.name,
-           "<" + tag.name + "> is given a second time (first at " + parameter.origin +
-               "); keep one of them");
+           "<" + tag.name + "> is repeated (first at " + parameter.origin + "). Keep one of them.");
     }
     parameter.text = trimmed(tag.text);
     parameter.origin = tag.where;
   }
-  std::map<const Parameter*, std::string> overridden;  // as what
+  std::map<const Parameter*, std::string> overridden;  // by which name
   for (const auto& [tag, text] : overrides) {
     const std::string where = "set " + element.name + "." + tag;
     Parameter& parameter = find(tag, where);
     const auto [before, is_new] = overridden.try_emplace(&parameter, tag);
     if (!is_new) {
       const std::string other = "<" + before->second + ">";
-      fail(where, element.name, "is the same tag as " + other + ", which is set, too; keep one");
+      fail(where, element.name,
+           "is the same tag as " + other + ", which is also set. Keep one of them.");
     }
     parameter.text = trimmed(text);
     parameter.origin = "set";
@@ -226,8 +230,8 @@ Parameters::Parameters(const std::vector<TagSpec>& table, const PluginElement& e
       interpret({parameter, where, element.name}, model);
     } else if (spec.required) {
       fail(element.where, element.name,
-           "required tag <" + spec.name + "> is missing (" + spec.meaning + "); add <" + spec.name +
-               ">...</" + spec.name + ">" + (spec.unit.empty() ? "" : " in " + spec.unit));
+           "required tag <" + spec.name + "> is missing (" + spec.meaning + "). Add <" + spec.name +
+               ">...</" + spec.name + ">" + (spec.unit.empty() ? "" : " in " + spec.unit) + ".");
     } else {
       parameter.origin = "default";
       parameter.text = spec.fallback;

@@ -20,7 +20,7 @@ namespace {
 std::mutex added_mutex;
 std::vector<std::string> added_folders;
 
-/// Of the core; it may be gone by now.
+/// Return the folder of the core library at the time it was loaded.
 const std::string& own_folder() {
   static const std::string folder = [] {
     Dl_info info;
@@ -34,8 +34,8 @@ std::string who_is(const PluginElement& element) {
   return element.where + ": plugin '" + element.name + "': " + element.filename;
 }
 
-/// The folders, and in each the one of those shipped modules that have the names of another
-/// program's, which must not find them.
+/// Return the plugin folders, then their `quadcore` subfolders. These contain the modules named
+/// like RotorS' modules, which Gazebo must not find.
 std::vector<std::string> folders_within() {
   std::vector<std::string> folders = plugin_folders();
   const std::size_t n = folders.size();
@@ -43,24 +43,24 @@ std::vector<std::string> folders_within() {
   return folders;
 }
 
-/// The nearest module in the folders or built in, if it differs by a slip only.
-std::string misspelt(const std::string& filename) {
+/// Suggest a module, in the folders or built in, with a very similar name.
+std::string suggest_module(const std::string& filename) {
   std::vector<std::string> modules;
   for (const auto& [name, module] : built_in_plugins()) {
-    if (is_slip(filename, name)) modules.push_back(name);
+    if (is_similar(filename, name)) modules.push_back(name);
   }
   for (const std::string& folder : folders_within()) {
     std::error_code unreachable;
     for (const auto& file : std::filesystem::directory_iterator(folder, unreachable)) {
       const std::string name = file.path().filename().string();
-      if (file.path().extension() == ".so" && is_slip(filename, name)) modules.push_back(name);
+      if (file.path().extension() == ".so" && is_similar(filename, name)) modules.push_back(name);
     }
   }
   std::sort(modules.begin(), modules.end());
-  return did_you_mean(filename, modules);
+  return suggest(filename, modules);
 }
 
-/// Throws Error if a plugin names two of its tags, or two of its wrenches, alike.
+/// Throw Error if two tags or two wrenches of a plugin have the same name.
 void check_names(const PluginDescriptor& descriptor) {
   std::vector<std::string> tags;
   for (const TagSpec& tag : descriptor.tags) {
@@ -70,22 +70,23 @@ void check_names(const PluginDescriptor& descriptor) {
   for (std::vector<std::string> names : {tags, descriptor.wrenches}) {
     std::sort(names.begin(), names.end());
     const auto twice = std::adjacent_find(names.begin(), names.end());
-    if (twice != names.end()) throw Error("its descriptor names '" + *twice + "' twice; keep one");
+    if (twice != names.end())
+      throw Error("its descriptor names '" + *twice + "' twice. Keep one of them.");
     for (const std::string& name : names) {
       if (name != one_line(name))
-        throw Error("its descriptor has the name '" + name + "'; use text");
+        throw Error("its descriptor contains the name '" + name + "'. Use printable text.");
     }
   }
 }
 
 const PluginModule& load(const std::string& path, const std::string& who) {
   void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!handle) throw InputError(who + " cannot be loaded: " + dlerror() + "; rebuild it");
+  if (!handle) throw InputError(who + " cannot be loaded: " + dlerror() + ". Rebuild it.");
   const void* module = dlsym(handle, "quadcore_plugin");
   if (!module) {
     throw InputError(who +
-                     " is not a quadcore plugin, or one of long ago; it must use "
-                     "QUADCORE_REGISTER_PLUGIN of the installed quadcore");
+                     " is not a quadcore plugin, or was built for an older version. Use "
+                     "QUADCORE_REGISTER_PLUGIN and rebuild it against the installed quadcore.");
   }
   return *static_cast<const PluginModule*>(module);
 }
@@ -96,11 +97,12 @@ void load_plugin_path(const std::string& folder) {
   std::error_code unreachable;
   const std::filesystem::path whole = std::filesystem::canonical(folder, unreachable);
   if (unreachable && unreachable != std::errc::no_such_file_or_directory) {
-    throw InputError(folder + ": cannot be searched: " + unreachable.message() +
-                     "; give a folder that holds plugin libraries");
+    throw InputError(folder + ": the folder cannot be searched (" + unreachable.message() +
+                     "). Give a folder that contains plugin libraries.");
   }
   if (!std::filesystem::is_directory(whole, unreachable)) {
-    throw InputError(folder + ": is not a folder; give one that holds plugin libraries");
+    throw InputError(folder +
+                     ": this is not a folder. Give a folder that contains plugin libraries.");
   }
   const std::lock_guard<std::mutex> lock(added_mutex);
   const auto known = std::find(added_folders.begin(), added_folders.end(), whole.string());
@@ -153,19 +155,19 @@ PluginLibrary open_plugin(const PluginElement& element, const std::string& path)
   const PluginModule& module = built_in ? *built_in_plugins().at(path) : load(path, who);
   const auto check = [&who](const std::string& what, const char* built_for, const char* here) {
     if (std::strcmp(built_for, here) == 0) return;
-    throw InputError(who + " was built for " + what + " " + built_for + ", this is " + here +
-                     "; rebuild it against the installed quadcore");
+    throw InputError(who + " was built for " + what + " " + built_for + ", but this quadcore has " +
+                     here + ". Rebuild it against the installed quadcore.");
   };
   check("plugin interface", module.interface, plugin_interface);
   const PluginDescriptor* descriptor = nullptr;
   try {
     descriptor = module.descriptor();
   } catch (...) {
-    throw InputError(who + " cannot describe itself: " + what_was_thrown());
+    throw InputError(who + " failed to return its descriptor: " + what_was_thrown());
   }
   if (!descriptor || !descriptor->create) {
     throw InputError(who + " has no " + (descriptor ? "create in its descriptor" : "descriptor") +
-                     "; give it one and rebuild it");
+                     ". Add one and rebuild it.");
   }
   if (const char* built_for = descriptor->create.hooks.laws) {
     check("force laws", built_for, law_interface);
@@ -173,23 +175,23 @@ PluginLibrary open_plugin(const PluginElement& element, const std::string& path)
   try {
     check_names(*descriptor);
   } catch (const Error& error) {
-    throw InputError(who + " does not fit: " + error.what());
+    throw InputError(who + " has an invalid descriptor: " + error.what());
   }
   return {path, descriptor};
 }
 
 std::string describe_missing(const PluginElement& element) {
   const std::string who = who_is(element);
-  const std::string remedy = ignoring(element.filename);
+  const std::string remedy = suggest_ignoring(element.filename);
   if (element.filename.find('/') != std::string::npos) {
     return who +
-           " is a path; write the file name alone and add its folder to QUADCORE_PLUGIN_PATH" +
+           " is a path. Write only the file name and add its folder to QUADCORE_PLUGIN_PATH." +
            remedy;
   }
   std::vector<std::string> places = plugin_folders();
   if (!built_in_plugins().empty()) places.push_back("the program itself");
-  return who + " was not found in " + joined(places) + misspelt(element.filename) +
-         "; correct the filename or add its folder to QUADCORE_PLUGIN_PATH" + remedy;
+  return who + " was not found in " + joined(places) + "." + suggest_module(element.filename) +
+         " Correct the file name or add its folder to QUADCORE_PLUGIN_PATH." + remedy;
 }
 
 }  // namespace quadcore

@@ -5,7 +5,7 @@
 #include "quadcore/text.hpp"
 
 /// \file
-/// Whether what plugins declare of topics agrees, and the order in which they run then.
+/// Checks that the plugins' topic declarations agree and derives the order in which plugins run.
 
 namespace quadcore {
 namespace {
@@ -34,18 +34,18 @@ std::vector<std::size_t> Topics::settle() {
     if (declared.open) close(declared);
   }
   for (const Declaration& declared : declarations_) {
-    const Declaration& other = authority(declared.topic);
+    const Declaration& other = find_authority(declared.topic);
     topics_[declared.topic].kind.meaning = other.kind.meaning;
     if (other.kind == declared.kind) continue;
-    throw InputError(name_of(declared.plugin) + " has topic '" + topics_[declared.topic].name +
+    throw InputError(name_of(declared.plugin) + " declares topic '" + topics_[declared.topic].name +
                      "' as " + describe(declared.kind) + ", but " + name_of(other.plugin) +
-                     " has it as " + describe(other.kind) + "; make them agree");
+                     " declares it as " + describe(other.kind) + ". Make the declarations agree.");
   }
   hold_what_is_unsaid();
   return order();
 }
 
-/// Fills each topic with the numbers that its readers assume before the first message.
+/// Fill each topic with the values that its readers assume before the first message.
 void Topics::hold_what_is_unsaid() {
   for (const Declaration& declared : declarations_) {
     const std::vector<double>& unsaid = declared.kind.unsaid;
@@ -53,10 +53,10 @@ void Topics::hold_what_is_unsaid() {
     if (unsaid.empty()) continue;
     std::vector<double>& known = topic.kind.unsaid;
     if (unsaid.size() != topic.values.size() || (!known.empty() && known != unsaid)) {
-      throw InputError(name_of(declared.plugin) + " has other numbers of topic '" + topic.name +
-                       "' before the first message than " +
-                       name_of(authority(declared.topic).plugin) +
-                       "; give one for each field, and let them agree");
+      throw InputError(name_of(declared.plugin) + " and " +
+                       name_of(find_authority(declared.topic).plugin) +
+                       " assume different values of topic '" + topic.name +
+                       "' before the first message. Give both the same value for each field.");
     }
     topic.values = known = unsaid;
   }
@@ -66,7 +66,7 @@ void Topics::hold_what_is_unsaid() {
   }
 }
 
-/// Gives a topic the fields of the first who takes it as this kind.
+/// Give a topic the fields of its first reader that expects this kind.
 void Topics::close(Declaration& open) {
   const auto takes = [&](const Declaration& other) {
     return other.topic == open.topic && !other.writes && other.kind.name == open.kind.name;
@@ -78,8 +78,9 @@ void Topics::close(Declaration& open) {
   topic.values.assign(open.kind.fields.size(), 0.0);
 }
 
-/// The declaration that defines the kind of a topic: its writer's, or else its first reader's.
-const Topics::Declaration& Topics::authority(std::size_t topic) const {
+/// Return the declaration that defines the kind of a topic: its writer's, or else its first
+/// reader's.
+const Topics::Declaration& Topics::find_authority(std::size_t topic) const {
   const Declaration* first = nullptr;
   for (const Declaration& declared : declarations_) {
     if (declared.topic != topic) continue;
@@ -89,7 +90,8 @@ const Topics::Declaration& Topics::authority(std::size_t topic) const {
   return *first;
 }
 
-/// Of the plugins that wait for no other, the first by name comes next.
+/// Return the plugins in running order. Of the plugins that wait for no other, the first by name
+/// comes next.
 std::vector<std::size_t> Topics::order() const {
   std::vector<std::size_t> order;
   std::vector<bool> placed(plugins_.size(), false);
@@ -108,7 +110,7 @@ std::vector<std::size_t> Topics::order() const {
   return order;
 }
 
-/// What a plugin takes from one that is not placed yet; null for nothing.
+/// Return a declaration by which a plugin reads from one that is not placed yet, or null.
 const Topics::Declaration* Topics::awaited(std::size_t plugin,
                                            const std::vector<bool>& placed) const {
   for (const Declaration& declared : declarations_) {
@@ -122,7 +124,7 @@ const Topics::Declaration* Topics::awaited(std::size_t plugin,
   return nullptr;
 }
 
-/// All plugins without a place wait for one another, so that following them ends in a loop.
+/// Report the loop of plugins that wait for one another; all plugins without a place lead into one.
 void Topics::refuse_loop(const std::vector<bool>& placed) const {
   const auto unplaced = std::find(placed.begin(), placed.end(), false) - placed.begin();
   auto plugin = static_cast<std::size_t>(unplaced);
@@ -133,13 +135,14 @@ void Topics::refuse_loop(const std::vector<bool>& placed) const {
   std::string loop;
   std::size_t next = plugin;
   do {
-    loop += (loop.empty() ? "" : ", and ") + plugins_[next].who + " takes topic '" +
+    loop += (loop.empty() ? "" : ", and ") + plugins_[next].who + " reads topic '" +
             topics_[awaited(next, placed)->topic].name + "' from '" + plugins_[writer(next)].name +
             "'";
     next = writer(next);
   } while (next != plugin);
-  throw InputError(loop + ": each waits for the other's value of the same sample; remove one, or " +
-                   "let it take its topic a sample late");
+  throw InputError(loop +
+                   ": each waits for the other's value of the same sample. Remove one, or let it "
+                   "read its topic one sample late.");
 }
 
 }  // namespace quadcore

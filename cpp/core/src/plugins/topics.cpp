@@ -9,18 +9,20 @@
 namespace quadcore {
 namespace {
 
-/// Names head columns of logs, and are variables in MATLAB and topics in ROS.
+/// Reject names that cannot be columns of logs, variables in MATLAB and topics in ROS.
 void check_word(const std::string& what, const std::string& name) {
   const auto is_plain = [](unsigned char c) { return c < 0x80 && (std::isalnum(c) || c == '_'); };
   if (!name.empty() && std::isalpha(static_cast<unsigned char>(name.front())) &&
       std::all_of(name.begin(), name.end(), is_plain)) {
     return;
   }
-  throw InputError(what + " '" + name +
-                   "' is no plain word; write letters, digits and _, a letter first");
+  throw InputError(
+      what + " '" + name +
+      "' is not a valid name. Start with a letter and use only letters, digits and _.");
 }
 
-/// The plain word that a path is; of what is none, such as "a//b", a word that is not plain.
+/// Return the topic name of a path, with / replaced by _. Invalid paths such as "a//b" give invalid
+/// names.
 std::string word_of(const std::string& path) {
   std::string word = path;
   for (std::size_t i = 1; i + 1 < path.size(); ++i) {
@@ -90,9 +92,9 @@ std::size_t Topics::at(const std::string& name) const {
   const int index = find(name);
   if (index >= 0) return static_cast<std::size_t>(index);
   const std::vector<std::string> known = names();
-  throw InputError("topic '" + name + "' is not declared by any plugin" +
-                   did_you_mean(name, known) + "; " +
-                   (known.empty() ? "none is" : "declared are " + joined(known)));
+  throw InputError(
+      "topic '" + name + "' does not exist." + suggest(name, known) +
+      (known.empty() ? " No plugin declares a topic." : " Choose one of " + joined(known) + "."));
 }
 
 std::vector<std::size_t> Topics::at(const std::vector<std::string>& names) const {
@@ -100,7 +102,7 @@ std::vector<std::size_t> Topics::at(const std::vector<std::string>& names) const
   for (const std::string& name : names) {
     const std::size_t index = at(name);
     if (std::find(indices.begin(), indices.end(), index) != indices.end()) {
-      throw InputError("topic '" + name + "' is named twice; name it once");
+      throw InputError("topic '" + name + "' is named twice. Name it once.");
     }
     indices.push_back(index);
   }
@@ -122,14 +124,14 @@ std::string Topics::name_of(int writer) const {
 void Topics::refuse_writer(const Topic& topic) const {
   if (topic.writer == the_caller) {
     throw InputError(name_of(writer_) + " writes topic '" + topic.name +
-                     "', which it did not declare; call topics.publishes() in its constructor");
+                     "', which it did not declare. Call topics.publishes() in its constructor.");
   }
   refuse_second(name_of(writer_), topic);
 }
 
 void Topics::refuse_second(const std::string& who, const Topic& topic) const {
   throw InputError(who + " writes topic '" + topic.name + "', which " + name_of(topic.writer) +
-                   " writes already; keep one of the two");
+                   " already writes. Keep one of the two.");
 }
 
 std::vector<Message> Topics::messages() const { return {topics_.begin(), topics_.end()}; }
@@ -139,7 +141,7 @@ void Topics::check(const std::vector<Message>& messages) const {
     return message.values.size() == topic.values.size();
   };
   if (!std::equal(messages.begin(), messages.end(), topics_.begin(), topics_.end(), fits)) {
-    throw InputError("snapshot: its messages are of other topics; take it anew");
+    throw InputError("snapshot: its messages belong to other topics. Take a new snapshot.");
   }
 }
 
@@ -147,7 +149,8 @@ void Topics::restore(const std::vector<Message>& messages) {
   for (std::size_t i = 0; i < topics_.size(); ++i) {
     Topic& topic = topics_[i];
     static_cast<Message&>(topic) = messages[i];
-    // What nobody has said is what this simulation's plugins go by, whose tags may be others.
+    // Before the first message, the values that this simulation's plugins assume apply; their tags
+    // may differ from those of the snapshot.
     if (topic.count == 0 && !topic.kind.unsaid.empty()) topic.values = topic.kind.unsaid;
   }
 }

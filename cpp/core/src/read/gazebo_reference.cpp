@@ -14,7 +14,7 @@ using Element = Xml::Element;
 
 enum class Kind { number, whole, flag, vector, anything };
 
-/// What a value must be.
+/// Type and range of a value.
 struct Values {
   Kind kind;
   double min = -std::numeric_limits<double>::infinity();
@@ -63,49 +63,49 @@ const std::vector<Entry>& table() {
       off{Kind::flag, 0, 0}, vector{Kind::vector}, anything{Kind::anything};
   static const std::vector<Entry> entries = {
       {{"mu1", "link", "shapes", "", "1", "",
-        "friction along fdir1; of a pair the smaller, the ground has 100"},
+        "friction coefficient along fdir1; the smaller one of the pair counts, the ground has 100"},
        not_negative},
       {{"mu2", "link", "shapes", "", "1", "",
-        "friction across fdir1; of a pair the smaller, the ground has 50"},
+        "friction coefficient across fdir1; the smaller one of the pair counts, the ground has 50"},
        not_negative},
       {{"fdir1", "link", "shapes", "", "0 0 0", "",
-        "direction of mu1 in the shape's axes, not made a unit vector; 0 0 0: the world's -y"},
+        "direction of mu1 in the shape's axes, not normalised; 0 0 0: the world's -y"},
        vector},
       {{"kp", "link", "shapes", "N/m", "1e12", "", "stiffness, in series with the ground's 1e12"},
        positive},
       {{"kd", "link", "shapes", "N s/m", "1", "", "damping, added to the ground's 1"},
        not_negative},
       {{"minDepth", "link", "shapes", "m", "0", "",
-        "penetration that is not corrected; of a body its last shape's"},
+        "penetration that is not corrected; the body's last shape counts"},
        not_negative},
       {{"maxVel", "link", "shapes", "m/s", "0.01", "",
-        "velocity that a correction may leave; of a body its last shape's"},
+        "maximum velocity that remains after a correction; the body's last shape counts"},
        not_negative},
       {{"maxContacts", "link", "shapes", "", "10", "",
-        "points where a shape touches the ground, at most 10"},
+        "maximum number of contact points of a shape, at most 10"},
        count},
       {{"dampingFactor", "link", "body", "", "0", "",
-        "part of its velocity that a body faster than 0.01 m/s, 0.01 rad/s loses in each step"},
+        "fraction of the velocity that the body loses in each step above 0.01 m/s or 0.01 rad/s"},
        part},
-      {{"turnGravityOff", "link", "body", "", "false", "", "no gravity on the body"}, flag},
+      {{"turnGravityOff", "link", "body", "", "false", "", "disables gravity for the body"}, flag},
       {{"implicitSpringDamper", "joint", "joint", "", "false", "",
-        "the joint's damping as a constraint instead of a torque"},
+        "applies the joint's damping as a constraint instead of a torque"},
        flag},
-      {{"selfCollide", "link", "", "", "", "", "links of one model do not collide"}, flag},
-      {{"gravity", "link", "", "", "", "", "turnGravityOff is what counts"}, on},
-      {{"static", "link", "", "", "", "", "a vehicle moves"}, off},
-      {{"velocity_decay", "link", "", "", "", "", "dampingFactor is what counts"}, anything},
-      {{"material", "link", "", "", "", "", "seen only"}, anything},
-      {{"visual", "link", "", "", "", "", "seen only"}, anything},
-      {{"stopErp", "joint", "", "", "", "", "of stops, which a rotor has not"}, number},
-      {{"stopCfm", "joint", "", "", "", "", "of stops, which a rotor has not"}, number},
-      {{"fudgeFactor", "joint", "", "", "", "", "of stops, which a rotor has not"}, number},
-      {{"springStiffness", "joint", "", "", "", "", "a spring is not modelled"}, none},
+      {{"selfCollide", "link", "", "", "", "", "links of the same model do not collide"}, flag},
+      {{"gravity", "link", "", "", "", "", "use turnGravityOff"}, on},
+      {{"static", "link", "", "", "", "", "a vehicle is never static"}, off},
+      {{"velocity_decay", "link", "", "", "", "", "use dampingFactor"}, anything},
+      {{"material", "link", "", "", "", "", "appearance only"}, anything},
+      {{"visual", "link", "", "", "", "", "appearance only"}, anything},
+      {{"stopErp", "joint", "", "", "", "", "for joint stops, which a rotor lacks"}, number},
+      {{"stopCfm", "joint", "", "", "", "", "for joint stops, which a rotor lacks"}, number},
+      {{"fudgeFactor", "joint", "", "", "", "", "for joint stops, which a rotor lacks"}, number},
+      {{"springStiffness", "joint", "", "", "", "", "joint springs are not modelled"}, none},
   };
   return entries;
 }
 
-/// Gazebo takes `value="..."` as well as text.
+/// Gazebo accepts `value="..."` as well as text.
 std::string text_of(const Xml& xml, const Element& element) {
   if (!element.Attribute("value")) return xml.text(element);
   xml.attributes_alone(element, {"value"});
@@ -115,7 +115,8 @@ std::string text_of(const Xml& xml, const Element& element) {
 Vector3d read_value(const Xml& xml, const Element& element, const Entry& entry) {
   const std::string text = text_of(xml, element);
   const auto refuse = [&]() {
-    xml.fail(element, "<" + entry.tag.name + "> is '" + text + "'; write " + entry.values.range());
+    xml.fail(element,
+             "<" + entry.tag.name + "> is '" + text + "'. Use " + entry.values.range() + ".");
   };
   if (entry.values.kind == Kind::vector) {
     const auto value = parse_vector(text);
@@ -147,7 +148,7 @@ std::vector<GazeboTag> gazebo_tags() {
 
 GazeboReference read_reference(const Xml& xml, const Element& element) {
   GazeboReference reference{xml.attribute(element, "reference"), xml.where(element), {}};
-  // Sensors are read_sensor()'s.
+  // read_sensor() reads the sensors.
   std::set<std::string> names = {"sensor"}, repeatable = names;
   for (const Entry& entry : table()) {
     names.insert(entry.tag.name);
@@ -157,7 +158,7 @@ GazeboReference read_reference(const Xml& xml, const Element& element) {
     for (const Entry& entry : table()) {
       if (entry.tag.name != child->Name() || entry.values.kind == Kind::anything) continue;
       const Vector3d value = read_value(xml, *child, entry);
-      if (!entry.tag.felt_by.empty()) {
+      if (!entry.tag.affects.empty()) {
         reference.tags.push_back({entry.tag.name, value, xml.where(*child)});
       }
     }

@@ -9,7 +9,7 @@
 namespace quadcore {
 namespace {
 
-/// Sum of two bodies' inertias; poses are in one frame, the result's axes are that frame's.
+/// Return the sum of two bodies' inertias. Both poses and the result refer to the same frame.
 Inertial combined(const Inertial& a, const Inertial& b) {
   Inertial sum;
   sum.mass = a.mass + b.mass;
@@ -24,10 +24,10 @@ Inertial combined(const Inertial& a, const Inertial& b) {
 void check_body(const Link& link, bool has_inertial) {
   const std::string who = link.where + ": link '" + link.name + "' moves but has ";
   if (!has_inertial) {
-    throw InputError(who + "no <inertial>; add one, or fix the link to another");
+    throw InputError(who + "no <inertial>. Add one, or fix the link to another link.");
   }
   if (!(link.inertial.mass > 0)) {
-    throw InputError(who + "no mass; write <mass value=\"...\"/> in kg, > 0");
+    throw InputError(who + "no mass. Write <mass value=\"...\"/> in kg, > 0.");
   }
   if (!link.inertial.is_positive()) {
     const Vector3d principal = link.inertial.principal_moments();
@@ -36,25 +36,26 @@ void check_body(const Link& link, bool has_inertial) {
       moments += moments.empty() ? "" : ", ";
       append_shortest(with_digits(principal[i], 4), moments);
     }
-    throw InputError(who + "the principal moments of inertia " + moments +
-                     " kg m^2; write an inertia that has all of them > 0, none of them next to "
-                     "nothing beside another");
+    throw InputError(
+        who + "the principal moments of inertia " + moments +
+        " kg m^2. All of them must be positive and of comparable size. Correct the <inertia>.");
   }
 }
 
-/// Every engine but gazebo11 makes one body of a link behind a locked joint and its parent.
+/// Every engine except gazebo11 merges a link behind a locked joint with its parent.
 void check_locked(const UrdfJoint& joint, const UrdfLink& link, const Link& body) {
   if (link.tags.gravity == body.tags.gravity &&
       link.tags.damping_factor == body.tags.damping_factor) {
     return;
   }
   throw InputError((link.tags.where.empty() ? body.tags.where : link.tags.where) +
-                   ": the locked joint '" + joint.name + "' makes link '" + link.name +
-                   "' part of '" + body.name +
-                   "', which has other gravity or damping; write both alike");
+                   ": the locked joint '" + joint.name + "' merges link '" + link.name +
+                   "' with '" + body.name +
+                   "', which has different gravity or damping. Give both links the same "
+                   "<turnGravityOff> and <dampingFactor>.");
 }
 
-/// Which body carries each link, and where the link sits in it.
+/// The body that a link is part of and the pose of the link in it.
 struct Carried {
   std::size_t body;
   Pose pose;
@@ -69,13 +70,13 @@ Model lump(const UrdfTree& tree) {
   model.name = tree.name;
   model.plugins = tree.plugins;
   model.warnings = tree.warnings;
-  model.passed_over = tree.passed_over;
+  model.ignored_elements = tree.ignored_elements;
 
   std::map<std::string, Carried> carried;
   std::vector<bool> has_inertial;
   const auto add_to_body = [&](const UrdfLink& link, const Carried& place) {
     Link& body = model.links[place.body];
-    // The body's own link keeps its numbers as written; sums take the body's axes.
+    // The body's own link keeps its numbers as written; sums use the body's axes.
     const bool own = body.name == link.name;
     if (link.inertial) {
       Inertial in_body = *link.inertial;
@@ -102,7 +103,7 @@ Model lump(const UrdfTree& tree) {
   };
 
   add_body(*links.at(tree.root));
-  // Joints in file order, except that a parent is placed before its children.
+  // Joints are processed in file order, but parents always come before their children.
   std::map<std::string, std::vector<std::size_t>> below;
   for (std::size_t i = 0; i < tree.joints.size(); ++i) {
     below[tree.joints[i].parent].push_back(i);

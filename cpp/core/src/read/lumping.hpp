@@ -4,7 +4,7 @@
 
 namespace quadcore {
 
-/// Lumps fixed links and checks the moving bodies. The topology has been checked.
+/// Lump fixed links and check the moving bodies. Requires a checked topology.
 Model lump(const UrdfTree& tree);
 
 }  // namespace quadcore

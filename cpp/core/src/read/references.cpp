@@ -32,7 +32,7 @@ const GivenTag* tag_of(const GazeboReference& reference, const std::string& name
   return nullptr;
 }
 
-/// A felt tag must name something that can feel it.
+/// A tag with an effect must name a link or joint that it applies to.
 void check_names(const UrdfTree& tree) {
   std::map<std::string, std::set<std::string>> kinds;
   std::vector<std::string> names;
@@ -45,14 +45,14 @@ void check_names(const UrdfTree& tree) {
     for (const GivenTag& tag : reference.tags) {
       const std::string& kind = of.at(tag.name);
       if (kinds.count(reference.name) && kinds.at(reference.name).count(kind)) continue;
-      throw InputError(tag.where + ": <" + tag.name + "> acts on a " + kind + ", but '" +
-                       reference.name + "' is no " + kind + " of the model" +
-                       did_you_mean(reference.name, names) + "; name a " + kind);
+      throw InputError(tag.where + ": <" + tag.name + "> applies to a " + kind +
+                       ", but the model has no " + kind + " '" + reference.name + "'." +
+                       suggest(reference.name, names) + " Name a " + kind + " of the model.");
     }
   }
 }
 
-/// A link of a body and the references to it.
+/// A link of a body and the references to the link.
 struct Part {
   UrdfLink* link;
   std::vector<const GazeboReference*> references;
@@ -66,7 +66,7 @@ class Body {
     }
   }
 
-  /// Gazebo writes gravity anew with each reference, and reads the first damping of all.
+  /// Gazebo sets gravity again with each reference and uses the first damping only.
   void set_tags(std::vector<std::string>& warnings) {
     BodyTags& tags = parts_.front().link->tags;
     for (const GazeboReference* reference : all_) {
@@ -75,9 +75,10 @@ class Body {
           tags.gravity = off->value.x() == 0;
           if (!tags.gravity) tags.where = off->where;
         } else if (off->value.x() != 0) {
-          warnings.push_back(off->where + ": <turnGravityOff> has no effect, as in Gazebo, where " +
-                             "a later <gazebo reference> of the same body (" + all_.back()->where +
-                             ") turns gravity on again; put it there");
+          warnings.push_back(off->where +
+                             ": <turnGravityOff> has no effect, as in Gazebo, because a later "
+                             "<gazebo reference> of the same body (" +
+                             all_.back()->where + ") turns gravity on again. Move the tag there.");
         }
       }
       if (const GivenTag* factor = tag_of(*reference, "dampingFactor")) {
@@ -85,16 +86,17 @@ class Body {
           tags.damping_factor = factor->value.x();
           if (tags.damping_factor != 0) tags.where = factor->where;
         } else if (factor->value.x() != 0) {
-          warnings.push_back(factor->where + ": <dampingFactor> has no effect, as in Gazebo, " +
-                             "where the first <gazebo reference> of a body counts (" +
-                             all_.front()->where + "); put it there");
+          warnings.push_back(factor->where +
+                             ": <dampingFactor> has no effect, as in Gazebo, because only the "
+                             "first <gazebo reference> of a body counts (" +
+                             all_.front()->where + "). Move the tag there.");
         }
       }
     }
   }
 
-  /// Gazebo gives tags to shapes by the names that it has made for them (before the number that it
-  /// adds to all but the first, which makes no difference).
+  /// Gazebo assigns tags to shapes by the names that it generates for them. The number that it
+  /// appends to all but the first name makes no difference here.
   void set_surfaces(std::vector<std::string>& warnings) {
     const std::string lumped = "_fixed_joint_lump__", suffix = "_collision";
     const std::string& base = parts_.front().link->name;
@@ -104,7 +106,7 @@ class Body {
         if (name.compare(0, base.size(), base) != 0) name = base + lumped + name;
         for (const GazeboReference* reference : all_) {
           const bool own = reference->name == base;
-          const bool feels =
+          const bool applies =
               own ? name.find(lumped) == std::string::npos
                   : name.find(lumped + reference->name + suffix) != std::string::npos;
           bool any = false;
@@ -112,16 +114,15 @@ class Body {
             const auto setter = surface_tags().find(tag.name);
             if (setter == surface_tags().end()) continue;
             any = true;
-            if (feels) setter->second(shape.surface, tag.value);
+            if (applies) setter->second(shape.surface, tag.value);
           }
-          if (!any || feels == (reference->name == part.link->name)) continue;
-          warnings.push_back(
-              shape.where + ": this shape of link '" + part.link->name +
-              (feels ? "' feels, as in Gazebo, the contact tags of link '"
-                     : "' does not feel, as in Gazebo, the contact tags of link '") +
-              reference->name + "' (" + reference->where +
-              "), because of its name; give the shape no name, and let no link's name begin with "
-              "that of the link that it is fixed to");
+          if (!any || applies == (reference->name == part.link->name)) continue;
+          warnings.push_back(shape.where + ": because of its name, this shape of link '" +
+                             part.link->name + (applies ? "' takes" : "' does not take") +
+                             " the contact tags of link '" + reference->name + "' (" +
+                             reference->where +
+                             "), as in Gazebo. Remove the shape's name, and start no link's name "
+                             "with that of the link it is fixed to.");
         }
       }
     }

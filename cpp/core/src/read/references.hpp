@@ -5,13 +5,14 @@
 
 namespace quadcore {
 
-/// Reads one <gazebo reference="...">, each tag checked by itself.
+/// Read one <gazebo reference="..."> and check each tag individually.
 GazeboReference read_reference(const Xml& xml, const Xml::Element& element);
 
-/// Gives what the references say to the tree's links, shapes and joints, by Gazebo's rules: a body
-/// has gravity as its last reference says and damping as its first does, those of the links fixed
-/// to it included; a shape feels the tags of its own link, which Gazebo finds by the shape's name.
-/// Throws InputError where a felt tag names nothing that feels it. The topology has been checked.
+/// Apply the references to the tree's links, shapes and joints by Gazebo's rules. The last
+/// reference of a body, including those of the links fixed to it, sets its gravity; the first one
+/// sets its damping. A shape takes the tags of its own link, which Gazebo finds by the shape's
+/// name. Throws InputError if a tag with an effect names no link or joint that it applies to.
+/// Requires a checked topology.
 void apply_references(UrdfTree& tree);
 
 }  // namespace quadcore

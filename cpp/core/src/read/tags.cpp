@@ -54,7 +54,7 @@ TagSpec TagSpec::link(std::string name, std::string meaning) {
 TagSpec TagSpec::joints(std::string name, std::string meaning) {
   TagSpec spec = number(std::move(name), "", "", std::move(meaning));
   spec.kind = TagKind::joints;
-  spec.absent = "every continuous joint, in file order";
+  spec.absent = "all continuous joints, in file order";
   return spec;
 }
 
@@ -137,7 +137,7 @@ std::string TagSpec::range() const {
     case TagKind::text:
       return "any text";
     case TagKind::file:
-      return "a file, relative to the document";
+      return "a file, relative to the model";
     case TagKind::link:
       return "a link of the model";
     case TagKind::joints:

@@ -14,8 +14,8 @@ std::map<std::string, std::size_t> index_by_name(const std::vector<Named>& items
   for (std::size_t i = 0; i < items.size(); ++i) {
     const auto [first, added] = index.emplace(items[i].name, i);
     if (!added) {
-      throw InputError(items[i].where + ": a second " + kind + " named '" + items[i].name +
-                       "' (first at " + items[first->second].where + "); give it another name");
+      throw InputError(items[i].where + ": a second " + kind + " is named '" + items[i].name +
+                       "' (first at " + items[first->second].where + "). Give it another name.");
     }
   }
   return index;
@@ -28,7 +28,7 @@ void check_topology(UrdfTree& tree) {
   const auto links = index_by_name(tree.links, "link");
   index_by_name(tree.joints, "joint");
   if (tree.links.empty()) {
-    throw InputError(tree.where + ": <robot> has no <link>; add at least one");
+    throw InputError(tree.where + ": <robot> has no <link>. Add at least one.");
   }
   std::vector<std::string> names;
   for (const UrdfLink& link : tree.links) names.push_back(link.name);
@@ -36,32 +36,32 @@ void check_topology(UrdfTree& tree) {
   for (const UrdfJoint& joint : tree.joints) {
     for (const auto& [role, link] : {std::pair{"parent", joint.parent}, {"child", joint.child}}) {
       if (!links.count(link)) {
-        throw InputError(joint.where + ": joint '" + joint.name + "' has the " + role + " link '" +
-                         link + "', which is not there" + did_you_mean(link, names) +
-                         "; name a link of the model");
+        throw InputError(joint.where + ": the " + role + " link '" + link + "' of joint '" +
+                         joint.name + "' does not exist." + suggest(link, names) +
+                         " Name a link of the model.");
       }
     }
     const auto [other, added] = joint_above.emplace(joint.child, &joint);
     if (!added) {
-      throw InputError(joint.where + ": link '" + joint.child + "' hangs on joint '" + joint.name +
-                       "' and on '" + other->second->name + "' (" + other->second->where +
-                       "); keep one of them");
+      throw InputError(joint.where + ": link '" + joint.child + "' is the child of joint '" +
+                       joint.name + "' and of '" + other->second->name + "' (" +
+                       other->second->where + "). Keep one of them.");
     }
   }
   for (const UrdfLink& link : tree.links) {
     if (joint_above.count(link.name)) continue;
     if (!tree.root.empty()) {
-      throw InputError(link.where + ": link '" + link.name + "' is a second root beside '" +
-                       tree.root + "'; connect it with a joint or remove it");
+      throw InputError(link.where + ": link '" + link.name + "' is a second root next to '" +
+                       tree.root + "'. Connect it with a joint or remove it.");
     }
     tree.root = link.name;
     if (link.name == "world") {
       throw InputError(link.where +
-                       ": Gazebo pins a root link named 'world' to the world, which is "
-                       "not modelled; give it another name");
+                       ": Gazebo fixes a root link named 'world' to the world, which is not "
+                       "modelled. Give the link another name.");
     }
   }
-  // Walking up from any link must end at the root, or at a link from where it is known to.
+  // The way up from any link must end at the root or at a link that is known to lead there.
   std::set<std::string> rooted = {tree.root};
   for (const UrdfLink& link : tree.links) {
     std::set<std::string> path;
@@ -69,7 +69,7 @@ void check_topology(UrdfTree& tree) {
       const UrdfJoint& joint = *joint_above.at(at);
       if (!path.insert(at).second) {
         throw InputError(joint.where + ": joint '" + joint.name +
-                         "' closes a loop of links; a model must be a tree");
+                         "' closes a loop of links. Remove a joint to make the model a tree.");
       }
       at = joint.parent;
     }
@@ -85,7 +85,7 @@ JointsBelow joints_below(const UrdfTree& tree) {
 
 std::vector<SdfLink> sdf_links(const UrdfTree& tree) {
   JointsBelow below = joints_below(tree);
-  /// A joint to be walked, and the part that carries it.
+  /// A joint still to be visited and the part that carries it.
   struct Ahead {
     const UrdfJoint* joint;
     std::size_t link, part;

@@ -31,7 +31,7 @@ Inertial read_inertial(const Xml& xml, const Element& element, const std::string
   inertial.mass = xml.number(mass, "value");
   if (inertial.mass < 0) {
     xml.fail(mass, "link '" + link + "' has the mass " + mass.Attribute("value") +
-                       "; write a mass in kg, > 0");
+                       ". Use a positive mass in kg.");
   }
   const Element& inertia = xml.required_child(element, "inertia");
   xml.attributes_alone(inertia, {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"});
@@ -40,21 +40,21 @@ Inertial read_inertial(const Xml& xml, const Element& element, const std::string
   const double xy = moment("ixy"), xz = moment("ixz"), yz = moment("iyz");
   inertial.inertia << xx, xy, xz, xy, yy, yz, xz, yz, zz;
 
-  // Principal moments of a rigid body are not negative and obey the triangle inequality; thin discs
-  // sit exactly on equality, hence the tolerance.
+  // Principal moments of a rigid body are non-negative and obey the triangle inequality. Thin discs
+  // reach equality exactly, hence the tolerance.
   const Vector3d principal = inertial.principal_moments();
   const double tolerance = 1e-6 * principal.cwiseAbs().maxCoeff();
   if (principal.minCoeff() < -tolerance) {
     xml.fail(inertia, "link '" + link +
-                          "' has a negative principal moment of inertia; write a positive "
-                          "semi-definite inertia in kg m^2");
+                          "' has a negative principal moment of inertia. Write a positive "
+                          "semi-definite inertia in kg m^2.");
   }
   if (principal[0] + principal[1] < principal[2] - tolerance) {
-    // The equations of motion stay well posed.
-    warnings.push_back(xml.where(inertia) + ": link '" + link +
-                       "' has an inertia no rigid body can have: the largest principal moment "
-                       "exceeds the sum of the other two; it flies as written, correct ixx, iyy, "
-                       "izz");
+    // The equations of motion remain well posed.
+    warnings.push_back(
+        xml.where(inertia) + ": link '" + link +
+        "' has a physically impossible inertia, which is used as written: the maximum principal "
+        "moment exceeds the sum of the other two. Correct ixx, iyy and izz.");
   }
   return inertial;
 }
@@ -65,7 +65,10 @@ Collision read_collision(const Xml& xml, const Element& element) {
   const Element& geometry = xml.required_child(element, "geometry");
   xml.only_attributes(geometry, {});
   const auto shapes = xml.children(geometry, {"box", "cylinder", "sphere", "mesh"});
-  if (shapes.size() != 1) xml.fail(geometry, "<geometry> takes exactly one shape");
+  if (shapes.size() != 1)
+    xml.fail(
+        geometry,
+        "<geometry> must contain exactly one shape. Keep one of box, cylinder, sphere and mesh.");
   const Element& shape = *shapes.front();
   const char* name = element.Attribute("name");
   Collision collision{ShapeKind::mesh, Vector3d::Zero(), read_origin(xml, element),
@@ -90,7 +93,7 @@ Collision read_collision(const Xml& xml, const Element& element) {
     collision.size = {xml.number(shape, "radius"), 1, 1};
   }
   if (collision.size.minCoeff() <= 0) {
-    xml.fail(shape, "<" + kind + "> has a size that is not positive; write lengths in m, > 0");
+    xml.fail(shape, "<" + kind + "> has a size that is not positive. Use positive lengths in m.");
   }
   return collision;
 }
@@ -109,7 +112,7 @@ UrdfLink read_link(const Xml& xml, const Element& element, std::vector<std::stri
   return link;
 }
 
-/// A revolute joint without any travel is locked; one that turns has no model.
+/// A revolute joint without travel is locked; one that can turn is not modelled.
 void check_locked(const Xml& xml, const Element& element, const std::string& name) {
   const Element* limit = xml.child(element, "limit");
   if (limit) {
@@ -118,8 +121,8 @@ void check_locked(const Xml& xml, const Element& element, const std::string& nam
   }
   xml.fail(limit ? *limit : element,
            "joint '" + name +
-               "' is of type 'revolute' and may turn up to a limit, which the engines do not "
-               "model; write continuous or fixed, or lower=\"0\" upper=\"0\", which locks it");
+               "' is of type 'revolute' with a range of travel, which the engines do not model. "
+               "Use continuous or fixed, or lock it with lower=\"0\" upper=\"0\".");
 }
 
 UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::string>& warnings) {
@@ -130,11 +133,11 @@ UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::st
   const std::string type = xml.attribute(element, "type");
   if (type != "fixed" && type != "continuous" && type != "revolute") {
     xml.fail(element, "joint '" + joint.name + "' is of type '" + type +
-                          "', which the engines do not model; write continuous or fixed");
+                          "', which the engines do not model. Use continuous or fixed.");
   }
   joint.locked = type == "revolute";
   joint.fixed = type == "fixed" || joint.locked;
-  // A mimic, a safety controller or a calibration would change the motion; none is modelled.
+  // <mimic>, <safety_controller> and <calibration> would change the motion and are not modelled.
   xml.children(element, {"origin", "parent", "child", "axis", "dynamics", "limit"});
   const auto linked = [&](const char* role) {
     const Element& end = xml.required_child(element, role);
@@ -151,7 +154,8 @@ UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::st
     xml.attributes_alone(*axis, {"xyz"});
     joint.axis = xml.vector(*axis, "xyz", Vector3d::UnitX());
     if (!joint.locked && !(joint.axis.norm() > 1e-9)) {
-      xml.fail(*axis, "joint '" + joint.name + "' has no axis; write a direction such as 0 0 1");
+      xml.fail(*axis,
+               "joint '" + joint.name + "' has a zero axis. Write a direction such as 0 0 1.");
     }
   }
   if (joint.locked) return joint;
@@ -160,11 +164,12 @@ UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::st
     joint.damping = xml.number(*dynamics, "damping", 0);
     if (joint.damping < 0) {
       xml.fail(*dynamics,
-               "joint '" + joint.name + "' has a negative damping; write N m s/rad, >= 0");
+               "joint '" + joint.name + "' has a negative damping. Use a value >= 0 in N m s/rad.");
     }
     joint.friction = xml.number(*dynamics, "friction", 0);
     if (joint.friction < 0) {
-      xml.fail(*dynamics, "joint '" + joint.name + "' has a negative friction; write N m, >= 0");
+      xml.fail(*dynamics,
+               "joint '" + joint.name + "' has a negative friction. Use a value >= 0 in N m.");
     }
   }
   if (const Element* limit = xml.child(element, "limit")) {
@@ -175,12 +180,12 @@ UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::st
     for (const char* bound : {"lower", "upper"}) {
       if (xml.number(*limit, bound, 0) != 0) {
         xml.fail(*limit, "joint '" + joint.name + "' has a limit " + bound +
-                             ", which the engines do not model; remove it");
+                             ", which the engines do not model. Remove it.");
       }
     }
-    warnings.push_back(xml.where(*limit) + ": joint '" + joint.name +
-                       "': effort and velocity limits of a continuous joint have no effect, as in "
-                       "Gazebo");
+    warnings.push_back(
+        xml.where(*limit) + ": joint '" + joint.name +
+        "': effort and velocity limits of a continuous joint have no effect, as in Gazebo.");
   }
   return joint;
 }
@@ -188,13 +193,13 @@ UrdfJoint read_joint(const Xml& xml, const Element& element, std::vector<std::st
 void read_plugin_tag(const Xml& xml, const Element& tag, const std::string& outer,
                      PluginElement& plugin);
 
-/// A tag of tags stands for these, which go by both names: outer/inner.
+/// Nested tags are named by both elements: outer/inner.
 void read_plugin_tags(const Xml& xml, const Element& element, const std::string& outer,
                       PluginElement& plugin) {
   for (const auto* node = element.FirstChild(); node; node = node->NextSibling()) {
     if (node->ToText()) {
       xml.fail(element, "stray text '" + trimmed(node->Value()) + "' in <plugin name=\"" +
-                            plugin.name + "\">; write <tag>value</tag>");
+                            plugin.name + "\">. Write <tag>value</tag>.");
     }
     if (const Element* tag = node->ToElement()) read_plugin_tag(xml, *tag, outer, plugin);
   }
@@ -220,29 +225,29 @@ PluginElement read_plugin(const Xml& xml, const Element& element) {
   try {
     read_plugin_tags(xml, element, "", plugin);
   } catch (const InputError& error) {
-    plugin.fault = error.what();  // of a module that is not loaded it does not matter
+    plugin.fault = error.what();  // raised only if the module is loaded
   }
   return plugin;
 }
 
-/// Modules that a sensor of Gazebo's carries, whose own elements are tags to them: sensor/...
+/// Modules inside a Gazebo sensor, which take the sensor's elements as tags: sensor/...
 const std::set<std::string> carried_by_sensors = {"librotors_gazebo_gps_plugin.so"};
 
-/// Passes over a sensor, but for such a module.
+/// Skip a sensor unless it contains such a module.
 void read_sensor(const Xml& xml, const Element& sensor, UrdfTree& tree) {
-  if (xml.passed_over().ignores({"sensor"})) return;
+  if (xml.ignored_elements().ignores({"sensor"})) return;
   for (const Element* child = sensor.FirstChildElement("plugin"); child;
        child = child->NextSiblingElement("plugin")) {
     const char* const filename = child->Attribute("filename");
     if (!filename || !carried_by_sensors.count(filename)) continue;
     PluginElement plugin = read_plugin(xml, *child);
-    if (xml.passed_over().ignores({plugin.name, plugin.filename})) return;
+    if (xml.ignored_elements().ignores({plugin.name, plugin.filename})) return;
     for (const Element* tag = sensor.FirstChildElement(); tag; tag = tag->NextSiblingElement()) {
       if (std::string(tag->Name()) != "plugin") read_plugin_tag(xml, *tag, "sensor/", plugin);
     }
     return tree.plugins.push_back(std::move(plugin));
   }
-  xml.passed_over().add_unfelt("<sensor>", xml.where(sensor));
+  xml.ignored_elements().add_harmless("<sensor>", xml.where(sensor));
 }
 
 void read_gazebo(const Xml& xml, const Element& element, UrdfTree& tree) {
@@ -257,7 +262,7 @@ void read_gazebo(const Xml& xml, const Element& element, UrdfTree& tree) {
   }
   for (const Element* child : xml.children(element, {"plugin"}, {"plugin"})) {
     PluginElement plugin = read_plugin(xml, *child);
-    if (xml.passed_over().ignores({plugin.name, plugin.filename})) continue;
+    if (xml.ignored_elements().ignores({plugin.name, plugin.filename})) continue;
     tree.plugins.push_back(std::move(plugin));
   }
 }
@@ -266,8 +271,8 @@ void read_gazebo(const Xml& xml, const Element& element, UrdfTree& tree) {
 
 UrdfTree read_urdf_tree(const Document& document, const std::vector<std::string>& ignore) {
   UrdfTree tree;
-  tree.passed_over = PassedOver(ignore);
-  const Xml xml(document, "robot", tree.passed_over);
+  tree.ignored_elements = IgnoredElements(ignore);
+  const Xml xml(document, "robot", tree.ignored_elements);
   xml.only_attributes(xml.root(), {"name", "version"});
   tree.name = xml.attribute(xml.root(), "name");
   tree.where = xml.where(xml.root());
@@ -275,7 +280,7 @@ UrdfTree read_urdf_tree(const Document& document, const std::vector<std::string>
   for (const Element* element : xml.children(xml.root(), elements, elements)) {
     const std::string kind = element->Name();
     if (kind == "plugin") {
-      xml.fail(*element, "<plugin> stands outside <gazebo>; wrap it in <gazebo>...</gazebo>");
+      xml.fail(*element, "<plugin> stands outside <gazebo>. Wrap it in <gazebo>...</gazebo>.");
     } else if (kind == "link") {
       tree.links.push_back(read_link(xml, *element, tree.warnings));
     } else if (kind == "joint") {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "quadcore/harmless_elements.hpp"
 #include "quadcore/plugin/error.hpp"
-#include "quadcore/seen_or_sensed.hpp"
 #include "quadcore/text.hpp"
 #include "xml.hpp"
 
@@ -15,17 +15,17 @@ namespace {
 using Element = Xml::Element;
 using Handler = std::function<void(const Element&)>;
 
-/// An element that a world may hold: the path below <world> is its name. One without a meaning is
-/// another name, or only holds elements that have one.
+/// An element of a world, named by its path below <world>. An element without a meaning is an
+/// alternative name or only groups other elements.
 struct Row {
   TagSpec spec;
   Handler read;
 };
 
-/// Elements that may occur several times in one place.
+/// Elements that may repeat.
 const std::set<std::string> repeatable = {"include", "model", "plugin", "visual"};
 
-/// Elements that the one around them, if it is there, needs.
+/// Elements that their parent, if present, requires.
 constexpr const char* required[] = {"wind/linear_velocity",
                                     "include/uri",
                                     "model/static",
@@ -34,7 +34,7 @@ constexpr const char* required[] = {"wind/linear_velocity",
                                     "model/link/collision/geometry",
                                     "model/link/collision/geometry/plane"};
 
-/// Attributes that an element with children may have.
+/// Attributes allowed on an element with children.
 std::set<std::string> attributes_of(const std::string& element) {
   if (element == "sdf") return {"version"};
   if (element == "atmosphere") return {"type"};
@@ -45,12 +45,12 @@ std::set<std::string> attributes_of(const std::string& element) {
   return {};
 }
 
-/// Reads the elements that a world may hold into a World.
+/// Reads the elements of a world file into a World.
 class WorldReader {
  public:
   WorldReader(const Document& document, const std::vector<std::string>& ignore)
-      : xml_(document, "sdf", world_.passed_over) {
-    world_.passed_over = PassedOver(ignore);
+      : xml_(document, "sdf", world_.ignored_elements) {
+    world_.ignored_elements = IgnoredElements(ignore);
   }
 
   World read() {
@@ -65,7 +65,7 @@ class WorldReader {
  private:
   using T = TagSpec;
 
-  /// Reads the children of the element at a path, which ends with / unless it is empty.
+  /// Read the children of the element at a path, which ends with / unless it is empty.
   void read_children(const Element& element, const std::string& path) {
     xml_.only_attributes(element, attributes_of(element.Name()));
     std::set<std::string> names;
@@ -92,7 +92,7 @@ class WorldReader {
 
   struct Range {
     double min = -INFINITY, max = INFINITY;
-    bool open = false;  ///< min itself is out of range
+    bool open = false;  ///< excludes min itself
   };
   static Range above(double min, double max = INFINITY) { return {min, max, true}; }
 
@@ -106,8 +106,8 @@ class WorldReader {
               target = xml_.number_in_text(e);
               const bool is_above = spec.exclusive_min ? target > spec.min : target >= spec.min;
               if (is_above && target <= spec.max) return;
-              xml_.fail(e, "<" + std::string(e.Name()) + "> is out of range; write a number " +
-                               spec.interval());
+              xml_.fail(e, "<" + std::string(e.Name()) + "> is out of range. Use a number " +
+                               spec.interval() + ".");
             }};
   }
 
@@ -128,12 +128,12 @@ class WorldReader {
                 if (text == choice) return;
                 alternatives += (alternatives.empty() ? "" : " or ") + choice;
               }
-              xml_.fail(e,
-                        "<" + std::string(e.Name()) + "> is '" + text + "'; write " + alternatives);
+              xml_.fail(e, "<" + std::string(e.Name()) + "> is '" + text + "'. Use " +
+                               alternatives + ".");
             }};
   }
 
-  /// An element without a value that a table could show.
+  /// An element without a value to show in the table.
   static Row other(std::string path, std::string meaning, Handler read) {
     TagSpec spec = T::text(std::move(path), "", std::move(meaning));
     spec.kind = TagKind::choice;
@@ -146,7 +146,8 @@ class WorldReader {
     const Handler ignored = [](const Element&) {};
     const Handler physics = [this](const Element& e) { read_physics(e); };
     Row solver = word(T::choice("physics/ode/solver/type", {"quick", "world"},
-                                "in flight both give the same answer, see [gazebo.md](gazebo.md)"));
+                                "solver of the constraints; both give the same result in flight, "
+                                "see [gazebo.md](gazebo.md)"));
     solver.read = [this, check = solver.read](const Element& e) {
       check(e);
       world_.solver_type = xml_.text(e);
@@ -154,108 +155,113 @@ class WorldReader {
     };
     const Row iterations = {
         T::number("physics/ode/solver/iters", "", std::to_string(world_.solver_iterations),
-                  "sweeps of the quick solver, a whole number")
+                  "iterations of the quick solver, a whole number")
             .at_least(1)
             .at_most(1e6),
         [this](const Element& e) {
           const double value = xml_.number_in_text(e);
           if (!(value >= 1 && value <= 1e6) || value != std::floor(value)) {
-            xml_.fail(e, "<iters> must be a whole number from 1 to 1000000");
+            xml_.fail(e, "<iters> is out of range. Use a whole number from 1 to 1000000.");
           }
           world_.solver_iterations = static_cast<int>(value);
         }};
     return {
         vector("gravity", "m/s^2", world_.gravity_W, "gravity in world axes"),
         vector("wind/linear_velocity", "m/s", world_.wind_W,
-               "velocity of the air in world axes; `chapter2` only"),
+               "velocity of the air in world axes; acts only with `<dragModel>` `chapter2`"),
         other("atmosphere",
-              "attribute `type`, if given, must be `adiabatic`; felt where a plugin's tag says so",
+              "attribute `type`, if given, must be `adiabatic`; used by plugins with a tag for it",
               [this](const Element& e) { read_atmosphere(e); }),
-        number("atmosphere/temperature", "K", air.temperature, above(0), "of the air at z = 0"),
+        number("atmosphere/temperature", "K", air.temperature, above(0),
+               "temperature of the air at z = 0"),
         number("atmosphere/temperature_gradient", "K/m", air.temperature_gradient, {},
-               "its change with height"),
-        number("atmosphere/pressure", "Pa", air.pressure, {0}, "of the air at z = 0"),
-        vector("magnetic_field", "T", world_.magnetic_field_W,
-               "of the Earth in world axes, x east, y north, z up; for magnetometers"),
-        word(T::choice("spherical_coordinates/surface_model", {"EARTH_WGS84"}, "ellipsoid")),
+               "change of the temperature with height"),
+        number("atmosphere/pressure", "Pa", air.pressure, {0}, "pressure of the air at z = 0"),
+        vector(
+            "magnetic_field", "T", world_.magnetic_field_W,
+            "the Earth's magnetic field in world axes (x east, y north, z up), for magnetometers"),
+        word(T::choice("spherical_coordinates/surface_model", {"EARTH_WGS84"},
+                       "reference ellipsoid")),
         word(T::choice("spherical_coordinates/world_frame_orientation", {"ENU"},
-                       "x east, y north, z up")),
+                       "world axes: x east, y north, z up")),
         number("spherical_coordinates/latitude_deg", "deg", origin.latitude, {-90, 90},
-               "of the world's origin, positive north; for RotorS' satellite receiver"),
+               "latitude of the world's origin, positive north, for RotorS' GPS receiver"),
         number("spherical_coordinates/longitude_deg", "deg", origin.longitude, {-180, 180},
-               "the same, positive east"),
-        number("spherical_coordinates/elevation", "m", origin.altitude, {-1e5, 1e7}, "its height"),
+               "longitude of the world's origin, positive east, for RotorS' GPS receiver"),
+        number("spherical_coordinates/elevation", "m", origin.altitude, {-1e5, 1e7},
+               "altitude of the world's origin"),
         number("spherical_coordinates/heading_deg", "deg", origin.heading, {-360, 360},
-               "by which the axes are turned; a satellite receiver takes 0 alone"),
+               "rotation of the world's axes; RotorS' GPS receiver accepts only 0"),
         other("include", "", [this](const Element& e) { read_include(e); }),
         other("include/uri",
-              "`model://ground_plane`: solid ground at z = 0; `model://sun`: ignored; another is "
-              "foreign",
+              "`model://ground_plane`: solid ground at z = 0; `model://sun`: ignored; any other is "
+              "an error",
               ignored),
-        other("plugin", "a module that only senses or publishes, see below; another is foreign",
+        other("plugin", "a module that only senses or publishes, see below; any other is an error",
               [this](const Element& e) { read_plugin(e); }),
-        other("model", "a ground plane in line: static, one link; another is foreign",
+        other("model", "an inline ground plane: static, one link; any other model is an error",
               [this](const Element& e) { read_model(e); }),
         other("model/static", "must be `true`",
               [this](const Element& e) {
                 if (xml_.text(e) == "true" || xml_.text(e) == "1") return;
-                xml_.fail(e, "only a static model is supported; write true");
+                xml_.fail(e, "only a static model is supported. Write true.");
               }),
         other("model/link/collision/geometry/plane/normal", "must be `0 0 1`",
               [this](const Element& e) {
                 if (xml_.vector_in_text(e).isApprox(Vector3d::UnitZ())) return;
-                xml_.fail(e, "only a level plane is supported; write 0 0 1");
+                xml_.fail(e, "only a level plane is supported. Write 0 0 1.");
               }),
-        other("model/link/collision/geometry/plane/size", "ignored: the ground has no edge",
+        other("model/link/collision/geometry/plane/size", "ignored: the ground is infinite",
               ignored),
         other("model/link/visual", "ignored", ignored),
         other("physics", "attribute `type`, if given, must be `ode`; also written `physics:ode`",
               physics),
         other("physics:ode", "", physics),
         vector("physics/gravity", "m/s^2", world_.gravity_W,
-               "the same as `gravity`; only one of them"),
+               "the same as `gravity`; give only one of them"),
         vector("physics/magnetic_field", "T", world_.magnetic_field_W,
-               "the same as `magnetic_field`; only one of them"),
+               "the same as `magnetic_field`; give only one of them"),
         number("physics/max_step_size", "s", world_.max_step_size, {shortest_step},
-               "the step, unless `--dt` or `dt=` is given"),
+               "time step, unless `--dt` or `dt=` sets it"),
         number("physics/real_time_update_rate", "1/s", world_.real_time_update_rate, {0},
-               "steps per second of wall clock, 0 = as fast as possible; for nodes that pace"),
+               "steps per second of wall-clock time for ROS nodes; 0: as fast as possible"),
         number("physics/updateRate", "1/s", world_.real_time_update_rate, {0},
-               "the thesis' name of `real_time_update_rate`"),
+               "the thesis' name for `real_time_update_rate`"),
         number("physics/real_time_factor", "", real_time_factor_, above(0),
-               "without effect, as in Gazebo; `real_time_update_rate` sets the pace"),
+               "no effect, as in Gazebo; use `real_time_update_rate`"),
         solver,
         iterations,
-        number("physics/ode/solver/sor", "", world_.solver_sor, above(0, 2), "its over-relaxation"),
+        number("physics/ode/solver/sor", "", world_.solver_sor, above(0, 2),
+               "over-relaxation of the quick solver"),
         other("physics/ode/solver/use_dynamic_moi_rescaling", "must be `0`",
               [this](const Element& e) {
                 if (xml_.text(e) == "0" || xml_.text(e) == "false") return;
                 xml_.fail(e, "<use_dynamic_moi_rescaling> is '" + xml_.text(e) +
-                                 "'; the engines rescale no moments of inertia, write 0");
+                                 "', but the engines do not rescale moments of inertia. Write 0.");
               }),
         number("physics/ode/constraints/erp", "", world_.erp, {0, 1},
-               "part of a hinge's error that a step removes"),
+               "fraction of a hinge's error that a step removes"),
         number("physics/ode/constraints/cfm", "", world_.cfm, {0}, "softness of the hinges"),
         number("physics/ode/constraints/contact_max_correcting_vel", "m/s",
                world_.contact_max_correcting_vel, {0},
-               "caps what a correction leaves of velocity: a contact's `maxVel`, in `gazebo11` "
-               "also a hinge's, see [gazebo.md](gazebo.md#random-vehicles)"),
+               "upper limit of a contact's `maxVel`; in `gazebo11` also of a hinge's correcting "
+               "velocity, see [gazebo.md](gazebo.md#random-vehicles)"),
     };
   }
 
-  /// Of two places for one value, giving both would leave open which counts.
+  /// Reject a value that is given in two places.
   void refuse_both(const Element* first, const Element* second) {
     if (!first || !second) return;
-    xml_.fail(*second, "<" + std::string(second->Name()) + "> beside <" + first->Name() + "> (" +
-                           xml_.where(*first) + "); keep one of them");
+    xml_.fail(*second, "<" + std::string(second->Name()) + "> sets the same value as <" +
+                           first->Name() + "> (" + xml_.where(*first) + "). Keep one of them.");
   }
 
-  /// Refuses an attribute `type` other than the one that is modelled.
+  /// Reject an attribute `type` other than the supported one.
   void only_type(const Element& e, const std::string& supported) {
     const char* type = e.Attribute("type");
     if (!type || type == supported) return;
-    xml_.fail(e,
-              std::string(e.Name()) + " type '" + type + "' is not supported; write " + supported);
+    xml_.fail(
+        e, std::string(e.Name()) + " type '" + type + "' is not supported. Use " + supported + ".");
   }
 
   void read_physics(const Element& physics) {
@@ -278,41 +284,41 @@ class WorldReader {
     const Element* source = xml_.child(include, "uri");
     const std::string uri = source ? xml_.text(*source) : "";
     if (source && uri != "model://ground_plane" && uri != "model://sun") {
-      if (xml_.passed_over().ignores({uri})) return;
-      xml_.fail(*source, "'" + uri +
-                             "' is not supported; a world may include model://ground_plane and "
-                             "model://sun" +
-                             ignoring(uri));
+      if (xml_.ignored_elements().ignores({uri})) return;
+      xml_.fail(*source,
+                "'" + uri +
+                    "' is not supported. Include only model://ground_plane or model://sun." +
+                    suggest_ignoring(uri));
     }
     read_children(include, "include/");
-    if (uri == "model://ground_plane") world_.ground_plane = true;  // the sun: no light here
+    if (uri == "model://ground_plane") world_.ground_plane = true;  // model://sun is only a light
   }
 
   void read_plugin(const Element& plugin) {
     const std::string name = xml_.attribute(plugin, "name");
     const std::string filename = xml_.attribute(plugin, "filename");
-    if (xml_.passed_over().ignores({name, filename})) return;
-    if (verdict_on_module(filename) == Verdict::unfelt) {
-      return xml_.passed_over().add_unfelt(filename, xml_.where(plugin));
+    if (xml_.ignored_elements().ignores({name, filename})) return;
+    if (decide_on_module(filename) == Handling::skip) {
+      return xml_.ignored_elements().add_harmless(filename, xml_.where(plugin));
     }
     xml_.fail(plugin, "plugin '" + name + "': " + filename +
-                          " is a module of Gazebo's worlds, which are not loaded here; remove it" +
-                          ignoring(filename));
+                          " is a world plugin of Gazebo, which quadcore does not load. Remove it." +
+                          suggest_ignoring(filename));
   }
 
-  /// A model in line may only be a ground plane; another may be left out.
+  /// An inline model must be a ground plane, but the user may ignore a named one.
   void read_model(const Element& model) {
     const char* name = model.Attribute("name");
     if (!name) return read_ground_plane(model);
-    if (xml_.passed_over().ignores({name})) return;
+    if (xml_.ignored_elements().ignores({name})) return;
     try {
       read_ground_plane(model);
     } catch (const InputError& error) {
-      throw InputError(error.what() + ignoring(name));
+      throw InputError(error.what() + suggest_ignoring(name));
     }
   }
 
-  /// Static, a plane through the origin, normal up.
+  /// A ground plane is static and level and passes through the origin.
   void read_ground_plane(const Element& model) {
     read_children(model, "model/");
     world_.ground_plane = true;

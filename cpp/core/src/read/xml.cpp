@@ -2,26 +2,26 @@
 
 #include <cmath>
 
+#include "quadcore/harmless_elements.hpp"
 #include "quadcore/plugin/error.hpp"
-#include "quadcore/seen_or_sensed.hpp"
 #include "quadcore/text.hpp"
 #include "xml_limits.hpp"
 
 namespace quadcore {
 namespace {
 
-std::string takes(const Xml::Element& element, const std::vector<std::string>& names) {
-  return names.empty() ? "; remove it"
-                       : "; <" + std::string(element.Name()) + "> takes " + joined(names);
+std::string list_accepted(const Xml::Element& element, const std::vector<std::string>& names) {
+  return names.empty() ? " Remove it."
+                       : " <" + std::string(element.Name()) + "> accepts " + joined(names) + ".";
 }
 
 }  // namespace
 
-Xml::Xml(const Document& document, const std::string& root_name, PassedOver& passed_over)
-    : document_(document), passed_over_(passed_over) {
+Xml::Xml(const Document& document, const std::string& root_name, IgnoredElements& ignored_elements)
+    : document_(document), ignored_elements_(ignored_elements) {
   check_xml_limits(document);
   if (trimmed(document.text).empty()) {
-    throw InputError(document.at(1) + ": is empty; write a <" + root_name + "> element");
+    throw InputError(document.at(1) + ": the file is empty. Write a <" + root_name + "> element.");
   }
   if (xml_.Parse(document.text.data(), document.text.size()) != tinyxml2::XML_SUCCESS) {
     std::string what = xml_.ErrorStr();
@@ -29,19 +29,19 @@ Xml::Xml(const Document& document, const std::string& root_name, PassedOver& pas
     if (line != std::string::npos) what = what.substr(line);
     for (char& c : what) c = c == '\n' ? ' ' : c;
     const int number = xml_.ErrorLineNum() > 0 ? xml_.ErrorLineNum() : 1;
-    throw InputError(document.at(number) + ": malformed XML (" + what + "); mend it there");
+    throw InputError(document.at(number) + ": malformed XML (" + what + "). Correct this line.");
   }
   for (const auto* node = xml_.FirstChild(); node; node = node->NextSibling()) {
     if (node->ToUnknown()) {
       throw InputError(document.at(node->GetLineNum()) +
-                       ": <!DOCTYPE> and entities are not accepted; remove them");
+                       ": <!DOCTYPE> and entities are not supported. Remove them.");
     }
   }
   if (!xml_.RootElement() || root_name != xml_.RootElement()->Name()) {
     const auto* root = xml_.RootElement();
-    throw InputError(document.at(root ? root->GetLineNum() : 1) + ": expected <" + root_name +
-                     "> as the outermost element" +
-                     (root ? ", not <" + std::string(root->Name()) + ">" : ""));
+    throw InputError(document.at(root ? root->GetLineNum() : 1) + ": the outermost element is " +
+                     (root ? "<" + std::string(root->Name()) + ">" : std::string("missing")) +
+                     ". Use <" + root_name + ">.");
   }
 }
 
@@ -58,21 +58,21 @@ std::vector<const Xml::Element*> Xml::children(const Element& element,
     if (node->ToText()) {
       const std::string place = document_.at(node->GetLineNum());
       const std::string parent = "in <" + std::string(element.Name()) + ">";
-      if (verdict_on_text(path(element)) == Verdict::felt) {
+      if (decide_on_text(path(element)) == Handling::reject) {
         throw InputError(place + ": stray text '" + trimmed(node->Value()) + "' " + parent +
-                         "; remove it");
+                         ". Remove it.");
       }
-      passed_over_.add_unfelt("text " + parent, place);
+      ignored_elements_.add_harmless("text " + parent, place);
     }
     const Element* child = node->ToElement();
     if (!child) continue;
     const std::string name = child->Name();
     if (!allowed.count(name)) {
-      pass_over(element, *child, allowed);
+      skip_or_fail(element, *child, allowed);
       continue;
     }
     if (!seen.insert(name).second && !repeatable.count(name)) {
-      fail(*child, "a second <" + name + "> in <" + element.Name() + ">; keep one of them");
+      fail(*child, "a second <" + name + "> in <" + element.Name() + ">. Keep one of them.");
     }
     found.push_back(child);
   }
@@ -84,27 +84,28 @@ std::string Xml::path(const Element& element) const {
   return &element == &root() ? name : root().Name() + ("/" + name);
 }
 
-void Xml::pass_over(const Element& parent, const Element& child,
-                    const std::set<std::string>& allowed) const {
+void Xml::skip_or_fail(const Element& parent, const Element& child,
+                       const std::set<std::string>& allowed) const {
   const std::string name = child.Name();
-  const Verdict verdict = verdict_on_element(path(parent), name);
-  if (verdict != Verdict::felt && passed_over_.ignores({name})) return;
-  if (verdict == Verdict::unfelt) return passed_over_.add_unfelt("<" + name + ">", where(child));
+  const Handling handling = decide_on_element(path(parent), name);
+  if (handling != Handling::reject && ignored_elements_.ignores({name})) return;
+  if (handling == Handling::skip)
+    return ignored_elements_.add_harmless("<" + name + ">", where(child));
   if (name.rfind("xacro:", 0) == 0 && root().Name() == std::string("robot")) {
     fail(child, "<" + name +
-                    "> is for xacro to expand, as files are whose names end in .xacro; "
-                    "name this one so");
+                    "> is an xacro element, which is expanded only in files named *.xacro. Rename "
+                    "the file.");
   }
   const std::vector<std::string> names(allowed.begin(), allowed.end());
-  fail(child, "<" + name + "> in <" + parent.Name() + "> is not supported" +
-                  did_you_mean(name, names) + takes(parent, names) +
-                  (verdict == Verdict::foreign ? ignoring(name) : ""));
+  fail(child, "<" + name + "> in <" + parent.Name() + "> is not supported." + suggest(name, names) +
+                  list_accepted(parent, names) +
+                  (handling == Handling::reject_unless_ignored ? suggest_ignoring(name) : ""));
 }
 
 const Xml::Element& Xml::required_child(const Element& element, const char* name) const {
   const Element* found = element.FirstChildElement(name);
   if (!found) {
-    fail(element, "<" + std::string(element.Name()) + "> needs a <" + name + ">; add one");
+    fail(element, "<" + std::string(element.Name()) + "> requires a <" + name + ">. Add one.");
   }
   return *found;
 }
@@ -114,12 +115,12 @@ void Xml::only_attributes(const Element& element, const std::set<std::string>& a
     const std::string name = a->Name();
     if (allowed.count(name) || name.rfind("xmlns", 0) == 0) continue;
     if (name.find(':') != std::string::npos) {
-      passed_over_.add_unfelt("attribute " + name, where(element));
+      ignored_elements_.add_harmless("attribute " + name, where(element));
       continue;
     }
     const std::vector<std::string> names(allowed.begin(), allowed.end());
-    fail(element, "attribute " + name + " of <" + element.Name() + "> is not supported" +
-                      did_you_mean(name, names) + takes(element, names));
+    fail(element, "attribute " + name + " of <" + element.Name() + "> is not supported." +
+                      suggest(name, names) + list_accepted(element, names));
   }
 }
 
@@ -132,7 +133,8 @@ std::string Xml::attribute(const Element& element, const char* name) const {
   const char* value = element.Attribute(name);
   const std::string text = value ? trimmed(value) : "";
   if (text.empty()) {
-    fail(element, "<" + std::string(element.Name()) + "> needs the attribute " + name + "=\"...\"");
+    fail(element, "<" + std::string(element.Name()) + "> requires the attribute " + name +
+                      ". Add " + name + "=\"...\".");
   }
   return text;
 }
@@ -158,12 +160,12 @@ std::string Xml::text(const Element& element) const {
   for (const auto* node = element.FirstChild(); node; node = node->NextSibling()) {
     if (const Element* inner = node->ToElement()) {
       fail(*inner, "<" + std::string(inner->Name()) + "> inside <" + element.Name() +
-                       ">, which takes plain text");
+                       ">, which accepts only text. Remove it.");
     }
     if (!node->ToText()) continue;
     if (text) {
       fail(element, "the text of <" + std::string(element.Name()) +
-                        "> is in pieces; move the comment out of it");
+                        "> is interrupted by a comment. Move the comment out of the element.");
     }
     text = node->ToText();
   }
@@ -179,14 +181,14 @@ Vector3d Xml::vector_in_text(const Element& element) const {
 }
 
 void Xml::check_size(const Element& element, const std::string& what, double value) const {
-  // No length, mass or rate of a vehicle; its products and powers would overflow.
-  if (std::abs(value) > 1e9) fail(element, what + " exceeds 1e9; write it in SI units");
+  // Larger values are no length, mass or rate of a vehicle, and their products could overflow.
+  if (std::abs(value) > 1e9) fail(element, what + " exceeds 1e9. Use SI units.");
 }
 
 double Xml::as_number(const Element& element, const std::string& what,
                       const std::string& text) const {
   const auto value = parse_number(text);
-  if (!value) fail(element, what + " is '" + text + "'; write one finite number");
+  if (!value) fail(element, what + " is '" + text + "'. Write one finite number.");
   check_size(element, what, *value);
   return *value;
 }
@@ -194,7 +196,7 @@ double Xml::as_number(const Element& element, const std::string& what,
 Vector3d Xml::as_vector(const Element& element, const std::string& what,
                         const std::string& text) const {
   const auto value = parse_vector(text);
-  if (!value) fail(element, what + " is '" + text + "'; write three finite numbers");
+  if (!value) fail(element, what + " is '" + text + "'. Write three finite numbers.");
   check_size(element, what, value->cwiseAbs().maxCoeff());
   return *value;
 }

@@ -12,24 +12,24 @@ namespace {
   throw InputError(document.at(line) + ": " + what);
 }
 
-/// UTF-8 without control characters other than blanks. A parser would stop at a NUL.
+/// Accept only UTF-8 without control characters other than white space. The parser stops at a NUL.
 void check_text(const Document& document) {
   const std::string& text = document.text;
   int line = 1;
   for (std::size_t at = 0; at < text.size();) {
     const char c = text[at];
     const std::size_t size = character_size(text, at);
-    if (size == 0) fail(document, line, "not UTF-8 text; save the file as UTF-8");
+    if (size == 0) fail(document, line, "the text is not UTF-8. Save the file as UTF-8.");
     if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t') {
-      fail(document, line, "holds a control character; remove it");
+      fail(document, line, "the text contains a control character. Remove it.");
     }
     if (c == '\n') ++line;
     at += size;
   }
 }
 
-/// Walks over the markup of a text without building anything. What is malformed is left to the
-/// parser, which stops there.
+/// Scans the markup of a text without building a tree. Malformed markup is left to the parser,
+/// which reports it.
 class MarkupWalk {
  public:
   explicit MarkupWalk(const Document& document) : document_(document), text_(document.text) {}
@@ -71,8 +71,8 @@ class MarkupWalk {
       if (quote != '"' && quote != '\'') continue;
       if (++attributes > Document::most_attributes) {
         fail(document_, line_,
-             "an element with more than " + std::to_string(Document::most_attributes) +
-                 " attributes; no model or world has one");
+             "an element has more than " + std::to_string(Document::most_attributes) +
+                 " attributes. Use a valid model or world file.");
       }
       for (advance(); at_ < text_.size() && text_[at_] != quote;) advance();
       if (at_ == text_.size()) return;
@@ -83,7 +83,7 @@ class MarkupWalk {
     } else if (!empty && ++level_ > Document::most_levels) {
       fail(document_, line_,
            "elements are nested deeper than " + std::to_string(Document::most_levels) +
-               " levels; no model or world is");
+               " levels. Use a valid model or world file.");
     }
   }
 
@@ -98,7 +98,7 @@ class MarkupWalk {
 
 void check_xml_limits(const Document& document) {
   if (document.text.size() > Document::largest) {
-    throw InputError(document.name + ": is larger than 1 MB, the most that is read");
+    throw InputError(document.name + ": the file exceeds the limit of 1 MB. Use a smaller file.");
   }
   check_text(document);
   MarkupWalk(document).check();

@@ -4,9 +4,9 @@
 
 namespace quadcore {
 
-/// Refuses what would keep a parser busy for minutes, overflow its stack or end it early: a
-/// document that is too large, no UTF-8 text, nested too deeply, or has too many attributes on one
-/// element. The limits lie far beyond any model or world. Throws InputError with FILE:LINE.
+/// Reject a document that would block the parser, overflow its stack or end it early: one that is
+/// too large, not UTF-8, nested too deeply, or has too many attributes on one element. The limits
+/// are far beyond any model or world. Throws InputError with FILE:LINE.
 void check_xml_limits(const Document& document);
 
 }  // namespace quadcore

@@ -9,7 +9,7 @@
 namespace quadcore {
 namespace {
 
-/// Whatever the locale and the sign of a NaN.
+/// Format a number independently of the locale and the sign of a NaN.
 std::string text(double number, int digits = 9) {
   if (std::isnan(number)) return "nan";
   std::ostringstream stream;
@@ -23,25 +23,27 @@ std::string text(double number, int digits = 9) {
 
 void check_command(const double* speeds, std::size_t count, std::size_t width, double fastest) {
   if (count != width) {
-    throw InputError("command holds " + std::to_string(count) + " rotor speeds; give " +
-                     std::to_string(width));
+    throw InputError("the command has " + std::to_string(count) + " rotor speeds. Give " +
+                     std::to_string(width) + ".");
   }
   const auto refuse = [](std::size_t i, const std::string& why) {
-    throw InputError("command for rotor " + std::to_string(i + 1) + " is " + why + "; give rad/s");
+    throw InputError("the command for rotor " + std::to_string(i + 1) + " is " + why +
+                     ". Give a speed in rad/s.");
   };
   for (std::size_t i = 0; i < count; ++i) {
     if (!std::isfinite(speeds[i])) refuse(i, "not a finite number");
     if (std::abs(speeds[i]) > fastest) {
-      refuse(i, "beyond " + text(fastest, 6) + " rad/s, where a flight counts as diverged");
+      refuse(i, "beyond " + text(fastest, 6) +
+                    " rad/s, the limit at which a flight counts as diverged");
     }
   }
 }
 
 Commands::Commands(Table table, std::size_t width) : table_(std::move(table)) {
   if (table_.rows() == 0 || table_.cols() != static_cast<Eigen::Index>(width) + 1) {
-    throw InputError("commands: a table of " + std::to_string(table_.rows()) + " rows and " +
-                     std::to_string(table_.cols()) + " columns; write rows of time and " +
-                     std::to_string(width) + " rotor speeds");
+    throw InputError("commands: the table has " + std::to_string(table_.rows()) + " rows and " +
+                     std::to_string(table_.cols()) + " columns. Write rows of time and " +
+                     std::to_string(width) + " rotor speeds.");
   }
   if (const auto found = fault(table_)) {
     throw InputError("commands: row " + std::to_string(found->row) + ": " + found->what);
@@ -54,13 +56,13 @@ std::optional<Commands::Fault> Commands::fault(const Table& table) {
     for (Eigen::Index column = 0; column < table.cols(); ++column) {
       if (std::isfinite(table(row, column))) continue;
       const std::string name = column ? "w" + std::to_string(column) : "t";
-      return Fault{row, name + " is " + text(table(row, column)) + "; write a finite number"};
+      return Fault{row, name + " is " + text(table(row, column)) + ". Write a finite number."};
     }
   }
   for (Eigen::Index row = 1; row < table.rows(); ++row) {
     if (table(row, 0) > table(row - 1, 0)) continue;
-    return Fault{row,
-                 "t = " + text(table(row, 0)) + " does not come after " + text(table(row - 1, 0))};
+    return Fault{row, "t = " + text(table(row, 0)) + " is not later than " +
+                          text(table(row - 1, 0)) + ". Sort the rows by time."};
   }
   return std::nullopt;
 }

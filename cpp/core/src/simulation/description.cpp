@@ -4,12 +4,12 @@
 #include "quadcore/simulation.hpp"
 
 /// \file
-/// Describes the vehicle of a simulation by probing its plugins.
+/// Describes a simulation's vehicle by probing its plugins.
 
 namespace quadcore {
 namespace {
 
-/// At which rotors are probed [rad/s]: a thrust and a torque that go with its square are then the
+/// Speed at which rotors are probed [rad/s]. Thrust and torque per squared speed are then the
 /// coefficients themselves.
 constexpr double probed_rate = 1;
 
@@ -17,7 +17,7 @@ Wrench operator-(const Wrench& a, const Wrench& b) {
   return {a.force_F - b.force_F, a.torque_F - b.torque_F};
 }
 
-/// At the origin, upright, nothing moving.
+/// Return the state at rest, upright at the origin.
 VehicleState still(const VehicleState& state) {
   VehicleState rest;
   rest.rotor_velocity = VectorXd::Zero(state.rotor_velocity.size());
@@ -25,7 +25,7 @@ VehicleState still(const VehicleState& state) {
   return rest;
 }
 
-/// 1 for each joint that turns: those that follow a command, or all if no plugin names them.
+/// Return 1 for each joint that turns: those that follow a command, or all if no plugin names them.
 VectorXd turning(const VehicleDescription& vehicle) {
   VectorXd turns(static_cast<Eigen::Index>(vehicle.rotors.size()));
   for (Eigen::Index i = 0; i < turns.size(); ++i) {
@@ -34,8 +34,8 @@ VectorXd turning(const VehicleDescription& vehicle) {
   return turns.isZero(0) ? VectorXd::Ones(turns.size()).eval() : turns;
 }
 
-/// Rate of these joints at which their mean thrust, turning either way, carries the vehicle; 0 if
-/// none does [rad/s].
+/// Return the rate [rad/s] at which the mean thrust of these joints, over both directions of
+/// rotation, carries the vehicle; 0 if there is none.
 double hover_rate(const VehicleDescription& vehicle, const VectorXd& turns) {
   Vector3d lift_F = Vector3d::Zero();
   for (std::size_t i = 0; i < vehicle.rotors.size(); ++i) {
@@ -47,7 +47,7 @@ double hover_rate(const VehicleDescription& vehicle, const VectorXd& turns) {
   return lift_F.norm() > 0 ? std::sqrt(weight / lift_F.norm()) : 0;
 }
 
-/// Puts numbers back at the end of a block.
+/// Restores values at the end of a block.
 class Kept {
  public:
   explicit Kept(VectorXd& numbers) : numbers_(numbers), kept_(numbers) {}
@@ -76,7 +76,7 @@ void Simulation::prepare_plugins() {
 
 VehicleDescription Simulation::describe_vehicle() {
   const std::vector<double> as_it_is = engine_->save();
-  // As before the flight: later changes of the plugins' state are not part of the vehicle.
+  // Use the initial plugin state: later changes of it are not part of the vehicle.
   const Kept state_of_plugins(plugin_state_);
   plugin_state_.setZero();
   const Model& flown = engine_->model();
@@ -111,7 +111,7 @@ VehicleDescription Simulation::describe_vehicle() {
   return vehicle;
 }
 
-/// Force and torque about the vehicle's centre of mass in a state, in still air.
+/// Return force and torque about the vehicle's centre of mass in a state, in still air.
 Wrench Simulation::probe(const VehicleState& state) {
   engine_->set_state(state);
   Kinematics& k = engine_->kinematics();
@@ -133,8 +133,8 @@ AirResistance Simulation::probe_air(const VehicleDescription& vehicle) {
   VehicleState state = still(state_);
   const VectorXd turns = turning(vehicle);
   const double hover = hover_rate(vehicle, turns);
-  // The part of the wrench that changes its sign with the velocity, the mean over quarter turns and
-  // senses of the rotors.
+  // The part of the wrench that changes sign with the velocity, averaged over quarter turns and
+  // both directions of the rotors.
   const auto odd = [&](const Vector6d& velocity) {
     Vector6d sum = Vector6d::Zero();
     for (int quarter = 0; quarter < 4; ++quarter) {

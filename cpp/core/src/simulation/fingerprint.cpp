@@ -105,8 +105,8 @@ Facts parameters_of(const std::vector<LoadedPlugin>& plugins) {
   return facts;
 }
 
-/// The i-th of the facts as a person reads it.
-std::string told(const Facts& facts, std::size_t i) {
+/// Format the i-th fact for a message.
+std::string format_fact(const Facts& facts, std::size_t i) {
   if (i >= facts.size()) return "nothing";
   std::string text = facts[i].what;
   for (const double number : facts[i].numbers) {
@@ -119,7 +119,7 @@ std::string told(const Facts& facts, std::size_t i) {
 std::string first_difference(const Facts& there, const Facts& here) {
   std::size_t i = 0;
   while (i < there.size() && i < here.size() && there[i] == here[i]) ++i;
-  return told(there, i) + " there, " + told(here, i) + " here";
+  return format_fact(there, i) + " there, " + format_fact(here, i) + " here";
 }
 
 }  // namespace
@@ -156,7 +156,8 @@ Allowed Allowed::of(const std::vector<std::string>& names) {
   }
   for (const std::string& name : names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    throw InputError("allow '" + name + "': only " + joined(known) + " may differ on purpose");
+    throw InputError("allow '" + name +
+                     "': this part may not differ. Choose from: " + joined(known) + ".");
   }
   return allowed;
 }
@@ -168,14 +169,15 @@ void check_same(const Fingerprint& there, const Fingerprint& here, const Allowed
   for (const FingerprintPart& part : fingerprint_parts()) {
     if (there.*part.facts == here.*part.facts) continue;
     if (part.allowed && allowed.*part.allowed) continue;
-    differences += (differences.empty() ? "" : ", ") + std::string("another ") + part.what + " (" +
-                   first_difference(there.*part.facts, here.*part.facts) + ")";
+    differences += (differences.empty() ? "" : ", ") + std::string("a different ") + part.what +
+                   " (" + first_difference(there.*part.facts, here.*part.facts) + ")";
     if (part.allowed) to_allow.push_back(part.name);
     fatal = fatal || !part.allowed;
   }
   if (differences.empty()) return;
-  throw InputError("snapshot: was taken from " + differences + "; restore one of this simulation" +
-                   (fatal ? "" : ", or allow " + joined(to_allow) + " to differ"));
+  throw InputError("snapshot: it was taken with " + differences +
+                   ". Restore a snapshot of this simulation" +
+                   (fatal ? "" : ", or allow " + joined(to_allow) + " to differ") + ".");
 }
 
 }  // namespace quadcore

@@ -9,7 +9,8 @@
 namespace quadcore {
 namespace {
 
-/// For so many numbers more, at once; of short pieces for as many again, or each would copy all.
+/// Reserve room for more values, at least doubling the capacity so that short pieces do not copy
+/// all.
 void make_room(std::vector<double>& numbers, std::size_t more) {
   const std::size_t needed = numbers.size() + more;
   if (needed > numbers.capacity()) numbers.reserve(std::max(needed, 2 * numbers.capacity()));
@@ -25,7 +26,7 @@ Flight::Flight(Simulation& simulation, std::optional<Commands> commands, std::in
       log_wrenches_(wrenches),
       topics_(simulation.topics().at(topics)) {
   if (log_every < 1) {
-    throw InputError("log_every is " + std::to_string(log_every) + "; give a whole number >= 1");
+    throw InputError("log_every is " + std::to_string(log_every) + ". Give a whole number >= 1.");
   }
   log();
   row_size_ = rows_.table.size();
@@ -62,7 +63,7 @@ void Flight::log() {
     for (const std::size_t topic : topics_)
       append_log_row(simulation_.topics()[topic], rows_.table);
   } catch (...) {
-    rows_.wrenches.resize(before);  // no half a row
+    rows_.wrenches.resize(before);  // drop an incomplete row
     rows_.table.resize(row);
     throw;
   }

@@ -27,19 +27,24 @@ void check_carried(const std::vector<CarriedBody>& bodies, std::size_t i, const 
   const CarriedBody& body = bodies[i];
   const std::string name(body.name);
   const auto refuse = [&name](const std::string& why) {
-    throw Error("it carries a body '" + name + "' " + why);
+    throw Error("the carried body '" + name + "' " + why);
   };
   const Inertial& inertial = body.inertial;
-  if (name.empty()) refuse("without a name; give it one");
-  if (model.body_of_link.count(name)) refuse("that has the name of a link; give it another");
+  if (name.empty()) refuse("has no name. Give it one.");
+  if (model.body_of_link.count(name)) refuse("has the name of a link. Give it another name.");
   for (std::size_t k = 0; k < i; ++k) {
-    if (bodies[k].name == body.name) refuse("that another has the name of; give it another");
+    if (bodies[k].name == body.name)
+      refuse("has the name of another carried body. Give it another name.");
   }
-  if (!(inertial.mass > 0 && std::isfinite(inertial.mass))) refuse("without mass; give kg, > 0");
-  if (!is_finite(body.pose) || !is_finite(inertial.pose)) refuse("at no finite place; give m, rad");
+  if (!(inertial.mass > 0 && std::isfinite(inertial.mass)))
+    refuse("has no mass. Give a positive mass in kg.");
+  if (!is_finite(body.pose) || !is_finite(inertial.pose))
+    refuse("has a pose that is not finite. Give m and rad.");
   const Matrix3d& I = inertial.inertia;
   if (!I.allFinite() || I != I.transpose() || inertial.principal_moments()[0] < -1e-12 * I.norm()) {
-    refuse("whose inertia is none; give a symmetric one in kg m^2, no principal moment < 0");
+    refuse(
+        "has an impossible inertia. Give a symmetric one in kg m^2 without negative principal "
+        "moments.");
   }
 }
 

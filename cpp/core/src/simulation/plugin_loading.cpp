@@ -1,42 +1,42 @@
 #include <algorithm>
 
+#include "quadcore/harmless_elements.hpp"
 #include "quadcore/plugin/error.hpp"
 #include "quadcore/plugin_library.hpp"
-#include "quadcore/seen_or_sensed.hpp"
 #include "quadcore/simulation.hpp"
 #include "quadcore/text.hpp"
 
 namespace quadcore {
 namespace {
 
-/// Numbers of state that a plugin may ask for.
+/// Maximum number of state values of a plugin.
 constexpr std::size_t max_plugin_state = 1000000;
 
-/// A plugin tag, by the name that the plugin goes by, and the path of its module.
+/// A plugin tag with the effective name of the plugin, and the path of its module.
 struct Found {
   PluginElement element;
   std::string path;
 };
 
-/// A name for a plugin whose own is taken.
-std::string another_name(const std::string& name, const std::map<std::string, std::string>& taken) {
+/// Return an unused name for a plugin whose name is taken.
+std::string make_unique_name(const std::string& name,
+                             const std::map<std::string, std::string>& taken) {
   int number = 2;
   while (taken.count(name + "_" + std::to_string(number))) ++number;
   return name + "_" + std::to_string(number);
 }
 
-/// Finds the plugins to load, sorted by name, because their order in the document must not matter.
-/// A missing module that only senses is skipped; another is refused. So are plugins whose tags
-/// cannot be read, and two of one name, except modules named as those of another program, which
-/// allows that.
-std::vector<Found> find_plugins(const Model& model, PassedOver& passed_over,
+/// Find the plugins to load, sorted by name, because their order in the document must not matter.
+/// A missing module that only senses is skipped; any other missing module is an error. Unreadable
+/// tags and repeated names are errors too, except that RotorS allows repeated names of its modules.
+std::vector<Found> find_plugins(const Model& model, IgnoredElements& ignored_elements,
                                 std::vector<std::string>& warnings) {
   std::vector<Found> plugins;
   std::map<std::string, std::string> by_name;
   for (const PluginElement& element : model.plugins) {
     const auto path = find_plugin(element.filename);
-    if (!path && verdict_on_module(element.filename) == Verdict::unfelt) {
-      passed_over.add_unfelt(element.filename, element.where);
+    if (!path && decide_on_module(element.filename) == Handling::skip) {
+      ignored_elements.add_harmless(element.filename, element.where);
       continue;
     }
     if (!path) throw InputError(describe_missing(element));
@@ -44,11 +44,11 @@ std::vector<Found> find_plugins(const Model& model, PassedOver& passed_over,
     Found found{element, *path};
     const auto first = by_name.find(element.name);
     if (first != by_name.end()) {
-      const std::string second = element.where + ": a second plugin named '" + element.name +
+      const std::string second = element.where + ": a second plugin is named '" + element.name +
                                  "' (first at " + first->second + ")";
-      if (!is_named_as_others(*path)) throw InputError(second + "; give it another name");
-      found.element.name = another_name(element.name, by_name);
-      warnings.push_back(second + " goes by the name '" + found.element.name + "'");
+      if (!is_named_as_others(*path)) throw InputError(second + ". Give it another name.");
+      found.element.name = make_unique_name(element.name, by_name);
+      warnings.push_back(second + ". It is renamed '" + found.element.name + "'.");
     }
     by_name[found.element.name] = element.where;
     plugins.push_back(found);
@@ -58,8 +58,8 @@ std::vector<Found> find_plugins(const Model& model, PassedOver& passed_over,
   return plugins;
 }
 
-/// "PLUGIN.TAG" -> value becomes PLUGIN -> (TAG -> value); unknown plugins are refused.
-std::map<std::string, std::map<std::string, std::string>> by_plugin(
+/// Turn "PLUGIN.TAG" -> value into PLUGIN -> (TAG -> value). Unknown plugins are errors.
+std::map<std::string, std::map<std::string, std::string>> group_by_plugin(
     const std::map<std::string, std::string>& parameters, const std::vector<Found>& plugins) {
   std::vector<std::string> names;
   for (const Found& found : plugins) names.push_back(found.element.name);
@@ -67,34 +67,37 @@ std::map<std::string, std::map<std::string, std::string>> by_plugin(
   for (const auto& [key, value] : parameters) {
     const auto dot = key.rfind('.');
     if (dot == std::string::npos || dot == 0 || dot + 1 == key.size()) {
-      throw InputError("set " + key + ": is not PLUGIN.TAG; write, for example, " +
-                       (names.empty() ? "plugin" : names.front()) + ".sim_slow");
+      throw InputError("set " + key +
+                       ": the name is not of the form PLUGIN.TAG. Write, for example, " +
+                       (names.empty() ? "plugin" : names.front()) + ".sim_slow.");
     }
     const std::string plugin = key.substr(0, dot);
     if (std::find(names.begin(), names.end(), plugin) == names.end()) {
-      throw InputError("set " + key + ": the model has no plugin '" + plugin + "'" +
-                       did_you_mean(plugin, names) + "; it has " + joined(names));
+      throw InputError("set " + key + ": the model has no plugin '" + plugin + "'." +
+                       suggest(plugin, names) + " Choose one of " + joined(names) + ".");
     }
     result[plugin][key.substr(dot + 1)] = value;
   }
   return result;
 }
 
-/// Others extend modules that they share the names of. What only senses may be left out then.
-Parameters parameters_of(const Found& found, const PluginDescriptor& descriptor, const Model& model,
-                         const std::map<std::string, std::string>& overrides) {
+/// Return the plugin's parameters. Modules of the same name may have more tags in other programs,
+/// so the error suggests suggest_ignoring a module that only senses.
+Parameters read_parameters(const Found& found, const PluginDescriptor& descriptor,
+                           const Model& model,
+                           const std::map<std::string, std::string>& overrides) {
   try {
     return {descriptor.tags, found.element, model, overrides};
   } catch (const InputError& error) {
     if (descriptor.create.hooks.forces || !is_named_as_others(found.path)) throw;
-    throw InputError(error.what() + ignoring(found.element.filename));
+    throw InputError(error.what() + suggest_ignoring(found.element.filename));
   }
 }
 
-/// FILE:LINE of a plugin's tag.
+/// Return FILE:LINE of a plugin's tag.
 std::string where_of(const LoadedPlugin& p) { return p.who.substr(0, p.who.find(": plugin '")); }
 
-/// A shared tag must mean the same in every plugin that has it.
+/// Throw InputError if a shared tag has different values in two plugins.
 void check_shared_tags(const std::vector<LoadedPlugin>& plugins) {
   std::map<std::string, std::pair<const LoadedPlugin*, const Parameter*>> first;
   for (const LoadedPlugin& plugin : plugins) {
@@ -111,29 +114,31 @@ void check_shared_tags(const std::vector<LoadedPlugin>& plugins) {
       throw InputError((blamed.origin == "set" ? "set <" + blamed.spec.name + ">" : blamed.origin) +
                        ": <" + parameter.spec.name + "> is " +
                        describe(*known->second.first, other) + " but " +
-                       describe(plugin, parameter) + "; give both the same value");
+                       describe(plugin, parameter) + ". Give both the same value.");
     }
   }
 }
 
 }  // namespace
 
-/// What a model lacks that would make it a vehicle; "" for nothing.
+/// Return a warning about a model that cannot fly; "" for none.
 std::string Simulation::describe_idle(const Model& model) const {
   const std::string who = "model '" + model.name + "' has ";
-  if (model.joints.empty()) return who + "no rotors: no joint of it is continuous";
+  if (model.joints.empty())
+    return who + "no rotors, so it only falls. Make the joints of the rotors continuous.";
   if (wrench_terms_.empty()) {
-    return who + "no plugin that reports a force: unless one pushes unsaid, it only falls; add " +
-           "libaerodynamic_plugin.so";
+    return who +
+           "no plugin that reports a force, so it probably only falls. Add "
+           "libaerodynamic_plugin.so.";
   }
   return "";
 }
 
 void Simulation::load_plugins(const Model& model, const SimulationOptions& options) {
-  PassedOver passed_over = model.passed_over;
-  const std::vector<Found> found_plugins = find_plugins(model, passed_over, warnings_);
-  warn(passed_over.warning());
-  const auto overrides = by_plugin(options.parameters, found_plugins);
+  IgnoredElements ignored_elements = model.ignored_elements;
+  const std::vector<Found> found_plugins = find_plugins(model, ignored_elements, warnings_);
+  warn(ignored_elements.warning());
+  const auto overrides = group_by_plugin(options.parameters, found_plugins);
   const EngineInfo& engine = engine_info(options.engine);
   Eigen::Index state_size = 0;
   for (const Found& found : found_plugins) {
@@ -145,7 +150,7 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
         element.filename,
         library.path,
         library.descriptor,
-        parameters_of(
+        read_parameters(
             found, *library.descriptor, model,
             given == overrides.end() ? std::map<std::string, std::string>{} : given->second),
         nullptr};
@@ -159,7 +164,7 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
       if (alike == plugins_.end() &&
           std::find(wrench_terms_.begin(), wrench_terms_.end(), term) != wrench_terms_.end()) {
         throw InputError(who + " reports the wrench '" + term +
-                         "', which another plugin reports already; load only one of them");
+                         "', which another plugin already reports. Load only one of them.");
       }
     }
     loaded.state_begin = state_size;
@@ -169,11 +174,11 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
       loaded.plugin = library.descriptor->create.make(
           {element.name, loaded.parameters, model, world_, topics_, warnings,
            engine.largest_decay_per_step / dt_, dt_, engine.follows_any_turn});
-      if (!loaded.plugin) throw Error("its create() returned no plugin");
+      if (!loaded.plugin) throw Error("its create() returned no plugin. Return one.");
       const std::size_t numbers = loaded.plugin->state_size();
       if (numbers > max_plugin_state) {
-        throw Error("its state_size() is " + std::to_string(numbers) + "; ask for at most " +
-                    std::to_string(max_plugin_state));
+        throw Error("its state_size() is " + std::to_string(numbers) + ". Use at most " +
+                    std::to_string(max_plugin_state) + ".");
       }
       loaded.state_size = static_cast<Eigen::Index>(numbers);
       for (const std::string& warning : warnings) {
@@ -184,7 +189,7 @@ void Simulation::load_plugins(const Model& model, const SimulationOptions& optio
     }
     state_size += loaded.state_size;
     loaded.term_begin = wrench_terms_.size();
-    if (alike != plugins_.end()) {  // it reports to the same sums
+    if (alike != plugins_.end()) {  // it adds to the same wrenches
       loaded.term_begin = alike->term_begin;
     } else {
       wrench_terms_.insert(wrench_terms_.end(), library.descriptor->wrenches.begin(),
@@ -219,9 +224,9 @@ void Simulation::check_drivers() {
       const RotorDescription& rotor = rotors[i];
       if (!rotor.prescribed && !rotor.otherwise && rotor.place == not_driven) continue;
       if (const LoadedPlugin* const first = drivers[i]) {
-        throw InputError(p.who + " drives joint '" + model_.joints[i].name + "', as '" +
+        throw InputError(p.who + " drives joint '" + model_.joints[i].name + "', which '" +
                          first->name + "' (" + where_of(*first) +
-                         ") does already; let one plugin drive each joint");
+                         ") already drives. Keep one of them.");
       }
       drivers[i] = &p;
     }

@@ -7,7 +7,7 @@
 #include "quadcore/text.hpp"
 
 /// \file
-/// What a simulation's caller writes on its topics.
+/// Publishing by the simulation's caller.
 
 namespace quadcore {
 
@@ -19,7 +19,7 @@ bool Simulation::takes_commands() const {
 std::size_t Simulation::command_width() const {
   if (command_topic_ < 0) {
     throw InputError("no plugin of model '" + model().name +
-                     "' listens to commands; add libmotorpid_plugin.so");
+                     "' accepts commands. Add libmotorpid_plugin.so.");
   }
   return topics_[static_cast<std::size_t>(command_topic_)].values.size();
 }
@@ -34,11 +34,12 @@ void Simulation::publish(const std::string& name, const double* values, std::siz
   const std::vector<std::string>& fields = topics_[index].kind.fields;
   const std::string what = "publish: topic '" + name + "': ";
   if (count != fields.size()) {
-    throw InputError(what + std::to_string(count) + " numbers; give " +
-                     std::to_string(fields.size()) + ": " + joined(fields));
+    throw InputError(what + std::to_string(count) + " numbers are given. Give " +
+                     std::to_string(fields.size()) + ": " + joined(fields) + ".");
   }
   for (std::size_t i = 0; i < count; ++i) {
-    if (!std::isfinite(values[i])) throw InputError(what + fields[i] + " is not a finite number");
+    if (!std::isfinite(values[i]))
+      throw InputError(what + fields[i] + " is not a finite number. Give a finite number.");
   }
   publish("publish()", index, values);
 }

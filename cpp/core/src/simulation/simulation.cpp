@@ -20,14 +20,14 @@ Simulation::Simulation(Model model, const World& world, const SimulationOptions&
       wrench_loads_(model_.joints.size()) {
   if (!(dt_ >= shortest_step && std::isfinite(dt_))) {
     std::ostringstream what;
-    what << "dt is " << dt_ << "; write a step in s, from " << shortest_step << " up";
+    what << "dt is " << dt_ << " s. Use a step of at least " << shortest_step << " s.";
     throw InputError(what.str());
   }
   check_spawn(options.spawn);
   load_plugins(model_, options);
   note_hooks();
-  warn(world.passed_over.warning());
-  ignored_ = ignored_in({&model_.passed_over, &world.passed_over});
+  warn(world.ignored_elements.warning());
+  ignored_ = ignored_in({&model_.ignored_elements, &world.ignored_elements});
   engine_ = make_engine(options.engine, model_, world);
   for (const std::string& warning : engine_->warnings()) warn(warning);
   warnings_at_load_ = warnings_.size();
@@ -59,9 +59,11 @@ void Simulation::warn(const std::string& warning) {
 }
 
 void Simulation::step(std::int64_t n) {
-  if (n < 0) throw InputError("step count is " + std::to_string(n) + "; give one >= 0");
+  if (n < 0)
+    throw InputError("the step count is " + std::to_string(n) + ". Give a whole number >= 0.");
   if (!failure_.empty()) {
-    throw FlightError(time(), failure_ + "; reset, restore or set a state to go on");
+    throw FlightError(time(), failure_ + (failure_.back() == '.' ? "" : ".") +
+                                  " To continue, call reset, restore or set_state.");
   }
   try {
     for (; n > 0; --n) {
@@ -90,7 +92,7 @@ void Simulation::move() {
   const Topic& topic = topics_[topics_.at(command_topic)];
   const VectorXd command = Eigen::Map<const VectorXd>(
       topic.values.data(), static_cast<Eigen::Index>(topic.values.size()));
-  VehicleState moved = state_;  // whose numbers are looked at where they lie
+  VehicleState moved = state_;  // motion_ writes into its arrays in place
   motion_(dt_, command, moved);
   engine_->set_state(moved);
 }
@@ -121,8 +123,8 @@ void Simulation::check_flight() const {
 }
 
 std::string Simulation::advice() const {
-  if (warnings_.size() == warnings_at_load_) return "; try a smaller step or weaker commands";
-  return ", as this flight was warned: " + warnings_.back();
+  if (warnings_.size() == warnings_at_load_) return ". Try a smaller step or weaker commands.";
+  return ". This warning came before: " + warnings_.back();
 }
 
 void Simulation::set_state(const VehicleState& state) {
@@ -143,7 +145,7 @@ void Simulation::begin() {
   try {
     show_instant();
     sense(true);
-  } catch (const InputError&) {  // what was set is refused, no flight has failed
+  } catch (const InputError&) {  // the input is rejected; no flight has failed
     leave();
     throw;
   } catch (...) {

@@ -81,7 +81,7 @@ void Simulation::push(const std::vector<const LoadedPlugin*>& plugins, const Kin
 
 void Simulation::refuse(const Kinematics& kinematics, Loads& loads) const {
   if (!is_finite(kinematics)) throw Error(no_longer_finite + advice());
-  // Force laws are pure: asked again one by one, the same one spoils the sum.
+  // Force laws are pure functions: evaluated one by one, the same one fails again.
   loads.clear();
   loads.record_terms(nullptr, 0, nullptr);
   for (const LoadedPlugin* const p : with_.forces) {

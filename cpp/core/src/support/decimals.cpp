@@ -17,10 +17,10 @@ namespace quadcore {
 namespace {
 
 constexpr std::size_t most_digits = 17;
-constexpr std::size_t longest_number = 25;  // -d.dddddddddddddddde-xxx, and the end
+constexpr std::size_t longest_number = 25;  // -d.dddddddddddddddde-xxx and the terminating zero
 
 #ifndef __cpp_lib_to_chars
-/// The C locale for this thread: a program may have chosen one with a decimal comma.
+/// Sets the C locale for this thread, because the program may use one with a decimal comma.
 class PlainNumbers {
  public:
   PlainNumbers() : before_(uselocale(plain())) {}
@@ -37,14 +37,14 @@ class PlainNumbers {
 };
 #endif
 
-/// Writes "[-]d[.ddd]e[+-]xx" with the fewest digits that read back exactly.
+/// Write "[-]d[.ddd]e[+-]xx" with the fewest digits that read back exactly.
 void write_scientific(double number, char (&text)[longest_number]) {
 #ifdef __cpp_lib_to_chars
   *std::to_chars(text, text + longest_number - 1, number, std::chars_format::scientific).ptr = '\0';
 #else
-  // Standard libraries before GCC 11's: slower, and of some powers of two a digit longer.
+  // For standard libraries before GCC 11: slower, and one digit longer for some powers of two.
   const PlainNumbers plain;
-  // Every number of 15 digits reads back, but for those that are no longer normal.
+  // 15 digits always read back exactly, except for subnormal numbers.
   const bool normal = number == 0 || std::abs(number) >= std::numeric_limits<double>::min();
   for (int digits = normal ? 15 : 1; digits <= 17; ++digits) {
     std::snprintf(text, longest_number, "%.*e", digits - 1, number);

@@ -11,14 +11,14 @@ constexpr std::size_t tail = 250;
 
 bool starts_character(char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }
 
-/// C0, delete, C1: at best ugly in a terminal.
+/// C0, delete and C1 control characters, which would disturb a terminal.
 bool is_control(const std::string& text, std::size_t at) {
   const auto first = static_cast<unsigned char>(text[at]);
   const bool c1 = first == 0xC2 && static_cast<unsigned char>(text[at + 1]) < 0xA0;
   return first < 0x20 || first == 0x7F || c1;
 }
 
-/// A message that quotes what was wrong with a huge document would be huge itself.
+/// Shorten a message that quotes a very long text.
 std::string shortened(const std::string& text) {
   if (text.size() <= longest_message) return text;
   std::size_t end = head, begin = text.size() - tail;
@@ -29,7 +29,7 @@ std::string shortened(const std::string& text) {
 
 }  // namespace
 
-// '?' stands for what is no character or leaves the line, a blank for ends of lines.
+// Invalid bytes and control characters become '?', line ends and tabs become blanks.
 std::string one_line(const std::string& text) {
   std::string line;
   for (std::size_t at = 0; at < text.size();) {
@@ -54,7 +54,7 @@ std::string what_was_thrown() {
   } catch (const std::exception& error) {
     return error.what();
   } catch (...) {
-    return "threw something that is no std::exception";
+    return "an exception was thrown that is not a std::exception";
   }
 }
 

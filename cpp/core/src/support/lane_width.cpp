@@ -9,7 +9,7 @@
 namespace quadcore {
 namespace {
 
-/// Doubles in a vector register of this processor that the system saves.
+/// Return the number of doubles in a vector register that processor and system support.
 int widest() {
 #if defined(__x86_64__)
   __builtin_cpu_init();
@@ -19,21 +19,21 @@ int widest() {
   return 2;
 }
 
-/// 0 = not asked for.
-int asked_for() {
+/// Return the width that the environment requests, or 0.
+int requested_width() {
   const char* text = std::getenv("QUADCORE_LANES");
   if (!text) return 0;
   for (const int width : {1, 2, 4, 8}) {
     if (text == std::to_string(width)) return std::min(width, widest());
   }
-  throw InputError("QUADCORE_LANES is '" + std::string(text) + "'; write 1, 2, 4 or 8");
+  throw InputError("QUADCORE_LANES is '" + std::string(text) + "'. Use 1, 2, 4 or 8.");
 }
 
 }  // namespace
 
 int lane_width(std::size_t rotors) {
   static const int most = widest();
-  if (const int width = asked_for()) return width;
+  if (const int width = requested_width()) return width;
   int width = 2;
   while (width < most && static_cast<std::size_t>(width) < rotors) width *= 2;
   return width;

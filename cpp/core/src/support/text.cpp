@@ -55,7 +55,7 @@ std::size_t character_size(const std::string& text, std::size_t at) {
   };
   const unsigned first = byte(0);
   if (first < 0x80) return 1;
-  // By the first byte (Unicode 15, table 3-7): how many follow, and the range of the second.
+  // The first byte (Unicode 15, table 3-7) fixes the number of bytes and the range of the second.
   const std::size_t size = first < 0xC2   ? 0
                            : first < 0xE0 ? 2
                            : first < 0xF0 ? 3
@@ -72,10 +72,10 @@ std::size_t character_size(const std::string& text, std::size_t at) {
 
 namespace {
 
-/// Longer names are no misspellings, and comparing two costs the product of their lengths.
+/// Longer names are not compared: the cost is the product of the two lengths.
 constexpr std::size_t longest_misspelling = 64;
 
-/// Levenshtein distance, case ignored.
+/// Levenshtein distance, suggest_ignoring case.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -95,10 +95,10 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-std::string did_you_mean(const std::string& name, const std::vector<std::string>& candidates) {
+std::string suggest(const std::string& name, const std::vector<std::string>& candidates) {
   if (name.size() > longest_misspelling) return "";
   const std::string* nearest = nullptr;
-  std::size_t least = name.size() / 2 + 2;
+  std::size_t least = name.size() / 4 + 2;
   for (const std::string& candidate : candidates) {
     if (candidate.size() > longest_misspelling) continue;
     const std::size_t distance = edit_distance(name, candidate);
@@ -107,10 +107,10 @@ std::string did_you_mean(const std::string& name, const std::vector<std::string>
       nearest = &candidate;
     }
   }
-  return nearest ? " (did you mean '" + *nearest + "'?)" : "";
+  return nearest ? " Did you mean '" + *nearest + "'?" : "";
 }
 
-bool is_slip(const std::string& a, const std::string& b) {
+bool is_similar(const std::string& a, const std::string& b) {
   if (std::max(a.size(), b.size()) > longest_misspelling) return false;
   return edit_distance(a, b) <= std::max(a.size(), b.size()) / 5;
 }

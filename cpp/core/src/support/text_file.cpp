@@ -16,7 +16,7 @@ namespace {
 /// An open file, or none if the system refused it.
 class Descriptor {
  public:
-  /// What is opened need not be what was looked at: opening a pipe waits for a writer.
+  /// The path may have changed since it was examined, and opening a pipe would wait for a writer.
   explicit Descriptor(const std::string& path)
       : number_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {}
   ~Descriptor() {
@@ -32,9 +32,9 @@ class Descriptor {
 };
 
 void check_regular(const std::string& path, const struct stat& status) {
-  if (S_ISDIR(status.st_mode)) throw InputError(path + ": is a folder; name a file in it");
+  if (S_ISDIR(status.st_mode)) throw InputError(path + ": this is a folder. Name a file in it.");
   if (!S_ISREG(status.st_mode)) {
-    throw InputError(path + ": is no regular file; save what it gives in one");
+    throw InputError(path + ": this is not a regular file. Save its content in a regular file.");
   }
 }
 
@@ -45,7 +45,8 @@ std::string read_text_file(const std::string& path, std::size_t largest) {
   if (::stat(path.c_str(), &status) == 0) check_regular(path, status);
   const Descriptor file(path);
   if (::fstat(file, &status) != 0) {
-    throw InputError(path + ": cannot be read; give the path of an existing file");
+    throw InputError(path +
+                     ": the file cannot be read. Give the path of an existing, readable file.");
   }
   check_regular(path, status);
 
@@ -59,10 +60,11 @@ std::string read_text_file(const std::string& path, std::size_t largest) {
       std::ostringstream megabytes;
       megabytes.imbue(std::locale::classic());
       megabytes << static_cast<double>(largest) / 1e6;
-      throw InputError(path + ": is larger than " + megabytes.str() + " MB, the most that is read");
+      throw InputError(path + ": the file exceeds the limit of " + megabytes.str() +
+                       " MB. Use a smaller file.");
     }
   }
-  if (text.empty()) throw InputError(path + ": is empty; give another file");
+  if (text.empty()) throw InputError(path + ": the file is empty. Give another file.");
   constexpr const char* byte_order_mark = "\xEF\xBB\xBF";
   if (text.compare(0, 3, byte_order_mark) == 0) text.erase(0, 3);
   return text;

@@ -22,7 +22,7 @@ double drawn_disc_radius(const Model& model) {
   for (std::size_t i = 1; i < poses.size(); ++i) {
     for (std::size_t j = 1; j < i; ++j) {
       const double apart = (poses[i].translation() - poses[j].translation()).norm();
-      if (apart > 1e-3) nearest = std::min(nearest, apart);  // coaxial ones share a place
+      if (apart > 1e-3) nearest = std::min(nearest, apart);  // coaxial rotors share a position
     }
   }
   return nearest < std::numeric_limits<double>::infinity() ? 0.4 * nearest : 0.1;

@@ -5,8 +5,8 @@
 #include "quadcore/plugin/model.hpp"
 
 /// \file
-/// The ground's part in how a shape and the ground feel each other, measured in the running
-/// Gazebo 11: springs in series, dampers in sum, the smaller friction of the two.
+/// Contact parameters of the ground, measured in the running Gazebo 11. Springs act in series,
+/// dampers add up, and the smaller friction coefficient counts.
 
 namespace quadcore::ground {
 

@@ -26,7 +26,7 @@ Matrix3d Kinematics::R_FR(std::size_t i) const {
 
 double Kinematics::angle(std::size_t i) const {
   if (!has_rotations_) return rotors.number(MotionRow::angle, i);
-  // The turn about the axis: its skew part is sin(angle) [axis x], its trace 1 + 2 cos(angle).
+  // Rotation about the axis: its skew part is sin(angle) [axis x], its trace 1 + 2 cos(angle).
   const Matrix3d R = R_FR(i) * rotors.matrix(MotionRow::R_FR_at_zero, i).transpose();
   const Vector3d twice_sine(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
   return elementary::atan2(rotors[i].axis_F.dot(twice_sine), R.trace() - 1);

@@ -27,7 +27,7 @@ void Loads::clear_rest() {
 }
 
 bool Loads::all_finite() const {
-  // A sum is finite if its terms are, and they are far from overflow.
+  // The sum is finite if its terms are, because they are far from overflow.
   double sum = (frame_.force_F + frame_.torque_F).sum();
   for (std::size_t i = 0; i < rotors_.rotors(); i += widest_lanes) {
     const double* const block = rotors_.data() + rotor_offset(LoadRow::count, i);
@@ -43,19 +43,20 @@ bool Loads::all_finite() const {
 }
 
 void Loads::refuse_rotor(std::size_t i) const {
-  throw Error("a load on rotor " + std::to_string(i) + ", but rotors count from 0 and there are " +
-              std::to_string(rotors_.rotors()));
+  throw Error("a load acts on rotor " + std::to_string(i) +
+              ", but rotors are numbered from 0 and there are " + std::to_string(rotors_.rotors()));
 }
 
 void Loads::refuse_second_rate(std::size_t i) const {
   throw Error("the rate of joint " + std::to_string(i) +
-              ", counted from 0, is prescribed a second time; let one plugin drive each joint");
+              ", counted from 0, is prescribed twice. Let only one plugin drive each joint.");
 }
 
 Wrench& Loads::recorded(std::size_t term) {
   if (term >= term_count_) {
-    throw Error("a load for wrench term " + std::to_string(term) +
-                ", but terms count from 0 and the descriptor names " + std::to_string(term_count_));
+    throw Error("a load refers to wrench term " + std::to_string(term) +
+                ", but terms are numbered from 0 and the descriptor lists " +
+                std::to_string(term_count_));
   }
   return terms_[term];
 }

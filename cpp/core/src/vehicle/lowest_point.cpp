@@ -47,8 +47,8 @@ void check_collisions(const Model& model) {
     for (const Collision& collision : link.collisions) {
       if (collision.kind == ShapeKind::mesh) {
         throw InputError(collision.where +
-                         ": a collision mesh cannot touch the ground; write a box, cylinder or "
-                         "sphere, or fly in empty.world");
+                         ": contact of a collision mesh with the ground is not modelled. Use a "
+                         "box, cylinder or sphere, or a world without ground.");
       }
     }
   }

@@ -25,13 +25,14 @@ std::vector<std::size_t> VehicleDescription::driven() const {
     is_known = rotor.place == static_cast<int>(k);
     if (k > 0 && rotors[joints[k - 1]].place == rotor.place) {
       throw InputError("rotors '" + rotors[joints[k - 1]].joint + "' and '" + rotor.joint +
-                       "' follow one number of the command; drive them by one plugin");
+                       "' follow the same number of the command. Drive them by one plugin.");
     }
   }
   if (is_known) return joints;
   throw InputError(
-      "no plugin says which rotor follows which number of the command; add "
-      "libmotorpid_plugin.so, or let your motors' describe_rotors() say each one's place");
+      "no plugin defines which rotor follows which number of the command. Add "
+      "libmotorpid_plugin.so, or set each rotor's place in describe_rotors() of your motor "
+      "plugin.");
 }
 
 }  // namespace quadcore

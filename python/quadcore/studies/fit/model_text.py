@@ -42,7 +42,7 @@ def write_values(
         new = value if begin < end else f"<{tag}>{value}</{tag}>"
         text = text[:begin] + new.encode() + text[end:]
     document = Document(changed.document.name, text.decode(), changed.document.lines)
-    return _core.read_model(document, list(model.passed_over.ignored))
+    return _core.read_model(document, list(model.ignored_elements.ignored))
 
 
 def _find_value(text: bytes, keys: Collection[str]) -> Tuple[int, int]:

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "quadcore/control/belief.hpp"
+#include "quadcore/control/modelled_vehicle.hpp"
 #include "quadcore/plugin/messages.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
@@ -8,47 +8,47 @@ namespace control {
 
 using messages::Odometry;
 
-/// Gains of the angular acceleration p e + d (w_D - w), in F: e being 2 sign(q_w) q_vec of the
-/// wanted orientation as seen from F, p = (kr_rp, kr_rp, kr_yaw) and d = (kw_rp, kw_rp, kw_yaw).
+/// Gains of the angular acceleration p e + d (w_D - w) in F. Here e is 2 sign(q_w) q_vec of the
+/// wanted orientation relative to F, p = (kr_rp, kr_rp, kr_yaw) and d = (kw_rp, kw_rp, kw_yaw).
 struct AttitudeGains {
   double kr_rp, kw_rp, kr_yaw, kw_yaw;
   /// \var kr_rp
-  /// Of the error of the attitude about x and y of F [1/s^2].
+  /// Gain of the attitude error about x and y of F [1/s^2].
   /// \var kw_rp
-  /// Of the error of the angular velocity about x and y of F [1/s].
+  /// Gain of the angular velocity error about x and y of F [1/s].
   /// \var kr_yaw
-  /// Of the error of the attitude about z of F [1/s^2].
+  /// Gain of the attitude error about z of F [1/s^2].
   /// \var kw_yaw
-  /// Of the error of the angular velocity about z of F [1/s].
+  /// Gain of the angular velocity error about z of F [1/s].
 
-  /// Whether the torque of the air is made up for.
-  bool drag, gyroscopic;  ///< whether the rotors' gyroscopic torque is
+  /// Whether to compensate the aerodynamic torque.
+  bool drag, gyroscopic;  ///< whether to compensate the rotors' gyroscopic torque
 };
 
-/// The loop around the attitude.
+/// Attitude controller.
 class AttitudeLoop {
  public:
-  /// Copies both.
-  AttitudeLoop(const Belief& belief, const AttitudeGains& gains);
+  /// Copies both arguments.
+  AttitudeLoop(const ModelledVehicle& model, const AttitudeGains& gains);
 
-  /// The vehicle that it was made for.
-  const Belief& belief() const { return belief_; }
+  /// Return the modelled vehicle.
+  const ModelledVehicle& model() const { return model_; }
 
-  /// Angular acceleration that makes up for errors, in F [rad/s^2].
-  /// \param q_FD       wanted orientation as seen from F
-  /// \param w_error_F  wanted angular velocity less that of F [rad/s]
+  /// Return the angular acceleration that corrects errors, in F [rad/s^2].
+  /// \param q_FD       wanted orientation relative to F
+  /// \param w_error_F  wanted minus actual angular velocity [rad/s]
   Vector3d angular_acceleration(const Quaterniond& q_FD, const Vector3d& w_error_F) const;
-  /// Angular acceleration that makes up for an error of the angular velocity alone.
+  /// Return the angular acceleration that corrects only an angular velocity error.
   Vector3d angular_acceleration(const Vector3d& w_error_F) const {
     return d_.cwiseProduct(w_error_F);
   }
-  /// Torque of the rotors that turns the vehicle so, in F [N m].
-  /// \param now  with the velocity in W
+  /// Return the torque of the rotors for an angular acceleration, in F [N m].
+  /// \param now  odometry with the velocity in W
   /// \param h_F  angular momentum of the rotors, relative to the frame [kg m^2/s]
   Vector3d torque(const Odometry& now, const Vector3d& h_F, const Vector3d& dw_WF_F) const;
 
  private:
-  Belief belief_;
+  ModelledVehicle model_;
   bool drag_, gyroscopic_;
   Vector3d p_, d_;
 };

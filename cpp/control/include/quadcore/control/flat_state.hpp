@@ -1,45 +1,46 @@
 #pragma once
 
-#include "quadcore/control/belief.hpp"
+#include "quadcore/control/modelled_vehicle.hpp"
 #include "quadcore/control/reference.hpp"
 
 namespace quadcore QUADCORE_EXPORT {
 namespace control {
 
-/// What a vehicle does that follows a reference exactly.
+/// State of a vehicle that follows a reference exactly.
 struct FlatState {
   Matrix3d R_WF;     ///< orientation
   Vector3d w_WF_F;   ///< angular velocity [rad/s]
-  Vector3d dw_WF_F;  ///< its derivative [rad/s^2]
-  double thrust;     ///< of all rotors along z of F [N]
-  /// Acceleration of the centre of mass beside that of the origin of F, in W [m/s^2].
+  Vector3d dw_WF_F;  ///< angular acceleration [rad/s^2]
+  double thrust;     ///< thrust of all rotors along z of F [N]
+  /// Acceleration of the centre of mass relative to the origin of F, in W [m/s^2].
   Vector3d a_FCcm_W = Vector3d::Zero();
 };
 
-/// The flat output of a quadrotor is its position and yaw (Mellinger, Kumar, ICRA 2011, sec. III);
-/// it remains so with rotor drag (Faessler, Franchi, Scaramuzza, RA-L 2018, sec. II): what the
-/// rotors must exert is m (a - g) + d v + q |v| v in W but for a part along z of F, d being the
-/// mean drag along x and y of F. z of F is its direction, and x of F stands in the vertical plane
-/// of the yaw, which makes the yaw that of roll, pitch and yaw. The reference is that of the origin
-/// of F, and Newton's law that of the centre of mass, see at_centre_of_mass(). Throws Error where
-/// the reference falls so fast that no direction is left, or lays x of F straight up.
-/// \param with_drag  whether the believed drag is made up for
-FlatState flat_state(const Reference& wanted, const Belief& belief, bool with_drag);
+/// Return the flat state for a reference. Position and yaw are a flat output of a quadrotor
+/// (Mellinger, Kumar, ICRA 2011, sec. III), also with rotor drag (Faessler, Franchi, Scaramuzza,
+/// RA-L 2018, sec. II). Apart from a part along z of F, the rotors must exert m (a - g) + d v + q
+/// |v| v in W, where d is the mean drag along x and y of F. This force defines z of F, and x of F
+/// lies in the vertical plane of the yaw. The reference refers to the origin of F, Newton's law to
+/// the centre of mass, see at_centre_of_mass(). Throws Error if the reference is in free fall or
+/// points x of F straight up.
+/// \param with_drag  whether to compensate the modelled drag
+FlatState flat_state(const Reference& wanted, const ModelledVehicle& model, bool with_drag);
 
-/// Where the centre of mass is to be, of a vehicle whose origin of F follows a reference in such an
-/// attitude: r being the way to it, p + r with v + w x r, a + w' x r + w x (w x r) and so on. A
-/// reference ends with the snap, which leaves the second and third derivative of w open: in F they
-/// are taken for zero, as they are in a steady turn.
-Reference at_centre_of_mass(const Reference& wanted, const Belief& belief, const FlatState& flat);
+/// Return the reference of the centre of mass if the origin of F follows a reference in this
+/// attitude. With the offset r it is p + r, v + w x r, a + w' x r + w x (w x r) and so on. Because
+/// a reference ends with the snap, the second and third derivatives of w in F are taken as zero, as
+/// in a steady turn.
+Reference at_centre_of_mass(const Reference& wanted, const ModelledVehicle& model,
+                            const FlatState& flat);
 
-/// Orientation whose z is the given direction, not zero, and whose x stands in the vertical plane
-/// of the yaw.
+/// Return the orientation with z along the given nonzero direction and x in the vertical plane of
+/// the yaw.
 Matrix3d attitude_of(const Vector3d& z_W, double yaw);
 
-/// Torque of the rotors about the centre of mass that turns the vehicle with w' = dw_WF_F [N m]:
-/// I w' + w x (I w + h) less that of the air.
+/// Return the torque of the rotors about the centre of mass for the angular acceleration w' =
+/// dw_WF_F [N m]: I w' + w x (I w + h) minus the aerodynamic torque.
 /// \param h_F  angular momentum of the rotors, relative to the frame [kg m^2/s]
-Vector3d torque_for(const Belief& belief, const Vector3d& dw_WF_F, const Vector3d& w_WF_F,
+Vector3d torque_for(const ModelledVehicle& model, const Vector3d& dw_WF_F, const Vector3d& w_WF_F,
                     const Vector3d& h_F, const Vector3d& tau_air_F);
 
 }  // namespace control

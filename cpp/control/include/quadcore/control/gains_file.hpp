@@ -8,22 +8,22 @@
 namespace quadcore QUADCORE_EXPORT {
 namespace control {
 
-/// When a controller is called and how late it acts, for all that may be told so: `rate`, `delay`.
+/// Return the parameters of a controller's timing: `rate` and `delay`.
 const std::vector<TagSpec>& timing_table();
-/// The default of one of the two.
+/// Return the default of one of these parameters.
 double default_timing(const std::string& name);
 
-/// A law with the parameters with which it flies a vehicle.
+/// A controller with its parameters for a vehicle.
 struct Gains {
-  std::string law;      ///< one of laws()
-  std::string vehicle;  ///< name of the robot for which they were made; "" if that is not told
+  std::string law;                         ///< name of a controller, see list_controllers()
+  std::string vehicle;                     ///< name of the vehicle that the gains are for, or ""
   double rate = default_timing("rate");    ///< calls per second
-  double delay = default_timing("delay");  ///< from a call to the first step that it commands [s]
-  Values values;  ///< of the law's parameters; what is not there has the law's default
+  double delay = default_timing("delay");  ///< from a call to the first step with its command [s]
+  Values values;  ///< parameters of the controller that differ from its defaults
 };
 
-/// Reads a gains file: in YAML, `law`, and where wanted `vehicle`, `rate`, `delay`, `parameters` by
-/// name, and `history`, which is for people. Throws InputError with FILE:LINE.
+/// Read a gains file. It is a YAML file with `law` and optionally `vehicle`, `rate`, `delay`,
+/// `parameters` by name, and `history`, which is informative. Throws InputError with FILE:LINE.
 Gains read_gains(const std::string& path);
 
 }  // namespace control

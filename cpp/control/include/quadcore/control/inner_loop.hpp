@@ -6,49 +6,49 @@
 namespace quadcore QUADCORE_EXPORT {
 namespace control {
 
-/// \name What a law asks for that ends above the rotors
+/// \name Demands of controllers that do not command the rotors
 /// @{
 
-/// An attitude, and a thrust.
+/// Attitude and thrust.
 struct AttitudeThrust {
-  Quaterniond orientation;  ///< of the frame in the world, unit
+  Quaterniond orientation;  ///< orientation of the frame in the world, unit quaternion
   double thrust;            ///< along z of F [N]
 };
-/// Angular velocities, and a thrust.
+/// Angular velocity and thrust.
 struct RatesThrust {
   Vector3d w_WF_F;  ///< angular velocity of the frame, its own axes [rad/s]
   double thrust;    ///< along z of F [N]
 };
 /// @}
 
-/// Flies an attitude or rates with a thrust: the loop around the attitude that the laws on
-/// rotations have, then the allocation. Immutable; its state is numbers of its caller, all zero at
-/// the beginning.
+/// Controls attitude or angular velocity with a thrust: the attitude controller of the geometric
+/// controllers, then the allocation. Immutable; the caller owns the state, which is all zero at the
+/// start.
 class InnerLoop {
  public:
-  /// Throws InputError on an unknown parameter, on a vehicle that it cannot fly.
+  /// Throws InputError for an unknown parameter or an unsuitable vehicle.
   InnerLoop(const VehicleDescription& vehicle, const Values& values,
             const std::vector<double>& spins = {});
 
-  /// Gains of the attitude, parameters of the motors' lead and of the belief.
+  /// Return the attitude gains and the parameters of the lag compensation and of the model errors.
   static const std::vector<TagSpec>& table();
-  /// Numbers of state for so many rotors.
+  /// Return the number of state values for so many rotors.
   static std::size_t state_size(std::size_t rotors) { return Actuation::state_size(rotors); }
 
-  /// How many rotors are driven.
-  std::size_t rotors() const { return loop_.belief().rotors.size(); }
-  /// Speeds to command until the next call.
-  /// \param period  since the last call and until the next [s]
-  /// \param now     with the velocity in W
+  /// Return the number of driven rotors.
+  std::size_t rotors() const { return loop_.model().rotors.size(); }
+  /// Compute the speeds to command until the next call.
+  /// \param period  time since the last call and until the next [s]
+  /// \param now     odometry with the velocity in W
   /// \param speeds  (rotors(),) signed [rad/s]
   void command(double period, const Odometry& now, const AttitudeThrust& wanted, double* state,
                double* speeds) const;
-  /// The same for angular velocities instead of an attitude.
+  /// Compute the speeds for an angular velocity instead of an attitude.
   void command(double period, const Odometry& now, const RatesThrust& wanted, double* state,
                double* speeds) const;
 
  private:
-  InnerLoop(const Belief& belief, const Values& values);
+  InnerLoop(const ModelledVehicle& model, const Values& values);
   void command(double period, const Odometry& now, double thrust, const Vector3d& dw_WF_F,
                double* state, double* speeds) const;
 

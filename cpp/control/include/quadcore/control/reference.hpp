@@ -15,37 +15,38 @@ namespace control {
 
 using messages::Reference;
 
-/// Where a vehicle is to be, at any time: a pure function.
+/// A reference as a pure function of time.
 class ReferenceShape {
  public:
   virtual ~ReferenceShape() = default;
-  /// With all derivatives, from the right where there are two. \param t  since the start [s]
+  /// Return the reference with all derivatives; at jumps, those from the right. \param t  since the
+  /// start [s]
   virtual Reference at(double t) const = 0;
-  /// From when on nothing moves any more [s].
+  /// Return the time from which the reference is at rest [s].
   virtual double end() const { return std::numeric_limits<double>::infinity(); }
 };
 
 /// Rows of time [s] and position [m], or of time, position and yaw [rad].
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// A kind of reference, as users choose it.
+/// A kind of reference that users can choose.
 struct ReferenceInfo {
-  std::string name;            ///< as users write it
+  std::string name;            ///< name of the reference
   std::string summary;         ///< one line
-  bool takes_rows;             ///< and cannot do without
-  std::vector<TagSpec> table;  ///< its parameters
-  /// Makes one of values that were checked. Throws InputError on rows that are none.
+  bool takes_rows;             ///< whether it requires rows
+  std::vector<TagSpec> table;  ///< parameters
+  /// Creates one from checked values. Throws InputError for invalid rows.
   std::function<std::unique_ptr<ReferenceShape>(const Values&, const Rows&)> make;
 };
 
-/// Every kind there is.
+/// Return all built-in references.
 const std::vector<ReferenceInfo>& references();
-/// Throws InputError with the names of those there are.
+/// Return a kind of reference by name. Throws InputError with the names of all.
 const ReferenceInfo& reference_info(const std::string& name);
-/// Values, and what a vehicle says where they do not: `ground` is where its frame is when it rests
-/// on what touches the ground first, upright.
+/// Complete values with those of a vehicle: `ground` defaults to the height of its frame when it
+/// stands upright on the ground.
 Values on_vehicle(const std::string& name, Values values, const Model& model);
-/// Throws InputError on an unknown name, a value out of range, or rows that are none.
+/// Create a reference. Throws InputError for an unknown name, a value out of range or invalid rows.
 std::unique_ptr<ReferenceShape> make_reference(const std::string& name, const Values& values,
                                                const Rows& rows = {});
 

@@ -8,19 +8,18 @@
 namespace quadcore QUADCORE_EXPORT {
 namespace control {
 
-/// What control laws are told of the rotors: on a topic, of each joint of the vehicle that flies,
-/// in the order of its file, the share of what its rotor exerts that is left.
+/// Reads the remaining fraction of each rotor's thrust and torque from a topic, which lists all
+/// joints of the simulated vehicle in file order.
 class RotorHealth {
  public:
-  /// Throws InputError where VehicleDescription::driven() does.
+  /// Throws InputError like VehicleDescription::driven().
   explicit RotorHealth(const VehicleDescription& flown);
 
-  /// Tells a controller what was published last, if anything was. Throws FlightError on a share
-  /// that is none.
-  void tell(const Topic& health, double time, const Controller& controller, double* state) const;
+  /// Update a controller with the last message, if any. Throws FlightError for an invalid fraction.
+  void update(const Topic& health, double time, const Controller& controller, double* state) const;
 
  private:
-  std::vector<std::size_t> joints_;  ///< that are driven, in the order of the command
+  std::vector<std::size_t> joints_;  ///< driven joints, in the order of the command
 };
 
 }  // namespace control

@@ -7,9 +7,9 @@
 namespace quadcore QUADCORE_EXPORT {
 namespace control {
 
-/// Reads rows of time and place: a .csv file with the columns t, x, y, z and perhaps yaw, or a
-/// .yaml file with `columns`, these names, and `rows`. Of a log they are these columns, and the yaw
-/// of its orientation. Throws InputError with FILE:LINE, also on times that do not grow.
+/// Read rows of time and position: a .csv file with the columns t, x, y, z and optionally yaw, or a
+/// .yaml file with these names in `columns`, and `rows`. In a log, the yaw comes from the
+/// orientation. Throws InputError with FILE:LINE, also if the times do not increase.
 Rows read_rows(const std::string& path);
 
 }  // namespace control

@@ -9,38 +9,38 @@
 #include "quadcore/plugin/tags.hpp"
 
 /// \file
-/// Parameters of laws and references: one table each, from which the tags of plugins, the keywords
-/// of Python, gains files, documentation and errors come.
+/// Parameters of controllers and references. Each has one table, which defines plugin tags, Python
+/// keywords, gains files, documentation and errors.
 
 namespace quadcore QUADCORE_EXPORT {
 namespace control {
 
-/// Values by name, a flag being 0 or 1. What is not there has its default.
+/// Values by name; a flag is 0 or 1. Missing values have their defaults.
 using Values = std::map<std::string, double>;
 
-/// A number or a flag of the class C, and where it goes.
+/// A number or flag parameter of the class C and its member.
 template <class C>
 struct Setting {
-  TagSpec spec;                                 ///< what it is called, and may be
-  std::variant<double C::*, bool C::*> member;  ///< where its value goes
+  TagSpec spec;                                 ///< specification of the parameter
+  std::variant<double C::*, bool C::*> member;  ///< member for its value
 };
 /// All settings of the class C, in the order of their table.
 template <class C>
 using Settings = std::vector<Setting<C>>;
 
-/// Throws InputError unless each value has a name and a range in the table.
-/// \param who  whose parameters these are, for errors: "law 'pd'"
+/// Throw InputError unless the table contains each name and its range each value.
+/// \param who  owner of the parameters, for errors: "controller 'pd'"
 void check_values(const std::string& who, const std::vector<TagSpec>& table, const Values& values);
-/// What a row of a table stands for where nothing is given.
+/// Return the default value of a row of a table.
 double default_of(const TagSpec& spec);
-/// The same table with other defaults.
+/// Return the table with other defaults.
 std::vector<TagSpec> with_defaults(std::vector<TagSpec> table, const Values& defaults);
-/// Those values whose names a table has.
-Values in_table(const std::vector<TagSpec>& table, const Values& values);
-/// Values, and those of `others` that they lack.
-Values completed(Values values, const Values& others);
+/// Return the values with names in the table.
+Values select_values(const std::vector<TagSpec>& table, const Values& values);
+/// Return values, completed with those of `others`.
+Values complete(Values values, const Values& others);
 
-/// The table of settings, in their order.
+/// Return the table of settings, in their order.
 template <class C>
 std::vector<TagSpec> table_of(const Settings<C>& settings) {
   std::vector<TagSpec> table;
@@ -48,7 +48,7 @@ std::vector<TagSpec> table_of(const Settings<C>& settings) {
   return table;
 }
 
-/// Writes values that were checked, or defaults, into their places.
+/// Write checked values or defaults into the members of an object.
 template <class C>
 void configure(C& object, const Settings<C>& settings, const Values& values) {
   for (const Setting<C>& setting : settings) {

@@ -7,14 +7,14 @@
 namespace quadcore QUADCORE_EXPORT {
 namespace control {
 
-/// The state of a vehicle that follows a reference exactly, down to the rates of its joints; joint
-/// angles are zero. Throws InputError on a vehicle that laws cannot fly, see Belief::of() and
-/// Allocation, and an Error on a reference that has no attitude.
+/// Return the state of a vehicle that follows a reference exactly, including the rates of its
+/// joints; joint angles are zero. Throws InputError for a vehicle that controllers cannot fly, see
+/// ModelledVehicle::of() and Allocation, and Error for a reference without a defined attitude.
 VehicleState start_on(const Reference& wanted, const VehicleDescription& vehicle,
                       const std::vector<double>& spins = {});
 
-/// Speeds to command so that the vehicle hovers level, signed [rad/s], in the order of the command.
-/// Throws InputError on a vehicle that laws cannot fly or that its rotors cannot hold.
+/// Return the signed speeds for level hover [rad/s], in the order of the command. Throws InputError
+/// for a vehicle that controllers cannot fly or its rotors cannot hold.
 VectorXd hover_commands(const VehicleDescription& vehicle, const std::vector<double>& spins = {});
 
 }  // namespace control

@@ -6,11 +6,12 @@
 
 namespace quadcore {
 
-/// A body that rides on the frame, held as a URDF's fixed joint would hold it. It has no shape.
+/// A body that is attached to the frame as if by a fixed joint of a URDF. It has no collision
+/// shape.
 struct CarriedBody {
-  std::string_view name;  ///< as of a link; the text is a member of the plugin
-  Pose pose;              ///< of the body in the frame
-  Inertial inertial;      ///< in the body's own axes
+  std::string_view name;  ///< unique, like that of a link; the text must be a member of the plugin
+  Pose pose;              ///< pose of the body in the frame
+  Inertial inertial;      ///< mass and inertia in the body's axes
 };
 
 }  // namespace quadcore

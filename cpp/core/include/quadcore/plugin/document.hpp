@@ -9,31 +9,31 @@
 
 namespace quadcore QUADCORE_EXPORT {
 
-/// An XML text and where its lines came from. A document that was expanded (by xacro) carries for
-/// each of its lines the file and line it stems from; otherwise the text is the file itself.
+/// An XML text and the origin of its lines. An expanded document (xacro) has the source file and
+/// line of each of its lines; otherwise the text is the file itself.
 struct Document {
   /// \name Limits, far beyond any model or world
   /// @{
   static constexpr std::size_t largest = 1000000;  ///< bytes
-  static constexpr int most_levels = 64;           ///< of elements in each other
-  static constexpr int most_attributes = 100;      ///< of one element
+  static constexpr int most_levels = 64;           ///< nesting depth of elements
+  static constexpr int most_attributes = 100;      ///< attributes of one element
   /// @}
 
-  std::string name;  ///< of the file, for errors
-  std::string text;  ///< the XML
-  /// File and line that each line of an expanded text stems from; empty if the text is the file.
+  std::string name;  ///< file name for error messages
+  std::string text;  ///< XML text
+  /// Source file and line of each line of an expanded text; empty if the text is the file.
   std::vector<std::pair<std::string, int>> lines = {};
 
-  /// "FILE:LINE" of a line of the text, counted from 1.
+  /// Return "FILE:LINE" of a line of the text, counted from 1.
   std::string at(int line) const;
-  /// Reads a file; throws InputError as read_text_file() does.
+  /// Read a file. Throws InputError like read_text_file().
   static Document read(const std::string& path);
 };
 
-/// All that a model or a world was read from, so that it can be read again anywhere.
+/// Everything needed to read a model or a world again.
 struct Source {
-  Document document;                ///< as it was given
-  std::vector<std::string> ignore;  ///< see PassedOver
+  Document document;                ///< document as given
+  std::vector<std::string> ignore;  ///< see IgnoredElements
 };
 
 }  // namespace quadcore

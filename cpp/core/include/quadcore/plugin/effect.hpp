@@ -1,12 +1,12 @@
 #pragma once
 
 /// \file
-/// What a tag's number changes. Free of Eigen and of code, so that files compiled for one processor
-/// may include it.
+/// The property of the vehicle that a tag changes. Contains neither Eigen nor code, so that files
+/// compiled for a specific processor can include it.
 
 namespace quadcore {
 
-/// A property of the vehicle that grows with a tag's number. Studies vary it by scaling these tags.
+/// Property of the vehicle that grows with a tag's value. Studies vary it by scaling these tags.
 enum class Effect {
   none,    ///< none of these
   thrust,  ///< thrust and reaction torque of the rotors

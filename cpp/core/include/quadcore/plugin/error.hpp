@@ -7,37 +7,37 @@
 
 namespace quadcore QUADCORE_EXPORT {
 
-/// Base of every error that quadcore raises. The message is one line of UTF-8, ready to be shown:
-/// control characters are replaced, whatever input it quotes, and the middle of a long one is cut.
+/// Base class of all quadcore errors. The message is one line of UTF-8 that is ready for display:
+/// control characters are replaced and long messages are shortened in the middle.
 class Error : public std::runtime_error {
  public:
-  /// Takes any text and makes it such a line, as one_line() does.
+  /// Convert any text to one line with one_line().
   explicit Error(const std::string& what);
 };
 
-/// The input is at fault: a file, a tag, an argument. Nothing was changed by the refused call.
+/// Invalid input: a file, a tag or an argument. The rejected call changed nothing.
 class InputError : public Error {
  public:
   using Error::Error;
 };
 
-/// The flight itself failed: a state that is not finite, has diverged, or that a plugin refuses.
+/// Failure of the flight itself: the state is not finite, has diverged, or a plugin rejects it.
 class FlightError : public Error {
  public:
-  /// A failure at a time of the simulation [s].
+  /// Create a failure at a simulation time [s].
   FlightError(double time, const std::string& what) : Error(what), time_(time) {}
-  /// Simulation time of the failure [s].
+  /// Return the simulation time of the failure [s].
   double time() const { return time_; }
 
  private:
   double time_;
 };
 
-/// Text by others as Error has it: one line of UTF-8 without control characters.
+/// Return a text as one line of UTF-8 without control characters.
 std::string one_line(const std::string& text);
 
-/// What the exception that is being handled says; for use in a catch block, where others' code may
-/// have thrown anything.
+/// Return the message of the current exception. For use in a catch block after foreign code, which
+/// may throw anything.
 std::string what_was_thrown();
 
 }  // namespace quadcore

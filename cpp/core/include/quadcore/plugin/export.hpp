@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// What the namespace in a public header declares is exported from the shared library; everything
-/// else stays inside, and a static library exports nothing from what it is linked into.
+/// Symbol visibility: the shared library exports only the declarations in the namespaces of public
+/// headers, and binaries that link the static library export nothing of it.
 
 #ifdef QUADCORE_STATIC
 #define QUADCORE_EXPORT

@@ -20,70 +20,72 @@
 
 namespace quadcore QUADCORE_EXPORT {
 
-/// Laws that the plugins of quadcore hand to engines; force_laws.hpp has them, which is for these
-/// plugins alone.
+/// Force laws that quadcore's own plugins pass to engines; defined in force_laws.hpp, which is not
+/// for other plugins.
 struct ForceLaws;
 
-/// A plugin's state: plain numbers that belong to the simulation, so that snapshot, restore and
-/// reset are exact. All zero at the start.
+/// A plugin's state: plain numbers owned by the simulation, so that snapshot, restore and reset are
+/// exact. All are zero at the start.
 using PluginState = Eigen::Map<VectorXd>;
-/// The same to read.
+/// Read-only plugin state.
 using ConstPluginState = Eigen::Map<const VectorXd>;
 
-/// What a plugin sees at a sampling instant.
+/// Data that a plugin receives at a sampling instant.
 struct Sample {
   double time;                         ///< s
-  double dt;                           ///< length of the step [s]
+  double dt;                           ///< time step [s]
   const Kinematics& kinematics;        ///< motion at `time`
-  const World& world;                  ///< in which it flies
-  Topics& topics;                      ///< to read and to publish
-  std::vector<std::string>& warnings;  ///< what the user must know, each once per flight
-  std::uint64_t seed = 0;  ///< of the plugin's random numbers: the simulation's, and the name's
-  bool jumped = false;     ///< the motion was set, not flown: sensors answer at once, due or not
+  const World& world;                  ///< world of the flight
+  Topics& topics;                      ///< topics to read and to publish
+  std::vector<std::string>& warnings;  ///< warnings for the user; give each only once per flight
+  std::uint64_t seed =
+      0;  ///< seed of the plugin's random numbers, from the simulation's seed and its name
+  bool jumped = false;  ///< the state was set, so sensors must publish at once
 };
 
-/// A loaded plugin. It is immutable once created: whatever changes during a flight lives in the
-/// PluginState that each hook is handed. Hooks may throw FlightError to end the flight. Those that
-/// are handed a ConstPluginState are pure functions.
+/// A loaded plugin. It is immutable once created: all values that change during a flight are in the
+/// PluginState that each hook receives. Hooks may throw FlightError to end the flight. Hooks with a
+/// ConstPluginState are pure functions.
 class Plugin {
  public:
   virtual ~Plugin() = default;
 
-  /// Numbers of state this plugin needs.
+  /// Return the number of state values that this plugin needs.
   virtual std::size_t state_size() const { return 0; }
-  /// For a plugin that drives rotors: says how they follow a command. For one that exerts forces on
-  /// rotors that turn slower than the forces assume: says by which factor.
+  /// Describe how the rotors that this plugin drives follow a command, and the slowdown factor of
+  /// rotors on which it exerts forces.
   virtual void describe_rotors(std::vector<RotorDescription>&) const {}
-  /// Once, when all plugins are made: the last moment at which a plugin may change.
+  /// Called once when all plugins have been created. A plugin must not change afterwards.
   virtual void prepare(const VehicleDescription&) {}
-  /// Once per step, at its start: commands, sampled control laws.
+  /// Called at the start of each step: commands and sampled controllers.
   virtual void update(const Sample&, PluginState) const {}
-  /// At time 0, after a state was set, and at the end of each step: sensors.
+  /// Called at time 0, after a state was set, and at the end of each step: sensors.
   virtual void sense(const Sample&, PluginState) const {}
-  /// The force law, evaluated as often as the engine's integrator needs.
+  /// Add the plugin's forces. Called as often as the engine's integrator requires.
   virtual void forces(const Kinematics&, ConstPluginState, Loads&) const {}
-  /// For the plugins of quadcore: hands out the laws that make up forces(), all of them, once when
-  /// all plugins are made. An engine may evaluate them itself, several rotors at once, and not call
-  /// forces(). Tables that they point to lie in the plugin or in this state. Such a class has a
-  /// member law_interface, which is that of quadcore/law_interface.hpp.
+  /// For quadcore's own plugins only. Provide all force laws that make up forces(); called once
+  /// when all plugins have been created. An engine may evaluate the laws itself for several rotors
+  /// at once instead of calling forces(). The tables they point to belong to the plugin or its
+  /// state. The class must have a member law_interface with the value of
+  /// quadcore/law_interface.hpp.
   virtual void laws(ConstPluginState, ForceLaws&) const {}
-  /// Adds to the velocity of the air at the frame's origin, in world axes [m/s], before any force
-  /// law is asked. The velocity that the motion holds is zero still.
+  /// Add to the velocity of the air at the frame's origin, in world axes [m/s]. Called before all
+  /// force laws; the air velocity in the motion is still zero.
   virtual void air(const Kinematics&, ConstPluginState, Vector3d& /*v_WA_W*/) const {}
-  /// Adds the bodies that ride on the frame, once per step after all updates. Where the answer
-  /// changes, the vehicle goes on as one of another mass, its frame moving as it did.
+  /// Add the bodies attached to the frame. Called once per step after all updates. If the bodies
+  /// change, the vehicle continues with the new mass and the same motion of the frame.
   virtual void carried(ConstPluginState, std::vector<CarriedBody>&) const {}
 };
 
-/// Which hooks a class of plugins has of its own; the others are never called. Of a class that is
-/// not known all may be, but laws(), which would stand for forces(). Members have the hooks' names.
+/// The hooks that a plugin class overrides; the others are never called. For an unknown class, all
+/// hooks except laws(), which would replace forces(), count as overridden.
 struct Hooks {
   /// \cond
   bool prepare = true, update = true, sense = true, forces = true, air = true, carried = true;
   /// \endcond
-  const char* laws = nullptr;  ///< law_interface of a class that has laws()
+  const char* laws = nullptr;  ///< law_interface of a class with laws()
 
-  /// Those that class P, which is derived from Plugin, overrides.
+  /// Return the hooks that class P, derived from Plugin, overrides.
   template <class P>
   static constexpr Hooks of() {
     return {!std::is_same_v<decltype(&P::prepare), decltype(&Plugin::prepare)>,
@@ -106,66 +108,65 @@ struct Hooks {
   }
 };
 
-/// What a plugin is made from.
+/// Arguments of a plugin's constructor.
 struct PluginSetup {
   const std::string& name;             ///< name attribute of the plugin tag
-  const Parameters& parameters;        ///< that the tag and its overrides give
-  const Model& model;                  ///< that is to fly
-  const World& world;                  ///< in which it is to fly
-  Topics& topics;                      ///< declare topics here
-  std::vector<std::string>& warnings;  ///< what is allowed but was perhaps not meant
-  /// Rate at which the engine's step no longer makes an error decay but grow, where the force law
-  /// makes it decay faster than this [1/s].
+  const Parameters& parameters;        ///< effective parameters
+  const Model& model;                  ///< model of the vehicle
+  const World& world;                  ///< world of the flight
+  Topics& topics;                      ///< for declaring topics
+  std::vector<std::string>& warnings;  ///< warnings about valid but suspicious input
+  /// Maximum decay rate of a force law that the engine integrates stably with this time step [1/s].
   double fastest_decay;
-  double dt;  ///< length of the step [s]
-  /// Whether the engine lets a rotor turn by more than half a turn in a step.
+  double dt;  ///< time step [s]
+  /// Whether the engine supports rotors that turn by more than half a turn per step.
   bool follows_any_turn;
 };
 
-/// Makes plugins of one class.
+/// Factory for plugins of one class.
 struct PluginMaker {
-  std::unique_ptr<Plugin> (*make)(const PluginSetup&) = nullptr;  ///< null: none
-  Hooks hooks = {};                                               ///< that the class has
+  std::unique_ptr<Plugin> (*make)(const PluginSetup&) = nullptr;  ///< null: no class
+  Hooks hooks = {};  ///< hooks that the class overrides
 
-  /// Whether there is a class to make plugins of.
+  /// Return whether the factory has a class.
   explicit operator bool() const { return make; }
 };
 
-/// The maker of a class that a PluginSetup constructs.
+/// Factory of a class with a constructor that takes a PluginSetup.
 template <class P>
 constexpr PluginMaker create{
     [](const PluginSetup& setup) -> std::unique_ptr<Plugin> { return std::make_unique<P>(setup); },
     Hooks::of<P>()};
 
-/// What a module says of itself.
+/// Description of a plugin module.
 struct PluginDescriptor {
   std::string summary;                ///< one line
-  std::vector<TagSpec> tags;          ///< every parameter
+  std::vector<TagSpec> tags;          ///< all parameters
   std::vector<std::string> wrenches;  ///< names of the wrench terms that forces() reports
-  PluginMaker create;                 ///< create<P>, P being the class of the plugin
-  bool adds_up = false;  ///< several of them may fly, whose wrenches of one name are summed
+  PluginMaker create;                 ///< create<P> for the plugin class P
+  bool adds_up = false;  ///< allows several instances and sums their wrenches of the same name
 };
 
-/// What a library holds: the first that is read of it, so it stays as it is for ever.
+/// Entry point of a plugin library. It is read first, so its layout must never change.
 struct PluginModule {
-  const char* interface;                    ///< plugin_interface, as the library was built with it
-  const PluginDescriptor* (*descriptor)();  ///< valid as long as the process
+  const char* interface;                    ///< plugin_interface at the library's build
+  const PluginDescriptor* (*descriptor)();  ///< result is valid until the process ends
 };
 
 }  // namespace quadcore
 
-/// The name of a library's PluginModule, which is exported whatever else is hidden. Where several
-/// are linked together each has a name of its own, and a static core exports none.
+/// Symbol name of a library's PluginModule, which is always exported. Plugins linked into one
+/// binary have individual names, which a static core does not export.
 #ifdef QUADCORE_PLUGIN_SYMBOL
 #define QUADCORE_PLUGIN_EXPORT QUADCORE_EXPORT
 #else
 #define QUADCORE_PLUGIN_SYMBOL quadcore_plugin
-/// Exports that name from the library.
+/// Exports the symbol from the library.
 #define QUADCORE_PLUGIN_EXPORT __attribute__((visibility("default")))
 #endif
 
-/// Makes a shared library a quadcore plugin. `describe` is a function that returns its
-/// PluginDescriptor. Use once per library, outside any namespace.
+/// Turns a shared library into a quadcore plugin. `describe` is a function that returns its
+/// PluginDescriptor. Use it once per library, outside any namespace.
 #define QUADCORE_REGISTER_PLUGIN(describe)                                                    \
   /* Not a lambda: what one holds in an extern initialiser is shared by the whole process. */ \
   static const quadcore::PluginDescriptor* quadcore_descriptor() {                            \

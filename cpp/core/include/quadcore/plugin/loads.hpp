@@ -18,47 +18,47 @@ struct Wrench {
   alignas(2 * sizeof(double)) Vector3d torque_F = Vector3d::Zero();  ///< N m
 };
 
-/// The rate of a joint that is not left to torques: it is what it is said to be.
+/// Prescribed rate of a joint, which replaces its equation of motion.
 struct PrescribedRate {
-  double at_end;        ///< of the step [rad/s]
-  double slope;         ///< its derivative at the time of the motion [rad/s^2]
-  bool reacts = false;  ///< whether what carries the rotor bears the torque that turns it
+  double at_end;        ///< rate at the end of the step [rad/s]
+  double slope;         ///< derivative of the rate at the time of the motion [rad/s^2]
+  bool reacts = false;  ///< whether the parent body takes the reaction to the rotor's acceleration
 };
 
-/// Collects what the force laws exert on the vehicle at one instant. All vectors are in the frame's
-/// axes F. `term` is the index of the plugin's wrench term that the load belongs to (see
-/// PluginDescriptor::wrenches); it matters only while a log records the terms one by one. An index
-/// of a rotor or a term that is not there is an Error.
+/// Sums the loads of all force laws on the vehicle at one instant. All vectors are in the frame's
+/// axes F. `term` is the index of the plugin's wrench term for the load (see
+/// PluginDescriptor::wrenches); it matters only while the terms are logged separately. Throws Error
+/// for a rotor or term that does not exist.
 class Loads {
  public:
-  /// For so many rotors, with nothing on any.
+  /// Create zero loads for so many rotors.
   explicit Loads(std::size_t rotor_count) : rotors_(rotor_count), rates_(rotor_count) {}
 
-  /// A force on the frame at the point Q, p_FQ_F from the frame's origin.
+  /// Add a force on the frame at the point Q, located at p_FQ_F from the frame's origin.
   void add_frame_force(std::size_t term, const Vector3d& f_F, const Vector3d& p_FQ_F) {
     frame_.force_F += f_F;
     frame_.torque_F += p_FQ_F.cross(f_F);
     if (terms_) record(term, f_F, p_FQ_F);
   }
-  /// A torque on the frame.
+  /// Add a torque on the frame.
   void add_frame_torque(std::size_t term, const Vector3d& tau_F) {
     frame_.torque_F += tau_F;
     if (terms_) recorded(term).torque_F += tau_F;
   }
-  /// A force on rotor i at its centre of mass.
+  /// Add a force on rotor i at its centre of mass.
   void add_rotor_force(std::size_t term, std::size_t i, const Vector3d& f_F) {
     check_rotor(i);
     rotors_.add_vector(LoadRow::force, i, f_F);
     if (terms_) record(term, f_F, kinematics_->rotors[i].p_FRcm_F);
   }
-  /// A torque of joint i on its rotor about the joint axis; its reaction acts on the parent.
+  /// Add a torque of joint i on its rotor about the joint axis. The reaction acts on the parent.
   void add_joint_torque(std::size_t i, double torque) {
     check_rotor(i);
     rotors_.number(LoadRow::joint_torque, i) += torque;
   }
 
-  /// Gives joint i its rate; torques about it have no effect then. Throws Error if it has one
-  /// already.
+  /// Prescribe the rate of joint i, which makes torques about it ineffective. Throws Error if its
+  /// rate is already prescribed.
   void prescribe_joint_rate(std::size_t i, const PrescribedRate& rate) {
     check_rotor(i);
     if (rates_[i]) refuse_second_rate(i);
@@ -66,40 +66,39 @@ class Loads {
     any_rate_ = true;
   }
 
-  /// What was put on the frame by itself, without the rotors' reactions; the torque is about the
-  /// frame's origin.
+  /// Return the wrench on the frame without the rotors' reactions, about the frame's origin.
   const Wrench& on_frame() const { return frame_; }
-  /// The same with the rotors' reactions, summed in the rotors' order.
+  /// Return the wrench on the frame with the rotors' reactions, summed in the rotors' order.
   Wrench frame() const;
-  /// Force on rotor i at its centre of mass [N].
+  /// Return the force on rotor i at its centre of mass [N].
   Vector3d rotor_force_F(std::size_t i) const { return rotors_.vector(LoadRow::force, i); }
-  /// Torque of joint i on its rotor about the joint axis [N m].
+  /// Return the torque of joint i on its rotor about the joint axis [N m].
   double joint_torque(std::size_t i) const { return rotors_.number(LoadRow::joint_torque, i); }
 
-  /// Whether any joint was given its rate.
+  /// Return whether the rate of any joint is prescribed.
   bool any_rate() const { return any_rate_; }
-  /// The rate that joint i was given; nullopt where torques make it.
+  /// Return the prescribed rate of joint i, or nullopt.
   const std::optional<PrescribedRate>& joint_rate(std::size_t i) const { return rates_[i]; }
 
-  /// The rotors' loads for laws that take several rotors at once; what they add here belongs to no
-  /// term.
+  /// Return the rotors' loads for force laws on several rotors at once. Loads added here belong to
+  /// no term.
   RotorRows<LoadRow::count>& rotors() { return rotors_; }
-  /// The same to read.
+  /// Return the rotors' loads for reading.
   const RotorRows<LoadRow::count>& rotors() const { return rotors_; }
 
-  /// Takes everything off the vehicle. What terms are recorded to is left alone.
+  /// Set all loads to zero. The recorded terms remain.
   void clear();
-  /// Clears all but rotors().
+  /// Set all loads except rotors() to zero.
   void clear_rest();
-  /// Whether no load and no prescribed rate is infinite or NaN.
+  /// Return whether all loads and prescribed rates are finite.
   bool all_finite() const;
-  /// While set, each load is also added to terms[term], about the vehicle's centre of mass.
+  /// Also add each load to terms[term], about the vehicle's centre of mass, until called with null.
   void record_terms(Wrench* terms, std::size_t count, const Kinematics* kinematics) {
     terms_ = terms;
     term_count_ = count;
     kinematics_ = kinematics;
   }
-  /// The terms of the plugin that is evaluated next; null while nothing is recorded.
+  /// Return the terms of the plugin that is evaluated next; null while nothing is recorded.
   Wrench* terms() const { return terms_; }
 
  private:

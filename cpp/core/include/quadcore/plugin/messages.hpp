@@ -11,35 +11,35 @@
 #include "quadcore/plugin/spatial.hpp"
 
 /// \file
-/// The kinds of message that topics carry. Each is a type with one list of its fields: plugins,
-/// logs, Python and the ROS node all go by that list.
+/// Kinds of messages on topics. Each is a type with a list of its fields, which plugins, logs,
+/// Python and the ROS node share.
 
 namespace quadcore QUADCORE_EXPORT {
 
-/// What the row of numbers of a topic means. A plugin may make a kind of its own.
+/// Meaning of the values of a topic. Plugins may define their own kinds.
 struct MessageKind {
-  std::string name;                 ///< by which bridges and errors know it
-  std::vector<std::string> fields;  ///< names of the numbers, in order
-  /// What whoever takes the topic goes by before the first message, a number for each field; empty
-  /// where no number says it, and the topic holds zeros then.
+  std::string name;                 ///< name for bridges and error messages
+  std::vector<std::string> fields;  ///< names of the values, in order
+  /// Values that readers assume before the first message, one for each field; if empty, the topic
+  /// contains zeros without meaning until then.
   std::vector<double> unsaid = {};
-  std::string meaning = {};  ///< of the numbers, with their units, for people
+  std::string meaning = {};  ///< meaning of the values with their units, for documentation
 
-  /// Whether messages mean the same.
+  /// Return whether messages have the same meaning.
   bool operator==(const MessageKind& other) const {
     return name == other.name && fields == other.fields;
   }
 };
 
-/// Types of message. Such a type M, also one of a plugin's own, has `kind`, the MessageKind::name,
-/// its `meaning`, and `M::for_each_field(m, visit)`, which calls `visit(member, {field,
-/// ...}, numbers)` with the names and the numbers of each member in order.
+/// Message types. A type M, which a plugin may also define, has `kind` (the MessageKind::name),
+/// `meaning`, and `M::for_each_field(m, visit)`, which calls `visit(member, {field, ...}, numbers)`
+/// with names and numbers of each member in order.
 namespace messages {
 
-/// Names of numbers that lie side by side.
+/// Names of adjacent numbers.
 using Names = std::initializer_list<const char*>;
 
-/// Visits a member that is one field and has its name.
+/// Visit a member that consists of one field of the same name.
 template <class Visit, class Number>
 void visit_number(const Visit& visit, const char* name, Number& number) {
   visit(name, {name}, &number);
@@ -49,11 +49,12 @@ void visit_number(const Visit& visit, const char* name, Number& number) {
 struct Odometry {
   static constexpr const char* kind = "odometry";  ///< MessageKind::name
   /// MessageKind::meaning
-  static constexpr const char* meaning = "units as in the log, variances in their squares";
-  Vector3d position = Vector3d::Zero();               ///< world axes [m]
-  Quaterniond orientation = Quaterniond::Identity();  ///< of the frame in the world, unit
+  static constexpr const char* meaning = "units as in the log; variances in the squared units";
+  Vector3d position = Vector3d::Zero();  ///< world axes [m]
+  Quaterniond orientation =
+      Quaterniond::Identity();  ///< orientation of the frame in the world, unit quaternion
   Vector3d linear_velocity =
-      Vector3d::Zero();  ///< of the frame's origin, axes as the publisher says [m/s]
+      Vector3d::Zero();  ///< velocity of the frame's origin, axes defined by the publisher [m/s]
   Vector3d angular_velocity = Vector3d::Zero();  ///< frame axes [rad/s]
   double position_variance = 0;                  ///< of each component [m^2]
   double orientation_variance = 0;               ///< about each axis [rad^2]
@@ -93,7 +94,7 @@ struct Imu {
   }
 };
 
-/// Measurement of a satellite receiver: position on Earth and in the world, and velocity.
+/// Measurement of a GPS receiver: position on Earth and in the world, and velocity.
 struct Fix {
   static constexpr const char* kind = "fix";  ///< MessageKind::name
   /// MessageKind::meaning
@@ -102,10 +103,10 @@ struct Fix {
   double latitude = 0;                   ///< positive north [deg]
   double longitude = 0;                  ///< positive east [deg]
   double altitude = 0;                   ///< [m]
-  Vector3d position = Vector3d::Zero();  ///< the same position in world axes [m]
+  Vector3d position = Vector3d::Zero();  ///< position in world axes [m]
   Vector3d velocity = Vector3d::Zero();  ///< world axes [m/s]
-  double horizontal_variance = 0;        ///< of x and y each [m^2]
-  double vertical_variance = 0;          ///< of z [m^2]
+  double horizontal_variance = 0;        ///< variance of each of x and y [m^2]
+  double vertical_variance = 0;          ///< variance of z [m^2]
   double velocity_variance = 0;          ///< of each component [m^2/s^2]
 
   template <class M, class Visit>
@@ -126,7 +127,7 @@ struct Pressure {
   static constexpr const char* kind = "pressure";  ///< MessageKind::name
   /// MessageKind::meaning
   static constexpr const char* meaning = "static pressure of the air, Pa, and its variance";
-  double pressure = 0;  ///< static, of the air [Pa]
+  double pressure = 0;  ///< static pressure of the air [Pa]
   double variance = 0;  ///< [Pa^2]
 
   template <class M, class Visit>
@@ -155,11 +156,12 @@ struct Field {
 struct Battery {
   static constexpr const char* kind = "battery";  ///< MessageKind::name
   /// MessageKind::meaning
-  static constexpr const char* meaning = "V, A drawn, A h left, A h of a full one";
-  double voltage = 0;   ///< between its poles [V]
-  double current = 0;   ///< drawn from it [A]
-  double charge = 0;    ///< that is left [A h]
-  double capacity = 0;  ///< charge of a full one [A h]
+  static constexpr const char* meaning =
+      "voltage, V; current, A; remaining charge, A h; full charge, A h";
+  double voltage = 0;   ///< terminal voltage [V]
+  double current = 0;   ///< discharge current [A]
+  double charge = 0;    ///< remaining charge [A h]
+  double capacity = 0;  ///< charge of the full battery [A h]
 
   template <class M, class Visit>
   static void for_each_field(M& m, const Visit& visit) {
@@ -176,7 +178,7 @@ struct Reference {
   /// MessageKind::meaning
   static constexpr const char* meaning =
       "desired position, its derivatives, and yaw; world axes, m, rad, s";
-  Vector3d position = Vector3d::Zero();      ///< of the frame's origin [m]
+  Vector3d position = Vector3d::Zero();      ///< position of the frame's origin [m]
   Vector3d velocity = Vector3d::Zero();      ///< [m/s]
   Vector3d acceleration = Vector3d::Zero();  ///< [m/s^2]
   Vector3d jerk = Vector3d::Zero();          ///< [m/s^3]
@@ -198,7 +200,7 @@ struct Reference {
   }
 };
 
-/// A force at a point and a torque; point and axes are the taker's.
+/// A force at a point and a torque; the reader defines point and axes.
 struct Wrench {
   static constexpr const char* kind = "wrench";  ///< MessageKind::name
   /// MessageKind::meaning
@@ -213,7 +215,7 @@ struct Wrench {
   }
 };
 
-/// A vector of space; axes and unit are the publisher's.
+/// A spatial vector; the publisher defines axes and unit.
 struct Vector {
   static constexpr const char* kind = "vector";  ///< MessageKind::name
   /// MessageKind::meaning
@@ -226,7 +228,7 @@ struct Vector {
   }
 };
 
-/// How the air moves, world axes.
+/// Velocity of the air, world axes.
 struct WindSpeed {
   static constexpr const char* kind = "wind_speed";  ///< MessageKind::name
   /// MessageKind::meaning
@@ -239,7 +241,7 @@ struct WindSpeed {
   }
 };
 
-/// How a satellite receiver moves, world axes.
+/// Velocity of a GPS receiver, world axes.
 struct GroundSpeed {
   static constexpr const char* kind = "ground_speed";  ///< MessageKind::name
   /// MessageKind::meaning
@@ -252,10 +254,11 @@ struct GroundSpeed {
   }
 };
 
-/// The rate of one joint [rad/s].
+/// Return the kind for the rate of one joint [rad/s].
 inline MessageKind motor_speed() { return {"motor_speed", {"w"}, {}, "joint rate, rad/s"}; }
 
-/// Speeds of as many rotors as there are, signed [rad/s], before any division by sim_slow.
+/// Return the kind for the signed speeds of any number of rotors [rad/s], before the division by
+/// sim_slow.
 inline MessageKind speeds(std::size_t rotors) {
   MessageKind kind{
       "speeds", {}, {}, "rotor speeds, rad/s, signed, before the division by `sim_slow`"};
@@ -263,7 +266,7 @@ inline MessageKind speeds(std::size_t rotors) {
   return kind;
 }
 
-/// The members of a type of message, and the fields that each is.
+/// Return the members of a message type and the fields of each.
 template <class M>
 std::vector<std::pair<std::string, std::vector<std::string>>> parts_of() {
   std::vector<std::pair<std::string, std::vector<std::string>>> parts;
@@ -274,7 +277,7 @@ std::vector<std::pair<std::string, std::vector<std::string>>> parts_of() {
   return parts;
 }
 
-/// The kind that a type of message is; `meaning` may be narrower than the type's own.
+/// Return the kind of a message type. `meaning` may be more specific than that of the type.
 template <class M>
 MessageKind kind_of(const char* meaning = M::meaning) {
   MessageKind kind{M::kind, {}, {}, meaning};
@@ -284,7 +287,7 @@ MessageKind kind_of(const char* meaning = M::meaning) {
   return kind;
 }
 
-/// Writes a message as a row of numbers.
+/// Write a message as a row of numbers.
 template <class M>
 void write(const M& message, double* row) {
   M::for_each_field(message, [&row](const char*, Names fields, const double* values) {
@@ -292,7 +295,7 @@ void write(const M& message, double* row) {
   });
 }
 
-/// The message that a row of numbers is.
+/// Return the message in a row of numbers.
 template <class M>
 M read(const double* row) {
   M message;

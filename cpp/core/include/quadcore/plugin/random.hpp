@@ -8,12 +8,12 @@
 #include "quadcore/plugin/elementary.hpp"
 
 /// \file
-/// Reproducible noise: the same on every machine and standard library, with a state that is a plain
-/// count and so lives in a plugin's state.
+/// Reproducible random numbers: identical on every machine and standard library. Their state is a
+/// plain count, which is part of a plugin's state.
 
 namespace quadcore {
 
-/// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): draw number `count` of the stream `seed`.
+/// Return number `count` of the stream `seed` by SplitMix64 (Steele, Lea, Flood, OOPSLA 2014).
 inline std::uint64_t random_bits(std::uint64_t seed, std::uint64_t count) {
   std::uint64_t z = seed + (count + 1) * 0x9E3779B97F4A7C15ULL;
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
@@ -21,7 +21,7 @@ inline std::uint64_t random_bits(std::uint64_t seed, std::uint64_t count) {
   return z ^ (z >> 31);
 }
 
-/// Standard normal number by Box and Muller; advances `count` (a whole number) by two.
+/// Return a standard normal number by Box and Muller. Advances `count` (a whole number) by two.
 inline double random_normal(std::uint64_t seed, double& count) {
   const std::uint64_t n = count_of(count);
   count += 2;
@@ -31,7 +31,7 @@ inline double random_normal(std::uint64_t seed, double& count) {
   return std::sqrt(-2 * elementary::log(u)) * elementary::cos(6.283185307179586 * v);
 }
 
-/// A stream of its own for each name under one seed (FNV-1a).
+/// Return the seed of a separate stream for each name under one seed (FNV-1a).
 inline std::uint64_t stream_seed(std::uint64_t seed, const std::string& name) {
   std::uint64_t hash = 0xCBF29CE484222325ULL;
   for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3ULL;

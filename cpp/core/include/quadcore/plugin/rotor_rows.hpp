@@ -11,8 +11,8 @@
 
 namespace quadcore QUADCORE_EXPORT {
 
-/// Begins numbers where a whole pack can be read at once: an allocator as the standard containers
-/// want it.
+/// Allocator for standard containers that aligns numbers such that a whole pack can be read at
+/// once.
 template <class T>
 struct LaneAllocator {
   /// \cond
@@ -30,61 +30,61 @@ struct LaneAllocator {
 /// Numbers in packs of widest_lanes.
 using LaneNumbers = std::vector<double, LaneAllocator<double>>;
 
-/// A table of numbers of the rotors: a row for each quantity (three for a vector), a column for
-/// each rotor, laid out as rotor_layout.hpp says.
+/// A table of rotor quantities with a row for each quantity (three for a vector) and a column for
+/// each rotor, in the layout of rotor_layout.hpp.
 template <std::size_t rows>
 class RotorRows {
  public:
-  /// For so many rotors, all numbers zero.
+  /// Create a table of zeros for so many rotors.
   explicit RotorRows(std::size_t rotors) : rotors_(rotors), numbers_(size_of(rotors), 0.0) {}
 
-  /// Numbers that such a table takes.
+  /// Return the number of values in the table.
   static std::size_t size_of(std::size_t rotors) {
     return (rotors + widest_lanes - 1) / widest_lanes * widest_lanes * rows;
   }
-  /// Columns that are rotors', without those that fill up the last block.
+  /// Return the number of rotors, without the columns that fill the last block.
   std::size_t rotors() const { return rotors_; }
-  /// All numbers, in the order that rotor_offset() tells.
+  /// Return all values in the order of rotor_offset().
   double* data() { return numbers_.data(); }
   /// The same to read.
   const double* data() const { return numbers_.data(); }
 
-  /// The number of rotor i in a row; neither is checked.
+  /// Return the value of rotor i in a row, without checking the indices.
   double& number(std::size_t row, std::size_t i) { return numbers_[offset(row, i)]; }
   /// The same to read.
   double number(std::size_t row, std::size_t i) const { return numbers_[offset(row, i)]; }
-  /// The vector of rotor i whose x stands in a row, y and z in the next two.
+  /// Return the vector of rotor i with x in the given row, and y and z in the next two.
   Vector3d vector(std::size_t row, std::size_t i) const {
     const double* x = data() + offset(row, i);
     return {x[0], x[widest_lanes], x[2 * widest_lanes]};
   }
-  /// Writes such a vector.
+  /// Write such a vector.
   void set_vector(std::size_t row, std::size_t i, const Vector3d& v) {
     double* x = data() + offset(row, i);
     x[0] = v.x();
     x[widest_lanes] = v.y();
     x[2 * widest_lanes] = v.z();
   }
-  /// Adds to such a vector.
+  /// Add to such a vector.
   void add_vector(std::size_t row, std::size_t i, const Vector3d& v) {
     double* x = data() + offset(row, i);
     x[0] += v.x();
     x[widest_lanes] += v.y();
     x[2 * widest_lanes] += v.z();
   }
-  /// The matrix of rotor i whose columns stand from a row on.
+  /// Return the matrix of rotor i, stored by columns from the given row.
   Matrix3d matrix(std::size_t row, std::size_t i) const {
     Matrix3d m;
     m << vector(row, i), vector(row + 3, i), vector(row + 6, i);
     return m;
   }
-  /// Writes such a matrix.
+  /// Write such a matrix.
   void set_matrix(std::size_t row, std::size_t i, const Matrix3d& m) {
     set_vector(row, i, m.col(0));
     set_vector(row + 3, i, m.col(1));
     set_vector(row + 6, i, m.col(2));
   }
-  /// Sets all numbers to zero.
+  /// Set all values to zero.
   void clear() { std::fill(numbers_.begin(), numbers_.end(), 0.0); }
 
  private:

@@ -18,42 +18,40 @@
 ///   R_WF     rotation that takes components in F to components in W
 ///   f_F      force expressed in F's axes [N];  tau_F  torque expressed in F's axes [N m]
 
-/// Simulation of multirotors: a Model in a World becomes a Simulation, which an Engine and plugins
-/// move.
+/// Simulation of multirotors: an Engine and plugins advance a Simulation of a Model in a World.
 namespace quadcore QUADCORE_EXPORT {
 
-static_assert(
-    EIGEN_MAX_ALIGN_BYTES == 16 && (EIGEN_MALLOC_ALREADY_ALIGNED || sizeof(void*) < 8),
-    "Eigen would lay out its objects otherwise than quadcore's libraries do: link the CMake "
-    "target quadcore::quadcore, which carries the definitions that make them agree");
+static_assert(EIGEN_MAX_ALIGN_BYTES == 16 && (EIGEN_MALLOC_ALREADY_ALIGNED || sizeof(void*) < 8),
+              "Eigen's memory layout would differ from that of quadcore's libraries. Link the "
+              "CMake target quadcore::quadcore, which carries the required definitions.");
 
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-/// Rotation by fixed-axis roll, pitch, yaw [rad]: Rz(yaw) Ry(pitch) Rx(roll), thesis eq. (2.8) as
-/// corrected, the convention of URDF and SDF.
+/// Return the rotation by fixed-axis roll, pitch, yaw [rad]: Rz(yaw) Ry(pitch) Rx(roll), the
+/// convention of URDF and SDF (thesis eq. (2.8), corrected).
 Quaterniond quaternion_from_rpy(const Vector3d& rpy);
 
-/// Inverse of quaternion_from_rpy; pitch in [-pi/2, pi/2].
+/// Return the inverse of quaternion_from_rpy(), with the pitch in [-pi/2, pi/2].
 Vector3d rpy_from_quaternion(const Quaterniond& q);
 
-/// Rotation by an angle [rad] about a unit axis.
+/// Return the rotation by an angle [rad] about a unit axis.
 Quaterniond quaternion_about(const Vector3d& axis, double angle);
 
-/// A pose as URDF writes it: translation [m] and fixed-axis roll, pitch, yaw [rad].
+/// A pose as in a URDF: translation [m] and fixed-axis roll, pitch, yaw [rad].
 struct Pose {
   Vector3d xyz = Vector3d::Zero();  ///< m
   Vector3d rpy = Vector3d::Zero();  ///< rad
 
-  /// The orientation, as quaternion_from_rpy() makes it.
+  /// Return the orientation as a quaternion.
   Quaterniond rotation() const { return quaternion_from_rpy(rpy); }
-  /// Composition X_AC = X_AB * X_BC.
+  /// Return the composition X_AC = X_AB * X_BC.
   Pose operator*(const Pose& other) const;
 };
 
-/// Cross-product matrix: skew(a) b = a x b.
+/// Return the cross-product matrix: skew(a) b = a x b.
 inline Matrix3d skew(const Vector3d& a) {
   Matrix3d m;
   m << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;

@@ -12,66 +12,66 @@
 
 namespace quadcore QUADCORE_EXPORT {
 
-/// What the text of a tag must be.
+/// Type of a tag's text.
 enum class TagKind {
   number,   ///< a finite number within [min, max]
   numbers,  ///< `count` such numbers, separated by blanks
   flag,     ///< true | false
   choice,   ///< one of `choices`
-  text,     ///< anything but nothing
-  file,     ///< the path of a file that can be read, relative to the document that holds the tag
-  link,     ///< the name of a link of the model; empty = the root
+  text,     ///< any text that is not empty
+  file,     ///< path of a readable file, relative to the document that contains the tag
+  link,     ///< name of a link of the model; empty = the root
   joints,   ///< names of continuous joints, separated by blanks; empty = all, in file order
 };
 
-/// Of a row of numbers: at least one.
+/// TagSpec::count of a row of at least one number.
 constexpr std::size_t any_count = 0;
 
-/// One parameter of a plugin. Parsing, errors, `quadcore info` and the docs all come from here.
+/// Specification of one plugin parameter, used for parsing, errors, `quadcore info` and the docs.
 struct TagSpec {
-  std::string name;                ///< of the element
-  TagKind kind = TagKind::number;  ///< what its text must be
+  std::string name;                ///< name of the element
+  TagKind kind = TagKind::number;  ///< type of its text
   std::string unit;                ///< "" = none
-  std::string fallback;            ///< the default; meaningless when required
-  bool required = false;           ///< whether a model must have it
-  double min = -std::numeric_limits<double>::infinity();  ///< least number, in its unit
-  double max = std::numeric_limits<double>::infinity();   ///< greatest number, in its unit
-  bool exclusive_min = false;                             ///< min itself is out of range
-  std::size_t count = any_count;                          ///< of numbers: how many
-  std::vector<std::string> choices;                       ///< of a choice
+  std::string fallback;            ///< default value; meaningless if required
+  bool required = false;           ///< whether the tag is required
+  double min = -std::numeric_limits<double>::infinity();  ///< minimum, in its unit
+  double max = std::numeric_limits<double>::infinity();   ///< maximum, in its unit
+  bool exclusive_min = false;                             ///< excludes min itself
+  std::size_t count = any_count;                          ///< number of values, for `numbers`
+  std::vector<std::string> choices;                       ///< valid words, for `choice`
   std::string meaning;                                    ///< one line
   std::string equation;  ///< equation of the thesis or paper, "" = none
   std::string alias;     ///< another accepted name, "" = none
-  bool shared = false;   ///< must have the same value in every plugin of the model that has it
-  std::string absent;    ///< of an optional tag without default: what its absence means ("off")
-  Effect effect = Effect::none;  ///< property of the vehicle that scales with the number
-  int power = 0;                 ///< of the factor on the property that multiplies the number
+  bool shared = false;   ///< must have the same value in all plugins with this tag
+  std::string absent;    ///< for an optional tag without default: meaning of its absence ("off")
+  Effect effect = Effect::none;  ///< property of the vehicle that scales with the value
+  int power = 0;  ///< exponent: scaling the property by f multiplies the value by f^power
 
-  /// The range as a person reads it: ">= 0", "true | false", ...
+  /// Return the range as text: ">= 0", "true | false", ...
   std::string range() const;
-  /// Its bounds alone; "" for none.
+  /// Return only the bounds; "" for none.
   std::string interval() const;
 
-  /// \name Builders, so that a table reads like one
+  /// \name Builders
   /// @{
 
-  /// A finite number.
+  /// Specify a finite number.
   static TagSpec number(std::string name, std::string unit, std::string fallback,
                         std::string meaning);
-  /// Several numbers.
+  /// Specify several numbers.
   static TagSpec numbers(std::string name, std::string unit, std::string fallback,
                          std::string meaning);
-  /// Either true or false.
+  /// Specify true or false.
   static TagSpec flag(std::string name, std::string fallback, std::string meaning);
-  /// One of several words, the first being the default.
+  /// Specify one of several words, the first being the default.
   static TagSpec choice(std::string name, std::vector<std::string> choices, std::string meaning);
-  /// Any text.
+  /// Specify any text.
   static TagSpec text(std::string name, std::string fallback, std::string meaning);
-  /// A file that can be read; none if absent.
+  /// Specify a readable file; none if absent.
   static TagSpec file(std::string name, std::string meaning);
-  /// A link of the model; the root if absent.
+  /// Specify a link of the model; the root if absent.
   static TagSpec link(std::string name, std::string meaning);
-  /// Continuous joints of the model; all if absent.
+  /// Specify continuous joints of the model; all if absent.
   static TagSpec joints(std::string name, std::string meaning);
   TagSpec must() const;                                 ///< required
   TagSpec of(std::size_t numbers) const;                ///< count
@@ -88,44 +88,44 @@ struct TagSpec {
 
 /// A tag with its effective value.
 struct Parameter {
-  TagSpec spec;                          ///< its row of the plugin's table
-  std::string text;                      ///< as written, or the default; empty = absent
+  TagSpec spec;                          ///< specification in the plugin's table
+  std::string text;                      ///< text as written, or the default; empty = absent
   std::string origin;                    ///< "FILE:LINE", "set" or "default"
-  std::vector<double> numbers = {};      ///< of a number: it
-  std::string file = {};                 ///< the path to open
-  std::vector<std::size_t> joints = {};  ///< of joints: their indices in the model
+  std::vector<double> numbers = {};      ///< values of numbers
+  std::string file = {};                 ///< path of a file
+  std::vector<std::size_t> joints = {};  ///< indices of joints in the model
 
-  /// Whether both mean the same.
+  /// Return whether both have the same meaning.
   bool agrees_with(const Parameter& other) const;
 };
 
 /// The effective parameters of one plugin, checked against its table.
 class Parameters {
  public:
-  /// \param overrides  tag name -> text, given outside the URDF (--set); they win.
+  /// \param overrides  tag name -> text from outside the URDF (--set), which takes precedence.
   /// Throws InputError with FILE:LINE, plugin and tag.
   Parameters(const std::vector<TagSpec>& table, const PluginElement& element, const Model& model,
              const std::map<std::string, std::string>& overrides);
 
-  /// 0 if absent.
+  /// Return a number; 0 if absent.
   double number(const std::string& tag) const { return number_of(at(tag)); }
-  /// Whether it has a value, be it the default.
+  /// Return whether the tag has a value or a default.
   bool has(const std::string& tag) const { return !at(tag).text.empty(); }
-  /// Whether the URDF or an override gives it, rather than its default.
+  /// Return whether the URDF or an override sets the tag.
   bool is_set(const std::string& tag) const { return at(tag).origin != "default"; }
-  /// Value of a flag; false if absent.
+  /// Return a flag; false if absent.
   bool flag(const std::string& tag) const { return at(tag).text == "true"; }
-  /// What was chosen; "" if absent.
+  /// Return a choice; "" if absent.
   const std::string& choice(const std::string& tag) const { return at(tag).text; }
-  /// As it was written, of whatever kind; "" if absent.
+  /// Return the text as written, for any type; "" if absent.
   const std::string& text(const std::string& tag) const { return at(tag).text; }
-  /// In the unit of the tag; empty if absent.
+  /// Return numbers in the unit of the tag; empty if absent.
   const std::vector<double>& numbers(const std::string& tag) const { return at(tag).numbers; }
-  /// The path to open; "" if absent.
+  /// Return the path of a file; "" if absent.
   const std::string& file(const std::string& tag) const { return at(tag).file; }
-  /// Indices of joints in the model.
+  /// Return indices of joints in the model.
   const std::vector<std::size_t>& joints(const std::string& tag) const { return at(tag).joints; }
-  /// All of them, in the order of the table.
+  /// Return all parameters in the order of the table.
   const std::vector<Parameter>& all() const { return parameters_; }
 
  private:

@@ -9,59 +9,59 @@
 
 namespace quadcore QUADCORE_EXPORT {
 
-/// Who writes a topic: the index of a plugin among Simulation::plugins(), or this one, where none
-/// does.
-constexpr int the_caller = -1;  ///< of Simulation::publish()
+/// Writer of a topic that no plugin writes; otherwise an index into Simulation::plugins().
+constexpr int the_caller = -1;  ///< the caller of Simulation::publish()
 
-/// What a topic holds at one moment, as snapshots keep it.
+/// Content of a topic at one instant, as stored in snapshots.
 struct Message {
   std::vector<double>
-      values;        ///< in the order of MessageKind::fields, at first MessageKind::unsaid
+      values;        ///< in the order of MessageKind::fields; initially MessageKind::unsaid
   double stamp = 0;  ///< time of the last message [s]
-  double count = 0;  ///< messages so far; 0 = none yet
+  double count = 0;  ///< number of messages so far
 };
 
-/// A named message inside the simulation: a row of numbers of one kind.
+/// A named channel inside the simulation with messages of one kind.
 struct Topic : Message {
-  std::string name;               ///< a word, for logs and Python
-  std::string path;               ///< the same where names may have parts, / between them
-  MessageKind kind;               ///< what its numbers mean
+  std::string name;               ///< name without separators, for logs and Python
+  std::string path;               ///< name with / as a separator
+  MessageKind kind;               ///< meaning of its values
   int writer = the_caller;        ///< index of a plugin, or the_caller
-  std::vector<int> readers = {};  ///< plugins
+  std::vector<int> readers = {};  ///< indices of plugins
 };
 
-/// The topics of one simulation. A plugin declares in its constructor what it publishes and what it
-/// takes; the simulation checks that the declarations agree once all plugins are made.
+/// The topics of one simulation. A plugin declares in its constructor which topics it publishes and
+/// reads. The simulation checks the declarations once all plugins have been created.
 class Topics {
  public:
   /// \name For the constructors of plugins
-  /// All return the topic's index. A name may have parts, "motor_speed/0", which bridges that know
-  /// such names keep; elsewhere it is motor_speed_0. Throw InputError on a name or a field that is
-  /// no plain word then.
+  /// All return the topic's index. A name such as "motor_speed/0" keeps its separators in bridges
+  /// that support them; elsewhere it is motor_speed_0. They throw InputError for an invalid name or
+  /// field.
   /// @{
 
-  /// Declares that the plugin writes the topic, which nobody else may then.
+  /// Declare that the plugin writes the topic exclusively.
   std::size_t publishes(const std::string& name, const MessageKind& kind);
-  /// The same of a topic that has as many fields as who takes it asks for, or else those of `kind`.
+  /// Declare that the plugin writes a topic with the fields that its reader expects, else those of
+  /// `kind`.
   std::size_t publishes_as_taken(const std::string& name, const MessageKind& kind);
-  /// Declares that the plugin reads the topic. It runs after the plugin that writes it, and so has
-  /// the value of the same sample; or, `late`, whenever that runs, the value from before this
-  /// sample began.
+  /// Declare that the plugin reads the topic. It runs after the writer and reads the value of the
+  /// same sample; with `late`, it reads the value from before this sample, independent of the
+  /// order.
   std::size_t takes(const std::string& name, const MessageKind& kind, bool late = false);
   /// @}
 
   /// \name For hooks
   /// @{
 
-  /// A topic, by the index that its declaration returned.
+  /// Return a topic by the index that its declaration returned.
   const Topic& operator[](std::size_t index) const { return topics_[index]; }
-  /// The last message.
+  /// Return the last message.
   template <class M>
   M read(std::size_t index) const {
     return messages::read<M>(topics_[index].values.data());
   }
-  /// Publishes a message, whose numbers are to be written at once where this points.
-  /// Throws InputError if the topic is not the writer's.
+  /// Publish a message. The caller must write its values at once to the returned pointer. Throws
+  /// InputError if another writer owns the topic.
   double* publish(std::size_t index, double time) {
     Topic& topic = topics_[index];
     if (topic.writer != writer_) refuse_writer(topic);
@@ -69,47 +69,47 @@ class Topics {
     topic.count += 1;
     return topic.values.data();
   }
-  /// Publishes a message. Throws InputError if the topic is not the writer's.
+  /// Publish a message. Throws InputError if another writer owns the topic.
   template <class M>
   void publish(std::size_t index, double time, const M& message) {
     messages::write(message, publish(index, time));
   }
   /// @}
 
-  /// How errors call a writer.
+  /// Return the name of a writer for error messages.
   std::string name_of(int writer) const;
-  /// Throws InputError: `who` is a second writer.
+  /// Throw InputError because `who` is a second writer.
   [[noreturn]] void refuse_second(const std::string& who, const Topic& topic) const;
-  /// Index of a declared topic, by name or path, or -1.
+  /// Return the index of a topic by name or path, or -1.
   int find(const std::string& name) const;
-  /// Index of a declared topic. Throws InputError with the names of those there are.
+  /// Return the index of a topic. Throws InputError with the names of all topics.
   std::size_t at(const std::string& name) const;
-  /// The same of several; they must differ.
+  /// Return the indices of several different topics.
   std::vector<std::size_t> at(const std::vector<std::string>& names) const;
-  /// Of every declared topic, in the order of declaration.
+  /// Return the names of all topics in the order of declaration.
   std::vector<std::string> names() const;
 
   /// \name For the simulation
   /// @{
 
-  /// Whose declarations follow: a plugin as errors call it, "FILE:LINE: plugin 'name'".
+  /// Set the plugin that declares topics next; `who` is "FILE:LINE: plugin 'name'" for errors.
   void add_plugin(const std::string& name, const std::string& who);
-  /// Checks that all declarations agree and returns the order in which plugins run: writers before
-  /// readers, otherwise by name. Throws InputError naming the plugins at fault.
+  /// Check that all declarations agree and return the order in which plugins run: writers before
+  /// readers, otherwise by name. Throws InputError that names the conflicting plugins.
   std::vector<std::size_t> settle();
-  /// Whose publish() calls follow.
+  /// Set the writer of the following publish() calls.
   void write_as(int writer) { writer_ = writer; }
-  /// A round of hooks begins: late readers see what is there now.
+  /// Begin a sample: late readers see the values of this moment.
   void begin_sample() {
     for (const auto& [copy, original] : late_) {
       static_cast<Message&>(topics_[copy]) = topics_[original];
     }
   }
-  /// What each topic holds, and each late reader has of it.
+  /// Return the content of all topics and of the copies for late readers.
   std::vector<Message> messages() const;
-  /// Throws InputError unless these are the messages of topics like these.
+  /// Throw InputError unless the messages fit these topics.
   void check(const std::vector<Message>& messages) const;
-  /// Puts messages() back, which have been checked.
+  /// Restore checked messages().
   void restore(const std::vector<Message>& messages);
   /// @}
 
@@ -122,7 +122,7 @@ class Topics {
     std::size_t topic;
     MessageKind kind;
     bool writes, late;
-    bool open = false;  ///< the takers say which fields it has
+    bool open = false;  ///< the readers define the fields
   };
   struct LateCopy {
     std::size_t copy, original;
@@ -135,7 +135,7 @@ class Topics {
   [[noreturn]] void refuse_loop(const std::vector<bool>& placed) const;
   void close(Declaration& open);
   void hold_what_is_unsaid();
-  const Declaration& authority(std::size_t topic) const;
+  const Declaration& find_authority(std::size_t topic) const;
   std::vector<std::size_t> order() const;
   const Declaration* awaited(std::size_t plugin, const std::vector<bool>& placed) const;
 

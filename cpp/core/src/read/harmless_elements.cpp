@@ -1,4 +1,4 @@
-#include "quadcore/seen_or_sensed.hpp"
+#include "quadcore/harmless_elements.hpp"
 
 #include <algorithm>
 #include <set>
@@ -6,48 +6,48 @@
 namespace quadcore {
 namespace {
 
-/// Elements that others extend. Within any other element everything counts.
+/// Elements that other programs extend. Inside any other element, every child matters.
 const std::set<std::string> open_elements = {"robot",        "robot/link", "robot/joint",
                                              "robot/gazebo", "sdf",        "sdf/world"};
 
-/// Known, felt, and not modelled: to leave them out would be to fly another vehicle.
-const std::set<std::pair<std::string, std::string>> felt_elements = {{"robot/joint", "mimic"}};
+/// Known elements that change the motion but are not modelled. Skipping them would simulate another
+/// vehicle.
+const std::set<std::pair<std::string, std::string>> physical_elements = {{"robot/joint", "mimic"}};
 
-const char* const camera = "pictures";
+const char* const camera = "images";
 const char* const range = "distances";
 const char* const inertial = "rates and accelerations";
 const char* const position = "position and velocity";
 const char* const joints = "joint angles and rates";
-const char* const field = "the magnetic field";
-const char* const pressure = "the air pressure";
-const char* const contact = "forces and contacts, as they are";
-const char* const connection = "connects topics";
+const char* const field = "magnetic field";
+const char* const pressure = "air pressure";
+const char* const contact = "forces and contacts";
+const char* const connection = "connection of topics";
 
 }  // namespace
 
-const std::vector<Unfelt>& everything_unfelt() {
-  static const std::vector<Unfelt> table = {
-      {"transmission", "robot", "for ros_control, which does not run here"},
-      {"ros2_control", "robot", "for ros2_control, which does not run here"},
-      {"properties", "robot", "numbers for gym-pybullet-drones; Gazebo passes over them, too"},
-      {"sensor", "robot", "a sensor"},
-      {"sensor", "robot/link", "a sensor"},
-      {"pose", "robot/link",
-       "of SDF; joints place links in a URDF, and Gazebo passes over it, too"},
-      {"max_contacts", "robot/collision", "of SDF; Gazebo passes over it in a URDF, too"},
-      {"provideFeedback", "robot/gazebo", "what a joint's sensor is told"},
-      {"sensor", "robot/gazebo", "a sensor"},
-      {"laserRetro", "robot/gazebo", "how bright a laser finds it"},
+const std::vector<HarmlessElement>& list_harmless_elements() {
+  static const std::vector<HarmlessElement> table = {
+      {"transmission", "robot", "for ros_control, which is not supported"},
+      {"ros2_control", "robot", "for ros2_control, which is not supported"},
+      {"properties", "robot", "parameters for gym-pybullet-drones; Gazebo also ignores them"},
+      {"sensor", "robot", "sensor"},
+      {"sensor", "robot/link", "sensor"},
+      {"pose", "robot/link", "SDF only: joints place links in a URDF; Gazebo also ignores it"},
+      {"max_contacts", "robot/collision", "SDF only; Gazebo also ignores it in a URDF"},
+      {"provideFeedback", "robot/gazebo", "input of a joint's sensor"},
+      {"sensor", "robot/gazebo", "sensor"},
+      {"laserRetro", "robot/gazebo", "reflectivity for laser sensors"},
       {"self_collide", "robot/gazebo",
-       "links of one vehicle do not collide; of no effect in Gazebo, either"},
-      {"gui", "sdf/world", "the window"},
+       "links of one vehicle do not collide; also without effect in Gazebo"},
+      {"gui", "sdf/world", "graphical user interface"},
       {"scene", "sdf/world", "sky, fog and shadows"},
       {"light", "sdf/world", "light"},
       {"audio", "sdf/world", "sound"},
-      {"road", "sdf/world", "a picture on the ground"},
-      {"actor", "sdf/world", "a figure without body"},
-      {"contact_surface_layer", "sdf/constraints", "of no effect in Gazebo, either"},
-      {"min_step_size", "sdf/solver", "of solvers that choose their step"},
+      {"road", "sdf/world", "texture on the ground"},
+      {"actor", "sdf/world", "animated figure without collisions"},
+      {"contact_surface_layer", "sdf/constraints", "also without effect in Gazebo"},
+      {"min_step_size", "sdf/solver", "for solvers with a variable step"},
 
       {"libgazebo_ros_camera.so", "", camera},
       {"libgazebo_ros_depth_camera.so", "", camera},
@@ -71,9 +71,9 @@ const std::vector<Unfelt>& everything_unfelt() {
       {"libhector_gazebo_ros_sonar.so", "", range},
       {"libgazebo_lidar_plugin.so", "", range},
       {"libgazebo_sonar_plugin.so", "", range},
-      {"librotors_gazebo_octomap_plugin.so", "", "a map of obstacles"},
-      {"libgazebo_opticalflow_plugin.so", "", "the flow of pictures"},
-      {"libgazebo_opticalFlow_plugin.so", "", "the flow of pictures"},
+      {"librotors_gazebo_octomap_plugin.so", "", "map of obstacles"},
+      {"libgazebo_opticalflow_plugin.so", "", "optical flow"},
+      {"libgazebo_opticalFlow_plugin.so", "", "optical flow"},
       {"libgazebo_ros_imu.so", "", inertial},
       {"libgazebo_ros_imu_sensor.so", "", inertial},
       {"libhector_gazebo_ros_imu.so", "", inertial},
@@ -93,7 +93,7 @@ const std::vector<Unfelt>& everything_unfelt() {
       {"libgazebo_ros_bumper.so", "", contact},
       {"libgazebo_ros_f3d.so", "", contact},
       {"libgazebo_ros_ft_sensor.so", "", contact},
-      {"librotors_gazebo_bag_plugin.so", "", "writes a bag"},
+      {"librotors_gazebo_bag_plugin.so", "", "recording of a bag file"},
       {"libgazebo_ros_state.so", "", connection},
       {"libgazebo_ros_init.so", "", connection},
       {"librotors_gazebo_ros_interface_plugin.so", "", connection},
@@ -101,27 +101,27 @@ const std::vector<Unfelt>& everything_unfelt() {
   return table;
 }
 
-Verdict verdict_on_element(const std::string& parent, const std::string& element) {
-  const std::vector<Unfelt>& table = everything_unfelt();
-  const bool unfelt = std::any_of(table.begin(), table.end(), [&](const Unfelt& row) {
+Handling decide_on_element(const std::string& parent, const std::string& element) {
+  const std::vector<HarmlessElement>& table = list_harmless_elements();
+  const bool is_harmless = std::any_of(table.begin(), table.end(), [&](const HarmlessElement& row) {
     return !row.parent.empty() && row.parent == parent && row.name == element;
   });
-  if (unfelt) return Verdict::unfelt;
-  const bool open = open_elements.count(parent) && !felt_elements.count({parent, element});
-  return open ? Verdict::foreign : Verdict::felt;
+  if (is_harmless) return Handling::skip;
+  const bool open = open_elements.count(parent) && !physical_elements.count({parent, element});
+  return open ? Handling::reject_unless_ignored : Handling::reject;
 }
 
-Verdict verdict_on_module(const std::string& filename) {
-  const std::vector<Unfelt>& table = everything_unfelt();
-  const bool unfelt = std::any_of(table.begin(), table.end(), [&](const Unfelt& row) {
+Handling decide_on_module(const std::string& filename) {
+  const std::vector<HarmlessElement>& table = list_harmless_elements();
+  const bool is_harmless = std::any_of(table.begin(), table.end(), [&](const HarmlessElement& row) {
     return row.parent.empty() && row.name == filename;
   });
-  return unfelt ? Verdict::unfelt : Verdict::foreign;
+  return is_harmless ? Handling::skip : Handling::reject_unless_ignored;
 }
 
-Verdict verdict_on_text(const std::string& parent) {
-  // Deeper down it may be what is left of an element.
-  return parent == "robot" ? Verdict::unfelt : Verdict::felt;
+Handling decide_on_text(const std::string& parent) {
+  // Text in deeper elements may be the remains of a damaged element.
+  return parent == "robot" ? Handling::skip : Handling::reject;
 }
 
 }  // namespace quadcore

@@ -1,11 +1,11 @@
-#include "references/yaw_law.hpp"
+#include "references/yaw_motion.hpp"
 
 #include "quadcore/plugin/elementary.hpp"
 
 namespace quadcore::control {
 
-void YawLaw::turn(double t, Reference& wanted, double standing) const {
-  constexpr double slowest = 1e-6;  // m/s; below it the direction is one of rounding
+void YawMotion::turn(double t, Reference& wanted, double standing) const {
+  constexpr double slowest = 1e-6;  // m/s; below it, rounding errors dominate the direction
   wanted.yaw = yaw + yaw_rate * t;
   wanted.yaw_rate = yaw_rate;
   wanted.yaw_acceleration = 0;

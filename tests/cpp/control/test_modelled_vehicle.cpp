@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "../plugin_bench.hpp"
-#include "quadcore/control/belief.hpp"
+#include "quadcore/control/modelled_vehicle.hpp"
 #include "quadcore/control/start.hpp"
 
 using namespace quadcore;
@@ -73,8 +73,8 @@ TEST_CASE("a rotor is described as its motor drives it") {
 }
 
 TEST_CASE("what a command exerts does not depend on how much slower the rotors turn") {
-  const Belief one = Belief::of(described("eigen", "appendix", "1"), {}, {});
-  const Belief ten = Belief::of(described("eigen", "appendix", "10"), {}, {});
+  const ModelledVehicle one = ModelledVehicle::of(described("eigen", "appendix", "1"), {}, {});
+  const ModelledVehicle ten = ModelledVehicle::of(described("eigen", "appendix", "10"), {}, {});
   CHECK((one.effectiveness - ten.effectiveness).norm() < 1e-12 * one.effectiveness.norm());
 }
 
@@ -82,7 +82,8 @@ TEST_CASE("neighbours turn against each other unless they are told otherwise") {
   VehicleDescription vehicle = described("eigen", "appendix", "1");
   const auto spins = [&](const std::vector<double>& given) {
     std::vector<double> all;
-    for (const BelievedRotor& r : Belief::of(vehicle, given, {}).rotors) all.push_back(r.spin);
+    for (const ModelledRotor& r : ModelledVehicle::of(vehicle, given, {}).rotors)
+      all.push_back(r.spin);
     return all;
   };
   // Its rotors are tilted so that their thrust helps this sense to yaw, and hinders the other.
@@ -99,10 +100,10 @@ TEST_CASE("neighbours turn against each other unless they are told otherwise") {
   CHECK(test::contains(test::refusal([&] { spins({}); }), "gravity"));
 }
 
-TEST_CASE("a believed factor makes the belief wrong by it") {
+TEST_CASE("a modelled factor makes the model wrong by it") {
   const VehicleDescription vehicle = described("eigen", "appendix", "1");
-  const Belief truth = Belief::of(vehicle, {}, {});
-  const Belief wrong = Belief::of(
+  const ModelledVehicle truth = ModelledVehicle::of(vehicle, {}, {});
+  const ModelledVehicle wrong = ModelledVehicle::of(
       vehicle, {}, {{"believed_mass", 1.2}, {"believed_thrust", 0.9}, {"believed_drag", 0.5}});
   CHECK(wrong.mass == doctest::Approx(1.2 * truth.mass));
   CHECK((wrong.effectiveness - 0.9 * truth.effectiveness).norm() < 1e-15);

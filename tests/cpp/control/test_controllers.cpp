@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "beliefs.hpp"
 #include "euler_rates.hpp"
+#include "modelled_vehicles.hpp"
 #include "quadcore/control/controller.hpp"
 #include "riccati.hpp"
 
@@ -12,16 +12,16 @@ namespace {
 
 /// A rigid body on which a law's demand acts at once.
 struct Ideal {
-  Belief belief = test::odd_belief(4);
-  std::unique_ptr<Law> law;
+  ModelledVehicle model = test::odd_belief(4);
+  std::unique_ptr<ControlLaw> law;
   std::vector<double> memory;
   Odometry now;
   double period = 1e-3;
   bool begins = true;
 
   Ideal(const std::string& name, const Values& given) {
-    const LawInfo& info = law_info(name);
-    law = info.make(belief, completed(given, info.defaults));
+    const ControllerInfo& info = find_controller(name);
+    law = info.make(model, complete(given, info.defaults));
     memory.assign(info.memory_size, 0.0);
   }
 
@@ -32,11 +32,11 @@ struct Ideal {
     begins = false;
     last = demand;
     const auto acceleration = [&](const Odometry& o) -> Vector3d {
-      return demand.thrust / belief.mass * (o.orientation * Vector3d::UnitZ()) -
-             Vector3d(0, 0, belief.gravity);
+      return demand.thrust / model.mass * (o.orientation * Vector3d::UnitZ()) -
+             Vector3d(0, 0, model.gravity);
     };
     const auto turning = [&](const Odometry& o) -> Vector3d {
-      const Matrix3d& I = belief.inertia_Ccm_F;
+      const Matrix3d& I = model.inertia_Ccm_F;
       return I.inverse() * (demand.torque_F - o.angular_velocity.cross(I * o.angular_velocity));
     };
     const auto turned = [](const Quaterniond& q, const Vector3d& turn) {
@@ -105,7 +105,7 @@ TEST_CASE("roll and pitch of the cascade have the poles of its gains, at any yaw
 }
 
 TEST_CASE("every law brings an odd vehicle that the rotors obey at once to its place") {
-  for (const LawInfo& info : laws()) {
+  for (const ControllerInfo& info : list_controllers()) {
     if (info.name == "pid_thesis") continue;
     CAPTURE(info.name);
     Ideal ideal(info.name, {});
@@ -196,6 +196,6 @@ TEST_CASE("an optimal gain solves the Riccati equation and is stable") {
 }
 
 TEST_CASE("what is no law is refused with what to write instead") {
-  CHECK(test::contains(test::refusal([] { law_info("geometrical"); }),
-                       "no law 'geometrical' (did you mean 'geometric'?)"));
+  CHECK(test::contains(test::refusal([] { find_controller("geometrical"); }),
+                       "controller 'geometrical' does not exist. Did you mean 'geometric'?"));
 }

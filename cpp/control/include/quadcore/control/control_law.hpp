@@ -1,0 +1,75 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "quadcore/control/allocation.hpp"
+#include "quadcore/control/modelled_vehicle.hpp"
+#include "quadcore/control/reference.hpp"
+
+namespace quadcore QUADCORE_EXPORT {
+/// Controllers: a control law computes the thrust and torques that keep a vehicle on its reference,
+/// and an allocation computes the rotor speeds for them.
+namespace control {
+
+using messages::Odometry;
+
+/// Input of a control law.
+struct LawInput {
+  double period;            ///< time since the last call and until the next [s]
+  bool begins;              ///< whether this is the first call
+  const Odometry& now;      ///< linear velocity in W
+  const Reference& wanted;  ///< reference
+  Demand exerted;           ///< modelled wrench of the rotors now
+  Vector3d h_F;             ///< modelled angular momentum of the rotors now [kg m^2/s]
+  bool saturated;           ///< whether the last demand was not met
+};
+
+/// A control law from odometry and reference to thrust and torques. It is immutable; the caller
+/// owns its memory, which is all zero at the start.
+class ControlLaw {
+ public:
+  virtual ~ControlLaw() = default;
+  /// Return the demand on the rotors until the next call.
+  /// \param memory  ControllerInfo::memory_size numbers
+  virtual Demand demand(const LawInput& input, double* memory) const = 0;
+};
+
+/// A controller that users can choose.
+struct ControllerInfo {
+  std::string name;            ///< name of the controller
+  std::string summary;         ///< one line
+  std::vector<TagSpec> table;  ///< parameters of its control law
+  std::size_t memory_size;     ///< number of memory values
+  Values
+      defaults;  ///< defaults of these and of Controller's parameters that differ from the tables
+  /// Creates the control law from checked values. Throws InputError if they give no gains.
+  std::function<std::unique_ptr<ControlLaw>(const ModelledVehicle&, const Values&)> make;
+};
+
+/// Describe a controller with a control law of class L, which is created from a model and its
+/// gains.
+template <class L>
+ControllerInfo make_info(const std::string& name, const std::string& summary,
+                         const Values& defaults = {}) {
+  return {name,
+          summary,
+          table_of(L::settings()),
+          L::memory_size,
+          defaults,
+          [](const ModelledVehicle& model, const Values& values) {
+            typename L::Gains gains{};
+            configure(gains, L::settings(), values);
+            return std::make_unique<L>(model, gains);
+          }};
+}
+
+/// Return all built-in controllers.
+const std::vector<ControllerInfo>& list_controllers();
+/// Return a controller by name. Throws InputError with the names of all controllers.
+const ControllerInfo& find_controller(const std::string& name);
+
+}  // namespace control
+}  // namespace quadcore
