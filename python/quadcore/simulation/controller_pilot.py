@@ -53,8 +53,8 @@ class ControllerPilot(Pilot):
             reference = reference.on(simulation)
         if reference is not None and not callable(reference):
             raise InputError(
-                f"reference is {shorten(reference)}; give one of quadcore.references, or a "
-                "function that is called as reference(t)"
+                f"reference is {shorten(reference)}. Give one of quadcore.references, or a "
+                "function that is called as reference(t)."
             )
         check_callable(controller)
         self.rate = check_rate_or_delay("controller", "rate", getattr(controller, "rate", RATE))
