@@ -77,9 +77,9 @@ def read_core_docstrings() -> Iterator[Text]:
 
 def read_help() -> Iterator[Text]:
     """Read what ``quadcore --help`` and the help of each command print."""
-    from quadcore.cli import _parser
+    from quadcore.cli import make_parser
 
-    yield from _read_help_of(_parser())
+    yield from _read_help_of(make_parser())
 
 
 def _read_help_of(parser: argparse.ArgumentParser) -> Iterator[Text]:
