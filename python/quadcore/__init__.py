@@ -1,8 +1,8 @@
 """Multirotor simulator and controller test bench.
 
-quadcore simulates multirotors from their URDF, without Gazebo. Its default engine repeats Gazebo 11
-to the last digit, including the bugs of Gazebo. The engines "ode" and "eigen" simulate the same
-files without these bugs.
+quadcore simulates multirotors from their URDF, without Gazebo. Its default engine is
+bit-identical to Gazebo 11, including the bugs of Gazebo. The engines "ode" and "eigen" simulate
+the same files without these bugs.
 
 >>> import quadcore as qc
 >>> sim = qc.Simulation("quadrotor", engine="eigen", spawn=(0, 0, 10), xacro_args={"sim_slow": 1})

@@ -131,5 +131,5 @@ def test_a_plan_is_the_same_however_its_numbers_are_written():
         log_every=np.int64(2),
     )
     assert one.fingerprint() == other.fingerprint() != plan.fingerprint()
-    commanded = other.replace_commands([[0, 100, -100, 100, -100]])
+    commanded = other.with_commands([[0, 100, -100, 100, -100]])
     assert len(commanded.fly().table) == 51

@@ -93,7 +93,7 @@ class Odometry:
     Parameters
     ----------
     simulation : Simulation
-        Simulation whose odometry is read.
+        Simulation to read the odometry of.
 
     Attributes
     ----------

@@ -67,7 +67,7 @@ class InnerLoop:
         self._loop: Optional[_core.InnerLoop] = None
 
     def leave(self) -> None:
-        """Start anew at the next call, because other commands come in between."""
+        """Start again at the next call, because other commands come in between."""
         self._loop = None
 
     def speeds(

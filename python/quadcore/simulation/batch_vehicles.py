@@ -1,4 +1,4 @@
-"""What each vehicle of a batch is made of."""
+"""Models and parameters of the vehicles of a batch."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..support.values import check_whole, format_value
 
 
 class Vehicles(NamedTuple):
-    """Of each vehicle its model and the tags of plugins that are set, and the world of all."""
+    """Models and tag values of the vehicles, in their order, and their world."""
 
     models: List[Model]
     tags: List[Dict[str, str]]
@@ -22,7 +22,7 @@ class Vehicles(NamedTuple):
 
 
 MOST = 1_000_000
-"""Vehicles of a batch, at most. Each takes some kilobytes."""
+"""Maximum number of vehicles in a batch; each needs some kilobytes."""
 
 
 def check_vehicle_count(n: object) -> int:
@@ -41,12 +41,12 @@ def read_vehicles(
     xacro_args: Optional[Mapping[str, Any]],
     ignore: Sequence[str],
 ) -> Vehicles:
-    """Read n vehicles, each kind of them once.
+    """Read the models of n vehicles, each different model once.
 
     Raises
     ------
     InputError
-        The model, the world, or what is set is at fault, or is not there for each vehicle.
+        If the model, the world or a parameter is wrong, or an array does not have n values.
     """
     arguments, others = split_xacro_arguments(parameters, xacro_args)
     of_xacro = _split_values(n, {f"{XACRO}.{name}": value for name, value in arguments.items()})
@@ -76,16 +76,16 @@ def _format_argument(value: Any) -> str:
 
 
 def explain_refusal(error: InputError, given: Sequence[Any], n: int) -> InputError:
-    """Say how each vehicle has a value of its own, if a row of them was taken for one value.
+    """Add a hint to an error if a list was given where an array has one value per vehicle.
 
     Parameters
     ----------
     error
-        Which tells the value.
+        Error with the value in its message.
     given
         Mappings of names to values.
     n
-        How many vehicles there are.
+        Number of vehicles.
     """
     for values in given:
         for value in values.values() if isinstance(values, Mapping) else ():
@@ -114,7 +114,7 @@ def _check_rotors(
 
 
 def _split_values(n: int, parameters: Mapping[str, Any]) -> List[Dict[str, Any]]:
-    """Give the values of each vehicle, by name."""
+    """Return the values of each vehicle by name."""
     for key, value in parameters.items():
         shape: Tuple[int, ...] = value.shape if isinstance(value, np.ndarray) else ()
         if len(shape) == 1 and len(value) != n:

@@ -1,4 +1,4 @@
-"""Open-loop rotor speed commands, from a file or an array."""
+"""Open-loop rotor commands from files or arrays."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ def check_commands(commands: CommandsLike, rotor_count: int) -> np.ndarray:
 
     Parameters
     ----------
-    commands
-        Path of a file for `read_commands`, or an array of shape (rows, 1 + n): time in s, strictly
-        increasing, and the signed speed of each rotor in rad/s (before the division by sim_slow).
-    rotor_count
-        n, the number of rotors.
+    commands : ndarray (rows, 1 + n) or path
+        Strictly increasing times in s and signed rotor speeds in rad/s, before the division by
+        sim_slow; or a file for `read_commands`.
+    rotor_count : int
+        Number of rotors, n.
 
     Returns
     -------
@@ -33,7 +33,7 @@ def check_commands(commands: CommandsLike, rotor_count: int) -> np.ndarray:
     Raises
     ------
     InputError
-        A wrong shape, a value that is no finite number, or times that do not increase.
+        If the shape is wrong, a number is not finite, or times do not increase.
     """
     if isinstance(commands, (str, os.PathLike)):
         return read_commands(commands, rotor_count)
@@ -60,11 +60,11 @@ def read_commands(path: Union[str, os.PathLike[str]], rotor_count: int) -> np.nd
 
     Parameters
     ----------
-    path
+    path : str or path
         A ``.csv`` file with the header ``t,w1,...,wn``, or a ``.mat`` file with vectors of these
-        names. Times in s, strictly increasing; signed rotor speeds in rad/s.
-    rotor_count
-        n, the number of rotors.
+        names: strictly increasing times in s, signed rotor speeds in rad/s.
+    rotor_count : int
+        Number of rotors, n.
 
     Returns
     -------
@@ -73,8 +73,8 @@ def read_commands(path: Union[str, os.PathLike[str]], rotor_count: int) -> np.nd
     Raises
     ------
     InputError
-        A missing file, other columns, a value that is no finite number, or times that do not
-        increase; the message begins with ``FILE:LINE:`` where a line is at fault.
+        If the file is missing, its columns are wrong, a number is not finite, or times do not
+        increase; the message begins with ``FILE:LINE`` where a line is at fault.
     """
     path = Path(path)
     file = find_format(path, "commands are read from")

@@ -1,4 +1,4 @@
-"""The pilot that asks a controller."""
+"""Pilot that calls a controller."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ from .flight import Pilot
 
 
 class ControllerPilot(Pilot):
-    """The pilot (see `flight.fly`) that asks a controller, and tells it what the odometry says.
+    """Pilot (see `flight.fly`) that calls a controller with odometry and reference.
 
     Attributes
     ----------
     columns : sequence of str
-        Names of what a log holds of the reference besides the state.
+        Names of the columns that the log has for the reference.
     updates : int
-        How often the controller was asked.
+        Number of calls of the controller.
     saturated : int
-        How often the rotors could not do what it wanted: a law of quadcore knows; of another it is
-        counted when a speed reaches its motor's limit.
+        Number of calls with commands at the limits of the rotors. Built-in controllers report
+        this; for others a call counts if a speed reaches the limit of its motor.
 
     Raises
     ------
     InputError
-        No controller, a rate that is none, a reference that is none, or a model without odometry.
+        If controller, rate or reference is not valid, or the model has no odometry.
     """
 
     def __init__(
@@ -80,14 +80,14 @@ class ControllerPilot(Pilot):
             )
 
     def reset(self, simulation: _core.Simulation) -> None:
-        """Let the controller begin anew."""
+        """Reset the controller."""
         self._inner_loop.leave()
         reset = getattr(self._controller, "reset", None)
         if reset is not None:
             reset(simulation)
 
     def speeds(self, simulation: _core.Simulation) -> Any:
-        """Ask the controller."""
+        """Call the controller."""
         self.updates += 1
         law, reference = self._controller, self._reference
         if isinstance(law, BuiltInController):
@@ -112,7 +112,7 @@ class ControllerPilot(Pilot):
         return speeds
 
     def add_columns(self, table: np.ndarray) -> np.ndarray:
-        """Add what `columns` names to rows of the state."""
+        """Add the columns of the reference to rows of the state."""
         if self._reference is None:
             return table
         wanted = references.sample_positions(self._reference, table[:, 0])
@@ -130,13 +130,12 @@ _COLUMNS = (
 
 @contextmanager
 def convert_controller_errors(simulation: _core.Simulation) -> Iterator[None]:
-    """Make of what a controller raises a flight that failed, told in one line.
+    """Convert an error of a controller to a `FlightError` with a message of one line.
 
     Raises
     ------
     FlightError
-        In the place of anything that is no error of quadcore's, and of bad input with which a
-        flight ended that had begun.
+        If the block raises an error from outside quadcore, or an `InputError` after the start.
     """
     begin = simulation.time
     try:

@@ -1,4 +1,4 @@
-"""A flight in pieces, whose rows go where they belong as they come."""
+"""Loop of a flight, which passes the logged rows on in pieces."""
 
 from __future__ import annotations
 
@@ -32,26 +32,26 @@ _ROWS = 4096  # of a piece, at most; it stays in the cache until its rows are wh
 
 
 class Pilot(Protocol):
-    """What commands a flight as it goes."""
+    """Source of the commands of a flight."""
 
     rate: float
-    """How often it is asked, 1/s; at most once a step."""
+    """Calls of `speeds` per simulated second, 1/s; at most one call per step."""
     delay: float
-    """From an answer to the first step that it commands, s; the first one commands at once."""
+    """Time from a call until its command acts, s; the command of the first call acts at once."""
 
     columns: Sequence[str] = ()
-    """Names of what it tells of its own, beside the state, ``TOPIC.FIELD``."""
+    """Names of the columns ``TOPIC.FIELD`` that the pilot adds to the log."""
     moves: bool = False
-    """Whether it moves the vehicle itself, which what a flight calls back may not."""
+    """Whether the pilot moves the vehicle, which other callbacks must not do."""
 
     def reset(self, simulation: Any) -> None:
-        """Begin; the `Simulation` stands at its first step."""
+        """Prepare for a flight; the simulation is at its first step."""
 
     def speeds(self, simulation: Any) -> npt.ArrayLike:
-        """Give the command for the steps until it is asked again, rad/s."""
+        """Return the command until the next call, rad/s."""
 
     def add_columns(self, table: np.ndarray) -> np.ndarray:
-        """Add its columns to rows of a log."""
+        """Add the columns of the pilot to rows of a log."""
         return table
 
 
@@ -66,31 +66,31 @@ def fly(
     pilot: Optional[Pilot] = None,
     topics: Sequence[str] = (),
 ) -> None:
-    """Fly for a while and hand over what is logged, every few hundredths of a second.
+    """Simulate for a duration, and pass logged rows on every few hundredths of a second.
 
     Parameters
     ----------
     duration, commands, log_every, progress
         As for `Simulation.run`.
     receive
-        Called as receive(table, wrenches) with new arrays of shape (rows, 14 + n + those of the
-        topics and of the pilot) and (rows, terms, 6), first with the present state, and with the
-        last rows before anything is raised. An interrupt waits for it.
+        Called as receive(table, wrenches) with new arrays of shape (rows, columns) and
+        (rows, terms, 6). The columns are those of the state, the topics and the pilot. The first
+        call contains the present state. The last call precedes any exception; interrupts wait.
     wrenches
-        Whether to log them; else their array has no rows.
+        Whether to log wrenches. Otherwise their array has no rows.
     pilot
-        Commands in place of a table.
+        Source of the commands, instead of a table.
     topics
-        Names of topics to log, too: columns that follow those of the state.
+        Names of topics to log; their columns follow those of the state.
 
     Raises
     ------
     InputError
-        An argument is at fault, or a run flies the simulation already; nothing was flown. Or what
-        is called back moves the simulation, or gives what it may not, which ends the flight; when
-        the pilot did it is the error's attribute `time`, s.
+        If an argument is wrong or the simulation already runs; nothing is simulated. Also if a
+        callback moves the simulation or returns invalid values, which ends the flight; the
+        attribute `time` is then the time of the end, s.
     FlightError
-        The flight failed, or what the pilot gave was no command, be it at the start.
+        If the flight fails, or the pilot returns no valid command.
     """
     if wrenches:
         check_wrenches(simulation.engine)
@@ -116,7 +116,7 @@ def _advance(
     progress: Optional[Progress],
     pilot: Optional[Pilot],
 ) -> None:
-    """Fly so many steps, in pieces of so many at most."""
+    """Simulate `total` steps in pieces of at most `most` steps."""
     advance = flight.advance if pilot is None else _PilotedFlight(simulation, flight, pilot).advance
 
     def hand_over() -> None:
@@ -128,7 +128,7 @@ def _advance(
                     if pilot is None
                     else _call_with_time(simulation, pilot.add_columns, table)
                 )
-            except BaseException:  # what was flown is known even so
+            except BaseException:  # the states are valid even so
                 beside = 0 if pilot is None else len(pilot.columns)
                 receive(np.hstack([table, np.full((len(table), beside), np.nan)]), wrenches)
                 raise
@@ -153,7 +153,7 @@ def _advance(
 
 
 def _call_with_time(simulation: _core.Simulation, act: Callable[[Any], Any], given: Any) -> Any:
-    """Call, and add to bad input the time at which it ended the flight, as a `FlightError` has."""
+    """Call a function, and add the simulation time to an `InputError`."""
     try:
         return act(given)
     except _core.InputError as error:
@@ -162,7 +162,7 @@ def _call_with_time(simulation: _core.Simulation, act: Callable[[Any], Any], giv
 
 
 class _PilotedFlight:
-    """A flight whose pilot is asked whenever a step begins at which it is due."""
+    """Flight that calls its pilot before each step at which the pilot is due."""
 
     def __init__(self, simulation: _core.Simulation, flight: _core.Flight, pilot: Pilot) -> None:
         self._simulation, self._flight, self._pilot = simulation, flight, pilot
@@ -196,7 +196,7 @@ class _PilotedFlight:
         try:
             self._flight.command(speeds)
         except _core.InputError as error:
-            if not self._takes_commands:  # not what was given is at fault
+            if not self._takes_commands:  # the given speeds are not at fault
                 raise
             simulation, fault = self._simulation, str(error).partition(". Give")[0]
             failure = _core.FlightError(
@@ -211,12 +211,12 @@ class _PilotedFlight:
 def list_columns(
     simulation: _core.Simulation, topics: Sequence[str] = (), pilot: Optional[Pilot] = None
 ) -> List[str]:
-    """Name the columns of what `fly` hands over.
+    """List the columns of the rows that `fly` passes on.
 
     Raises
     ------
     InputError
-        A topic that is none, or that goes by the name of what the pilot tells.
+        If a topic does not exist, or has the name of a column of the pilot.
     """
     columns: List[str] = _core.flight_columns(simulation, topics)
     told = [] if pilot is None else pilot.columns
@@ -226,7 +226,7 @@ def list_columns(
 
 
 class Rows:
-    """Collects what `fly` hands over; without memory for more it keeps what it has."""
+    """Collector of the rows that `fly` passes on; if memory runs out, earlier rows stay."""
 
     def __init__(self, simulation: _core.Simulation, columns: Sequence[str]) -> None:
         self._columns = list(columns)
@@ -239,7 +239,7 @@ class Rows:
         self._with_wrenches = False
 
     def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
-        """Take over a piece."""
+        """Append a piece."""
         end = self._count + len(table)
         _grow(self._table, end)
         self._table[self._count : end] = table
@@ -250,7 +250,7 @@ class Rows:
         self._count = end
 
     def log(self) -> Log:
-        """Give what came so far."""
+        """Return the rows so far."""
         wrenches = self._wrenches[: self._count]
         named = {name: wrenches[:, i] for i, name in enumerate(self._terms)}
         log = Log.of_rows(
@@ -264,10 +264,10 @@ class Rows:
 
 
 def _grow(array: np.ndarray, rows: int) -> None:
-    """Make room for so many rows and some more, where the array lies if possible."""
+    """Enlarge an array to at least `rows` rows, in place if possible."""
     if rows <= len(array):
         return
-    # By realloc, which moves large blocks without copying them.
+    # resize() uses realloc, which moves large blocks without copying them.
     try:
         array.resize((rows + rows // 8, *array.shape[1:]), refcheck=False)
     except MemoryError:
@@ -275,7 +275,7 @@ def _grow(array: np.ndarray, rows: int) -> None:
 
 
 def count_steps(duration: float, dt: float) -> int:
-    """Count the steps that end within a duration; raises `InputError` if it is none."""
+    """Count the steps that end within a duration; raises `InputError` if it is not valid."""
     if not (isinstance(duration, Real) and 0 <= duration <= _LONGEST):
         raise _core.InputError(
             f"duration is {shorten(duration)}; give seconds, from 0 to {_LONGEST:g}"
@@ -289,7 +289,7 @@ def count_steps(duration: float, dt: float) -> int:
 
 
 def _check_log_every(log_every: object) -> int:
-    """Check after how many steps a log has a row."""
+    """Return the number of steps between rows; raises `InputError` if it is not valid."""
     is_whole = isinstance(log_every, (int, np.integer)) and not isinstance(log_every, bool)
     if not is_whole or not 1 <= log_every < 2**63:  # type: ignore[operator]
         raise _core.InputError(f"log_every is {shorten(log_every)}; give a whole number >= 1")
@@ -297,7 +297,7 @@ def _check_log_every(log_every: object) -> int:
 
 
 def check_log_length(duration: float, dt: float, log_every: int) -> None:
-    """Raise `InputError` if a log would hold the start alone: nothing could be told from it."""
+    """Raise `InputError` if a log would contain the initial state only."""
     steps = count_steps(duration, dt)
     if _check_log_every(log_every) > steps:
         raise _core.InputError(

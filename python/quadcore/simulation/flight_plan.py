@@ -1,4 +1,4 @@
-"""One flight, described so that it can be flown anywhere."""
+"""Complete description of a flight, for any process or machine."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from .simulation import Simulation, make_simulation
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-_VERSION = 1  # of what a fingerprint stands for
+_VERSION = 1  # of the contents of a fingerprint
 
 
 class _Others(TypedDict, total=False):
@@ -52,33 +52,33 @@ class _Others(TypedDict, total=False):
 
 @dataclass(frozen=True, eq=False)
 class FlightPlan:
-    """One flight: what flies, where, and how it is commanded.
+    """Complete description of a flight: vehicle, world, start and commands.
 
-    It holds documents and numbers, no paths, so that it can be pickled and flown in another process
-    or on another machine: the same bytes come out. `FlightPlan.of` makes one from files and names;
-    `dataclasses.replace` makes one that differs in some member.
+    A plan contains documents and numbers but no paths. It can be pickled; its flights are
+    bit-identical in every process and on every machine. `FlightPlan.of` makes a plan from files and
+    names; `dataclasses.replace` makes a plan with other attributes.
 
     Attributes
     ----------
     model, world
-        As they were read.
+        Model and World, as `read_model` and `read_world` return them.
     engine, dt, seed
         As for `Simulation`.
     parameters : mapping of str to str
-        "PLUGIN.TAG" -> value. "LINK.mass" and the like may be given, too, and become part of the
-        model.
+        Values by "PLUGIN.TAG". Values such as "LINK.mass" become part of the model.
     spawn : tuple of 6 floats
         x, y, z (m), roll, pitch, yaw (rad) of the frame link in the world.
     rotor_velocity : tuple of float, optional
-        Of the rotor joints at the start, rad/s; None is at rest.
+        Initial velocities of the rotor joints, rad/s. Default: at rest.
     duration : float
-        s; infinite where whoever flies it says when it ends.
+        Duration, s; infinite if the caller decides when the flight ends.
     commands : ndarray (rows, 1 + n), optional
         As for `Simulation.run`.
     controller, reference : optional
         As for `Simulation.run`.
     on_reference : bool
-        Whether the flight begins in the full flat state of the reference, not at `spawn`.
+        Whether to start in the full state of a vehicle that follows the reference, instead of at
+        `spawn`.
     log_every, wrenches, topics
         As for `Simulation.run`.
     """
@@ -101,7 +101,7 @@ class FlightPlan:
     topics: Tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        """Bring what was given into the form in which it is kept and compared."""
+        """Convert the attributes to the form in which plans are compared."""
         model, parameters = apply_link_values(
             self.model, {key: format_value(value) for key, value in self.parameters.items()}
         )
@@ -135,25 +135,25 @@ class FlightPlan:
         wind: Optional[Sequence[float]] = None,
         **others: Unpack[_Others],
     ) -> FlightPlan:
-        """Read what a flight needs.
+        """Make a plan from files and names.
 
         Parameters
         ----------
         model, world, xacro_args, ignore, parameters, spawn, seed
             As for `Simulation`.
         commands
-            As for `Simulation.run`; a file is read now.
+            As for `Simulation.run`; a file is read at once.
         scenario
-            What befalls the vehicle: a file, or the name of a shipped one.
+            Disturbances and faults: a file, or the name of a shipped scenario.
         wind
-            Velocity of a constant wind in world axes, m/s.
+            Velocity of a constant wind, world axes, m/s.
         **others
-            Members as they stand.
+            Other attributes of the plan.
 
         Raises
         ------
         InputError
-            The model, the world, the commands, the scenario or an argument is at fault.
+            If the model, the world, the commands, the scenario or an argument is wrong.
         """
         arguments, given = split_xacro_arguments(parameters, xacro_args)
         readings = read_both(model, world, arguments, ignore)
@@ -165,31 +165,31 @@ class FlightPlan:
             seed=seed,
             **others,
         )
-        plan = plan.apply_scenario(scenario).with_wind(wind)
-        return plan if commands is None else plan.replace_commands(commands)
+        plan = plan.with_scenario(scenario).with_wind(wind)
+        return plan if commands is None else plan.with_commands(commands)
 
     @property
     def step(self) -> float:
-        """Of the flight, s: the world's unless `dt` is another."""
+        """Step of the flight, s: `dt`, or else that of the world."""
         return self.world.max_step_size if self.dt is None else self.dt
 
-    def apply_scenario(self, scenario: Union[str, Path, Scenario, None]) -> FlightPlan:
-        """Make the same flight in a scenario; what the plan sets wins over it.
+    def with_scenario(self, scenario: Union[str, Path, Scenario, None]) -> FlightPlan:
+        """Return the plan with a scenario; parameters of the plan override the scenario.
 
         Parameters
         ----------
         scenario : path, str or Scenario, optional
-            A file, the name of a shipped one, or what was read; None leaves the flight as it is.
+            File, name of a shipped scenario, or scenario. Default: none.
 
         Raises
         ------
         InputError
-            The scenario is at fault: one line with file and line.
+            If the scenario is wrong; the message begins with ``FILE:LINE``.
 
         Warns
         -----
         QuadcoreWarning
-            Events that come when the flight has ended.
+            If an event happens after the end of the flight.
         """
         read = read_scenario(scenario)
         if read is None:
@@ -205,36 +205,36 @@ class FlightPlan:
         return plan
 
     def with_wind(self, velocity: Optional[Sequence[float]]) -> FlightPlan:
-        """Make the same flight in a constant wind.
+        """Return the plan with a constant wind.
 
         Parameters
         ----------
         velocity : sequence of 3 floats, optional
-            Of the air in world axes, m/s; None leaves the flight as it is.
+            Velocity of the air, world axes, m/s. Default: no change.
         """
         if velocity is None:
             return self
         model, tags = add_wind(self.model, velocity)
         return replace(self, model=model, parameters={**self.parameters, **tags})
 
-    def replace_commands(self, commands: CommandsLike) -> FlightPlan:
-        """Make the same flight under other commands.
+    def with_commands(self, commands: CommandsLike) -> FlightPlan:
+        """Return the plan with other commands.
 
         Parameters
         ----------
         commands : ndarray (rows, 1 + n) or path
-            As for `Simulation.run`; a file is read now.
+            As for `Simulation.run`; a file is read at once.
 
         Raises
         ------
         InputError
-            The commands, or what else makes a simulation, are at fault.
+            If the commands or other attributes of the plan are wrong.
         """
         vehicle = make_simulation(**self._vehicle())
         return replace(self, commands=check_commands(commands, vehicle.command_width))
 
     def simulation(self) -> Simulation:
-        """Make the vehicle as it takes off; raises and warns as `Simulation` does."""
+        """Make the simulation in its initial state; raises and warns as `Simulation` does."""
         simulation = make_simulation(**self._vehicle())
         if self.rotor_velocity is not None:
             state = simulation.state.copy()
@@ -246,19 +246,19 @@ class FlightPlan:
         return simulation
 
     def pilot(self, simulation: Simulation) -> Optional[ControllerPilot]:
-        """Make what asks the controller, if the flight has one; raises as `Simulation.run`.
+        """Make the pilot that calls the controller, if any; raises as `Simulation.run` does.
 
         Parameters
         ----------
         simulation : Simulation
-            Which is to fly, as `simulation()` makes it.
+            Simulation of this plan, as `simulation()` makes it.
         """
         if self.controller is None:
             return None
         return ControllerPilot(self.controller, simulation, self.reference)
 
     def fly(self, progress: Optional[Progress] = None) -> Log:
-        """Fly it; raises and warns as `Simulation` and `Simulation.run` do.
+        """Simulate the flight; raises and warns as `Simulation` and `Simulation.run` do.
 
         Parameters
         ----------
@@ -268,17 +268,17 @@ class FlightPlan:
         Returns
         -------
         Log
-            Of the whole flight, from the state in which it begins.
+            Log of the whole flight, from the initial state on.
         """
         return self.fly_with(self.simulation(), progress)
 
     def fly_with(self, simulation: Simulation, progress: Optional[Progress] = None) -> Log:
-        """Do as `fly` with what is made already.
+        """Simulate the flight with an existing simulation, otherwise as `fly`.
 
         Parameters
         ----------
         simulation : Simulation
-            As `simulation()` makes it.
+            Simulation of this plan, as `simulation()` makes it.
         progress : callable, optional
             As for `fly`.
         """
@@ -294,15 +294,20 @@ class FlightPlan:
         )
 
     def fingerprint(self) -> str:
-        """Digest of all that the flight depends on, the same in every process and place.
+        """Return a digest of everything that the flight depends on, equal in every process.
 
-        Hexadecimal. Documents that differ in a comment only count as different; where they lie and
-        what they are called does not. The modules of the plugins are taken to be the same.
+        Comments in documents count; names and folders of files do not. The digest does not cover
+        the libraries of plugins.
+
+        Returns
+        -------
+        str
+            Hexadecimal digits.
 
         Raises
         ------
         InputError
-            The controller or the reference is one's own, of which nobody can tell what it does.
+            If the controller or the reference is your own code.
         """
         text = json.dumps(self._describe(), sort_keys=True, allow_nan=True)
         return hashlib.sha256(text.encode()).hexdigest()

@@ -1,4 +1,4 @@
-"""What a flight leaves behind."""
+"""The public class `Log`."""
 
 from __future__ import annotations
 
@@ -25,9 +25,10 @@ _READ = "logs are read from"
 
 
 class Log(Trajectory):
-    """States of a flight, to be written and drawn; made as its base `Trajectory` is.
+    """Logged states of a flight, with methods to write and plot them.
 
-    ``log["x"]`` is a column (rows,) by the name that it has in the CSV file.
+    ``log["x"]`` returns a column (rows,) by its name in the CSV file. The parameters are those of
+    `Trajectory`.
     """
 
     @classmethod
@@ -39,41 +40,46 @@ class Log(Trajectory):
         ignored: Sequence[str] = (),
         title: str = "",
     ) -> Log:
-        """Make a log of rows that hold topics as well.
+        """Make a log from rows that contain topics as well.
 
         Parameters
         ----------
         rows : ndarray (rows, columns)
-            A row per logged step.
+            One row per logged step.
         columns : sequence of str
-            What they hold: the columns of the state, then ``TOPIC.FIELD``.
+            Names of the columns: those of the state, then ``TOPIC.FIELD``.
         wrenches, ignored, title
-            As of `Trajectory`.
+            As for `Trajectory`.
         """
         of_state, topics = split_columns(columns, rows)
         return cls(rows[:, : len(of_state)], wrenches, title, ignored, topics)
 
     @classmethod
     def of_file(cls, path: PathLike) -> Log:
-        """Read a ``.csv``, ``.mat`` or ``.bag`` file that `to_file` wrote, every bit restored.
+        """Read a ``.csv``, ``.mat`` or ``.bag`` file that `to_file` wrote, bit-identically.
 
         Parameters
         ----------
         path : str or path
-            The suffix says which.
+            File; its suffix selects the format.
 
         Raises
         ------
         InputError
-            Another suffix, a file that cannot be read, or one that holds no log; the message begins
-            with the file and, if it is text, the line.
+            If the suffix is unknown, the file cannot be read, or it contains no log; the message
+            begins with the file and, for text, the line.
         """
         file = _check_path(path)
         read = find_format(file, _READ).read_log(file)
         return cls.of_rows(read.rows, read.columns, read.wrenches, read.ignored)
 
     def to_dict(self) -> Dict[str, np.ndarray]:
-        """Name every column as the CSV file does, topics and wrenches included; shape (rows,)."""
+        """Return every column by its name in the CSV file, including topics and wrenches.
+
+        Returns
+        -------
+        dict of str to ndarray (rows,)
+        """
         named = dict(zip(self.columns, self.table.T))
         for topic, fields in self.topics.items():
             named.update((f"{topic}.{field}", column) for field, column in fields.items())
@@ -82,12 +88,12 @@ class Log(Trajectory):
         return named
 
     def to_dataframe(self) -> Any:
-        """Make a pandas DataFrame of every column of `to_dict`, indexed by the time ``t`` [s].
+        """Return a pandas DataFrame of every column of `to_dict`, indexed by the time ``t`` [s].
 
         Raises
         ------
         InputError
-            pandas is not installed.
+            If pandas is not installed.
         """
         with require_package("log.to_dataframe()", "pandas", "pandas"):
             import pandas
@@ -134,43 +140,43 @@ class Log(Trajectory):
         )
 
     def to_csv(self, path: PathLike) -> None:
-        """Write `table` as text with the fewest digits that restore every bit.
+        """Write a CSV file with the fewest digits that restore every bit.
 
-        Columns of topics follow, named ``TOPIC.FIELD``, and six of each wrench, ``wrench_NAME.fx``
-        to ``wrench_NAME.tz``.
-        What was `ignored`, if anything, stands in a comment below the names of the columns.
+        The columns of `table` come first. Columns ``TOPIC.FIELD`` of topics follow, then six
+        columns of each wrench, ``wrench_NAME.fx`` to ``wrench_NAME.tz``. A comment below the
+        header lists `ignored`, if it is not empty.
 
         Parameters
         ----------
         path : str or path
-            A file that ends in ``.csv``.
+            File that ends in ``.csv``.
 
         Raises
         ------
         InputError
-            Another suffix, or a file that cannot be written; nothing is left behind then.
+            If the suffix is wrong, or the file cannot be written; no partial file remains.
         """
         self._check_suffix(path, ".csv")
         self.to_file(path)
 
     def to_mat(self, path: PathLike, layout: str = "vectors") -> None:
-        """Write a MATLAB file of each column as a vector and each wrench as ``wrench_NAME``.
+        """Write a MATLAB file with each column as a vector.
 
-        Each topic is a struct ``topic_NAME`` of a vector for each field.
-        What was `ignored`, if anything, is the cell array ``ignored``.
+        Wrenches are matrices ``wrench_NAME``, topics are structs ``topic_NAME`` with one vector per
+        field. The cell array ``ignored`` contains `ignored`, if it is not empty.
 
         Parameters
         ----------
-        path
-            A file that ends in ``.mat``.
-        layout
-            "vectors"; or all that in the one variable ``log``: a "struct" of it, a "matrix" with
-            the names of its ``columns`` beside it, or time and "signals", as Simulink has them.
+        path : str or path
+            File that ends in ``.mat``.
+        layout : {"vectors", "struct", "matrix", "signals"}, default "vectors"
+            "struct", "matrix" and "signals" write one variable ``log``: a struct of the vectors, a
+            matrix next to the names of its ``columns``, or time and signals as in Simulink.
 
         Raises
         ------
         InputError
-            Another suffix or layout, or a file that cannot be written; nothing is left behind then.
+            If suffix or layout is wrong, or the file cannot be written; no partial file remains.
         """
         self._check_suffix(path, ".mat")
         mat.write_log(_check_path(path), *self._parts(), layout)
@@ -181,18 +187,18 @@ class Log(Trajectory):
         Parameters
         ----------
         path : str or path
-            The suffix says which.
+            File; its suffix selects the format.
 
         Raises
         ------
         InputError
-            Another suffix, or a file that cannot be written; nothing is left behind then.
+            If the suffix is unknown, or the file cannot be written; no partial file remains.
         """
         file = _check_path(path)
         find_format(file, _WRITTEN).write_log(file, *self._parts())
 
     def _parts(self) -> Tuple[List[str], np.ndarray, Mapping[str, np.ndarray], List[str]]:
-        """Give what files hold: columns, table, wrenches, and what was ignored."""
+        """Return the contents of files: columns, table, wrenches and `ignored`."""
         columns, table = list(self.columns), self.table
         if self.topics:
             columns += [f"{topic}.{field}" for topic in self.topics for field in self.topics[topic]]
@@ -201,22 +207,22 @@ class Log(Trajectory):
         return columns, table, self.wrenches, self.ignored
 
     def plot(self, directory: PathLike) -> list[Path]:
-        """Draw the flight into PNG files.
+        """Plot the flight to PNG files.
 
         Parameters
         ----------
         directory : str or path
-            Where to; it is made if it is missing.
+            Folder of the files; a missing folder is created.
 
         Returns
         -------
         list of Path
-            The files.
+            Files that were written.
 
         Raises
         ------
         InputError
-            They cannot be written.
+            If a file cannot be written.
         """
         folder = _check_path(directory, "directory")
         with LOCK:
@@ -243,17 +249,17 @@ def check_log_path(path: PathLike) -> None:
 def make_log_file(
     path: Path, columns: Sequence[str], terms: Sequence[str], ignored: Sequence[str]
 ) -> LogFile:
-    """Make the recorder that a file's name asks for.
+    """Make a recorder for the format that the suffix of a file selects.
 
     Parameters
     ----------
     path
-        The file.
+        File to write.
     columns
-        Of the flight.
+        Columns of the rows.
     terms
-        Of the wrenches that are logged.
+        Names of the logged wrenches.
     ignored
-        What was left out of model and world.
+        Ignored parts of model and world.
     """
     return find_format(path, _WRITTEN).log_file(path, columns, terms, ignored)

@@ -1,4 +1,4 @@
-"""Where the rows of a flight go while it flies: what is told or drawn afterwards, and files."""
+"""Recorders that receive the rows of a flight: for summaries, plots and files."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from .simulation import Simulation
 
 TAIL = 10.0
-"""The last so many seconds of a flight tell whether it holds, s."""
+"""Length of the final part of a flight that `TrackingError.final` covers, s."""
 
-_DRAWN = 20_000  # rows, more than a picture can show
+_DRAWN = 20_000  # rows, more than a plot can show
 
 
 class DecimatedRows:
-    """Rows enough to draw: all, or each so many of a long flight, and the last."""
+    """Recorder of enough rows for plots: every row, or every N-th of a long flight."""
 
     def __init__(self, rows: int, columns: Sequence[str], terms: Sequence[str]) -> None:
         self.every = -(-rows // _DRAWN)
@@ -35,7 +35,7 @@ class DecimatedRows:
         self._last: List[np.ndarray] = []
 
     def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
-        """Pick from a piece."""
+        """Pick rows from a piece."""
         if len(table) == 0:
             return
         picked = slice(-self._seen % self.every, None, self.every)
@@ -49,7 +49,7 @@ class DecimatedRows:
         """Nothing is open."""
 
     def log(self) -> Log:
-        """Give what was picked; the title tells if that is not all."""
+        """Return the picked rows; the title states N if it is not 1."""
         title = f"every {_format_ordinal(self.every)} row" if self.every > 1 else ""
         table, wrenches = (
             np.concatenate([*pieces, *self._last[i : i + 1]])
@@ -69,7 +69,7 @@ def _format_ordinal(number: int) -> str:
 
 
 class FastestRotor:
-    """The largest speed of a rotor, rad/s, and the time of the last row, s."""
+    """Recorder of the maximum rotor speed, rad/s, and the time of the last row, s."""
 
     wrenches = False
 
@@ -80,7 +80,7 @@ class FastestRotor:
         self.time = 0.0
 
     def receive(self, table: np.ndarray, _: np.ndarray) -> None:
-        """Look at a piece."""
+        """Update the values."""
         if len(table):
             self.speed = max(self.speed, np.abs(table[:, self._rotors]).max(initial=0.0))
             self.time = table[-1, 0]
@@ -90,7 +90,7 @@ class FastestRotor:
 
 
 class TrackingError:
-    """How far a guided flight is from its reference; NaN without rows."""
+    """Recorder of the tracking error; NaN without rows."""
 
     wrenches = False
 
@@ -100,7 +100,7 @@ class TrackingError:
         self._late: Deque[Tuple[np.ndarray, np.ndarray]] = collections.deque()
 
     def receive(self, table: np.ndarray, _: np.ndarray) -> None:
-        """Look at a piece."""
+        """Update the values."""
         if len(table) == 0:
             return
         lengths = np.linalg.norm(table[:, self._error], axis=1)
@@ -116,17 +116,17 @@ class TrackingError:
 
     @property
     def max(self) -> float:
-        """Of all rows, m."""
+        """Maximum of all rows, m."""
         return self._largest if self._count else math.nan
 
     @property
     def rms(self) -> float:
-        """Root of the mean square, m."""
+        """Root mean square of all rows, m."""
         return math.sqrt(self._squares / self._count) if self._count else math.nan
 
     @property
     def final(self) -> float:
-        """Of the last `TAIL` seconds, m."""
+        """Maximum of the last `TAIL` seconds, m."""
         if not self._count:
             return math.nan
         end = self._late[-1][0][-1]
@@ -134,7 +134,7 @@ class TrackingError:
 
 
 class Recording:
-    """Everything that records one flight; a file that fails does not take the others with it."""
+    """All recorders of one flight; the others continue if a file fails."""
 
     def __init__(self, files: Sequence[LogFile], others: Sequence[Recorder]) -> None:
         self._files, self._others = list(files), list(others)
@@ -142,11 +142,11 @@ class Recording:
 
     @property
     def wrenches(self) -> bool:
-        """Whether any of them wants the wrenches."""
+        """Whether a recorder needs wrenches."""
         return any(recorder.wrenches for recorder in [*self._files, *self._others])
 
     def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
-        """Give a piece to all; raises `InputError` when the last of the files has failed."""
+        """Pass a piece on; raises `InputError` once the last file has failed."""
         for recorder in self._others:
             recorder.receive(table, wrenches)
         self._try_each(lambda file: file.receive(table, wrenches))
@@ -154,7 +154,7 @@ class Recording:
             raise self._failure
 
     def close(self) -> List[Path]:
-        """Finish all; returns the files that hold the flight."""
+        """Close all recorders, and return the files that contain the flight."""
         self._try_each(lambda file: file.close())
         return [file.path for file in self._files]
 

@@ -1,4 +1,4 @@
-"""Events of scenarios: what happens at a time, as a list in the tag of a plugin."""
+"""Events of scenarios, which become lists in tags of plugins."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from ..support.yaml_nodes import find_line, read_pairs, read_scalar
 
 
 class EventKind(NamedTuple):
-    """One kind of event, named by the key that says what happens."""
+    """Kind of event, selected by its key."""
 
     library: str
-    """Of the plugin that lets it happen; its name, too, unless the event says another."""
+    """Library of the plugin, and its name unless the event has another."""
     tag: str
     numbers: int
-    """Behind the key; 0: the name of the plugin."""
+    """Count of numbers after the key; 0 for the name of a plugin."""
     others: Mapping[str, Tuple[int, str]]
-    """Further keys, how many numbers each takes and what holds without it; "": it must be there."""
+    """Further keys: count of numbers, and default or "" if the key is required."""
     row: str
-    """Of the tag's list, made of the keys."""
-    told: str
-    """In a picture."""
+    """Format of a row in the list of the tag."""
+    label: str
+    """Format of the label in plots."""
 
 
 KINDS: Dict[str, EventKind] = {
@@ -49,22 +49,22 @@ KINDS: Dict[str, EventKind] = {
 
 
 class Event(NamedTuple):
-    """What happens at a time."""
+    """Event at a time."""
 
     time: float
-    """s"""
+    """Simulation time, s."""
     text: str
-    """For people."""
+    """Label in plots and messages."""
     plugin: str
     library: str
     tag: str
     row: str
-    """What the event adds to the tag."""
+    """Row that the event adds to the tag."""
     may_repeat: bool
     thing: str
-    """That it befalls."""
+    """Affected part."""
     rotor: Optional[float]
-    """That it befalls, from 1."""
+    """Affected rotor, from 1."""
     line: int
 
     def check(self, file: str, rotors: int) -> None:
@@ -77,19 +77,19 @@ class Event(NamedTuple):
 
 
 def read_events(file: str, node: yaml.Node) -> Sequence[Event]:
-    """Read the events of a scenario, by time.
+    """Read the events of a scenario, sorted by time.
 
     Parameters
     ----------
     file
-        Of the scenario, as it is told.
+        Name of the scenario file in messages.
     node
-        Its list.
+        List of events.
 
     Raises
     ------
     InputError
-        With file and line.
+        If an event is wrong; the message begins with ``FILE:LINE``.
     """
     what = "events as a list of {at: TIME, KIND: ...}"
     if not isinstance(node, yaml.SequenceNode):
@@ -144,7 +144,7 @@ def _read_event(file: str, node: yaml.Node, what: str) -> Event:
     thing = f"rotor {values[name]}" if kind.numbers == 1 else f"'{plugin}'"
     row = kind.row.format(**values)
     may_repeat = kind.numbers > 0
-    text = kind.told.format(**values)
+    text = kind.label.format(**values)
     return Event(
         time, text, plugin, kind.library, kind.tag, row, may_repeat, thing, rotor, find_line(node)
     )
@@ -156,7 +156,7 @@ def _name_unknown(given: Mapping[str, object]) -> str:
 
 
 def _read_numbers(file: str, key: str, node: yaml.Node, count: int) -> str:
-    """Read so many numbers as a tag has them; with 0, a text."""
+    """Read `count` numbers, or a text if `count` is 0."""
     items = node.value if isinstance(node, yaml.SequenceNode) else [node]
     texts = [read_scalar(file, key, item) for item in items]
     if count == 0 and len(texts) == 1:

@@ -1,8 +1,8 @@
-"""Scenarios: what befalls a vehicle, written in YAML.
+"""Scenarios: disturbances, faults and payload events of a flight, in YAML.
 
-A mapping in YAML with ``plugins``, by name those that are added to the model, or are its own, with
-their tags; and ``events`` in time, see `KINDS`. Those that quadcore has lie in
-``config/scenarios/NAME.yaml``.
+A scenario file is a mapping with ``plugins`` and ``events``. ``plugins`` contains tags by the name
+of the plugin; plugins that the model does not have are added. `KINDS` lists the events. The shipped
+files are ``config/scenarios/NAME.yaml``.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ from ..support.yaml_nodes import find_line, read_pairs, read_root, read_scalar
 from .scenario_events import Event, read_events
 
 NONE = "none"
-"""Name of the scenario in which nothing befalls."""
+"""Name of the scenario without disturbances."""
 
 _LIBRARY = "library"
 _WRITE = "plugins: and events:"
 
 
 class Tag(NamedTuple):
-    """A tag of a plugin, as a scenario gives it."""
+    """Tag of a plugin in a scenario."""
 
     name: str
     value: str
@@ -40,7 +40,7 @@ class Tag(NamedTuple):
 
 
 class PluginEntry(NamedTuple):
-    """A plugin that a scenario speaks of."""
+    """Plugin in a scenario."""
 
     name: str
     library: str
@@ -49,24 +49,24 @@ class PluginEntry(NamedTuple):
 
 
 class Scenario:
-    """What a file says.
+    """Contents of a scenario file.
 
     Parameters
     ----------
     path : str or path
-        Of the file, or the name of a shipped scenario.
+        File, or name of a shipped scenario.
 
     Attributes
     ----------
     name : str
-        Of the file without its suffix.
+        Name of the file without its suffix.
     events : sequence of Event
-        By time.
+        Events, sorted by time.
 
     Raises
     ------
     InputError
-        A missing file, or one that is wrong: one line with file and line.
+        If the file is missing or wrong; the message begins with ``FILE:LINE``.
     """
 
     def __init__(self, path: Union[str, Path]) -> None:
@@ -91,18 +91,17 @@ class Scenario:
         self._additions = list(additions.values())
 
     def apply_to(self, model: Model) -> Tuple[Model, Dict[str, str]]:
-        """Let it befall a vehicle.
+        """Apply the scenario to a model.
 
         Returns
         -------
         tuple
-            The model with the plugins that it did not have, and values by ``PLUGIN.TAG`` for those
-            that it has.
+            Model with the added plugins, and values by ``PLUGIN.TAG`` of its own plugins.
 
         Raises
         ------
         InputError
-            With file and line: no such plugin, tag, value or rotor.
+            If a plugin, tag, value or rotor is wrong; the message begins with ``FILE:LINE``.
         """
         for event in self.events:
             event.check(self._file, len(model.joints))
@@ -120,22 +119,22 @@ class Scenario:
         return read_model(document, list(model.ignored_elements.ignored)), parameters
 
     def describe_late_events(self, end: float) -> str:
-        """Tell which events come when a flight has ended, in one line; "" if none does.
+        """Return a warning about events after the end of a flight, or "".
 
         Parameters
         ----------
         end
-            Of the flight, s.
+            End of the flight, s.
         """
         late = [event for event in self.events if event.time >= end]
         if not late:
             return ""
-        told = ", ".join(f"{event.text} at {event.time:g} s" for event in late)
-        return f"{self._file}:{late[0].line}: the flight ends at {end:g} s, before {told}"
+        events = ", ".join(f"{event.text} at {event.time:g} s" for event in late)
+        return f"{self._file}:{late[0].line}: the flight ends at {end:g} s, before {events}"
 
     @contextmanager
     def locate_errors(self) -> Iterator[None]:
-        """Name file and line in an error of the block about a tag that it gives."""
+        """Add file and line to errors of the block about tags of the scenario."""
         try:
             yield
         except InputError as error:
@@ -145,26 +144,26 @@ class Scenario:
                     given = re.escape(f"{addition.name}.{tag.name}")
                     if re.match(rf"set {given}(?![\w.])", str(error)):
                         raise InputError(f"{where}: {str(error)[4:]}") from error
-                    # Of two plugins that must agree it is told where the model has the one.
+                    # If two plugins must agree, the message names the line in the model.
                     if re.search(rf"<{tag.name}> is .* in '{addition.name}' \(set\)", str(error)):
                         raise InputError(f"{where}: {error}") from error
             raise
 
 
 def add_wind(model: Model, velocity: Sequence[float]) -> Tuple[Model, Dict[str, str]]:
-    """Let a constant wind blow on a vehicle.
+    """Add a constant wind to a model.
 
     Parameters
     ----------
     model
-        The vehicle.
+        Model of the vehicle.
     velocity
-        Of the air in world axes, m/s.
+        Velocity of the air, world axes, m/s.
 
     Returns
     -------
     tuple
-        The model with a plugin ``wind``, unless it has one, and values by ``PLUGIN.TAG``.
+        Model with a plugin ``wind``, and values by ``PLUGIN.TAG`` if it already has one.
     """
     text = " ".join(repr(float(part)) for part in velocity)
     names, end = _find_plugins(model.document.text)
@@ -176,7 +175,7 @@ def add_wind(model: Model, velocity: Sequence[float]) -> Tuple[Model, Dict[str, 
 
 
 def read_scenario(scenario: Union[str, Path, Scenario, None]) -> Optional[Scenario]:
-    """Read a scenario, unless it is read already; None for `NONE`."""
+    """Read a scenario, unless it is read already; returns None for `NONE`."""
     if scenario is None or isinstance(scenario, Scenario):
         return scenario
     return None if str(scenario) == NONE else Scenario(scenario)
@@ -232,7 +231,7 @@ def _read_value(file: str, tag: yaml.ScalarNode, node: yaml.Node) -> str:
 
 
 def _add_event(file: str, addition: PluginEntry, event: Event) -> None:
-    """Add an event to the list that is its plugin's tag."""
+    """Add an event to the list in the tag of its plugin."""
     for i, tag in enumerate(addition.tags):
         if tag.name != event.tag:
             continue
@@ -247,7 +246,7 @@ def _add_event(file: str, addition: PluginEntry, event: Event) -> None:
 
 
 def _find_plugins(text: str) -> Tuple[List[str], int]:
-    """Find the names of a model's plugins, and where its root element ends, in characters."""
+    """Return the names of the plugins of a model, and the position where its root element ends."""
     parser = expat.ParserCreate()
     names: List[str] = []
     end = depth = 0
@@ -273,7 +272,7 @@ def _find_plugins(text: str) -> Tuple[List[str], int]:
 def _insert_plugins(
     document: Document, end: int, added: Sequence[PluginEntry], file: str
 ) -> Document:
-    """Write plugins into a model; each of their lines is known to be the scenario's."""
+    """Insert plugins into a model; messages about their lines name the scenario."""
     before, after = document.text[:end], document.text[end:]
     count = document.text.count("\n") + 1
     lines: List[Any] = document.lines or [(document.name, i + 1) for i in range(count)]

@@ -235,7 +235,7 @@ class Simulation(_core.Simulation):
         Returns
         -------
         Log
-            Log whose first row is the present state.
+            Log of the states; its first row is the present state.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""How a flight went, as rows of numbers."""
+"""States of a flight as rows of numbers."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ _STATE_SIZE = len(log_columns(0))
 
 
 def per_command(simulation: Simulation) -> float:
-    """Size of the rotor joints' velocity per commanded speed; 1 if there are several."""
+    """Return the ratio of joint velocity to commanded speed; 1 if rotors differ."""
     sizes = {abs(rotor.rate_per_command) for rotor in simulation.rotors}
     return sizes.pop() if len(sizes) == 1 else 1.0
 
 
 def is_slow(size: float) -> bool:
-    """Tell whether joints of this size per commanded speed are known to turn otherwise."""
+    """Return whether a ratio of joint velocity to commanded speed is known and not 1."""
     return size not in (0.0, 1.0)
 
 
@@ -38,7 +38,7 @@ def _check_table(table: Any) -> FloatArray:
 
 
 class Wrenches(Dict[str, np.ndarray]):
-    """Of each term, by name."""
+    """Wrenches by name of the term."""
 
     def __missing__(self, name: str) -> FloatArray:
         if self:
@@ -47,33 +47,33 @@ class Wrenches(Dict[str, np.ndarray]):
 
 
 class Trajectory:
-    """States of a flight, one row per logged step, and perhaps the wrenches from each on.
+    """States of a flight, one row per logged step.
 
     Parameters
     ----------
-    table : ndarray, shape (rows, 14 + n)
-        Columns as `columns` names them.
-    wrenches : mapping of str to ndarray, shape (rows, 6)
-        Force (N), then torque (N m), frame axes, about the vehicle's centre of mass; none unless
-        they were asked for.
-    title : str
-        What flew, for the plots.
-    ignored : sequence of str
-        What was left out of model and world at the user's wish.
-    topics : mapping of str to mapping of str to ndarray, shape (rows,)
-        Of each topic that was logged, by field, the message that is the last at that time, and its
-        ``stamp`` (s); NaN before the first.
+    table : ndarray (rows, 14 + n)
+        States with the columns of `columns`.
+    wrenches : mapping of str to ndarray (rows, 6), optional
+        Force (N), then torque (N m), frame axes, about the centre of mass of the vehicle. Each row
+        is the wrench during the step that begins there.
+    title : str, default ""
+        Title of plots.
+    ignored : sequence of str, default ()
+        Parts of model and world that the option `ignore` left out.
+    topics : mapping of str to mapping of str to ndarray (rows,), optional
+        Logged topics: fields of the latest message and its ``stamp`` (s). NaN before the first
+        message.
 
     Raises
     ------
     InputError
-        The table is none of states.
+        If the table does not contain states.
 
     Attributes
     ----------
     per_command : float
-        Size of the rotor joints' velocity per commanded speed, 0.1 at a sim_slow of 10; 1 if it is
-        not known. Pictures show both.
+        Ratio of joint velocity to commanded speed, for example 0.1 at a sim_slow of 10; 1 if it is
+        unknown.
     """
 
     per_command = 1.0
@@ -97,12 +97,12 @@ class Trajectory:
 
     @property
     def is_slow(self) -> bool:
-        """Whether the joints are known to turn otherwise than commanded."""
+        """Whether the joints are known to turn at another speed than commanded."""
         return is_slow(self.per_command)
 
     @property
     def columns(self) -> list[str]:
-        """Names of the table's columns, as they head the CSV file."""
+        """Names of the columns of `table`, as in the header of the CSV file."""
         return log_columns(self.table.shape[1] - _STATE_SIZE)
 
     @property

@@ -83,7 +83,7 @@ class Variation:
         read = self._read(model, tuple(varied.items()))
         check_names(read, parameters)
         plan = replace(plan, **changed, model=read, parameters=tags)
-        return plan.apply_scenario(self.scenarios[point.get("scenario")]).with_wind(self._wind)
+        return plan.with_scenario(self.scenarios[point.get("scenario")]).with_wind(self._wind)
 
 
 def pick_controller_values(point: Mapping[str, str]) -> Dict[str, float]:
