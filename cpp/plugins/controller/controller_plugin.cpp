@@ -46,7 +46,7 @@ class ControllerPlugin final : public Plugin {
     if (sample.topics[odometry_].count == 0 || sample.topics[reference_].count == 0) return;
     double* const own = state.data() + kSchedule;
     double* const laws = own + schedule_.state_size();
-    health_of_->tell(sample.topics[health_], sample.time, *controller_, laws);
+    health_of_->update(sample.topics[health_], sample.time, *controller_, laws);
     const auto ask = [&](double period, double* speeds) {
       const auto now = setup_.in_world(sample.topics.read<messages::Odometry>(odometry_));
       const auto wanted = sample.topics.read<messages::Reference>(reference_);
