@@ -17,18 +17,17 @@ _Wrenches = Mapping[str, np.ndarray]
 
 
 class Format(NamedTuple):
-    """What can be done with files of one kind."""
+    """Functions to read and write one file format."""
 
     read_commands: Callable[[Path, Sequence[str]], Table]
-    """read_commands(path, names): the columns of these names, as they stand."""
+    """read_commands(path, names): reads the columns of these names, unchecked."""
     write_log: Callable[[Path, Sequence[str], np.ndarray, _Wrenches, Sequence[str]], None]
-    """write_log(path, columns, table, wrenches, ignored): whole or not at all. Columns named
-    TOPIC.FIELD follow those of the state."""
+    """write_log(path, columns, table, wrenches, ignored): writes a log completely or not at all.
+    Columns TOPIC.FIELD follow those of the state."""
     read_log: Callable[[Path], LogRows]
-    """read_log(path): what write_log wrote."""
+    """read_log(path): reads a file of write_log."""
     log_file: Callable[[Path, Sequence[str], Sequence[str], Sequence[str]], LogFile]
-    """log_file(path, columns, terms, ignored): a log that is written while it is flown, with these
-    wrench terms."""
+    """log_file(path, columns, terms, ignored): makes a recorder that writes during the flight."""
 
 
 FORMATS: Dict[str, Format] = {
@@ -41,19 +40,19 @@ FORMATS: Dict[str, Format] = {
 
 
 def find_format(path: Path, what: str) -> Format:
-    """Find the format that a file's name asks for.
+    """Return the format that the suffix of a file selects.
 
     Parameters
     ----------
     path
-        The file.
+        File to read or write.
     what
         "logs are written to" or "commands are read from", for the error.
 
     Raises
     ------
     InputError
-        There is none such.
+        If no format has this suffix.
     """
     found = FORMATS.get(path.suffix.lower())
     if found is None:

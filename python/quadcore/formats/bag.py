@@ -1,4 +1,4 @@
-"""Bags of ROS 1 with the topics of the node, and a row of the log with each step."""
+"""Bags of ROS 1 with the topics of the node, and with the rows of the log."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ from .rows import (
 from .whole_log import DeferredLogFile
 
 LOG = "/quadcore/log"
-"""Whole rows; the label of the first dimension names the columns, further ones what was ignored."""
+"""Topic of complete rows. Its first label contains the columns, the others the ignored parts."""
 
 _ON_A_WALL = 1e6  # s; times beyond are of a clock on the wall, and counted from the bag's first
 
 
 def read_commands(path: Path, names: Sequence[str]) -> Table:
-    """Read the messages of the only topic that ends in vel_cmd.
+    """Read the commands from the only topic with a name that ends in vel_cmd.
 
     Raises
     ------
     InputError
-        No such topic or several, or messages of another length.
+        If no topic or several topics match, or messages have another length.
     """
     with _open_bag(path) as bag:
         found = [c for c in bag.connections if c.topic.endswith("vel_cmd") and c.msgtype == ARRAY]
@@ -64,22 +64,21 @@ def read_commands(path: Path, names: Sequence[str]) -> Table:
 
 
 def read_path(path: Path) -> np.ndarray:
-    """Read where a vehicle was: t, x, y, z and yaw; shape (rows, 5)."""
+    """Read the path of a vehicle: t, x, y, z and yaw; shape (rows, 5)."""
     rows = read_log(path).rows
     yaw = np.unwrap(to_roll_pitch_yaw(rows[:, 4:8])[:, 2])
     return np.column_stack([rows[:, :4], yaw])
 
 
 def read_log(path: Path) -> LogRows:
-    """Read what `write_log` wrote, or what the node published.
+    """Read a bag of `write_log` or of the node.
 
-    Of a bag of the node there is a row for each time at which both the true odometry and the
-    speeds of the rotors were published.
+    A bag of the node gives one row for each time with both true odometry and rotor speeds.
 
     Raises
     ------
     InputError
-        No log, or a broken one.
+        If the bag is damaged or contains no log.
     """
     with _open_bag(path) as bag:
         whole = [c for c in bag.connections if c.topic == LOG and c.msgtype == ARRAY]
@@ -194,7 +193,7 @@ def write_log(
     wrenches: Mapping[str, np.ndarray],
     ignored: Sequence[str],
 ) -> None:
-    """Write what the node would have published, and each row of the log on `LOG`."""
+    """Write the messages that the node would publish, and each row of the log on `LOG`."""
     with require_package("a bag", "rosbags", "bag"):
         from rosbags.rosbag1 import Writer
     messages = Messages()
@@ -220,7 +219,7 @@ def write_log(
 
 @contextlib.contextmanager
 def _name_temporary(path: Path) -> Iterator[Path]:
-    """Name a file for a while; one that a process left which was killed is in nobody's way."""
+    """Return the name of a temporary file, unique to this process."""
     part = name_temporary(path, ".rows")
     with contextlib.suppress(FileNotFoundError):
         part.unlink()
@@ -236,6 +235,6 @@ def _name_temporary(path: Path) -> Iterator[Path]:
 def make_log_file(
     path: Path, columns: Sequence[str], terms: Sequence[str], ignored: Sequence[str]
 ) -> DeferredLogFile:
-    """Make what records a flight; raises `InputError` without the package rosbags."""
+    """Make a recorder; raises `InputError` if the package rosbags is missing."""
     Messages()
     return DeferredLogFile(write_log, path, columns, terms, ignored)

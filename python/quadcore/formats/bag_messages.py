@@ -18,14 +18,14 @@ _LEAST_VARIANCE = 1e-12  # as the node has it
 
 
 class NodeMessages(NamedTuple):
-    """What the node would publish: types by topic, and at(row) -> topic, time in s and bytes."""
+    """Messages of the node: types by topic, and at(row) -> topic, time in s and bytes."""
 
     kinds: Dict[str, str]
     at: Any
 
 
 class Messages:
-    """Maker of messages; raises `InputError` without the package rosbags."""
+    """Serialiser of messages; raises `InputError` if the package rosbags is missing."""
 
     def __init__(self) -> None:
         with require_package("a bag", "rosbags", "bag"):
@@ -37,7 +37,7 @@ class Messages:
             )
 
     def make_layout(self, labels: Sequence[str], size: int) -> Any:
-        """Make the layout of an array whose dimensions are called so."""
+        """Make the layout of an array with these labels of its dimensions."""
         dimension = self._type("std_msgs/msg/MultiArrayDimension")
         sizes = [size, *[1] * (len(labels) - 1)]
         dimensions = [dimension(label, n, n) for label, n in zip(labels, sizes)]
@@ -48,7 +48,7 @@ class Messages:
         return self._bytes(self._type(ARRAY)(layout, np.array(numbers, dtype=float)), ARRAY)
 
     def make_node_messages(self, columns: Sequence[str]) -> NodeMessages:
-        """Make what turns a row with these columns into the node's messages."""
+        """Return the converter of rows with these columns to the messages of the node."""
         rotors = sum("." not in column for column in columns) - len(log_columns(0))
         topics: Dict[str, List[int]] = {}
         for i, column in enumerate(columns):
@@ -107,7 +107,7 @@ class Messages:
         return self._type(f"geometry_msgs/msg/{kind}")(*numbers)
 
     def _odometry(self, stamp: Any, state: np.ndarray, variances: Sequence[float]) -> bytes:
-        """From x ... qw, vx ... wz."""
+        """Make an odometry message from x ... qw, vx ... wz."""
         pose = self._type("geometry_msgs/msg/Pose")(
             self._vector(state[:3], "Point"), self._vector(state[3:7], "Quaternion")
         )
@@ -155,4 +155,4 @@ _FIELDS = [
     "linear_velocity_variance",
     "angular_velocity_variance",
 ]
-"""Of an odometry."""
+"""Fields of an odometry message."""

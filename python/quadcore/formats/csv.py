@@ -1,4 +1,4 @@
-"""Text, a row per line under the names of the columns."""
+"""CSV files: one row per line below a header."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ _REMARK = log_remark(["?"]).strip("\n?")
 
 
 def read_commands(path: Path, names: Sequence[str]) -> Table:
-    """Read columns of numbers; the header must name these, and nothing else.
+    """Read columns of numbers; the header must contain exactly these names.
 
     Raises
     ------
     InputError
-        Another header, or what is no number; the message begins with ``FILE:LINE:``.
+        If the header or a number is wrong; the message begins with ``FILE:LINE``.
     """
     header, *lines = read_text(path, _LARGEST).rstrip().splitlines() or [""]
     if header.replace(" ", "") != ",".join(names):
@@ -45,12 +45,12 @@ def read_commands(path: Path, names: Sequence[str]) -> Table:
 
 
 def read_log(path: Path) -> LogRows:
-    """Read what `write_log` wrote.
+    """Read a file of `write_log`.
 
     Raises
     ------
     InputError
-        Another header, or what is no number; the message begins with ``FILE:LINE:``.
+        If the header or a number is wrong; the message begins with ``FILE:LINE``.
     """
     header, *lines = read_text(path, _LARGEST).rstrip().splitlines() or [""]
     columns = header.split(",")
@@ -86,7 +86,7 @@ def _read_numbers(
 
 
 def _is_plain(text: str) -> bool:
-    """Whether there is none of 1_000 and other scripts' digits, which Python takes for numbers."""
+    """Return whether a text has no number that only Python accepts, such as 1_000."""
     return "_" not in text and text.isascii()
 
 
@@ -120,7 +120,7 @@ def write_log(
 
 
 class CsvFile:
-    """A log that is written as it is flown, and complete up to its last row at any time."""
+    """Recorder of a CSV file, which is complete up to its last row at any time."""
 
     def __init__(
         self, path: Path, columns: Sequence[str], terms: Sequence[str], ignored: Sequence[str]
@@ -144,5 +144,5 @@ class CsvFile:
 
 
 def _write_head(columns: Sequence[str], terms: Sequence[str], ignored: Sequence[str]) -> bytes:
-    """First line, and what was ignored."""
+    """Write the header and the comment with the ignored parts."""
     return (",".join([*columns, *list_wrench_columns(terms)]) + log_remark(ignored) + "\n").encode()

@@ -1,4 +1,4 @@
-"""MATLAB files: of version 5 they are written, of any they are read."""
+"""MATLAB files: reads any version, writes version 5."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from .rows import LogRows, Table, check_log_columns, check_log_rows, split_colum
 
 _OF_PATH = ("t", "x", "y", "z", "yaw")
 _LOG = "log"
-"""Name of the one variable of a log that is not of vectors."""
+"""Name of the variable in all layouts but "vectors"."""
 
 LAYOUTS = ("vectors", "struct", "matrix", "signals")
-"""How a log may be held: a vector for each column; a struct of them; a matrix and the names of its
-columns; or time and signals, as Simulink has them."""
+"""Layouts of a log: one vector per column, a struct of these, a matrix with the names of its
+columns, or time and signals as in Simulink."""
 
 
 def read_commands(path: Path, names: Sequence[str]) -> Table:
-    """Read columns of these names; see `read_table`.
+    """Read columns by name, see `read_table`.
 
     Raises
     ------
     InputError
-        A column is missing or no vector of real numbers, or they differ in length.
+        If a column is missing, is not a vector of real numbers, or differs in length.
     """
     expected = (
         f"this model with {len(names) - 1} rotors takes {', '.join(names)}, or one matrix or "
@@ -44,24 +44,24 @@ def read_commands(path: Path, names: Sequence[str]) -> Table:
 
 
 def read_path(path: Path) -> np.ndarray:
-    """Read t, x, y, z and, where it is held, yaw; shape (rows, 4 or 5).
+    """Read t, x, y, z and, if present, yaw; shape (rows, 4 or 5).
 
     Raises
     ------
     InputError
-        A column is missing or no vector of real numbers, or they differ in length.
+        If a column is missing, is not a vector of real numbers, or differs in length.
     """
     expected = "a path is t, x, y, z[, yaw], or one matrix or struct of them"
     return read_table(path, _OF_PATH, 4, expected)
 
 
 def read_log(path: Path) -> LogRows:
-    """Read what `write_log` wrote, in any layout.
+    """Read a file of `write_log`, in any layout.
 
     Raises
     ------
     InputError
-        No log, or a broken one.
+        If the file is damaged or contains no log.
     """
     variables = _split_layout(path, load(path, list))
     columns = [name for name in log_columns(len(variables)) if name in variables]
@@ -92,7 +92,7 @@ def _read_wrench(path: Path, name: str, value: Any) -> np.ndarray:
 
 
 def _split_layout(path: Path, variables: Dict[str, Value]) -> Dict[str, Any]:
-    """Bring a log of any layout into that of vectors."""
+    """Convert a log of any layout to the layout of vectors."""
     log = variables.get(_LOG)
     if isinstance(log, np.ndarray) and log.ndim == 2:
         named = variables.get("columns")
@@ -139,9 +139,8 @@ def write_log(
 ) -> None:
     """Write each column as a vector and each wrench as ``wrench_NAME``.
 
-    Each topic is a struct ``topic_NAME`` of a vector for each field.
-    What was ignored, if anything, is the cell array ``ignored``. In another of `LAYOUTS` all that
-    is the variable ``log``.
+    Each topic is a struct ``topic_NAME`` with one vector per field. The cell array ``ignored``
+    contains the ignored parts, if any. All other `LAYOUTS` write the variable ``log``.
     """
     if layout not in LAYOUTS:
         raise InputError(f"layout '{layout}' is none of {', '.join(LAYOUTS)}; name one")
@@ -162,7 +161,7 @@ def write_log(
 
 
 def _make_signals(variables: Mapping[str, Any]) -> Dict[str, Any]:
-    """Put variables of a log into Simulink's structure with time."""
+    """Convert the variables of a log to Simulink's structure with time."""
     labelled: List[Tuple[str, np.ndarray]] = []
     for name, value in variables.items():
         if isinstance(value, dict):
@@ -179,7 +178,7 @@ def _make_signals(variables: Mapping[str, Any]) -> Dict[str, Any]:
 
 
 def write_variables(path: Path, variables: Mapping[str, Any]) -> None:
-    """Write arrays, and mappings of them as structs; vectors as columns."""
+    """Write arrays as variables and mappings as structs; vectors become columns."""
     with LOCK:
         import scipy.io
 

@@ -15,7 +15,7 @@ _CLASSES = ("double", "char", "sparse")
 
 
 def load_4(data: bytes, choose: Choose) -> Dict[str, Value]:
-    """Load the variables that `choose` picks; raises ValueError where the file is damaged."""
+    """Load the variables that `choose` picks; raises ValueError if the file is damaged."""
     found: Dict[str, Tuple[Variable, np.ndarray]] = {}
     rest = memoryview(data)
     while rest:
@@ -30,7 +30,7 @@ def load_4(data: bytes, choose: Choose) -> Dict[str, Value]:
 
 
 def _read_header(data: memoryview) -> Tuple[bytes, Variable, int, np.dtype]:
-    """Give the name, what is held, its bytes and the type of a number."""
+    """Return the name, shape and kind, the bytes and the number type of a variable."""
     if len(data) < _HEADER:
         raise ValueError("it ends within a header")
     order = "<" if struct.unpack_from("<i", data)[0] in range(5000) else ">"

@@ -1,7 +1,7 @@
 """Variables of MATLAB files of versions 5, 6 and 7.
 
-scipy's reader trusts the sizes and types in a file, and ends the process where they are wrong. This
-one checks each of them before use.
+scipy's reader trusts the sizes and types in a file and crashes if they are wrong. This reader
+checks them before use.
 """
 
 from __future__ import annotations
@@ -43,12 +43,12 @@ _LOGICAL, _COMPLEX = 0x200, 0x800
 
 
 def is_5(data: bytes) -> bool:
-    """Whether this is such a file."""
+    """Return whether a file has one of these versions."""
     return find_byte_order(data) is not None
 
 
 def load_5(data: bytes, choose: Choose) -> Dict[str, Value]:
-    """Load the variables that `choose` picks; raises ValueError where the file is damaged."""
+    """Load the variables that `choose` picks; raises ValueError if the file is damaged."""
     elements = Elements(memoryview(data)[HEADER:], find_byte_order(data) or "<")
     found: Dict[str, Tuple[int, Elements]] = {}
     held: Dict[str, Variable] = {}
@@ -66,7 +66,7 @@ def _read_variable(kind: int, content: Elements) -> Value:
 
 
 def _inflate(content: Elements, most: int) -> Elements:
-    """Decompress a variable, or its beginning of `most` bytes."""
+    """Decompress a variable, or its first `most` bytes."""
     stream = zlib.decompressobj()
     try:
         head = Elements(memoryview(stream.decompress(content.data, 8)), content.order)
@@ -84,7 +84,7 @@ def _inflate(content: Elements, most: int) -> Elements:
 
 
 class _Matrix(NamedTuple):
-    """A variable, or what a cell or a field holds, up to its content."""
+    """Header of a variable, cell or field."""
 
     kind: str
     shape: Tuple[int, ...]
@@ -128,7 +128,7 @@ def _read_value(parts: Elements, level: int = 0) -> Value:
 
 
 def _read_array(matrix: _Matrix) -> np.ndarray:
-    """Take real numbers, in the type in which they are held: often a smaller one than the class."""
+    """Read real numbers in their stored type, which is often smaller than the class."""
     numbers = matrix.content.take_numbers()
     if len(numbers) != math.prod(matrix.shape):
         raise ValueError(f"{len(numbers)} numbers for the dimensions {matrix.shape}")
@@ -136,7 +136,7 @@ def _read_array(matrix: _Matrix) -> np.ndarray:
 
 
 def _read_contents(matrix: _Matrix, each: int, level: int) -> List[Value]:
-    """Take what so many variables for each element hold."""
+    """Read the contents of a fixed number of variables per element."""
     count = each * math.prod(matrix.shape)
     if 8 * count > len(matrix.content.data):  # the tag alone has 8 bytes
         raise ValueError(f"{len(matrix.content.data)} bytes hold no {count} variables")
@@ -144,7 +144,7 @@ def _read_contents(matrix: _Matrix, each: int, level: int) -> List[Value]:
 
 
 def _read_structs(matrix: _Matrix, level: int) -> Value:
-    """Take a struct, or an array of them."""
+    """Read a struct, or an array of structs."""
     parts = matrix.content
     if matrix.kind == "object":
         parts.take_text()  # the name of its class

@@ -13,7 +13,7 @@ _OF_MATLAB = "#"  # begins the names of groups for its own use
 
 
 def load_73(stream: IO[bytes], choose: Choose) -> Dict[str, Value]:
-    """Load the variables that `choose` picks; raises as h5py does."""
+    """Load the variables that `choose` picks; raises the errors of h5py."""
     with h5py.File(stream, "r") as file:
         items = {name: _unwrap(item) for name, item in file.items() if name[0] != _OF_MATLAB}
         held = {name: _describe(item) for name, item in items.items()}
@@ -21,7 +21,7 @@ def load_73(stream: IO[bytes], choose: Choose) -> Dict[str, Value]:
 
 
 def _unwrap(item: Any) -> Any:
-    """Of what Octave wraps with its type."""
+    """Return the content of a variable that Octave wraps together with its type."""
     is_wrapped = isinstance(item, h5py.Group) and set(item) >= {"type", "value"}
     return item["value"] if is_wrapped else item
 

@@ -1,4 +1,4 @@
-"""The data elements that MATLAB files of versions 5, 6 and 7 consist of."""
+"""Data elements of MATLAB files of versions 5, 6 and 7."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ _ORDERS = {b"\x00\x01IM": "<", b"\x01\x00MI": ">"}  # the version and the order 
 
 
 def find_byte_order(data: bytes) -> Optional[str]:
-    """Give "<" or ">", or None if this is no such file."""
+    """Return "<" or ">", or None if the file has another format."""
     return _ORDERS.get(data[HEADER - 4 : HEADER])
 
 
 class Elements:
-    """Elements that follow each other, and are taken one by one.
+    """Reader of consecutive elements.
 
-    Each of the methods raises ValueError if the next element is damaged or of another type.
+    All methods raise ValueError if the next element is damaged or has another type.
     """
 
     def __init__(self, data: memoryview, order: str) -> None:
@@ -47,7 +47,7 @@ class Elements:
         return self._at < len(self.data)
 
     def take(self) -> Tuple[int, Elements]:
-        """Take the type and the content of the next element."""
+        """Read type and content of the next element."""
         kind, size, begin, end = self._read_tag()
         if begin + size > len(self.data):
             raise ValueError(f"an element of {size} bytes is longer than what holds it")
@@ -55,28 +55,28 @@ class Elements:
         return kind, Elements(self.data[begin : begin + size], self.order)
 
     def take_size(self, expected: int) -> int:
-        """Take the tag of an element of this type, whose content follows elsewhere."""
+        """Read the tag of an element of this type, and return the size of its content."""
         kind, size, self._at, _ = self._read_tag()
         if kind != expected:
             raise ValueError(f"an element of type {kind} instead of {expected}")
         return size
 
     def take_matrix(self) -> Elements:
-        """Take the content of a matrix."""
+        """Read the content of a matrix."""
         kind, content = self.take()
         if kind != MATRIX:
             raise ValueError(f"an element of type {kind} instead of a matrix")
         return content
 
     def take_bytes(self) -> bytes:
-        """Take bytes of characters."""
+        """Read bytes of characters."""
         kind, content = self.take()
         if kind not in _CODECS:
             raise ValueError(f"an element of type {kind} instead of characters")
         return bytes(content.data)
 
     def take_text(self) -> str:
-        """Take a text."""
+        """Read a text."""
         kind, content = self.take()
         codec = _CODECS.get(kind)
         if codec is None:
@@ -85,7 +85,7 @@ class Elements:
         return bytes(content.data).decode(codec + suffix)
 
     def take_numbers(self, expected: Optional[str] = None) -> np.ndarray:
-        """Take numbers, shape (n,), of a type such as "i4", or of any."""
+        """Read numbers of a type such as "i4", or of any type; shape (n,)."""
         kind, content = self.take()
         held = _NUMBERS.get(kind)
         if held is None or expected not in (None, held):
@@ -94,7 +94,7 @@ class Elements:
         return np.frombuffer(content.data, f"{self.order}{held}")
 
     def _read_tag(self) -> Tuple[int, int, int, int]:
-        """Give type, size, and where the content begins and the next element does."""
+        """Return type and size, and the positions of the content and the next element."""
         at = self._at
         if at + 8 > len(self.data):
             raise ValueError("it ends within a tag")

@@ -1,4 +1,4 @@
-"""Tables in variables of MATLAB: vectors, a matrix, a struct of vectors, or time and signals."""
+"""Tables in MATLAB variables: vectors, a matrix, a struct of vectors, or time and signals."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ from .mat_variables import load
 
 
 def read_table(path: Path, names: Sequence[str], needed: int, expected: str) -> np.ndarray:
-    """Read columns, however they are held.
+    """Read columns in any of the supported forms.
 
     Parameters
     ----------
     path
-        A MATLAB file with vectors of these names, or a single matrix or struct: a matrix of the
-        columns in this order, a struct of vectors of these names, one as Simulink writes it
-        (``time`` and ``signals`` with ``values``), or one of a timeseries (``Time`` and ``Data``).
+        MATLAB file with vectors of these names, or with a single matrix or struct. A matrix has
+        the columns in this order. A struct contains vectors of these names, ``time`` and
+        ``signals`` with ``values`` as in Simulink, or ``Time`` and ``Data`` of a timeseries.
     names
-        Of the columns, time first.
+        Names of the columns, time first.
     needed
-        How many of them must be there.
+        Number of required columns.
     expected
-        What holds such a table, for errors.
+        Description of such a file in messages.
 
     Raises
     ------
     InputError
-        It holds something else.
+        If the file has another content.
     """
 
     def choose(held: Mapping[str, Variable]) -> Sequence[str]:
@@ -67,19 +67,19 @@ def read_table(path: Path, names: Sequence[str], needed: int, expected: str) -> 
 
 
 def _is_row(variable: Variable, least: int, most: int) -> bool:
-    """Whether it may be a matrix of one row, such as a command that is held throughout."""
+    """Return whether an array may be a matrix of one row, such as a constant command."""
     return (
         variable.shape[:1] == (1,) and least <= variable.shape[-1] <= most and variable.is_numbers
     )
 
 
 def _is_one_more(held: Mapping[str, Any], names: Sequence[str]) -> bool:
-    """Whether there is a rotor that the model does not have."""
+    """Return whether the file has a column of a rotor that the model does not have."""
     return f"w{len(names)}" in held and names[-1] == f"w{len(names) - 1}"
 
 
 def stack_vectors(path: Path, columns: Mapping[str, Value]) -> np.ndarray:
-    """Make a table of vectors, which must have the length of the first."""
+    """Make a table of vectors; their lengths must be equal."""
     vectors = {name: check_vector(path, name, value) for name, value in columns.items()}
     first = next(iter(vectors))
     count = len(vectors[first])
@@ -90,7 +90,7 @@ def stack_vectors(path: Path, columns: Mapping[str, Value]) -> np.ndarray:
 
 
 def check_vector(path: Path, name: str, value: Value) -> np.ndarray:
-    """Check that a variable is a vector of real numbers."""
+    """Return a variable as a vector; raises `InputError` if it is not one of real numbers."""
     if (
         not isinstance(value, np.ndarray)
         or value.dtype.kind not in "iuf"
@@ -101,7 +101,7 @@ def check_vector(path: Path, name: str, value: Value) -> np.ndarray:
 
 
 def _join_signals(struct: Dict[str, Value]) -> Optional[np.ndarray]:
-    """Put time and signals side by side; None unless the struct is such a one."""
+    """Join time and signals; returns None if the struct has another form."""
     fields = {name.lower(): value for name, value in struct.items()}
     time = fields.get("time")
     if "signals" in fields:
@@ -122,12 +122,12 @@ def _join_signals(struct: Dict[str, Value]) -> Optional[np.ndarray]:
 
 
 def list_signals(signals: Value) -> List[Any]:
-    """Give the signals of a struct as Simulink writes it, where one is no list."""
+    """Return the signals of a struct of Simulink as a list, also if there is only one."""
     return signals if isinstance(signals, list) else [signals]
 
 
 def _to_rows(array: np.ndarray, rows: int) -> Optional[np.ndarray]:
-    """Turn values to a row for each time; Simulink has vectors as (n, 1, rows)."""
+    """Return values with one row per time; Simulink stores vectors as (n, 1, rows)."""
     flat = np.squeeze(array)
     if flat.ndim <= 1 and flat.size == rows:
         return flat.reshape(rows, 1)

@@ -1,4 +1,4 @@
-"""What a MATLAB file holds: arrays, texts, cells as lists, structs as dictionaries."""
+"""Values of MATLAB files: arrays, texts, cells as lists, structs as dictionaries."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ _OTHERS = ("struct", "object", "char", "cell", "sparse", "function", "opaque")
 
 
 class Variable(NamedTuple):
-    """A variable before it is read."""
+    """Shape and class of a variable that is not read yet."""
 
     shape: Tuple[int, ...]
     kind: str
-    """MATLAB's name of its class."""
+    """Class of the variable in MATLAB."""
 
     @property
     def is_table(self) -> bool:
-        """Whether it holds several columns."""
+        """Whether the variable has several columns."""
         return self.kind == "struct" or (self.is_numbers and min(self.shape, default=0) > 1)
 
     @property
     def is_numbers(self) -> bool:
-        """Whether it is an array of them."""
+        """Whether the variable is an array of numbers."""
         return self.kind not in _OTHERS
 
 
@@ -33,7 +33,7 @@ Choose = Callable[[Mapping[str, Variable]], Sequence[str]]
 
 
 def combine_parts(real: np.ndarray, imaginary: np.ndarray) -> np.ndarray:
-    """Put parts together, whatever they are: a product of infinities would warn."""
+    """Make complex numbers; a product would warn about infinite parts."""
     numbers = real.astype(complex)
     numbers.imag = imaginary
     return numbers

@@ -25,14 +25,14 @@ def load(path: Path, choose: Choose) -> Dict[str, Value]:
     Parameters
     ----------
     path
-        Of version 4, 5, 6 or 7; with the package h5py of 7.3, or HDF5 by Octave.
+        File of version 4, 5, 6 or 7; with the package h5py also 7.3, or HDF5 of Octave.
     choose
-        Told what is held, by name.
+        Function that receives all variables by name and returns names to load.
 
     Raises
     ------
     InputError
-        No such file, a broken one, or one that holds too much.
+        If the file is missing, damaged or too large.
     """
     with open_file(path) as stream:
         try:

@@ -1,4 +1,4 @@
-"""What all formats give and take."""
+"""Data that all formats exchange."""
 
 from __future__ import annotations
 
@@ -10,25 +10,25 @@ import numpy as np
 from .._core import InputError, log_columns
 
 _ROUNDNESS = 1e-2
-"""By which the length of a quaternion may differ from 1 in logs with few digits."""
+"""Accepted difference between 1 and the length of a quaternion, for logs with few digits."""
 
 _WRENCH = ("fx", "fy", "fz", "tx", "ty", "tz")
 
 
 class Table(NamedTuple):
-    """Numbers from a file, and how a row is called in an error."""
+    """Numbers from a file, with the name of each row in messages."""
 
     rows: np.ndarray
     place: Callable[[int], str]
     counted: str
-    """How rows are counted, if that needs to be said."""
+    """Remark on the counting of rows, or ""."""
 
 
 class LogRows(NamedTuple):
-    """What a file holds of a flight; see `Trajectory`."""
+    """Contents of a log file, see `Trajectory`."""
 
     columns: Sequence[str]
-    """Those of the state, then TOPIC.FIELD."""
+    """Columns of the state, then TOPIC.FIELD."""
     rows: np.ndarray
     wrenches: Mapping[str, np.ndarray]
     ignored: Sequence[str]
@@ -38,12 +38,12 @@ Topics = Dict[str, Dict[str, np.ndarray]]
 
 
 def split_columns(columns: Sequence[str], rows: np.ndarray) -> Tuple[Sequence[str], Topics]:
-    """Tell the columns of the state from those of topics, ``TOPIC.FIELD``, which follow them.
+    """Split the columns of the state from the columns ``TOPIC.FIELD`` that follow.
 
     Parameters
     ----------
     columns
-        Their names.
+        Names of the columns.
     rows
         Shape (n, columns).
 
@@ -52,7 +52,7 @@ def split_columns(columns: Sequence[str], rows: np.ndarray) -> Tuple[Sequence[st
     of_state
         Names of the first columns.
     topics
-        Topic -> field -> its column, shape (n,).
+        Columns by topic and field, shape (n,).
     """
     topics: Topics = {}
     for i, column in enumerate(columns):
@@ -63,12 +63,12 @@ def split_columns(columns: Sequence[str], rows: np.ndarray) -> Tuple[Sequence[st
 
 
 def list_wrench_columns(terms: Sequence[str]) -> List[str]:
-    """Name the columns of wrenches where they stand in rows: behind all others, six of each."""
+    """List the columns of wrenches, six per wrench, which follow all others."""
     return [f"wrench_{term}.{field}" for term in terms for field in _WRENCH]
 
 
 def find_wrench_terms(columns: Sequence[str]) -> List[str]:
-    """Name the wrenches whose columns are the last of these."""
+    """Return the names of the wrenches at the end of a list of columns."""
     terms: List[str] = []
     for end in range(len(columns), len(_WRENCH) - 1, -len(_WRENCH)):
         six = list(columns[end - len(_WRENCH) : end])
@@ -80,14 +80,14 @@ def find_wrench_terms(columns: Sequence[str]) -> List[str]:
 
 
 def append_wrenches(table: np.ndarray, wrenches: Optional[np.ndarray]) -> np.ndarray:
-    """Put wrenches (rows, terms, 6), if any, behind the columns of a table (rows, columns)."""
+    """Append wrenches (rows, terms, 6), if any, to a table (rows, columns)."""
     if wrenches is None:
         return table
     return np.hstack([table, wrenches.reshape(len(table), len(_WRENCH) * wrenches.shape[1])])
 
 
 def check_log_columns(place: str, columns: Sequence[str]) -> int:
-    """Count those of the state; raises `InputError` unless these are the columns of a log."""
+    """Count the columns of the state; raises `InputError` unless the columns are those of a log."""
     of_state = [column for column in columns if "." not in column]
     fixed = log_columns(0)
     expected = log_columns(max(0, len(of_state) - len(fixed)))
@@ -100,16 +100,16 @@ def check_log_columns(place: str, columns: Sequence[str]) -> int:
 
 
 def check_log_rows(place: Callable[[int], str], rows: np.ndarray, of_state: int) -> None:
-    """Raise `InputError` unless the rows are those of a flight; `place` is called with a row.
+    """Raise `InputError` unless the rows are those of a flight.
 
     Parameters
     ----------
     place
-        How a row is called.
+        Function that returns the name of a row in messages.
     rows
         Shape (n, columns).
     of_state
-        How many columns are the state's; those of topics may be NaN.
+        Number of columns of the state; other columns may be NaN.
     """
     if len(rows) == 0:
         raise InputError(f"{place(0)}: no row; a log holds the start at least")
@@ -128,19 +128,19 @@ def check_log_rows(place: Callable[[int], str], rows: np.ndarray, of_state: int)
 
 
 class Recorder(Protocol):
-    """What takes over the rows of a flight."""
+    """Receiver of the rows of a flight."""
 
     wrenches: bool
-    """Whether it wants the wrenches."""
+    """Whether the recorder needs wrenches."""
 
     def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
-        """Take over a piece, as `flight.fly` hands it over."""
+        """Receive a piece of the rows, see `flight.fly`."""
 
     def close(self) -> None:
-        """Finish, whether all was flown or not."""
+        """Finish, also if the flight is incomplete."""
 
 
 class LogFile(Recorder, Protocol):
-    """A file that holds a flight."""
+    """Recorder that writes a file."""
 
     path: Path

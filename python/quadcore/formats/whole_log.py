@@ -1,4 +1,4 @@
-"""A log in a format that needs all rows at once."""
+"""Recorder for formats that need all rows at once."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ Write = Callable[[Path, Sequence[str], np.ndarray, Mapping[str, np.ndarray], Seq
 
 
 class DeferredLogFile:
-    """Rows wait in a file without name until the flight ends.
+    """Recorder that writes the log when the flight ends.
 
-    It lies beside the log, where there must be room for the log as well.
+    Until then the rows are in an unnamed file in the folder of the log.
 
     Parameters
     ----------
     write
         write(path, columns, table, wrenches, ignored): writes the log.
     path, columns, terms, ignored
-        As of `Format.log_file`.
+        As for `Format.log_file`.
     """
 
     def __init__(
@@ -46,7 +46,7 @@ class DeferredLogFile:
             raise make_write_error(path, error) from error
 
     def receive(self, table: np.ndarray, wrenches: np.ndarray) -> None:
-        """Keep a piece."""
+        """Append a piece."""
         rows = append_wrenches(table, wrenches if self.wrenches else None)
         try:
             self._rows.write(rows.tobytes())

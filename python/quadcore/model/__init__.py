@@ -1,1 +1,1 @@
-"""Vehicles and worlds: files, xacro, XML, values that a user overrides, shipped resources."""
+"""Models and worlds: files, xacro, XML, overrides and shipped resources."""

@@ -1,4 +1,4 @@
-"""What xacro files expanded to, kept as long as they would expand to the same."""
+"""Cache of expanded xacro files."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ _MOST = 256  # a study of an argument of xacro asks for each of its values again
 
 
 class Dependencies:
-    """What one expansion asked of the world outside its text, and what it was answered."""
+    """Values outside the text that an expansion depends on, such as environment variables."""
 
     def __init__(self) -> None:
         self.may_be_kept = True
         self._answers: List[Tuple[Callable[[str], Any], str, Any]] = []
 
     def ask(self, question: Callable[[str], Answer], subject: str) -> Answer:
-        """Give question(subject), which is to be asked again before the expansion is used."""
+        """Return question(subject), and record it as a dependency."""
         answer = question(subject)
         self._answers.append((question, subject, answer))
         return answer
 
     def is_the_same(self) -> bool:
-        """Whether everything would be answered alike now."""
+        """Return whether all dependencies have the same values now."""
         try:
             return all(question(subject) == answer for question, subject, answer in self._answers)
         except Exception:  # the expansion will say what
@@ -38,7 +38,7 @@ class Dependencies:
 
 
 def read_content(path: str) -> Optional[bytes]:
-    """Give what a regular file holds; None if there is none to be read."""
+    """Return the contents of a regular file, or None if it cannot be read."""
     try:
         return read_bytes(Path(path), LARGEST)
     except InputError:
@@ -58,13 +58,13 @@ class _Entry(NamedTuple):
 
 
 class ExpansionCache(Generic[Expansion]):
-    """Expansions by what they were made of: the file, its arguments and the working folder."""
+    """Expansions by file, arguments and working folder."""
 
     def __init__(self) -> None:
         self._entries: OrderedDict[Any, _Entry] = OrderedDict()
 
     def get(self, key: Any, expand: Callable[[Dependencies], Expansion]) -> Expansion:
-        """Give what is kept, if all that it asked outside is as it was; else expand(outside)."""
+        """Return the cached value if its dependencies are unchanged, or else expand(outside)."""
         key = (_get_working_folder(), key)
         entry = self._entries.pop(key, None)
         if entry is None or not entry.outside.is_the_same():

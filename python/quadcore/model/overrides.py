@@ -1,4 +1,4 @@
-"""Values given from outside beside those of plugins' tags: xacro.ARG, LINK.mass, LINK.ixx."""
+"""Overrides that are not tags of plugins: xacro.ARG, LINK.mass, LINK.ixx and the like."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ _PLACES.update({name: ("inertia", name) for name in ("ixx", "ixy", "ixz", "iyy",
 def split_xacro_arguments(
     parameters: Optional[Mapping[str, Any]], xacro_args: Optional[Mapping[str, object]]
 ) -> Tuple[Dict[str, object], Dict[str, Any]]:
-    """Take the xacro.ARG out of parameters: arguments for the reader, and what is left.
+    """Split parameters into arguments of the xacro file and the other parameters.
 
     Raises
     ------
     InputError
-        Something else than names with values, or an argument that is given in both ways.
+        If parameters are not a mapping of names, or an argument is given twice.
     """
     check({"parameters": parameters, "xacro_args": xacro_args}, OPTIONS)
     arguments, left = dict(xacro_args or {}), {}
@@ -43,7 +43,7 @@ def split_xacro_arguments(
 
 
 def check_names(model: Model, parameters: Iterable[str]) -> None:
-    """Raise `InputError` if two things in a model go by a name that is used outside."""
+    """Raise `InputError` if a name in a parameter is ambiguous in a model."""
     keys = [key for key in parameters if _is_special(key)]
     if not keys:
         return
@@ -57,17 +57,17 @@ def check_names(model: Model, parameters: Iterable[str]) -> None:
 
 
 def apply_link_values(model: Model, parameters: Mapping[str, str]) -> Tuple[Model, Dict[str, str]]:
-    """Take the LINK.mass and the like out of parameters, and give the model these values.
+    """Apply parameters such as LINK.mass to a model.
 
     Returns
     -------
     tuple
-        The model, read again if anything changed, and what is left: tags of plugins.
+        Model with the new values, and the other parameters, which are tags of plugins.
 
     Raises
     ------
     InputError
-        A link without that value, a value that the model cannot have, or a name that two go by.
+        If the link does not have the value, the value is not valid, or the name is ambiguous.
     """
     _check_link_names(model, parameters)
     if not any(_is_special(key) for key in parameters):
@@ -86,7 +86,7 @@ def apply_link_values(model: Model, parameters: Mapping[str, str]) -> Tuple[Mode
 
 
 def _check_link_names(model: Model, parameters: Iterable[str]) -> None:
-    """Raise `InputError` for a value that no link has, such as LINK.mas."""
+    """Raise `InputError` for an unknown value of a link, such as LINK.mas."""
     links = [link.name for link in model.links]
     for key in parameters:
         owner, _, name = key.rpartition(".")
@@ -102,19 +102,19 @@ def _check_link_names(model: Model, parameters: Iterable[str]) -> None:
 
 
 def list_link_values(document: Document) -> Dict[str, str]:
-    """Find every LINK.NAME that a document's links have, with its text."""
+    """Return the text of every LINK.NAME in a document."""
     found = _find_attributes(document.text.encode())
     return {key: attribute.text for key, attribute in found.items()}
 
 
 def _is_special(key: str) -> bool:
-    """Whether a key may be another than a plugin's tag."""
+    """Return whether a key can be something else than a tag of a plugin."""
     owner, _, name = key.rpartition(".")
     return owner == XACRO or name in _PLACES
 
 
 def _describe_names(document: Document) -> Dict[str, List[str]]:
-    """Say what goes by each name in a document."""
+    """Return the kinds of things that have each name in a document."""
     kinds: Dict[str, List[str]] = {XACRO: ["the arguments of xacro"]}
 
     def start(tag: str, attributes: Mapping[str, str]) -> None:
@@ -150,15 +150,15 @@ def _change_values(model: Model, values: Mapping[str, str]) -> Model:
 
 
 class _Attribute(NamedTuple):
-    """A value of a link that may be changed."""
+    """Value of a link in the text of a document."""
 
     span: Tuple[int, int]
-    """Begin and end in the document's bytes."""
+    """Begin and end in bytes of the document."""
     text: str
 
 
 def _find_attributes(text: bytes) -> Dict[str, _Attribute]:
-    """Find the values that may be changed, by LINK.NAME."""
+    """Find the values of links in a document, by LINK.NAME."""
     found: Dict[str, _Attribute] = {}
     parser = expat.ParserCreate()
     path: List[str] = []

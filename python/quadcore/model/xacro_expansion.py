@@ -1,7 +1,7 @@
-"""Expansion of xacro files in which every line of the result knows where it comes from.
+"""Expansion of xacro files that keeps the origin of every line.
 
-xacro itself forgets lines. Its parser is replaced for the time of one expansion by one whose
-elements remember them, which serves the result and the error messages alike.
+xacro itself does not keep lines. During an expansion this module replaces the parser of xacro by
+one with elements that contain their line, for the result and for error messages.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _Lines = List[Tuple[str, xml_source.Origin]]
 class _Expansion(NamedTuple):
     lines: _Lines
     arguments: Dict[str, str]
-    """What each argument of the file was taken to be."""
+    """Value of each argument."""
     asked: Set[str]
 
 
@@ -44,29 +44,29 @@ _CACHE: ExpansionCache[_Expansion] = ExpansionCache()
 
 
 def expand(path: str, arguments: Mapping[str, str]) -> _Lines:
-    """Expand a xacro file, unless that was done and nothing has changed since.
+    """Expand a xacro file, or return the cached expansion if nothing changed.
 
     Parameters
     ----------
     path
-        The file.
+        Xacro file.
     arguments
-        Values of ``<xacro:arg>``, by name.
+        Values of ``<xacro:arg>`` by name.
 
     Returns
     -------
     list of (str, Origin)
-        Lines of the expanded document and where each comes from.
+        Lines of the expanded document with their origins.
 
     Raises
     ------
     InputError
-        Whatever is wrong in the file or one it includes, or an argument that it does not have.
+        If the file or an included file is wrong, or an argument does not exist.
 
     Warns
     -----
     QuadcoreWarning
-        What xacro itself warns of.
+        If xacro warns.
     """
     expansion = _expand_cached(path, arguments)
     for name in arguments:
@@ -79,12 +79,12 @@ def expand(path: str, arguments: Mapping[str, str]) -> _Lines:
 
 
 def list_arguments(path: str, given: Mapping[str, str]) -> Dict[str, str]:
-    """Tell what each argument of a xacro file is: as given, or its default.
+    """Return the value of each argument of a xacro file, given or default.
 
     Raises
     ------
     InputError
-        As of `expand`.
+        As for `expand`.
     """
     expansion = _expand_cached(path, given)
     return {name: text for name, text in expansion.arguments.items() if name in expansion.asked}
@@ -113,7 +113,7 @@ def _expand_file(path: str, arguments: Mapping[str, str], outside: Dependencies)
 
 
 def _blame_argument(path: str, arguments: Mapping[str, str], what: str) -> str:
-    """Name the argument without which the file would expand, if there is one."""
+    """Add the argument to an error if the file would expand without it."""
     for name, value in arguments.items():
         table = _Arguments({other: text for other, text in arguments.items() if other != name})
         try:
@@ -128,7 +128,7 @@ def _blame_argument(path: str, arguments: Mapping[str, str], what: str) -> str:
 
 
 class _Arguments(Dict[str, str]):
-    """xacro's argument table; remembers the names that were asked for."""
+    """Argument table of xacro that records the names that are used."""
 
     def __init__(self, given: Mapping[str, str]) -> None:
         super().__init__(given)
@@ -236,7 +236,7 @@ def _find_package(name: str) -> str:
 
 
 def _find_place(frames: Iterable[FrameType]) -> xml_source.Origin | None:
-    """Origin of the element that xacro works at, from the first of `frames` that has one."""
+    """Return the origin of the element that xacro is expanding, from the innermost frame."""
     for frame in frames:
         for name in ("node", "elt", "tag"):  # what xacro calls it
             found = xml_origins.find_origin(frame.f_locals.get(name))

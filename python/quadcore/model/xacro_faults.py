@@ -1,4 +1,4 @@
-"""Why xacro could not expand a file, in words."""
+"""Readable messages for errors of xacro."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _EXPRESSION = re.compile(r"when evaluating expression '(.*)'", re.DOTALL)
 
 
 def explain_error(error: BaseException) -> str:
-    """Say in one line what went wrong, as far as xacro tells."""
+    """Describe an error of xacro in one line."""
     cause, inner = error, error
     while isinstance(getattr(cause, "exc", None), Exception):
         cause, inner = cause.exc, cause  # type: ignore[attr-defined]
@@ -35,7 +35,7 @@ def _explain_key_error(error: KeyError, suffix: str) -> str:
 
 
 def _list_keys(expression: str) -> List[str]:
-    """Names that an expression chooses from: of dict(name=...)[...]."""
+    """List the keys of an expression dict(name=...)[...]."""
     try:
         tree = ast.parse(expression, mode="eval")
     except SyntaxError:

@@ -1,4 +1,4 @@
-"""XML elements that know the file and line they were written on, through cloning and moving."""
+"""XML elements that keep their file and line when they are cloned or moved."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ _KEY = "quadcore.origin"
 
 
 def parse(file: str, text: str) -> minidom.Document:
-    """Document of `text` whose elements know their `find_origin`.
+    """Parse a text to a document with elements that keep their origin.
 
     Raises
     ------
     InputError
-        Malformed XML, an undeclared namespace prefix, a DOCTYPE, or a limit exceeded.
+        If the XML is malformed, has an undeclared prefix or a DOCTYPE, or exceeds a limit.
     """
     check(file, text)
     try:
@@ -28,7 +28,7 @@ def parse(file: str, text: str) -> minidom.Document:
 
 
 def find_origin(node: Any) -> Origin | None:
-    """Where a node, or the nearest element around it that was read from a file, stands."""
+    """Return the origin of a node, or of the nearest element around it from a file."""
     while isinstance(node, minidom.Node):
         found: Origin | None = node.getUserData(_KEY)
         if found is not None:
@@ -38,10 +38,10 @@ def find_origin(node: Any) -> Origin | None:
 
 
 def write(document: minidom.Document) -> list[tuple[str, Origin]]:
-    """Lines of `document`, at most one start tag on each, with the place each line comes from.
+    """Return the lines of a document with their origins; each has at most one start tag.
 
-    Comments and the white space around texts are left out. Text between elements, which neither a
-    URDF nor a world has, comes before them.
+    Comments and white space around texts are omitted. Text between elements, which does not occur
+    in URDF and world files, precedes them.
     """
     root = document.documentElement
     assert root is not None
@@ -49,7 +49,7 @@ def write(document: minidom.Document) -> list[tuple[str, Origin]]:
 
 
 class _Inherit:
-    """Lets a clone stand where its original stands."""
+    """Handler that copies the origin of an element to its clones."""
 
     @staticmethod
     def handle(operation: int, key: str, data: Any, source: Any, clone: Any) -> None:

@@ -1,4 +1,4 @@
-"""XML texts read and checked, as all of them are before anything else looks at them."""
+"""Reading and checking of XML texts."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MOST_ATTRIBUTES = Document.most_attributes
 
 
 class Origin(NamedTuple):
-    """Place of an element in the text it was read from."""
+    """File and line of an element."""
 
     file: str
     line: int
@@ -26,15 +26,15 @@ class Origin(NamedTuple):
 
 
 def read(path: Path) -> str:
-    """Text of an XML file; raises `InputError` where `read_text` does or the file is too large."""
+    """Read the text of an XML file; raises `InputError` if this fails or the file is too large."""
     return read_text(path, LARGEST)
 
 
 def check(file: str, text: str) -> None:
     """Raise `InputError` unless `text` is well-formed XML without a DOCTYPE, within the limits.
 
-    A DOCTYPE can define entities, and these can expand without bound or name other files.
-    Namespace prefixes need no declaration: world files use some without.
+    Entities of a DOCTYPE can expand without bound or include other files. Namespace prefixes need
+    no declaration, because world files use some without.
     """
     parser = expat.ParserCreate()
     level = 0
@@ -68,7 +68,7 @@ def check(file: str, text: str) -> None:
 
 
 def make_syntax_error(file: str, error: expat.ExpatError) -> InputError:
-    """Make the error that says why a text is no XML."""
+    """Make the error for malformed XML."""
     what = expat.ErrorString(error.code)
     hint = ' (declare it: xmlns:xacro="http://www.ros.org/wiki/xacro")' if "prefix" in what else ""
     return InputError(f"{Origin(file, error.lineno)}: malformed XML: {what}{hint}")

@@ -1,1 +1,1 @@
-"""What every layer needs: checks of arguments, files, interrupts, warnings, rotations."""
+"""Helpers of all layers: arguments, files, interrupts, warnings, rotations."""

@@ -1,4 +1,4 @@
-"""What kind of value each argument takes, told before anything flies or is read."""
+"""Checks of the types of arguments."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from .._core import InputError
 from .parameters import suggest
 
 Kind = Tuple[Callable[[Any], bool], str]
-"""Whether a value is of it, and what to give."""
+"""Predicate of valid values, and their description."""
 
 _LONGEST = 1e9  # s, of the wall clock
 
 
 def check(arguments: Mapping[str, Any], kinds: Mapping[str, Kind]) -> None:
-    """Raise `InputError` for an argument of another kind than its own.
+    """Raise `InputError` if an argument has a wrong type.
 
     Parameters
     ----------
     arguments
         Values by name.
     kinds
-        Of each name; those of other names are `OPTIONS`.
+        Kinds by name; `OPTIONS` contains those of other names.
     """
     for name, value in arguments.items():
         kind = kinds.get(name) or OPTIONS.get(name)
@@ -42,22 +42,22 @@ def check(arguments: Mapping[str, Any], kinds: Mapping[str, Kind]) -> None:
 
 
 def or_none(kind: Kind) -> Kind:
-    """Make a kind that None is of, too."""
+    """Return a kind that also accepts None."""
     return (lambda value: value is None or kind[0](value)), kind[1]
 
 
 def to_list(value: Any) -> List[Any]:
-    """Make a list of one or several names or functions."""
+    """Return one or several names or functions as a list."""
     return [value] if _is_text(value) or callable(value) else list(value)
 
 
 def read_once(value: Any) -> Any:
-    """Make a list of what comes one by one, so that it can be checked and is there afterwards."""
+    """Return an iterator as a list, and other values unchanged."""
     return list(value) if isinstance(value, Iterator) else value
 
 
 def shorten(value: Any) -> str:
-    """Write a value in one line, shortened if it is long."""
+    """Return the representation of a value in one line, shortened if it is long."""
     return " ".join(reprlib.repr(value).split())
 
 
@@ -74,7 +74,7 @@ def _is_list(value: Any) -> bool:
 
 
 def _is_lasting(value: Any) -> bool:
-    """Whether it can be gone through, and not just once."""
+    """Return whether a value can be iterated repeatedly."""
     return isinstance(value, Iterable) and not isinstance(value, Iterator)
 
 
@@ -149,7 +149,7 @@ LIMIT: Kind = (_is_limit, f"seconds, more than 0 and at most {_LONGEST:g}")
 WHOLE: Kind = (_is_whole, "a whole number")
 COUNT: Kind = (_is_count, "a whole number from 1 on")
 FLAG: Kind = (lambda value: isinstance(value, (bool, np.bool_)), "True or False")
-ANY: Kind = (lambda value: True, "")  # told where it is read
+ANY: Kind = (lambda value: True, "")  # checked where it is read
 PROGRESS: Kind = (callable, "a function that is called as progress(done, total)")
 
 OPTIONS: Dict[str, Kind] = {
@@ -160,4 +160,4 @@ OPTIONS: Dict[str, Kind] = {
     "xacro_args": or_none(NAMED),
     "ignore": LIST,
 }
-"""What every study passes on to its simulations."""
+"""Kinds of the options that studies pass to their simulations."""

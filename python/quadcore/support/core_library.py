@@ -1,4 +1,4 @@
-"""Loads the core before all else, to say which package a system's library that is missing is in."""
+"""Import of the core, with a hint to the package of a missing system library."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ import re
 
 
 def find_remedy(message: str) -> str:
-    """Add to the loader's message about a library what brings it; "" about anything else.
+    """Return the package that contains a missing library, from the message of the loader; or "".
 
-    Debian names a library's package by its file: libode.so.8 is in libode8, libtinyxml2.so.9 in
-    libtinyxml2-9.
+    Debian names packages after files: libode8 contains libode.so.8, and libtinyxml2-9 contains
+    libtinyxml2.so.9.
     """
     missing = re.match(r"((lib[\w+-]*\w)\.so\.([\d.]+)): cannot open shared object file", message)
     if not missing:

@@ -1,4 +1,4 @@
-"""A lock that no fork catches closed."""
+"""Lock that is never held across a fork."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import os
 import threading
 
 LOCK = threading.RLock()
-"""Held while a module is imported late or xacro, which keeps its stacks in globals, expands a file.
+"""Lock for late imports, and for xacro, which keeps its state in globals.
 
-A process is not forked meanwhile: the child would wait for the other thread without end.
+Forks wait for it, because a child would otherwise wait forever for a thread that it does not have.
 """
 
 os.register_at_fork(before=LOCK.acquire, after_in_parent=LOCK.release, after_in_child=LOCK.release)

@@ -1,4 +1,4 @@
-"""Files that a user names, read with one clear line when that fails."""
+"""Reading of files, with one-line errors."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from typing import IO, Iterator
 from .._core import InputError
 
 LARGEST = 10**7
-"""Bytes of a text that people write, at most; far beyond any."""
+"""Maximum size of a text file, bytes."""
 
 
 @contextmanager
 def open_file(path: Path) -> Iterator[IO[bytes]]:
-    """Open a regular file, and nothing that could be waited for without end.
+    """Open a regular file; pipes and devices, which could block, are refused.
 
     Raises
     ------
     InputError
-        The file is missing, unreadable, a folder, a pipe, a socket or a device.
+        If the file is missing, unreadable, or not a regular file.
     """
     try:
         check_regular(path)
@@ -56,21 +56,21 @@ def read_bytes(path: Path, largest: int) -> bytes:
     Parameters
     ----------
     path
-        The file.
+        File to read.
     largest
-        Bytes that it may have.
+        Maximum size, bytes.
 
     Raises
     ------
     InputError
-        It is larger, or cannot be read; see `open_file`.
+        If the file is larger, or cannot be read; see `open_file`.
     """
     with open_file(path) as stream:
         return read_whole(path, stream, largest)
 
 
 def read_whole(path: Path, stream: IO[bytes], largest: int) -> bytes:
-    """Read the rest of an open file of this name; parameters and errors as of `read_bytes`."""
+    """Read the rest of an open file; parameters and errors as for `read_bytes`."""
     data = stream.read(largest + 1)
     if len(data) > largest:
         raise InputError(f"{path}: is larger than {largest / 1e6:g} MB, the most that is read")
@@ -83,7 +83,7 @@ def read_text(path: Path, largest: int = LARGEST) -> str:
     Raises
     ------
     InputError
-        It is no text, or `read_bytes` refuses it.
+        If the file is not text, or `read_bytes` fails.
     """
     data = read_bytes(path, largest)
     try:
@@ -96,12 +96,12 @@ def read_text(path: Path, largest: int = LARGEST) -> str:
 
 
 def is_file(path: Path) -> bool:
-    """Whether `path` is a regular file.
+    """Return whether a path is a regular file.
 
     Raises
     ------
     InputError
-        A folder above may not be entered, or the name is too long.
+        If a parent folder is not accessible, or the name is too long.
     """
     try:
         return stat.S_ISREG(path.stat().st_mode)

@@ -1,8 +1,8 @@
-"""The signals by which a person, a shell or a batch system asks long work to end.
+"""Signals that ask a long computation to end.
 
-SIGINT (Ctrl-C), SIGTERM (``kill``, ``timeout``, Slurm, ``docker stop``) and SIGHUP (a terminal that
-was closed) are one thing here, an exception that is a KeyboardInterrupt: whatever keeps work when
-Ctrl-C is pressed keeps it for all three.
+SIGINT (Ctrl-C), SIGTERM (``kill``, ``timeout``, Slurm, ``docker stop``) and SIGHUP (a closed
+terminal) raise the same exception, a KeyboardInterrupt. Code that saves its work on Ctrl-C saves it
+for all three.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from typing import Any, Dict, Iterator, List, Optional
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 ENDED = 128
-"""A process that a signal ended has this status, and more by the number of the signal."""
+"""Exit status of a process that a signal ended, less the number of the signal."""
 
 _HEARD_TWICE = 0.5  # s
-_AGAIN = 0.02  # s; until a signal is sent anew that met the start of a module in C
+_AGAIN = 0.02  # s; until a signal is sent again that came during the start of a C module
 
 
 class Interrupted(KeyboardInterrupt):
-    """One of `SIGNALS` came.
+    """Exception for one of `SIGNALS`.
 
     Parameters
     ----------
     number : int
-        Which.
+        Number of the signal.
     """
 
     def __init__(self, number: int) -> None:
@@ -40,20 +40,20 @@ class Interrupted(KeyboardInterrupt):
 
 
 def exit_status(stop: KeyboardInterrupt) -> int:
-    """Status with which a process that was asked to end does so: 130, 143 or 129."""
+    """Return the exit status of an interrupted process: 130, 143 or 129."""
     return ENDED + (stop.number if isinstance(stop, Interrupted) else signal.SIGINT)
 
 
 @contextmanager
 def raise_on_signals() -> Iterator[None]:
-    """Let each of `SIGNALS` raise `Interrupted` within the block; for the main thread.
+    """Raise `Interrupted` for each of `SIGNALS` within the block; for the main thread.
 
-    SIGTERM and SIGHUP stay ignored if they are (``nohup``); SIGINT is heard all the same, because
-    shells start background jobs with it ignored. Once one was raised, no other is, so that work can
-    be kept, but a second Ctrl-C of a person who does not want to wait. What comes within half a
-    second is not one: ``timeout`` sends its signal to the process and to its group. Whatever error
-    code by others made of it leaves the block as what was raised. While a module in C starts,
-    signals wait: some leave the interpreter unable to end when they are cut off.
+    Ignored SIGTERM and SIGHUP stay ignored (``nohup``). SIGINT is always handled, because shells
+    start background jobs with it ignored. After the first signal only a second Ctrl-C raises again,
+    so that work can be saved. Signals within half a second count as one, because ``timeout``
+    signals the process and its group. If other code converts the exception to an error, the block
+    still raises `Interrupted`. Signals wait while a C module starts, because some modules leave the
+    interpreter unable to exit if they are interrupted.
     """
     raised: List[Interrupted] = []
     first = 0.0
@@ -97,10 +97,10 @@ def _starts_module_in_c(frame: Optional[FrameType]) -> bool:
 
 @contextmanager
 def hold_signals() -> Iterator[None]:
-    """Let `SIGNALS` that Python handles wait until the block has ended; a second Ctrl-C does not.
+    """Defer `SIGNALS` until the end of the block, except for a second Ctrl-C.
 
-    For what must be done wholly or not at all: a file put in its place, a result taken over. In
-    threads other than the main one, where Python runs no handlers, it does nothing.
+    Use it for steps that must be complete, such as the replacement of a file. It has no effect
+    outside the main thread, where Python runs no handlers.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

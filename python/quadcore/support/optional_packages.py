@@ -1,4 +1,4 @@
-"""Packages that only some of quadcore needs."""
+"""Optional packages."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from .._core import InputError
 
 @contextmanager
 def require_package(what: str, package: str, extra: str) -> Iterator[None]:
-    """Say in an error of an import what to install.
+    """Convert an import error to a message with the package to install.
 
     Parameters
     ----------
     what
-        That needs it.
+        Feature that needs the package.
     package
-        Its name.
+        Name of the package.
     extra
-        Of quadcore, which brings it.
+        Extra of quadcore that installs the package.
 
     Raises
     ------
     InputError
-        It cannot be imported.
+        If the package cannot be imported.
     """
     try:
         yield

@@ -1,4 +1,4 @@
-"""Output files written, with one clear line when that fails."""
+"""Writing of files, with one-line errors."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ _PART = ".part"
 
 
 def printable_name(name: Union[str, Path]) -> str:
-    """Name of a file as it can be shown anywhere: bytes that are no UTF-8 are escaped."""
+    """Return the name of a file as text; bytes outside UTF-8 are escaped."""
     return os.fsencode(name).decode("utf-8", "backslashreplace")
 
 
 @contextmanager
 def atomic_write(path: Path) -> Iterator[IO[bytes]]:
-    """Open `path` for writing so that it appears whole or not at all.
+    """Open a file for writing that appears completely or not at all.
 
-    A link is followed, and what an older file may be read and written by stays.
+    Links are followed, and the permissions of an older file stay.
 
     Raises
     ------
     InputError
-        The file cannot be written. Nothing is left behind then, and an older file stays.
+        If the file cannot be written; an older file stays, and no partial file remains.
     """
     target = Path(os.path.realpath(str(path)))
     part = name_temporary(target)
@@ -52,19 +52,19 @@ def atomic_write(path: Path) -> Iterator[IO[bytes]]:
 
 
 class LineFile:
-    """A file that grows by whole lines and is complete up to the last one at any time.
+    """File that grows by lines and is complete up to its last line at any time.
 
     Parameters
     ----------
     path
-        Made if there is none.
+        File; a missing file is created.
     older
-        Whether what it holds stays for now; else it is emptied.
+        Whether to keep the present contents.
 
     Raises
     ------
     InputError
-        It cannot be written.
+        If the file cannot be written.
     """
 
     def __init__(self, path: Path, older: bool = False) -> None:
@@ -76,7 +76,7 @@ class LineFile:
             raise make_write_error(path, error) from error
 
     def keep(self, size: int) -> None:
-        """Cut what is there to so many bytes, and go on behind them."""
+        """Truncate the file to a size in bytes, and continue there."""
         try:
             self._stream.truncate(size)
             self._stream.seek(size)
@@ -84,23 +84,23 @@ class LineFile:
             raise make_write_error(self._path, error) from error
 
     def lines(self) -> Iterator[bytes]:
-        """Give its lines from the start."""
+        """Return all lines from the start."""
         self._stream.seek(0)
         with open(self.fileno(), "rb", closefd=False) as stream:
             yield from stream
 
     def parts(self, places: Iterable[Tuple[int, int]]) -> Iterator[bytes]:
-        """Give the bytes at places, each a begin and a length; writing goes on where it was."""
+        """Return the bytes at places, each a begin and a length; the write position stays."""
         for begin, length in places:
             yield os.pread(self.fileno(), length, begin)
 
     def write(self, lines: bytes) -> None:
-        """Append lines; of those that do not fit, the whole ones stay.
+        """Append lines; if the disk is full, complete lines stay.
 
         Raises
         ------
         InputError
-            The disk is full, for instance.
+            If the lines cannot be written, for example because the disk is full.
         """
         written = 0
         try:
@@ -113,12 +113,12 @@ class LineFile:
             raise make_write_error(self._path, error) from error
 
     def fileno(self) -> int:
-        """Give the number of the open file."""
+        """Return the file descriptor."""
         return self._stream.fileno()
 
     @property
     def closed(self) -> bool:
-        """Whether it was closed."""
+        """Whether the file is closed."""
         return self._stream.closed
 
     def close(self) -> None:
@@ -127,22 +127,22 @@ class LineFile:
 
 
 def encode_text(text: str) -> bytes:
-    """UTF-8 of a text; file names in it that are none are escaped."""
+    """Encode a text in UTF-8; file names in another encoding are escaped."""
     return text.encode("utf-8", "backslashreplace")
 
 
 def escape_cell(value: object) -> object:
-    """Keep a text in a CSV table from being taken for a formula by a spreadsheet."""
+    """Escape a text in a CSV table that a spreadsheet would read as a formula."""
     return f"'{value}" if isinstance(value, str) and value[:1] in tuple("=+-@") else value
 
 
 def make_folder(path: Path) -> None:
-    """Make a folder, and those above it, unless it is there.
+    """Create a folder and its parents, unless they exist.
 
     Raises
     ------
     InputError
-        It cannot be made.
+        If the folder cannot be created.
     """
     try:
         path.mkdir(parents=True, exist_ok=True)
@@ -151,12 +151,12 @@ def make_folder(path: Path) -> None:
 
 
 def prepare_folder(path: Path, names: Iterable[str]) -> None:
-    """Make a folder in which files of these names are to be written later.
+    """Create a folder, and check that files of these names can be written in it.
 
     Raises
     ------
     InputError
-        It cannot be made, or one of them cannot be written.
+        If the folder cannot be created, or a file cannot be written.
     """
     make_folder(path)
     for name in names:
@@ -164,7 +164,7 @@ def prepare_folder(path: Path, names: Iterable[str]) -> None:
 
 
 def check_writable(path: Path) -> None:
-    """Raise `InputError` now if `path` could not be written later; an older file is not touched."""
+    """Raise `InputError` if a file cannot be written; an older file stays."""
     try:
         if path.is_dir():
             raise InputError(f"{path}: is a folder; name a file in it")
@@ -184,15 +184,15 @@ def check_writable(path: Path) -> None:
 
 
 def make_write_error(path: Path, error: OSError) -> InputError:
-    """Make the error that says why a file cannot be written."""
+    """Make the error for a file that cannot be written."""
     return InputError(f"{path}: cannot be written: {error.strerror or error}")
 
 
 def remove_leftovers(path: Path) -> None:
-    """Remove what processes that were killed while they wrote `path` have left beside it."""
+    """Remove partial files of killed processes next to a file."""
     target = Path(os.path.realpath(str(path)))
-    for part in target.parent.glob(f"{glob.escape(_find_previous(target))}*{_PART}"):
-        number = part.name[len(_find_previous(target)) :].partition(".")[0]
+    for part in target.parent.glob(f"{glob.escape(_make_prefix(target))}*{_PART}"):
+        number = part.name[len(_make_prefix(target)) :].partition(".")[0]
         if not number.isdigit():
             continue
         try:
@@ -200,22 +200,22 @@ def remove_leftovers(path: Path) -> None:
         except (ProcessLookupError, OverflowError):
             with contextlib.suppress(OSError):
                 part.unlink()
-        except PermissionError:  # it runs, as somebody else
+        except PermissionError:  # the process of another user is running
             pass
 
 
 def name_temporary(path: Path, piece: str = "") -> Path:
-    """Name a file in which a process prepares `path`, or a piece of it, until it is whole.
+    """Return the name of the file in which this process prepares a file, or a piece of it.
 
-    In the same folder, because a rename is atomic only within one file system.
+    It is in the same folder, because a rename is atomic only within one file system.
     """
-    return path.with_name(f"{_find_previous(path)}{os.getpid()}{piece}{_PART}")
+    return path.with_name(f"{_make_prefix(path)}{os.getpid()}{piece}{_PART}")
 
 
-def _find_previous(path: Path) -> str:
+def _make_prefix(path: Path) -> str:
     return f".{path.name}."
 
 
 def _is_replaceable(path: Path) -> bool:
-    """Whether a new file may take the place of what is there: not of a device or a pipe."""
+    """Return whether a new file may replace a path, which excludes devices and pipes."""
     return not path.exists() or path.is_file()

@@ -10,7 +10,7 @@ from .._core import parse_number
 
 
 def assignment(pattern: str, form: str) -> Callable[[str], tuple[str, str]]:
-    """Make the type of an option ``KEY=VALUE``; the two groups of `pattern` are key and value."""
+    """Return the reader of ``KEY=VALUE``; the two groups of `pattern` are key and value."""
 
     def parse(text: str) -> tuple[str, str]:
         match = re.fullmatch(pattern, text, re.DOTALL)
@@ -22,7 +22,7 @@ def assignment(pattern: str, form: str) -> Callable[[str], tuple[str, str]]:
 
 
 def several(names: Sequence[str]) -> Callable[[str], list[str]]:
-    """Make the type of an option that takes some of these names, with commas between."""
+    """Return the reader of comma-separated names from a list."""
 
     def parse(text: str) -> list[str]:
         for name in text.split(","):
@@ -36,12 +36,12 @@ def several(names: Sequence[str]) -> Callable[[str], list[str]]:
 
 
 def names(text: str) -> list[str]:
-    """Read names with commas between."""
+    """Read comma-separated names."""
     return _named(text, text.split(","))
 
 
 def several_calls(text: str) -> list[str]:
-    """Read names with commas between, each perhaps ``NAME:KEY=VALUE,KEY=VALUE``."""
+    """Read comma-separated names, optionally as ``NAME:KEY=VALUE,KEY=VALUE``."""
     found: list[str] = []
     for part in text.split(","):
         if found and "=" in part and ":" not in part.partition("=")[0]:
@@ -58,7 +58,7 @@ def _named(text: str, found: list[str]) -> list[str]:
 
 
 def positive_numbers(text: str) -> list[float]:
-    """Read numbers with commas between."""
+    """Read comma-separated numbers."""
     return list(dict.fromkeys(positive(part) for part in text.split(",")))
 
 
@@ -87,7 +87,7 @@ def finite(text: str) -> float:
 
 
 def integer(lowest: int, highest: int = 10**18) -> Callable[[str], int]:
-    """Make the type of an option that takes a whole number."""
+    """Return the reader of a whole number."""
 
     def parse(text: str) -> int:
         if not re.fullmatch(r"[0-9]+", text) or int(text) < lowest:

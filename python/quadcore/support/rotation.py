@@ -1,4 +1,4 @@
-"""Angles of an orientation."""
+"""Rotations: Euler angles, matrices and quaternions."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 def to_roll_pitch_yaw(orientation: np.ndarray) -> np.ndarray:
-    """Roll phi, pitch theta and yaw psi, with R = Rz(psi) Ry(theta) Rx(phi).
+    """Return roll phi, pitch theta and yaw psi, where R = Rz(psi) Ry(theta) Rx(phi).
 
     Parameters
     ----------
@@ -16,7 +16,7 @@ def to_roll_pitch_yaw(orientation: np.ndarray) -> np.ndarray:
     Returns
     -------
     ndarray, shape (..., 3)
-        rad; roll and yaw in [-pi, pi], pitch in [-pi/2, pi/2].
+        Angles, rad; roll and yaw in [-pi, pi], pitch in [-pi/2, pi/2].
     """
     x, y, z, w = np.moveaxis(np.asarray(orientation, dtype=float), -1, 0)
     roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
@@ -26,20 +26,20 @@ def to_roll_pitch_yaw(orientation: np.ndarray) -> np.ndarray:
 
 
 def unwrap_angles(angles: np.ndarray) -> np.ndarray:
-    """Write roll, pitch, yaw of a motion without jumps.
+    """Remove the jumps from roll, pitch and yaw of a motion.
 
-    An attitude has two triples of angles, ``(r, p, y)`` and ``(r + pi, pi - p, y + pi)``, and
-    every angle may be 2 pi more: each row takes what is nearest to the row before.
+    An attitude has two triples of angles, ``(r, p, y)`` and ``(r + pi, pi - p, y + pi)``, plus
+    multiples of 2 pi. Each row takes the values closest to the row before.
 
     Parameters
     ----------
     angles : ndarray (rows, 3)
-        As `to_roll_pitch_yaw` gives them, rad.
+        Angles of `to_roll_pitch_yaw`, rad.
 
     Returns
     -------
     ndarray (rows, 3)
-        rad; pitch, too, may leave [-pi/2, pi/2].
+        Angles, rad; pitch may leave [-pi/2, pi/2].
     """
     stays = _measure_distance(angles[1:], angles[:-1]) <= _measure_distance(
         _flip(angles[1:]), angles[:-1]
@@ -50,7 +50,7 @@ def unwrap_angles(angles: np.ndarray) -> np.ndarray:
 
 
 def subtract_angles(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Subtract roll, pitch, yaw, rad, of the triples that are nearest: shape (rows, 3)."""
+    """Subtract roll, pitch and yaw of the closest triples, rad; shape (rows, 3)."""
     is_near = _measure_distance(one, other) <= _measure_distance(_flip(one), other)
     nearest = np.where(is_near[:, None], one, _flip(one))
     return _wrap(nearest - other)
@@ -70,7 +70,7 @@ def _measure_distance(one: np.ndarray, other: np.ndarray) -> np.ndarray:
 
 
 def to_matrix(orientation: np.ndarray) -> np.ndarray:
-    """Give the matrices R_WF that turn vectors from frame axes to world axes.
+    """Return the matrices R_WF, which transform vectors from frame axes to world axes.
 
     Parameters
     ----------
@@ -91,14 +91,14 @@ def to_matrix(orientation: np.ndarray) -> np.ndarray:
 
 
 def turn(orientation: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Turn a body about an axis of its own.
+    """Rotate a body about an axis in body axes.
 
     Parameters
     ----------
     orientation : ndarray (4,)
         Unit quaternion x, y, z, w.
     angle : ndarray (3,)
-        Along the axis, rad; not zero.
+        Rotation vector, rad; not zero.
 
     Returns
     -------

@@ -20,7 +20,7 @@ _FORM = "controller(t, state, reference)"
 
 
 def names_file(text: str) -> bool:
-    """Whether a text is ``FILE.py`` or ``FILE.py:NAME``."""
+    """Return whether a text is ``FILE.py`` or ``FILE.py:NAME``."""
     return _split(text)[0].endswith(".py")
 
 

@@ -1,4 +1,4 @@
-"""Numbers and texts that callers give, checked and written as a URDF would."""
+"""Checks of numbers, poses and seeds, and their text in a URDF."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ Number = Union[float, str]
 Value = Union[float, str, bool, Path, Sequence[str], Sequence[float], np.ndarray]
 
 SPAWN = (0.0, 0.0, 10.0)
-"""Where a flight begins unless told, m in the world."""
+"""Default initial position in the world, m."""
 
 
 def check_whole(seed: object, name: str = "seed", bits: int = 64) -> int:
-    """Check a seed, or what else is such a number of so many bits."""
+    """Return a seed or another whole number; raises `InputError` unless it fits the bits."""
     is_whole = isinstance(seed, (int, np.integer)) and not isinstance(seed, bool)
     if not is_whole or not 0 <= seed < 2**bits:  # type: ignore[operator]
         raise _core.InputError(
@@ -33,7 +33,7 @@ def check_whole(seed: object, name: str = "seed", bits: int = 64) -> int:
 
 
 def format_value(value: Value) -> str:
-    """Write a parameter's value as a URDF would."""
+    """Return the text of a parameter as in a URDF."""
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value.item()
     if isinstance(value, (bool, np.bool_)):
@@ -49,7 +49,7 @@ def format_value(value: Value) -> str:
 
 
 def check_pose(spawn: Sequence[Number]) -> Tuple[float, ...]:
-    """Check a start pose: x, y, z, roll, pitch, yaw."""
+    """Return an initial pose as x, y, z, roll, pitch, yaw; raises `InputError` if it is wrong."""
     try:
         given = [_to_number(value) for value in spawn]
     except (TypeError, ValueError):
@@ -71,7 +71,7 @@ def _to_number(value: Number) -> float:
 
 
 def check_poses(spawn: npt.ArrayLike, n: int) -> np.ndarray:
-    """Check the start poses of n vehicles, one for each or one for all: shape (n, 6)."""
+    """Return the initial poses of n vehicles from one pose or n poses; shape (n, 6)."""
     try:
         given = np.atleast_2d(np.asarray(spawn, dtype=float))
     except (TypeError, ValueError):
@@ -87,7 +87,7 @@ def check_poses(spawn: npt.ArrayLike, n: int) -> np.ndarray:
 
 
 def check_seeds(seed: Union[int, npt.ArrayLike], n: int) -> np.ndarray:
-    """Check the seeds of n vehicles; one is that of the first, the next has the next."""
+    """Return the seeds of n vehicles, which count up from a single seed."""
     if isinstance(seed, (int, np.integer)):
         first = check_whole(seed)
         return np.array([(first + i) % 2**64 for i in range(n)], np.uint64)

@@ -1,4 +1,4 @@
-"""YAML files read node by node, so that what is wrong can be told with its line."""
+"""Reading of YAML files by nodes, for error messages with lines."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _SCALAR = "tag:yaml.org,2002:"
 
 
 def read_root(path: Path) -> yaml.Node:
-    """Read a file; raises `InputError` if it is missing or no YAML."""
+    """Read a file; raises `InputError` if it is missing or not YAML."""
     try:
         return yaml.compose(read_text(path), yaml.SafeLoader)
     except yaml.YAMLError as error:
@@ -29,7 +29,7 @@ def read_root(path: Path) -> yaml.Node:
 def read_pairs(
     path: Union[str, Path], node: Any, what: str
 ) -> Iterator[Tuple[yaml.ScalarNode, yaml.Node]]:
-    """Give keys and values of a mapping; raises `InputError` if it is none, with what to write."""
+    """Return keys and values of a mapping; raises `InputError` if the node is something else."""
     if not isinstance(node, yaml.MappingNode):
         raise InputError(f"{path}:{find_line(node) if node else 1}: write {what}")
     names = set()
@@ -43,7 +43,7 @@ def read_pairs(
 
 
 def read_scalar(path: Union[str, Path], name: str, node: yaml.Node) -> str:
-    """Read a value as it is written; raises `InputError` if it is none."""
+    """Return the text of a value; raises `InputError` if the node is something else."""
     where = f"{path}:{find_line(node)}"
     if not isinstance(node, yaml.ScalarNode):
         kind = "a list" if isinstance(node, yaml.SequenceNode) else "a mapping"
@@ -56,6 +56,6 @@ def read_scalar(path: Union[str, Path], name: str, node: yaml.Node) -> str:
 
 
 def find_line(node: yaml.Node) -> int:
-    """Where a node begins, from 1."""
+    """Return the line of a node, from 1."""
     at: int = node.start_mark.line + 1
     return at
