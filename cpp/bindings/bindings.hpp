@@ -16,7 +16,9 @@ void bind_simulation(py::module_& m);
 void bind_flight(py::module_& m);
 void bind_batch(py::module_& m);
 void bind_reference(py::module_& m);
+void bind_odometry(py::module_& m);
 void bind_control(py::module_& m);
+void bind_control_loop(py::module_& m);
 /// Turn crashes into errors: objects of bound classes without a completed constructor, and old
 /// pickle protocols. Call this when all classes are bound.
 void guard_classes(py::module_& m);

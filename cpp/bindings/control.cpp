@@ -3,49 +3,30 @@
 
 #include "arguments.hpp"
 #include "bindings.hpp"
-#include "guarded.hpp"
-#include "quadcore/control/controller.hpp"
+#include "controller.hpp"
+#include "odometry.hpp"
 #include "quadcore/control/gains_file.hpp"
 #include "quadcore/control/inner_loop.hpp"
 #include "quadcore/control/modelled_vehicle_file.hpp"
-#include "quadcore/control/rotor_health.hpp"
 #include "quadcore/control/start.hpp"
-#include "quadcore/rotor_shares.hpp"
 #include "reference.hpp"
 
 namespace quadcore::bindings {
 namespace {
 
 using control::Controller;
-using control::ReferenceShape;
 using control::Values;
 
-/// A controller with its state.
-template <class Controller>
-struct Bound {
-  Controller controller;
+/// An inner loop and its memory.
+struct BoundInnerLoop {
+  control::InnerLoop loop;
   std::vector<double> state;
 
   template <class Wanted>
   py::array_t<double> command(double period, const messages::Odometry& now, const Wanted& wanted) {
-    py::array_t<double> speeds(static_cast<py::ssize_t>(controller.rotors()));
-    controller.command(period, now, wanted, state.data(), speeds.mutable_data());
+    py::array_t<double> speeds(static_cast<py::ssize_t>(loop.rotors()));
+    loop.command(period, now, wanted, state.data(), speeds.mutable_data());
     return speeds;
-  }
-};
-using BoundInnerLoop = Bound<control::InnerLoop>;
-
-/// A controller that reads the health of the rotors if a plugin publishes it.
-struct BoundController : Bound<Controller> {
-  Self flown;
-  control::RotorHealth health;
-  int topic;  ///< topic of the rotor health; -1: none
-
-  /// Update the controller with the rotor health. Call it with the vehicle locked.
-  void read_health() {
-    if (topic < 0) return;
-    const Topic& said = flown->topics()[static_cast<std::size_t>(topic)];
-    health.update(said, flown->time(), controller, state.data());
   }
 };
 
@@ -61,9 +42,10 @@ void refuse_velocity_in_body(const std::string& who, const Self& flown) {
 
 /// Return the description of the modelled vehicle, which may be the simulated one, with the
 /// latter's command order.
-VehicleDescription describe_model(const Self& believed, const Self& flown) {
-  if (&*believed == &*flown) return describe(flown);
-  return control::match_rotors(describe(flown), describe(believed), "the modelled vehicle ");
+VehicleDescription describe_model(const Self& believed, const Self& flown,
+                                  const VehicleDescription& description) {
+  if (&*believed == &*flown) return description;
+  return control::match_rotors(description, describe(believed), "the modelled vehicle ");
 }
 
 Vector3d vector(const py::object& object, const char* what) {
@@ -82,6 +64,7 @@ Quaterniond orientation(const py::object& object, const char* what) {
 }
 
 messages::Odometry odometry(const py::object& state) {
+  if (py::isinstance<BoundOdometry>(state)) return state.cast<const BoundOdometry&>().message;
   messages::Odometry now;
   now.position = vector(state.attr("position"), "state.position");
   now.orientation = orientation(state.attr("orientation"), "state.orientation");
@@ -90,21 +73,24 @@ messages::Odometry odometry(const py::object& state) {
   return now;
 }
 
-/// Return the command for the odometry on a topic and a reference, without intermediate Python
-/// objects.
-py::array_t<double> command_at(BoundController& flown, double period, const Self& self,
-                               const std::string& sensed, const ReferenceShape& shape) {
-  const Lock lock(*self);
-  static const MessageKind odometry = messages::kind_of<messages::Odometry>();
-  const Topics& topics = self->topics();
-  const std::size_t topic = topics.at(sensed);
-  const MessageKind& kind = topics[topic].kind;
-  if (kind.name != odometry.name || kind.fields.size() != odometry.fields.size()) {
-    throw InputError("topic '" + sensed + "' does not carry odometry. Name an odometry topic.");
-  }
-  const auto now = topics.read<messages::Odometry>(topic);
-  flown.read_health();
-  return flown.command(period, now, shape.at(self->time()));
+std::unique_ptr<BoundController> create_controller(const std::string& law, const Self& believed,
+                                                   const Self& flown, const Values& values,
+                                                   const std::vector<double>& spins) {
+  refuse_velocity_in_body("controller '" + law + "'", flown);
+  const VehicleDescription description = describe(flown);
+  Controller made(law, describe_model(believed, flown, description), values, spins);
+  return std::make_unique<BoundController>(BoundController{
+      flown, control::GuidedController(*flown.operator->(), std::move(made), description)});
+}
+
+py::array_t<double> command(BoundController& bound, double period, const py::object& state,
+                            const py::object& wanted) {
+  const messages::Odometry now = odometry(state);
+  const messages::Reference reference = to_reference(wanted);
+  py::array_t<double> speeds(static_cast<py::ssize_t>(bound.controller.rotors()));
+  const Lock lock(*bound.flown);
+  bound.controller.command(period, now, reference, speeds.mutable_data());
+  return speeds;
 }
 
 py::dict start(const Self& self, const py::object& wanted, const std::vector<double>& spins) {
@@ -136,46 +122,21 @@ void bind_control(py::module_& m) {
           "Valid values as readable text.");
 
   py::class_<BoundController>(m, "Controller", "Built-in controller of one vehicle.")
-      .def(py::init([](const std::string& law, const Self& believed, const Self& flown,
-                       const Values& values, const std::vector<double>& spins) {
-             refuse_velocity_in_body("controller '" + law + "'", flown);
-             Controller made(law, describe_model(believed, flown), values, spins);
-             const std::size_t size = Controller::state_size(law, made.rotors());
-             return std::make_unique<BoundController>(
-                 BoundController{{std::move(made), std::vector<double>(size)},
-                                 flown,
-                                 control::RotorHealth(describe(flown)),
-                                 flown->topics().find(health_topic)});
-           }),
-           py::arg("law"), py::arg("believed"), py::arg("flown"), py::arg("values"),
-           py::arg("spins"))
-      .def(
-          "command",
-          [](BoundController& flown, double period, const py::object& state,
-             const py::object& wanted) {
-            {
-              const Lock lock(*flown.flown);
-              flown.read_health();
-            }
-            return flown.command(period, odometry(state), to_reference(wanted));
-          },
-          py::arg("period"), py::arg("state"), py::arg("reference"),
-          "Return the rotor speeds to command for a period [s], signed, rad/s; shape (n,). The "
-          "state has the form of odometry.")
-      .def("command_at", &command_at, py::arg("period"), py::arg("simulation"), py::arg("sensed"),
-           py::arg("shape"),
-           "Return the rotor speeds for the odometry on a topic and a reference at the simulation "
-           "time.")
+      .def(py::init(&create_controller), py::arg("law"), py::arg("believed"), py::arg("flown"),
+           py::arg("values"), py::arg("spins"))
+      .def("command", &command, py::arg("period"), py::arg("state"), py::arg("reference"),
+           "Return the rotor speeds to command for a period [s], signed, rad/s; shape (n,). The "
+           "state has the form of odometry.")
       .def_property_readonly(
-          "saturated",
-          [](const BoundController& flown) { return Controller::saturated(flown.state.data()); },
+          "saturated", [](const BoundController& bound) { return bound.controller.saturated(); },
           "Whether the rotors could not meet the last demand.");
 
   py::class_<BoundInnerLoop>(m, "InnerLoop", "Attitude and rate controller of one vehicle.")
       .def(py::init([](const Self& believed, const Self& flown, const Values& values,
                        const std::vector<double>& spins) {
              refuse_velocity_in_body("inner loop", flown);
-             control::InnerLoop made(describe_model(believed, flown), values, spins);
+             control::InnerLoop made(describe_model(believed, flown, describe(flown)), values,
+                                     spins);
              const std::size_t size = control::InnerLoop::state_size(made.rotors());
              return std::make_unique<BoundInnerLoop>(
                  BoundInnerLoop{std::move(made), std::vector<double>(size)});

@@ -1,21 +1,14 @@
-#include "quadcore/flight.hpp"
+#include "flight.hpp"
 
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include "arguments.hpp"
 #include "bindings.hpp"
-#include "guarded.hpp"
 #include "quadcore/log.hpp"
 
 namespace quadcore::bindings {
 namespace {
-
-struct BoundFlight {
-  std::shared_ptr<Guarded> guarded;
-  Flight flight;
-  py::ssize_t columns;
-};
 
 /// The duration of a run, in which only the run may advance the simulation.
 class Run {
@@ -70,12 +63,6 @@ void advance(BoundFlight& bound, std::int64_t n) {
   raising_warnings(*bound.guarded, [&] { without_gil([&] { bound.flight.advance(n); }); });
 }
 
-void command(const BoundFlight& bound, const ArrayLike& speeds) {
-  const Numbers array = numbers(speeds, 1, "command");
-  const Lock lock(*bound.guarded);
-  bound.guarded->simulation.command(array.data(), static_cast<std::size_t>(array.size()));
-}
-
 /// Return an array that owns the numbers, because a log is too large to copy.
 py::array_t<double> array_of(std::vector<double>&& numbers, std::vector<py::ssize_t> shape) {
   auto* const owned = new std::vector<double>(std::move(numbers));
@@ -115,8 +102,6 @@ void bind_flight(py::module_& m) {
            py::arg("topics") = std::vector<std::string>{})
       .def("advance", &advance, py::arg("n"),
            "Simulate n steps; raises the same errors as `Simulation.step`.")
-      .def("command", &command, py::arg("speeds"),
-           "Set the command like `Simulation.command`, which is not allowed during a run.")
       .def("take", &take,
            "Return the rows logged since the last call: table (rows, columns) and wrenches (rows, "
            "terms, 6), which are empty unless requested.");

@@ -10,6 +10,8 @@ PYBIND11_MODULE(_core, m) {
   quadcore::bindings::bind_batch(m);
   quadcore::bindings::bind_flight(m);
   quadcore::bindings::bind_reference(m);
+  quadcore::bindings::bind_odometry(m);
   quadcore::bindings::bind_control(m);
+  quadcore::bindings::bind_control_loop(m);
   quadcore::bindings::guard_classes(m);
 }

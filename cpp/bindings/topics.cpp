@@ -80,8 +80,6 @@ void bind_topics(py::module_& m, py::class_<Guarded, std::shared_ptr<Guarded>>& 
       .def_readonly("writer", &TopicInfo::writer,
                     "Plugin that publishes the topic; None if the caller may publish it.")
       .def_readonly("readers", &TopicInfo::readers, "Plugins that read the topic, list of str.");
-  m.def("odometry_parts", &messages::parts_of<messages::Odometry>,
-        "Quantities of an odometry message and the fields of each.");
   simulation.attr("command_topic") = Simulation::command_topic;
   simulation
       .def("topic", &topic, py::arg("name"), R"(Give the message that stands on a topic.

@@ -24,7 +24,8 @@ Controller::Controller(const ControllerInfo& law, const VehicleDescription& vehi
                        const Values& values, const std::vector<double>& spins)
     : model_(ModelledVehicle::of(vehicle, spins, values)),
       actuation_(model_, values),
-      law_(law.make(model_, values)) {}
+      law_(law.make(model_, values)),
+      memory_size_(law.memory_size) {}
 
 void Controller::command(double period, const Odometry& now, const Reference& reference,
                          double* state, double* speeds) const {

@@ -6,7 +6,7 @@
 
 #include "quadcore/control/controller.hpp"
 #include "quadcore/control/gains_file.hpp"
-#include "schedule.hpp"
+#include "quadcore/control/schedule.hpp"
 
 /// \file
 /// Controllers and references defined by tags: those of the plugins, and the parameters of the ROS

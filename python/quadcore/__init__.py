@@ -22,6 +22,7 @@ from ._core import (
     FlightError,
     InputError,
     Model,
+    Odometry,
     QuadcoreError,
     Reference,
     Rotor,
@@ -32,7 +33,7 @@ from ._core import (
     plugin_folders,
 )
 from .control import controllers, gains, references
-from .control.controller import Controller, Odometry
+from .control.controller import Controller
 from .control.inner_loop import AttitudeThrust, InnerLoop, RatesThrust
 from .control.keywords import ControllerName, ReferenceName
 from .model.description import read_model, read_world

@@ -193,11 +193,20 @@ def test_an_error_about_a_text_by_others_is_one_line_without_control_characters(
 
 def test_a_law_reads_odometry_and_no_other_topic():
     simulation = quadrotor("eigen")
-    law = qc._core.Controller("geometric", simulation, simulation, {}, [])
-    hover = qc._core.ReferenceShape("hover", {})
-    assert len(law.command_at(0.002, simulation, "odom", hover)) == 4
+    assert list(qc.Odometry(simulation).position) == [0, 0, 10]
     with pytest.raises(qc.InputError, match=r"^topic 'vel_cmd' does not carry odometry\. Name"):
-        law.command_at(0.002, simulation, "vel_cmd", hover)
+        qc.Odometry(simulation, "vel_cmd")
+
+
+def test_a_controller_of_another_simulation_does_not_fly_this_one():
+    simulation, other = quadrotor("eigen"), quadrotor("eigen")
+    law = qc._core.Controller("geometric", other, other, {}, [])
+    loop = qc._core.ControlLoop(qc._core.Flight(simulation, None, 1), 500, 0)
+    hover = qc._core.ReferenceShape("hover", {})
+    with pytest.raises(qc.InputError, match="the controller flies another simulation"):
+        loop.follow(1, law, "odom", hover)
+    with pytest.raises(qc.InputError, match=r"limits has the shape \(3,\)"):
+        loop.advance(1, lambda: [0, 0, 0, 0], [1.0, 1.0, 1.0])
 
 
 @pytest.mark.parametrize("member", ["rotor_velocity", "rotor_angle"])

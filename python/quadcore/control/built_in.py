@@ -74,31 +74,13 @@ class BuiltInController:
 
     def __call__(self, t: float, state: Any, reference: Any) -> np.ndarray:
         """Return the signed rotor speeds, rad/s; see `Controller`."""
-        controller = self._get_controller()
         if reference is None:
             raise _core.InputError(f"law '{self.name}' has no reference to follow; give one")
-        return controller.command(self._period, state, reference)
+        return self.core.command(self._period, state, reference)
 
-    def at(self, simulation: _core.Simulation, sensed: str, shape: _core.ReferenceShape) -> Any:
-        """Return the rotor speeds for the present state of a simulation.
-
-        Parameters
-        ----------
-        simulation : Simulation
-            Simulation that the controller commands.
-        sensed : str
-            Topic of the odometry.
-        shape : ReferenceShape
-            Reference trajectory, as `Shape.shape`.
-
-        Returns
-        -------
-        ndarray (n,)
-            Signed rotor speeds, rad/s.
-        """
-        return self._get_controller().command_at(self._period, simulation, sensed, shape)
-
-    def _get_controller(self) -> _core.Controller:
+    @property
+    def core(self) -> _core.Controller:
+        """The controller in the core, which `reset` makes."""
         if self._controller is None:
             raise _core.InputError(f"law '{self.name}' flies nothing yet; call its reset()")
         return self._controller

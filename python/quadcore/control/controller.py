@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import inspect
-from typing import TYPE_CHECKING, Any, Callable, Dict, Protocol, Union
+from typing import TYPE_CHECKING, Any, Protocol, Union
 
-import numpy as np
-
-from .. import _core
-from .._core import InputError, odometry_parts
+from .._core import InputError, Odometry
 from ..support.arguments import shorten
 from .built_in import BuiltInController
 from .inner_loop import AttitudeThrust, RatesThrust
@@ -17,7 +14,6 @@ from .keywords import ControllerName
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from ..support.values import FloatArray
 
 SENSED = "odom"
 """Topic of the odometry that controllers receive."""
@@ -85,57 +81,6 @@ class Controller(Protocol):
 
 ControllerLike = Union[Controller, ControllerFunction, ControllerName]
 """A controller as `Simulation.run` accepts it, for type checkers."""
-
-
-class Odometry:
-    """Latest message of the odometry plugin, including the noise that its tags define.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        Simulation to read the odometry of.
-
-    Attributes
-    ----------
-    time : float
-        Time of the message, s.
-    position : ndarray (3,)
-        Position of the frame origin in the world, m.
-    orientation : ndarray (4,)
-        Orientation of the frame in the world, unit quaternion x, y, z, w.
-    linear_velocity : ndarray (3,)
-        Velocity of the frame origin in the axes of the plugin's `twistFrame`, m/s.
-    angular_velocity : ndarray (3,)
-        Angular velocity of the frame, body axes, rad/s.
-    topic : callable
-        ``topic(name)`` returns the message of another topic, as `Simulation.topic` does.
-    """
-
-    __slots__ = (
-        "angular_velocity",
-        "linear_velocity",
-        "orientation",
-        "position",
-        "time",
-        "topic",
-    )
-
-    time: float
-    position: FloatArray
-    orientation: FloatArray
-    linear_velocity: FloatArray
-    angular_velocity: FloatArray
-    topic: Callable[[str], Dict[str, float]]
-
-    def __init__(self, simulation: _core.Simulation) -> None:
-        self.topic = simulation.topic
-        message = simulation.topic(SENSED)
-        self.time = message["stamp"]
-        for part, fields in _PARTS:
-            setattr(self, part, np.array([message[field] for field in fields]))
-
-
-_PARTS = [entry for entry in odometry_parts() if entry[0] in Odometry.__slots__]
 
 
 def check_callable(controller: Any) -> None:

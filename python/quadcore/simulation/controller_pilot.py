@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from contextlib import contextmanager, suppress
-from typing import Any, Iterator, Union
+from contextlib import contextmanager
+from typing import Any, Callable, Iterator, Optional, Union
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from .. import _core
 from .._core import FlightError, InputError, QuadcoreError
 from ..control import controllers, references
 from ..control.built_in import BuiltInController
-from ..control.controller import SENSED, ControllerLike, Odometry, check_callable
+from ..control.controller import SENSED, ControllerLike, check_callable
 from ..control.inner_loop import AttitudeThrust, InnerLoop, RatesThrust
 from ..control.keywords import ReferenceName
 from ..control.rate_and_delay import DELAY, RATE, check_rate_or_delay
@@ -27,11 +27,6 @@ class ControllerPilot(Pilot):
     ----------
     columns : sequence of str
         Names of the columns that the log has for the reference.
-    updates : int
-        Number of calls of the controller.
-    saturated : int
-        Number of calls with commands at the limits of the rotors. Built-in controllers report
-        this; for others a call counts if a speed reaches the limit of its motor.
 
     Raises
     ------
@@ -44,6 +39,7 @@ class ControllerPilot(Pilot):
         controller: ControllerLike,
         simulation: _core.Simulation,
         reference: Union[references.ReferenceLike, ReferenceName, None] = None,
+        timed: bool = False,
     ) -> None:
         if isinstance(controller, str):
             controller = controllers.parse(controller, simulation.model.name)
@@ -66,18 +62,39 @@ class ControllerPilot(Pilot):
             )
         self._inner_loop = InnerLoop() if inner_loop is None else inner_loop
         self.columns = _COLUMNS if reference is not None else ()
-        self.updates = self.saturated = 0
         self._controller: Any = controller
         self._reference = reference
-        driven = [rotor for rotor in simulation.rotors if rotor.command_index is not None]
-        self._places = np.array([rotor.command_index for rotor in driven], dtype=int)
-        self._limits = np.array([rotor.max_speed for rotor in driven])
+        self._timed = timed
+        self._loop: Optional[_core.ControlLoop] = None
+        self._limits = np.full(simulation.command_width, np.inf)
+        for rotor in simulation.rotors:
+            if rotor.command_index is not None:
+                self._limits[rotor.command_index] = rotor.max_speed
         sensed = simulation.topics.get(SENSED)
         if sensed is None or sensed.kind != "odometry":
             raise InputError(
                 f"controller: no plugin publishes odometry on topic '{SENSED}'; "
                 "add libodometry_plugin.so"
             )
+
+    @property
+    def updates(self) -> int:
+        """How often the controller was called."""
+        return 0 if self._loop is None else self._loop.calls
+
+    @property
+    def saturated(self) -> int:
+        """Number of calls whose command the rotors could not follow.
+
+        Built-in controllers know it. A call of another controller counts if a speed reaches the
+        limit of its motor.
+        """
+        return 0 if self._loop is None else self._loop.saturated
+
+    @property
+    def seconds(self) -> np.ndarray:
+        """Duration of each call, s; empty unless the calls are timed."""
+        return np.empty(0) if self._loop is None else self._loop.seconds
 
     def reset(self, simulation: _core.Simulation) -> None:
         """Reset the controller."""
@@ -86,30 +103,35 @@ class ControllerPilot(Pilot):
         if reset is not None:
             reset(simulation)
 
-    def speeds(self, simulation: _core.Simulation) -> Any:
-        """Call the controller."""
-        self.updates += 1
-        law, reference = self._controller, self._reference
-        if isinstance(law, BuiltInController):
-            if isinstance(reference, references.Shape):
-                speeds = law.at(simulation, SENSED, reference.shape)
-            else:
-                speeds = law(
-                    simulation.time, Odometry(simulation), self._evaluate_reference(simulation)
-                )
-            self.saturated += law.saturated
+    def begin(self, simulation: Any, flight: _core.Flight) -> Callable[[int], None]:
+        """Return the function that advances a flight by a number of steps.
+
+        A built-in controller on a built-in reference runs in the core, without the interpreter.
+        """
+        loop = self._loop = _core.ControlLoop(flight, self.rate, self.delay, self._timed)
+        controller, reference = self._controller, self._reference
+        if isinstance(controller, BuiltInController) and isinstance(reference, references.Shape):
+            shape = reference.shape
+            return lambda steps: loop.follow(steps, controller.core, SENSED, shape)
+        call = self._function(simulation)
+        return lambda steps: loop.advance(steps, call, self._limits)
+
+    def _function(self, simulation: Any) -> Callable[[], Any]:
+        """Make the function that calls the controller, and its inner loop if there is one."""
+        controller, inner_loop = self._controller, self._inner_loop
+        period = max(1 / self.rate, simulation.dt)  # called once a step at most
+        given = self._reference
+        reference = given.shape.at if isinstance(given, references.Shape) else given
+
+        def call() -> Any:
+            t, state = simulation.time, _core.Odometry(simulation)
+            speeds = controller(t, state, None if reference is None else reference(t))
+            if isinstance(speeds, (AttitudeThrust, RatesThrust)):
+                return inner_loop.speeds(simulation, period, state, speeds)
+            inner_loop.leave()
             return speeds
-        state = Odometry(simulation)
-        speeds = law(simulation.time, state, self._evaluate_reference(simulation))
-        if isinstance(speeds, (AttitudeThrust, RatesThrust)):
-            period = max(1 / self.rate, simulation.dt)  # called once a step at most
-            speeds = self._inner_loop.speeds(simulation, period, state, speeds)
-        else:
-            self._inner_loop.leave()
-        with suppress(TypeError, ValueError, IndexError):  # a bad command is refused when given
-            sizes = np.abs(np.asarray(speeds, float))[self._places]
-            self.saturated += bool(np.any(sizes >= self._limits))
-        return speeds
+
+        return call
 
     def add_columns(self, table: np.ndarray) -> np.ndarray:
         """Add the columns of the reference to rows of the state."""
@@ -117,9 +139,6 @@ class ControllerPilot(Pilot):
             return table
         wanted = references.sample_positions(self._reference, table[:, 0])
         return np.hstack([table, wanted, table[:, 1:4] - wanted[:, :3]])
-
-    def _evaluate_reference(self, simulation: _core.Simulation) -> Any:
-        return None if self._reference is None else self._reference(simulation.time)
 
 
 _COLUMNS = (

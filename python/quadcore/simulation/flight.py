@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 import time
-from collections import deque
 from contextlib import nullcontext
 from numbers import Real
-from typing import TYPE_CHECKING, Any, Callable, Deque, List, Optional, Protocol, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Callable, List, Optional, Sequence
 
 import numpy as np
 
@@ -26,12 +25,11 @@ Receive = Callable[[np.ndarray, np.ndarray], None]
 Progress = Callable[[int, int], None]
 
 _LONGEST = 1e9  # s
-_ROUNDING = 1e-6  # of a pilot's period
 _PIECE = 0.02  # s, at least; what is flown between two looks at progress and Ctrl-C
 _ROWS = 4096  # of a piece, at most; it stays in the cache until its rows are where they belong
 
 
-class Pilot(Protocol):
+class Pilot:
     """Source of the commands of a flight."""
 
     rate: float
@@ -47,8 +45,15 @@ class Pilot(Protocol):
     def reset(self, simulation: Any) -> None:
         """Prepare for a flight; the simulation is at its first step."""
 
+    def begin(self, simulation: Any, flight: _core.Flight) -> Callable[[int], None]:
+        """Return the function that advances a flight by a number of steps."""
+        loop = _core.ControlLoop(flight, self.rate, self.delay)
+        limits = np.full(simulation.command_width, np.inf)
+        return lambda steps: loop.advance(steps, lambda: self.speeds(simulation), limits)
+
     def speeds(self, simulation: Any) -> npt.ArrayLike:
         """Return the command until the next call, rad/s."""
+        raise NotImplementedError
 
     def add_columns(self, table: np.ndarray) -> np.ndarray:
         """Add the columns of the pilot to rows of a log."""
@@ -117,7 +122,7 @@ def _advance(
     pilot: Optional[Pilot],
 ) -> None:
     """Simulate `total` steps in pieces of at most `most` steps."""
-    advance = flight.advance if pilot is None else _PilotedFlight(simulation, flight, pilot).advance
+    advance = flight.advance if pilot is None else pilot.begin(simulation, flight)
 
     def hand_over() -> None:
         with interrupts.hold_signals():
@@ -159,53 +164,6 @@ def _call_with_time(simulation: _core.Simulation, act: Callable[[Any], Any], giv
     except _core.InputError as error:
         error.time = simulation.time  # type: ignore[attr-defined]
         raise
-
-
-class _PilotedFlight:
-    """Flight that calls its pilot before each step at which the pilot is due."""
-
-    def __init__(self, simulation: _core.Simulation, flight: _core.Flight, pilot: Pilot) -> None:
-        self._simulation, self._flight, self._pilot = simulation, flight, pilot
-        command = simulation.topics.get(simulation.command_topic)
-        self._takes_commands = command is not None and command.writer is None
-        # By the count of steps: the sum of their times would slip.
-        self._per_step = pilot.rate * simulation.dt
-        self._delay = math.ceil(pilot.delay / simulation.dt - _ROUNDING)
-        self._under_way: Deque[Tuple[int, npt.ArrayLike]] = deque()
-        self._steps = 0
-        self._due = 0
-
-    def advance(self, steps: int) -> None:
-        end = self._steps + steps
-        while self._steps < end:
-            if self._steps == self._due:
-                speeds = self._pilot.speeds(self._simulation)
-                arrives = self._steps + (self._delay if self._steps > 0 else 0)
-                self._under_way.append((arrives, speeds))
-                asked = math.floor(self._steps * self._per_step + _ROUNDING)
-                next_time = math.ceil((asked + 1 - _ROUNDING) / self._per_step)
-                self._due = max(next_time, self._steps + 1)
-            while self._under_way and self._under_way[0][0] <= self._steps:
-                self._command(self._under_way.popleft()[1])
-            arrival = self._under_way[0][0] if self._under_way else end
-            piece = min(self._due, arrival, end) - self._steps
-            self._flight.advance(piece)
-            self._steps += piece
-
-    def _command(self, speeds: npt.ArrayLike) -> None:
-        try:
-            self._flight.command(speeds)
-        except _core.InputError as error:
-            if not self._takes_commands:  # the given speeds are not at fault
-                raise
-            simulation, fault = self._simulation, str(error).partition(". Give")[0]
-            failure = _core.FlightError(
-                f"the flight failed at t = {simulation.time:f} s: the controller returned "
-                f"{shorten(speeds)}: {fault}. Return {simulation.command_width} rotor speeds in "
-                "rad/s."
-            )
-            failure.time = simulation.time
-            raise failure from error
 
 
 def list_columns(

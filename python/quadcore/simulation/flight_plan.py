@@ -245,17 +245,19 @@ class FlightPlan:
             simulation.set_state(references.start(simulation, self.reference, spins))
         return simulation
 
-    def pilot(self, simulation: Simulation) -> Optional[ControllerPilot]:
+    def pilot(self, simulation: Simulation, timed: bool = False) -> Optional[ControllerPilot]:
         """Make the pilot that calls the controller, if any; raises as `Simulation.run` does.
 
         Parameters
         ----------
         simulation : Simulation
             Simulation of this plan, as `simulation()` makes it.
+        timed : bool
+            Whether to measure the duration of each call.
         """
         if self.controller is None:
             return None
-        return ControllerPilot(self.controller, simulation, self.reference)
+        return ControllerPilot(self.controller, simulation, self.reference, timed)
 
     def fly(self, progress: Optional[Progress] = None) -> Log:
         """Simulate the flight; raises and warns as `Simulation` and `Simulation.run` do.

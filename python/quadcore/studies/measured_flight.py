@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
 from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence
 
 import numpy as np
@@ -16,7 +15,7 @@ from ..simulation.flight_plan import FlightPlan
 from ..simulation.log import Log
 from ..simulation.simulation import Simulation
 from ..support.warning import suppress_warnings
-from .controller_timing import TimedController, TimedPilot, summarise_durations, time_controller
+from .controller_timing import summarise_durations
 from .step_response import step_response
 from .table import NOT_FLOWN
 from .time_limit import time_limit
@@ -93,14 +92,9 @@ def fly_and_measure(
     failure = ""
     with time_limit(most), suppress_warnings():
         flight = described()
-        if timed:
-            flight = replace(flight, controller=time_controller(flight.controller))
         simulation = flight.simulation()
         rotors = simulation.rotors
-        pilot: Any = flight.pilot(simulation)
-        clock = flight.controller
-        if timed and not isinstance(clock, TimedController):
-            clock = pilot = TimedPilot(pilot)
+        pilot: Any = flight.pilot(simulation, timed)
         topics = _animated_topics(simulation) if keep else []
         rows = Rows(simulation, list_columns(simulation, topics, pilot))
         try:
@@ -127,7 +121,7 @@ def fly_and_measure(
         measures,
         time.perf_counter() - started,
         pilot.updates,
-        *summarise_durations(clock.seconds if timed else []),
+        *summarise_durations(pilot.seconds),
         pilot.rate,
         pilot.delay,
         list(simulation.warnings),

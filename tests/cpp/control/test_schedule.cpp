@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "quadcore/plugin/error.hpp"
-#include "schedule.hpp"
+#include "quadcore/control/schedule.hpp"
 
 using quadcore::control::Schedule;
 

@@ -21,6 +21,8 @@ class Controller {
     return Actuation::state_size(rotors) + find_controller(law).memory_size;
   }
 
+  /// Return the number of state values of this controller.
+  std::size_t state_size() const { return Actuation::state_size(rotors()) + memory_size_; }
   /// Return the number of driven rotors.
   std::size_t rotors() const { return model_.rotors.size(); }
   /// Compute the speeds to command until the next call. If the remaining rotors cannot yaw the
@@ -47,6 +49,7 @@ class Controller {
   ModelledVehicle model_;
   Actuation actuation_;
   std::unique_ptr<const ControlLaw> law_;
+  std::size_t memory_size_;  ///< state values of law_
 };
 
 }  // namespace control

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "quadcore/plugin/counts.hpp"
+#include "quadcore/plugin/export.hpp"
 
 namespace quadcore::control {
 

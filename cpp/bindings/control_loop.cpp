@@ -1,0 +1,141 @@
+#include "quadcore/control/control_loop.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "arguments.hpp"
+#include "bindings.hpp"
+#include "controller.hpp"
+#include "flight.hpp"
+#include "quadcore/commands.hpp"
+
+namespace quadcore::bindings {
+namespace {
+
+using control::ReferenceShape;
+
+/// A control loop, and what a report tells of its calls.
+class BoundLoop {
+ public:
+  BoundLoop(BoundFlight& bound, double rate, double delay, bool timed)
+      : bound_(bound),
+        loop_(bound.guarded->simulation, bound.flight, rate, delay),
+        width_(bound.guarded->simulation.command_width()),
+        timed_(timed) {}
+
+  /// Advances under a built-in controller, without the interpreter.
+  void follow(std::int64_t n, BoundController& bound, const std::string& odometry,
+              const ReferenceShape& reference) {
+    control::GuidedController& controller = bound.controller;
+    const Lock lock(*bound_.guarded);
+    if (&*bound.flown != &*bound_.guarded) {
+      throw InputError("the controller flies another simulation. Reset it for this one.");
+    }
+    if (controller.rotors() != width_) check_command(nullptr, controller.rotors(), width_);
+    const std::size_t topic =
+        control::GuidedController::find_odometry(bound_.guarded->simulation.topics(), odometry);
+    const auto call = [&](double period, double* speeds) {
+      clocked([&] { controller.command(period, topic, reference, speeds); });
+      saturated_ += controller.saturated();
+    };
+    raising_warnings(*bound_.guarded, [&] { without_gil([&] { loop_.advance(n, call); }); });
+  }
+
+  /// Advances under a function of Python's, which may read the simulation.
+  /// \param function  called without arguments; returns the speeds to command
+  /// \param limits    speeds at which a rotor counts as saturated, (width_,) [rad/s]
+  void advance(std::int64_t n, const py::function& function, const py::object& limits) {
+    const Numbers most = numbers(limits, 1, "limits");
+    check_shape(most, {static_cast<py::ssize_t>(width_)}, "limits");
+    const Lock lock(*bound_.guarded);
+    const auto call = [&](double, double* speeds) {
+      py::object answer;
+      without_lock([&] { clocked([&] { answer = function(); }); });
+      take(answer, speeds);
+      bool at_limit = false;
+      for (std::size_t i = 0; i < width_; ++i) {
+        at_limit = at_limit || std::abs(speeds[i]) >= most.data()[i];
+      }
+      saturated_ += at_limit;
+    };
+    raising_warnings(*bound_.guarded, [&] { loop_.advance(n, call); });
+  }
+
+  std::int64_t calls() const { return calls_; }
+  std::int64_t saturated() const { return saturated_; }
+  py::array_t<double> seconds() const {
+    return py::array_t<double>(static_cast<py::ssize_t>(seconds_.size()), seconds_.data());
+  }
+
+ private:
+  template <class Call>
+  void clocked(const Call& call) {
+    using Clock = std::chrono::steady_clock;
+    ++calls_;
+    if (!timed_) return call();
+    const Clock::time_point begin = Clock::now();
+    call();
+    seconds_.push_back(std::chrono::duration<double>(Clock::now() - begin).count());
+  }
+
+  /// Lets what is called use the simulation meanwhile.
+  template <class Call>
+  void without_lock(const Call& call) {
+    std::atomic<bool>& busy = bound_.guarded->busy;
+    busy = false;
+    try {
+      call();
+    } catch (...) {
+      busy = true;
+      throw;
+    }
+    if (busy.exchange(true)) refuse_another_thread();
+  }
+
+  /// Copies the speeds that a controller returned.
+  void take(const py::object& answer, double* speeds) const {
+    try {
+      const Numbers array = numbers(answer, 1, "command");
+      check_command(array.data(), static_cast<std::size_t>(array.size()), width_);
+      std::copy_n(array.data(), width_, speeds);
+    } catch (const InputError& error) {
+      const double time = bound_.guarded->simulation.time();
+      const std::string what = error.what();
+      const auto shorten = py::module_::import("quadcore.support.arguments").attr("shorten");
+      throw FlightError(time, "the flight failed at t = " + std::to_string(time) +
+                                  " s: the controller returned " +
+                                  shorten(answer).cast<std::string>() + ": " +
+                                  what.substr(0, what.find(". Give")) + ". Return " +
+                                  std::to_string(width_) + " rotor speeds in rad/s.");
+    }
+  }
+
+  BoundFlight& bound_;
+  control::ControlLoop loop_;
+  std::size_t width_;
+  bool timed_;
+  std::int64_t calls_ = 0, saturated_ = 0;
+  std::vector<double> seconds_;
+};
+
+}  // namespace
+
+void bind_control_loop(py::module_& m) {
+  py::class_<BoundLoop>(m, "ControlLoop", "Calls a controller at its rate while a flight advances.")
+      .def(py::init<BoundFlight&, double, double, bool>(), py::arg("flight"), py::arg("rate"),
+           py::arg("delay"), py::arg("timed") = false, py::keep_alive<1, 2>())
+      .def("follow", &BoundLoop::follow, py::arg("n"), py::arg("controller"), py::arg("odometry"),
+           py::arg("reference"), "Advance n steps under a built-in controller.")
+      .def("advance", &BoundLoop::advance, py::arg("n"), py::arg("function"), py::arg("limits"),
+           "Advance n steps under a function that returns rotor speeds (n,), rad/s.")
+      .def_property_readonly("calls", &BoundLoop::calls, "How often the controller was called.")
+      .def_property_readonly("saturated", &BoundLoop::saturated,
+                             "Calls whose command the rotors could not follow.")
+      .def_property_readonly("seconds", &BoundLoop::seconds,
+                             "Duration of each call, s; empty unless timed.");
+}
+
+}  // namespace quadcore::bindings

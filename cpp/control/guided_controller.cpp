@@ -1,0 +1,45 @@
+#include "quadcore/control/guided_controller.hpp"
+
+#include <utility>
+
+#include "quadcore/plugin/error.hpp"
+#include "quadcore/rotor_shares.hpp"
+
+namespace quadcore::control {
+GuidedController::GuidedController(const Simulation& simulation, Controller controller,
+                                   const VehicleDescription& flown)
+    : simulation_(simulation),
+      controller_(std::move(controller)),
+      health_of_(flown),
+      health_(simulation.topics().find(health_topic)),
+      state_(controller_.state_size()) {}
+
+std::size_t GuidedController::find_odometry(const Topics& topics, const std::string& name) {
+  static const MessageKind odometry = messages::kind_of<Odometry>();
+  const std::size_t topic = topics.at(name);
+  const MessageKind& kind = topics[topic].kind;
+  if (kind.name != odometry.name || kind.fields.size() != odometry.fields.size()) {
+    throw InputError("topic '" + name + "' does not carry odometry. Name an odometry topic.");
+  }
+  return topic;
+}
+
+void GuidedController::command(double period, std::size_t odometry, const ReferenceShape& reference,
+                               double* speeds) {
+  const auto now = simulation_.topics().read<Odometry>(odometry);
+  command(period, now, reference.at(simulation_.time()), speeds);
+}
+
+void GuidedController::command(double period, const Odometry& now, const Reference& wanted,
+                               double* speeds) {
+  hear_of_health();
+  controller_.command(period, now, wanted, state_.data(), speeds);
+}
+
+void GuidedController::hear_of_health() {
+  if (health_ < 0) return;
+  const Topic& health = simulation_.topics()[static_cast<std::size_t>(health_)];
+  health_of_.update(health, simulation_.time(), controller_, state_.data());
+}
+
+}  // namespace quadcore::control
