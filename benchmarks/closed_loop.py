@@ -9,7 +9,7 @@ from time import thread_time_ns
 
 import quadcore as qc
 
-DURATION = 2.0  # s
+DURATION = 30.0  # s
 LEAST_SHARE = 0.6  # of the speed of the open loop
 LARGEST_OVERHEAD = 2.0  # us per call of a Python controller
 HOVER = [471.0, -471.0, 471.0, -471.0]
@@ -43,7 +43,7 @@ def ratios(sim, fly, rounds):
     return [nanoseconds(sim, step) / nanoseconds(sim, fly) for _ in range(rounds)]
 
 
-rounds = int(sys.argv[1]) if len(sys.argv) > 1 else 31
+rounds = int(sys.argv[1]) if len(sys.argv) > 1 else 11
 for engine in ("eigen", "gazebo11"):
     sim = qc.Simulation("quadrotor", engine=engine, xacro_args={"sim_slow": 1})
     for name in ("geometric", "pd", "lqr", "indi", "pid"):
