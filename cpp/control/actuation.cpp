@@ -75,6 +75,8 @@ bool Actuation::lead(double period, bool begins, double* state, double* speeds) 
   constexpr double rounding = 1e-6;  // rad/s
   double* const modelled = state + kRotors;
   bool all = true;
+  const double wanted_share = leads_ ? 1 - elementary::exp(-period / lead_time_) : 0;
+  double lag = 0, share = 0;  // of the previous rotor; fraction of the change within a period
   for (std::size_t i = 0; i < rotors_.size(); ++i) {
     const ModelledRotor& rotor = rotors_[i];
     if (begins) modelled[i] = speeds[i];
@@ -82,10 +84,11 @@ bool Actuation::lead(double period, bool begins, double* state, double* speeds) 
       modelled[i] = speeds[i];
       continue;
     }
-    const double share =
-        1 - elementary::exp(-period / rotor.lag);  // fraction of the change within a period
-    if (leads_ && lead_time_ < rotor.lag) {
-      const double wanted_share = 1 - elementary::exp(-period / lead_time_);
+    if (rotor.lag != lag) {
+      lag = rotor.lag;
+      share = 1 - elementary::exp(-period / lag);
+    }
+    if (leads_ && lead_time_ < lag) {
       const double ahead = modelled[i] + wanted_share / share * (speeds[i] - modelled[i]);
       speeds[i] = std::clamp(ahead, rotor.slowest, rotor.fastest);
       all &= std::abs(speeds[i] - ahead) <= rounding;
