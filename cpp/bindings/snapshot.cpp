@@ -12,7 +12,7 @@ namespace quadcore::bindings {
 namespace {
 
 /// Version of the pickle format of snapshots, which may differ in another quadcore.
-constexpr int version = 1;
+constexpr int snapshot_version = 1;  ///< of pickled snapshots
 
 using Row = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
@@ -42,7 +42,7 @@ py::object saved(const Built<Snapshot>& held) {
     messages.append(py::make_tuple(row(m.values.data(), m.values.size()), m.stamp, m.count));
   }
   py::dict state;
-  state["version"] = version;
+  state["version"] = snapshot_version;
   state["taken_from"] = fingerprint_of(*snapshot.taken_from);
   state["start_time"] = snapshot.start_time;
   state["steps"] = snapshot.steps;
@@ -57,7 +57,7 @@ py::object saved(const Built<Snapshot>& held) {
 }
 
 std::shared_ptr<Snapshot> read(const py::object& state) {
-  if (py::cast<int>(state["version"]) != version) throw OtherVersion();
+  if (py::cast<int>(state["version"]) != snapshot_version) throw OtherVersion();
   auto fingerprint = std::make_shared<Fingerprint>();
   for (const FingerprintPart& part : fingerprint_parts()) {
     Facts& facts = (*fingerprint).*part.facts;
