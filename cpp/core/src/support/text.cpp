@@ -101,7 +101,8 @@ std::string suggest(const std::string& name, const std::vector<std::string>& can
   std::size_t least = name.size() / 4 + 2;
   for (const std::string& candidate : candidates) {
     if (candidate.size() > longest_misspelling) continue;
-    const std::size_t distance = edit_distance(name, candidate);
+    const bool is_beginning = name.size() > 2 && lower(candidate).rfind(lower(name), 0) == 0;
+    const std::size_t distance = is_beginning ? 0 : edit_distance(name, candidate);
     if (distance < least) {
       least = distance;
       nearest = &candidate;
