@@ -3,8 +3,8 @@
 #include <cmath>
 #include <vector>
 
-#include "quadcore/plugin/error.hpp"
 #include "quadcore/control/schedule.hpp"
+#include "quadcore/plugin/error.hpp"
 
 using quadcore::control::Schedule;
 
