@@ -13,12 +13,15 @@ namespace quadcore::control {
 /// owns the state, which is all zero at the start.
 class Schedule {
  public:
+  /// \param rate   calls per simulated second
+  /// \param delay  from a call to the step at which its command acts [s]
   Schedule(double rate, double delay, std::size_t rotors)
       : rate_(rate),
         delay_(delay),
         rotors_(rotors),
         places_(static_cast<std::size_t>(std::ceil(delay * rate)) + 2) {}
 
+  /// Return the number of state values.
   std::size_t state_size() const { return kUnderWay + places_ * place_size(); }
 
   /// Call the controller if it is due in this step.
