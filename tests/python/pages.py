@@ -29,6 +29,8 @@ import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
+import matplotlib
+
 import quadcore as qc
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -101,7 +103,7 @@ def run(page, folder):
             steps.append(text or block["before"])
         elif block["kind"] == "run" or language == "sh":
             shell = text or block["before"]
-            whole = ", QUADCORE_SHORT=''" if after["marker"] == "output" else ""
+            whole = ", QUADCORE_SHORT='no'" if after["marker"] == "output" else ""
             steps.append(f"_shell('bash', '-eo', 'pipefail', '-c', {shell!r}{whole})")
         elif language in ("octave", "matlab"):
             steps.append(f"_octave({text!r})")
@@ -129,6 +131,7 @@ def call(command, folder, short):
     environment = {
         **os.environ,
         "HOME": str(folder),
+        "MPLCONFIGDIR": matplotlib.get_cachedir(),  # or each page would search for fonts again
         "PYTHONUSERBASE": site.getuserbase(),  # which lies in the other home
         "BASH_FUNC_pip%%": '() { "$HOME/stand_ins/pip" "$@"; }',  # in environments made here, too
         "PATH": f"{folder}/stand_ins:{Path(sys.executable).parent}:{os.environ['PATH']}",

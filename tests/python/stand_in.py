@@ -11,16 +11,18 @@ from pathlib import Path
 
 FEW = {"--samples": "2"}
 SHORT = {"--duration": "1", "--seeds": "1", "--budget": "2", "--no-plots": None, **FEW}
+CHANGES = {"no": {}, "": FEW, "yes": SHORT}
+"""Options to add, by QUADCORE_SHORT."""
 
 
 def quadcore(words):
-    """As typed; but sweeps are of few, all is short if it is to be, and a server goes on."""
+    """As typed; but a server goes on, and what shows no output flies few rows, or is short."""
     from quadcore.cli import make_parser
 
     parser = make_parser()
     given = parser.parse_args(words)
     known = parser._subparsers._group_actions[0].choices[words[0]]._option_string_actions
-    for option, value in (SHORT if os.environ["QUADCORE_SHORT"] else FEW).items():
+    for option, value in CHANGES[os.environ["QUADCORE_SHORT"]].items():
         if option in known and not getattr(given, "plant", None):  # that has its own length
             words += [option] + ([value] if value else [])
     if getattr(given, "dask", None):  # there is no such cluster

@@ -20,6 +20,7 @@ from quadcore.cli import make_parser
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES += sorted((ROOT / "docs" / "commands").glob("*.md"))
 COMMANDS = next(
     action.choices
     for action in make_parser()._actions
@@ -110,6 +111,11 @@ def test_the_page_on_ros_has_the_kinds_that_the_node_carries_and_their_types():
         re.findall(r"^\| `(\w+)` \| `([\w/]+)` \|", (ROOT / "docs/ros.md").read_text(), re.M)
     )
     assert table == {kind.lower(): f"{package}/{name}" for kind, package, name in carried}
+
+
+def test_each_command_has_a_page():
+    pages = {page.stem for page in (ROOT / "docs" / "commands").glob("*.md")}
+    assert pages == {*COMMANDS, "index"}
 
 
 def test_the_page_of_plugins_has_a_row_for_each():
