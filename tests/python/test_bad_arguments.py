@@ -101,12 +101,12 @@ def state_of(simulation, **changed):
         (lambda s: s.step(-1), "the step count is -1. Give a whole number >= 0."),
         (lambda s: s.run(-1), "duration is -1; give seconds, from 0 to 1e+09"),
         (lambda s: s.run(math.nan), "duration is nan; give seconds, from 0 to 1e+09"),
-        (lambda s: s.run(1, log_every=0), "log_every is 0. Give a whole number >= 1."),
+        (lambda s: s.run(1, log_every=0), "log_every is 0; give a whole number >= 1"),
         (lambda s: s.run(1, commands=[[0, math.nan]]), "w1 is nan. Write a finite number."),
         (lambda s: s.run(1, commands=[[0, 1, 2]]), "takes (rows, 2): t,w1"),
         (lambda s: s.run(1, commands=np.zeros((0, 2))), "commands: holds no commands"),
         (lambda s: s.run(1, commands=[[0, 1], [0, 2]]), "is not later than"),
-        (lambda s: s.set_state(state_of(s, position=[0, 0])), "state.position holds 2 numbers"),
+        (lambda s: s.set_state(state_of(s, position=[0, 0])), "state.position has 2 numbers"),
         (lambda s: s.set_state(state_of(s, position=[0, 0, math.nan])), "not a finite number"),
         (lambda s: s.set_state(state_of(s, orientation=[0, 0, 0, 0])), "is not a unit quaternion"),
         (lambda s: s.set_state(state_of(s, rotor_velocity=[1, 2])), "this vehicle has 1 rotors"),
@@ -254,7 +254,7 @@ def test_lists_that_come_one_by_one_are_read_once():
 def test_numbers_and_names_that_cannot_be_meant_are_told():
     with pytest.raises(qc.InputError, match=r"^steps must be a whole number below 2\^63\.$"):
         quadrotor("eigen").step(2**63)
-    with pytest.raises(qc.InputError, match=r"^topic: give a name in UTF-8$"):
+    with pytest.raises(qc.InputError, match=r"^topic must be a name in UTF-8\.$"):
         quadrotor("eigen").topic("\udc80")
 
 

@@ -153,7 +153,7 @@ def test_a_reference_of_rows_is_read_from_a_file(shape, kind, tmp_path, hangar):
             "columns: [t, x, y, z]\nrows:\n  - [0, a, 0, 1]\n",
             "rows.yaml:3: 'x' is 'a'",
         ),
-        ("rows.yaml", "columns: [t, x, y, z]\nrow: 1\n", "rows.yaml:2: .* has no 'row'"),
+        ("rows.yaml", "columns: [t, x, y, z]\nrow: 1\n", "rows.yaml:2: unknown key 'row'"),
         ("rows.txt", "t,x,y,z\n", "rows can be read only from .csv and .yaml files"),
     ],
 )

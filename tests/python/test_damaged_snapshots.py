@@ -79,7 +79,7 @@ def test_a_snapshot_that_is_refused_leaves_what_is_carried(hangar):
     laden = simulation.snapshot()
     fly(simulation, 40)
     mass, before = simulation.mass, bits(simulation)
-    with pytest.raises(qc.InputError, match="another model or engine"):
+    with pytest.raises(qc.InputError, match="a different model or engine"):
         simulation.restore(damaged(laden, engine=laden.__getstate__()["engine"][:-1]))
     assert simulation.mass == mass
     assert bits(simulation) == before
@@ -90,12 +90,12 @@ def test_a_link_that_only_a_sensor_feels_makes_another_vehicle(hangar):
         return hangar(with_fixed_link(motored(), "imu", 1e-9, (1e-15,) * 3, (x, 0, 0)), G)
 
     snapshot = mounted(0.1).snapshot()
-    with pytest.raises(qc.InputError, match="another model"):
+    with pytest.raises(qc.InputError, match="a different model"):
         mounted(0.9).restore(snapshot)
 
 
 def test_no_snapshot_is_none():
-    with pytest.raises(qc.InputError, match="give a Snapshot, not a 'NoneType'"):
+    with pytest.raises(qc.InputError, match="expected a Snapshot, not a 'NoneType'"):
         quadrotor().restore(None)
 
 

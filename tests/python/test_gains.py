@@ -49,13 +49,13 @@ def test_numbers_are_read_as_people_write_them(tmp_path):
         ("law: pd\nrate: fast\n", 2, "'rate' is 'fast'. Write a number"),
         ("law: pd\nrate: 0\n", 2, "'rate' is 0. Give a finite number >= 1e-06"),
         ("law: pd\ndelay: -1\n", 2, "'delay' is -1. Give a finite number >= 0, <= 10"),
-        ("law: pd\nparameters:\n  kp_xy: 2\n  kp: 3\n", 4, "law 'pd' has no parameter 'kp'"),
+        ("law: pd\nparameters:\n  kp_xy: 2\n  kp: 3\n", 4, "controller 'pd' has no parameter 'kp'"),
         ("law: pd\nparameters:\n  kp_xy: -2\n", 3, "'kp_xy' is -2. Give a finite number >= 0"),
-        ("law: pd\nparameters:\n  drag: 2\n", 3, "'drag' is 2; give true or false"),
+        ("law: pd\nparameters:\n  drag: 2\n", 3, "'drag' is 2. Give true or false"),
         ("law: pd\nparameters: [1]\n", 2, "'parameters' is a list. Write lines"),
         ("law: pd\nhistory: long\n", 2, "'history' is neither"),
-        ("law: pd\nrate: [\n", 3, "not YAML"),
-        ("- pd\n", 1, "a gains file is a list"),
+        ("law: pd\nrate: [\n", 3, "invalid YAML"),
+        ("- pd\n", 1, "the gains file is a list"),
     ],
 )
 def test_a_wrong_file_is_one_line_that_tells_where(text, line, says, tmp_path):
@@ -66,7 +66,7 @@ def test_a_wrong_file_is_one_line_that_tells_where(text, line, says, tmp_path):
 
 
 def test_a_file_that_is_not_there_is_told(tmp_path):
-    with pytest.raises(qc.InputError, match=r"no\.yaml: cannot be read"):
+    with pytest.raises(qc.InputError, match=r"no\.yaml: the file cannot be read"):
         controllers.read_controller(tmp_path / "no.yaml")
 
 
@@ -105,7 +105,7 @@ def test_the_plugin_flies_the_gains_of_a_file_and_what_tags_set_wins(tmp_path, h
             {"law": "pd", "gains": "gains.yaml"},
             "<law> is pd, but the gains file .* is for geometric",
         ),
-        ({"gains": "gains.yaml", "scale": 2}, "law 'geometric' has no parameter 'scale'"),
+        ({"gains": "gains.yaml", "scale": 2}, "controller 'geometric' has no parameter 'scale'"),
     ],
 )
 def test_tags_that_contradict_the_file_are_refused(tags, says, tmp_path, hangar):

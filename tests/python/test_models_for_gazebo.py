@@ -30,7 +30,7 @@ def test_what_is_sensed_is_named_in_one_warning_with_its_lines(flown):
         f"{UNFELT}<transmission> ({first}, {second}), "
         f"<properties> ({at('toy.urdf', '<properties')}), "
         f"<sensor> ({at('toy.urdf', '<sensor')}), "
-        f"libgazebo_ros_p3d.so ({at('toy.urdf', 'libgazebo_ros_p3d')})"
+        f"libgazebo_ros_p3d.so ({at('toy.urdf', 'libgazebo_ros_p3d')})."
     )
     simulation.step(3)
 

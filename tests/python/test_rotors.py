@@ -176,7 +176,9 @@ def test_eigen_is_what_rotors_approaches_with_small_steps_and_far_nearer_at_its_
 def test_eigen_averages_blades_over_their_turns_and_says_so(edited):
     simulation = firefly("eigen")
     (said,) = [w for w in simulation.warnings if "over a turn about the joint" in w]
-    assert re.search(r"multirotor\.xacro:\d+: the inertia of firefly/rotor_0, .*rotor_5 ", said)
+    assert re.search(
+        r"multirotor\.xacro:\d+: .*averages the inertia of firefly/rotor_0, .*rotor_5 ", said
+    )
     moments = np.diag(simulation.model.links[1].inertia)
     assert moments[0] == moments[1]
     flown = np.diag(firefly("ode").model.links[1].inertia)
@@ -194,24 +196,36 @@ PID = '<plugin name="pid" filename="libmotorpid_plugin.so"><kp>1e-4</kp></plugin
         (
             SECOND + "<linkName>firefly/rotor_1</linkName>",
             "<jointName>firefly/rotor_0_joint</jointName><linkName>firefly/rotor_0</linkName>",
-            ("'motor_1' drives joint 'firefly/rotor_0_joint', as 'motor_0' (", "one plugin"),
+            (
+                "'motor_1' drives joint 'firefly/rotor_0_joint', which 'motor_0' (",
+                "Keep one of them",
+            ),
         ),
         (
             SECOND + "<linkName>firefly/rotor_1</linkName>",
             "<motorType>position</motorType><jointName>firefly/rotor_0_joint</jointName>"
             "<linkName>firefly/rotor_0</linkName>",
-            ("'motor_1' drives joint 'firefly/rotor_0_joint', as 'motor_0' (", "one plugin"),
+            (
+                "'motor_1' drives joint 'firefly/rotor_0_joint', which 'motor_0' (",
+                "Keep one of them",
+            ),
         ),
         (
             MOTOR_0,
             PID + MOTOR_0,
-            ("'pid' drives joint 'firefly/rotor_0_joint', as 'motor_0' (", "one plugin drive each"),
+            (
+                "'pid' drives joint 'firefly/rotor_0_joint', which 'motor_0' (",
+                "Keep one of them",
+            ),
         ),
         *(
             (
                 MOTOR_0,
                 PID + MOTOR_0 + f"<motorType>{kind}</motorType>",
-                ("'pid' drives joint 'firefly/rotor_0_joint', as 'motor_0' (", "one plugin"),
+                (
+                    "'pid' drives joint 'firefly/rotor_0_joint', which 'motor_0' (",
+                    "Keep one of them",
+                ),
             )
             for kind in ("position", "force")
         ),
@@ -219,11 +233,11 @@ PID = '<plugin name="pid" filename="libmotorpid_plugin.so"><kp>1e-4</kp></plugin
             MOTOR_0,
             PID + PID.replace('"pid"', '"more"') + MOTOR_0,
             (
-                "'motor_0' drives joint 'firefly/rotor_0_joint', as 'more' (",
-                "one plugin drive each",
+                "'motor_0' drives joint 'firefly/rotor_0_joint', which 'more' (",
+                "Keep one of them",
             ),
         ),
-        (SECOND, "", ("'motor_1': required tag <jointName> is missing", "add <jointName>")),
+        (SECOND, "", ("'motor_1': required tag <jointName> is missing", "Add <jointName>")),
         ("<motorConstant>", "<thrustConstant>", ("mismatched", "")),
         (
             "<turningDirection>ccw</turningDirection>",

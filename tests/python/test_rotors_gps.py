@@ -90,14 +90,14 @@ WORLD = '<sdf version="1.6"><world name="w"><spherical_coordinates>{}</spherical
 @pytest.mark.parametrize(
     ("tags", "says"),
     [
-        ("<heading_deg>30</heading_deg>", r"'rotors_gazebo_gps_plugin' .*<heading_deg>.*write 0"),
+        ("<heading_deg>30</heading_deg>", r"'rotors_gazebo_gps_plugin' .*<heading_deg>.*Write 0"),
         (
             "<latitude_deg>90</latitude_deg>",
             r"<latitude_deg> is at a pole.*Use a latitude from -89",
         ),
         (
             "\n<surface_model>MOON</surface_model>",
-            r"w\.world:2: <surface_model> is 'MOON'; write EARTH_WGS84",
+            r"w\.world:2: <surface_model> is 'MOON'\. Use EARTH_WGS84",
         ),
         ("\n<latitude_deg>99</latitude_deg>", r"w\.world:2: <latitude_deg> is out of range. Use"),
     ],

@@ -80,7 +80,7 @@ def test_a_sensor_on_a_link_that_turns_or_is_not_there_is_refused(fitted):
 def test_two_sensors_of_one_name_both_tell(fitted):
     pair = [plugin("unit", "imu_plugin", linkName="mast", imuTopic=topic) for topic in "ab"]
     simulation = fitted(*pair)
-    (said,) = [w for w in simulation.warnings if "goes by" in w]
+    (said,) = [w for w in simulation.warnings if "It is renamed" in w]
     assert "a second plugin is named 'unit' (first at " in said
     assert said.endswith("It is renamed 'unit_2'.")
     log = simulation.run(0.01, topics=["a", "b"])

@@ -132,7 +132,7 @@ GOOD = field(np.zeros(SHAPE), np.ones(SHAPE), np.zeros((3, *SHAPE, 4)))
         ("top_z:\n1.0", "top_z:\n-1.0", 17, "top_z of column 0.*not above its bottom_z. Use"),
         ("bottom_z:\n0.0", "bottom_z:\n", 15, "bottom_z has 11 numbers, but the grid requires 12"),
         ("u:\n0.0", "u:\nnan", 20, "'nan' is not a finite number. Write NAME:"),
-        ("v:\n", "u:\n", 21, r"a second u \(first at .*field.txt:19\); keep one"),
+        ("v:\n", "u:\n", 21, r"a second u \(first at .*field.txt:19\)\. Keep one"),
         ("min_x:\n", "", 1, "'-4.0' is not a finite number of a quantity. Write NAME:"),
         ("w:\n", "", None, "w is missing. Write w: followed by its numbers"),
     ],

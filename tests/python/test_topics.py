@@ -57,7 +57,11 @@ def test_a_command_is_a_message_on_vel_cmd():
     [
         ("vel_cmb", [1], "topic 'vel_cmb' does not exist. Did you mean 'vel_cmd'?"),
         ("rain", {"x": 1}, "topic 'rain' does not exist. Choose one of effect"),
-        ("vel_cmd", [1, 2], "publish: topic 'vel_cmd': 2 numbers; give 4: w1, w2, w3, w4"),
+        (
+            "vel_cmd",
+            [1, 2],
+            "publish: topic 'vel_cmd': 2 numbers are given. Give 4: w1, w2, w3, w4.",
+        ),
         ("vel_cmd", [1, 2, np.nan, 4], "publish: topic 'vel_cmd': w3 is not a finite number"),
         ("vel_cmd", "fast", "publish: topic 'vel_cmd' is not a 1-dimensional array of numbers"),
         ("vel_cmd", {"w1": 1, "w5": 2}, "topic 'vel_cmd': fields w1, w5; give w1, w2, w3, w4"),

@@ -147,17 +147,19 @@ def test_what_a_snapshot_differs_in_is_said(toy):
     assert "a different step ('0.002' there, '0.001' here)" in told(plain, like_it(dt=0.002))
     found = told(plain, like_it("heavy.urdf"))
     masses = "'link frame mass 1.250002' there, 'link frame mass 1.000002' here"
-    assert f"another model ({masses});" in found
+    assert f"a different model ({masses})." in found
     found = told(plain, like_it(world="windy.world"))
-    assert "another world ('wind 0 3 0' there, 'wind 1 0 0' here)" in found
-    assert found.endswith(", or allow world to differ")
+    assert "a different world ('wind 0 3 0' there, 'wind 1 0 0' here)" in found
+    assert found.endswith(", or allow world to differ.")
     found = told(plain, like_it(parameters={"motor.kp": 1e-3}))
-    assert "another set of parameters ('motor.kp 0.001' there, 'motor.kp 0.0005' here)" in found
+    assert "a different set of parameters ('motor.kp 0.001' there, 'motor.kp 0.0005' here)" in found
     both = like_it(world="windy.world", parameters={"motor.kp": 1e-3})
-    assert "another world" in told(plain, both) and "another set of parameters" in told(plain, both)
-    assert "another world" not in told(plain, both, allow=["world"])
+    assert "a different world" in told(plain, both) and "a different set of parameters" in told(
+        plain, both
+    )
+    assert "a different world" not in told(plain, both, allow=["world"])
     found = told(plain, like_it("heavy.urdf", "windy.world"), allow=("world", "parameters"))
-    assert "another model" in found and "world" not in found.split("another")[1]
+    assert "a different model" in found and "world" not in found.split("a different")[1]
 
 
 def test_another_world_or_parameter_is_taken_on_purpose(toy):
@@ -202,7 +204,7 @@ def moving(simulation):
 @pytest.mark.parametrize("name", ["engine", "model", "step", "plugins", "wordl", ""])
 def test_nothing_else_may_differ_on_purpose(name):
     simulation = quadrotor("eigen")
-    with pytest.raises(qc.InputError, match=f"allow '{name}': only world, parameters may differ"):
+    with pytest.raises(qc.InputError, match=f"allow '{name}': this part may not differ"):
         simulation.restore(simulation.snapshot(), allow=[name])
     with pytest.raises(TypeError):
         simulation.restore(simulation.snapshot(), ["world"])
@@ -245,6 +247,6 @@ def test_every_number_that_is_felt_counts(toy, name):
             continue
         if "<axis" in line:  # of unit length again
             continue
-        assert f"another {kind}" in told(plain, other), line
+        assert f"a different {kind}" in told(plain, other), line
         counted += 1
     assert counted >= 5

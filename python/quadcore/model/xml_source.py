@@ -43,17 +43,23 @@ def check(file: str, text: str) -> None:
         raise InputError(f"{Origin(file, parser.CurrentLineNumber)}: {what}")
 
     def doctype(*_: object) -> None:
-        refuse("DOCTYPE and entity declarations are not read; remove them and write the values out")
+        refuse(
+            "DOCTYPE and entity declarations are not supported. Remove them and write the values."
+        )
 
     def start(_: object, attributes: Sized) -> None:
         nonlocal level
         level += 1
         if len(attributes) > MOST_ATTRIBUTES:
             refuse(
-                f"an element with more than {MOST_ATTRIBUTES} attributes; no model or world has one"
+                f"an element has more than {MOST_ATTRIBUTES} attributes. "
+                "Use a valid model or world file."
             )
         if level > DEEPEST:
-            refuse(f"elements are nested deeper than {DEEPEST} levels; no model or world is")
+            refuse(
+                f"elements are nested deeper than {DEEPEST} levels. "
+                "Use a valid model or world file."
+            )
 
     def end(_: object) -> None:
         nonlocal level

@@ -73,7 +73,9 @@ def read_whole(path: Path, stream: IO[bytes], largest: int) -> bytes:
     """Read the rest of an open file; parameters and errors as for `read_bytes`."""
     data = stream.read(largest + 1)
     if len(data) > largest:
-        raise InputError(f"{path}: is larger than {largest / 1e6:g} MB, the most that is read")
+        raise InputError(
+            f"{path}: the file exceeds the limit of {largest / 1e6:g} MB. Use a smaller file."
+        )
     return data
 
 
@@ -92,7 +94,9 @@ def read_text(path: Path, largest: int = LARGEST) -> str:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        raise InputError(f"{path}:{line}: not UTF-8 text; save the file as UTF-8") from error
+        raise InputError(
+            f"{path}:{line}: the text is not UTF-8. Save the file as UTF-8."
+        ) from error
 
 
 def is_file(path: Path) -> bool:
