@@ -1,4 +1,4 @@
-"""The thesis: the mathematical model of its chapter 2, and the validation of its chapter 6."""
+"""Mathematical model of chapter 2 and validation of chapter 6 of the thesis."""
 
 LAGRANGE = "lagrange"
 """Name of the mathematical model of chapter 2 among the engines."""

@@ -1,18 +1,18 @@
-"""The mathematical model of the thesis' chapter 2, apart from the engines and their plugins.
+"""Mathematical model of chapter 2 of the thesis, independent of the engines and plugins.
 
-It knows the vehicle by two vectors of the world, position and Euler angles,
+Its coordinates are the position and the Euler angles of the vehicle in the world,
 
     q = [xi, eta],   xi = [x, y, z],   eta = [phi, theta, psi]                          (2.3)
 
-and moves it by the Euler-Lagrange equation
+and its equation of motion is the Euler-Lagrange equation
 
     B(q) qddot + C(q, qdot) qdot + g + G_a(q, omega) qdot + F(q, qdot, omega) qdot
         = zeta = K_zeta(q) Omega,   Omega = [omega_1^2, ..., omega_n^2]         (2.38), (2.40)
 
-`vehicle` says what the model needs to know of a vehicle, `kinematics` holds (2.3)-(2.9),
-`matrices` one function for each matrix above, and `model` the motors, the terms that the thesis
-leaves out, and the integration. Numbers in parentheses are equations of the thesis; where print and
-function differ, the function says why. SI units and radians throughout.
+`vehicle` contains the parameters of a vehicle, `kinematics` contains (2.3)-(2.9), and `matrices`
+contains one function for each matrix above. `model` contains the motors, the terms that the thesis
+omits, and the integration. Numbers in parentheses are equations of the thesis. Where function and
+printed equation differ, the docstring gives the reason. All units are SI units and radians.
 
 >>> import quadcore as qc
 >>> from quadcore.thesis.chapter2 import MathematicalModel, Vehicle

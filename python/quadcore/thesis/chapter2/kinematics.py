@@ -9,9 +9,10 @@ import numpy as np
 
 
 def rotation(eta: np.ndarray) -> np.ndarray:
-    """R_321 (2.8), body to world: Rz(psi) Ry(theta) Rx(phi).
+    """Return R_321 (2.8), body to world: Rz(psi) Ry(theta) Rx(phi).
 
-    Print swaps the axis labels of (2.5) and (2.7) and has c(theta) c(psi) in the entry (2,1).
+    The printed thesis swaps the axis labels of (2.5) and (2.7), and its entry (2,1) is
+    c(theta) c(psi).
     """
     (sphi, stheta, spsi), (cphi, ctheta, cpsi) = np.sin(eta).tolist(), np.cos(eta).tolist()
     return np.array(
@@ -24,7 +25,7 @@ def rotation(eta: np.ndarray) -> np.ndarray:
 
 
 def quaternion(eta: np.ndarray) -> np.ndarray:
-    """Orientation of the body in the world as a unit quaternion x, y, z, w."""
+    """Return the orientation of the body in the world as a unit quaternion x, y, z, w."""
     (sphi, stheta, spsi), (cphi, ctheta, cpsi) = np.sin(eta / 2).tolist(), np.cos(eta / 2).tolist()
     return np.array(
         [
@@ -37,7 +38,7 @@ def quaternion(eta: np.ndarray) -> np.ndarray:
 
 
 def euler_rates_to_body(eta: np.ndarray) -> np.ndarray:
-    """W (2.9): nu = [p, q, r] = W(eta) etadot, the angular velocity in body axes."""
+    """Return W (2.9): nu = [p, q, r] = W(eta) etadot, the angular velocity in body axes."""
     return _euler_rates_to_body(*eta.tolist())
 
 
@@ -50,7 +51,7 @@ def _euler_rates_to_body(phi: float, theta: float, _: float) -> np.ndarray:
 
 
 def gradient_of_W(eta: np.ndarray) -> np.ndarray:
-    """dW/dphi, dW/dtheta and dW/dpsi; shape (3, 3, 3), the first index says which."""
+    """dW/dphi, dW/dtheta and dW/dpsi; shape (3, 3, 3), the first index selects the angle."""
     (sphi, stheta, _), (cphi, ctheta, _) = np.sin(eta).tolist(), np.cos(eta).tolist()
     by_phi = [[0, 0, 0], [0, -sphi, ctheta * cphi], [0, -cphi, -sphi * ctheta]]
     by_theta = [[0, 0, -ctheta], [0, 0, -stheta * sphi], [0, 0, -cphi * stheta]]
@@ -58,13 +59,13 @@ def gradient_of_W(eta: np.ndarray) -> np.ndarray:
 
 
 def skew(a: np.ndarray) -> np.ndarray:
-    """S(a) of (2.22): S(a) b = a x b."""
+    """Return S(a) of (2.22): S(a) b = a x b."""
     x, y, z = a.tolist()
     return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
 
 
 def generalise(eta: np.ndarray) -> np.ndarray:
-    """T(q), 6 x 6: what a force and a torque in body axes are as generalised forces.
+    """Return T(q), 6 x 6, which converts body force and torque to generalised forces.
 
         [f; tau] = T(q) [f_B; tau_B],   T = [[R, 0], [0, W^T]],   [V_B; nu] = T^T qdot
 

@@ -1,8 +1,8 @@
-"""The matrices of the equation of motion: (2.20)-(2.42), one function each.
+"""Matrices of the equation of motion (2.20)-(2.42), one function each.
 
-All are 6 x 6 (K_zeta 6 x n, g a vector) and act on generalised coordinates: rows and columns
-x, y, z (m, N) and phi, theta, psi (rad, N m). `v` is a `Vehicle`, `q` = [xi, eta], `omega` the
-signed speeds of the rotors in rad/s.
+All matrices are 6 x 6, except for K_zeta (6 x n) and the vector g. Rows and columns are x, y, z (m,
+N) and phi, theta, psi (rad, N m). `v` is a `Vehicle`, `q` = [xi, eta], and `omega` are the signed
+rotor speeds in rad/s.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from .vehicle import Vehicle
 
 
 def J(v: Vehicle, q: np.ndarray) -> np.ndarray:
-    """W^T I_B W of (2.16), 3 x 3: the inertia that the Euler angles' rates meet, kg m^2."""
+    """W^T I_B W of (2.16), 3 x 3: inertia for the rates of the Euler angles, kg m^2."""
     W = euler_rates_to_body(q[3:])
     inertia: np.ndarray = W.T @ v.inertia @ W
     return inertia
 
 
 def gradient_of_J(v: Vehicle, q: np.ndarray) -> np.ndarray:
-    """dJ/dphi, dJ/dtheta and dJ/dpsi; shape (3, 3, 3), the first index says which."""
+    """dJ/dphi, dJ/dtheta and dJ/dpsi; shape (3, 3, 3), the first index selects the angle."""
     half = euler_rates_to_body(q[3:]).T @ v.inertia @ gradient_of_W(q[3:])
     gradient: np.ndarray = half + half.transpose(0, 2, 1)
     return gradient
@@ -54,15 +54,15 @@ def C(v: Vehicle, q: np.ndarray, qdot: np.ndarray) -> np.ndarray:
 
 
 def g(v: Vehicle) -> np.ndarray:
-    """Gravity (2.20), N; print lacks its sixth entry."""
+    """Gravity (2.20), N; the printed vector lacks its sixth entry."""
     return np.concatenate([-v.mass * v.gravity, np.zeros(3)])
 
 
 def G_a(v: Vehicle, q: np.ndarray, omega: np.ndarray) -> np.ndarray:
     """Gyroscopic effect (2.22)-(2.24): S(nu) sum I_R omega_i e_3 = nu x h, moved to the left side.
 
-    Skew-symmetric: it does no work. The printed matrix lacks W^T. A rotor that is slowed has as
-    much less of angular momentum.
+    The matrix is skew-symmetric, so that it does no work. The printed matrix lacks W^T. The angular
+    momentum of a slowed rotor is smaller by the same factor.
     """
     T = generalise(q[3:])
     h = (v.rotor_inertia * omega / v.slow) @ v.axes
@@ -116,10 +116,10 @@ def F_par(v: Vehicle, qdot: np.ndarray) -> np.ndarray:
 
 
 def K_zeta(v: Vehicle, q: np.ndarray, spin: np.ndarray) -> np.ndarray:
-    """K_zeta of (2.40)-(2.42): what each squared speed exerts; `spin` are the signs of the speeds.
+    """K_zeta of (2.40)-(2.42): forces per squared speed; `spin` contains the signs of the speeds.
 
-    Thrust k (2.10) along the rotor's axis and reaction torque b (2.11) about it. Print has rotor
-    1's reaction with the sign of its spin; `Vehicle.b` says which way it is meant.
+    Thrust k (2.10) acts along the axis of the rotor, reaction torque b (2.11) about it. The printed
+    reaction of rotor 1 has the sign of its spin; here `Vehicle.b` contains the sign.
     """
     wrench = v.thrust_wrenches.copy()
     wrench[3:] += v.b * spin * v.axes.T
@@ -128,7 +128,7 @@ def K_zeta(v: Vehicle, q: np.ndarray, spin: np.ndarray) -> np.ndarray:
 
 
 def _disc_drag(v: Vehicle, q: np.ndarray) -> np.ndarray:
-    """Drag of unit coefficient; symmetric, so that it takes power."""
+    """Drag with unit coefficient; it is symmetric, so that it dissipates power."""
     T = generalise(q[3:])
     matrix: np.ndarray = T @ v.disc_drag @ T.T
     return matrix

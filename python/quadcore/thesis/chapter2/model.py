@@ -1,4 +1,4 @@
-"""The equation of motion (2.38), solved."""
+"""Solution of the equation of motion (2.38)."""
 
 from __future__ import annotations
 
@@ -20,30 +20,31 @@ from .vehicle import Vehicle
 
 
 class Terms(NamedTuple):
-    """What the equations of chapter 2 leave out, each to be put back on its own."""
+    """Terms that the equations of chapter 2 omit, each with a switch."""
 
     motor_lag: bool = True
-    """I_R omegadot = kp (u - omega). Chapter 2 takes the speeds as given: omega = u."""
+    """I_R omegadot = kp (u - omega). Chapter 2 prescribes the speeds: omega = u."""
     spin_up: bool = False
-    """- sum I_R omegadot in the torque: (2.11) names it, the line after (2.13) drops it."""
+    """- sum I_R omegadot in the torque: (2.11) has this term, the line after (2.13) drops it."""
     dragged_rotors: bool = False
-    """A rotor that is not driven stays behind when the frame turns: omegadot = ... - a . nudot."""
+    """Inertia of the rotors against rotations of the frame: omegadot = ... - a . nudot."""
 
 
 THESIS = Terms()
-"""Chapter 2, with motors that lag as those of the plant do."""
+"""Chapter 2 with the motor lag of the plant."""
 GYROSTAT = Terms(spin_up=True, dragged_rotors=True)
-"""Nothing left out: one rigid body with n rotors, as engine ``eigen`` flies it."""
+"""All terms: a rigid body with n rotors, as in the engine ``eigen``."""
 
 
 class MathematicalModel:
-    """Chapter 2's model of a vehicle.
+    """Mathematical model of a vehicle (chapter 2).
 
     Parameters
     ----------
     vehicle : Vehicle
+        Parameters of the vehicle.
     terms : Terms
-        What to put back of what the thesis leaves out.
+        Terms to add to those of the thesis.
     """
 
     def __init__(self, vehicle: Vehicle, terms: Terms = THESIS) -> None:
@@ -53,7 +54,7 @@ class MathematicalModel:
         self.terms = terms
 
     def motors(self, omega: np.ndarray, command: np.ndarray) -> np.ndarray:
-        """Accelerations of the rotors on a frame at rest, rad/s^2; shape (n,)."""
+        """Return the accelerations of the rotors on a frame at rest, rad/s^2; shape (n,)."""
         v = self.vehicle
         torques = v.motor_gain * (command - omega) - v.joint_damping * omega
         accelerations: np.ndarray = torques / v.rotor_inertia
@@ -69,7 +70,7 @@ class MathematicalModel:
         q, qdot : ndarray, shape (6,)
             Position of the centre of mass and Euler angles, and their rates.
         omega, omegadot : ndarray, shape (n,)
-            Speeds of the rotors, and their accelerations on a frame at rest.
+            Rotor speeds, and their accelerations on a frame at rest.
         """
         v = self.vehicle
         through_air = qdot - np.concatenate([v.wind, np.zeros(3)])
@@ -89,29 +90,29 @@ class MathematicalModel:
         return np.linalg.solve(inertia, rest)
 
     def fly(self, duration: float, commands: Any, state: State, dt: float = 1e-3) -> Log:
-        """Integrate a flight by DOP853, to 1e-9 or better.
+        """Simulate a flight with DOP853, with an error of 1e-9 or less.
 
         Parameters
         ----------
         duration : float
-            s
+            Duration, s.
         commands : ndarray (rows, 1 + n), or path
-            As `Simulation.run` takes them. The first row holds from the start.
+            As for `Simulation.run`. The first row holds from the start.
         state : State
-            Where the flight starts; rotor velocities as an engine has them, in the order of the
-            commands. Without motor lag the commands' take their place.
+            Initial state, with rotor velocities in the order of the commands. Without motor lag the
+            commands replace these velocities.
         dt : float
             Time between rows of the log, s.
 
         Returns
         -------
         Log
-            As an engine writes it; without wrenches.
+            Log as of an engine, without wrenches.
 
         Raises
         ------
         FlightError
-            The pitch came near 90 degrees, where Euler angles end.
+            If the pitch comes close to 90 degrees, the singularity of the Euler angles.
         """
         v = self.vehicle
         n = len(v.arms)
@@ -134,21 +135,21 @@ class MathematicalModel:
         return self._log(time, rows)
 
     def step(self, dt: float, command: np.ndarray, state: State) -> State:
-        """Make one step of the classical Runge-Kutta method of fourth order.
+        """Compute one step of the classical fourth-order Runge-Kutta method.
 
         Parameters
         ----------
         dt : float
-            s
+            Step, s.
         command : ndarray, shape (n,)
-            Speeds that the motors are to reach over the step, rad/s.
+            Commanded speeds during the step, rad/s.
         state : State
-            At its beginning; as for `fly`. Angles of the rotors are not looked at.
+            State at the beginning, as for `fly`; rotor angles have no effect.
 
         Returns
         -------
         State
-            At its end, without angles of the rotors.
+            State at the end, without rotor angles.
 
         Raises
         ------
@@ -171,7 +172,7 @@ class MathematicalModel:
     def _integrate(
         self, begin: float, end: float, y: np.ndarray, command: np.ndarray, wanted: np.ndarray
     ) -> Any:
-        """States at the wanted times, and at the end of an interval with one command."""
+        """Return the states at times, and at the end of an interval with constant command."""
         if end <= begin:
             return np.tile(y, (len(wanted), 1)), y
         solution = solve_ivp(
@@ -200,7 +201,7 @@ class MathematicalModel:
         return np.concatenate([qdot, qddot, omegadot])
 
     def _start(self, state: State) -> np.ndarray:
-        """Generalised coordinates of a state of the frame link."""
+        """Return the generalised coordinates of a state of the frame link."""
         eta = to_roll_pitch_yaw(state.orientation)
         offset, sweep = self._lever(eta, state.angular_velocity)
         etadot = np.linalg.solve(euler_rates_to_body(eta), state.angular_velocity)
@@ -209,12 +210,12 @@ class MathematicalModel:
         return np.concatenate([xi, eta, xidot, etadot, speeds])
 
     def _lever(self, eta: np.ndarray, nu: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-        """From the frame link's origin to the centre of mass, and the velocity of that; world."""
+        """Return the vector from frame origin to centre of mass, and its rate; world axes."""
         R, center = rotation(eta), self.vehicle.center_of_mass
         return R @ center, R @ (skew(nu) @ center)
 
     def _state(self, time: float, y: np.ndarray) -> State:
-        """State of the frame link for generalised coordinates."""
+        """Return the state of the frame link for generalised coordinates."""
         state, eta = State(), y[3:6]
         nu = euler_rates_to_body(eta) @ y[9:12]
         offset, sweep = self._lever(eta, nu)
@@ -224,7 +225,7 @@ class MathematicalModel:
         return state
 
     def _log(self, time: np.ndarray, rows: np.ndarray) -> Log:
-        """Log as an engine does: the origin of the frame link, where xi is the centre of mass."""
+        """Make a log with the position of the frame origin; xi is the centre of mass."""
         xi, eta, xidot, etadot, omega = np.split(rows, [3, 6, 9, 12], axis=1)
         attitude = Rotation.from_euler("ZYX", eta[:, ::-1])
         nu = np.array([euler_rates_to_body(a) @ rate for a, rate in zip(eta, etadot)])
@@ -235,7 +236,7 @@ class MathematicalModel:
 
 
 def _bias(q: np.ndarray, qdot: np.ndarray) -> np.ndarray:
-    """Wdot etadot: what of nudot = W etaddot + Wdot etadot does not come from etaddot."""
+    """Return Wdot etadot, the part of nudot = W etaddot + Wdot etadot without etaddot."""
     etadot = qdot[3:]
     bias: np.ndarray = np.einsum("kij,k,j->i", gradient_of_W(q[3:]), etadot, etadot)
     return bias

@@ -1,4 +1,4 @@
-"""The mathematical model in the place of an engine: what a controller can fly."""
+"""The mathematical model as an engine that controllers can command."""
 
 from __future__ import annotations
 
@@ -16,26 +16,26 @@ from .model import THESIS, MathematicalModel, Terms
 from .vehicle import Vehicle, find_air_plugin, list_command_order
 
 _UNFELT = ("libwind_plugin.so", "libpayload_plugin.so", "libfault_plugin.so")
-"""What changes the forces of others, not of the mathematical model."""
+"""Plugins that change forces of other plugins, but not of the mathematical model."""
 
 
 class Plant(Simulation):
-    """A `Simulation` that moves by the equations of chapter 2.
+    """`Simulation` with the equations of motion of chapter 2.
 
-    Plugins hear commands and sense as in any engine, at their rates and with their noise, but none
-    of their forces acts: those of the model do, with the numbers that the plugins' tags say.
+    Plugins receive commands and publish measurements as in any engine, with their rates and noise.
+    Their forces do not act. The forces of the model act instead, with the values of the tags.
 
     Parameters
     ----------
     terms : Terms
-        What to put back of what the thesis leaves out.
+        Terms to add to those of the thesis.
     **options
         As for `Simulation`, without `engine`.
 
     Raises
     ------
     InputError
-        A vehicle or a world that chapter 2 has no equation for.
+        If chapter 2 has no equation for the vehicle or the world.
     """
 
     def __init__(self, terms: Terms = THESIS, **options: Any) -> None:
@@ -45,22 +45,22 @@ class Plant(Simulation):
 
     @property
     def engine(self) -> str:
-        """Its name."""
+        """Name of the engine."""
         return LAGRANGE
 
     @property
     def wrench_terms(self) -> List[str]:
-        """None: the model's forces are those of its equation alone."""
+        """Empty list, because the model has no wrenches of plugins."""
         return []
 
     @property
     def method(self) -> str:
-        """How it takes its steps."""
+        """Description of the integration method."""
         return "Euler-Lagrange equation (2.38), classical Runge-Kutta of fourth order"
 
 
 class _Motion:
-    """One step of the model, between states of the frame link."""
+    """Step of the model between states of the frame link."""
 
     def __init__(self, model: MathematicalModel, order: Any) -> None:
         self._model, self._order = model, order
@@ -81,7 +81,7 @@ class _Motion:
 
 
 def check(simulation: Simulation) -> None:
-    """Raise `InputError` if something acts on the vehicle that chapter 2 does not know."""
+    """Raise `InputError` if a force acts on the vehicle that chapter 2 does not have."""
     if simulation.world.ground_plane:
         raise InputError(
             f"engine {LAGRANGE}: the mathematical model has no contact, and the world a ground "

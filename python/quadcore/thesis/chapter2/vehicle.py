@@ -1,4 +1,4 @@
-"""What chapter 2 knows of a vehicle."""
+"""Parameters of a vehicle in chapter 2."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from .kinematics import skew
 class Vehicle:
     """Parameters of the mathematical model, body axes, for n rotors in the order of a command.
 
-    The thesis writes its equations for four rotors along the body's z; here each has its own arm
-    and axis, so that the same equations serve any vehicle.
+    The equations of the thesis have four rotors along z of the body. Here each rotor has its own
+    arm and axis, so that the equations apply to any vehicle.
     """
 
     mass: float
@@ -37,9 +37,9 @@ class Vehicle:
     rotor_inertia: np.ndarray
     """I_R of a rotor about its axis, kg m^2; (n,)."""
     gravity: np.ndarray
-    """World, m/s^2; (3,). The thesis' is [0, 0, -g_z]."""
+    """Gravity in the world, m/s^2; (3,). In the thesis it is [0, 0, -g_z]."""
     wind: np.ndarray
-    """Velocity of the air in the world, m/s; (3,). The thesis has still air."""
+    """Velocity of the air in the world, m/s; (3,). In the thesis it is zero."""
     k: float
     """Thrust per squared speed (2.10), N s^2/rad^2."""
     b: float
@@ -63,22 +63,22 @@ class Vehicle:
     r: float
     """Rotor radius (2.26), m."""
     motor_gain: float
-    """Torque of a motor per lack of speed (the engines' proportional law, A.4), N m s/rad."""
+    """Torque of a motor per speed error, as in the engines (A.4), N m s/rad."""
     joint_damping: np.ndarray
-    """Friction of the rotors' joints, N m s/rad; (n,)."""
+    """Friction of the rotor joints, N m s/rad; (n,)."""
     fastest: float
     """Speed at which a command saturates, rad/s."""
     slow: float
-    """sim_slow: the rotors turn this much slower than their forces assume (chapter 4)."""
+    """sim_slow, the ratio of the speed in the force models to the joint velocity (chapter 4)."""
 
     @classmethod
     def of(cls, simulation: Simulation) -> Vehicle:
-        """Read a vehicle off a simulation: its model, world and plugins.
+        """Read the parameters from model, world and plugins of a simulation.
 
         Raises
         ------
         InputError
-            A vehicle that chapter 2 has no equation for.
+            If chapter 2 has no equation for the vehicle.
         """
         air, motor = (
             read_parameters(find_air_plugin(simulation)),
@@ -125,34 +125,34 @@ class Vehicle:
         )
 
     def to_mat(self, path: Path) -> None:
-        """Write a MATLAB file of each number under its name: what `matlab/` takes for a vehicle."""
+        """Write a MATLAB file with all parameters by name, for the scripts in `matlab/`."""
         write_variables(path, {field.name: getattr(self, field.name) for field in fields(self)})
 
     @cached_property
     def levers(self) -> np.ndarray:
-        """[1; S(r_i)], (n, 6, 3): what a force at rotor i is about the centre of mass (2.33).
+        """[1; S(r_i)], (n, 6, 3): wrench about the centre of mass per force at rotor i (2.33).
 
-        Print has D x r where the torque is r x D.
+        The printed equation has D x r, but the torque is r x D.
         """
         return np.array([np.vstack([np.eye(3), skew(arm)]) for arm in self.arms])
 
     @cached_property
     def thrust_wrenches(self) -> np.ndarray:
-        """What the thrust of a unit of squared speed of each rotor is in the body; (6, n)."""
+        """Body wrench of the thrust per squared speed of each rotor; (6, n)."""
         wrenches: np.ndarray = self.k * np.einsum("iaj,ij->ai", self.levers, self.axes)
         return wrenches
 
     @cached_property
     def discs(self) -> np.ndarray:
-        """1 - a a^T, (n, 3, 3): what a vector is in the plane of rotor i."""
+        """1 - a a^T, (n, 3, 3): projection to the plane of rotor i."""
         return np.array([np.eye(3) - np.outer(axis, axis) for axis in self.axes])
 
     @cached_property
     def disc_drag(self) -> np.ndarray:
         """Body wrench per body twist of D_i = -V_pi on each rotor, with the sign turned; (6, 6).
 
-        V_pi = disc_i (V_B + nu x r_i) is a rotor's velocity in its own plane (2.28)-(2.30), of
-        which print lacks the minus sign.
+        V_pi = disc_i (V_B + nu x r_i) is the velocity of a rotor in its plane. The printed
+        equations (2.28)-(2.30) lack the minus sign.
         """
         drag: np.ndarray = np.einsum("iaj,ijk,ibk->ab", self.levers, self.discs, self.levers)
         return drag
@@ -164,13 +164,13 @@ class Vehicle:
 
 
 def find_air_plugin(simulation: Simulation) -> PluginInfo:
-    """Find the one plugin whose force laws those of chapter 2 are: it reports the thrust."""
+    """Find the plugin with the force models of chapter 2, which reports the thrust."""
     found = [plugin for plugin in simulation.plugins if "thrust" in plugin.wrenches]
     return _find_only(found, "libaerodynamic_plugin.so")
 
 
 def find_motor_plugin(simulation: Simulation) -> PluginInfo:
-    """Find the one plugin that turns the rotors: it takes the commands."""
+    """Find the plugin that drives the rotors, which receives the commands."""
     commands = simulation.topics.get(simulation.command_topic)
     readers = commands.readers if commands else []
     found = [plugin for plugin in simulation.plugins if plugin.name in readers]
@@ -191,7 +191,7 @@ def read_parameters(plugin: PluginInfo) -> Dict[str, str]:
 
 
 class _Tags(Dict[str, str]):
-    """What the tags of a plugin say; one that it does not have is told."""
+    """Values of the tags of a plugin; a missing tag raises `InputError`."""
 
     def __init__(self, plugin: PluginInfo) -> None:
         super().__init__((entry.name, entry.value) for entry in plugin.parameters)
@@ -205,6 +205,6 @@ class _Tags(Dict[str, str]):
 
 
 def list_command_order(simulation: Simulation) -> List[int]:
-    """Joints in the order of a command's numbers: `rotor_velocity[command_order(s)]`."""
+    """Return the joints in the order of a command: `rotor_velocity[list_command_order(s)]`."""
     driven = read_parameters(find_motor_plugin(simulation))["rotorJoints"].split()
     return [simulation.rotor_names.index(name) for name in driven]

@@ -1,4 +1,4 @@
-"""The thesis' chapter 6.1 as one call: plant against mathematical model, and why they differ."""
+"""Chapter 6.1 of the thesis: comparison of plant and mathematical model, with causes."""
 
 from .damping import Damping
 from .drags import DRAGS

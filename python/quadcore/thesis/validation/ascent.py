@@ -1,4 +1,4 @@
-"""The open-loop input: an ascent that turns about all axes, one at a time."""
+"""Open-loop input: an ascent with rotations about all axes, one after the other."""
 
 from __future__ import annotations
 
@@ -22,20 +22,21 @@ MOVES = (
 
 
 def make_ascent(vehicle: Vehicle) -> np.ndarray:
-    """Rotor speeds that lift a vehicle and tilt and turn it for ten seconds.
+    """Make rotor speeds that lift, tilt and turn a vehicle for ten seconds.
 
-    The signs of the speeds alternate along the command. The thesis' quadrotor tilts by 2 degrees
-    without drag. With all of it, by 43: drag above the centre of mass makes it unstable.
+    The signs of the speeds alternate along the command. The quadrotor of the thesis tilts by 2
+    degrees without drag, and by 43 degrees with all drags, because drag above the centre of mass
+    makes it unstable.
 
     Returns
     -------
     ndarray, shape (rows, 1 + n)
-        Time (s) and signed speeds (rad/s), as `Simulation.run` takes them.
+        Time (s) and signed speeds (rad/s), as for `Simulation.run`.
 
     Raises
     ------
     InputError
-        A vehicle that such speeds cannot lift, tilt or turn.
+        If such speeds cannot lift, tilt or turn the vehicle.
     """
     spin = np.where(np.arange(len(vehicle.arms)) % 2 == 0, 1.0, -1.0)
     # Lift and torques at level attitude per squared speed; sideways forces take care of themselves.
@@ -64,7 +65,7 @@ def make_ascent(vehicle: Vehicle) -> np.ndarray:
 
 
 def _check_authority(effect: np.ndarray) -> None:
-    """Raise unless the lift and each torque can be had alone; rows of lift and torques."""
+    """Raise `InputError` unless lift and torques are independent; rows of lift and torques."""
     for row, what in enumerate(("lift", "torque about x", "torque about y", "torque about z")):
         alone = np.eye(4)[row]
         squares, *_ = np.linalg.lstsq(effect, alone, rcond=None)

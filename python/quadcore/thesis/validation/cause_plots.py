@@ -1,4 +1,4 @@
-"""The pictures that say why plant and model differ."""
+"""Plots of the causes of the difference between plant and model."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _COMMON = "0.55"  # colour of a link that belongs to several chains
 
 
 def draw_chains(chains: Sequence[Chain]) -> bytes:
-    """Draw what each link of the chains of one drag costs."""
+    """Draw the share of each link in the chains of one drag."""
     groups = _list_bars(chains)
     bars = sum(len(group) for group in groups.values())
     height = 0.9 + 0.19 * (bars + len(groups))
@@ -62,7 +62,7 @@ def draw_chains(chains: Sequence[Chain]) -> bytes:
 
 
 def _list_bars(chains: Sequence[Chain]) -> Dict[str, List[Tuple[str, Link]]]:
-    """Links by what they change, each with whose it is: one slow-down's, or all chains'."""
+    """Group the links by their change, with the slowdown that they belong to, or all."""
     owners: Dict[Tuple[Any, Any], List[Chain]] = {}
     for chain in chains:
         for link in chain.links:
@@ -79,7 +79,7 @@ def _list_bars(chains: Sequence[Chain]) -> Dict[str, List[Tuple[str, Link]]]:
 
 
 def _find_range(values: Sequence[float]) -> Tuple[float, float]:
-    """Find the ends of a logarithmic axis for bars, with room for their labels."""
+    """Return the limits of a logarithmic axis for bars and their labels."""
     low = max(min(values), _NO_DISTANCE) / 3
     span = max(np.log10(max(values) / low), 1.0)
     return low, low * 10 ** (1.2 * span)
@@ -91,7 +91,7 @@ def _choose_colour(name: str, chains: Sequence[Chain]) -> str:
 
 
 def draw_damping(damping: Sequence[Damping]) -> bytes:
-    """Draw the decay of a pitch rate that nothing should stop."""
+    """Draw the decay of a pitch rate without torque."""
     figure = make_figure("Decay of a pitch rate in free fall, without air", 6.4, 3.4, _DPI)
     axes = figure.add_axes((0.12, 0.16, 0.85, 0.72))
     dress(axes)

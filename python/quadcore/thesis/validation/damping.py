@@ -1,12 +1,12 @@
-"""How fast an engine stops a vehicle from turning that nothing holds: the fault of Gazebo 11.
+"""Spurious damping of rotations in an engine: a bug of Gazebo 11.
 
-Gazebo's explicit gyroscopic torque meets each spinning propeller half a step late, by W dt/2 of its
-turn. That much of the torque, (Izz - Ixx) W w for a rate w across the axis, points against w:
+The explicit gyroscopic torque of Gazebo acts on each propeller half a step late, after a rotation
+by W dt/2. This share of the torque, (Izz - Ixx) W w for a rate w across the axis, opposes w:
 
     decay = sum (Izz - Ixx) W^2 dt / (2 J)
 
-with the sum over the propellers, W their speeds and J the inertia of the whole vehicle. It needs no
-air; it is no physics.
+with the sum over the propellers, their speeds W and the inertia J of the whole vehicle. The damping
+needs no air and is not physical.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ class Damping(NamedTuple):
 
     sim_slow: float
     formula: float
-    """1/s, of the explicit gyroscopic torque that Gazebo 11 takes."""
+    """Decay rate by the formula for the explicit gyroscopic torque, 1/s."""
     measured: Dict[str, float]
-    """1/s, by engine; without those that cannot fly so."""
+    """Measured decay rates by engine, 1/s; without engines that fail."""
 
 
 def measure_damping(
@@ -39,12 +39,12 @@ def measure_damping(
     sim_slow: float,
     window: Tuple[float, float] = _SETTLED,
 ) -> Damping:
-    """Let a vehicle fall and pitch, without air, its rotors spinning as first commanded.
+    """Measure the decay of a pitch rate in free fall without air, at the first commanded speeds.
 
     Parameters
     ----------
     window
-        Times between which the decay of the tilting rate is measured, s.
+        Interval in which the decay of the pitch rate is measured, s.
     """
     case = Case("eigen", sim_slow, "none")
     measured = {}

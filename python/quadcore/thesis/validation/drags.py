@@ -1,4 +1,4 @@
-"""The drags of the thesis by the tags of libaerodynamic_plugin that set them."""
+"""Drags of the thesis and their tags of libaerodynamic_plugin."""
 
 from __future__ import annotations
 

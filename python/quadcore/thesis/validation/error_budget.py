@@ -1,8 +1,8 @@
-"""The distance from the mathematical model, split by cause.
+"""Difference from the mathematical model, split by cause.
 
-A chain leads from the thesis' plant to its model. Each link changes one thing, so that the
-difference across it is what that thing costs; the differences add up to the whole, as vectors and
-at every instant.
+A chain leads from the plant of the thesis to its model. Each link changes one thing, and the
+difference across it is the share of this change. The differences add up to the whole difference, as
+vectors and at every time.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from .experiment import MODEL, Case, Flight
 
 
 class Link(NamedTuple):
-    """One step along the chain."""
+    """Step of a chain."""
 
     change: str
     begin: Case
     end: Case
     share: float
-    """m; of the whole distance, along its direction, at the time of the chain."""
+    """Share in the whole difference, along its direction at the time of the chain, m."""
     max: float
-    """Largest distance between the two flights, m."""
+    """Maximum difference between the two flights, m."""
     rms: float
 
 
@@ -34,12 +34,12 @@ class Chain(NamedTuple):
     drag: str
     sim_slow: float
     time: float
-    """When the flights at its ends are farthest apart, s."""
+    """Time of the maximum difference between the ends, s."""
     distance: float
-    """How far apart they are then, m: the sum of the links' shares."""
+    """Difference at this time, m: the sum of the shares."""
     links: List[Link]
     failure: str
-    """Why there are no links."""
+    """Reason for missing links."""
 
 
 ORDER = ("gazebo11", "ode", "eigen")
@@ -50,10 +50,10 @@ ENGINES = {
 
 
 def list_stages(drag: str, sim_slow: float, plant: str) -> Dict[Case, str]:
-    """Flights of a chain, from the plant to the model, each with what changed before it.
+    """List the flights of a chain from plant to model, each with the change before it.
 
-    The plant's faults are repaired at its own slow-down, and only then is the slow-down undone: at
-    full speed Gazebo's fault is many times larger than what the slowed plant shows of it.
+    The chain first removes the bugs of the plant at its slowdown, and then the slowdown. At full
+    speed the bug of Gazebo would be many times larger than in the slowed plant.
     """
     chain = {Case(plant, sim_slow, drag): ""}
     for engine in ORDER[1 + ORDER.index(plant) :]:
@@ -66,7 +66,7 @@ def list_stages(drag: str, sim_slow: float, plant: str) -> Dict[Case, str]:
 
 
 def make_chain(drag: str, sim_slow: float, plant: str, flights: Mapping[Case, Flight]) -> Chain:
-    """Split the distance between a plant and the model, once all flights are there."""
+    """Split the difference between a plant and the model, once all flights are complete."""
     chain = list_stages(drag, sim_slow, plant)
     for case in chain:
         if flights[case].log is None:

@@ -1,4 +1,4 @@
-"""One flight of the experiment of the thesis' chapter 6.1, by an engine or by the model."""
+"""Flight of the experiment of chapter 6.1, with an engine or the model."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from .prescribed_speeds import compute_stiff_gain, fly_prescribed_speeds
 
 MODEL = "model"
 LAG, NO_LAG = "motors that lag", "motors without lag"
-# What the model may be asked for besides what chapter 2 says.
+# Variants of the model in addition to that of chapter 2.
 TERMS: Mapping[str, Terms] = {
     LAG: Terms(),
     NO_LAG: Terms(motor_lag=False),
@@ -39,41 +39,41 @@ TERMS: Mapping[str, Terms] = {
 
 
 class Case(NamedTuple):
-    """One flight."""
+    """Description of a flight."""
 
     plant: str
-    """An engine, or MODEL."""
+    """Engine, or MODEL."""
     sim_slow: float = 1.0
     drag: str = "all"
-    """Of DRAGS the one that acts, or "all" or "none"."""
+    """Drag that acts: one of DRAGS, "all" or "none"."""
     variant: str = ""
-    """Of an engine "chapter2" (that drag model) or "given speeds" (that, and the rotors' speeds
-    are given instead of driven); of the model a key of TERMS, or none for chapter 2."""
+    """Variant of an engine: "chapter2" (drag model) or "given speeds" (drag model and prescribed
+    rotor speeds). Variant of the model: a key of TERMS, or "" for chapter 2."""
 
 
 class Flight(NamedTuple):
-    """What became of a case."""
+    """Result of a case."""
 
     case: Case
     log: Optional[Log]
     failure: str
-    """Why there is no log."""
+    """Reason for a missing log."""
 
 
 @dataclass(frozen=True)
 class Experiment:
-    """What all flights share; made by `Experiment.of`."""
+    """Common parts of all flights; made by `Experiment.of`."""
 
     asked: Dict[str, Any]
-    """Names and numbers as they were given: model, world, parameters, xacro_args, ignore, spawn."""
+    """Given arguments: model, world, parameters, xacro_args, ignore, spawn."""
     plan: FlightPlan
-    """The plant as it is, its commands at steps."""
+    """Flight of the plant, with commands at steps."""
     motor_lag: bool
     air: str
     """Name of the aerodynamic plugin."""
     motor: str
     rotors: Tuple[int, ...]
-    """Of each number of a command the rotor."""
+    """Rotor of each number in a command."""
 
     @classmethod
     def of(
@@ -90,12 +90,12 @@ class Experiment:
         motor_lag: bool = True,
         log_every: int = 10,
     ) -> Experiment:
-        """Check what is asked for; without commands the flight is `ascent`.
+        """Make an experiment; the default commands are those of `make_ascent`.
 
         Raises
         ------
         InputError
-            An argument is at fault, or the mathematical model has no equation for the vehicle.
+            If an argument is wrong, or the mathematical model has no equation for the vehicle.
         """
         asked: Dict[str, Any] = {
             "model": model,
@@ -123,7 +123,7 @@ class Experiment:
 
     @property
     def commands(self) -> np.ndarray:
-        """What is flown, (rows, 1 + n)."""
+        """Commands, (rows, 1 + n)."""
         assert self.plan.commands is not None
         return self.plan.commands
 
@@ -133,7 +133,7 @@ class Experiment:
         Parameters
         ----------
         more
-            PLUGIN.TAG -> value, to change on top.
+            Additional values by PLUGIN.TAG.
         """
         parameters: Dict[str, Value] = dict(self.plan.parameters)
         for plugin in (self.air, self.motor):
@@ -154,7 +154,7 @@ class Experiment:
         )
 
     def fly(self, case: Case) -> Flight:
-        """Fly a case; what ends its flight is told, not raised."""
+        """Simulate a case; the result contains the reason of a failure."""
         try:
             return Flight(case, self._fly(case), "")
         except QuadcoreError as error:
@@ -184,14 +184,14 @@ class Experiment:
         return flight.fly()
 
     def drags(self) -> List[str]:
-        """Cases of drag that differ for this vehicle: none, each that acts alone, all."""
+        """List the drags that differ for this vehicle: "none", each single drag, "all"."""
         values = read_parameters(find_air_plugin(self.flight(Case("eigen")).simulation()))
         acting = [d for d, tags in DRAGS.items() if any(float(values[tag]) for tag in tags)]
         return ["none", *acting, "all"]
 
 
 def align_to_steps(commands: np.ndarray, dt: float) -> np.ndarray:
-    """Move each row to the step that would be the first to feel it; of several, the last counts."""
+    """Move each row to the first step that it affects; of several rows the last one counts."""
     steps = np.ceil((commands[:, 0] - 1e-9) / dt)
     steps[steps < 0] = 0
     last = np.append(np.diff(steps) > 0, True)
@@ -200,7 +200,7 @@ def align_to_steps(commands: np.ndarray, dt: float) -> np.ndarray:
 
 
 def _order_rotors(simulation: Simulation) -> State:
-    """Present state, rotors in the order of a command."""
+    """Return the present state, with rotors in the order of a command."""
     state = simulation.state.copy()
     state.rotor_velocity = state.rotor_velocity[list_command_order(simulation)]
     return state

@@ -1,4 +1,4 @@
-"""The pictures of a study: those of chapter 6.1 here, those that say why from `causes`."""
+"""Figures of a study: those of chapter 6.1, and those of `cause_plots`."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ _DPI = 100
 
 
 class Curves(NamedTuple):
-    """What the figures of one drag draw."""
+    """Data of the figures of one drag."""
 
     drag: str
     engines: List[str]
     sim_slow: List[float]
     time: np.ndarray
     model: np.ndarray
-    """(rows, 12)"""
+    """States of the model, (rows, 12)."""
     plants: Dict[Tuple[str, float], np.ndarray]
 
 
 def collect_curves(study: Study, drag: str) -> Curves:
-    """Collect the flights of one drag; those that failed are not among them.
+    """Collect the flights of one drag, without failed flights.
 
     Raises
     ------
     KeyError
-        The model's own flight failed.
+        If the flight of the model failed.
     """
     flown = {
         (case.plant, case.sim_slow): flight.log
@@ -49,7 +49,7 @@ def collect_curves(study: Study, drag: str) -> Curves:
 
 
 def draw(what: Curves, kind: str) -> bytes:
-    """Draw a figure of chapter 6: engines side by side, slow-downs overlaid."""
+    """Draw a figure of chapter 6 with one column per engine and one line per slowdown."""
     title, columns, labels, scale, error, least = KINDS[kind]
     title = f"{title}, drag: {what.drag}"
     numbers = thesis_figures(what.drag, kind, what.sim_slow)
@@ -82,7 +82,7 @@ def draw(what: Curves, kind: str) -> bytes:
 
 
 def draw_commands(commands: np.ndarray, duration: float) -> bytes:
-    """Draw the input."""
+    """Draw the commands."""
     n = commands.shape[1] - 1
     title = "Input: magnitude of the rotors' speeds (rad/s)"
     figure, panels = _make_panels(title, n, 1, "all", each=0.8, width=9, above=0.4)
@@ -96,7 +96,7 @@ def draw_commands(commands: np.ndarray, duration: float) -> bytes:
 
 
 def list_figures(study: Study) -> Dict[str, Tuple[Callable[..., bytes], Tuple[Any, ...]]]:
-    """Every picture of a study by name, as a function and what to call it with."""
+    """List every figure of a study by name, as a function and its arguments."""
     result: Dict[str, Tuple[Callable[..., bytes], Tuple[Any, ...]]] = {
         "commands": (draw_commands, (study.experiment.commands, study.experiment.plan.duration)),
     }
@@ -123,7 +123,7 @@ def _make_panels(
     width: float = 0.0,
     above: float = 0.85,
 ) -> Any:
-    """Make rows x columns panels of a height in inches, with room above for title and legend."""
+    """Make rows x columns panels of a height in inches, with space for title and legend."""
     width, below = width or max(2.6 * columns + 1.2, 6), 0.45
     height = above + each * rows + below
     figure = make_figure(title, width, height, _DPI)

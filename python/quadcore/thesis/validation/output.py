@@ -23,14 +23,14 @@ _TOLD = ("max", "rms")
 
 
 def write_tables(study: Study, directory: Path) -> List[Path]:
-    """Write all numbers into a folder that is there; the same study gives the same bytes.
+    """Write all numbers to an existing folder; equal studies give bit-identical files.
 
-    Pictures of another study that lie there are removed.
+    Figures of another study in this folder are removed.
 
     Raises
     ------
     InputError
-        A file cannot be written.
+        If a file cannot be written.
     """
     files = {
         "commands.csv": make_csv(_list_commands(study)),
@@ -48,28 +48,28 @@ def write_tables(study: Study, directory: Path) -> List[Path]:
 
 
 def write_figure(name: str, picture: bytes, directory: Path) -> None:
-    """Write one of `figures.pictures`.
+    """Write a figure of `figures.list_figures`.
 
     Raises
     ------
     InputError
-        It cannot be written.
+        If the file cannot be written.
     """
     save_files(directory, {f"{name}.png": picture})
 
 
 def write_report(study: Study, pictures: Mapping[str, bytes], directory: Path) -> Path:
-    """Write everything on one page.
+    """Write the report page.
 
     Parameters
     ----------
     pictures
-        PNG files by name, as `figures.pictures` names them; there may be none.
+        PNG files by the names of `figures.list_figures`; may be empty.
 
     Raises
     ------
     InputError
-        It cannot be written.
+        If the file cannot be written.
     """
     page = directory / "report.html"
     write_page(
@@ -89,7 +89,7 @@ def write_report(study: Study, pictures: Mapping[str, bytes], directory: Path) -
 
 
 def to_json(study: Study) -> Dict[str, Any]:
-    """All numbers of a study as plain lists and dictionaries; angles in rad."""
+    """Return all numbers of a study as lists and dictionaries; angles in rad."""
     experiment = study.experiment
     asked = dict(experiment.asked)
     spawn = asked.pop("spawn")
@@ -120,7 +120,7 @@ def to_json(study: Study) -> Dict[str, Any]:
 
 
 def size(value: float) -> str:
-    """Write a length with three digits, fewer if it is tiny."""
+    """Return a length with three digits, or fewer if it is tiny."""
     if value == 0:
         return "0"
     return f"{value:#.3g}".rstrip(".") if abs(value) >= 1e-3 else f"{value:.0e}"

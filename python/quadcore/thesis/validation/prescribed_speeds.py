@@ -1,11 +1,10 @@
-"""Engine ``eigen`` as chapter 2 sees a vehicle: the rotors' speeds are given, whatever drives them.
+"""Engine ``eigen`` with prescribed rotor speeds, as in chapter 2.
 
-Chapter 2 takes the speeds as known functions of time. It knows neither the torque that the frame
-must take for changing them, nor the lead or lag of a rotor whose frame begins to turn. No rigid
-body moves so, but a limit of one does. Between steps each rotor is put to a speed that it would
-have reached, and the frame feels nothing of that; within a step a motor so stiff that it answers
-within a millisecond keeps the rotor at that speed relative to the frame. Twice as stiff halves the
-distance from the model.
+In chapter 2 the speeds are known functions of time. It omits the reaction of the frame to changes
+of the speeds, and the inertia of the rotors against rotations of the frame. A rigid body approaches
+this motion as a limit. Between steps each rotor gets its prescribed speed, without a reaction on
+the frame. Within a step a stiff motor holds this speed relative to the frame. A motor of twice the
+stiffness halves the difference from the model.
 """
 
 from __future__ import annotations
@@ -23,26 +22,26 @@ STIFFNESS = 2.0
 
 
 def compute_stiff_gain(vehicle: Vehicle, dt: float) -> float:
-    """Proportional gain for the simulation that `fly_prescribed_speeds` is given, N m s/rad."""
+    """Return the motor gain for a simulation of `fly_prescribed_speeds`, N m s/rad."""
     return float(STIFFNESS * vehicle.rotor_inertia.min() / dt)
 
 
 def speeds(vehicle: Vehicle, commands: np.ndarray, times: np.ndarray, lag: bool) -> np.ndarray:
-    """Speeds that motors give on a frame at rest: I_R omegadot = kp (u - omega) - c omega.
+    """Return the speeds on a frame at rest: I_R omegadot = kp (u - omega) - c omega.
 
     Parameters
     ----------
     commands : ndarray, shape (rows, 1 + n)
-        The first row is for t = 0, and the rotors begin at its speeds.
+        Commands; the rotors start at the speeds of the first row, which is at t = 0.
     times : ndarray, shape (m,)
-        s, not before 0.
+        Times from 0 on, s.
     lag : bool
-        False: omega = u.
+        Whether motors lag; without lag, omega = u.
 
     Returns
     -------
     ndarray, shape (m, n)
-        rad/s
+        Speeds, rad/s.
     """
     due = np.searchsorted(commands[:, 0], times + 1e-9, side="right") - 1
     u = np.clip(commands[:, 1:], -vehicle.fastest, vehicle.fastest)
@@ -60,14 +59,14 @@ def speeds(vehicle: Vehicle, commands: np.ndarray, times: np.ndarray, lag: bool)
 
 
 class PrescribedSpeeds(Pilot):
-    """The pilot (see `flight.fly`) that puts the rotors to the speeds of `vehicle`'s motors.
+    """Pilot (see `flight.fly`) that prescribes the rotor speeds.
 
     Parameters
     ----------
     commands, lag
         As for `speeds`.
     duration : float
-        Of the flight, s.
+        Duration of the flight, s.
     """
 
     delay = 0.0
@@ -83,13 +82,13 @@ class PrescribedSpeeds(Pilot):
         self._asked = self._omega * (1 + vehicle.joint_damping / compute_stiff_gain(vehicle, dt))
 
     def reset(self, simulation: Simulation) -> None:
-        """Begin with the rotors as they turn."""
+        """Start with the present rotor speeds."""
         self._order = list_command_order(simulation)
         before = np.vstack([simulation.state.rotor_velocity[self._order], self._omega[:-1]])
         self._steps = zip(self._asked, self._omega - before)
 
     def speeds(self, simulation: Simulation) -> np.ndarray:
-        """Put the rotors to the speeds of the step's middle, and hold them there."""
+        """Set the rotors to the speeds at the middle of the step."""
         asked, jump = next(self._steps)
         if jump.any():
             state = simulation.state.copy()
@@ -107,12 +106,12 @@ def fly_prescribed_speeds(
     log_every: int,
     lag: bool,
 ) -> Log:
-    """Fly with the speeds that `vehicle`'s motors would give to its rotors.
+    """Simulate a flight with the rotor speeds that the motors of `vehicle` would reach.
 
     Parameters
     ----------
     simulation : Simulation
-        Engine ``eigen``, at rest, its motors of `compute_stiff_gain`, sim_slow 1.
+        Simulation in engine ``eigen``, at rest, with `compute_stiff_gain` and sim_slow 1.
     """
     pilot = PrescribedSpeeds(vehicle, commands, lag, duration, simulation.dt)
     rows = Rows(simulation, list_columns(simulation))

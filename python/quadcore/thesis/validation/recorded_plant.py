@@ -1,4 +1,4 @@
-"""A recording of anybody's plant, judged against the mathematical model and the engines."""
+"""Comparison of a recorded flight with the mathematical model and the engines."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ MODELS = {"chapter 2": Terms(), "chapter 2, as a gyrostat": GYROSTAT}
 
 
 class Replay(NamedTuple):
-    """How far a recording is from one flight that begins as it does and is commanded alike."""
+    """Difference of a recording from a simulation with the same start and commands."""
 
     plant: str
-    """One of `MODELS`, or an engine."""
+    """Name from `MODELS`, or engine."""
     difference: Optional[DifferenceSizes]
-    """The recording less the flight, by `states`."""
+    """Recording minus simulation."""
     failure: str
-    """Why there is none."""
+    """Reason for a missing difference."""
 
 
 def replay(
@@ -47,23 +47,23 @@ def replay(
     commands: Union[str, Path, np.ndarray, None],
     engines: Sequence[str],
 ) -> Iterator[Replay]:
-    """Fly what was recorded once more, by the mathematical model and by engines.
+    """Simulate a recorded flight with the mathematical model and with engines.
 
     Parameters
     ----------
     plan
-        The vehicle and its world; where it begins is the recording's.
+        Vehicle and world; the initial state is that of the recording.
     recording
-        A log: .csv, .mat or .bag.
+        Log file: .csv, .mat or .bag.
     commands
-        A table or a file of them; None takes what the recording has on topic vel_cmd.
+        Table or file of commands. Default: topic vel_cmd of the recording.
     engines
-        Their names.
+        Names of the engines.
 
     Raises
     ------
     InputError
-        The recording or the commands are at fault, or do not fit the vehicle.
+        If the recording or the commands are wrong, or do not fit the vehicle.
     """
     log = Log.of_file(recording)
     vehicle = replace(plan, engine="eigen").simulation()
@@ -103,7 +103,7 @@ def _read_commands(
 
 
 def _read_state(log: Log, state: State) -> State:
-    """Give the first of a recording; angles of the rotors are not recorded, and act on nothing."""
+    """Return the first state of a recording, without rotor angles, which have no effect."""
     rotors = log.rotor_velocity.shape[1]
     if rotors != len(state.rotor_velocity):
         raise InputError(
@@ -130,7 +130,7 @@ def _replay(name: str, log: Log, fly: Callable[[], Log]) -> Replay:
 
 
 def write_table(rows: Sequence[Replay], rotors: int) -> bytes:
-    """Write all differences as CSV: plant, state, unit, largest, rms, final, failure."""
+    """Write all differences as CSV: plant, state, unit, maximum, rms, final, failure."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(["plant", "state", "unit", "max", "rms", "final", "failure"])

@@ -1,4 +1,4 @@
-"""How far one flight is from another."""
+"""Differences between two flights."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ STATES = ("x", "y", "z", "phi", "theta", "psi", "vx", "vy", "vz", "phidot", "the
 
 
 def extract_states(log: Log) -> np.ndarray:
-    """Position and Euler angles of the frame link, and their rates; (rows, 12) as STATES."""
+    """Return position and Euler angles of the frame link, and their rates; (rows, 12) as STATES."""
     eta = np.unwrap(to_roll_pitch_yaw(log.orientation), axis=0)
     W = np.array([euler_rates_to_body(row) for row in eta])
     etadot = np.linalg.solve(W, log.angular_velocity[..., None])[..., 0]
@@ -22,12 +22,12 @@ def extract_states(log: Log) -> np.ndarray:
 
 
 def compare_states(log: Log, reference: Log) -> DifferenceSizes:
-    """Compare two flights that were logged at the same times: by state, and "distance", m."""
+    """Compare two logs with equal times, by state and by "distance" (m)."""
     apart = extract_states(log) - extract_states(reference)
     distance = np.linalg.norm(apart[:, :3], axis=1, keepdims=True)
     return summarise_differences(np.hstack([apart, distance]), (*STATES, "distance"))
 
 
 def steepest(log: Log) -> float:
-    """Largest roll or pitch of a flight, rad."""
+    """Return the maximum roll or pitch of a flight, rad."""
     return float(np.abs(extract_states(log)[:, 3:5]).max())

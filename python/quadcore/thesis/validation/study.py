@@ -1,4 +1,4 @@
-"""All flights of the experiment, in parallel, and what they say."""
+"""Study: all flights of the experiment, in parallel, and their comparison."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from .thesis_figures import SIM_SLOW
 
 
 class Row(NamedTuple):
-    """One flight against another."""
+    """Comparison of two flights."""
 
     case: Case
     difference: Optional[DifferenceSizes]
     steepest: float
-    """Largest roll or pitch, rad."""
+    """Maximum roll or pitch, rad."""
     failure: str
-    """Why there is no difference."""
+    """Reason for a missing difference."""
 
 
 class Study(NamedTuple):
-    """What `run_study` found."""
+    """Results of `run_study`."""
 
     experiment: Experiment
     engines: List[str]
@@ -35,12 +35,12 @@ class Study(NamedTuple):
     drags: List[str]
     flights: Dict[Case, Flight]
     rows: List[Row]
-    """Each engine, sim_slow and drag against the mathematical model."""
+    """Comparison of each engine, sim_slow and drag with the mathematical model."""
     chains: List[Chain]
     left_out: List[Row]
-    """The model with other terms against the model, with the last of the drags."""
+    """Comparison of the model with additional terms and the model, for the last drag."""
     slowed: List[Row]
-    """Engine eigen against itself at full speed."""
+    """Comparison of engine eigen with itself at full speed."""
     damping: List[Damping]
 
 
@@ -52,25 +52,25 @@ def run_study(
     processes: Optional[int] = None,
     progress: Optional[Callable[[int, int], None]] = None,
 ) -> Study:
-    """Fly every engine at every sim_slow with every drag, and compare with the model.
+    """Simulate every engine, sim_slow and drag, and compare with the model.
 
     Parameters
     ----------
     sim_slow
-        None takes `SIM_SLOW`.
+        Values of sim_slow. Default: `SIM_SLOW`.
     drags
-        None takes all that act on the vehicle, alone and together, and none.
+        Drags. Default: "none", each single drag of the vehicle, and "all".
     processes
-        None takes one per core.
+        Number of processes. Default: one per core.
     progress
         Called as progress(flights_done, flights_total).
 
     Raises
     ------
     InputError
-        A drag that does not act on the vehicle.
+        If a drag does not act on the vehicle.
     KeyboardInterrupt
-        With the attribute `study`, in which flights that are missing say so.
+        With the attribute `study`, in which missing flights are marked.
     """
     acting = experiment.drags()
     for drag in drags or ():

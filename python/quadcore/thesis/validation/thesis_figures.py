@@ -1,4 +1,4 @@
-"""The figures of the thesis' chapter 6.1: which picture shows the same here."""
+"""Figures of chapter 6.1 of the thesis, and their counterparts here."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ SIM_SLOW = (1.0, 8.0, 10.0, 18.0)
 
 
 class FigureKind(NamedTuple):
-    """One of the five figures that chapter 6.1 shows for each drag."""
+    """Kind of figure that chapter 6.1 shows for each drag."""
 
     title: str
     columns: slice
-    """Of the states."""
+    """Columns of the states."""
     labels: Tuple[str, str, str]
     scale: float
     error: bool
     least: float
-    """A range of the axis below which there is nothing to be seen but rounding; in its unit."""
+    """Minimum range of the axis, in its unit; smaller ranges would show rounding only."""
 
 
 _ANGLES = (r"$\phi$ (deg)", r"$\theta$ (deg)", r"$\psi$ (deg)")
@@ -43,7 +43,7 @@ _TOGETHER = SIM_SLOW[:3]
 
 
 def thesis_figures(drag: str, kind: str, sim_slow: Sequence[float]) -> str:
-    """Numbers of the thesis' figures that show what a picture shows, or nothing.
+    """Return the numbers of the figures in the thesis that show the same, or "".
 
     >>> thesis_figures("profile", "error", [1])
     '6.2'
