@@ -307,6 +307,6 @@ def test_an_unfinished_sweep_is_neither_replaced_nor_lost(capsys):
     rows = Path("out/table.csv").read_bytes()
     Path("out/sweep.json").unlink()  # is written last
     Path("out/report.html").unlink()
-    assert "holds rows already; go on with --resume" in refusal(capsys, *words)
+    assert "contains rows. Add --resume" in refusal(capsys, *words)
     assert Path("out/table.csv").read_bytes() == rows
     assert main([*words, "--resume"]) == 0

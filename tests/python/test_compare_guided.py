@@ -191,7 +191,7 @@ def test_bad_guidance_is_one_line_and_nothing_is_flown(capsys, monkeypatch, argu
 def test_from_python_bad_guidance_is_refused():
     vary = {"engine": ["eigen", "ode"]}
     for given, told in (
-        ({"reference": 1}, "the row that the others are compared with is `against`"),
+        ({"reference": 1}, "`against` is the baseline"),
         ({"reference": "hover"}, "reference needs a controller"),
         ({"controller": "pd", "commands": [[0, 1, 1, 1, 1]]}, "give one of them"),
         ({"controller": 3}, "controller is 3"),

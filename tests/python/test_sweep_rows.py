@@ -112,7 +112,7 @@ def test_rows_that_are_there_are_not_overwritten_unasked():
         ({"samples": 11}, "table.csv:2: the row has frame.mass"),
         (
             {"vary": {"frame.mass": "uniform:0.9:1.1", "frame.ixx": [0.007, 0.008]}},
-            ":1: other columns",
+            ":1: the columns are not those of this sweep",
         ),
     ],
 )
@@ -262,7 +262,7 @@ def test_a_damaged_table_is_refused_with_its_line(column, value):
     cells = first.split(",")
     cells[head.rstrip().split(",").index(column)] = value
     Path("out/table.csv").write_text("".join([head, ",".join(cells), *others]), encoding="utf-8")
-    with pytest.raises(qc.InputError, match=r"table\.csv:2: .*take the line out"):
+    with pytest.raises(qc.InputError, match=r"table\.csv:2: .*Remove the line"):
         sweep(out="out", resume=True)
 
 
