@@ -26,12 +26,12 @@ INTRODUCTION = """\
 # Tags, worlds, engines, logs
 
 This page lists all tags of plugins, elements of worlds, engines, columns of logs and topics.
-`quadcore info MODEL` prints the tables of a model's plugins with their values and the line that
-set each. [physics.md](physics.md) has the force laws of the tags, with their signs, frames and
+To see the tables of a model with its values, and the line that set each, run `quadcore info MODEL`.
+The [page on physics](physics.md) has the force laws of the tags, with their signs, frames and
 points of application. Equation numbers and A.4-A.6 are those of the thesis.
 
-These are errors with file, line, plugin, tag and the nearest known tag: an unknown or repeated
-tag, a missing required tag, a value that is not a finite number, and a value outside its range.
+An unknown, repeated or missing tag is an error, and so is a value that is out of its range or not
+finite. The message has the file, the line, the plugin and the nearest known tag.
 
 `--set PLUGIN.TAG=VALUE` (Python: `parameters={"PLUGIN.TAG": value}`) overrides the URDF. PLUGIN is
 the `name` attribute of the plugin tag. `--set` also takes `LINK.mass`, `LINK.ixx`, `ixy`, `ixz`,

@@ -133,7 +133,7 @@ void bind_control_loop(py::module_& m) {
            "Advance n steps under a function that returns rotor speeds (n,), rad/s.")
       .def_property_readonly("calls", &BoundLoop::calls, "How often the controller was called.")
       .def_property_readonly("saturated", &BoundLoop::saturated,
-                             "Calls whose command the rotors could not follow.")
+                             "Number of calls with a command that the rotors could not follow.")
       .def_property_readonly("seconds", &BoundLoop::seconds,
                              "Duration of each call, s; empty unless timed.");
 }

@@ -217,7 +217,7 @@ void bind_vehicle(py::module_& m) {
       .def_property_readonly("warnings", get(&Model::warnings),
                              "Warnings about valid but suspicious input, list of str.")
       .def_property_readonly("ignored_elements", get(&Model::ignored_elements),
-                             "What the reader did not take in.")
+                             "Elements that the reader ignored.")
       .def_property_readonly("document", &get_document<Model>,
                              "Document from which the model was read.")
       .def("__repr__",
@@ -244,7 +244,7 @@ void bind_world(py::module_& m) {
       .def_property_readonly("ground_plane", get(&World::ground_plane),
                              "Whether there is a ground plane at z = 0.")
       .def_property_readonly("ignored_elements", get(&World::ignored_elements),
-                             "What the reader did not take in.")
+                             "Elements that the reader ignored.")
       .def_property_readonly("document", &get_document<World>,
                              "Document from which the world was read.")
       .def("__repr__",

@@ -39,13 +39,14 @@ auto array_of(const Read& read) {
 
 void bind_odometry(py::module_& m) {
   using messages::Odometry;
-  py::class_<BoundOdometry>(m, "Odometry",
-                            R"(What the odometry plugin measured last, with the noise of its tags.
+  py::class_<BoundOdometry>(
+      m, "Odometry",
+      R"(Latest message of the odometry plugin, including the noise that its tags define.
 
 Parameters
 ----------
 simulation : Simulation
-    The simulation whose odometry is read.
+    Simulation to read the odometry of.
 topic : str
     Topic of the odometry.)")
       .def(py::init(&create_odometry), py::arg("simulation"), py::arg("topic") = "odom")

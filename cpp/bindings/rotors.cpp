@@ -14,7 +14,7 @@ namespace quadcore::bindings {
 using control::Rotor;
 
 void bind_rotors(py::module_& m, py::class_<Guarded, std::shared_ptr<Guarded>>& simulation) {
-  py::class_<Rotor>(m, "Rotor", R"(What a rotor exerts and how it follows a command.
+  py::class_<Rotor>(m, "Rotor", R"(Thrust, torque and dynamics of a rotor.
 
 Speeds are those of a command, rad/s, before the division by `slowdown`.)")
       .def("__repr__",
@@ -67,8 +67,8 @@ Speeds are those of a command, rad/s, before the division by `slowdown`.)")
       R"(Description of each rotor, in the order of `rotor_names`, tuple of Rotor.
 
 Thrust and torque are measured on the force laws of all plugins, at rest in still air, as the tags
-have them: losses during a flight are excluded. Each reading measures anew, which takes some
-milliseconds.)");
+have them: losses during a flight are excluded. Each access repeats the measurement, which
+takes some milliseconds.)");
 }
 
 }  // namespace quadcore::bindings

@@ -110,8 +110,8 @@ speeds : array_like (n,)
 Raises
 ------
 InputError
-    Another count, a number that is not finite, a plugin that commands, or a run that flies, whose
-    controller returns the command; nothing was changed.)")
+    Another count, a number that is not finite, a plugin that commands the rotors, or a run in
+    progress, in which the controller returns the command. Nothing has changed then.)")
       .def("step", &step, py::arg("n") = 1, R"(Advance by whole steps of `dt`, without the GIL.
 
 Parameters
@@ -142,8 +142,8 @@ state : State
 Raises
 ------
 InputError
-    Members of other sizes, a number that is not finite, or a quaternion that is none; nothing
-    was changed.)")
+    Members of other sizes, a number that is not finite, or a quaternion of length zero. Nothing
+    has changed then.)")
       .def(
           "snapshot",
           [](const Self& self) {

@@ -12,9 +12,7 @@ Settings<Indi::Gains> of_what_is_measured(Settings<Indi::Gains> settings) {
   for (Setting<Indi::Gains>& setting : settings) {
     std::string& meaning = setting.spec.meaning;
     if (setting.spec.name == "drag") {
-      meaning =
-          "compensates the modelled aerodynamic torque about z and adjusts the reference's flat "
-          "state; all other effects are measured";
+      meaning = "compensates the modelled torque about z and the flat state; the rest is measured";
     } else if (setting.spec.name == "gyroscopic") {
       meaning = "compensates the rotors' gyroscopic torque about z; the other axes are measured";
     }

@@ -14,8 +14,8 @@ from .support.interrupts import ENDED
 def run() -> NoReturn:
     """End the process with the status of the command line.
 
-    One that a signal ended is left at once, for the modules of others (in C) whose work it cut off
-    may abort when the interpreter is taken down.
+    After a signal the process ends at once: C modules of other packages that the signal interrupted
+    may abort when the interpreter shuts down.
     """
     status = main()
     if status > ENDED:

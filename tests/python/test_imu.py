@@ -69,7 +69,7 @@ def test_in_the_engines_of_ode_a_unit_measures_the_rate_at_the_end_of_a_step(eng
     assert np.linalg.norm(row[1:4] - w_end) < 0.05 * np.linalg.norm(w_end - w_begin)
     (unit,) = (plugin for plugin in simulation.plugins if plugin.filename == "libimu_plugin.so")
     assert (
-        "in gazebo11 and ode it measures the angular velocity at the end of each step"
+        "In gazebo11 and ode it measures the angular velocity at the end of each step"
         in unit.summary
     )
 

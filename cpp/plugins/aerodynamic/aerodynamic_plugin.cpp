@@ -231,10 +231,11 @@ PluginDescriptor describe() {
                     "sign of the reaction torque: along the rotor's spin as in the thesis, or "
                     "opposing it")
               .from("(2.11), (2.13)"),
-          T::choice("reactionOn", {"frame", "rotor"},
-                    "body that takes the reaction torque: the frame as in the thesis, or the "
-                    "rotors with transmission to the frame by the motors; with `rotor`, it opposes "
-                    "the spin and unpowered rotors coast to a stop")
+          T::choice(
+              "reactionOn", {"frame", "rotor"},
+              "body that takes the reaction torque; the thesis has `frame`. With `rotor`, the "
+              "torque opposes the spin, the motors transmit it to the frame, and unpowered "
+              "rotors coast to a stop")
               .from("(2.11)"),
           T::link("frameLink", "link that takes the reaction torque; part of the root body"),
           T::joints("rotorJoints", "the rotors"),

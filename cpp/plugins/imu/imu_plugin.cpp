@@ -108,7 +108,7 @@ PluginDescriptor describe() {
   tags.push_back(sensing::Channel::delay_tag());
   tags.push_back(sensing::Channel::dropout_tag());
   return {
-      "inertial measurement unit on a link of the frame; in gazebo11 and ode it measures the "
+      "inertial measurement unit on a link of the frame. In gazebo11 and ode it measures the "
       "angular velocity at the end of each step, with which that step rotates the vehicle",
       tags,
       {},

@@ -79,8 +79,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0 done; 2 bad input and 3 a failed flight, each with one line ``error: ...`` on standard
-        error; 130, 143, 129 ended by SIGINT, SIGTERM, SIGHUP, with the data so far kept.
+        0 for success, 2 for bad input, 3 for a failed flight. Errors are one line ``error: ...``
+        on standard error. 130, 143 and 129 mean SIGINT, SIGTERM and SIGHUP, with the data so far
+        kept.
     """
     terminal.prepare_streams()
     try:

@@ -98,7 +98,7 @@ def add_model(
     default: str | None = None,
     changes: bool = True,
 ) -> None:
-    """Add MODEL, and unless told otherwise the options that change it."""
+    """Add MODEL and, if `changes` is true, the options that change it."""
     model = parser.add_argument(
         "model",
         metavar="MODEL",
@@ -118,13 +118,15 @@ def add_engine(
 ) -> None:
     """Add the option that names the engine, or several if the default is a list."""
     names = [name for name, _ in choices]
-    summarise_rows = "; ".join(f"{name}: {summary}" for name, summary in choices)
     kind: dict[str, Any] = {"choices": names}
     if isinstance(default, list):
         kind = {"metavar": "A,B", "type": parse.several(names)}
     written = ",".join(default) if isinstance(default, list) else default
     action = find_group(parser, FLIGHT).add_argument(
-        "--engine", default=default, help=f"{summarise_rows} (default: {written})", **kind
+        "--engine",
+        default=default,
+        help=f"engine that moves the vehicle; see `quadcore list engines` (default: {written})",
+        **kind,
     )
     complete_from(action, names)
 

@@ -1,4 +1,4 @@
-"""What parsed arguments describe: options, models, flights, axes."""
+"""Options, models, flights and axes from parsed arguments."""
 
 from __future__ import annotations
 

@@ -25,9 +25,9 @@ Step = Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, Dict[str, Any]]
 class VectorEnv(_VectorEnv):
     """Many vehicles, each with its own goal; see `Env`.
 
-    Vehicle i is bit-identical to an `Env` that is reset with seed + i. Autoreset is that of the
-    next step (`AutoresetMode.NEXT_STEP`): the step after the end of an episode ignores the action,
-    starts the next episode, and returns its first observation with reward 0.
+    Vehicle i is bit-identical to an `Env` that is reset with seed + i. Autoreset happens in
+    the next step (`AutoresetMode.NEXT_STEP`). The step after the end of an episode ignores the
+    action, starts the next episode, and returns its first observation with reward 0.
 
     Parameters
     ----------

@@ -79,14 +79,14 @@ class ControllerPilot(Pilot):
 
     @property
     def updates(self) -> int:
-        """How often the controller was called."""
+        """Number of calls of the controller."""
         return 0 if self._loop is None else self._loop.calls
 
     @property
     def saturated(self) -> int:
-        """Number of calls whose command the rotors could not follow.
+        """Number of calls with a command that the rotors could not follow.
 
-        Built-in controllers know it. A call of another controller counts if a speed reaches the
+        Built-in controllers report this. A call of another controller counts if a speed reaches the
         limit of its motor.
         """
         return 0 if self._loop is None else self._loop.saturated

@@ -5,10 +5,11 @@ angle follows the command of the outer loop through a PID; its derivative acts o
 
     phi/phi_d = (k_p s + k_i) / (s^3 (tau s + 1) + k_d s^2 + k_p s + k_i),
 
-and tilts the thrust, which moves the vehicle in the loop of the position PID. In yaw, the
-aerodynamic torque b w^2 on the rotors acts together with the reaction I_R dw/dt to their
-acceleration, which chapter 2 omits: (1 - s/z), z = 2 b w_0 sim_slow / I_R. For b > 0 the zero lies
-in the right half-plane: the vehicle first yaws in the wrong direction. Rotor drag is neglected.
+and tilts the thrust, which moves the vehicle in the loop of the position PID. In yaw, two torques
+act together: the aerodynamic torque b w^2 on the rotors, and the reaction I_R dw/dt to their
+acceleration. Chapter 2 omits the latter, which adds (1 - s/z), z = 2 b w_0 sim_slow / I_R. For
+b > 0 the zero lies in the right half-plane: the vehicle first yaws in the wrong direction. Rotor
+drag is neglected.
 """
 
 from __future__ import annotations
