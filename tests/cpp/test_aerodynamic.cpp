@@ -221,6 +221,5 @@ TEST_CASE(
   motion.rotors.number(MotionRow::rate, 2) = 3.1417 / dt;
   for (int n = 0; n < 3; ++n) bench.update(motion, 1.5 + n * dt, dt);
   REQUIRE(bench.warnings.size() == 1);
-  CHECK(
-      contains(bench.warnings.front(), "rotor 'c' turns more than half a turn per step, so that"));
+  CHECK(contains(bench.warnings.front(), "rotor 'c' turns more than half a turn per step, so its"));
 }

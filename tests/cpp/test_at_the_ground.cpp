@@ -93,7 +93,7 @@ TEST_CASE("a vehicle that is put into the ground is not thrown up but refused") 
   } catch (const Error& error) {
     said = error.what();
   }
-  CHECK(contains(said, "begins 0.02 m deep in the ground"));
+  CHECK(contains(said, "starts 0.02 m deep in the ground"));
   CHECK(contains(said, "Start at z = 0.02 or above"));
   state.position.z() = 0.02 - 1e-5;  // as gazebo11 may leave one
   engine->set_state(state);

@@ -14,13 +14,13 @@ std::string refused(const std::string& text) {
 
 TEST_CASE("a file that cannot be read is named") {
   CHECK(contains(refusal([] { Document::read("/nowhere/a.urdf"); }),
-                 "/nowhere/a.urdf: cannot be read"));
+                 "/nowhere/a.urdf: the file cannot be read"));
 }
 
 TEST_CASE("only a regular file of a bounded size is read") {
   CHECK(contains(refusal([] { read_text_file("/dev/zero"); }),
                  "/dev/zero: this is not a regular file"));
-  CHECK(contains(refusal([] { read_text_file("/"); }), "/: is a folder"));
+  CHECK(contains(refusal([] { read_text_file("/"); }), "/: this is a folder"));
   const std::string world = std::string(TEST_DATA) + "/../../worlds/empty.world";
   CHECK(contains(refusal([&] { read_text_file(world, 5); }), "exceeds the limit of 5e-06 MB"));
   CHECK(read_text_file(world).find("<sdf") != std::string::npos);

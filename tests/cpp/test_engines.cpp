@@ -159,7 +159,8 @@ TEST_CASE("whether sweeps converge is found for each vehicle, and told") {
     world.cfm = cfm;
     return make_engine(engine, model, world)->method();
   };
-  CHECK(contains(method("gazebo11", shipped, 50), "direct solver, to which Gazebo's 50 sweeps"));
+  CHECK(
+      contains(method("gazebo11", shipped, 50), "direct solver, to which Gazebo's 50 iterations"));
   CHECK(contains(method("gazebo11", shipped, 20), "20 iterations of Gazebo's solver, which leave"));
   CHECK(contains(method("ode", shipped, 20), "direct solver"));
   // A light rotor far out on a heavy frame.
@@ -180,7 +181,7 @@ TEST_CASE("solver type world on the ground is warned of where it is written") {
   World world = read_world(document);
   const auto warnings = make_engine("gazebo11", hexarotor(), world)->warnings();
   REQUIRE(warnings.size() == 1);
-  CHECK(warnings[0].rfind("a.world:3: on the ground", 0) == 0);
+  CHECK(warnings[0].rfind("a.world:3: the solver type world fails on the ground", 0) == 0);
   world.ground_plane = false;
   CHECK(make_engine("gazebo11", hexarotor(), world)->warnings().empty());
 }
@@ -244,6 +245,6 @@ TEST_CASE("a load counts once in the sum and in its term, about the centre of ma
 
 TEST_CASE("an unknown engine is refused with those there are") {
   const std::string message = refusal([] { make_engine("gazebo", hexarotor(), World{}); });
-  CHECK(contains(message, "did you mean 'gazebo11'?"));
+  CHECK(contains(message, "Did you mean 'gazebo11'?"));
   for (const EngineInfo& info : engines()) CHECK(contains(message, info.name));
 }

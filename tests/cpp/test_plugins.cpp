@@ -57,8 +57,8 @@ TEST_CASE("a plugin of another interface is refused") {
   const std::string message = refusal([] { simulation("other_abi"); });
   CHECK(message.rfind("test.urdf:5: plugin 'it': libother_abi_plugin.so in ", 0) == 0);
   CHECK(contains(message, TEST_PLUGINS));
-  CHECK(contains(message, " was built for plugin interface of tomorrow, this is "));
-  CHECK(contains(message, "rebuild it against the installed quadcore"));
+  CHECK(contains(message, " was built for plugin interface of tomorrow, but this quadcore has "));
+  CHECK(contains(message, "Rebuild it against the installed quadcore"));
 }
 
 TEST_CASE("a plugin that throws while it is made is named with its file") {

@@ -95,21 +95,21 @@ TEST_CASE("a felt tag that names nothing that feels it, or has no such value, is
   };
   CHECK(contains(refused("fram", "<mu1>1</mu1>"),
                  "test.urdf:5: <mu1> applies to a link, but the model has no link 'fram'"));
-  CHECK(contains(refused("fram", "<mu1>1</mu1>"), "did you mean 'frame'?"));
+  CHECK(contains(refused("fram", "<mu1>1</mu1>"), "Did you mean 'frame'?"));
   CHECK(contains(refused("turn", "<implicitSpringDamper>1</implicitSpringDamper><mu1>1</mu1>"),
-                 "'turn' is no link"));
-  CHECK(contains(refused("turn", "<kp>1</kp>"), "'turn' is no link"));
-  CHECK(
-      contains(refused("frame", "<implicitSpringDamper>1</implicitSpringDamper>"), "is no joint"));
-  CHECK(contains(refused("frame", "<mu1>-1</mu1>"), "<mu1> is '-1'; write >= 0"));
-  CHECK(contains(refused("frame", "<kp>0</kp>"), "<kp> is '0'; write > 0"));
+                 "no link 'turn'. Name a link"));
+  CHECK(contains(refused("turn", "<kp>1</kp>"), "no link 'turn'. Name a link"));
+  CHECK(contains(refused("frame", "<implicitSpringDamper>1</implicitSpringDamper>"),
+                 "no joint 'frame'"));
+  CHECK(contains(refused("frame", "<mu1>-1</mu1>"), "<mu1> is '-1'. Use >= 0"));
+  CHECK(contains(refused("frame", "<kp>0</kp>"), "<kp> is '0'. Use > 0"));
   CHECK(contains(refused("frame", "<kp>nan</kp>"), "<kp> is 'nan'"));
   CHECK(contains(refused("frame", "<maxContacts>1.5</maxContacts>"), "whole number >= 1"));
-  CHECK(contains(refused("frame", "<fdir1>1 0</fdir1>"), "write three numbers"));
+  CHECK(contains(refused("frame", "<fdir1>1 0</fdir1>"), "Use three numbers"));
   CHECK(contains(refused("frame", "<turnGravityOff>maybe</turnGravityOff>"), "true | false"));
-  CHECK(contains(refused("frame", "<gravity>0</gravity>"), "<gravity> is '0'; write true"));
-  CHECK(contains(refused("turn", "<springStiffness>1</springStiffness>"), "write 0"));
-  CHECK(contains(refused("frame", "<mu3>1</mu3>"), "did you mean 'mu1'?"));
+  CHECK(contains(refused("frame", "<gravity>0</gravity>"), "<gravity> is '0'. Use true"));
+  CHECK(contains(refused("turn", "<springStiffness>1</springStiffness>"), "Use 0"));
+  CHECK(contains(refused("frame", "<mu3>1</mu3>"), "Did you mean 'mu1'?"));
   model(link("frame", 1, round_body) + turning_rotor +
         "<gazebo reference=\"nobody\"><material>Red</material></gazebo>\n");
 }

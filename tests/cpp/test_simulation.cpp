@@ -34,7 +34,7 @@ TEST_CASE("a snapshot is restored by a simulation of the same engine and step on
       if (other.name == info.name) continue;
       Simulation elsewhere = still(other.name, 1e-3);
       CHECK(contains(refusal([&] { elsewhere.restore(snapshot); }),
-                     "another engine ('" + info.name + "' there, '" + other.name + "' here)"));
+                     "a different engine ('" + info.name + "' there, '" + other.name + "' here)"));
     }
   }
 }
@@ -50,12 +50,13 @@ TEST_CASE("another world is taken on purpose, another model never") {
         "snapshot: it was taken with a different world ('wind 0 0 0' there, 'wind 2.5 0 0' here). "
         "Restore a snapshot of this simulation, or allow world to differ.");
   windy.restore(snapshot, Allowed::of({"world"}));
-  CHECK(contains(refusal([] { Allowed::of({"model"}); }), "only world, parameters may differ"));
+  CHECK(contains(refusal([] { Allowed::of({"model"}); }),
+                 "may not differ. Choose from: world, parameters."));
   model.links[2].inertial.mass *= 1.5;
   Simulation heavier(model, world, {});
   const std::string message =
       refusal([&] { heavier.restore(snapshot, Allowed::of({"world", "parameters"})); });
-  CHECK(contains(message, "another model ('link " + model.links[2].name + " mass "));
+  CHECK(contains(message, "a different model ('link " + model.links[2].name + " mass "));
   CHECK(!contains(message, "world"));
 }
 

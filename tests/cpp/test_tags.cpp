@@ -109,7 +109,7 @@ TEST_CASE("a range reads as a person would write it") {
 TEST_CASE("a refusal names place, plugin and tag") {
   CHECK(refused({}).rfind("test.urdf:9: plugin 'p': required tag <gain> is missing", 0) == 0);
   CHECK(refused({gain, {"gian", "1", "test.urdf:11"}})
-            .rfind("test.urdf:11: plugin 'p': unknown tag <gian> (did you mean 'gain'?)", 0) == 0);
+            .rfind("test.urdf:11: plugin 'p': unknown tag <gian>. Did you mean 'gain'?", 0) == 0);
   CHECK(refused({gain, {"gain", "1", "test.urdf:11"}}).rfind("test.urdf:11: plugin 'p': ", 0) == 0);
   CHECK(contains(refused({gain, {"rate", "1", "a:1"}, {"updateRate", "1", "a:2"}}), "is repeated"));
   CHECK(refused({gain}, {{"rate", "fast"}}).rfind("set p.rate: plugin 'p': <rate> 'fast'", 0) == 0);
@@ -140,8 +140,10 @@ TEST_CASE("a row of numbers has the length, the numbers and the range of its tab
         "separated by blanks.");
   CHECK(contains(refused({gain, row("gains", "1 -2 3")}),
                  "contains -2, which is out of range. Write 3"));
-  CHECK(contains(refused({gain, row("gains", "1 2,5 3")}), "holds '2,5', which is not a finite"));
-  CHECK(contains(refused({gain, row("row", "nan")}), "holds 'nan', which is not a finite number"));
+  CHECK(
+      contains(refused({gain, row("gains", "1 2,5 3")}), "contains '2,5', which is not a finite"));
+  CHECK(
+      contains(refused({gain, row("row", "nan")}), "contains 'nan', which is not a finite number"));
   CHECK(
       contains(refused({gain, row("row", "")}), "has 0 numbers. Write finite numbers, separated"));
   CHECK(refused({gain}, {{"gains", "1"}}).rfind("set p.gains: plugin 'p': <gains> '1'", 0) == 0);

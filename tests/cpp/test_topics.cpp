@@ -210,8 +210,8 @@ TEST_CASE("a loop is named, and one that reads a sample late breaks it") {
   };
   CHECK(loop(late) == Order{1, 2, 0});
   const std::string message = refusal([&] { loop(false); });
-  CHECK(contains(message, "a.urdf:2: plugin 'controller' takes topic 'speed' from 'motor'"));
-  CHECK(contains(message, "a.urdf:3: plugin 'motor' takes topic 'wanted' from 'controller'"));
+  CHECK(contains(message, "a.urdf:2: plugin 'controller' reads topic 'speed' from 'motor'"));
+  CHECK(contains(message, "a.urdf:3: plugin 'motor' reads topic 'wanted' from 'controller'"));
   CHECK(contains(message, "each waits for the other's value of the same sample"));
   CHECK_FALSE(contains(message, "outside"));
 }

@@ -261,10 +261,11 @@ TEST_CASE("what is no reference is refused with what to write instead") {
   const auto refused = [](const char* name, const Values& values, const Rows& rows = {}) {
     return test::refusal([&] { make_reference(name, values, rows); });
   };
-  CHECK(test::contains(refused("spirale", {}), "no reference 'spirale' (did you mean 'spiral'?)"));
-  CHECK(test::contains(refused("spiral", {{"radios", 1}}), "did you mean 'radius'?"));
-  CHECK(test::contains(refused("spiral", {{"radius", -1}}), "'radius' is -1; give"));
-  CHECK(test::contains(refused("circle", {{"along", 2}}), "'along' is 2; give true or false"));
+  CHECK(test::contains(refused("spirale", {}),
+                       "reference 'spirale' does not exist. Did you mean 'spiral'?"));
+  CHECK(test::contains(refused("spiral", {{"radios", 1}}), "Did you mean 'radius'?"));
+  CHECK(test::contains(refused("spiral", {{"radius", -1}}), "'radius' is -1. Give"));
+  CHECK(test::contains(refused("circle", {{"along", 2}}), "'along' is 2. Give true or false"));
   CHECK(test::contains(refused("waypoints", {}), "requires rows"));
   CHECK(test::contains(refused("hover", {}, five_waypoints()), "accepts no rows"));
   Rows rows = five_waypoints();

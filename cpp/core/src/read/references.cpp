@@ -34,20 +34,19 @@ const GivenTag* tag_of(const GazeboReference& reference, const std::string& name
 
 /// A tag with an effect must name a link or joint that it applies to.
 void check_names(const UrdfTree& tree) {
-  std::map<std::string, std::set<std::string>> kinds;
-  std::vector<std::string> names;
-  for (const UrdfLink& link : tree.links) kinds[link.name].insert("link");
-  for (const UrdfJoint& joint : tree.joints) kinds[joint.name].insert("joint");
-  for (const auto& entry : kinds) names.push_back(entry.first);
+  std::map<std::string, std::vector<std::string>> names;
+  for (const UrdfLink& link : tree.links) names["link"].push_back(link.name);
+  for (const UrdfJoint& joint : tree.joints) names["joint"].push_back(joint.name);
   std::map<std::string, std::string> of;
   for (const GazeboTag& tag : gazebo_tags()) of[tag.name] = tag.of;
   for (const GazeboReference& reference : tree.references) {
     for (const GivenTag& tag : reference.tags) {
       const std::string& kind = of.at(tag.name);
-      if (kinds.count(reference.name) && kinds.at(reference.name).count(kind)) continue;
+      const std::vector<std::string>& known = names[kind];
+      if (std::find(known.begin(), known.end(), reference.name) != known.end()) continue;
       throw InputError(tag.where + ": <" + tag.name + "> applies to a " + kind +
                        ", but the model has no " + kind + " '" + reference.name + "'." +
-                       suggest(reference.name, names) + " Name a " + kind + " of the model.");
+                       suggest(reference.name, known) + " Name a " + kind + " of the model.");
     }
   }
 }
