@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <set>
 
 #include "quadcore/plugin/error.hpp"
 #include "quadcore/text.hpp"
