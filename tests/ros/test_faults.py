@@ -174,7 +174,7 @@ class TestFaults(unittest.TestCase):
             ("_seed:=1e30", "parameter ~seed: give a whole number from 0 to 9007199254740992"),
             ("_dt:=-1", "parameter ~dt: give a step from 1e-9 to 0.1 s"),
             ("_engine:=gazebo12", "engine 'gazebo12' does not exist. Did you mean 'gazebo11'?"),
-            ("_world:=/none.world", "/none.world: cannot be read"),
+            ("_world:=/none.world", "/none.world: the file cannot be read"),
             ("_log:=/none/log.csv", "/none/log.csv: cannot be written"),
             ("_clock:=both", "parameter ~clock: give auto, lead or follow"),
             ("_name:=a-b", "model name 'a-b' cannot name a topic"),
