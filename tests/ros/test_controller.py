@@ -152,7 +152,7 @@ class TestController(unittest.TestCase):
             ({"law": "geometrik"}, "parameter ~law: plugin 'controller_node': <law> 'geometrik'"),
             ({"kp_xy": -1}, "parameter ~kp_xy: plugin 'controller_node': <kp_xy> '-1' is out of"),
             ({"kp_xy": "much"}, "<kp_xy> 'much' is not a finite number"),
-            ({"kp_rp": 1}, "law 'geometric' has no parameter 'kp_rp'"),
+            ({"kp_rp": 1}, "controller 'geometric' has no parameter 'kp_rp'"),
             ({"reference": "spirale"}, "parameter ~reference: plugin"),
             (
                 {"reference": {"shape": "circle", "radios": 1}},

@@ -124,7 +124,7 @@ class TestPluginTopics(unittest.TestCase):
                 push.publish(data=[1000, 0])
                 echo.wait(lambda m: m[-1].data[0] >= 2000)
             node.end()
-        self.assertIn("topic 'push': 1 numbers; give 2: a, b", node.error)
+        self.assertIn("topic 'push': 1 numbers are given. Give 2: a, b", node.error)
 
     def test_topics_lie_in_the_vehicles_namespace(self):
         urdf = with_plugins(ECHO)
