@@ -170,7 +170,10 @@ class TestDisturbances(unittest.TestCase):
             odometry.wait_for_publisher()
             step(5)
             publish = rospy.ServiceProxy("/fault", Publish)
-            for values, why in (([1, 1], "2 numbers are given. Give 3"), ([1, float("nan"), 1], "finite")):
+            for values, why in (
+                ([1, 1], "2 numbers are given. Give 3"),
+                ([1, float("nan"), 1], "finite"),
+            ):
                 response = publish(values)
                 self.assertFalse(response.success)
                 self.assertIn(why, response.message)

@@ -74,7 +74,10 @@ class TestParameters(unittest.TestCase):
             ("kp", "parameter ~set: 'kp' is not valid. Write PLUGIN.TAG=VALUE."),
             ("motorpid_plugin.kp=", "is not valid. Write PLUGIN.TAG=VALUE."),
             ("a.b=1 a.b=2", "parameter ~set: a.b is given twice. Keep one."),
-            ("motorpid.kp=1", "set motorpid.kp: the model has no plugin 'motorpid'. Did you mean 'motor"),
+            (
+                "motorpid.kp=1",
+                "set motorpid.kp: the model has no plugin 'motorpid'. Did you mean 'motor",
+            ),
             ("motorpid_plugin.kq=1", "kq"),
             ("motorpid_plugin.kp=-1", "kp"),
         ):
