@@ -50,7 +50,7 @@ for name, value in found.values.items():
         f"{name:30} model {found.start[name]:<11.6g} found {value:<11.6g} "
         f"+- {found.identified.deviations[name]:<8.2g} true {TRUE[name]:g} {found.units[name]}"
     )
-print(*found.told(), sep="\n")
+print(*found.describe(), sep="\n")
 
 # %% [markdown]
 # Only the ratio of thrust to mass determines the lift. Both can be identified because the thrust
