@@ -234,7 +234,7 @@ def test_the_state_is_written_into_the_callers_array():
     assert batch.read_state(mine) is mine
     np.testing.assert_array_equal(qc.BatchState.of(mine).position, batch.state.position)
     for wrong in (np.empty((2, 20)), np.empty((2, 21), np.float32), np.empty((2, 42))[:, ::2]):
-        with pytest.raises(InputError, match=r"array of \(2, 21\) float64"):
+        with pytest.raises(InputError, match=r"float64 array of shape \(2, 21\)"):
             batch.read_state(wrong)
 
 
@@ -254,7 +254,7 @@ def test_the_state_is_written_into_the_callers_array():
             r"commands has the shape \(2, 3\). Give an array of shape \(2, 4\)",
         ),
         (lambda: BatchSimulation(n=2).step(np.zeros(4)), "commands"),
-        (lambda: BatchSimulation(n=2).step([[0] * 4, [0, np.nan, 0, 0]]), "vehicle 1, rotor 2"),
+        (lambda: BatchSimulation(n=2).step([[0] * 4, [0, np.nan, 0, 0]]), "rotor 2 of vehicle 1"),
         (lambda: BatchSimulation(n=2).step(None, -1), "steps is -1"),
         (lambda: BatchSimulation(n=2).reset([True]), r"mask has the shape \(1,\)"),
         (lambda: BatchSimulation(n=2).reset([1, 0]), "mask is not an array of booleans"),
@@ -279,7 +279,7 @@ def test_the_number_of_vehicles_is_that_of_the_core_whatever_python_does():
         batch.n = 1
     batch.__init__(n=1)
     assert batch.n == len(batch.state.position) == len(batch.time) == 200
-    with pytest.raises(InputError, match=r"of \(200, 21\) float64"):
+    with pytest.raises(InputError, match=r"float64 array of shape \(200, 21\)"):
         batch.read_state(np.empty((1, 21)))
     with pytest.raises(
         InputError, match=r"out is not a writable, contiguous float64 array of shape \(3, 21\)"
@@ -318,7 +318,7 @@ def test_numbers_that_lie_across_the_bounds_of_doubles_are_read_but_not_written(
     other.set_state(rows)
     batch.set_state(unaligned(rows))
     np.testing.assert_array_equal(batch.read_state(), other.read_state())
-    with pytest.raises(InputError, match="contiguous array"):
+    with pytest.raises(InputError, match="contiguous float64 array"):
         batch.read_state(unaligned(np.zeros((3, 21))))
 
 

@@ -183,7 +183,10 @@ def test_malformed_xml_names_its_line(write):
 
 
 def test_files_that_are_no_text_are_refused(tmp_path):
-    for content, reason in ((b"\x7fELF\0\0", "binary file"), (b"<a>\n\xff</a>", ":2: not UTF-8")):
+    for content, reason in (
+        (b"\x7fELF\0\0", "binary file"),
+        (b"<a>\n\xff</a>", ":2: the text is not UTF-8"),
+    ):
         file = tmp_path / "robot.urdf"
         file.write_bytes(content)
         assert reason in refusal(str(file))

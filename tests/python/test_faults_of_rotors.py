@@ -118,8 +118,8 @@ def test_a_fault_survives_a_snapshot(engine, hangar):
 @pytest.mark.parametrize(
     ("tags", "says"),
     [
-        ({"losses": "1 2"}, "<losses> has 2 numbers; write three numbers for each"),
-        ({"cuts": "1 2 3"}, "<cuts> has 3 numbers; write two numbers for each"),
+        ({"losses": "1 2"}, "<losses> has 2 numbers. Write three numbers for each"),
+        ({"cuts": "1 2 3"}, "<cuts> has 3 numbers. Write two numbers for each"),
         ({"cuts": "-1 2"}, "<cuts> event 1 is before the start. Use a time >= 0"),
         (
             {"cuts": "1 2 1 5"},

@@ -78,7 +78,7 @@ def test_numbers_are_those_of_a_urdf_everywhere(number, capsys):
 def test_a_pipe_as_commands_is_refused():
     for name in ("c.csv", "c.mat"):
         os.mkfifo(name)
-        assert "is no regular file" in refused(*FALL, "--commands", name)
+        assert "is not a regular file" in refused(*FALL, "--commands", name)
 
 
 def test_a_mat_file_is_not_unpacked_beyond_what_can_be_meant():
@@ -96,7 +96,7 @@ def test_a_mat_file_is_not_unpacked_beyond_what_can_be_meant():
 def test_a_csv_file_has_a_largest_size(monkeypatch):
     Path("c.csv").write_text("t,w1\n0,1\n")
     monkeypatch.setattr("quadcore.formats.csv._LARGEST", 8)
-    with pytest.raises(qc.InputError, match="is larger than"):
+    with pytest.raises(qc.InputError, match="exceeds the limit"):
         read_commands("c.csv", 1)
 
 

@@ -52,7 +52,7 @@ def test_what_could_be_read_without_end_is_refused_in_one_line(reader, make, cap
     make(name)
     assert main(READERS[reader]) == 2
     said = capsys.readouterr().err
-    assert said.count("\n") == 1 and f"{name}: is no regular file" in said
+    assert said.count("\n") == 1 and f"{name}: this is not a regular file" in said
 
 
 @pytest.mark.parametrize("reader", READERS)
@@ -82,7 +82,7 @@ def test_a_tag_names_no_pipe_and_no_device(plugin, name, tags, make):
     assert "</gazebo>" in text
     added = f"{PLUGIN.format(plugin, tags)}</gazebo>"
     Path("a.urdf").write_text(text.replace("</gazebo>", added, 1))
-    with pytest.raises(qc.InputError, match=f"'{name}' is no regular file"):
+    with pytest.raises(qc.InputError, match=f"'{name}' is not a regular file"):
         qc.Simulation("a.urdf")
 
 
@@ -93,7 +93,7 @@ def test_a_file_that_a_xacro_loads_is_no_pipe():
         '<xacro:property name="p" value="${xacro.load_yaml(\'odd.yaml\')}"/>\n'
         '<link name="${p.b}"/></robot>'
     )
-    with pytest.raises(qc.InputError, match="is no regular file"):
+    with pytest.raises(qc.InputError, match="is not a regular file"):
         qc.read_model("a.xacro")
 
 
@@ -101,4 +101,7 @@ def test_a_yaml_file_has_a_largest_size(monkeypatch, capsys):
     with open("big.yaml", "wb") as file:
         file.truncate(10**7 + 1)
     assert main([*GUIDED[:-1], "--reference", "hover", "--scenario", "big.yaml"]) == 2
-    assert "big.yaml: is larger than 10 MB, the most that is read" in capsys.readouterr().err
+    assert (
+        "big.yaml: the file exceeds the limit of 10 MB. Use a smaller file."
+        in capsys.readouterr().err
+    )

@@ -31,7 +31,7 @@ def test_a_reference_is_made_of_its_members():
 @pytest.mark.parametrize(
     "name, value, told",
     [
-        ("snap", (1.0, 2.0), "reference.snap holds 2 numbers; give 3"),
+        ("snap", (1.0, 2.0), "reference.snap has 2 numbers. Give 3."),
         ("yaw_rate", "fast", "reference.yaw_rate"),
         ("yaw", (1.0, 2.0), "reference.yaw"),
     ],
@@ -69,7 +69,7 @@ def test_what_is_no_reference_is_told_in_one_line(controller, given):
     "name, value, told",
     [
         ("snap", None, "the reference has no member snap. Give a quadcore.Reference"),
-        ("jerk", (1.0, 2.0), "reference.jerk holds 2 numbers; give 3"),
+        ("jerk", (1.0, 2.0), "reference.jerk has 2 numbers. Give 3."),
     ],
 )
 def test_a_law_says_which_member_it_lacks(name, value, told):

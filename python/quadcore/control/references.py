@@ -195,8 +195,8 @@ def _read_position(wanted: Any) -> List[float]:
         return [float(x), float(y), float(z), float(wanted.yaw)]
     except (AttributeError, TypeError, ValueError):
         raise _core.InputError(
-            f"the reference gave {shorten(wanted)}; give a quadcore.Reference, or what has the "
-            "members of one"
+            f"the reference gave {shorten(wanted)}. Give a quadcore.Reference or an object with "
+            "the same members."
         ) from None
 
 

@@ -154,7 +154,9 @@ def _replace_hooks(arguments: _Arguments, outside: Dependencies) -> Iterator[Non
         if filename is None or not Path(filename).exists():
             return old_parse(source, filename)  # it raises what <xacro:include optional=""> expects
         if not Path(filename).is_file():
-            raise xacro.XacroException(f"{filename}: is no regular file; include a xacro file")
+            raise xacro.XacroException(
+                f"{filename}: this is not a regular file. Include a xacro file."
+            )
         return xml_origins.parse(filename, xml_source.read(Path(filename)))
 
     elements = 0

@@ -108,8 +108,9 @@ def _check_rotors(
     if built and len(model.joints) != len(built[0][0].joints):
         own = [f"{XACRO}.{name}" for name, value in arguments.items() if np.ndim(value)]
         raise InputError(
-            f"set {', '.join(own)}: vehicle {len(built)} has {len(model.joints)} rotors, vehicle 0 "
-            f"has {len(built[0][0].joints)}; make a batch of each kind"
+            f"set {', '.join(own)}: vehicle {len(built)} has {len(model.joints)} rotors, but "
+            f"vehicle 0 has {len(built[0][0].joints)}. Make a separate batch for each number of "
+            "rotors."
         )
 
 

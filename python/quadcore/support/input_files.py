@@ -47,7 +47,7 @@ def _check(path: Path, mode: int) -> None:
     if stat.S_ISDIR(mode):
         raise InputError(f"{path}: cannot be read: Is a directory")
     if not stat.S_ISREG(mode):
-        raise InputError(f"{path}: is no regular file; save what it gives in one")
+        raise InputError(f"{path}: this is not a regular file. Save its content in a regular file.")
 
 
 def read_bytes(path: Path, largest: int) -> bytes:
