@@ -6,6 +6,18 @@
 #include "quadcore/rotor_shares.hpp"
 
 namespace quadcore::control {
+namespace {
+
+/// Number of values of an odometry message.
+std::size_t count_fields() {
+  std::size_t count = 0;
+  Odometry any;
+  Odometry::for_each_field(
+      any, [&count](const char*, messages::Names names, const double*) { count += names.size(); });
+  return count;
+}
+
+}  // namespace
 GuidedController::GuidedController(const Simulation& simulation, Controller controller,
                                    const VehicleDescription& flown)
     : simulation_(simulation),
@@ -15,10 +27,10 @@ GuidedController::GuidedController(const Simulation& simulation, Controller cont
       state_(controller_.state_size()) {}
 
 std::size_t GuidedController::find_odometry(const Topics& topics, const std::string& name) {
-  static const MessageKind odometry = messages::kind_of<Odometry>();
+  static const std::size_t fields = count_fields();
   const std::size_t topic = topics.at(name);
   const MessageKind& kind = topics[topic].kind;
-  if (kind.name != odometry.name || kind.fields.size() != odometry.fields.size()) {
+  if (kind.name != Odometry::kind || kind.fields.size() != fields) {
     throw InputError("topic '" + name + "' does not carry odometry. Name an odometry topic.");
   }
   return topic;

@@ -109,7 +109,9 @@ def write(path, topic, times, rows, kind="std_msgs/msg/Float64MultiArray"):
     with Writer(path) as writer:
         connection = writer.add_connection(topic, kind, typestore=maker.store)
         for time, row in zip(times, rows):
-            writer.write(connection, time, maker.array(row, maker.layout(["w"], len(row))))
+            writer.write(
+                connection, time, maker.make_array(row, maker.make_layout(["w"], len(row)))
+            )
 
 
 @pytest.mark.parametrize("start", [0, 1_700_000_000 * 10**9])

@@ -102,5 +102,7 @@ def test_their_errors_have_their_deviations_and_correlation(name, topic, fields,
 
 def test_a_field_beside_another_is_refused(tmp_path):
     element = "<magnetic_field>1 0 0</magnetic_field>"
-    with pytest.raises(qc.InputError, match="<magnetic_field> beside <magnetic_field>"):
+    with pytest.raises(
+        qc.InputError, match="<magnetic_field> sets the same value as <magnetic_field>"
+    ):
         in_world(tmp_path, mounted("imu", {}), f"{element}<physics>{element}</physics>")

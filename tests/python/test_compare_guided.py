@@ -175,7 +175,7 @@ def test_a_controller_that_raises_is_a_row_with_the_time():
         ("--delay 0.1", "--delay needs a --controller; name one"),
         ("--controller pdd", "there is no controller 'pdd'"),
         ("--controller pd --reference spirl", "there is no reference 'spirl'"),
-        ("--controller geometric:kp=3", "law 'geometric' has no parameter 'kp'"),
+        ("--controller geometric:kp=3", "controller 'geometric' has no parameter 'kp'"),
         ("--controller pd --controller-rate 0", "--controller-rate: 0 is not greater than 0"),
         ("--controller pd --reference 2", "To choose the baseline flight, use --against"),
         ("--reference 2", "To choose the baseline flight, use --against 2"),
@@ -192,7 +192,7 @@ def test_from_python_bad_guidance_is_refused():
     vary = {"engine": ["eigen", "ode"]}
     for given, told in (
         ({"reference": 1}, "`against` is the baseline"),
-        ({"reference": "hover"}, "reference needs a controller"),
+        ({"reference": "hover"}, "reference requires a controller"),
         ({"controller": "pd", "commands": [[0, 1, 1, 1, 1]]}, "give one of them"),
         ({"controller": 3}, "controller is 3"),
     ):

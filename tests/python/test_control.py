@@ -223,7 +223,7 @@ def test_references_and_laws_can_be_pickled():
             "its delay is -1; give seconds",
         ),
         ({"controller": controllers.pd(kp=1), "reference": "hover"}, "has no parameter 'kp'"),
-        ({"controller": controllers.pd(kp_xy=-1), "reference": "hover"}, "'kp_xy' is -1; give"),
+        ({"controller": controllers.pd(kp_xy=-1), "reference": "hover"}, "'kp_xy' is -1. Give"),
         ({"controller": controllers.pd(spins=[1, 1, 1, 1]), "reference": "hover"}, "independently"),
         (
             {"controller": controllers.pd(spins=[1, -1]), "reference": "hover"},

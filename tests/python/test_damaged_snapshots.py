@@ -79,7 +79,7 @@ def test_a_snapshot_that_is_refused_leaves_what_is_carried(hangar):
     laden = simulation.snapshot()
     fly(simulation, 40)
     mass, before = simulation.mass, bits(simulation)
-    with pytest.raises(qc.InputError, match="a different model or engine"):
+    with pytest.raises(qc.InputError, match="another model or engine"):
         simulation.restore(damaged(laden, engine=laden.__getstate__()["engine"][:-1]))
     assert simulation.mass == mass
     assert bits(simulation) == before

@@ -243,7 +243,7 @@ def test_refuses_what_is_no_gyrostat_and_says_what_flies_it(hangar, old, new, jo
     urdf = urdf.replace(old, new, 1)
     with pytest.raises(qc.InputError) as refused:
         hangar(urdf, engine="eigen")
-    for part in (f"joint '{joint}'", why, "use the engine ode"):
+    for part in (f"joint '{joint}'", why, "Use the engine ode"):
         assert part in str(refused.value)
     hangar(urdf, engine="ode").step(10)
 

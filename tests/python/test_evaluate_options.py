@@ -87,7 +87,7 @@ def test_the_file_of_the_eight_readings_is_one(capsys):
         ),
         (
             "controller: pd\nreference: hover\nvary:\n  controller.kp: [1]\n",
-            "fly.yaml:4: vary controller.kp=1: law 'pd' has no parameter 'kp'",
+            "fly.yaml:4: vary controller.kp=1: controller 'pd' has no parameter 'kp'",
         ),
         (
             "controller: pd\nreference: hover\nset:\n  odometri.rate: 1\n",
@@ -117,7 +117,7 @@ def test_a_file_that_is_wrong_is_one_line(capsys, text, says):
         ("--controller pd --reference spiral --vary controller.rate=x", "not a finite number"),
         ("--controller pd --reference spiral --vary a.b=1", "a.b"),
         ("--controller pd --reference spiral --seeds 100001", "100001 flights are more than"),
-        ("--controller pd:kp=2 --reference spiral", "law 'pd' has no parameter 'kp'"),
+        ("--controller pd:kp=2 --reference spiral", "controller 'pd' has no parameter 'kp'"),
         ("--controller pd:rate=-2 --reference spiral", "its rate is -2.0; give calls per second"),
         ("--controller pd,lqr --reference hover --vary controller.kp_xy=2", "no parameter 'kp_xy'"),
         (
@@ -130,7 +130,7 @@ def test_a_file_that_is_wrong_is_one_line(capsys, text, says):
             "plugin 'odometry': <positionNoise> 'x' is not a finite number",
         ),
         ("--controller pd --reference hover --time-limit 1e300", "give seconds, more than 0 and"),
-        ("--controller pd:spins=1 --reference hover", "law 'pd' has no parameter 'spins'"),
+        ("--controller pd:spins=1 --reference hover", "controller 'pd' has no parameter 'spins'"),
         ("--controller pd --reference hover:name=3", "'hover' has no parameter 'name'"),
         ("--controller pd --reference hover:rows=3", "'hover' has no parameter 'rows'"),
         ("--controller pd, --reference hover", "'pd,' has an empty name; write names"),

@@ -107,8 +107,8 @@ def test_the_main_job_flies_what_its_settings_say(tmp_path, monkeypatch):
 
     monkeypatch.setitem(spiral.SETTINGS, "duration", 1.0)
     logs = spiral.fly()
-    assert {law for law, _ in logs} == set(spiral.TOLD) == set(spiral.STYLES)
+    assert {law for law, _ in logs} == set(spiral.STYLES)
     assert {engine for _, engine in logs} == set(ENGINES)
     for (law, _), log in logs.items():
-        assert 0 < spiral.away(log).max() < (1e-3 if law == "geometric" else 0.1)
+        assert 0 < spiral.tracking_error(log).max() < (1e-3 if law == "geometric" else 0.1)
     assert png(spiral.picture(logs)).startswith(b"\x89PNG")

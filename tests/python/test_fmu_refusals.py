@@ -142,8 +142,8 @@ def test_variables_are_called_by_their_names_in_errors(instance):
     assert "variable seed: the seed is invalid. Give a whole number from 0 to 2147483647" in said
     for name, value, says in (
         ("spawn.yaw", float("nan"), "the value is not a finite number"),
-        ("z", 1.0, "cannot be set to a number"),
-        ("odom.x", 1.0, "cannot be set to a number"),
+        ("z", 1.0, "it cannot be set to a number"),
+        ("odom.x", 1.0, "it cannot be set to a number"),
     ):
         said = refusal(instance, instance.slave.setReal, [instance.reference(name)], [value])
         assert f"variable {name}: {says}" in said
@@ -179,7 +179,7 @@ def test_a_variable_is_asked_for_by_its_type(instance):
                 call([instance.reference(name)])
             else:
                 said = refusal(instance, call, [instance.reference(name)])
-                assert f"variable {name}: is of type {held}, no {asked}; call" in said
+                assert f"variable {name}: its type is {held}, not {asked}. Call" in said
         assert "no variable has the value reference 99999" in refusal(instance, call, [99999])
     slave.reset()
     said = refusal(instance, slave.setReal, [instance.reference("seed")], [3.0])

@@ -101,7 +101,7 @@ def test_a_run_ended_at_random_moments_keeps_what_was_flown(number, tmp_path):
         until(lambda log=folder / "log.csv": log.exists() and log.stat().st_size > 0)
         time.sleep(moments.uniform(0, 0.3))
         ended(process, number)
-        assert files(folder) == ["log.csv", "out/log.csv"]
+        assert files(folder) == ["log.csv", "out/log.csv", "out/model.urdf", "out/run.json"]
         table = np.loadtxt(folder / "log.csv", delimiter=",", skiprows=1)
         assert table[:, 0] == pytest.approx(1e-3 * np.arange(len(table)))
         assert (folder / "log.csv").read_bytes() == (folder / "out" / "log.csv").read_bytes()

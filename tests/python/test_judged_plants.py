@@ -69,7 +69,7 @@ def test_a_bag_of_the_thesis_lacks_the_rotors_and_says_so(tmp_path):
         stamp = messages._stamp(0.0)
         bag.write(odometry, 1, messages._odometry(stamp, state, [0.0] * 4))
         speeds = np.array([480.0, -480, 480, -480])
-        bag.write(commands, 1, messages.array(speeds, messages.layout(["w"], 4)))
+        bag.write(commands, 1, messages.make_array(speeds, messages.make_layout(["w"], 4)))
     found = refused("validate", "--plant", str(tmp_path / "thesis.bag"))
     assert "topics that end in ground_truth/odometry: none" in found
     assert "record both, or give a .csv or .mat file with the columns of a log" in found

@@ -82,7 +82,7 @@ def test_a_xacro_file_to_believe_in_is_refused_with_what_to_do(hangar, tmp_path)
 
 def test_a_law_without_motors_that_say_their_order_is_refused(hangar):
     still = with_plugins(vehicle(CROSS, air=AIR), plugin("odometry", {}))
-    with pytest.raises(qc.InputError, match="no plugin defines which rotor follows which number"):
+    with pytest.raises(qc.InputError, match="no plugin of model 'vehicle' accepts commands"):
         hangar(still, G).run(1, controller="pd", reference="hover")
 
 

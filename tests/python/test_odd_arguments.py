@@ -101,7 +101,7 @@ def test_a_csv_file_has_a_largest_size(monkeypatch):
 
 
 def test_engine_and_world_are_varied_alone():
-    assert "vary each" in refused("compare", "quadrotor", "--vary", "engine,world=eigen")
+    assert "Use an axis for each" in refused("compare", "quadrotor", "--vary", "engine,world=eigen")
 
 
 def test_a_time_at_which_the_clock_would_stand_still_is_refused():

@@ -175,7 +175,7 @@ def test_a_plugin_built_from_a_changed_header_is_refused_by_name(tmp_path, toy, 
     [
         ("create", "out of luck"),
         ("create_number", "an exception was thrown that is not a std::exception"),
-        ("null", "its create() returned no plugin"),
+        ("null", "its create() returned no plugin. Return one."),
         ("tag", "the plugin's table has no tag 'speed'"),
         ("state", "its state_size() is 1152921504606846976. Use at most 1000000."),
     ],

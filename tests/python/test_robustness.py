@@ -201,7 +201,7 @@ def test_any_terminal_and_locale_will_do(environment, toy):
     for arguments in (
         ["info", "täst€.urdf"],
         ["run", "täst€.urdf", "--duration", "0.02", "--out", "out"],
-        ["compare", "täst€.urdf", "toy.urdf", "--duration", "0.02", "--out", "out"],
+        ["compare", "täst€.urdf", "toy.urdf", "--duration", "0.02", "--out", "both"],
     ):
         assert ran(*arguments, env=environment).returncode == 0
     assert Path("out/path.png").exists()

@@ -150,5 +150,7 @@ def test_a_unit_off_the_centre_feels_how_it_is_carried_round(fitted):
 
 def test_noise_beyond_all_numbers_is_refused(fitted):
     unit = plugin("unit", "imu_plugin", linkName="mast", imuTopic="u", gyroscopeNoiseDensity=1e300)
-    with pytest.raises(qc.InputError, match=r"<gyroscopeNoiseDensity> .*; write .* <= 1000000"):
+    with pytest.raises(
+        qc.InputError, match=r"<gyroscopeNoiseDensity> .*is out of range. Use .* <= 1000000"
+    ):
         fitted(unit)

@@ -144,7 +144,7 @@ def test_events_are_told_by_time():
         ("events:\n  - {at: 1, cut: 1}\n  - {at: 1, cut: 5}", 3, "no rotor 5"),
         ("events:\n  - {at: 1, cut: 1.5}", 2, "no rotor 1.5"),
         ("events:\n  - {at: 1, cut: 0}", 2, "no rotor 0"),
-        ("events:\n  - {at: 1, weaken: 1, to: 1.5}", 2, "share"),
+        ("events:\n  - {at: 1, weaken: 1, to: 1.5}", 2, "remaining fraction"),
         ("events:\n  - {at: 1, gust: [1, 0, 0]}", 2, "lacks 'lasts'"),
         ("events:\n  - {at: 1, gust: [1, 0], lasts: 1}", 2, "3 numbers"),
         ("events:\n  - {at: soon, cut: 1}", 2, "a number"),

@@ -86,7 +86,7 @@ def test_the_player_on_the_first_page_flies_to_the_end(tmp_path):
 FOUND = {
     "install": ("install",),
     "trajectory": ("control",),
-    "tracking error": ("evaluate",),
+    "tracking error": ("tracking_errors", "evaluate"),
     "frames": ("concepts",),
     "NED": ("concepts",),
     "gains": ("tune", "control"),

@@ -119,7 +119,7 @@ def test_a_loop_of_topics_is_refused_by_name_unless_one_is_read_late(relays):
     behind = element("behind", takes="forth", publishes="back", gain=3)
     late = ahead.replace("<takes>", "<late>true</late><takes>")
     message = refusal(relays, ahead, behind)
-    assert f"toy.urdf:{FIRST}: plugin 'ahead' takes topic 'back' from 'behind'" in message
+    assert f"toy.urdf:{FIRST}: plugin 'ahead' reads topic 'back' from 'behind'" in message
     assert f"toy.urdf:{FIRST + 1}: plugin 'behind' takes topic 'forth' from 'ahead'" in message
     for elements in ((late, behind), (behind, late)):
         log = relays(*elements).run(0.005, topics=["forth", "back"])

@@ -121,7 +121,7 @@ def test_other_models_judge_too(tmp_path):
     [
         ({"law": "pidd"}, "there is no controller 'pidd'"),
         ({"law": "controllers:Mine"}, "controllers"),
-        ({"law": "pd:spins=1"}, "law 'pd' has no parameter 'spins'"),
+        ({"law": "pd:spins=1"}, "controller 'pd' has no parameter 'spins'"),
         ({"only": ["kp_xz"]}, "controller 'pd' has no parameter 'kp_xz'. Use some of scale, kp_xy"),
         ({"only": ["ki_xy"]}, "ki_xy is 0. Start with more than 0."),
         ({"only": ["drag"]}, "no parameter 'drag'"),

@@ -62,7 +62,7 @@ def test_the_same_command_writes_the_same_bytes_and_prints_what_it_found(out, tm
     assert main(["validate", *FAST[:-1], "--jobs", "3", "--out", str(tmp_path)]) == 0
     printed = capsys.readouterr()
     assert re.search(r"eigen +1 +[\d.e-]+\n", printed.out)
-    assert "because of" in printed.out
+    assert "cause  " in printed.out
     assert f"written {tmp_path / 'report.html'}" in printed.out
     assert printed.err == ""
     names = sorted(path.name for path in out.iterdir())
@@ -175,7 +175,7 @@ def test_flights_that_fail_are_rows_with_a_reason(tmp_path, capsys):
     assert main(["validate", *arguments]) == 3
     printed = capsys.readouterr()
     warning, error = printed.err.splitlines()
-    assert "more than half a turn per step, so that" in warning
+    assert "more than half a turn per step, so its" in warning
     assert error.startswith("error: 1 of 4 flights failed; the first (ode, sim_slow 1, ")
     assert "more than half a turn per step. Use a smaller step" in error
     assert re.search(r"ode +1 +failed\node +8 +[\d.e-]+\n", printed.out)

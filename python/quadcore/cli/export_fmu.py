@@ -34,7 +34,7 @@ def export_fmu(arguments: argparse.Namespace) -> None:
     from ..fmu.export import write_fmu
 
     if arguments.output.suffix.lower() != ".fmu":
-        raise InputError(f"-o {arguments.output}: name a file that ends in .fmu")
+        raise InputError(f"-o {arguments.output}: is not an FMU. Name a file that ends in .fmu.")
     refuse_log_every(arguments, "an FMU")
     plan = reading.make_flight_plan(arguments)
     write_fmu(arguments.output, plan)

@@ -57,6 +57,8 @@ def register(commands: Any) -> None:
 
 def run_flight(arguments: argparse.Namespace) -> None:
     """Simulate, write what was asked for, and print a summary."""
+    if arguments.wrenches:
+        check_wrenches(arguments.engine)
     with output_folder(arguments.out, run_folder.FILES, run_folder.DOCUMENT):
         _run(arguments)
 
@@ -72,8 +74,6 @@ def _run(arguments: argparse.Namespace) -> None:
     if pilot is not None:
         errors = TrackingError(columns)
         others.append(errors)
-    if arguments.wrenches:
-        check_wrenches(simulation.engine)
     terms = simulation.wrench_terms if arguments.wrenches else []
     if out is not None:
         steps = count_steps(plan.duration, simulation.dt)
