@@ -18,6 +18,7 @@ std::size_t count_fields() {
 }
 
 }  // namespace
+
 GuidedController::GuidedController(const Simulation& simulation, Controller controller,
                                    const VehicleDescription& flown)
     : simulation_(simulation),
