@@ -193,7 +193,7 @@ def test_from_python_bad_guidance_is_refused():
     for given, told in (
         ({"reference": 1}, "`against` is the baseline"),
         ({"reference": "hover"}, "reference requires a controller"),
-        ({"controller": "pd", "commands": [[0, 1, 1, 1, 1]]}, "give one of them"),
+        ({"controller": "pd", "commands": [[0, 1, 1, 1, 1]]}, "Give one of them"),
         ({"controller": 3}, "controller is 3"),
     ):
         with pytest.raises(qc.InputError, match=told):

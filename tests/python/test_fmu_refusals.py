@@ -183,7 +183,7 @@ def test_a_variable_is_asked_for_by_its_type(instance):
         assert "no variable has the value reference 99999" in refusal(instance, call, [99999])
     slave.reset()
     said = refusal(instance, slave.setReal, [instance.reference("seed")], [3.0])
-    assert "variable seed: is of type Integer, no Real" in said
+    assert "variable seed: its type is Integer, not Real" in said
     reference = byref(fmi2.fmi2ValueReference(instance.reference("drone_plugin.dragModel")))
     nothing = (c_char_p * 1)(None)
     said = refusal(instance, slave.fmi2SetString, slave.component, reference, 1, nothing)

@@ -120,7 +120,7 @@ def test_a_loop_of_topics_is_refused_by_name_unless_one_is_read_late(relays):
     late = ahead.replace("<takes>", "<late>true</late><takes>")
     message = refusal(relays, ahead, behind)
     assert f"toy.urdf:{FIRST}: plugin 'ahead' reads topic 'back' from 'behind'" in message
-    assert f"toy.urdf:{FIRST + 1}: plugin 'behind' takes topic 'forth' from 'ahead'" in message
+    assert f"toy.urdf:{FIRST + 1}: plugin 'behind' reads topic 'forth' from 'ahead'" in message
     for elements in ((late, behind), (behind, late)):
         log = relays(*elements).run(0.005, topics=["forth", "back"])
         forth, back = log.topics["forth"]["a"], log.topics["back"]["a"]
