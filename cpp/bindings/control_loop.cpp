@@ -17,7 +17,7 @@ namespace {
 
 using control::ReferenceShape;
 
-/// A control loop, and what a report tells of its calls.
+/// A control loop with the number, the saturation and the duration of its calls.
 class BoundLoop {
  public:
   BoundLoop(BoundFlight& bound, double rate, double delay, bool timed)

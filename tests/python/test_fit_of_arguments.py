@@ -111,5 +111,6 @@ def test_the_command_writes_the_expanded_document(flown, in_empty_folder):
 
 def test_a_model_that_is_read_has_no_arguments_to_be_found(flown):
     log, commands = flown
-    with pytest.raises(qc.InputError, match=r"free xacro\.frame_mass: a Model has no xacro arg"):
+    refusal = r"free xacro\.frame_mass: a Model has no xacro arguments\. Give the file\."
+    with pytest.raises(qc.InputError, match=refusal):
         qc.fit(qc.read_model("quadrotor"), log, MASS, commands)

@@ -14,6 +14,8 @@ from flights import quadrotor
 import quadcore as qc
 from quadcore.cli import main
 from quadcore.control import controllers, references
+from quadcore.simulation.controller_pilot import ControllerPilot
+from quadcore.simulation.flight import fly
 
 FLY = ["run", "quadrotor", "--engine", "eigen", "--xacro", "sim_slow:=1"]
 
@@ -113,6 +115,18 @@ def test_it_flies_what_python_flies(capsys):
     log = simulation.run(1, controller=law, reference=circle)
     assert np.array_equal(columns("log.csv")["x"], log.position[:, 0])
     assert np.array_equal(columns("log.csv")["error.z"], log.topics["error"]["z"])
+
+
+def test_a_built_in_controller_reports_saturation_whoever_gives_the_reference():
+    step = references.step(height=40)
+    counts = []
+    for reference in (step, lambda t: step(t)):
+        simulation = quadrotor("eigen", xacro_args={"sim_slow": 1})
+        pilot = ControllerPilot(controllers.geometric(), simulation, reference)
+        fly(simulation, 1.0, None, 100, lambda table, wrenches: None, pilot=pilot)
+        counts.append((pilot.updates, pilot.saturated))
+    assert counts[0] == counts[1]
+    assert counts[0][1] > 0
 
 
 def test_a_reference_of_ones_own_and_one_of_quadcore_fly_alike():

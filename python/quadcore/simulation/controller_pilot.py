@@ -66,6 +66,7 @@ class ControllerPilot(Pilot):
         self._reference = reference
         self._timed = timed
         self._loop: Optional[_core.ControlLoop] = None
+        self._reported = 0  # saturated calls of a built-in controller that Python calls
         self._limits = np.full(simulation.command_width, np.inf)
         for rotor in simulation.rotors:
             if rotor.command_index is not None:
@@ -89,7 +90,7 @@ class ControllerPilot(Pilot):
         Built-in controllers report this. A call of another controller counts if a speed reaches the
         limit of its motor.
         """
-        return 0 if self._loop is None else self._loop.saturated
+        return self._reported + (0 if self._loop is None else self._loop.saturated)
 
     @property
     def seconds(self) -> np.ndarray:
@@ -113,8 +114,20 @@ class ControllerPilot(Pilot):
         if isinstance(controller, BuiltInController) and isinstance(reference, references.Shape):
             shape = reference.shape
             return lambda steps: loop.follow(steps, controller.core, SENSED, shape)
-        call = self._function(simulation)
-        return lambda steps: loop.advance(steps, call, self._limits)
+        call, limits = self._function(simulation), self._limits
+        if isinstance(controller, BuiltInController):
+            call, limits = self._count_reported(call), np.full(len(limits), np.inf)
+        return lambda steps: loop.advance(steps, call, limits)
+
+    def _count_reported(self, call: Callable[[], Any]) -> Callable[[], Any]:
+        """Count what a built-in controller reports, which its speeds alone do not show."""
+
+        def count() -> Any:
+            speeds = call()
+            self._reported += self._controller.saturated
+            return speeds
+
+        return count
 
     def _function(self, simulation: Any) -> Callable[[], Any]:
         """Make the function that calls the controller, and its inner loop if there is one."""
