@@ -31,12 +31,15 @@ class ControllerFunction(Protocol):
 class Controller(Protocol):
     """Interface of controllers; a function ``controller(t, state, reference)`` suffices.
 
-    `reset` and all attributes are optional.
+    `reset`, `close` and all attributes are optional.
 
     Attributes
     ----------
     rate : float, default 500
         Calls per simulated second, 1/s; at most one call per step.
+    fixed_rate : bool, default False
+        Whether nothing may change `rate`: for a controller that counts its calls as time, such as
+        an autopilot in another process.
     delay : float, default 0
         Time from a call until its command reaches the motors, s, rounded up to whole steps. The
         command of the first call acts at once.
@@ -52,6 +55,13 @@ class Controller(Protocol):
         ----------
         simulation : Simulation
             Simulation that the controller is to command.
+        """
+
+    def close(self) -> None:
+        """End a run: stop processes, close sockets, remove temporary files.
+
+        Called once after every `reset`, however the run ends: also after an error, an interrupt or
+        the time limit of a study. It should return within 5 s.
         """
 
     def __call__(
@@ -104,6 +114,11 @@ def check_callable(controller: Any) -> None:
         raise InputError(f"controller: cannot be called as {form}: {error}") from None
 
 
+def has_fixed_rate(controller: Any) -> bool:
+    """Whether a controller declares that its rate must not change."""
+    return bool(getattr(controller, "fixed_rate", False))
+
+
 def set_parameter(controller: Any, name: str, value: float) -> None:
     """Set the rate or delay of a controller, or a parameter of a built-in controller.
 
@@ -112,6 +127,12 @@ def set_parameter(controller: Any, name: str, value: float) -> None:
     InputError
         If the controller does not have the attribute.
     """
+    if name == "rate" and has_fixed_rate(controller):
+        if value == controller.rate:
+            return
+        raise InputError(
+            f"controller: its rate is fixed at {controller.rate:g} 1/s. Do not set another."
+        )
     if name in ("rate", "delay"):
         try:
             setattr(controller, name, value)

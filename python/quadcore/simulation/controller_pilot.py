@@ -104,6 +104,12 @@ class ControllerPilot(Pilot):
         if reset is not None:
             reset(simulation)
 
+    def close(self) -> None:
+        """Close the controller, if it has a method for that."""
+        close = getattr(self._controller, "close", None)
+        if close is not None:
+            close()
+
     def begin(self, simulation: Any, flight: _core.Flight) -> Callable[[int], None]:
         """Return the function that advances a flight by a number of steps.
 

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import math
 import time
-from contextlib import nullcontext
+from contextlib import contextmanager, nullcontext
 from numbers import Real
-from typing import TYPE_CHECKING, Any, Callable, List, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Iterator, List, Optional, Sequence
 
 import numpy as np
 
 from .. import _core
 from ..support import interrupts
 from ..support.arguments import shorten
+from ..support.user_code import describe_error
+from ..support.warning import warn
 from .commands import CommandsLike, check_commands
 from .engines import check_wrenches
 from .log import Log
@@ -54,6 +56,9 @@ class Pilot:
     def speeds(self, simulation: Any) -> npt.ArrayLike:
         """Return the command until the next call, rad/s."""
         raise NotImplementedError
+
+    def close(self) -> None:
+        """Release what `reset` acquired; called once after every `reset`."""
 
     def add_columns(self, table: np.ndarray) -> np.ndarray:
         """Add the columns of the pilot to rows of a log."""
@@ -105,11 +110,28 @@ def fly(
     wrenches = wrenches and len(simulation.wrench_terms) > 0
     moves = pilot is not None and pilot.moves
     run = nullcontext() if moves else _core.Run(simulation)
-    if pilot is not None:
-        pilot.reset(simulation)  # which may yet put the vehicle where it is to begin
-    with run:
-        flight = _core.Flight(simulation, table, log_every, wrenches, topics)
-        _advance(simulation, flight, total, _ROWS * log_every, receive, progress, pilot)
+    with nullcontext() if pilot is None else _close_at_end(pilot):
+        if pilot is not None:
+            pilot.reset(simulation)  # which may yet put the vehicle where it is to begin
+        with run:
+            flight = _core.Flight(simulation, table, log_every, wrenches, topics)
+            _advance(simulation, flight, total, _ROWS * log_every, receive, progress, pilot)
+
+
+@contextmanager
+def _close_at_end(pilot: Pilot) -> Iterator[None]:
+    """Close the pilot after the block, however it ends; interrupts wait until that is done."""
+    try:
+        yield
+    except BaseException:
+        with interrupts.hold_signals():
+            try:
+                pilot.close()
+            except Exception as error:  # the reason why the flight ended matters more
+                warn(f"controller: its close() failed: {describe_error(error)}")
+        raise
+    with interrupts.hold_signals():
+        pilot.close()
 
 
 def _advance(

@@ -97,7 +97,7 @@ def _starts_module_in_c(frame: Optional[FrameType]) -> bool:
 
 @contextmanager
 def hold_signals() -> Iterator[None]:
-    """Defer `SIGNALS` until the end of the block, except for a second Ctrl-C.
+    """Defer `SIGNALS` and SIGALRM until the end of the block, except for a second Ctrl-C.
 
     Use it for steps that must be complete, such as the replacement of a file. It has no effect
     outside the main thread, where Python runs no handlers.
@@ -116,7 +116,7 @@ def hold_signals() -> Iterator[None]:
             handlers[number](number, frame)
 
     try:
-        for number in SIGNALS:
+        for number in (*SIGNALS, signal.SIGALRM):
             handler = signal.getsignal(number)
             if callable(handler):
                 handlers[number] = handler
