@@ -59,7 +59,8 @@ class Evaluation(NamedTuple):
         Row per combination, over its seeds: flights, not_flown and failure_rate. For each of
         `JUDGED`, mean and interval (low, high) of the successful flights, and cvar, in which a
         failure counts as infinite. Also the mean difference from the first controller, paired by
-        seed, with its interval.
+        seed, with its interval and the number of pairs. is_random states whether seeds change the
+        flights (None if unknown). For is_best and p_best, see `mark_best`.
     margins : list of dict
         Row per controller, empty without a search; see `evaluate.margins`.
     poles : list of dict

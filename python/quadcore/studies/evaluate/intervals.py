@@ -1,36 +1,57 @@
-"""Bootstrap intervals and conditional value at risk of means over seeds."""
+"""Confidence intervals, tests and conditional value at risk of means over seeds.
+
+Student's t distribution gives the intervals and tests: for few seeds, a percentile bootstrap covers
+much less than it states (50 % instead of 95 % with two seeds).
+"""
 
 from __future__ import annotations
 
 import math
-from functools import lru_cache
-from typing import Tuple
+from typing import List, Sequence, Tuple
 
 import numpy as np
+from scipy.special import stdtr, stdtrit
 
-RESAMPLES = 2000
 CONFIDENCE = 0.95
 WORST = 0.1
 """Share of the worst seeds; their mean is the conditional value at risk."""
+EQUAL = 1e-9
+"""Position errors that differ by less are equal, m: the difference is rounding noise."""
 
 
 def compute_interval(values: np.ndarray) -> Tuple[float, float]:
-    """Return the percentile-bootstrap interval of the mean; NaN for fewer than two values.
+    """Return Student's interval of the mean; NaN for fewer than two values.
 
     To compare two controllers, pass the differences for each seed.
     """
     if len(values) < 2:
         return math.nan, math.nan
-    means = values[_resample(len(values))].mean(axis=1)
-    low, high = np.quantile(means, [(1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2])
-    return float(low), float(high)
+    reach = float(stdtrit(len(values) - 1, (1 + CONFIDENCE) / 2)) * _compute_standard_error(values)
+    mean = float(values.mean())
+    return mean - reach, mean + reach
 
 
-@lru_cache(maxsize=4)
-def _resample(count: int) -> np.ndarray:
-    # A fixed seed: equal values have equal intervals.
-    picks: np.ndarray = np.random.default_rng(0).integers(count, size=(RESAMPLES, count))
-    return picks
+def compute_p_value(values: np.ndarray) -> float:
+    """Return the two-sided p-value of a zero mean (Student's t test); NaN for one value or none.
+
+    Differences that are equal for all seeds are certain: 0, or 1 if they are below `EQUAL`.
+    """
+    if len(values) < 2:
+        return math.nan
+    if np.ptp(values) < EQUAL:
+        return float(abs(values.mean()) < EQUAL)
+    size = abs(float(values.mean())) / _compute_standard_error(values)
+    return 2 * float(stdtr(len(values) - 1, -size))
+
+
+def adjust_p_values(p_values: Sequence[float]) -> List[float]:
+    """Adjust p-values of several comparisons (Holm, Scand. J. Statistics 6, 1979); NaN remains."""
+    found = np.array(p_values, dtype=float)
+    known = np.flatnonzero(~np.isnan(found))
+    order = known[np.argsort(found[known], kind="stable")]
+    factors = np.arange(len(order), 0, -1)
+    found[order] = np.minimum(np.maximum.accumulate(factors * found[order]), 1)
+    return [float(value) for value in found]
 
 
 def compute_cvar(values: np.ndarray) -> float:
@@ -39,3 +60,7 @@ def compute_cvar(values: np.ndarray) -> float:
         return math.nan
     count = max(1, math.ceil(WORST * len(values) - 1e-9))
     return float(np.sort(values)[-count:].mean())
+
+
+def _compute_standard_error(values: np.ndarray) -> float:
+    return float(values.std(ddof=1)) / math.sqrt(len(values))

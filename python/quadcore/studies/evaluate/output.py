@@ -19,6 +19,7 @@ from ..table import (
     save_files,
 )
 from ..tracking_metrics import MEANINGS, UNITS
+from .best_controllers import describe_seeds
 from .evaluate import Evaluation
 from .intervals import CONFIDENCE
 from .margins import BOX, ENDS, format_margin
@@ -221,6 +222,7 @@ def _page_values(evaluation: Evaluation, plan: Plan, images: Mapping[str, bytes]
         "shown": choose_columns(lines),
         "lines": lines[:ROWS_OF_PAGE],
         "more": max(0, len(evaluation.groups) - ROWS_OF_PAGE),
+        "notes": describe_seeds(evaluation.groups),
         "failures": failures[:ROWS_OF_PAGE],
         "confidence": f"{100 * CONFIDENCE:g} %",
         "meanings": MEANINGS,

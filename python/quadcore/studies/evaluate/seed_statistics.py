@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Dict, List, Mapping, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
 from ..measured_flight import Outcome
 from ..tracking_metrics import UNITS
-from .intervals import compute_cvar, compute_interval
+from .best_controllers import RANKED, mark_best
+from .intervals import EQUAL, compute_cvar, compute_interval
 
 JUDGED = tuple(UNITS)
 """Metrics with statistics over the seeds."""
@@ -41,13 +42,15 @@ def summarise_seeds(
     for group, name, outcome in zip(groups, names, outcomes):
         flights.setdefault(group, []).append(outcome)
         named.setdefault(group, name)
-    return [
+    rows = [
         {
             **{name: value for name, value in named[group].items() if name != "seed"},
             **_summarise(some, flights[(0, *group[1:])]),
         }
         for group, some in flights.items()
     ]
+    mark_best(rows, [[f.measures[RANKED] for f in some] for some in flights.values()])
+    return rows
 
 
 def _summarise(flights: Sequence[Outcome], first: Sequence[Outcome]) -> Dict[str, Any]:
@@ -59,11 +62,15 @@ def _summarise(flights: Sequence[Outcome], first: Sequence[Outcome]) -> Dict[str
         "flights": len(took_place),
         "not_flown": len(flights) - len(took_place),
         "failure_rate": 1 - len(flew) / len(took_place) if took_place else math.nan,
+        "is_random": _is_random(flew),
+        "pairs": 0 if flights is first else len(pairs),
     }
+    certain = row["is_random"] is False and _is_random([f for f in first if f.flew]) is False
     for name in JUDGED:
         values = _pick_finite([flight.measures[name] for flight in flew])
         row[f"mean_{name}"] = float(values.mean()) if len(values) else math.nan
-        row[f"low_{name}"], row[f"high_{name}"] = compute_interval(values)
+        drawn = values[:0] if row["is_random"] is False else values
+        row[f"low_{name}"], row[f"high_{name}"] = compute_interval(drawn)
         # A failure is worse than any success.
         lost = np.full(len(took_place) - len(flew), math.inf)
         row[f"cvar_{name}"] = compute_cvar(np.concatenate([values, lost]))
@@ -71,8 +78,20 @@ def _summarise(flights: Sequence[Outcome], first: Sequence[Outcome]) -> Dict[str
         if flights is first:
             apart = apart[:0]
         row[f"difference_{name}"] = float(apart.mean()) if len(apart) else math.nan
-        row[f"difference_low_{name}"], row[f"difference_high_{name}"] = compute_interval(apart)
+        ends = compute_interval(apart[:0] if certain else apart)
+        row[f"difference_low_{name}"], row[f"difference_high_{name}"] = ends
     return row
+
+
+def _is_random(flights: Sequence[Outcome]) -> Optional[bool]:
+    """Whether position errors differ among seeds; None for fewer than two flights."""
+    if len(flights) < 2:
+        return None
+    return any(
+        np.ptp([flight.measures[name] for flight in flights]) >= EQUAL
+        for name in JUDGED
+        if UNITS[name] == "m"
+    )
 
 
 def _pick_finite(values: Sequence[float]) -> np.ndarray:

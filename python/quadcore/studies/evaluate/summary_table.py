@@ -6,22 +6,18 @@ import math
 from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Sequence
 
 from ..table import format_number
+from .best_controllers import CELL
+from .intervals import EQUAL
 
 if TYPE_CHECKING:
     from .evaluate import Evaluation
 
-NAMES = ("controller", "reference", "engine", "model", "scenario")
+NAMES = ("controller", *CELL)
 _SHOWN = ("rms_position", "max_position", "final_position")
 
 
 def format_rows(evaluation: Evaluation) -> List[Dict[str, str]]:
-    """Format a row per combination; the best controller of each group is marked."""
-    best: Dict[Any, float] = {}
-    for group in evaluation.groups:
-        key = tuple(group[name] for name in NAMES[1:])
-        value = group["mean_final_position"]
-        if group["failure_rate"] == 0 and not math.isnan(value):
-            best[key] = min(value, best.get(key, math.inf))
+    """Format a row per combination; the best controllers of each cell are marked."""
     lines = []
     for group in evaluation.groups:
         flown = round((1 - group["failure_rate"]) * group["flights"]) if group["flights"] else 0
@@ -29,13 +25,10 @@ def format_rows(evaluation: Evaluation) -> List[Dict[str, str]]:
         line["flown"] = f"{flown} of {group['flights']}"
         line["flown"] += f", {group['not_flown']} not" * (group["not_flown"] > 0)
         for name in _SHOWN:
-            line[name] = format_error(group[f"mean_{name}"]) + _format_interval(group, name)
+            line[name] = format_error(group[f"mean_{name}"]) + _format_interval(group, name, flown)
         line["cvar"] = format_error(group["cvar_final_position"])
-        line["difference"] = format_error(group["difference_final_position"])
-        line["difference"] += _format_interval(group, "final_position", "difference_")
-        key = tuple(group[name] for name in NAMES[1:])
-        is_best = group["failure_rate"] == 0 and group["mean_final_position"] == best.get(key)
-        line["best"] = "*" if is_best else ""
+        line["difference"] = _format_difference(group)
+        line["best"] = "*" if group["is_best"] else ""
         lines.append(line)
     return lines
 
@@ -51,9 +44,19 @@ def choose_columns(lines: Sequence[Mapping[str, str]]) -> Dict[str, str]:
     return shown
 
 
-def _format_interval(group: Mapping[str, Any], name: str, of: str = "") -> str:
+def _format_difference(group: Mapping[str, Any]) -> str:
+    """Format the difference from the first controller, as "equal" below `EQUAL`."""
+    value = group["difference_final_position"]
+    if abs(value) < EQUAL:
+        return "equal"
+    interval = _format_interval(group, "final_position", group["pairs"], "difference_")
+    return format_error(value) + interval
+
+
+def _format_interval(group: Mapping[str, Any], name: str, seeds: int, of: str = "") -> str:
+    """Format an interval with its number of seeds; "" without one."""
     low, high = group[f"{of}low_{name}"], group[f"{of}high_{name}"]
-    return "" if math.isnan(low) else f" [{low:.3g}, {high:.3g}]"
+    return "" if math.isnan(low) else f" [{low:.3g}, {high:.3g}] n={seeds}"
 
 
 def format_error(value: float) -> str:
