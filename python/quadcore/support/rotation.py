@@ -90,6 +90,28 @@ def to_matrix(orientation: np.ndarray) -> np.ndarray:
     return np.stack(entries, axis=-1).reshape((*x.shape, 3, 3))
 
 
+def compose_roll_pitch_yaw(angles: np.ndarray) -> np.ndarray:
+    """Return the matrix Rz(yaw) Ry(pitch) Rx(roll) of an origin in a URDF.
+
+    Parameters
+    ----------
+    angles : ndarray (3,)
+        Roll, pitch, yaw, rad.
+
+    Returns
+    -------
+    ndarray (3, 3)
+    """
+    (cr, cp, cy), (sr, sp, sy) = np.cos(angles), np.sin(angles)
+    return np.array(
+        [
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+            [-sp, cp * sr, cp * cr],
+        ]
+    )
+
+
 def turn(orientation: np.ndarray, angle: np.ndarray) -> np.ndarray:
     """Rotate a body about an axis in body axes.
 
