@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 _OUT = Path("out/sweep")
-_HIDDEN = ("measure", "first_interval", "total_interval")
+_HIDDEN = ("measure", "pawn_interval", "first_interval", "total_interval")
 
 
 def register(commands: Any) -> None:

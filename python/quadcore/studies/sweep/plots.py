@@ -10,7 +10,7 @@ from ...report.colours import PALETTE
 from ...report.decimation import pick_evenly
 from ...report.plots import dress, make_figure, panels, png
 from .plan import AnyPlan
-from .sensitivity import COMBINATION, list_combinations, list_numeric_axes
+from .sensitivity import COMBINATION, list_combinations, list_numeric_axes, measure_effect
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -111,7 +111,7 @@ def _draw_distribution(
 
 def _draw_sensitivity(rows: Sequence[Mapping[str, Any]], measure: str) -> Figure:
     is_sobol = any(np.isfinite(row["total"]) for row in rows)
-    what = "Sobol index" if is_sobol else "Rank correlation"
+    what = "Sobol index" if is_sobol else "PAWN index"
     height = 1.1 + 0.3 * len(rows)
     figure = make_figure(f"Sensitivity of {measure}", 8, height)
     axes = figure.add_axes((0.45, 0.5 / height, 0.52, 1 - 1.0 / height))
@@ -132,9 +132,19 @@ def _draw_sensitivity(rows: Sequence[Mapping[str, Any]], measure: str) -> Figure
             )
         axes.legend(frameon=False, fontsize="small")
     else:
-        axes.barh(places, [row["rank"] for row in rows], height=0.6, color=PALETTE[0])
-        axes.set_xlim(-1, 1)
-    axes.set_xlabel(f"{what} (1)" + ", with 95 % interval" * is_sobol)
+        axes.barh(
+            places,
+            [row["pawn"] for row in rows],
+            xerr=[row["pawn_interval"] for row in rows],
+            height=0.6,
+            color=PALETTE[0],
+            capsize=2,
+        )
+        noise = [row["pawn_noise"] for row in rows]
+        axes.plot(noise, places, "|", color="black", markersize=12, label="95 % without effect")
+        axes.set_xlim(0, 1)
+        axes.legend(frameon=False, fontsize="small")
+    axes.set_xlabel(f"{what} (1), with 95 % interval")
     axes.axvline(0, color="black", linewidth=0.8)
     axes.set_yticks(places)
     named = [{name: row[name] for name in COMBINATION if name in row} for row in rows]
@@ -147,8 +157,7 @@ def _leading_axes(rows: Sequence[Mapping[str, Any]]) -> List[str]:
     """Return the two axes with the strongest effect."""
     weight: Dict[str, float] = {}
     for row in rows:
-        size = row["total"] if np.isfinite(row["total"]) else abs(row["rank"])
-        weight[row["axis"]] = max(weight.get(row["axis"], 0.0), float(np.nan_to_num(size)))
+        weight[row["axis"]] = max(weight.get(row["axis"], 0.0), measure_effect(row))
     return sorted(weight, key=lambda axis: -weight[axis])[:2]
 
 

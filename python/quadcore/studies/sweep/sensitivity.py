@@ -1,9 +1,10 @@
 """Sensitivity of the metrics of a sweep to its parameters.
 
-Rank correlations (Spearman) exist for every design; they miss effects that are not monotonic. The
-design "saltelli" also gives Sobol indices: the share of the variance that a parameter causes alone
-(first order) and together with others (total). See Saltelli et al., Computer Physics
-Communications 181, 2010.
+PAWN indices exist for every design and rank the parameters; see `pawn`. Rank correlations
+(Spearman) add the direction of an effect; they miss effects that are not monotonic. The design
+"saltelli" also gives Sobol indices: the share of the variance that a parameter causes alone (first
+order) and together with others (total). See Saltelli et al., Computer Physics Communications 181,
+2010.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import numpy as np
 
 from ...support.optional_packages import require_package
 from ..distributions import make_unit_problem
+from .pawn import compute_pawn
 from .plan import AnyPlan
 
 Columns = Mapping[str, np.ndarray]
@@ -24,6 +26,7 @@ FAILED = "failed"
 
 COMBINATION = ("controller", "reference", "engine", "model")
 
+_PAWN = ("pawn", "pawn_interval", "pawn_noise")
 _INDICES = ("first", "first_interval", "total", "total_interval")
 
 
@@ -40,21 +43,31 @@ def compute_sensitivities(plan: AnyPlan, columns: Columns) -> List[Dict[str, Any
     Returns
     -------
     list of dict
-        Row per combination, metric and numeric axis: ``rank``, the rank correlation, and
-        ``first``, ``total`` and the half-widths of their 95 % intervals. These are NaN for other
-        designs, for axes without a distribution, and if rows failed.
+        Row per combination, metric and numeric axis, the strongest effect first. ``pawn`` is the
+        PAWN index; the half-width of its 95 % interval and its noise follow. ``rank`` is the rank
+        correlation. ``first`` and ``total``, with their half-widths, are NaN for other designs, for
+        axes without a distribution, and if rows failed.
     """
     found = []
     for names, chosen in list_combinations(columns):
         for measure, values in list_metrics(plan, columns, chosen):
             sobol = _sobol_indices(plan, columns, chosen, values)
+            rows = []
             for axis in list_numeric_axes(plan, columns):
-                rank = _rank_correlation(columns[axis][chosen], values)
-                of_axis = sobol.get(axis, dict.fromkeys(_INDICES, math.nan))
-                if not (math.isnan(rank) and math.isnan(of_axis["total"])):
-                    row = {**names, "measure": measure, "axis": axis, "rank": rank}
-                    found.append({**row, **of_axis})
+                row: Dict[str, Any] = {**names, "measure": measure, "axis": axis}
+                row.update(zip(_PAWN, compute_pawn(columns[axis][chosen], values)))
+                row["rank"] = _rank_correlation(columns[axis][chosen], values)
+                row.update(sobol.get(axis, dict.fromkeys(_INDICES, math.nan)))
+                if not (math.isnan(row["rank"]) and math.isnan(row["total"])):
+                    rows.append(row)
+            found += sorted(rows, key=measure_effect, reverse=True)
     return found
+
+
+def measure_effect(row: Mapping[str, Any]) -> float:
+    """Return the index by which axes are ranked: the total Sobol index, else PAWN, else |rank|."""
+    sizes = row["total"], row["pawn"], abs(row["rank"])
+    return next((float(size) for size in sizes if not math.isnan(size)), 0.0)
 
 
 def list_combinations(columns: Columns) -> Iterator[Tuple[Dict[str, str], np.ndarray]]:
