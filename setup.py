@@ -10,6 +10,6 @@ setup(
     **generate_distutils_setup(
         packages=find_packages("python"),
         package_dir={"": "python"},
-        package_data={"quadcore": ["py.typed", "*.pyi", "report/templates/*"]},
+        package_data={"quadcore": ["py.typed", "*.pyi", "report/templates/*", "formats/recordings/mappings/*"]},
     )
 )

@@ -8,6 +8,7 @@ from typing import Any
 
 from ..simulation.log import Log, check_log_path
 from ..support.output_files import remove_leftovers
+from . import options
 from .parser import add_command
 
 _FORMATS = ".csv, .mat or .bag"
@@ -18,11 +19,21 @@ def register(commands: Any) -> None:
     parser = add_command(
         commands,
         "convert",
-        "Write a log in another format; every bit is kept.",
+        "Write a log in another format. Every bit of quadcore's own logs is kept.",
         convert_log,
-        "quadcore convert out/spiral/log.csv spiral.mat",
+        """
+        quadcore convert out/spiral/log.csv spiral.mat
+        quadcore convert flight.ulg flight.csv
+        """,
     )
-    parser.add_argument("source", metavar="A", type=Path, help=f"log to read: {_FORMATS}")
+    parser.add_argument(
+        "source",
+        metavar="A",
+        type=Path,
+        help=f"log to read: {_FORMATS}, or a recording of a "
+        "real flight: ULog, Crazyflie micro-SD, blackbox, CSV, bag",
+    )
+    options.add_mapping(parser)
     parser.add_argument("target", metavar="B", type=Path, help=f"log to write: {_FORMATS}")
 
 
@@ -30,4 +41,4 @@ def convert_log(arguments: argparse.Namespace) -> None:
     """Read one log, write the other."""
     check_log_path(arguments.target)
     remove_leftovers(arguments.target)
-    Log.of_file(arguments.source).to_file(arguments.target)
+    Log.of_file(arguments.source, arguments.mapping).to_file(arguments.target)

@@ -9,6 +9,7 @@ from typing import Any, Optional, Sequence, Type
 
 from .._core import engines
 from ..control import controllers, references
+from ..formats.recordings import list_mappings
 from ..model import resources
 from ..simulation.engines import ENGINE, list_engines
 from ..simulation.scenarios import NONE
@@ -59,6 +60,18 @@ class FlightOptions(Options):
     spawn: Optional[Sequence[Number]] = field(
         default=None, metadata=change_option("spawn", without=SPAWNED)
     )
+
+
+def add_mapping(parser: argparse.ArgumentParser) -> None:
+    """Add the option that describes the columns of recordings of real flights."""
+    action = find_group(parser, STUDY).add_argument(
+        "--mapping",
+        metavar="FILE",
+        help="columns, units and frames of recordings of real flights: YAML file, or one of "
+        + ", ".join(list_mappings())
+        + " (default: the one that fits)",
+    )
+    complete_from(action, list_mappings())
 
 
 def add_options(

@@ -56,8 +56,10 @@ def add_logs(parser: argparse.ArgumentParser) -> None:
         metavar="LOG",
         nargs="+",
         type=Path,
-        help="log, .csv, .mat or .bag; or a folder that `run` or `compare` wrote",
+        help="log of quadcore (.csv, .mat or .bag); recording of a real flight (ULog, Crazyflie "
+        "micro-SD, blackbox, CSV, bag); or a folder that `run` or `compare` wrote",
     )
+    options.add_mapping(parser)
     find_group(parser, OUTPUT).add_argument(
         "--names",
         metavar="A,B",
@@ -77,7 +79,7 @@ def make_page(arguments: argparse.Namespace) -> None:
         raise InputError(f"{out}: is not a page. Name a file that ends in .html.")
     check_writable(out)
     flights = [
-        PlayerFlight(name, Log.of_file(log), find_rotors(log, arguments.model))
+        PlayerFlight(name, Log.of_file(log, arguments.mapping), find_rotors(log, arguments.model))
         for name, log in zip(names, logs)
     ]
     text = render_page(flights, ", ".join(names))

@@ -45,7 +45,7 @@ def register(commands: Any) -> None:
 def plot_logs(arguments: argparse.Namespace) -> None:
     """Read the logs and write the plots."""
     files, names = read_logs(arguments)
-    logs = [Log.of_file(file) for file in files]
+    logs = [Log.of_file(file, arguments.mapping) for file in files]
     if len(logs) == 1:
         logs[0].title = names[0]
         written = logs[0].plot(arguments.out)

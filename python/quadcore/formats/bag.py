@@ -40,7 +40,7 @@ def read_commands(path: Path, names: Sequence[str]) -> Table:
     InputError
         If no topic or several topics match, or messages have another length.
     """
-    with _open_bag(path) as bag:
+    with open_bag(path) as bag:
         found = [c for c in bag.connections if c.topic.endswith("vel_cmd") and c.msgtype == ARRAY]
         topics = sorted({connection.topic for connection in found})
         if len(topics) != 1:
@@ -50,7 +50,7 @@ def read_commands(path: Path, names: Sequence[str]) -> Table:
             )
         start = bag.start_time if bag.start_time > _ON_A_WALL * 1e9 else 0
         rows: Dict[int, np.ndarray] = {}  # of those of one time the last counts
-        for time, message in _read_messages(bag, found):
+        for time, message in read_messages(bag, found):
             speeds = np.asarray(message.data, dtype=float)
             if len(speeds) != len(names) - 1:
                 raise InputError(
@@ -80,7 +80,7 @@ def read_log(path: Path) -> LogRows:
     InputError
         If the bag is damaged or contains no log.
     """
-    with _open_bag(path) as bag:
+    with open_bag(path) as bag:
         whole = [c for c in bag.connections if c.topic == LOG and c.msgtype == ARRAY]
         columns, rows, ignored = (
             _read_whole_rows(bag, whole) if whole else _read_node_rows(path, bag)
@@ -94,7 +94,7 @@ def read_log(path: Path) -> LogRows:
 
 
 def _read_whole_rows(bag: Any, found: Sequence[Any]) -> Tuple[List[str], np.ndarray, List[str]]:
-    messages = [message for _, message in _read_messages(bag, found)]
+    messages = [message for _, message in read_messages(bag, found)]
     labels = [dimension.label for dimension in messages[0].layout.dim] if messages else []
     if not labels:
         raise InputError(f"{bag.path}: {LOG} does not name its columns; quadcore wrote other bags")
@@ -145,16 +145,17 @@ def _find_topic(path: Path, bag: Any, kind: str, name: str) -> List[Any]:
 
 
 def _read_stamps(bag: Any, found: Sequence[Any]) -> Dict[int, Any]:
-    messages = (message for _, message in _read_messages(bag, found))
+    messages = (message for _, message in read_messages(bag, found))
     return {m.header.stamp.sec * 10**9 + m.header.stamp.nanosec: m for m in messages}
 
 
 def _read_clock(bag: Any) -> List[int]:
     found = [c for c in bag.connections if c.msgtype == "rosgraph_msgs/msg/Clock"]
-    return [m.clock.sec * 10**9 + m.clock.nanosec for _, m in _read_messages(bag, found)] or [0]
+    return [m.clock.sec * 10**9 + m.clock.nanosec for _, m in read_messages(bag, found)] or [0]
 
 
-def _read_messages(bag: Any, found: Sequence[Any]) -> Iterator[Tuple[int, Any]]:
+def read_messages(bag: Any, found: Sequence[Any]) -> Iterator[Tuple[int, Any]]:
+    """Read the messages of some connections with their times, ns."""
     if not found:  # which would be all
         return
     for connection in found:
@@ -171,7 +172,8 @@ def _read_messages(bag: Any, found: Sequence[Any]) -> Iterator[Tuple[int, Any]]:
 
 
 @contextlib.contextmanager
-def _open_bag(path: Path) -> Iterator[Any]:
+def open_bag(path: Path) -> Iterator[Any]:
+    """Open a bag; raises `InputError` if rosbags is missing or the file is damaged."""
     with require_package("a bag", "rosbags", "bag"):
         from rosbags.rosbag1 import Reader
     try:

@@ -10,6 +10,7 @@ import numpy as np
 
 from .._core import InputError
 from ..formats import find_format, mat
+from ..formats.recordings import is_recording, make_log_rows, read_recording
 from ..formats.rows import LogFile, list_wrench_columns, split_columns
 from ..support.arguments import NAME, check
 from ..support.import_lock import LOCK
@@ -55,22 +56,29 @@ class Log(Trajectory):
         return cls(rows[:, : len(of_state)], wrenches, title, ignored, topics)
 
     @classmethod
-    def of_file(cls, path: PathLike) -> Log:
-        """Read a ``.csv``, ``.mat`` or ``.bag`` file that `to_file` wrote, bit-identically.
+    def of_file(cls, path: PathLike, mapping: Union[PathLike, None] = None) -> Log:
+        """Read a file that `to_file` wrote, bit-identically, or a recording of a real flight.
 
         Parameters
         ----------
         path : str or path
-            File; its suffix selects the format.
+            ``.csv``, ``.mat`` or ``.bag`` file of quadcore, or a ULog, a Crazyflie micro-SD log, a
+            blackbox log, a CSV file or a bag with other columns; also compressed by gzip.
+        mapping : str or path, optional
+            Description of the columns of a recording: a YAML file or a shipped name. Default: the
+            shipped mapping that fits.
 
         Raises
         ------
         InputError
-            If the suffix is unknown, the file cannot be read, or it contains no log; the message
+            If the format is unknown, the file cannot be read, or it contains no log; the message
             begins with the file and, for text, the line.
         """
         file = _check_path(path)
-        read = find_format(file, _READ).read_log(file)
+        if mapping is not None or is_recording(file):
+            read = make_log_rows(read_recording(file, None if mapping is None else str(mapping)))
+        else:
+            read = find_format(file, _READ).read_log(file)
         return cls.of_rows(read.rows, read.columns, read.wrenches, read.ignored)
 
     def to_dict(self) -> Dict[str, np.ndarray]:

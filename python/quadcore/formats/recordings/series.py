@@ -1,0 +1,116 @@
+"""Numbers over time, as a file of a flight contains them."""
+
+from __future__ import annotations
+
+import gzip
+import zlib
+from pathlib import Path
+from typing import Dict, Mapping, NamedTuple, Sequence
+
+import numpy as np
+
+from ..._core import InputError
+from ...support.input_files import open_file, read_bytes
+from ...support.parameters import suggest
+
+_LARGEST = 10**9  # bytes
+_HEAD = 100_000  # bytes, enough for each header
+_GZIP = b"\x1f\x8b"
+
+
+class Series(NamedTuple):
+    """Values over their own times.
+
+    Attributes
+    ----------
+    time : ndarray (rows,)
+        Time, s.
+    values : ndarray (rows, k)
+        Values.
+    """
+
+    time: np.ndarray
+    values: np.ndarray
+
+
+class Columns:
+    """Columns of a file by name, each with its times.
+
+    Parameters
+    ----------
+    where
+        File, for messages.
+    columns
+        Columns by name, shape (rows,).
+    times
+        Times of each column, s.
+    """
+
+    def __init__(
+        self, where: str, columns: Mapping[str, np.ndarray], times: Mapping[str, np.ndarray]
+    ) -> None:
+        self.where = where
+        self._columns, self._times = columns, times
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._columns
+
+    @property
+    def names(self) -> Sequence[str]:
+        """Names of the columns."""
+        return list(self._columns)
+
+    def stack(self, names: Sequence[str]) -> Series:
+        """Return columns of one topic side by side.
+
+        Raises
+        ------
+        InputError
+            If a column does not exist, or the columns have different lengths.
+        """
+        for name in names:
+            if name not in self._columns:
+                near = suggest(name, self.names)
+                raise InputError(f"{self.where}: column '{name}' does not exist{near}")
+        parts = [np.asarray(self._columns[name], dtype=float) for name in names]
+        if len({len(part) for part in parts}) != 1:
+            raise InputError(f"{self.where}: {', '.join(names)} have different numbers of rows")
+        return Series(self._times[names[0]], np.column_stack(parts))
+
+
+def make_columns(where: str, time: np.ndarray, columns: Mapping[str, np.ndarray]) -> Columns:
+    """Make columns that share their times."""
+    return Columns(where, columns, dict.fromkeys(columns, time))
+
+
+def read_head(path: Path) -> bytes:
+    """Read the first bytes of a file, also of a compressed one (gzip)."""
+    with open_file(path) as stream:
+        try:
+            head = stream.read(len(_GZIP))
+            stream.seek(0)
+            if head != _GZIP:
+                return stream.read(_HEAD)
+            with gzip.open(stream) as unpacked:
+                return unpacked.read(_HEAD)
+        except (EOFError, gzip.BadGzipFile, zlib.error) as error:
+            raise InputError(f"{path}: the compressed file is damaged: {error}.") from error
+
+
+def read_content(path: Path) -> bytes:
+    """Read a file, also a compressed one (gzip); raises `InputError` if it is damaged."""
+    data = read_bytes(path, _LARGEST)
+    if data[:2] != _GZIP:
+        return data
+    try:
+        return gzip.decompress(data)
+    except (OSError, EOFError, zlib.error) as error:
+        raise InputError(f"{path}: the compressed file is damaged: {error}.") from error
+
+
+def split_topics(names: Sequence[str]) -> Dict[str, Sequence[str]]:
+    """Group columns ``TOPIC.FIELD`` by topic."""
+    topics: Dict[str, list] = {}
+    for name in names:
+        topics.setdefault(name.partition(".")[0], []).append(name)
+    return dict(topics)
