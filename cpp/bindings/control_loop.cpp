@@ -69,6 +69,7 @@ class BoundLoop {
   py::array_t<double> seconds() const {
     return py::array_t<double>(static_cast<py::ssize_t>(seconds_.size()), seconds_.data());
   }
+  const control::ControlLoop& loop() const { return loop_; }
 
  private:
   template <class Call>
@@ -121,6 +122,10 @@ class BoundLoop {
   std::vector<double> seconds_;
 };
 
+py::array_t<double> copy_array(const Eigen::ArrayXd& values) {
+  return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
 }  // namespace
 
 void bind_control_loop(py::module_& m) {
@@ -134,6 +139,14 @@ void bind_control_loop(py::module_& m) {
       .def_property_readonly("calls", &BoundLoop::calls, "How often the controller was called.")
       .def_property_readonly("saturated", &BoundLoop::saturated,
                              "Number of calls with a command that the rotors could not follow.")
+      .def_property_readonly(
+          "rate_variation",
+          [](const BoundLoop& loop) { return copy_array(loop.loop().rate_variation()); },
+          "Total variation of the magnitude of each joint rate (rotors,), rad/s.")
+      .def_property_readonly(
+          "command_variation",
+          [](const BoundLoop& loop) { return copy_array(loop.loop().command_variation()); },
+          "Total variation of the magnitude of each command (n,), rad/s.")
       .def_property_readonly("seconds", &BoundLoop::seconds,
                              "Duration of each call, s; empty unless timed.");
 }

@@ -6,7 +6,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from evaluations import evaluate
+from scipy import signal
 
+import quadcore as qc
 from quadcore.simulation.log import Log
 from quadcore.studies import tracking_metrics
 from quadcore.studies.evaluate.intervals import compute_cvar
@@ -87,6 +90,25 @@ def test_effort_and_energy_are_those_of_the_speeds_whatever_the_joints_are_slowe
         assert slowed[name] == pytest.approx(whole[name], rel=1e-12)
 
 
+def test_effort_does_not_depend_on_the_rows_of_the_log():
+    options = {"parameters": {"odometry.positionNoise": 0.002}, "spawn": (0, 0, 10)}
+    found = [evaluate("pd", "hover", log_every=n, **options).table[0] for n in (1, 10, 100)]
+    for name in ("effort", "command_effort"):
+        assert found[0][name] == found[1][name] == found[2][name]
+    simulation = qc.Simulation("quadrotor", "eigen", xacro_args={"sim_slow": 1}, **options)
+    log = simulation.run(1.0, controller="pd", reference="hover")
+    travelled = np.abs(np.diff(np.abs(log.rotor_velocity), axis=0)).sum(axis=0)
+    assert found[0]["effort"] == pytest.approx(travelled.mean(), rel=1e-9)
+
+
+def test_command_effort_is_the_variation_of_the_commands():
+    def chatter(t, state, reference):
+        return np.array([100.0, -100.0, 100.0, -100.0]) + 5 * (-1) ** round(500 * t)
+
+    (row,) = evaluate(chatter, "hover").table
+    assert row["command_effort"] == pytest.approx(499 * 10)  # per second, at 500 Hz
+
+
 def test_the_steady_error_of_a_short_flight_is_that_of_its_second_half():
     time = np.linspace(0, 4, 401)
     found = tracking_metrics.measure(
@@ -118,6 +140,35 @@ def test_the_step_response_is_found_in_any_motion_that_excites_it():
     assert response[-1, 1] == pytest.approx(1, abs=0.05)
     assert step_response(log_of(time, np.cos(0.5 * time), np.cos(0.5 * time))) is None
     assert step_response(log_of(time[:300], wanted[:300], position[:300])) is None
+
+
+def second_order_log(rate, wanted):
+    """A log of a second-order system that follows a reference exactly, and its step response."""
+    w, d = 6.0, 0.5
+    time = np.arange(0, 30, 1e-3)
+    position = signal.lsim(([w**2], [1, 2 * d * w, w**2]), wanted(time), time, interp=False)[1]
+    every = round(1000 / rate)
+    t, exact = signal.step(([w**2], [1, 2 * d * w, w**2]), T=np.arange(0, 4, 1e-4))
+    return log_of(time[::every], wanted(time)[::every], position[::every]), t, exact
+
+
+@pytest.mark.parametrize(
+    ("wanted", "most"),
+    [
+        (lambda time: np.where(time >= 2, 1.0, 0.0), 0.01),
+        (lambda time: np.where(time >= 2, 1.0, 0.0) - np.where(time >= 11.37, 1.0, 0.0), 0.01),
+        (lambda time: np.sin(0.3 * time**1.6) + np.sin(1 - np.cos(0.9 * time)) * time / 20, 0.06),
+    ],
+    ids=["step", "steps", "smooth"],
+)
+@pytest.mark.parametrize("rate", [100, 1000])
+def test_the_step_response_of_a_second_order_system_has_no_dead_time(rate, wanted, most):
+    log, t, exact = second_order_log(rate, wanted)
+    after, response = step_response(log).T
+    shifts = np.arange(-0.02, 0.02, 5e-4)
+    errors = [np.abs(np.interp(after - s, t, exact, left=0) - response).max() for s in shifts]
+    assert abs(shifts[np.argmin(errors)]) < 0.005
+    assert np.abs(np.interp(after, t, exact) - response).max() < most
 
 
 def test_the_value_at_risk_is_the_mean_of_the_worst_tenth():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from typing import Any, Callable, Iterator, Optional, Union
+from typing import Any, Callable, Iterator, Optional, Tuple, Union
 
 import numpy as np
 
@@ -91,6 +91,13 @@ class ControllerPilot(Pilot):
         limit of its motor.
         """
         return self._reported + (0 if self._loop is None else self._loop.saturated)
+
+    @property
+    def variation(self) -> Tuple[np.ndarray, np.ndarray]:
+        """Total variation over all steps of joint rates (rotors,) and of commands (n,), rad/s."""
+        if self._loop is None:
+            return np.empty(0), np.empty(0)
+        return self._loop.rate_variation, self._loop.command_variation
 
     @property
     def seconds(self) -> np.ndarray:

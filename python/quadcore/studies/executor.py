@@ -9,13 +9,27 @@ import itertools
 import multiprocessing
 import os
 import signal
+import tempfile
 import traceback
 from multiprocessing.connection import Connection, wait
-from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Tuple, TypeVar, Union
+from typing import (
+    IO,
+    Any,
+    Callable,
+    Dict,
+    Iterable,
+    Iterator,
+    List,
+    Optional,
+    Tuple,
+    TypeVar,
+    Union,
+)
 
 from .._core import InputError, QuadcoreError
 from ..support import interrupts
 from ..support.user_code import describe_error
+from . import time_limit
 
 Case = TypeVar("Case")
 Result = TypeVar("Result")
@@ -138,8 +152,8 @@ def contain_errors(function: Callable[[Case], Result]) -> Callable[[Case], Resul
 class ProcessDied(QuadcoreError):
     """Error of a case with a process that died."""
 
-    def __init__(self, exit_code: int) -> None:
-        super().__init__(_describe_death(exit_code))
+    def __init__(self, exit_code: int, reason: str = "") -> None:
+        super().__init__(reason or _describe_death(exit_code))
         self.was_killed = exit_code < 0
         """Whether a signal ended it, perhaps for a reason unrelated to the case."""
 
@@ -176,7 +190,8 @@ class _WorkerPool:
             connection.close()
             process.join()
             self._replace()
-            return index, ProcessDied(process.exitcode)
+            reason = time_limit.read_report(process.report)
+            return index, ProcessDied(process.exitcode, reason)
         if fault is not None:
             self.busy[connection] = index, process  # to be ended
             raise RuntimeError(fault)
@@ -227,9 +242,11 @@ class _WorkerPool:
 
 def _start(task: Task, others: List[Connection]) -> Tuple[Connection, Any]:
     here, there = _FORK.Pipe()
-    process = _FORK.Process(
-        target=_run_worker, args=(task, there, [here, *others], os.getpid()), daemon=True
+    report = tempfile.TemporaryFile()  # noqa: SIM115  (open while the process runs)
+    process: Any = _FORK.Process(
+        target=_run_worker, args=(task, there, [here, *others], os.getpid(), report), daemon=True
     )
+    process.report = report
     # Block signals until the child has installed its handlers.
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, interrupts.SIGNALS)
     try:
@@ -243,9 +260,12 @@ def _start(task: Task, others: List[Connection]) -> Tuple[Connection, Any]:
     return here, process
 
 
-def _run_worker(task: Task, pipe: Connection, inherited: List[Connection], parent: int) -> None:
+def _run_worker(
+    task: Task, pipe: Connection, inherited: List[Connection], parent: int, report: IO[bytes]
+) -> None:
     try:
         _set_signals(parent)
+        time_limit.report_to(report)
         for connection in inherited:  # so that the parent's death closes them
             connection.close()
         _serve(*task, pipe)

@@ -115,7 +115,7 @@ def fly_and_measure(
     measures = NAN
     if not failure:
         share = pilot.saturated / max(1, pilot.updates)
-        measures = measure(log, share, rotors)
+        measures = measure(log, share, rotors, pilot.variation)
     outcome = Outcome(
         failure,
         measures,

@@ -3,6 +3,10 @@
 As in PX4's Flight Review, the motion along one axis is modelled as the motion of the reference,
 filtered by an impulse response; its sum is the step response. Least squares over the whole flight,
 with a small ridge, give the impulse response without the bias of a window.
+
+A reference that jumps does so at the row that first shows it, and excites all frequencies. It is
+sampled at the rate of the log. Otherwise the reference changes evenly between coarser samples, and
+the sum up to sample k is the step response half a sample later.
 """
 
 from __future__ import annotations
@@ -16,7 +20,9 @@ from ..simulation.log import Log
 SPAN = 4.0
 """Length of the response, s."""
 
-_RATE = 20.0  # 1/s; sampling rate
+_RATE = 20.0  # 1/s; sampling rate of smooth references
+_JUMP_RATE = 100.0  # 1/s; at most, sampling rate of references with jumps
+_SUDDEN = 0.5  # relative change of the motion between rows: a jump
 _BAND = 0.5  # Hz; the reference must excite frequencies below
 _QUIET = 1e-4  # relative to the peak of the spectrum: no excitation
 _RIDGE = 1e-6  # relative to the mean square of the input
@@ -31,18 +37,20 @@ def step_response(log: Log) -> Optional[np.ndarray]:
         Time (s) and response (1 is ideal); None if the flight is too short or the reference excites
         too few frequencies.
     """
-    time = np.arange(log.time[0], log.time[-1] + 1e-9, 1 / _RATE)
-    taps = round(SPAN * _RATE)
-    if len(time) < 2 * taps:
-        return None
     wanted = np.column_stack([log.topics["reference"][axis] for axis in "xyz"])
     axis = int(np.ptp(wanted, axis=0).argmax())
+    jumps = _has_jumps(np.diff(wanted[:, axis]))
+    rate = min(_JUMP_RATE, 1 / np.diff(log.time[:2]).min(initial=np.inf)) if jumps else _RATE
+    time = np.arange(log.time[0], log.time[-1] + 1e-9, 1 / rate)
+    taps = round(SPAN * rate)
+    if len(time) < 2 * taps:
+        return None
     sides = (wanted[:, axis], log.position[:, axis])
     given, answer = (np.diff(np.interp(time, log.time, side)) for side in sides)
-    if not _excites(given):
+    if not _excites(given, rate):
         return None
-    # Before the flight, the reference is assumed to move as at its start.
-    padded = np.concatenate([np.full(taps - 1, given[0]), given])
+    # Before the flight, the reference is assumed to rest, or to move as at its start.
+    padded = np.concatenate([np.full(taps - 1, 0.0 if jumps else given[0]), given])
     rows = np.lib.stride_tricks.as_strided(
         padded[taps - 1 :],
         (len(given), taps),
@@ -52,13 +60,21 @@ def step_response(log: Log) -> Optional[np.ndarray]:
     square = rows.T @ rows
     ridge = _RIDGE * np.trace(square) / taps
     impulse = np.linalg.solve(square + ridge * np.eye(taps), rows.T @ answer)
-    return np.column_stack([np.arange(taps + 1) / _RATE, np.append(0, np.cumsum(impulse))])
+    after = np.arange(taps) / rate if jumps else (np.arange(taps) + 0.5) / rate
+    response = np.column_stack([after, np.cumsum(impulse)])
+    return response if jumps else np.vstack([np.zeros(2), response])
 
 
-def _excites(given: np.ndarray) -> bool:
+def _has_jumps(changes: np.ndarray) -> bool:
+    """Whether the changes of a reference from row to row differ as much as they are large."""
+    largest = np.abs(changes).max(initial=0.0)
+    return bool(np.abs(np.diff(changes)).max(initial=0.0) > _SUDDEN * largest)
+
+
+def _excites(given: np.ndarray, rate: float) -> bool:
     """Whether a motion excites all frequencies of the band."""
     if not np.any(given):
         return False
     power = np.abs(np.fft.rfft((given - given.mean()) * np.hanning(len(given)))) ** 2
-    band = np.fft.rfftfreq(len(given), 1 / _RATE) <= _BAND
+    band = np.fft.rfftfreq(len(given), 1 / rate) <= _BAND
     return bool(np.mean(power[band] > _QUIET * power.max()) > 0.9)

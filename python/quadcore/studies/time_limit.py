@@ -8,16 +8,35 @@ import os
 import signal
 import threading
 from contextlib import contextmanager
-from typing import Any, Iterator, List
+from typing import IO, Any, Iterator, List, Optional
 
 from .._core import FlightError
 
 _AGAIN = 0.5  # s; the exception is raised again if user code catches it
 _PATIENCE = 5.0  # s; after that the process ends, as it does not run Python
 
+_report: Optional[IO[bytes]] = None
+
 
 class _TimeIsUp(KeyboardInterrupt):
     """Raised at the limit; not an Exception, so that user code does not catch it by accident."""
+
+
+def report_to(stream: IO[bytes]) -> None:
+    """Set the file by which another process learns that a limit has ended this one."""
+    global _report
+    _report = stream
+
+
+def read_report(stream: IO[bytes]) -> str:
+    """Return the error of a limit that has ended the process with this file; "" if none has."""
+    stream.seek(0)
+    limit, _, traceback = stream.read().decode(errors="replace").partition("\n")
+    return _describe(float(limit)) if traceback else ""
+
+
+def _describe(seconds: float) -> str:
+    return f"not done within the time limit of {seconds:g} s"
 
 
 @contextmanager
@@ -46,7 +65,7 @@ def time_limit(seconds: float) -> Iterator[None]:
             if not expired:
                 raise
     if expired:
-        raise FlightError(f"not done within the time limit of {seconds:g} s")
+        raise FlightError(_describe(seconds))
 
 
 @contextmanager
@@ -58,8 +77,13 @@ def _alarm(seconds: float, expired: List[bool]) -> Iterator[None]:
         raise _TimeIsUp
 
     before = signal.signal(signal.SIGALRM, end)
-    with open(os.devnull, "w") as nowhere:
-        faulthandler.dump_traceback_later(seconds + _PATIENCE, exit=True, file=nowhere)
+    with open(os.devnull, "wb") as nowhere:
+        file = nowhere if _report is None else _report
+        file.seek(0)
+        file.truncate()
+        file.write(f"{seconds:g}\n".encode())
+        file.flush()
+        faulthandler.dump_traceback_later(seconds + _PATIENCE, exit=True, file=file)
         signal.setitimer(signal.ITIMER_REAL, seconds, _AGAIN)
         try:
             yield

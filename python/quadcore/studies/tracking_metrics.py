@@ -27,6 +27,7 @@ UNITS = {
     "overshoot": "",
     "settling_time": "s",
     "effort": "rad/s^2",
+    "command_effort": "rad/s^2",
     "saturated": "",
     "energy": "J",
 }
@@ -43,7 +44,8 @@ MEANINGS = {
     "rise_time": "time from 10 % to 90 % of a step",
     "overshoot": "overshoot, relative to the step",
     "settling_time": "time until the error stays below 2 % of the step",
-    "effort": "mean rate of change of the rotor speeds",
+    "effort": "mean rate of change of the rotor speeds, over all steps",
+    "command_effort": "mean rate of change of the commanded rotor speeds, over all steps",
     "saturated": "share of the controller updates that exceed a rotor limit",
     "energy": "energy of the aerodynamic torque on the rotors",
 }
@@ -79,7 +81,12 @@ def compute_rms_and_max(away: np.ndarray) -> Tuple[float, float]:
     return float(np.sqrt(np.mean(away**2))), float(away.max())
 
 
-def measure(log: Log, saturated: float, rotors: Sequence[Rotor]) -> Dict[str, float]:
+def measure(
+    log: Log,
+    saturated: float,
+    rotors: Sequence[Rotor],
+    variation: Optional[Tuple[np.ndarray, np.ndarray]] = None,
+) -> Dict[str, float]:
     """Compute the metrics of a flight.
 
     Parameters
@@ -90,6 +97,9 @@ def measure(log: Log, saturated: float, rotors: Sequence[Rotor]) -> Dict[str, fl
         Share of saturated controller updates.
     rotors
         Rotors of the vehicle, as in `Simulation.rotors`.
+    variation
+        `ControllerPilot.variation` of the flight. Default: that of the rows of the log, which miss
+        what happens between them, and none of the commands.
 
     Returns
     -------
@@ -105,6 +115,9 @@ def measure(log: Log, saturated: float, rotors: Sequence[Rotor]) -> Dict[str, fl
     span = max(time[-1], np.finfo(float).tiny)
     rise, overshoot, settling = _measure_step(log, away)
     rms, largest = compute_rms_and_max(away)
+    if variation is None:
+        variation = np.abs(np.diff(np.abs(log.rotor_velocity), axis=0)).sum(axis=0), np.empty(0)
+    travelled = variation[0] * [rotor.slowdown for rotor in rotors]
     return {
         "rms_position": rms,
         "max_position": largest,
@@ -116,7 +129,8 @@ def measure(log: Log, saturated: float, rotors: Sequence[Rotor]) -> Dict[str, fl
         "rise_time": rise,
         "overshoot": overshoot,
         "settling_time": settling,
-        "effort": float(np.abs(np.diff(speeds, axis=0)).sum() / span / max(1, speeds.shape[1])),
+        "effort": float(travelled.sum() / span / max(1, len(travelled))),
+        "command_effort": float(variation[1].mean() / span) if len(variation[1]) else math.nan,
         "saturated": saturated,
         "energy": _integrate(speeds**3 @ [rotor.torque_coefficient for rotor in rotors], time),
     }
