@@ -150,7 +150,7 @@ SECONDS=0
 (run_in devel topics services lockstep playing logs log_per_flight clock several parameters faults \
   masters fly_from_python controller controller_faults set_points pid joystick launch plugin_by_others \
   plugin_topics sensors disturbances markers tutorial rotors rotors_topics rotors_hover gazebo \
-  gazebo_launch pages refusals links one_world waiting building)
+  gazebo_launch pages refusals links one_world waiting building alarms)
 (run_in install launch playing fly_from_python plugin_by_others)
 [ ! -e $workspace/failed ]
 say "the ROS tests passed in $SECONDS s"

@@ -29,7 +29,7 @@ void CommandQueue::take(const Command& command) {
 }
 
 void CommandQueue::message_sent() {
-  if (begun_ && awaited_) ++late_;
+  if (lockstep_ && begun_ && awaited_) ++late_;
   set_aside_.reset();
   awaited_ = waiting_.empty();
   if (awaited_) return;
@@ -46,6 +46,7 @@ void CommandQueue::give_up() {
 void CommandQueue::give_up_late() {
   give_up();
   ++late_;
+  gave_up_ = true;
 }
 
 bool CommandQueue::settle() {
@@ -74,6 +75,7 @@ std::optional<CommandQueue::Command> CommandQueue::next() {
 void CommandQueue::set_next(Command command) {
   next_ = std::move(command);
   begun_ = true;
+  gave_up_ = false;
 }
 
 }  // namespace quadcore::node

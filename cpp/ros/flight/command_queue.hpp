@@ -54,7 +54,10 @@ class CommandQueue {
   bool is_unsettled() const { return set_aside_.has_value(); }
   bool has_begun() const { return begun_; }  ///< a command has arrived since begin()
   std::int64_t taken_count() const { return taken_; }
-  std::int64_t late_count() const { return late_; }  ///< messages without an answer in time
+  std::int64_t late_count() const {
+    return late_;
+  }  ///< in lockstep: messages without an answer in time
+  bool has_given_up() const { return gave_up_; }  ///< in lockstep, since the last command
   std::size_t waiting_count() const { return waiting_.size(); }
 
  private:
@@ -68,6 +71,7 @@ class CommandQueue {
   std::optional<Command> set_aside_;  ///< the last command since the last message
   std::deque<Command> waiting_;       ///< answers to future messages
   std::optional<Command> next_;
+  bool gave_up_ = false;
   std::int64_t taken_ = 0;
   std::int64_t late_ = 0;
 };

@@ -123,6 +123,7 @@ void FlightThread::join_clock(Lock& lock) {
   joined_ = true;
   const double time = *clock_;
   report_.time = time;
+  command_watch_.restart();
   const bool starts = !jump_observed_;
   unlocked(lock, [&] {
     if (starts) {
@@ -145,6 +146,7 @@ void FlightThread::observe_jump() {
   {
     const Lock lock(mutex_);
     commands_.begin();
+    command_watch_.restart();
     jump_observed_ = observe;
     if (observe && count_odometry() > 0) commands_.message_sent();
   }
@@ -213,11 +215,18 @@ void FlightThread::run_changes(Lock& lock) {
 void FlightThread::take_step() {
   const std::string failure = try_step();
   if (!failure.empty()) return fail(failure);
-  const Lock lock(mutex_);
+  Lock lock(mutex_);
   report_.time = simulation_.time();
   ++report_.steps;
   if (steps_allowed_ > 0) --steps_allowed_;
   if (steps_allowed_ == 0) changed_.notify_all();
+  if (settings_.lockstep || !command_watch_.check(report_.time)) return;
+  char text[120];
+  std::snprintf(text, sizeof text,
+                "no command since t = %g s: the controller has stopped. Its last command is kept.",
+                command_watch_.last_arrival());
+  lock.unlock();
+  listener_.warn(text);
 }
 
 /// Returns the error; "" = no error.

@@ -1,9 +1,14 @@
 #include "flight_thread.hpp"
 
+#include <cstdio>
+
 #include "quadcore/plugin/error.hpp"
 
 namespace quadcore::node {
 namespace {
+
+/// A followed clock that advances by more at once has jumped [s].
+constexpr double longest_clock_step = 1;
 
 /// Returns the numbers of a command; 0 = the model takes no commands.
 std::size_t command_width(const Simulation& simulation) {
@@ -20,6 +25,7 @@ FlightThread::FlightThread(Simulation& simulation, const FlightSettings& setting
       answered_(simulation.topics().find(settings.answered)),
       paused_(settings.paused),
       commands_(command_width(simulation), settings.lockstep),
+      command_watch_(settings.command_timeout),
       real_time_factor_(settings.real_time_factor),
       pacer_(simulation.dt(), settings.follows_clock ? 0 : settings.real_time_factor) {
   if (settings.lockstep && !(simulation.takes_commands() && answered_ >= 0)) {
@@ -50,7 +56,11 @@ void FlightThread::end() {
 void FlightThread::command(const CommandQueue::Command& command) {
   const Lock lock(mutex_);
   commands_.take(command);
-  if (settings_.lockstep) changed_.notify_all();
+  if (settings_.lockstep) {
+    changed_.notify_all();
+  } else {
+    command_watch_.arrived(report_.time);
+  }
 }
 
 void FlightThread::set_paused(bool paused) {
@@ -69,10 +79,26 @@ void FlightThread::set_real_time_factor(double factor) {
 }
 
 void FlightThread::clock(double time) {
-  const Lock lock(mutex_);
-  if (clock_ && time < *clock_) joined_ = false;
-  clock_ = time;
-  changed_.notify_all();
+  std::string jump;
+  {
+    const Lock lock(mutex_);
+    jump = describe_clock_jump(time);
+    if (!jump.empty()) joined_ = false;
+    clock_ = time;
+    changed_.notify_all();
+  }
+  if (!jump.empty()) listener_.warn(jump);
+}
+
+/// Describes a jump of the followed clock, which the flight joins without simulating the time
+/// between; "" = the clock has just continued.
+std::string FlightThread::describe_clock_jump(double time) const {
+  if (!clock_ || !joined_ || (time >= *clock_ && time <= *clock_ + longest_clock_step)) return "";
+  char text[120];
+  std::snprintf(text, sizeof text,
+                "/clock jumped from %g to %g s. The flight continues there; its motion is kept.",
+                *clock_, time);
+  return text;
 }
 
 void FlightThread::hold(double time) {
@@ -138,7 +164,9 @@ FlightReport FlightThread::report() const {
   report.real_time_factor = sets_the_pace ? real_time_factor_ : 0;
   report.commands = commands_.taken_count();
   report.waiting_commands = commands_.waiting_count();
-  report.late_commands = commands_.late_count();
+  report.late_commands = settings_.lockstep ? commands_.late_count() : command_watch_.late_count();
+  report.commands_stopped =
+      settings_.lockstep ? commands_.has_given_up() : command_watch_.have_stopped();
   report.paused = paused_;
   report.waits_for_clock = settings_.follows_clock && !clock_;
   report.waits_for_command = settings_.lockstep && !commands_.has_begun() && may_step();

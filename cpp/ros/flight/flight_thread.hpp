@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "command_queue.hpp"
+#include "command_watch.hpp"
 #include "odometry_topic.hpp"
 #include "pacer.hpp"
 #include "quadcore/simulation.hpp"
@@ -20,11 +21,12 @@
 namespace quadcore::node {
 
 struct FlightSettings {
-  double real_time_factor = 1;  ///< simulated seconds per second; 0 = as fast as possible
-  bool follows_clock = false;   ///< clock() determines when steps are due
-  bool paused = false;          ///< whether the flight starts paused
-  bool lockstep = false;        ///< wait for one command per odometry message
-  double lockstep_timeout = 1;  ///< time to wait for a command [s]
+  double real_time_factor = 1;    ///< simulated seconds per second; 0 = as fast as possible
+  bool follows_clock = false;     ///< clock() determines when steps are due
+  bool paused = false;            ///< whether the flight starts paused
+  bool lockstep = false;          ///< wait for one command per odometry message
+  double lockstep_timeout = 1;    ///< time to wait for a command [s]
+  double command_timeout = 0.05;  ///< without lockstep, until commands have stopped [s]; 0 = never
   std::string answered = OdometryTopic::name;  ///< topic of the simulation that commands answer
 };
 
@@ -56,9 +58,10 @@ struct FlightReport {
   std::int64_t steps = 0;
   std::int64_t commands = 0;         ///< accepted
   std::size_t waiting_commands = 0;  ///< accepted, in lockstep, for future messages
-  std::int64_t late_commands = 0;    ///< odometry messages without an answer before the next one
+  std::int64_t late_commands = 0;    ///< in lockstep unanswered messages; else gaps in the commands
   std::int64_t overruns = 0;         ///< steps that began more than one period late
   bool paused = false;
+  bool commands_stopped = false;   ///< the controller has sent none for the timeout
   bool waits_for_clock = false;    ///< of another node that has not published it
   bool waits_for_command = false;  ///< in lockstep, for the first since the start or the last jump
   std::string failure;             ///< reason of the end; "" during the flight
@@ -108,6 +111,7 @@ class FlightThread {
   bool wait_until_due();
   void wait_for_pace(Lock& lock);
   void join_clock(Lock& lock);
+  std::string describe_clock_jump(double time) const;
   void wait_for_commander(Lock& lock);
   void wait_for_command(Lock& lock);
   void observe_jump();
@@ -139,6 +143,7 @@ class FlightThread {
   std::int64_t steps_allowed_ = 0;  ///< by step(), during a pause
   std::deque<std::packaged_task<void()>> changes_;
   CommandQueue commands_;
+  CommandWatch command_watch_;
   bool jump_observed_ = false;  ///< the last start or jump has been observed
   /// Time at which a commanding node was last connected, or of the last reminder.
   std::optional<Pacer::Clock::time_point> reminded_;

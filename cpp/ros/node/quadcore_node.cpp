@@ -125,6 +125,7 @@ class Node {
   void watch(const EndSignal& end_signal) {
     using Wall = std::chrono::steady_clock;
     Wall::time_point due = Wall::now() + std::chrono::seconds(1);
+    bool stopped = false;
     while (ros::ok() && !end_signal.has_come()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
       if (leader_) {
@@ -132,9 +133,12 @@ class Node {
         neighbours_->update(leader_->spaces(), gazebo_states_.asks_neighbours());
       }
       if (follower_) follower_->report_progress(flight_.report());
-      if (Wall::now() < due) continue;
-      diagnostics_.send(flight_.report(), commands_.refusals());
-      due += std::chrono::seconds(1);
+      const FlightReport report = flight_.report();
+      const bool is_alarm = report.commands_stopped && !stopped;  // at once
+      stopped = report.commands_stopped;
+      if (!is_alarm && Wall::now() < due) continue;
+      diagnostics_.send(report, commands_.refusals());
+      if (!is_alarm) due += std::chrono::seconds(1);
     }
   }
 

@@ -35,6 +35,8 @@ Settings read_settings(const ros::NodeHandle& nh) {
   s.flight.paused = p.flag("paused", false);
   s.flight.lockstep = p.flag("lockstep", false);
   s.flight.lockstep_timeout = p.positive("lockstep_timeout").value_or(s.flight.lockstep_timeout);
+  s.flight.command_timeout =
+      p.non_negative("command_timeout", "; 0 is never").value_or(s.flight.command_timeout);
   s.flight.answered = p.text("lockstep_topic", s.flight.answered);
   p.check_all_known();
   read_description(nh, s.plant);

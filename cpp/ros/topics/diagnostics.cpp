@@ -43,6 +43,9 @@ void Diagnostics::send(const FlightReport& report, const Refusals& refusals) {
     status.level = diagnostic_msgs::DiagnosticStatus::WARN;
     status.message = "waiting for a command on " + command_topic_;
     ROS_WARN_ONCE("lockstep: %s", status.message.c_str());
+  } else if (report.commands_stopped) {
+    status.level = diagnostic_msgs::DiagnosticStatus::WARN;
+    status.message = "the controller has stopped sending commands on " + command_topic_;
   } else if (!report.paused && !last_.paused && factor < fair_share * report.real_time_factor) {
     status.level = diagnostic_msgs::DiagnosticStatus::WARN;
     status.message = "behind the real-time factor of " + to_text(report.real_time_factor);
