@@ -10,6 +10,11 @@ setup(
     **generate_distutils_setup(
         packages=find_packages("python"),
         package_dir={"": "python"},
-        package_data={"quadcore": ["py.typed", "*.pyi", "report/templates/*", "formats/recordings/mappings/*"]},
+        package_data={
+            "quadcore": [
+                *["py.typed", "*.pyi", "report/templates/*", "report/bundle/*"],
+                "formats/recordings/mappings/*",
+            ]
+        },
     )
 )

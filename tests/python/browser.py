@@ -8,6 +8,7 @@ import os
 import re
 import shutil
 import subprocess
+from pathlib import Path
 
 import pytest
 
@@ -20,6 +21,28 @@ NAMES = ("chromium", "chromium-browser", "google-chrome")
 CATCH = """<script>
 window.faults = [];
 window.onerror = (what) => faults.push(what);
+window.addEventListener("unhandledrejection", (event) => faults.push(String(event.reason)));
+for (const name of ["log", "info", "warn", "error", "debug"])
+  console[name] = (...what) => faults.push(`console.${name}: ${what.join(" ")}`);
+</script>"""
+AXE = Path(__file__).resolve().parents[2] / "web/node_modules/axe-core/axe.min.js"
+DARK = "--blink-settings=preferredColorScheme=0"
+WHEN_READY = """<script>
+window.addEventListener("load", async () => {
+  const told = {};
+  try {
+    while (document.querySelector(".quadcore-player") && !window.quadcore)
+      await new Promise((resolve) => setTimeout(resolve, 10));
+    if (window.quadcore) await quadcore.ready;
+    await (async () => { SCRIPT })();
+  } catch (fault) {
+    window.faults.push(String(fault.stack || fault));
+  }
+  const told_in = document.createElement("pre");
+  told_in.id = "told";
+  told_in.textContent = JSON.stringify({told, faults: window.faults});
+  document.body.append(told_in);
+});
 </script>"""
 
 
@@ -84,9 +107,12 @@ async function look(view, inside) {
     within.scrollIntoView();
     [view, inside] = [within.contentWindow, within.contentDocument];
   }
+  while (!view.quadcore) await new Promise((resolve) => setTimeout(resolve, 10));
+  await view.quadcore.ready;
   let frames = 0;  // of a screen that there is not: 50 in a second
   view.requestAnimationFrame = (draw) => view.setTimeout(() => draw(20 * ++frames), 20);
-  const part = (name) => inside.querySelector(".player " + name), canvas = part("canvas");
+  const part = (name) => inside.querySelector(".quadcore-player " + name), canvas = part("canvas");
+  const { scene } = view.quadcore.players[0];
   const time = () => Number(part(".time").value);
   const until = async (met) => {
     for (let i = 0; !met(); ++i) {
@@ -94,7 +120,8 @@ async function look(view, inside) {
       await new Promise((resolve) => view.requestAnimationFrame(resolve));
     }
   };
-  const drawn = () => canvas.toDataURL(), told = { start: drawn(), begin: time() };
+  const drawn = () => { scene.render(); return canvas.toDataURL(); };
+  const told = { start: drawn(), begin: time() };
   part(".speed").value = "4";
   part(".play").click();
   told.says = part(".play").textContent;
@@ -105,7 +132,7 @@ async function look(view, inside) {
   for (let i = 0; i < 5; ++i) await new Promise((resolve) => view.requestAnimationFrame(resolve));
   told.still = [part(".play").textContent, time()];
   part(".play").click();
-  await until(() => part(".play").textContent === "play");
+  await until(() => part(".play").textContent === "Play");
   Object.assign(told, { end: drawn(), ended: time(), clock: part(".clock").textContent });
   part(".play").click();
   await until(() => time() > 0.1 && time() < told.ended / 2);
@@ -128,6 +155,32 @@ def told(page, script, folder):
     return opened(
         page.replace("<head>", "<head>" + CATCH).replace("</body>", tell + "</body>"), folder
     )
+
+
+def told_when_ready(page, script, folder, *options):
+    """As `told`, once the players of the page have started; the script may wait for promises.
+
+    Lines in the console count as faults.
+    """
+    tell = CATCH + WHEN_READY.replace("SCRIPT", script)
+    whole = page.replace("<head>", "<head>" + tell)
+    return opened(whole, folder, "--virtual-time-budget=60000", *options)
+
+
+def find_violations(page, folder, *options):
+    """What axe-core finds serious or critical in a page: rule and element of each."""
+    if not AXE.exists():
+        pytest.skip("needs axe-core; scripts/bundle_player installs it")
+    script = """
+    const { violations } = await axe.run(document, { resultTypes: ["violations"] });
+    told.dark = matchMedia("(prefers-color-scheme: dark)").matches;
+    told.found = violations.filter(({ impact }) => ["serious", "critical"].includes(impact)).map(
+      ({ id, nodes }) => `${id}: ${nodes[0].html} ${nodes[0].failureSummary}`);
+    """
+    axe = f"<head><script>{AXE.read_text(encoding='utf-8')}</script>"
+    found = told_when_ready(page.replace("<head>", axe, 1), script, folder, *options)
+    assert found["dark"] == (DARK in options)
+    return found["found"]
 
 
 def seen(look, files, widths, folder, fonts="wide"):
@@ -158,8 +211,8 @@ def assert_it_plays(file, widths, folder):
     """The player in a page, or in the page within that, flies from the beginning to the end."""
     for found in seen(PLAY, [file], widths, folder).values():
         assert len({found["start"], found["flying"], found["end"]}) == 3
-        assert found["begin"] == 0 and found["says"] == found["again"] == "pause"
-        assert found["held"] == found["still"] and found["held"][0] == "play"
+        assert found["begin"] == 0 and found["says"] == found["again"] == "Pause"
+        assert found["held"] == found["still"] and found["held"][0] == "Play"
         assert found["clock"] == "{0:.2f} of {0:.2f} s".format(found["ended"])
 
 
@@ -184,7 +237,7 @@ def opened(page, folder, *options, fonts="wide"):
     if program is None:
         pytest.skip(f"needs a browser, one of {', '.join(NAMES)}; scripts/test installs one")
     file = folder / "opened.html"
-    file.write_text(page)
+    file.write_text(page, encoding="utf-8")
     answer = subprocess.run(
         [program, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder}/user",
          "--window-size=1000,900", *options, "--dump-dom", file.as_uri()],

@@ -40,7 +40,7 @@ def test_everything_is_written_and_reproducible():
         "step:dx=1,time=0.2",
         "Controller settings",
         "Poles of",
-        'class="player"',
+        'class="quadcore-player"',
         "data:image/png;base64,",
     ):
         assert text in page

@@ -1,30 +1,35 @@
-"""Flights to watch: what the page holds, what it does, and what the command refuses."""
+"""Flights to watch: what the page holds, shows and does."""
 
 from __future__ import annotations
 
 import base64
+import functools
 import html.parser
 import json
 import re
-from pathlib import Path
+import zlib
 
 import numpy as np
 import pytest
-from browser import told
+from browser import DARK, find_violations, told_when_ready
+from scipy.spatial.transform import Rotation, Slerp
 
 import quadcore as qc
-from quadcore.cli import main
+from quadcore.model.visuals import read_vehicle
+from quadcore.report.colours import curve_style
+from quadcore.report.drawn_vehicle import DrawnShape, DrawnWorld
+from quadcore.report.packing import choose_rows, make_plot_times, pick_extremes
 from quadcore.report.player import PlayerFlight, make_page, make_section
 
-ROTORS = np.array([[0.3, 0, 0.1], [0, 0.2, 0.1], [-0.25, -0.1, 0.12]])
+HOSTILE = "</script><img src=x onerror=faults.push('ran')>&\"'"
 
 
-def flown(rows=200, duration=4.0, reference=True, rotors=3):
+def flown(rows=200, duration=4.0, reference=True, rotors=3, shift=0.0):
     """A flight in which nothing is like anything else."""
     time = np.linspace(0, duration, rows)
     table = np.zeros((rows, 14 + rotors))
     table[:, 0] = time
-    table[:, 1:4] = np.column_stack([np.cos(time), 1.5 * np.sin(time), 3 + 0.4 * time])
+    table[:, 1:4] = np.column_stack([np.cos(time) + shift, 1.5 * np.sin(time), 3 + 0.4 * time])
     table[:, 4:8] = np.column_stack([0 * time, 0 * time, np.sin(time / 2), np.cos(time / 2)])
     table[:, 14:] = np.column_stack([300 + 20 * time * (i + 1) for i in range(rotors)])
     topics = {}
@@ -32,6 +37,33 @@ def flown(rows=200, duration=4.0, reference=True, rotors=3):
         wanted = table[:, 1:4] + [0.02, -0.01, 0.03]
         topics["reference"] = {**dict(zip("xyz", wanted.T)), "yaw": time}
     return qc.Log(table, {}, topics=topics)
+
+
+def multiply(one, other):
+    """Hamilton product of quaternions x, y, z, w."""
+    (x, y, z, w), (a, b, c, d) = one, other
+    return [w * a + x * d + y * c - z * b, w * b - x * c + y * d + z * a,
+            w * c + x * b - y * a + z * d, w * d - x * a - y * b - z * c]  # fmt: skip
+
+
+@functools.lru_cache(maxsize=None)
+def tumbling(duration=30.0, dt=1e-3):
+    """Rotation at up to 20 rad/s about a changing axis, on a winding path."""
+    time = np.arange(0, duration + dt / 2, dt)
+    steps = np.column_stack([12 * np.sin(1.3 * time), 14 * np.cos(0.7 * time), 8 + 0 * time]) * dt
+    turned = np.zeros((len(time), 4))
+    turned[0, 3] = 1
+    for row, (step, angle) in enumerate(zip(steps[:-1], np.linalg.norm(steps[:-1], axis=1))):
+        turned[row + 1] = multiply(
+            turned[row], [*(np.sin(angle / 2) / angle * step), np.cos(angle / 2)]
+        )
+    table = np.zeros((len(time), 18))
+    table[:, 0], table[:, 4:8] = time, turned
+    table[:, 1:4] = np.column_stack(
+        [4 * np.sin(time) + np.sin(5 * time), 4 * np.cos(0.8 * time), 10 + np.sin(3 * time)]
+    )
+    table[:, 14:] = 400 + 30 * np.sin(7 * time)[:, None]
+    return qc.Log(table)
 
 
 def contents_of(text):
@@ -44,8 +76,18 @@ def content_of(text):
     return content
 
 
-def numbers(packed, width):
-    return np.frombuffer(base64.b64decode(packed), "<f4").reshape(-1, width)
+def numbers_of(text):
+    """All numbers of the first player of a page."""
+    packed = re.search(r'<script type="text/plain" class="numbers">(.*?)</script>', text).group(1)
+    planes = np.frombuffer(zlib.decompress(base64.b64decode(packed)), np.uint8).reshape(4, -1)
+    return np.frombuffer(planes.T.tobytes(), "<f4")
+
+
+def column_of(text, name, flight=0):
+    column = content_of(text)["flights"][flight]["columns"][name]
+    at = column["values"]
+    found = numbers_of(text)[at["at"] : at["at"] + at["count"]]
+    return found.reshape(-1, column["width"])
 
 
 # What the page holds
@@ -67,41 +109,54 @@ class Tags(html.parser.HTMLParser):
         assert self.opened.pop() == tag
 
 
-def test_the_page_is_well_formed_and_fetches_nothing():
-    text = make_page([PlayerFlight("<b>&\"'</script>", flown())])
+def test_the_page_is_well_formed_and_names_no_other_file():
+    text = make_page([PlayerFlight(HOSTILE, flown())], HOSTILE)
     tags = Tags()
     tags.feed(text)
     assert tags.opened == [] and tags.fetched == []
-    for way in ("http:", "https:", "//www", "@import", "fetch(", "XMLHttp", "import("):
-        assert way not in text
-    assert content_of(text)["flights"][0]["name"] == "<b>&\"'</script>"
+    assert content_of(text)["flights"][0]["name"] == HOSTILE
 
 
-def test_data_read_back_are_the_logs():
+def test_numbers_read_back_are_those_of_the_log():
     log = flown()
-    flight = content_of(make_page([PlayerFlight("a", log, ROTORS)]))["flights"][0]
-    assert np.array_equal(flight["rotors"], ROTORS)
+    text = make_page([PlayerFlight("a", log)])
     expected = {
-        "time": log.time[:, None],
-        "position": log.position,
-        "orientation": log.orientation,
-        "rotor_velocity": log.rotor_velocity,
-        "reference": np.column_stack([log.topics["reference"][axis] for axis in "xyz"]),
+        "time": (log.time[:, None], 1e-6),
+        "position": (log.position, 1e-5),
+        "orientation": (log.orientation, 1e-5),
+        "rotor_velocity": (log.rotor_velocity, 0.01),
+        "reference": (np.column_stack(list(log.topics["reference"].values())), 1e-5),
     }
-    assert set(flight["columns"]) == set(expected)
-    for name, values in expected.items():
-        assert np.array_equal(
-            numbers(flight["columns"][name], values.shape[1]), values.astype("f4")
-        )
+    assert set(content_of(text)["flights"][0]["columns"]) == set(expected)
+    for name, (values, error) in expected.items():
+        assert np.abs(column_of(text, name) - values).max() < error
 
 
-def test_a_long_log_is_thinned_and_keeps_its_ends():
-    log = flown(rows=100_001, reference=False)
-    flight = content_of(make_page([PlayerFlight("a", log)]))["flights"][0]
-    time = numbers(flight["columns"]["time"], 1)[:, 0]
-    assert len(time) == 1500 and time[0] == 0 and time[-1] == 4
-    assert np.ptp(np.diff(time)) < 1e-4
-    assert "reference" not in flight["columns"]
+def test_rows_are_dense_where_the_vehicle_turns():
+    log = tumbling()
+    rows = choose_rows(log.time, log.position, log.orientation)
+    assert rows[0] == 0 and rows[-1] == len(log) - 1 and len(rows) < 4000
+    between = Slerp(log.time[rows], Rotation.from_quat(log.orientation[rows]))(log.time)
+    turned = (between.inv() * Rotation.from_quat(log.orientation)).magnitude()
+    assert turned.max() < 4.1e-4
+    for axis in range(3):
+        drawn = np.interp(log.time, log.time[rows], log.position[rows, axis])
+        assert np.abs(drawn - log.position[:, axis]).max() < 4.1e-4
+    still = np.zeros((10_000, 3))
+    assert len(choose_rows(np.arange(10_000.0), still, np.tile([0, 0, 0, 1.0], (10_000, 1)))) == 600
+
+
+def test_plots_keep_every_peak_and_no_beat():
+    time = np.arange(0, 10, 1e-3)
+    ripple = 1e-5 * np.sin(2 * np.pi * 99.7 * time)
+    ripple[4321] = 3e-5
+    drawn = pick_extremes(time, ripple, 0.0, 10.0)
+    assert len(drawn) == len(make_plot_times(0, 10)) and np.nanmax(drawn) == 3e-5
+    # Twenty samples a bucket find both ends of each ripple; every 10th row would find a beat.
+    assert (drawn.reshape(-1, 2).max(axis=1) > 0.9e-5).all()
+    assert (drawn.reshape(-1, 2).min(axis=1) < -0.9e-5).all()
+    short = pick_extremes(time[:5000], ripple[:5000], 0.0, 10.0)
+    assert np.isfinite(short[:500]).all() and np.isnan(short[501:]).all()
 
 
 def test_a_topic_that_is_called_reference_and_is_none_is_left_alone():
@@ -112,195 +167,230 @@ def test_a_topic_that_is_called_reference_and_is_none_is_left_alone():
     )
 
 
-def test_the_first_32_flights_look_different():
-    content = content_of(make_page([PlayerFlight(str(i), flown(rows=2)) for i in range(33)]))
-    assert len(content["flights"]) == 33
-    assert len(set(content["colours"])) * len(set(map(tuple, content["dashes"]))) == 32
-
-
 def test_equal_flights_make_equal_pages():
-    assert make_page([PlayerFlight("a", flown())]) == make_page([PlayerFlight("a", flown())])
+    vehicle = read_vehicle(qc.read_model("quadrotor"))
+    one, other = ([PlayerFlight("a", flown(rotors=4), vehicle)] for _ in range(2))
+    assert make_page(one) == make_page(other)
 
 
-def test_a_vehicle_of_which_no_more_is_known_is_a_cross():
-    flight = content_of(make_page([PlayerFlight("a", flown(rotors=4))]))["flights"][0]
-    assert (
-        np.allclose(np.linalg.norm(flight["rotors"], axis=1), 0.25) and len(flight["rotors"]) == 4
-    )
-
-
-def test_rotors_of_another_number_no_flight_and_no_row_are_refused():
-    with pytest.raises(qc.InputError, match=r"rotors has shape \(3, 3\).* has 4 rotors"):
-        PlayerFlight("a", flown(rotors=4), ROTORS)
+def test_another_vehicle_no_flight_and_no_row_are_refused():
+    vehicle = read_vehicle(qc.read_model("quadrotor"))
+    with pytest.raises(qc.InputError, match=r"the log has 3 rotors, but .* 'quadrotor' has 4"):
+        PlayerFlight("a", flown(rotors=3), vehicle)
     with pytest.raises(qc.InputError, match="no flight to animate"):
         make_section([])
     with pytest.raises(qc.InputError, match="'a': the log is empty"):
         PlayerFlight("a", flown(rows=0))
+    with pytest.raises(qc.InputError, match=r"camera 'behind' is unknown. Use one of follow, "):
+        make_page([PlayerFlight("a", flown())], camera="behind")
 
 
-def test_the_joints_of_a_model_are_where_its_urdf_says():
-    model = qc.read_model("quadrotor")
-    assert np.array_equal(model.joint_places, [joint.xyz for joint in model.joints])
-    assert np.ptp(model.joint_places[:, :2], axis=0).min() > 0.1
+def test_pages_are_small_and_have_the_licences():
+    vehicle = read_vehicle(qc.read_model("quadrotor"))
+    pages = {
+        count: make_page([PlayerFlight(f"flight {i}", tumbling(), vehicle) for i in range(count)])
+        for count in (2, 12)
+    }
+    assert len(pages[2]) < 0.6e6 and len(pages[12]) < 1.6e6
+    for owner in ("three.js authors", "Leon Sorokin", "Matt DesLauriers"):
+        assert owner in pages[2]
 
 
-# What it does
+# What it shows and does
 
-LOOK = """
-const canvas = document.querySelector("canvas"), slider = document.querySelector(".time");
-const seen = () => canvas.toDataURL();
-const cells = () => [...document.querySelectorAll("tbody tr")].map(
+HELP = """
+const player = quadcore.players[0], { scene } = player;
+const seen = () => { scene.render(); return scene.canvas.toDataURL(); };
+const cells = () => [...document.querySelectorAll(".flights tbody tr")].map(
   (row) => [...row.cells].map((cell) => cell.textContent));
-const go = (t) => { slider.value = t; slider.dispatchEvent(new Event("input")); };
-const press = (key) => canvas.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
-const drag = (name, x, y, id = 1) => canvas.dispatchEvent(
-  new PointerEvent(name, { pointerId: id, clientX: x, clientY: y, bubbles: true }));
-canvas.setPointerCapture = () => {};
+const press = (key, at = document.body) =>
+  at.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true }));
+const changed = (act) => { const before = seen(); act(); return before !== seen(); };
 """
 
 
-def test_the_slider_changes_what_is_drawn_and_told(tmp_path):
-    log = flown()
-    flights = [PlayerFlight("first", log, ROTORS), PlayerFlight("short", flown(duration=1.0))]
+def test_the_pose_shown_is_that_of_the_log_and_nothing_is_requested(tmp_path):
+    log = tumbling()
+    times = np.random.default_rng(5).uniform(0, 30, 10)
     script = (
-        LOOK
+        f"{HELP}const times = {times.tolist()};"
         + """
-    told.start = seen(); told.cells = cells();
-    go(2.0); told.later = seen(); told.later_cells = cells();
-    told.clock = document.querySelector(".clock").textContent;
-    go(0.0); told.again = seen();
+    told.poses = times.map((t) => {
+      player.go(t);
+      const { root } = scene.actors[0].vehicle;
+      root.updateMatrixWorld(true);
+      return [root.position.toArray(), root.quaternion.toArray()];
+    });
+    told.requests = performance.getEntriesByType("resource").map((entry) => entry.name);
     """
     )
-    found = told(make_page(flights), script, tmp_path)
-    assert found["start"] == found["again"] != found["later"]
-    assert [row[0] for row in found["cells"]] == ["first", "short"]
-    at = [np.interp(2.0, log.time, log.position[:, i]) for i in range(3)]
-    assert [float(cell) for cell in found["later_cells"][0][1].split(", ")] == pytest.approx(
-        at, abs=6e-4
+    vehicle = read_vehicle(qc.read_model("quadrotor"))
+    found = told_when_ready(make_page([PlayerFlight("a", log, vehicle)]), script, tmp_path)
+    assert found["requests"] == []
+    turned = Slerp(log.time, Rotation.from_quat(log.orientation))(times)
+    for number, (position, orientation) in enumerate(found["poses"]):
+        at = [np.interp(times[number], log.time, log.position[:, axis]) for axis in range(3)]
+        assert np.linalg.norm(np.subtract(position, at)) < 1e-3
+        apart = Rotation.from_quat(orientation).inv() * turned[number]
+        assert apart.magnitude() < 1e-3
+
+
+@pytest.mark.parametrize("count", [2, 12, 40])
+def test_every_flight_has_a_vehicle_a_legend_entry_and_its_colour(count, tmp_path):
+    flights = [PlayerFlight(f"{HOSTILE} {i}", flown(shift=0.1 * i)) for i in range(count)]
+    script = (
+        HELP
+        + """
+    told.vehicles = scene.actors.filter(({ vehicle }) => vehicle.root.visible).length;
+    told.names = cells().map((row) => row[0]);
+    told.colours = [...document.querySelectorAll(".swatch line")].map((line) =>
+      [line.getAttribute("stroke"), line.getAttribute("stroke-dasharray")]);
+    told.curves = player.plots.plots[0].series.slice(1).map((one) => one._stroke || one.stroke());
+    told.images = document.images.length;
+    """
     )
-    assert float(found["later_cells"][0][2]) == pytest.approx(np.sqrt(14) * 10, rel=1e-2)
-    assert found["later_cells"][1][1].endswith("(ended)")
+    found = told_when_ready(make_page(flights), script, tmp_path)
+    assert found["vehicles"] == count and found["images"] == 0
+    assert found["names"] == [flight.name for flight in flights]
+    expected = [curve_style(i)["color"] for i in range(count)]
+    assert [colour for colour, _ in found["colours"]] == expected == found["curves"]
+    assert len(set(map(tuple, found["colours"]))) == count
+
+
+def test_the_table_follows_the_time(tmp_path):
+    log = flown()
+    flights = [PlayerFlight("first", log), PlayerFlight("short", flown(duration=1.0))]
+    script = (
+        HELP
+        + """
+    const slider = document.querySelector(".time");
+    told.start = seen(); slider.value = 2; slider.dispatchEvent(new Event("input"));
+    told.later = seen(); told.cells = cells();
+    told.clock = document.querySelector(".clock").textContent;
+    player.go(0); told.again = seen();
+    """
+    )
+    found = told_when_ready(make_page(flights), script, tmp_path)
+    assert found["start"] == found["again"] != found["later"]
+    at = [np.interp(2.0, log.time, log.position[:, i]) for i in range(3)]
+    assert [float(cell) for cell in found["cells"][0][1].split(", ")] == pytest.approx(at, abs=6e-4)
+    assert float(found["cells"][0][2]) == pytest.approx(np.sqrt(14) * 10, rel=1e-2)
+    assert found["cells"][1][1].endswith("(ended)")
     assert found["clock"] == "2.00 of 4.00 s"
 
 
-def test_boxes_keys_wheel_and_fingers_change_what_is_drawn(tmp_path):
+def test_keys_boxes_cameras_and_plots_change_what_is_drawn(tmp_path):
     script = (
-        LOOK
+        HELP
         + """
-    const changed = (act) => { const before = seen(); act(); return before !== seen(); };
-    const [first, second] = document.querySelectorAll("tbody input");
+    const [first, second] = document.querySelectorAll(".flights input");
+    const tick = (name) => document.querySelector(name).click();
     told.box = changed(() => second.click());
     told.one = changed(() => press("1"));
     told.unchecked = !first.checked;
     told.back = changed(() => { press("1"); second.click(); });
     told.right = changed(() => press("ArrowRight"));
     told.plus = changed(() => press("+"));
-    told.wheel = changed(() => canvas.dispatchEvent(new WheelEvent("wheel", { deltaY: 90 })));
-    told.orbit = changed(() => {
-      drag("pointerdown", 100, 100); drag("pointermove", 150, 120); drag("pointerup", 150, 120); });
-    told.pinch = changed(() => {
-      drag("pointerdown", 100, 100, 1); drag("pointerdown", 200, 100, 2);
-      drag("pointermove", 50, 100, 1); drag("pointerup", 50, 100, 1);
-      drag("pointerup", 200, 100, 2); });
-    told.follow = changed(() => document.querySelector(".follow").click());
-    told.fit = changed(() => document.querySelector(".fit").click());
+    for (const name of ["trails", "reference", "thrust"])
+      told[name] = changed(() => tick(`.show-${name}`));
+    for (let i = 0; i < 5; ++i) told[`camera ${i}`] = changed(() => press("c"));
+    told.follow = changed(() => document.querySelectorAll(".flights button")[1].click());
+    await new Promise((resolve) => setTimeout(resolve, 50));  // the plots are drawn anew
+    told.plot = changed(() => {
+      const { left, width, top } = player.plots.plots[0].over.getBoundingClientRect();
+      player.plots.plots[0].over.dispatchEvent(new PointerEvent(
+        "pointerdown", { clientX: left + width / 2, clientY: top + 9, bubbles: true }));
+    });
+    told.middle = Math.abs(player.time - 2) < 0.05;
     told.still = !changed(() => press("q"));
+    press(" "); told.plays = player.playing; press(" "); told.stops = !player.playing;
+    told.typed = !changed(() => press("1", document.querySelector("select.speed")));
     """
     )
-    flights = [PlayerFlight("a", flown(), ROTORS), PlayerFlight("b", flown(reference=False))]
-    found = told(make_page(flights), script, tmp_path)
+    flights = [PlayerFlight("a", flown()), PlayerFlight("b", flown(reference=False, shift=1))]
+    found = told_when_ready(make_page(flights), script, tmp_path)
     assert found and all(found.values()), found
 
 
-def test_two_players_on_one_page_keep_apart(tmp_path):
-    both = make_page([PlayerFlight("a", flown())]).replace(
-        "</section>", "</section>" + str(make_section([PlayerFlight("b", flown(duration=1.0))])), 1
-    )
+def test_it_plays_loops_and_follows_the_speed(tmp_path):
     script = (
-        LOOK
+        HELP
         + """
-    go(2.0);
-    told.clocks = [...document.querySelectorAll(".clock")].map((clock) => clock.textContent);
+    let now = 0, frames = [];
+    window.requestAnimationFrame = (draw) => frames.push(draw);
+    const pass = (ms) => { now += ms; for (const draw of frames.splice(0)) draw(now); };
+    document.querySelector(".speed").value = "0.5";
+    player.play(true); pass(0); pass(1000); told.slow = player.time;
+    document.querySelector(".speed").value = "10";
+    pass(100); told.fast = player.time;
+    pass(1000); told.ended = [player.time, player.playing];
+    document.querySelector(".loop").checked = true;
+    player.go(3.9); player.play(true); pass(1); pass(1000);
+    told.looped = [player.time, player.playing];
     """
     )
-    assert told(both, script, tmp_path)["clocks"] == ["2.00 of 4.00 s", "0.00 of 1.00 s"]
+    found = told_when_ready(make_page([PlayerFlight("a", flown())]), script, tmp_path)
+    assert found["slow"] == pytest.approx(0.5) and found["fast"] == pytest.approx(1.5)
+    assert found["ended"] == [4.0, False] and found["looped"] == [0.0, True]
 
 
-# The command
-
-
-@pytest.mark.usefixtures("in_empty_folder")
-class TestCommand:
-    def test_it_plays_logs_of_both_kinds(self):
-        log = flown()
-        Path("ode").mkdir()
-        log.to_file("ode/log.csv")
-        Path("eigen").mkdir()
-        log.to_file("eigen/log.mat")
-        assert main(["play", "ode/log.csv", "eigen/log.mat", "-o", "page.html", "--quiet"]) == 0
-        text = Path("page.html").read_text()
-        first, second = content_of(text)["flights"]
-        assert (first.pop("name"), second.pop("name")) == ("ode", "eigen")
-        assert first == second
-        assert text == make_page(
-            [PlayerFlight("ode", log), PlayerFlight("eigen", log)], "ode, eigen"
-        )
-
-    def test_a_guided_flight_brings_its_reference(self):
-        flight = ["--engine", "eigen", "--duration", "0.5", "--log-every", "10", "--quiet"]
-        guided = ["--controller", "geometric", "--reference", "circle"]
-        assert main(["run", "quadrotor", *flight, *guided, "--log", "a.csv"]) == 0
-        assert main(["play", "a.csv", "-o", "a.html", "--quiet"]) == 0
-        (told_of,) = content_of(Path("a.html").read_text())["flights"]
-        circle = qc.references.circle()
-        wanted = [circle(t).position for t in qc.Log.of_file("a.csv").time]
-        found = numbers(told_of["columns"]["reference"], 3)
-        assert np.allclose(found, wanted, rtol=1e-6, atol=1e-6)
-
-    def test_the_rotors_are_the_models(self):
-        flown(rotors=4).to_file("a.csv")
-        assert main(["play", "a.csv", "--model", "quadrotor", "-o", "a.html", "--names", "me"]) == 0
-        (flight,) = content_of(Path("a.html").read_text())["flights"]
-        assert np.array_equal(flight["rotors"], qc.read_model("quadrotor").joint_places)
-        assert flight["name"] == "me"
-
-    @pytest.mark.parametrize(
-        ("arguments", "message"),
-        [
-            (["a.txt", "-o", "b.html"], "a.txt: logs are read from .csv, .mat, .bag files"),
-            (["no.csv", "-o", "b.html"], "no.csv: cannot be read"),
-            (["t.csv", "-o", "b.html"], "t.csv:1: no log of quadcore: the columns are 't,w1'"),
-            (["word.csv", "-o", "b.html"], "word.csv:3: column 't' holds 'x'; write"),
-            (["nan.csv", "-o", "b.html"], "nan.csv:4: the state is not finite"),
-            (["back.csv", "-o", "b.html"], "back.csv:5: the time is not later than before"),
-            (["empty.csv", "-o", "b.html"], "empty.csv:2: no row"),
-            (["text.mat", "-o", "b.html"], "text.mat: not a MATLAB file"),
-            (["other.mat", "-o", "b.html"], "other.mat: no log of quadcore"),
-            (["a.csv", "a.csv", "-o", "b.html"], "a.csv: is named twice; name each log once"),
-            (["a.csv", "-o", "b.txt"], "b.txt: is not a page. Name a file that ends in .html"),
-            (["a.csv", "-o", "no/b.html"], "no/b.html: there is no folder no"),
-            (["a.csv", "-o", "b.html", "--names", "x,y"], "--names: names 2 of 1 flights"),
-            (["a.csv", "-o", "b.html", "--model", "quadrotor"], "has 3 rotors"),
-        ],
+def test_a_link_opens_at_a_moment_and_obstacles_and_ground_stand_in_the_world(tmp_path):
+    pose = np.eye(4)
+    pose[:3, 3] = [1, 2, 3]
+    kinds = {"box": (1, 2, 3), "cylinder": (0.5, 2), "sphere": (0.7,)}
+    world = DrawnWorld(True, [DrawnShape(kind, size, pose) for kind, size in kinds.items()])
+    script = (
+        HELP
+        + """
+    told.boxes = scene.obstacles.map((obstacle) => {
+      obstacle.geometry.computeBoundingBox();
+      const { min, max } = obstacle.geometry.boundingBox;
+      return [max.x - min.x, max.y - min.y, max.z - min.z, ...obstacle.position.toArray()];
+    });
+    told.floor = scene.floor;
+    """
     )
-    def test_what_cannot_be_played_is_one_line_and_leaves_no_page(self, arguments, message, capsys):
-        import scipy.io
+    found = told_when_ready(make_page([PlayerFlight("a", flown())], world=world), script, tmp_path)
+    assert found["floor"] == 0
+    sizes = [(1, 2, 3), (1, 1, 2), (1.4, 1.4, 1.4)]
+    assert np.allclose(found["boxes"], [[*size, 1, 2, 3] for size in sizes], atol=1e-6)
 
-        log = flown(rows=5, reference=False)
-        log.to_file("a.csv")
-        lines = Path("a.csv").read_text().splitlines()
-        changed = {
-            "nan.csv": [*lines[:3], lines[3].rsplit(",", 1)[0] + ",nan"],
-            "back.csv": [*lines[:4], lines[2]],
-            "empty.csv": lines[:1],
-            "t.csv": ["t,w1", "0,1"],
-            "text.mat": ["no"],
-        }
-        changed["word.csv"] = [*lines[:2], "x," + lines[2].split(",", 1)[1]]
-        for name, content in changed.items():
-            Path(name).write_text("\n".join(content) + "\n")
-        scipy.io.savemat("other.mat", {"u": [1.0, 2.0]})
-        assert main(["play", *arguments]) == 2
-        (line,) = capsys.readouterr().err.splitlines()
-        assert message in line and line.startswith("error: ")
-        assert not list(Path().glob("*.html")) and not list(Path().glob(".*.part"))
+
+def test_a_gif_has_frames_of_the_flight(tmp_path):
+    from io import BytesIO
+
+    from PIL import Image, ImageChops
+
+    script = (
+        HELP
+        + """
+    const bytes = player.makeGif();
+    told.gif = btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
+    """
+    )
+    flight = PlayerFlight("a", flown(duration=0.4))
+    found = told_when_ready(make_page([flight], camera="whole"), script, tmp_path)
+    image = Image.open(BytesIO(base64.b64decode(found["gif"])))
+    assert image.size == (560, 360) and image.n_frames == 7
+    first = image.convert("RGB")
+    image.seek(6)
+    assert ImageChops.difference(first, image.convert("RGB")).getbbox() is not None
+
+
+def test_two_players_on_one_page_keep_apart(tmp_path):
+    sections = [make_section([PlayerFlight(name, flown(duration=end))])
+                for name, end in (("a", 4.0), ("b", 1.0))]  # fmt: skip
+    page = make_page([PlayerFlight("a", flown())])
+    both = page.replace(str(sections[0]), str(sections[0]) + str(sections[1]))
+    script = """
+    quadcore.players.find((player) => player.end > 2).go(2);
+    told.clocks = [...document.querySelectorAll(".clock")].map((clock) => clock.textContent);
+    """
+    found = told_when_ready(both, script, tmp_path)
+    assert found["clocks"] == ["2.00 of 4.00 s", "0.00 of 1.00 s"]
+
+
+@pytest.mark.parametrize("mode", [(), (DARK,)])
+def test_axe_finds_nothing_serious(mode, tmp_path):
+    flights = [PlayerFlight("a", flown()), PlayerFlight("b", flown(shift=1.0))]
+    assert find_violations(make_page(flights), tmp_path, *mode) == []

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from browser import told
+from browser import told_when_ready
 from evaluations import FLY
-from test_player import LOOK, ROTORS, content_of, contents_of, flown, numbers
+from test_player import HELP, column_of, contents_of, flown
 
 import quadcore as qc
 from quadcore.cli import main
@@ -36,16 +36,16 @@ def test_what_rides_and_what_blows_is_told_on_topics_and_drawn(tmp_path):
     began, time = log.time > 0.0015, log.time
     assert (parcel[began] == np.where(time > 0.3005, 0, 0.2)[began]).all()
     assert (box[began] == np.where(time > 0.5005, 0.05, 0)[began]).all()
-    columns = content_of(make_page([PlayerFlight("a", log, None)]))["flights"][0]["columns"]
-    assert np.array_equal(numbers(columns["wind"], 3)[-1], [3, -4, 0])
-    riding = numbers(columns["carried payload_carried"], 4)[100]
+    page = make_page([PlayerFlight("a", log, None)])
+    assert np.array_equal(column_of(page, "wind")[-1], [3, -4, 0])
+    riding = column_of(page, "payload payload_carried")[100]
     assert np.allclose(riding, [0.2, 0.01, -0.02, -0.1])
 
 
-def weathered(wind=(3.0, -4.0, 0.0)):
+def weathered():
     """Wind from the second row on; what is carried goes after 1 s."""
     log = flown()
-    blows = np.outer(np.ones(len(log)), wind)
+    blows = np.outer(np.ones(len(log)), [3.0, -4.0, 0.0])
     blows[0] = np.nan
     log.topics["wind"] = dict(zip("xyz", blows.T))
     mass = np.where(log.time < 1, 0.25, 0.0)
@@ -54,25 +54,35 @@ def weathered(wind=(3.0, -4.0, 0.0)):
     return log
 
 
-def test_the_table_has_wind_and_load_and_the_picture_shows_them(tmp_path):
+def test_table_and_scene_show_wind_and_payload(tmp_path):
     script = (
-        LOOK
+        HELP
         + """
     const shows = (column) => getComputedStyle(document.querySelector(`th.${column}`)).display;
-    told.start = cells()[0].slice(3); go(0.5); told.laden = cells()[0].slice(3);
-    told.picture = seen(); go(2.0); told.free = cells()[0].slice(3);
+    const look = () => ({
+      row: cells()[0].slice(3, 5),
+      wind: scene.actors[0].wind.arrow.visible,
+      payload: scene.actors[0].payloads.map((payload) => payload.group.visible),
+    });
+    told.start = look(); player.go(0.5); told.laden = look(); player.go(2); told.free = look();
     told.shown = [shows("wind"), shows("load")];
+    told.plots = player.plots.content.map((panel) => panel.name);
     """
     )
-    found = told(make_page([PlayerFlight("a", weathered(), ROTORS)]), script, tmp_path)
-    assert found["start"] == ["", "0.25"]
-    assert found["laden"] == ["5.0", "0.25"]
-    assert found["free"] == ["5.0", ""]
-    assert "none" not in found["shown"]
-    calm = told(make_page([PlayerFlight("a", flown(), ROTORS)]), script, tmp_path)
+    found = told_when_ready(make_page([PlayerFlight("a", weathered())]), script, tmp_path)
+    assert found["start"] == {"row": ["", "0.25"], "wind": False, "payload": [True]}
+    assert found["laden"] == {"row": ["5.0", "0.25"], "wind": True, "payload": [True]}
+    assert found["free"] == {"row": ["5.0", ""], "wind": True, "payload": [False]}
+    assert "none" not in found["shown"] and "Wind speed (m/s)" in found["plots"]
+    script = (
+        HELP
+        + """
+    told.shown = ["wind", "load"].map(
+      (column) => getComputedStyle(document.querySelector(`th.${column}`)).display);
+    """
+    )
+    calm = told_when_ready(make_page([PlayerFlight("a", flown())]), script, tmp_path)
     assert calm["shown"] == ["none", "none"]
-    other = told(make_page([PlayerFlight("a", weathered((0, 4, 0)), ROTORS)]), script, tmp_path)
-    assert len({found["picture"], calm["picture"], other["picture"]}) == 3
 
 
 def test_the_page_of_an_evaluation_has_them(tmp_path):
@@ -84,4 +94,4 @@ def test_the_page_of_an_evaluation_has_them(tmp_path):
     contents = [content["flights"] for content in contents_of(text)]
     columns = [set(flight["columns"]) for (flight,) in contents]  # a player for each scenario
     assert "wind" not in columns[0]
-    assert {"wind", "carried box_carried", "carried payload_carried"} <= columns[1]
+    assert {"wind", "payload box_carried", "payload payload_carried"} <= columns[1]

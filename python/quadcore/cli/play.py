@@ -14,7 +14,7 @@ from ..support import parse
 from ..support.output_files import atomic_write, check_writable, encode_text
 from . import options, terminal
 from .parser import add_command, complete_from, find_group
-from .run_folder import find_logs, find_rotors
+from .run_folder import find_logs, find_vehicle
 
 _PAGE = "play.html"
 
@@ -79,7 +79,7 @@ def make_page(arguments: argparse.Namespace) -> None:
         raise InputError(f"{out}: is not a page. Name a file that ends in .html.")
     check_writable(out)
     flights = [
-        PlayerFlight(name, Log.of_file(log, arguments.mapping), find_rotors(log, arguments.model))
+        PlayerFlight(name, Log.of_file(log, arguments.mapping), find_vehicle(log, arguments.model))
         for name, log in zip(names, logs)
     ]
     text = render_page(flights, ", ".join(names))

@@ -111,7 +111,7 @@ def _run(arguments: argparse.Namespace) -> None:
     rows = describe_result(result)
     if drawn is not None:
         files += described
-        files += run_folder.write_results(arguments, simulation, drawn.log(), rows)
+        files += run_folder.write_results(arguments, plan, simulation, drawn.log(), rows)
     if arguments.json:
         terminal.print_json({**result, "files": [str(file) for file in files]})
     elif not arguments.quiet:

@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import platform
 import shlex
 import time
 from pathlib import Path
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
-import numpy as np
-
 from .. import __version__
 from .._core import InputError
 from ..model.description import read_model
+from ..model.visuals import read_vehicle
+from ..report.drawn_vehicle import DrawnVehicle, DrawnWorld
 from ..simulation.flight_plan import FlightPlan
 from ..simulation.log import Log
 from ..simulation.simulation import Simulation
 from ..simulation.trajectory import per_command
+from ..studies.measured_flight import find_speed_limit
 from ..studies.table import make_json, save_files
 from ..support.input_files import is_file, read_text
 from ..support.output_files import encode_text
@@ -65,6 +67,7 @@ def write_description(arguments: argparse.Namespace, plan: FlightPlan) -> List[P
 
 def write_results(
     arguments: argparse.Namespace,
+    plan: FlightPlan,
     simulation: Simulation,
     log: Log,
     rows: Sequence[Tuple[str, str]],
@@ -73,11 +76,18 @@ def write_results(
     from ..report.page import write_page  # jinja2 is slow to import
     from ..report.player import PlayerFlight, make_section
 
+    limit = find_speed_limit(simulation.rotors)
     log.per_command = per_command(simulation)
     name = f"{simulation.model.name}, {simulation.engine}"
     log.title = ", ".join(filter(None, (name, log.title)))
     plots = [] if arguments.no_plots else log.plot(arguments.out)
     page = arguments.out / PAGE
+    flight = PlayerFlight(
+        name,
+        log,
+        read_vehicle(plan.model),
+        speed_limit=limit if math.isfinite(limit) else None,
+    )
     write_page(
         page,
         "run.html",
@@ -85,7 +95,7 @@ def write_results(
         rows=rows,
         arguments=shlex.join(["quadcore", *arguments.words]),
         version=__version__,
-        player=make_section([PlayerFlight(name, log, simulation.model.joint_places)]),
+        player=make_section([flight], DrawnWorld(simulation.world.ground_plane)),
         plots=[(_PLOTS.get(file.stem, file.stem), file.read_bytes()) for file in plots],
     )
     return [*plots, page]
@@ -101,8 +111,8 @@ def find_logs(path: Path) -> List[Path]:
     return logs
 
 
-def find_rotors(log: Path, model: Optional[str]) -> Optional[np.ndarray]:
-    """Find the places of a log's rotors: in a model, or in the folder that holds the log.
+def find_vehicle(log: Path, model: Optional[str]) -> Optional[DrawnVehicle]:
+    """Find what the vehicle of a log looks like: in a model, or in the folder of the log.
 
     Raises
     ------
@@ -118,10 +128,10 @@ def find_rotors(log: Path, model: Optional[str]) -> Optional[np.ndarray]:
                 f"{log}: is a flight of '{flown}', but --model {model} is '{vehicle.name}'. "
                 "Leave --model out."
             )
-        return vehicle.joint_places
+        return read_vehicle(vehicle)
     if not described or not is_file(log.parent / MODEL):
         return None
-    return read_model(log.parent / MODEL, ignore=described.get("ignore", [])).joint_places
+    return read_vehicle(read_model(log.parent / MODEL, ignore=described.get("ignore", [])))
 
 
 def _read_description(log: Path) -> Dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Geometry of a vehicle as the player draws it."""
+"""Geometry of vehicles and worlds as the player draws them."""
 
 from __future__ import annotations
 
@@ -78,6 +78,22 @@ class DrawnVehicle:
     def rotor_count(self) -> int:
         """Number of rotors."""
         return len(self.bodies) - 1
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnWorld:
+    """Surroundings of the vehicles.
+
+    Attributes
+    ----------
+    ground : bool
+        Whether there is a ground plane at z = 0.
+    obstacles : sequence of DrawnShape
+        Solids; their poses are in the world.
+    """
+
+    ground: bool = False
+    obstacles: Sequence[DrawnShape] = ()
 
 
 def make_generic_vehicle(rotors: int) -> DrawnVehicle:

@@ -2,30 +2,37 @@
 
 from __future__ import annotations
 
-import base64
+import pickle
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
 from .._core import InputError
-from .colours import DASHES, PALETTE
-from .decimation import pick_evenly
-from .page import render
+from ..support.rotation import unwrap_angles
+from .colours import PALETTE, choose_colour, choose_dashes
+from .drawn_vehicle import DrawnShape, DrawnVehicle, DrawnWorld, make_generic_vehicle
+from .packing import (
+    Numbers,
+    align_signs,
+    choose_quantum,
+    choose_rows,
+    make_plot_times,
+    pick_extremes,
+)
+from .page import has_player, render
 
 if TYPE_CHECKING:
     from ..simulation.simulation import Simulation
     from ..simulation.trajectory import Trajectory
 
-_POINTS = 1500  # per flight: 50 per second in half a minute; the page interpolates
+CAMERAS = ("follow", "chase", "top", "side", "whole")
+"""Names of the cameras; the first is the default."""
+
 _WIND = "wind"
-_PAYLOAD = (
-    "mass",
-    "x",
-    "y",
-    "z",
-)  # kg, m; mass 0: no payload
-_ARM = 0.25  # m, length of the arms of an unknown vehicle
+_PAYLOAD = ("mass", "x", "y", "z")  # kg, m; mass 0: no payload
+_FINE = 2.0**-16  # m, and parts of a unit quaternion: the rounding of poses
+_COARSE = 2.0**-6  # rad/s, m/s: the rounding of speeds
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,24 +46,33 @@ class PlayerFlight:
     log : Trajectory
         Log of at least one row. The page shows the topic ``reference`` if it has fields x, y, z,
         and the topics that `list_animated_topics` returns.
-    rotors : ndarray (n, 3), optional
-        Positions of the rotors in the frame, m, as in `Model.joint_places`. Without them the
-        vehicle is drawn as a cross.
+    vehicle : DrawnVehicle, optional
+        Shapes to draw, from `read_vehicle`. Without them, the vehicle is a star of arms.
+    events : sequence of (float, str)
+        Times (s) and descriptions of events, marked in the plots.
+    speed_limit : float, optional
+        Maximum rotor joint speed, rad/s.
+    style : int, optional
+        Number of the colour and line style, as for `curve_style`; default: the place among the
+        flights.
     """
 
     name: str
     log: Trajectory
-    rotors: Optional[np.ndarray] = None
+    vehicle: Optional[DrawnVehicle] = None
+    events: Sequence[Tuple[float, str]] = ()
+    speed_limit: Optional[float] = None
+    style: Optional[int] = None
 
     def __post_init__(self) -> None:
-        """Check that log and rotors can be drawn."""
+        """Check that log and vehicle can be drawn."""
         if len(self.log) == 0:
             raise InputError(f"flight '{self.name}': the log is empty. Give a log with rows.")
         turning = self.log.rotor_velocity.shape[1]
-        if self.rotors is not None and np.shape(self.rotors) != (turning, 3):
+        if self.vehicle is not None and self.vehicle.rotor_count != turning:
             raise InputError(
-                f"flight '{self.name}': rotors has shape {np.shape(self.rotors)}, but the log has "
-                f"{turning} rotors. Give an array of shape ({turning}, 3)."
+                f"flight '{self.name}': the log has {turning} rotors, but the vehicle "
+                f"'{self.vehicle.name}' has {self.vehicle.rotor_count}. Name the model of the log."
             )
 
 
@@ -70,7 +86,12 @@ def list_animated_topics(simulation: Simulation) -> List[str]:
     ]
 
 
-def make_page(flights: Sequence[PlayerFlight], title: str = "Flights") -> str:
+def make_page(
+    flights: Sequence[PlayerFlight],
+    title: str = "Flights",
+    world: Optional[DrawnWorld] = None,
+    camera: str = CAMERAS[0],
+) -> str:
     """Make a page that animates flights.
 
     Parameters
@@ -79,6 +100,10 @@ def make_page(flights: Sequence[PlayerFlight], title: str = "Flights") -> str:
         At least one. Each appears at the time of its first row.
     title
         Heading of the page.
+    world
+        Ground and obstacles; default: neither.
+    camera
+        One of `CAMERAS`.
 
     Returns
     -------
@@ -88,66 +113,204 @@ def make_page(flights: Sequence[PlayerFlight], title: str = "Flights") -> str:
     Raises
     ------
     InputError
-        If there is no flight.
+        If there is no flight, or no such camera.
     """
-    return render("play.html", title=title, player=make_section(flights))
+    return render("play.html", title=title, player=make_section(flights, world, camera))
 
 
-def make_section(flights: Sequence[PlayerFlight]) -> str:
+def make_section(
+    flights: Sequence[PlayerFlight],
+    world: Optional[DrawnWorld] = None,
+    camera: str = CAMERAS[0],
+) -> str:
     """Make an animation for another page; see `make_page`.
 
     Returns
     -------
     markupsafe.Markup
-        Section with its own style, data and script; a page may contain several.
+        Section with its own data; a page may contain several. `render` adds the script.
     """
-    from markupsafe import Markup
-
     if not flights:
         raise InputError("no flight to animate. Give at least one.")
-    content: Dict[str, Any] = {
-        "colours": PALETTE,
-        "dashes": [[] if dashes == "-" else dashes[1] for dashes in DASHES],
-        "flights": [_pack_flight(flight) for flight in flights],
+    numbers = Numbers()
+    content = {
+        **_describe_scene([flight.vehicle for flight in flights], flights, world, camera, numbers),
+        "flights": [_pack_flight(flight, i, numbers) for i, flight in enumerate(flights)],
+        "plots": _pack_plots([flight.log for flight in flights], flights, numbers),
     }
-    return Markup(render("player.html", content=content))
+    for flight, number in zip(content["flights"], _number_vehicles(flights)):
+        flight["vehicle"] = number
+    return render_section(content, numbers)
 
 
-def _pack_flight(flight: PlayerFlight) -> Dict[str, Any]:
-    log = flight.log
-    rows = pick_evenly(len(log), _POINTS)
-    reference = log.topics.get("reference", {})
+def render_section(content: Dict[str, Any], numbers: Numbers) -> str:
+    """Make the section of a page from what the script reads."""
+    from markupsafe import Markup
+
+    if not has_player():
+        return Markup(render("no_player.html"))
+    return Markup(render("player.html", content=content, numbers=numbers.pack(), cameras=CAMERAS))
+
+
+def _number_vehicles(flights: Sequence[PlayerFlight]) -> List[int]:
+    """Return the number of each flight's vehicle; equal vehicles have the same number."""
+    seen: Dict[Any, int] = {}
+    return [seen.setdefault(_identify(flight), len(seen)) for flight in flights]
+
+
+def _identify(flight: PlayerFlight) -> Any:
+    if flight.vehicle is not None:
+        return pickle.dumps(flight.vehicle)
+    return ("generic", flight.log.rotor_velocity.shape[1])
+
+
+def _describe_scene(
+    vehicles: Sequence[Optional[DrawnVehicle]],
+    flights: Sequence[PlayerFlight],
+    world: Optional[DrawnWorld],
+    camera: str,
+    numbers: Numbers,
+) -> Dict[str, Any]:
+    if camera not in CAMERAS:
+        raise InputError(f"camera '{camera}' is unknown. Use one of {', '.join(CAMERAS)}.")
+    drawn: Dict[Any, DrawnVehicle] = {}
+    for flight, vehicle in zip(flights, vehicles):
+        rotors = flight.log.rotor_velocity.shape[1]
+        drawn.setdefault(_identify(flight), vehicle or make_generic_vehicle(rotors))
+    shown = world or DrawnWorld()
+    return {
+        "camera": camera,
+        "palette": PALETTE,
+        "ground": shown.ground,
+        "obstacles": [_pack_shape(obstacle, numbers) for obstacle in shown.obstacles],
+        "vehicles": [pack_vehicle(vehicle, numbers) for vehicle in drawn.values()],
+    }
+
+
+def pack_vehicle(vehicle: DrawnVehicle, numbers: Numbers) -> Dict[str, Any]:
+    """Describe a vehicle for the script."""
+    return {
+        "bodies": [
+            {
+                "pose": _round(body.pose),
+                "axis": _round(body.axis),
+                "shapes": [_pack_shape(shape, numbers) for shape in body.shapes],
+            }
+            for body in vehicle.bodies
+        ]
+    }
+
+
+def _pack_shape(shape: DrawnShape, numbers: Numbers) -> Dict[str, Any]:
+    packed: Dict[str, Any] = {
+        "kind": shape.kind,
+        "size": list(shape.size),
+        "pose": _round(shape.pose),
+        "colour": list(shape.colour),
+    }
+    if shape.vertices is not None and shape.faces is not None:
+        packed.update(vertices=numbers.add(shape.vertices), faces=numbers.add(shape.faces))
+    return packed
+
+
+def _round(matrix: np.ndarray) -> List[float]:
+    """Return the entries of a matrix, row by row, without rounding noise of their computation."""
+    return (np.asarray(matrix, float).ravel().round(9) + 0.0).tolist()  # type: ignore[no-any-return]
+
+
+def list_columns(log: Trajectory) -> Dict[str, Tuple[np.ndarray, float]]:
+    """List what the page shows at any time, and the rounding of each: at least the pose."""
     columns = {
-        "time": log.time,
-        "position": log.position,
-        "orientation": log.orientation,
-        "rotor_velocity": log.rotor_velocity,
+        "time": (log.time[:, None], 0.0),
+        "position": (log.position, _FINE),
+        "orientation": (align_signs(log.orientation), _FINE),
+        "rotor_velocity": (log.rotor_velocity, _COARSE),
     }
+    reference = log.topics.get("reference", {})
     if set("xyz") <= set(reference):  # a plugin's topic may have the same name
-        columns["reference"] = np.column_stack([reference[axis] for axis in "xyz"])
+        axes = [*"xyz", *(["yaw"] if "yaw" in reference else [])]
+        columns["reference"] = (np.column_stack([reference[axis] for axis in axes]), _FINE)
     for name, fields in log.topics.items():
         if name == _WIND and set("xyz") <= set(fields):
-            columns["wind"] = np.column_stack([fields[axis] for axis in "xyz"])
+            columns["wind"] = (np.column_stack([fields[axis] for axis in "xyz"]), _COARSE)
         elif set(fields) - {"stamp"} == set(_PAYLOAD):
-            columns[f"carried {name}"] = np.column_stack([fields[field] for field in _PAYLOAD])
+            payload = np.column_stack([fields[field] for field in _PAYLOAD])
+            columns[f"payload {name}"] = (payload, 0.0)
+    return columns
+
+
+def describe_flight(flight: PlayerFlight, number: int) -> Dict[str, Any]:
+    """Describe a flight for the script, without its rows."""
+    style = number if flight.style is None else flight.style
     return {
         "name": flight.name,
-        "rotors": _rotor_positions(flight),
-        "columns": {name: _pack(values[rows]) for name, values in columns.items()},
+        "colour": choose_colour(style),
+        "dash": choose_dashes(style),
+        "events": [{"time": float(time), "text": text} for time, text in flight.events],
+        "speed_limit": flight.speed_limit,
     }
 
 
-def _rotor_positions(flight: PlayerFlight) -> List[List[float]]:
-    if flight.rotors is not None:
-        return np.asarray(flight.rotors, dtype=float).tolist()  # type: ignore[no-any-return]
-    count = flight.log.rotor_velocity.shape[1]
-    angles = 2 * np.pi * (np.arange(count) + 0.5) / count
-    cross = _ARM * np.column_stack([np.cos(angles), np.sin(angles), 0 * angles])
-    return cross.round(6).tolist()  # type: ignore[no-any-return]
+def _pack_flight(flight: PlayerFlight, number: int, numbers: Numbers) -> Dict[str, Any]:
+    log = flight.log
+    columns = list_columns(log)
+    payloads = [values for name, (values, _) in columns.items() if name.startswith("payload ")]
+    changes = [np.flatnonzero(np.diff(values[:, 0])) for values in payloads]
+    marks = [row for found in changes if len(found) < 100 for row in (*found, *(found + 1))]
+    rows = choose_rows(log.time, log.position, log.orientation, marks)
+    return {
+        **describe_flight(flight, number),
+        "columns": {
+            name: {"width": values.shape[1], "values": numbers.add(values[rows], quantum)}
+            for name, (values, quantum) in columns.items()
+        },
+    }
 
 
-def _pack(values: np.ndarray) -> str:
-    """Encode as single precision, row by row, little-endian, in base 64."""
-    with np.errstate(over="ignore"):  # a vehicle may be very far away
-        single = np.ascontiguousarray(values, dtype="<f4")
-    return base64.b64encode(single.tobytes()).decode()
+def _pack_plots(
+    logs: Sequence[Trajectory], flights: Sequence[PlayerFlight], numbers: Numbers
+) -> List[Dict[str, Any]]:
+    """Describe the plots under the animation."""
+    begin = min(float(log.time[0]) for log in logs)
+    end = max(float(log.time[-1]) for log in logs)
+    time = numbers.add(make_plot_times(begin, end))
+    panels: Dict[str, Dict[str, Any]] = {}
+    for number, (log, flight) in enumerate(zip(logs, flights)):
+        for title, part, values in _list_curves(log):
+            panel = panels.setdefault(
+                title, {"name": title, "time": time, "least": 1e-6, "curves": [], "limits": []}
+            )
+            reduced = pick_extremes(log.time, values, begin, end)
+            packed = numbers.add(reduced, choose_quantum(reduced))
+            panel["curves"].append({"flight": number, "part": part, "values": packed})
+            limit = flight.speed_limit
+            if title == _ROTORS and limit is not None and limit not in panel["limits"]:
+                panel["limits"].append(limit)
+    order = {name: i for i, name in enumerate(_PANELS)}
+    return sorted(panels.values(), key=lambda panel: order[panel["name"]])
+
+
+_ROTORS = "Rotor speed (rad/s)"
+_PANELS = ("Tracking error (m)", "Height (m)", "Attitude (deg)", _ROTORS, "Wind speed (m/s)")
+
+
+def _list_curves(log: Trajectory) -> List[Tuple[str, str, np.ndarray]]:
+    """List panel, part of the vehicle ("": the whole) and values of each curve."""
+    curves: List[Tuple[str, str, np.ndarray]] = [("Height (m)", "", log.position[:, 2])]
+    with np.errstate(all="ignore"):
+        reference = log.topics.get("reference", {})
+        if set("xyz") <= set(reference):
+            away = log.position - np.column_stack([reference[axis] for axis in "xyz"])
+            curves.append(("Tracking error (m)", "", np.linalg.norm(away, axis=1)))
+        angles = np.degrees(unwrap_angles(log.rpy))
+        curves += [
+            ("Attitude (deg)", name, angle)
+            for name, angle in zip(("roll", "pitch", "yaw"), angles.T)
+        ]
+        speeds = np.abs(log.rotor_velocity)
+        curves += [(_ROTORS, f"rotor {i}", speed) for i, speed in enumerate(speeds.T, start=1)]
+        wind = log.topics.get(_WIND, {})
+        if set("xyz") <= set(wind):
+            vector = np.column_stack([wind[axis] for axis in "xyz"])
+            curves.append(("Wind speed (m/s)", "", np.linalg.norm(vector, axis=1)))
+    return curves

@@ -7,8 +7,10 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence
 
 import numpy as np
 
-from .._core import FlightError
+from .._core import FlightError, Rotor
+from ..model.visuals import read_vehicle
 from ..report.decimation import decimate
+from ..report.drawn_vehicle import DrawnVehicle
 from ..simulation.controller_pilot import convert_controller_errors
 from ..simulation.flight import Rows, fly, list_columns
 from ..simulation.flight_plan import FlightPlan
@@ -51,8 +53,8 @@ class Outcome(NamedTuple):
     """Result of `step_response`, if kept."""
     limit: float = float("inf")
     """Limit of the joint speeds, rad/s."""
-    rotors: Optional[np.ndarray] = None
-    """Rotor positions in the frame, if kept, m; (n, 3)."""
+    vehicle: Optional[DrawnVehicle] = None
+    """Shapes of the vehicle, if kept."""
     refused: bool = False
     """Whether the input was invalid and the flight did not run."""
 
@@ -129,9 +131,15 @@ def fly_and_measure(
     if not keep:
         return outcome
     response = None if failure else step_response(log)
-    limit = min((rotor.max_speed / rotor.slowdown for rotor in rotors), default=np.inf)
-    places = np.array([rotor.position for rotor in rotors])
-    return outcome._replace(log=decimate(log), response=response, limit=limit, rotors=places)
+    limit = find_speed_limit(rotors)
+    with suppress_warnings():
+        vehicle = read_vehicle(flight.model)
+    return outcome._replace(log=decimate(log), response=response, limit=limit, vehicle=vehicle)
+
+
+def find_speed_limit(rotors: Sequence[Rotor]) -> float:
+    """Return the limit of the joint speeds that all rotors share, rad/s; infinite without one."""
+    return min((rotor.max_speed / rotor.slowdown for rotor in rotors), default=float("inf"))
 
 
 def _animated_topics(simulation: Simulation) -> List[str]:

@@ -64,30 +64,35 @@ def write(evaluation: Evaluation, plan: Plan, folder: Path, plots: bool) -> List
     images = draw(evaluation, plan.list_events()) if plots else {}
     written += save_plots(folder, "evaluation.json", content, images)
     page = folder / "report.html"
-    animations = _make_animations(evaluation) if plots else []
+    animations = _make_animations(evaluation, plan) if plots else []
     values = _page_values(evaluation, plan, images)
     settings = _list_settings(plan)
     write_page(page, "evaluate.html", **values, animations=animations, settings=settings)
     return [*written, page]
 
 
-def _make_animations(evaluation: Evaluation) -> List[Dict[str, Any]]:
+def _make_animations(evaluation: Evaluation, plan: Plan) -> List[Dict[str, Any]]:
     """Make an animation of the flights along each reference in each scenario."""
     from ...report.player import PlayerFlight, make_section
 
-    return [
-        {
-            "name": name_group(evaluation, reference, scenario),
-            "player": make_section(
-                [
-                    PlayerFlight(label, outcome.log, outcome.rotors)
-                    for label, outcome in flights
-                    if outcome.log is not None
-                ]
-            ),
-        }
-        for (reference, scenario), flights in group_flights(evaluation).items()
-    ]
+    events = plan.list_events()
+    animations = []
+    for (reference, scenario), flights in group_flights(evaluation).items():
+        marks = [(event.time, event.text) for event in events.get(scenario, ())]
+        shown = [
+            PlayerFlight(
+                label,
+                outcome.log,
+                outcome.vehicle,
+                marks,
+                outcome.limit if math.isfinite(outcome.limit) else None,
+            )
+            for label, outcome in flights
+            if outcome.log is not None
+        ]
+        name = name_group(evaluation, reference, scenario)
+        animations.append({"name": name, "player": make_section(shown)})
+    return animations
 
 
 def _describe_omitted_flights(evaluation: Evaluation) -> str:
