@@ -16,6 +16,7 @@ PARTS = ("player.js", "player.css", "LICENSE.player")
 
 def test_a_source_distribution_needs_no_npm(tmp_path):
     builder = pytest.importorskip("scikit_build_core.build")
+    subprocess.run([sys.executable, str(ROOT / "scripts" / "bundle_player")], check=True)
     folder = Path.cwd()
     os.chdir(ROOT)
     try:
