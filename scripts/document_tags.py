@@ -206,6 +206,7 @@ FURTHER = {
     "payload": "<mass>0.1</mass>",
     "push": "",
     "reference": "",
+    "tachometer": "",
     "wind": "",
 }
 

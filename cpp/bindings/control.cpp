@@ -93,6 +93,37 @@ py::array_t<double> command(BoundController& bound, double period, const py::obj
   return speeds;
 }
 
+py::dict modelled_vehicle(const Self& self, const Values& values,
+                          const std::vector<double>& spins) {
+  control::check_values("vehicle", control::ModelledVehicle::table(), values);
+  const auto model = control::ModelledVehicle::of(describe(self), spins, values);
+  const auto n = static_cast<Eigen::Index>(model.rotors.size());
+  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> axes(n, 3);
+  VectorXd directions(n), momenta(n), lags(n), slowest(n), fastest(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const control::ModelledRotor& rotor = model.rotors[static_cast<std::size_t>(i)];
+    axes.row(i) = rotor.axis_F.transpose();
+    directions[i] = rotor.spin;
+    momenta[i] = rotor.momentum;
+    lags[i] = rotor.lag;
+    slowest[i] = rotor.slowest;
+    fastest[i] = rotor.fastest;
+  }
+  py::dict members;
+  members["mass"] = model.mass;
+  members["gravity"] = model.gravity;
+  members["center_of_mass"] = model.p_FCcm_F;
+  members["inertia"] = model.inertia_Ccm_F;
+  members["effectiveness"] = Eigen::MatrixXd(model.effectiveness);
+  members["axes"] = axes;
+  members["spins"] = directions;
+  members["angular_momenta"] = momenta;
+  members["time_constants"] = lags;
+  members["min_speeds"] = slowest;
+  members["max_speeds"] = fastest;
+  return members;
+}
+
 py::dict start(const Self& self, const py::object& wanted, const std::vector<double>& spins) {
   const VehicleState state = control::start_on(to_reference(wanted), describe(self), spins);
   py::dict members;
@@ -162,11 +193,26 @@ void bind_control(py::module_& m) {
           },
           py::arg("period"), py::arg("state"), py::arg("angular_velocity"), py::arg("thrust"),
           "Return the rotor speeds, rad/s, shape (n,), for an angular velocity (body axes, rad/s) "
-          "and a thrust [N].");
+          "and a thrust [N].")
+      .def(
+          "wrench",
+          [](BoundInnerLoop& flown, double period, const py::object& state,
+             const py::object& wanted, double thrust) {
+            return flown.command(period, odometry(state),
+                                 control::WrenchThrust{vector(wanted, "torque"), thrust});
+          },
+          py::arg("period"), py::arg("state"), py::arg("torque"), py::arg("thrust"),
+          "Return the rotor speeds, rad/s, shape (n,), for a torque about the centre of mass (body "
+          "axes, N m) and a thrust [N].");
   m.def(
       "inner_loop", [] { return control::InnerLoop::table(); },
       "Return the parameters of the inner loop.");
 
+  m.def("modelled_vehicle", &modelled_vehicle, py::arg("simulation"), py::arg("values"),
+        py::arg("spins"), "Return a controller's model of a vehicle as arrays by name.");
+  m.def(
+      "vehicle_model", [] { return control::ModelledVehicle::table(); },
+      "Return the parameters of modelled_vehicle().");
   m.def(
       "hover_commands",
       [](const Self& self, const std::vector<double>& spins) {

@@ -59,6 +59,17 @@ control::Rows places(const ReferenceShape& shape, const py::object& given) {
   return rows;
 }
 
+/// Return the numbers of the reference at each of these times, shape (n, 18), as in a message.
+control::Rows sample(const ReferenceShape& shape, const py::object& given) {
+  const Numbers times = numbers(given, 1, "times");
+  const auto width = messages::kind_of<Reference>().fields.size();
+  control::Rows rows(times.shape(0), static_cast<Eigen::Index>(width));
+  for (py::ssize_t i = 0; i < times.shape(0); ++i) {
+    messages::write(shape.at(times.data()[i]), rows.row(i).data());
+  }
+  return rows;
+}
+
 control::Rows rows_of(const py::object& rows) {
   if (rows.is_none()) return {};
   const Numbers table = numbers(rows, 2, "rows");
@@ -83,7 +94,10 @@ messages::Reference to_reference(const py::object& object) {
 void bind_reference(py::module_& m) {
   const Vector3d zero = Vector3d::Zero();
   py::class_<Reference>(m, "Reference",
-                        "Desired position and yaw with their derivatives, world axes.")
+                        R"(Desired position and yaw with their derivatives, world axes.
+
+The reference that a controller receives also has `at(t)`, the reference at other times.)",
+                        py::dynamic_attr())
       .def("__repr__",
            [](const Reference& r) {
              return py::str("Reference(position={}, velocity={}, acceleration={}, yaw={:.6g}, ...)")
@@ -108,6 +122,9 @@ void bind_reference(py::module_& m) {
            }),
            py::arg("name"), py::arg("values"), py::arg("rows") = py::none())
       .def("at", &ReferenceShape::at, py::arg("t"), "Return the reference at a time [s].")
+      .def("sample", &sample, py::arg("times"),
+           "Return position, velocity, acceleration, jerk, snap, yaw, yaw rate and yaw "
+           "acceleration at several times [s]; shape (n, 18).")
       .def("places", &places, py::arg("times"),
            "Return position [m] and yaw [rad] at several times [s]; shape (n, 4).")
       .def_property_readonly(

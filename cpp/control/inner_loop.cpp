@@ -54,6 +54,11 @@ void InnerLoop::command(double period, const Odometry& now, const RatesThrust& w
           loop_.angular_acceleration(wanted.w_WF_F - now.angular_velocity), state, speeds);
 }
 
+void InnerLoop::command(double period, const Odometry&, const WrenchThrust& wanted, double* state,
+                        double* speeds) const {
+  actuation_.command(period, Demand{wanted.thrust, wanted.torque_F}, state, speeds);
+}
+
 void InnerLoop::command(double period, const Odometry& now, double thrust, const Vector3d& dw_WF_F,
                         double* state, double* speeds) const {
   const Actuation::Now rotors_now = actuation_.now(state, speeds);

@@ -34,8 +34,9 @@ from ._core import (
 )
 from .control import controllers, gains, references
 from .control.controller import Controller
-from .control.inner_loop import AttitudeThrust, InnerLoop, RatesThrust
+from .control.inner_loop import AttitudeThrust, InnerLoop, RatesThrust, WrenchThrust
 from .control.keywords import ControllerName, ReferenceName
+from .control.vehicle import Vehicle
 from .model.description import read_model, read_world
 from .model.resources import cmake_prefix
 from .simulation.batch import BatchSimulation, BatchState
@@ -86,7 +87,9 @@ __all__ = [
     "Snapshot",
     "State",
     "Sweep",
+    "Vehicle",
     "World",
+    "WrenchThrust",
     "__version__",
     "cmake_prefix",
     "compare",

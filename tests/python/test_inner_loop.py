@@ -166,3 +166,31 @@ def test_parameters_of_the_inner_loop_are_checked_and_documented():
         with pytest.raises(qc.InputError, match=says):
             quadrotor("eigen").run(1, controller=law)
     assert "kr_rp : float, default 300" in qc.InnerLoop.__doc__
+
+
+def wrench_by_hand(sim, squared):
+    """Thrust along z and torque about the centre of mass, from the geometry of each rotor."""
+    total = np.zeros(4)
+    for rotor, square in zip(sim.rotors, squared):
+        force = rotor.thrust_coefficient * square * rotor.axis
+        reaction = rotor.torque_sense * rotor.spin * rotor.torque_coefficient * square * rotor.axis
+        total += [force[2], *(np.cross(rotor.position, force) + reaction)]
+    return total
+
+
+@pytest.mark.parametrize("model", ["quadrotor", "hexarotor", "hummingbird"])
+def test_a_torque_and_a_thrust_are_those_of_the_commanded_speeds(model):
+    sim = qc.Simulation(model, engine="eigen")
+    weight = sim.mass * 9.8
+    wanted = qc.WrenchThrust([0.02 * weight * 0.1, -0.01 * weight * 0.1, 1e-4 * weight], weight)
+    loop = qc.InnerLoop(lead=False)
+    speeds = loop.speeds(sim, 0.002, qc.Odometry(sim), wanted)
+    exerted = wrench_by_hand(sim, speeds**2)
+    assert exerted == pytest.approx([wanted.thrust, *wanted.torque], rel=1e-6, abs=1e-9)
+    assert sim.vehicle.allocation @ speeds**2 == pytest.approx(exerted, rel=1e-6, abs=1e-9)
+    assert np.array_equal(np.sign(speeds), sim.vehicle.spins)
+
+
+def test_a_torque_of_two_numbers_is_refused():
+    with pytest.raises(qc.InputError, match=r"its torque is .* give 3 finite numbers"):
+        flown("eigen", qc.WrenchThrust([1, 2], WEIGHT), 0.1)

@@ -66,16 +66,21 @@ class Channel {
 
   template <class M>
   void send(const Sample& sample, PluginState memory, const M& message) const {
-    if (is_direct()) return sample.topics.publish(topic_, sample.time, message);
+    send_row(sample, memory, [&message](double* row) { messages::write(message, row); });
+  }
+  /// Send a message whose numbers `write(double* row)` writes.
+  template <class Write>
+  void send_row(const Sample& sample, PluginState memory, const Write& write) const {
+    if (is_direct()) return write(sample.topics.publish(topic_, sample.time));
     if (sample.jumped) {
       clear(memory);
     } else if (dropout_ > 0 && uniform(sample.seed, memory[kDraws]) < dropout_) {
       return;
     }
-    if (sample.jumped || delay_ == 0) return sample.topics.publish(topic_, sample.time, message);
+    if (sample.jumped || delay_ == 0) return write(sample.topics.publish(topic_, sample.time));
     double* row = at(memory, memory[kFirst] + memory[kWaiting]);
     row[0] = sample.time;
-    messages::write(message, row + 1);
+    write(row + 1);
     memory[kWaiting] += 1;
   }
 

@@ -11,7 +11,7 @@ from ..support.output_files import remove_leftovers
 from . import options
 from .parser import add_command
 
-_FORMATS = ".csv, .mat, .bag, or a ROS 2 bag .ros2"
+_FORMATS = ".csv, .mat or .bag"
 
 
 def register(commands: Any) -> None:
@@ -24,7 +24,6 @@ def register(commands: Any) -> None:
         """
         quadcore convert out/spiral/log.csv spiral.mat
         quadcore convert flight.ulg flight.csv
-        quadcore convert out/spiral/log.csv spiral.ros2
         """,
     )
     parser.add_argument(

@@ -30,7 +30,10 @@ def register(commands: Any) -> None:
         "tune",
         "Search for gains of a controller, and test them on references that are held out.",
         tune_controller,
-        "quadcore tune geometric hexarotor --budget 100 -o gains.yaml",
+        """
+        quadcore tune geometric hexarotor --budget 100 -o gains.yaml
+        quadcore tune mine.py:Lee --free kx,kv -o mine.yaml
+        """,
     )
     controller = parser.add_argument(
         "law",
@@ -70,9 +73,11 @@ def register(commands: Any) -> None:
     )
     group.add_argument(
         "--only",
+        "--free",
         metavar="A,B",
         type=parse.names,
-        help="parameters to tune (default: all gains that are not zero)",
+        help="parameters to tune (default: all gains that are not zero; required for your own "
+        "controller)",
     )
     find_group(parser, STUDY).add_argument(
         "--budget",

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, Protocol, Union
 from .._core import InputError, Odometry
 from ..support.arguments import shorten
 from .built_in import BuiltInController
-from .inner_loop import AttitudeThrust, RatesThrust
+from .inner_loop import SetPoint
 from .keywords import ControllerName
+from .user_parameters import set_attribute
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -24,7 +25,7 @@ class ControllerFunction(Protocol):
 
     def __call__(
         self, t: float, state: Odometry, reference: Any, /
-    ) -> Union[npt.ArrayLike, AttitudeThrust, RatesThrust]:
+    ) -> Union[npt.ArrayLike, SetPoint]:
         """Return the rotor speeds, as `Controller` does."""
 
 
@@ -44,8 +45,8 @@ class Controller(Protocol):
         Time from a call until its command reaches the motors, s, rounded up to whole steps. The
         command of the first call acts at once.
     inner_loop : InnerLoop, optional
-        Converts a returned `AttitudeThrust` or `RatesThrust` to rotor speeds. Default: an inner
-        loop with default gains.
+        Converts a returned `AttitudeThrust`, `RatesThrust` or `WrenchThrust` to rotor speeds.
+        Default: an inner loop with default gains.
     """
 
     def reset(self, simulation: Any, /) -> None:
@@ -66,7 +67,7 @@ class Controller(Protocol):
 
     def __call__(
         self, t: float, state: Odometry, reference: Any, /
-    ) -> Union[npt.ArrayLike, AttitudeThrust, RatesThrust]:
+    ) -> Union[npt.ArrayLike, SetPoint]:
         """Return the command until the next call.
 
         A controller may read the simulation and publish on topics. It must not step, move or
@@ -79,11 +80,12 @@ class Controller(Protocol):
         state : Odometry
             Latest odometry message.
         reference : Reference or None
-            Value of the reference at `t`; None if the run has no reference.
+            Value of the reference at `t`; `reference.at(times)` gives it at other times. None if
+            the run has no reference.
 
         Returns
         -------
-        array_like (n,), AttitudeThrust or RatesThrust
+        array_like (n,), AttitudeThrust, RatesThrust or WrenchThrust
             Signed rotor speeds as for `Simulation.command`, rad/s; or a set point for the inner
             loop.
         """
@@ -120,7 +122,9 @@ def has_fixed_rate(controller: Any) -> bool:
 
 
 def set_parameter(controller: Any, name: str, value: float) -> None:
-    """Set the rate or delay of a controller, or a parameter of a built-in controller.
+    """Set the rate, the delay or a parameter of a controller.
+
+    The parameters of a user-defined controller are its public attributes that are numbers.
 
     Raises
     ------
@@ -141,4 +145,4 @@ def set_parameter(controller: Any, name: str, value: float) -> None:
     elif isinstance(controller, BuiltInController):
         controller.parameters[name] = value
     else:
-        raise InputError(f"controller.{name}: only laws of quadcore have parameters")
+        set_attribute("the controller", controller, name, value)

@@ -6,29 +6,34 @@ docstring lists the parameters. ``NAMES`` contains all names. `read_controller` 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Callable, List, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from .. import _core
 from ..support.parameters import make_signature, read_values, suggest, write_docstring
-from ..support.user_code import import_controller, names_file
+from ..support.user_code import find_controller, names_file, split_name
 from ..support.warning import warn
 from . import gains
 from .built_in import BuiltInController
-from .gains import make_for_vehicle, read_controller
+from .controller import set_parameter
+from .gains import Gains, make_for_vehicle, read_controller
 from .keywords import ControllerName
 from .rate_and_delay import DELAY, RATE
+from .user_parameters import list_parameters, make_controller
 
 
-def parse(text: str, vehicle: str = "") -> Any:
+def parse(text: str, vehicle: str = "", values: Optional[Mapping[str, float]] = None) -> Any:
     """Make a controller from a text as the option ``--controller`` takes it.
 
     Parameters
     ----------
     text : str
         ``NAME[:KEY=VALUE,...]`` with parameters, ``rate`` and ``delay`` as keys; a gains file
-        (.yaml); or your own controller as ``FILE.py[:NAME]`` or ``MODULE:NAME``.
+        (.yaml); or your own controller as ``FILE.py[:NAME]`` or ``MODULE:NAME``, also with
+        ``:KEY=VALUE,...``.
     vehicle : str, optional
         Name of the robot in its URDF. The gains that are shipped for it become the defaults.
+    values : mapping of str to float, optional
+        Rate, delay and parameters, which replace those of the text.
 
     Raises
     ------
@@ -41,27 +46,78 @@ def parse(text: str, vehicle: str = "") -> Any:
     QuadcoreWarning
         If the gains of the file belong to another vehicle.
     """
-    if text.lower().endswith((".yaml", ".yml")):
+    if names_gains_file(text):
         read = gains.read(text)
         if vehicle and read.vehicle not in ("", vehicle):
             warn(
                 f"{text}: these gains are for '{read.vehicle}', but '{vehicle}' flies with them; "
                 "tune some for it (quadcore tune)"
             )
-        return read.make()
+        if read.law in NAMES:
+            return _set_all(read.make(), values or {})
+        name, given = split_own(text)
+        return _make_own(name, {**given, **(values or {})})
     name, _, rest = text.partition(":")
     if name in NAMES:
-        law = make_for_vehicle(name, vehicle)
         given = read_values(f"law '{text}'", rest)
-        law.rate, law.delay = given.pop("rate", law.rate), given.pop("delay", law.delay)
-        law.parameters.update(given)
-        return law
+        return _set_all(make_for_vehicle(name, vehicle), {**given, **(values or {})})
     if ":" in text or names_file(text):
-        return import_controller(text)
+        return _make_own(text, values or {})
     raise _core.InputError(
         f"there is no controller '{text}'{suggest(text, NAMES)}; write one of "
         f"{', '.join(NAMES)}, a gains file that ends in .yaml, FILE.py[:NAME], or MODULE:NAME"
     )
+
+
+def names_gains_file(text: str) -> bool:
+    """Whether a text names a gains file."""
+    return text.lower().endswith((".yaml", ".yml"))
+
+
+def split_own(text: str) -> Tuple[str, Dict[str, float]]:
+    """Split the text of a user-defined controller into its name and its given values."""
+    if names_gains_file(text):
+        read = gains.read(text)
+        return read.law, {"rate": read.rate, "delay": read.delay, **read.parameters}
+    split = split_name(text)
+    name = f"{split.place}:{split.name}" if split.name else split.place
+    return name, read_values(f"controller '{text}'", split.values)
+
+
+def read_own(text: str) -> Gains:
+    """Import a user-defined controller, and return its timing and its parameters.
+
+    Parameters
+    ----------
+    text
+        As for `parse`.
+    """
+    name, given = split_own(text)
+    defaults: Dict[str, float] = {}
+    find_controller(name, lambda found: defaults.update(list_parameters(found)) or found)
+    made = _make_own(name, given)
+    timing = {"rate": RATE, "delay": DELAY}
+    for each, default in timing.items():
+        timing[each] = float(getattr(made, each, default))
+    parameters = {each: value for each, value in given.items() if each not in timing}
+    return Gains(name, "", **timing, parameters={**defaults, **parameters})
+
+
+def _set_all(controller: Any, values: Mapping[str, float]) -> Any:
+    for name, value in values.items():
+        set_parameter(controller, name, value)
+    return controller
+
+
+def _make_own(text: str, values: Mapping[str, float]) -> Any:
+    """Import a user-defined controller and make it with parameters."""
+    who = f"controller '{text}'"
+    given = {**read_values(who, split_name(text).values), **values}
+    timing: Dict[str, float] = {}
+    for name in {"rate", "delay"} & set(given):
+        timing[name] = given.pop(name)
+    made = find_controller(text, lambda found: make_controller(who, found, given))
+    return _set_all(made, timing)
 
 
 _COMMON = """\

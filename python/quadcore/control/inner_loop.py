@@ -1,4 +1,4 @@
-"""Inner loop: rotor speeds from an attitude or angular velocity and a thrust."""
+"""Inner loop: rotor speeds from an attitude, angular velocity or torque and a thrust."""
 
 from __future__ import annotations
 
@@ -52,8 +52,31 @@ class RatesThrust(NamedTuple):
     thrust: float
 
 
+class WrenchThrust(NamedTuple):
+    """Torque and thrust that a controller may return instead of rotor speeds.
+
+    The allocation converts them to rotor speeds, see `Vehicle.allocation`. If the rotors cannot
+    exert them, roll and pitch are met first, then the nearest thrust, then yaw.
+
+    Attributes
+    ----------
+    torque : array_like (3,)
+        Desired torque of all rotors about the centre of mass, body axes, N m.
+    thrust : float
+        Desired thrust of all rotors along z of the frame, N.
+    """
+
+    torque: npt.ArrayLike
+    thrust: float
+
+
+SetPoint = Union[AttitudeThrust, RatesThrust, WrenchThrust]
+"""Commands that an inner loop converts to rotor speeds."""
+SET_POINTS = (AttitudeThrust, RatesThrust, WrenchThrust)
+
+
 class InnerLoop:
-    """Compute rotor speeds from an attitude or angular velocity and a thrust."""
+    """Compute rotor speeds from an attitude, angular velocity or torque and a thrust."""
 
     def __init__(
         self,
@@ -75,7 +98,7 @@ class InnerLoop:
         simulation: _core.Simulation,
         period: float,
         state: Any,
-        wanted: Union[AttitudeThrust, RatesThrust],
+        wanted: SetPoint,
     ) -> np.ndarray:
         """Return the rotor speeds until the next call.
 
@@ -87,7 +110,7 @@ class InnerLoop:
             Time between two calls, s.
         state : Odometry
             Latest odometry message.
-        wanted : AttitudeThrust or RatesThrust
+        wanted : AttitudeThrust, RatesThrust or WrenchThrust
             Set point.
 
         Returns
@@ -106,6 +129,8 @@ class InnerLoop:
             self._loop = _core.InnerLoop(vehicle, simulation, self.parameters, self.spins)
         if isinstance(wanted, AttitudeThrust):
             return self._loop.attitude(period, state, target, thrust)
+        if isinstance(wanted, WrenchThrust):
+            return self._loop.wrench(period, state, target, thrust)
         return self._loop.rates(period, state, target, thrust)
 
     def __getstate__(self) -> Dict[str, Any]:
@@ -123,13 +148,13 @@ belief : Simulation, optional
     Vehicle that the inner loop is designed for. Default: the simulated vehicle."""
 
 InnerLoop.__doc__ = write_docstring(
-    "compute rotor speeds from an attitude or angular velocity and a thrust",
+    "compute rotor speeds from an attitude, angular velocity or torque and a thrust",
     _core.inner_loop(),
     _COMMON,
 )
 
 
-def _check_target(wanted: Union[AttitudeThrust, RatesThrust]) -> Any:
+def _check_target(wanted: SetPoint) -> Any:
     """Return target and thrust; raises `InputError` if they are not valid."""
     name, count = type(wanted)._fields[0], 4 if isinstance(wanted, AttitudeThrust) else 3
     who = f"{type(wanted).__name__}: its"

@@ -34,6 +34,7 @@ from ..support.parameters import (
     write_docstring,
 )
 from .keywords import ReferenceName
+from .reference_ahead import ReferenceSamples, sample_shape
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -113,6 +114,21 @@ class Shape:
     def __call__(self, t: float) -> _core.Reference:
         """Return the reference at a time [s]."""
         return self.shape.at(t)
+
+    def at(self, times: Any) -> Any:
+        """Return the reference at one or several times.
+
+        Parameters
+        ----------
+        times : float or array_like
+            Times, s.
+
+        Returns
+        -------
+        Reference or ReferenceSamples
+            For an array of times, arrays of the members of a `Reference`.
+        """
+        return sample_shape(self.shape, times)
 
     def on(self, simulation: _core.Simulation) -> Shape:
         """Return the reference with the defaults for a vehicle, such as the height of the ground.
@@ -295,6 +311,7 @@ __all__ = [
     "NAMES",
     "Reference",
     "ReferenceLike",
+    "ReferenceSamples",
     "Shape",
     "circle",
     "eight",

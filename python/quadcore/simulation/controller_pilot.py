@@ -12,9 +12,10 @@ from .._core import FlightError, InputError, QuadcoreError
 from ..control import controllers, references
 from ..control.built_in import BuiltInController
 from ..control.controller import SENSED, ControllerLike, check_callable
-from ..control.inner_loop import AttitudeThrust, InnerLoop, RatesThrust
+from ..control.inner_loop import SET_POINTS, InnerLoop
 from ..control.keywords import ReferenceName
 from ..control.rate_and_delay import DELAY, RATE, check_rate_or_delay
+from ..control.reference_ahead import add_future
 from ..support.arguments import shorten
 from ..support.user_code import describe_error
 from .flight import Pilot
@@ -146,13 +147,12 @@ class ControllerPilot(Pilot):
         """Make the function that calls the controller, and its inner loop if there is one."""
         controller, inner_loop = self._controller, self._inner_loop
         period = max(1 / self.rate, simulation.dt)  # called once a step at most
-        given = self._reference
-        reference = given.shape.at if isinstance(given, references.Shape) else given
+        reference = None if self._reference is None else add_future(self._reference)
 
         def call() -> Any:
             t, state = simulation.time, _core.Odometry(simulation)
             speeds = controller(t, state, None if reference is None else reference(t))
-            if isinstance(speeds, (AttitudeThrust, RatesThrust)):
+            if isinstance(speeds, SET_POINTS):
                 return inner_loop.speeds(simulation, period, state, speeds)
             inner_loop.leave()
             return speeds

@@ -14,6 +14,7 @@ from ..control.built_in import BuiltInController
 from ..control.controller import ControllerLike
 from ..control.keywords import ReferenceName
 from ..control.references import ReferenceLike
+from ..control.vehicle import Vehicle
 from ..model.description import check_names_argument, read_both
 from ..model.overrides import apply_link_values, check_names, split_xacro_arguments
 from ..support.arguments import PROGRESS, check, or_none
@@ -134,6 +135,11 @@ class Simulation(_core.Simulation):
             If no plugin drives the rotors, or the rotors cannot lift the vehicle.
         """
         return np.asarray(_core.hover_commands(self, []))
+
+    @property
+    def vehicle(self) -> Vehicle:
+        """View of the vehicle as arrays, as controllers receive it in a study."""
+        return Vehicle(self)
 
     def restore(  # type: ignore[override]  # pybind11 2.4 has no keyword-only arguments
         self, snapshot: _core.Snapshot, *, allow: Sequence[str] = ()

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Any, Callable, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
 from .._core import InputError
-from ..control import controllers, references
+from ..control import controllers, gains, references
 from ..control.built_in import BuiltInController
 from ..control.controller import ControllerLike, check_callable, set_parameter
 from ..control.keywords import ReferenceName
@@ -104,8 +104,8 @@ class ControlSetup:
 
     def make(self, controller: int, vehicle: str, values: Mapping[str, float]) -> Any:
         """Make a controller with some values for one flight of a vehicle."""
-        made = self._make_factory(controller, vehicle)()
-        return set_parameters(made, {**self.timing, **values})
+        given = {name: x for name, x in {**self.timing, **values}.items() if x is not None}
+        return self._make_factory(controller, vehicle)(given)
 
     def guide(self, plan: FlightPlan) -> FlightPlan:
         """Add the only controller and reference to a plan."""
@@ -150,9 +150,11 @@ def make_reference(thing: Any) -> Any:
 
 def names_user_code(thing: Any) -> bool:
     """Whether a text names a user-defined controller."""
-    return isinstance(thing, str) and (
-        names_file(thing) or (":" in thing and thing.partition(":")[0] not in controllers.NAMES)
-    )
+    if not isinstance(thing, str):
+        return False
+    if controllers.names_gains_file(thing):
+        return gains.read(thing).law not in controllers.NAMES
+    return names_file(thing) or (":" in thing and thing.partition(":")[0] not in controllers.NAMES)
 
 
 def _is_user_code(thing: Any) -> bool:
@@ -171,17 +173,21 @@ def set_parameters(controller: Any, values: Mapping[str, Any]) -> Any:
     return controller
 
 
-def _make_factory(thing: Any, vehicle: str) -> Callable[[], Any]:
-    """Return a function that makes the controller of a flight; it imports user modules.
+def _make_factory(thing: Any, vehicle: str) -> Callable[[Mapping[str, float]], Any]:
+    """Return a function that makes the controller of a flight with values for its parameters.
+
+    It imports user modules.
 
     Objects are shared, as flights with user code run in separate processes.
     """
     if names_user_code(thing):
-        return lambda: controllers.parse(thing, vehicle)
+        return lambda values: controllers.parse(thing, vehicle, values)
     if isinstance(thing, str):
         thing = controllers.parse(thing, vehicle)
     check_callable(thing)
-    return thing.copy if isinstance(thing, BuiltInController) else lambda: thing
+    if isinstance(thing, BuiltInController):
+        return lambda values: set_parameters(thing.copy(), values)
+    return lambda values: set_parameters(thing, values)
 
 
 def _make_label(thing: Any) -> str:

@@ -11,7 +11,7 @@ import traceback
 from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Callable, Iterator, List, Tuple
+from typing import Any, Callable, Iterator, List, NamedTuple
 
 from .._core import InputError
 from .input_files import check_regular
@@ -19,27 +19,52 @@ from .input_files import check_regular
 _FORM = "controller(t, state, reference)"
 
 
+class SplitName(NamedTuple):
+    """Parts of the name of a user-defined controller."""
+
+    place: str
+    """Module, or file that ends in .py."""
+    name: str
+    """Name in it; "" if it is not given."""
+    values: str
+    """Parameters as ``KEY=VALUE,...``."""
+
+
+def split_name(text: str) -> SplitName:
+    """Split ``MODULE:NAME`` or ``FILE.py[:NAME]``, each with an optional ``:KEY=VALUE,...``."""
+    head, colon, values = text.rpartition(":")
+    if not (colon and "=" in values):
+        head, values = text, ""
+    if head.endswith(".py"):
+        return SplitName(head, "", values)
+    place, _, name = head.rpartition(":")
+    return SplitName(place, name, values)
+
+
 def names_file(text: str) -> bool:
-    """Return whether a text is ``FILE.py`` or ``FILE.py:NAME``."""
-    return _split(text)[0].endswith(".py")
+    """Return whether a text names a controller in a file."""
+    return split_name(text).place.endswith(".py")
 
 
-def import_controller(text: str) -> Any:
+def find_controller(text: str, make: Callable[[Any], Any]) -> Any:
     """Import a controller.
 
     Parameters
     ----------
     text
-        ``MODULE:NAME``, ``FILE.py:NAME`` or ``FILE.py``: a class, which is made without arguments,
-        or an object that can be called as a controller. Modules in the working folder are found. A
-        file without NAME must define one class with a method ``__call__``, or one function.
+        Name as for `split_name`. Modules in the working folder are found. A file without NAME must
+        define one class with a method ``__call__``, or one function.
+    make
+        Makes the controller from the class or object that has been found.
 
     Raises
     ------
     InputError
         If there is no such module, file or name, or its code fails.
     """
-    place, name = _split(text)
+    place, name, _ = split_name(text)
+    if not place:
+        raise InputError(f"controller '{text}': no name is given. Write MODULE:NAME or FILE.py.")
     is_file = place.endswith(".py")
     if is_file:
         check_regular(Path(place))
@@ -47,8 +72,7 @@ def import_controller(text: str) -> Any:
     folder = os.path.dirname(os.path.realpath(place)) if is_file else os.getcwd()
     try:
         with _importing_from(folder):
-            found = find(text, place, name)
-            controller = found() if inspect.isclass(found) else found
+            controller = make(find(text, place, name))
     except (InputError, KeyboardInterrupt, MemoryError):
         raise
     except BaseException as error:  # SystemExit, too
@@ -56,14 +80,6 @@ def import_controller(text: str) -> Any:
     if not callable(controller):
         raise InputError(f"controller '{text}': it cannot be called as {_FORM}")
     return controller
-
-
-def _split(text: str) -> Tuple[str, str]:
-    """Split ``MODULE:NAME``; NAME is "" if it is not given."""
-    if text.endswith(".py"):
-        return text, ""
-    place, _, name = text.rpartition(":")
-    return place, name
 
 
 def _find_in_module(text: str, module: str, name: str) -> Any:

@@ -5,8 +5,11 @@ from __future__ import annotations
 import shlex
 from typing import Any, Dict, List, Mapping, Optional
 
+from ...control import controllers
 from ...control.built_in import BuiltInController
 from ..axes import OF_CONTROLLER
+from ..control_setup import names_user_code
+from ..variation import pick_controller_values
 from .plan import AnyPlan, Plan
 
 
@@ -61,10 +64,14 @@ def _write_controller(plan: Plan, row: int, text: str, point: Mapping[str, str])
     keys = [name[len(OF_CONTROLLER) :] for name in point if name.startswith(OF_CONTROLLER)]
     if not set(keys) - {"rate", "delay"}:
         return text
-    law: Any = plan.make_spec(row).plan.controller
-    assert isinstance(law, BuiltInController)  # else it was refused
-    values: List[str] = [f"{name}={value!r}" for name, value in law.parameters.items()]
-    return f"{law.name}:{','.join(values)}"
+    if names_user_code(text):
+        name, given = controllers.split_own(text)
+        parameters = {**given, **pick_controller_values(point)}
+    else:
+        law: BuiltInController = plan.make_spec(row).plan.controller
+        name, parameters = law.name, law.parameters
+    values: List[str] = [f"{key}={value!r}" for key, value in parameters.items()]
+    return f"{name}:{','.join(values)}"
 
 
 def _format(value: Any) -> str:

@@ -12,9 +12,8 @@ from typing import Any, Mapping, NamedTuple, Optional, Protocol, Tuple
 from ..._core import FlightError, InputError, QuadcoreError
 from ...control import controllers
 from ...simulation.flight_plan import FlightPlan
-from ...support.user_code import describe_error
+from ...support.user_code import describe_error, split_name
 from ...support.warning import suppress_warnings
-from ..control_setup import set_parameters
 from ..measured_flight import fly_and_measure
 from ..time_limit import time_limit
 from . import motion_metrics
@@ -40,11 +39,11 @@ class UserController:
     def of(cls, text: str, values: Mapping[str, Any]) -> UserController:
         """Find the module without importing it."""
         given = tuple((name, value) for name, value in values.items() if value is not None)
-        return cls(text, given, compute_digest(read_source(text.partition(":")[0])))
+        return cls(text, given, compute_digest(read_source(split_name(text).place)))
 
     def make(self, vehicle: str) -> Any:
         """Import and make the controller; raises `InputError`."""
-        return set_parameters(controllers.parse(self.text, vehicle), dict(self.values))
+        return controllers.parse(self.text, vehicle, dict(self.values))
 
 
 @dataclass(frozen=True)
@@ -141,9 +140,9 @@ def compute_digest(data: bytes) -> str:
 
 
 def read_source(module: str) -> bytes:
-    """Return the text of a module without importing it; empty if it cannot be found."""
+    """Return the text of a module or file without importing it; empty if it cannot be found."""
     loaded = sys.modules.get(module)
-    origin = getattr(loaded, "__file__", None)
+    origin = module if module.endswith(".py") else getattr(loaded, "__file__", None)
     if origin is None:
         sys.path.insert(0, "")
         try:

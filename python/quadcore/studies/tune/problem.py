@@ -10,17 +10,22 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Uni
 import numpy as np
 
 from ... import _core
-from ..._core import FlightError, InputError
-from ...control import references
+from ..._core import FlightError, InputError, QuadcoreError
+from ...control import controllers, references
 from ...control.built_in import BuiltInController
+from ...control.gains import Gains
 from ...simulation.flight_plan import FlightPlan
 from ...simulation.log import Log
 from ...support import rotation
+from ...support.arguments import shorten
+from ...support.warning import suppress_warnings
 from ..axes import Values
 from ..cases import Case, Cases, check_models, label_point, make_scenario_axis
-from ..control_setup import ControlSetup, add_labels, names_user_code, set_parameters
+from ..control_setup import ControlSetup, add_labels, names_user_code
 from ..design import Design
+from ..executor import run_contained
 from ..options import Options
+from ..time_limit import time_limit
 from ..tracking_metrics import FAILURE_DISTANCE, compute_errors, describe_failure, find_failure_time
 from ..variation import pick_controller_values
 
@@ -87,8 +92,11 @@ class Problem:
             raise InputError(
                 "tuning requires a model, a reference and a held-out reference. Give each of them."
             )
-        if names_user_code(law) or not isinstance(law, (str, BuiltInController)):
-            raise InputError(f"{law}: only built-in controllers can be tuned. Name one.")
+        if not isinstance(law, (str, BuiltInController)):
+            raise InputError(
+                f"the controller is {shorten(law)}. Give its name, or one of quadcore.controllers."
+            )
+        self.runs_user_code = names_user_code(law)
         trained, judged = (
             add_labels("reference", some, references.Shape) for some in (references_, held_out)
         )
@@ -110,7 +118,7 @@ class Problem:
         self._cases.check()
         self.models = self._cases.models[: len(models)]
         self.vehicle = self._cases.vehicles[0]
-        self.law: BuiltInController = control.make(0, self.vehicle, {})
+        self._own = _read_own(str(law), options.time_limit) if self.runs_user_code else None
         self.training: List[Trial] = []
         self.held_out: List[Trial] = []
         for case in sorted(self._cases, key=lambda case: (case.model, case[1:])):
@@ -124,11 +132,19 @@ class Problem:
         self.return_trials = [trial for trial in self.held_out if trial.plan.on_reference]
         self.start = self._start_gains(only)
 
-    def with_gains(self, gains: Mapping[str, float]) -> BuiltInController:
-        """Make the controller with some gains."""
-        law = self.law.copy()
-        law.parameters.update(gains)
-        return law
+    def describe_controller(self, gains: Mapping[str, float]) -> Gains:
+        """Describe the controller with some gains, as a gains file does."""
+        if self._own is not None:
+            given: Dict[str, Any] = {
+                name: x for name, x in self._cases.control.timing.items() if x is not None
+            }
+            kept = {**self._own.parameters, **gains}
+            return replace(self._own, vehicle=self.vehicle, parameters=kept, **given)
+        law = self._make_controller(gains)
+        return Gains(law.name, self.vehicle, law.rate, law.delay, law.parameters)
+
+    def _make_controller(self, gains: Mapping[str, float]) -> Any:
+        return self._cases.control.make(0, self.vehicle, gains)
 
     def fly(self, trial: Trial, gains: Mapping[str, float]) -> TrialResult:
         """Simulate a trial; raises `InputError` if the controller rejects gains or vehicle."""
@@ -176,7 +192,7 @@ class Problem:
         return f"{left:.3g} m of an offset of {offset:.3g} m remain after {_RETURN_TIME:g} s"
 
     def _fly_log(self, trial: Trial, gains: Mapping[str, float]) -> Log:
-        plan = replace(trial.plan, controller=set_parameters(self.with_gains(gains), trial.values))
+        plan = replace(trial.plan, controller=self._make_controller({**gains, **trial.values}))
         simulation = plan.simulation()
         if trial.has_offset:
             state = simulation.state.copy()
@@ -220,27 +236,45 @@ class Problem:
         return Trial(", ".join(parts), cases.make_plan_without_controller(case), values)
 
     def _start_gains(self, only: Optional[Sequence[str]]) -> Dict[str, float]:
-        table = next(specs for name, _, specs in _core.controllers() if name == self.law.name)
-        numbers = {
-            spec.name: float(self.law.parameters.get(spec.name, spec.default))
-            for spec in table
-            if not spec.is_flag
-        }
+        start = self.describe_controller({})
+        law, numbers = start.law, dict(start.parameters)
+        if self._own is None:
+            table = next(specs for name, _, specs in _core.controllers() if name == law)
+            numbers = {
+                spec.name: float(start.parameters.get(spec.name, spec.default))
+                for spec in table
+                if not spec.is_flag
+            }
+        elif only is None:
+            raise InputError(f"controller '{law}' is your own. Name its parameters with --free.")
         names = [name for name in numbers if _GAIN.fullmatch(name)] if only is None else only
         for name in names:
             if name not in numbers:
                 raise InputError(
-                    f"controller '{self.law.name}' has no parameter '{name}'. Use some of "
+                    f"controller '{law}' has no parameter '{name}'. Use some of "
                     f"{', '.join(numbers)}."
                 )
             if only is not None and not numbers[name] > 0:
                 raise InputError(f"{name} is {numbers[name]:g}. Start with more than 0.")
-        start = {name: numbers[name] for name in names if numbers[name] > 0}
-        if not start:
-            raise InputError(
-                f"controller '{self.law.name}' has no gain above 0. Set some at the start."
-            )
-        return start
+        positive = {name: numbers[name] for name in names if numbers[name] > 0}
+        if not positive:
+            raise InputError(f"controller '{law}' has no gain above 0. Set some at the start.")
+        return positive
+
+
+def _read_own(text: str, limit: float) -> Gains:
+    """Read the parameters of a user-defined controller in a separate process."""
+    read: List[Any] = []
+
+    def import_it(_: int) -> Gains:
+        with suppress_warnings(), time_limit(limit):
+            return controllers.read_own(text)
+
+    run_contained(import_it, [0], lambda _, outcome: read.append(outcome), 1)
+    if isinstance(read[0], QuadcoreError):
+        raise InputError(str(read[0]))
+    found: Gains = read[0]
+    return found
 
 
 def _make_plain(value: Any) -> Any:

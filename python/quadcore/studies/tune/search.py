@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+from dataclasses import replace
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -68,8 +69,7 @@ class Search:
     def run(self, cma: Any) -> None:
         """Search until the budget is spent."""
         start = self._problem.start
-        for case in self._problem.training:  # reports an invalid controller or vehicle at once
-            self._problem.fly(case, start)
+        self._check(start)
         self._try([start])
         # A separate generator: numpy's global one belongs to the caller.
         drawn = np.random.default_rng(self._seed)
@@ -87,6 +87,27 @@ class Search:
             points = strategy.ask()
             strategy.tell(points, self._try([self._scale_gains(point) for point in points]))
 
+    def _check(self, start: Mapping[str, float]) -> None:
+        """Report an invalid controller or vehicle at once."""
+        problem = self._problem
+        if not problem.runs_user_code:
+            for case in problem.training:
+                problem.fly(case, start)
+            return
+        errors: List[QuadcoreError] = []
+
+        def fly(index: int) -> TrialResult:
+            with suppress_warnings(), time_limit(self._limit):
+                return problem.fly(problem.training[index], start)
+
+        def take(_: int, outcome: Union[TrialResult, QuadcoreError]) -> None:
+            if isinstance(outcome, InputError):
+                errors.append(outcome)
+
+        self._run(fly, len(problem.training), take)
+        if errors:
+            raise errors[0]
+
     def make_tuning(self, cma: Any, ended: str) -> Optional[Tuning]:
         """Return the best result so far."""
         from ... import __version__  # defined after this module
@@ -94,7 +115,6 @@ class Search:
         if self._best is None:
             return None
         error, gains, held_out = self._best
-        law = self._problem.with_gains(gains)
         history = {
             "start": dict(self._problem.start),
             "objective": OBJECTIVE,
@@ -112,7 +132,7 @@ class Search:
         }
         if ended:
             history["ended"] = ended
-        found = Gains(law.name, self._problem.vehicle, law.rate, law.delay, law.parameters, history)
+        found = replace(self._problem.describe_controller(gains), history=history)
         start = self.evaluations[0]
         return Tuning(found, error, start, list(self.evaluations), held_out, self.refused)
 
@@ -154,7 +174,7 @@ class Search:
             with suppress_warnings(), time_limit(self._limit):
                 return problem.check_return(problem.return_trials[index], gains)
 
-        run_contained(fly, range(len(left)), take, self._processes)
+        self._run(fly, len(left), take)
         for case, failure in zip(problem.return_trials, left):
             if failure:
                 return self._refuse(f"do not return to {case.label} from an offset: {failure}")
@@ -164,6 +184,11 @@ class Search:
     def _refuse(self, reason: str) -> None:
         self.refused += 1
         self.refusal = f"the best candidates {reason}"
+
+    def _run(self, fly: Callable[[int], Any], count: int, take: Callable[[int, Any], None]) -> None:
+        """Call a function with each index; flights of user code share no state."""
+        apart = self._problem.runs_user_code
+        run_contained(fly, range(count), take, self._processes, apart=apart)
 
     def _fly(self, flights: Sequence[Tuple[Trial, Mapping[str, float]]]) -> List[TrialResult]:
         outcomes: List[Optional[TrialResult]] = [None] * len(flights)
@@ -178,5 +203,5 @@ class Search:
                 return self._problem.fly(*flights[index])
 
         # Indices, as a reference may be a function, which cannot be pickled.
-        run_contained(fly, range(len(flights)), take, self._processes)
+        self._run(fly, len(flights), take)
         return outcomes  # type: ignore[return-value]

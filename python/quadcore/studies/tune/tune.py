@@ -35,7 +35,7 @@ _INTERRUPTED = "interrupted"
     budget=arguments.WHOLE,
 )
 def tune(
-    law: Union[ControllerName, BuiltInController],
+    law: Union[ControllerName, str, BuiltInController],
     model: Names = "quadrotor",
     references: References = ("spiral", "step"),
     held_out: References = ("circle", "eight"),
@@ -57,8 +57,9 @@ def tune(
     Parameters
     ----------
     law
-        Controller name, ``NAME:KEY=VALUE,...``, gains file, or one of `quadcore.controllers`. The
-        search starts at its parameters.
+        Controller name, ``NAME:KEY=VALUE,...``, gains file, one of `quadcore.controllers`, or your
+        own controller as ``MODULE:NAME`` or ``FILE.py[:NAME]``. The search starts at its
+        parameters.
     model
         One or several models; the gains file names the first one.
     references
@@ -69,7 +70,7 @@ def tune(
         Held-out models for all references.
     only
         Parameters to tune (default: all gains, named ``k?_...``, ``q_...`` and ``r_...``, that are
-        not zero at the start).
+        not zero at the start). Required for your own controller.
     engine
         Engine of all flights.
     vary

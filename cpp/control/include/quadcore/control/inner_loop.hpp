@@ -19,6 +19,11 @@ struct RatesThrust {
   Vector3d w_WF_F;  ///< angular velocity of the frame, its own axes [rad/s]
   double thrust;    ///< along z of F [N]
 };
+/// Torque and thrust of all rotors.
+struct WrenchThrust {
+  Vector3d torque_F;  ///< about the centre of mass [N m]
+  double thrust;      ///< along z of F [N]
+};
 /// @}
 
 /// Controls attitude or angular velocity with a thrust: the attitude controller of the geometric
@@ -45,6 +50,9 @@ class InnerLoop {
                double* speeds) const;
   /// Compute the speeds for an angular velocity instead of an attitude.
   void command(double period, const Odometry& now, const RatesThrust& wanted, double* state,
+               double* speeds) const;
+  /// Compute the speeds for a torque; the gains have no effect.
+  void command(double period, const Odometry& now, const WrenchThrust& wanted, double* state,
                double* speeds) const;
 
  private:

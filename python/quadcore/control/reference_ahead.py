@@ -1,0 +1,133 @@
+"""Reference at other times, for controllers that look ahead."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any, Callable, Dict, List, Tuple
+
+import numpy as np
+
+from .. import _core
+from ..support.arguments import shorten
+
+_LENGTHS = {"position": 3, "velocity": 3, "acceleration": 3, "jerk": 3, "snap": 3}
+_LENGTHS.update(yaw=1, yaw_rate=1, yaw_acceleration=1)
+"""Members of a reference in the order of their numbers in a message."""
+
+
+class ReferenceSamples(SimpleNamespace):
+    """Reference at several times: arrays with the members of a `Reference`.
+
+    Attributes
+    ----------
+    position, velocity, acceleration, jerk, snap : ndarray (..., 3)
+        Position of the frame's origin in the world and its derivatives, m, s. Times of shape
+        ``(...)`` give this shape.
+    yaw, yaw_rate, yaw_acceleration : ndarray (...)
+        Yaw and its derivatives, rad, s.
+    """
+
+    position: np.ndarray
+    velocity: np.ndarray
+    acceleration: np.ndarray
+    jerk: np.ndarray
+    snap: np.ndarray
+    yaw: np.ndarray
+    yaw_rate: np.ndarray
+    yaw_acceleration: np.ndarray
+
+
+def sample_shape(shape: _core.ReferenceShape, times: Any) -> Any:
+    """Return a built-in reference at one or several times [s], as `sample_function`."""
+    at = _check_times(times)
+    if at.ndim == 0:
+        return shape.at(float(at))
+    rows = shape.sample(at.ravel())
+    ends = np.cumsum(list(_LENGTHS.values()))
+    return _make_samples(dict(zip(_LENGTHS, np.split(rows, ends[:-1], axis=1))), at.shape)
+
+
+def sample_function(function: Callable[[float], Any], times: Any) -> Any:
+    """Return a reference at one or several times.
+
+    Parameters
+    ----------
+    function
+        Reference of the user.
+    times : float or array_like
+        Simulation times, s.
+
+    Returns
+    -------
+    Reference or ReferenceSamples
+        At one time, the value of the function. At several times, arrays of all its members.
+    """
+    at = _check_times(times)
+    if at.ndim == 0:
+        return function(float(at))
+    points = [function(t) for t in at.ravel().tolist()]
+    found = {
+        name: np.array([getattr(point, name) for point in points], dtype=float).reshape(-1, length)
+        for name, length in _LENGTHS.items()
+        if all(hasattr(point, name) for point in points)
+    }
+    return _make_samples(found, at.shape)
+
+
+class ReferenceWithFuture:
+    """Value of a user-defined reference, with ``at``; other attributes are those of the value."""
+
+    def __init__(self, value: Any, at: Callable[[Any], Any]) -> None:
+        self._value = value
+        self.at = at
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._value, name)
+
+    def __repr__(self) -> str:
+        return repr(self._value)
+
+
+def add_future(reference: Callable[[float], Any]) -> Callable[[float], Any]:
+    """Add the method ``at`` to the values of a reference.
+
+    Parameters
+    ----------
+    reference
+        Built-in reference or function. Its values are passed on with the attribute ``at``, unless
+        they have one.
+    """
+    at: Callable[[Any], Any] = getattr(reference, "at", None) or (
+        lambda times: sample_function(reference, times)
+    )
+
+    def give(t: float) -> Any:
+        value = reference(t)
+        if value is None or hasattr(value, "at"):
+            return value
+        try:
+            value.at = at
+        except AttributeError:  # a tuple, or frozen
+            return ReferenceWithFuture(value, at)
+        return value
+
+    return give
+
+
+def _check_times(times: Any) -> np.ndarray:
+    try:
+        at = np.asarray(times, dtype=float)
+    except (TypeError, ValueError):
+        at = np.array(np.nan)
+    if not np.isfinite(at).all():
+        raise _core.InputError(
+            f"reference.at: the time is {shorten(times)}. Give seconds, one or several."
+        )
+    return at
+
+
+def _make_samples(members: Dict[str, np.ndarray], shape: Tuple[int, ...]) -> ReferenceSamples:
+    sizes: Dict[str, List[int]] = {
+        name: [*shape, length] if length > 1 else [*shape] for name, length in _LENGTHS.items()
+    }
+    return ReferenceSamples(**{name: rows.reshape(sizes[name]) for name, rows in members.items()})
